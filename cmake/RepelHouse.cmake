@@ -1,0 +1,31 @@
+# Flags and folders for what is built in this tree; nothing here reaches a consumer.
+if(PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+  endif()
+endif()
+
+add_library(repel_house INTERFACE)
+target_compile_features(repel_house INTERFACE cxx_std_20)
+# Contraction would let two compilers, or two paths of one, round differently.
+target_compile_options(repel_house INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off)
+if(REPEL_SANITIZE)
+  target_compile_options(repel_house INTERFACE
+    -fsanitize=${REPEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(repel_house INTERFACE -fsanitize=${REPEL_SANITIZE})
+endif()
+
+# repel_test(NAME SOURCES a.cpp b.cpp LIBRARIES repel::core): one GoogleTest binary, one ctest entry.
+function(repel_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main repel_house)
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TIMEOUT 300)
+  if(ARG_LABELS)
+    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
+  endif()
+endfunction()

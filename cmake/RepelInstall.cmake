@@ -1,0 +1,1 @@
+# Filled in below: install rules, the package file and the pkg-config file.

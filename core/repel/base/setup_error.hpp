@@ -1,0 +1,51 @@
+/// @file
+/// The one exception of the library. It is thrown at set-up only, never by the tick.
+#pragma once
+
+#include <charconv>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace repel {
+
+/// Says what is wrong in an input, where it stands, what was found and what is allowed.
+class SetupError : public std::runtime_error {
+ public:
+  /// @param what_is_wrong one sentence, without the place
+  /// @param file the file it stands in; empty for a value given in code
+  /// @param line its line, from 1; 0 when there is none
+  explicit SetupError(const std::string& what_is_wrong, std::string file = {}, int line = 0)
+      : std::runtime_error(place(file, line) + what_is_wrong), file_(std::move(file)), line_(line) {}
+
+  [[nodiscard]] const std::string& file() const noexcept { return file_; }
+  [[nodiscard]] int line() const noexcept { return line_; }
+
+ private:
+  static std::string place(const std::string& file, int line) {
+    if (file.empty()) return {};
+    return line > 0 ? file + ":" + std::to_string(line) + ": " : file + ": ";
+  }
+
+  std::string file_;
+  int line_ = 0;
+};
+
+/// `value` in the shortest form that reads back exactly, whatever the locale.
+[[nodiscard]] inline std::string to_text(double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  return {digits, end};
+}
+
+/// Returns `value` when `low <= value <= high`; throws SetupError naming it, its unit and the range.
+inline double checked(std::string_view name, double value, double low, double high,
+                      std::string_view unit) {
+  if (value >= low && value <= high) return value;  // NaN fails both
+  std::string text(name);
+  text += " is " + to_text(value) + " " + std::string(unit) + "; allowed: " + to_text(low) +
+          " to " + to_text(high) + " " + std::string(unit);
+  throw SetupError(text);
+}
+
+}  // namespace repel
