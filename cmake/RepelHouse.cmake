@@ -1,6 +1,8 @@
-# Flags and folders for what is built in this tree; nothing here reaches a consumer.
+# Flags and folders for what is built in this tree; nothing here reaches a consumer. A static library
+# links them as $<BUILD_INTERFACE:repel_house>, so that they stay out of the installed package.
 if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  set(CMAKE_COMPILE_WARNING_AS_ERROR ON)  # off with: cmake --compile-no-warning-as-error
   if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release)
   endif()
@@ -10,14 +12,15 @@ add_library(repel_house INTERFACE)
 target_compile_features(repel_house INTERFACE cxx_std_20)
 # Contraction would let two compilers, or two paths of one, round differently.
 target_compile_options(repel_house INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)
 if(REPEL_SANITIZE)
   target_compile_options(repel_house INTERFACE
     -fsanitize=${REPEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(repel_house INTERFACE -fsanitize=${REPEL_SANITIZE})
 endif()
 
-# repel_test(NAME SOURCES a.cpp b.cpp LIBRARIES repel::core): one GoogleTest binary, one ctest entry.
+# repel_test(NAME SOURCES a.cpp b.cpp LIBRARIES repel::core [LABELS threads]): one GoogleTest binary,
+# one ctest entry. Suites labelled `threads` also run under the thread sanitizer.
 function(repel_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -28,4 +31,8 @@ function(repel_test name)
   if(ARG_LABELS)
     set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
   endif()
+  if("threads" IN_LIST ARG_LABELS)
+    add_dependencies(threads_tests ${name})
+  endif()
 endfunction()
+add_custom_target(threads_tests)

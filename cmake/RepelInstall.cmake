@@ -1,1 +1,37 @@
-# Filled in below: install rules, the package file and the pkg-config file.
+# Installs every part that was built, the package file and the pkg-config file of the core.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/repel)
+set(REPEL_PACKAGES "")  # a line of the package file for each part: the Debian packages it needs
+foreach(part core ideal robots bullet scene)
+  repel_debian_packages(${part} packages)
+  string(APPEND REPEL_PACKAGES "set(repel_packages_${part} \"${packages}\")\n")
+  if(TARGET repel_${part})
+    set_target_properties(repel_${part} PROPERTIES EXPORT_NAME ${part})
+    install(TARGETS repel_${part} EXPORT repel-${part} FILE_SET HEADERS)
+    install(EXPORT repel-${part} NAMESPACE repel:: DESTINATION ${package_dir})
+  endif()
+endforeach()
+if(TARGET teleop)
+  install(TARGETS teleop)
+endif()
+foreach(data scenes robots)
+  install(DIRECTORY ${data} DESTINATION ${CMAKE_INSTALL_DATADIR}/repel
+          FILES_MATCHING PATTERN *.yaml PATTERN *.urdf PATTERN *.stl PATTERN *.obj)
+endforeach()
+install(FILES LICENSE TYPE DOC)
+
+configure_package_config_file(cmake/repel-config.cmake.in repel-config.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(repel-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/repel-config.cmake
+              ${PROJECT_BINARY_DIR}/repel-config-version.cmake
+              cmake/RepelDependencies.cmake
+        DESTINATION ${package_dir})
+
+# Relative to the file itself, so that the installed tree can be moved.
+set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+file(RELATIVE_PATH REPEL_PREFIX_FROM_PC /${pkgconfig_dir} /)
+configure_file(cmake/repel.pc.in repel.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/repel.pc DESTINATION ${pkgconfig_dir})

@@ -1,0 +1,50 @@
+# What each part needs beyond the standard library. Included by the build and by the installed
+# package alike: a static library still needs its private dependencies where it is linked.
+#
+# repel_find_PART() finds them and sets REPEL_HAS_PART to say whether all of them were there.
+# These are macros because find_package must leave its targets with the caller.
+
+macro(repel_find_core)
+  find_package(Eigen3 3.4 QUIET NO_MODULE)
+  find_package(Threads QUIET)
+  repel_all_found(CORE Eigen3_FOUND Threads_FOUND)
+endmacro()
+
+macro(repel_find_ideal)
+  repel_all_found(IDEAL)
+endmacro()
+
+macro(repel_find_robots)
+  repel_pkg_config(TINYXML2 tinyxml2)
+  find_package(orocos_kdl QUIET)
+  find_package(urdfdom QUIET)
+  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND)
+endmacro()
+
+macro(repel_find_bullet)
+  repel_pkg_config(BULLET bullet-float64)  # plain `bullet` is single precision
+  repel_all_found(BULLET BULLET_FOUND)
+endmacro()
+
+macro(repel_find_scene)
+  find_package(yaml-cpp QUIET)
+  repel_all_found(SCENE yaml-cpp_FOUND)
+endmacro()
+
+# Sets PREFIX_FOUND and the target PkgConfig::PREFIX.
+macro(repel_pkg_config prefix module)
+  find_package(PkgConfig QUIET)
+  if(PkgConfig_FOUND)
+    pkg_check_modules(${prefix} QUIET IMPORTED_TARGET ${module})
+  endif()
+endmacro()
+
+function(repel_all_found part)
+  set(all TRUE)
+  foreach(found ${ARGN})
+    if(NOT ${found})
+      set(all FALSE)
+    endif()
+  endforeach()
+  set(REPEL_HAS_${part} ${all} PARENT_SCOPE)
+endfunction()

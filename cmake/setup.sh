@@ -1,0 +1,79 @@
+# Sourced by ./run, ./test and .ci/run, which set `root` to the folder of this repository.
+# shellcheck shell=sh disable=SC2154
+
+# The packages of the named parts, see debian-packages.txt.
+packages_of() {
+  for part in "$@"; do
+    awk -v part="$part" '$1 == part { print $2 }' "$root/cmake/debian-packages.txt"
+  done
+}
+
+# Runs a command; says nothing but a progress line on a terminal, and everything if it fails.
+quietly() {
+  log=$(mktemp)
+  { "$@" </dev/null 2>&1 && echo succeeded; } | tee "$log" | show_progress
+  if [ "$(tail -n 1 "$log")" != succeeded ]; then
+    cat "$log" >&2
+    rm -f "$log"
+    return 1
+  fi
+  rm -f "$log"
+}
+
+show_progress() {
+  [ -t 2 ] || exec cat >/dev/null
+  while IFS= read -r line; do printf '\r\033[K%.78s' "$line" >&2; done
+  printf '\r\033[K' >&2
+}
+
+apt_as_root() {
+  if [ "$(id -u)" = 0 ]; then
+    DEBIAN_FRONTEND=noninteractive apt-get "$@"
+  else
+    sudo env DEBIAN_FRONTEND=noninteractive apt-get "$@"
+  fi
+}
+
+# Installs what the named parts need and this machine lacks.
+install_packages() {
+  command -v dpkg-query >/dev/null || return 0  # not Debian: CMake says what it does not find
+  wanted=$(packages_of "$@")
+  # shellcheck disable=SC2016,SC2086
+  present=" $(dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null |
+    awk '$2 == "installed" { printf "%s ", $1 }')"
+  missing=
+  for package in $wanted; do
+    case $present in *" $package "*) ;; *) missing="$missing $package" ;; esac
+  done
+  [ -n "$missing" ] || return 0
+
+  if [ "$(id -u)" != 0 ] && ! sudo -v 2>/dev/null; then  # asks for the password, if any
+    ask_for_packages
+  fi
+  echo "Installing$missing" >&2
+  quietly apt_as_root update -q || true  # one broken source need not matter
+  # shellcheck disable=SC2086
+  quietly apt_as_root install -qy --no-install-recommends $missing || ask_for_packages
+  reconfigure=yes  # a part that was left out may be possible now
+}
+
+ask_for_packages() {
+  printf "Packages are missing. Run this as root, then start again:\n\n  %s\n" \
+    "apt-get update && apt-get install -y --no-install-recommends$missing" >&2
+  exit 1
+}
+
+# build PRESET [TARGET]: configures when needed, then builds. Its first run takes a minute or more.
+build() {
+  tree=$root/build/$1
+  if ! is_configured "$tree"; then
+    echo "Building in build/$1; the first time takes a while." >&2
+    (cd "$root" && quietly cmake --preset "$1") || exit 1
+  fi
+  quietly cmake --build "$tree" ${2:+--target "$2"} || exit 1
+}
+
+is_configured() {
+  [ -z "${reconfigure:-}" ] &&
+    [ -n "$(find "$1/build.ninja" -newer "$root/CMakePresets.json" 2>/dev/null)" ]
+}
