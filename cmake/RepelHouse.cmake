@@ -1,5 +1,5 @@
-# Flags and folders for what is built in this tree; nothing here reaches a consumer. A static library
-# links them as $<BUILD_INTERFACE:repel_house>, so that they stay out of the installed package.
+# Flags and folders for what is built in this tree; nothing here reaches a consumer. A static
+# library links them as $<BUILD_INTERFACE:repel_house>: they stay out of the installed package.
 if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   set(CMAKE_COMPILE_WARNING_AS_ERROR ON)  # off with: cmake --compile-no-warning-as-error
@@ -19,7 +19,7 @@ if(REPEL_SANITIZE)
   target_link_options(repel_house INTERFACE -fsanitize=${REPEL_SANITIZE})
 endif()
 
-# repel_test(NAME SOURCES a.cpp b.cpp LIBRARIES repel::core [LABELS threads]): one GoogleTest binary,
+# repel_test(NAME SOURCES a.cpp LIBRARIES repel::core [LABELS threads]): one GoogleTest binary,
 # one ctest entry. Suites labelled `threads` also run under the thread sanitizer.
 function(repel_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;LABELS" ${ARGN})

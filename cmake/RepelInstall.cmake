@@ -33,5 +33,6 @@ install(FILES ${PROJECT_BINARY_DIR}/repel-config.cmake
 # Relative to the file itself, so that the installed tree can be moved.
 set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH REPEL_PREFIX_FROM_PC /${pkgconfig_dir} /)
+string(REGEX REPLACE "/$" "" REPEL_PREFIX_FROM_PC ${REPEL_PREFIX_FROM_PC})
 configure_file(cmake/repel.pc.in repel.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/repel.pc DESTINATION ${pkgconfig_dir})

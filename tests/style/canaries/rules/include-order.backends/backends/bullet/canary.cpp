@@ -1,0 +1,1 @@
+#include <repel/robots/arm.hpp>

@@ -1,0 +1,1 @@
+void shout() { std::cout << 1; }

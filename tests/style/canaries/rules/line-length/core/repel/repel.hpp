@@ -1,0 +1,5 @@
+/// @file
+/// A canary.
+#pragma once
+
+#include <repel/base/canary.hpp>

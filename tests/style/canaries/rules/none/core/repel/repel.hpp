@@ -1,0 +1,6 @@
+/// @file
+/// A canary.
+#pragma once
+
+#include <repel/base/other.hpp>
+#include <repel/geometry/canary.hpp>

@@ -1,0 +1,1 @@
+void write(char* out) { std::snprintf(out, 2, "1"); }

@@ -1,0 +1,4 @@
+/// @file
+/// A canary.
+#pragma once
+// TODO: write it

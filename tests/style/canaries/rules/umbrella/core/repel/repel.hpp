@@ -1,0 +1,3 @@
+/// @file
+/// A canary.
+#pragma once

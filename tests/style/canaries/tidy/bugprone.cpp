@@ -1,0 +1,2 @@
+// rejected by bugprone-integer-division
+double half() { return 1 / 2; }

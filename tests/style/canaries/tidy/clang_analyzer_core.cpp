@@ -1,0 +1,5 @@
+// rejected by clang-analyzer-core.NullDereference
+int read() {
+  int* nothing = nullptr;
+  return *nothing;
+}

@@ -1,0 +1,6 @@
+// rejected by clang-analyzer-cplusplus.NewDelete
+int read() {
+  int* number = new int(1);
+  delete number;
+  return *number;
+}

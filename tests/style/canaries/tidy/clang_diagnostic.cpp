@@ -1,0 +1,2 @@
+// rejected by clang-diagnostic-unused-variable
+void idle() { int unused = 1; }

@@ -1,0 +1,3 @@
+// rejected by concurrency-mt-unsafe
+#include <cstdlib>
+int roll() { return std::rand(); }

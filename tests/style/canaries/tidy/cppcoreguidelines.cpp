@@ -1,0 +1,2 @@
+// rejected by cppcoreguidelines-avoid-non-const-global-variables
+int counter = 0;

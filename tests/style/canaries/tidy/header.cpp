@@ -1,0 +1,2 @@
+// rejected by bugprone-integer-division
+#include "core/header.hpp"

@@ -1,0 +1,2 @@
+// rejected by misc-redundant-expression
+bool never(int a) { return a < a; }

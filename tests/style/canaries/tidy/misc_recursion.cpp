@@ -1,0 +1,2 @@
+// rejected by misc-no-recursion
+int down(int n) { return n > 0 ? down(n - 1) : 0; }

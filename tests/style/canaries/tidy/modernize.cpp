@@ -1,0 +1,2 @@
+// rejected by modernize-use-nullptr
+int* nothing() { return 0; }

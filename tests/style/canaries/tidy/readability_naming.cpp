@@ -1,0 +1,2 @@
+// rejected by readability-identifier-naming
+struct lower_case {};

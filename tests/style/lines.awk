@@ -1,0 +1,76 @@
+# The rules that can be seen line by line. `rooms` names the rooms of the core, left to right.
+
+function breach(rule, what) { printf "%s:%d: [%s] %s\n", FILENAME, FNR, rule, what }
+
+# The room of a header or of an include, 0 when it is in none.
+function room_of(path, parts) {
+  sub(/.*repel\//, "", path)
+  split(path, parts, "/")
+  return order[parts[1]]
+}
+
+function end_of_header() {
+  if (!is_header) return
+  if (!has_pragma) print last_file ":1: [pragma-once] #pragma once is missing"
+  if (!has_file_comment) print last_file ":1: [file-comment] /// @file is missing"
+}
+
+function included_path(line) {
+  sub(/^ *# *include *[<"]/, "", line)
+  sub(/[>"].*/, "", line)
+  return line
+}
+
+function check_core_include(path, room) {
+  if ($0 ~ /"/ || path !~ /^(repel\/.*|Eigen\/[A-Za-z]+|[a-z_]+)$/)
+    breach("core-include", path " is neither of the core, Eigen nor the standard library")
+  else if (path ~ /^repel\//) {
+    room = room_of(path)
+    if (own_room && !room) breach("core-include", path " is in no room of the core")
+    if (own_room && room > own_room) breach("include-order", path " is to the right of this room")
+  }
+}
+
+BEGIN {
+  count = split(rooms, names, " ")
+  for (i = 1; i <= count; i++) order[names[i]] = i
+  open_work = "TO" "DO|FIX" "ME|XX" "X"
+  machine_path = "(^|[^A-Za-z0-9_.$}])/(home|work|root|Users|mnt|media)/"
+}
+
+FNR == 1 {
+  end_of_header()
+  last_file = FILENAME
+  is_header = FILENAME ~ /\.hpp$/
+  is_code = FILENAME !~ /\.(md|urdf|yaml)$/
+  is_core = FILENAME ~ /^\.\/core\//
+  is_library = FILENAME ~ /^\.\/(core|robots|backends)\//
+  own_room = is_core ? room_of(FILENAME) : 0
+  has_pragma = has_file_comment = 0
+  if (is_core && is_header && FILENAME !~ /repel\/repel\.hpp$/ && !own_room)
+    breach("core-include", "this header is in no room of the core")
+}
+
+{
+  columns = $0
+  gsub(/[\200-\277]/, "", columns)  # the rest of a character in UTF-8
+}
+is_code && length(columns) > 100 { breach("line-length", "over 100 columns") }
+is_header && FNR == 301 { breach("header-length", "over 300 lines") }
+$0 ~ open_work { breach("open-work", "finish it, or leave it out") }
+$0 ~ machine_path { breach("machine-path", "a path of one machine") }
+
+is_header && /^#pragma once/ { has_pragma = 1 }
+is_header && /^\/\/\/ @file/ { has_file_comment = 1 }
+is_library && /std::(cout|cerr|clog)|[^a-z_:]printf *\(|[^a-z_]puts *\(/ {
+  breach("library-output", "a library does not write to the terminal")
+}
+is_core && /^ *# *include/ { check_core_include(included_path($0)) }
+FILENAME ~ /^\.\/robots\// && /^ *# *include.*repel\/(bullet|ode|ideal|scene|visual|devices)\// {
+  breach("include-order", "robots know no back end")
+}
+FILENAME ~ /^\.\/backends\// && /^ *# *include.*repel\/robots\// {
+  breach("include-order", "back ends do not know robots")
+}
+
+END { end_of_header() }

@@ -1,0 +1,24 @@
+#!/bin/sh
+# Proves that .clang-tidy is alive: every pattern in it names checks that exist, and every file in
+# canaries/tidy is rejected by the check its first line names.
+set -eu
+here=$(dirname "$(readlink -f "$0")")
+config=$here/../../.clang-tidy
+failed=0
+
+for pattern in $(sed -n '/^Checks:/,/^WarningsAsErrors/p' "$config" | sed -n 's/^  -*\([a-z].*\)/\1/p' |
+  tr -d ','); do
+  case $pattern in clang-diagnostic-*) continue ;; esac  # the compiler's warnings: never listed
+  clang-tidy --checks="-*,$pattern" --list-checks 2>/dev/null | grep -q '^    ' ||
+    { echo ".clang-tidy: $pattern names no check"; failed=1; }
+done
+
+for canary in "$here"/canaries/tidy/*.cpp; do
+  check=$(sed -n '1s/.*rejected by //p' "$canary")
+  if said=$(clang-tidy --quiet --config-file="$config" "$canary" -- -std=c++20 -Wall 2>/dev/null) ||
+    ! echo "$said" | grep -qF "error: " || ! echo "$said" | grep -qF "[$check,"; then
+    echo "$(basename "$canary"): should be rejected by $check, but: $said"
+    failed=1
+  fi
+done
+exit "$failed"
