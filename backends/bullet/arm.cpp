@@ -1,0 +1,238 @@
+#include "repel/bullet/arm.hpp"
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+
+#include "implicit_joints.hpp"
+#include "multibody.hpp"
+
+namespace repel::bullet {
+namespace {
+
+/// Bullet's world without anything in it that could collide, and so with the smallest pools.
+class World {
+ public:
+  explicit World(btMultiBody& body)
+      : configuration_(smallest_pools()),
+        dispatcher_(&configuration_),
+        world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
+    world_.setGravity({0, 0, 0});  // the arm brings its own weight
+    world_.addMultiBody(&body);
+  }
+
+  void step(double h) noexcept { world_.stepSimulation(h, 0); }
+
+ private:
+  static btDefaultCollisionConstructionInfo smallest_pools() {
+    btDefaultCollisionConstructionInfo info;
+    info.m_defaultMaxPersistentManifoldPoolSize = 1;
+    info.m_defaultMaxCollisionAlgorithmPoolSize = 1;
+    return info;
+  }
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btMultiBodyConstraintSolver solver_;
+  btMultiBodyDynamicsWorld world_;
+};
+
+ArmModel validated(const ArmModel& model, const ArmOptions& options) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  detail::require_double_precision();
+  detail::require_valid(model);
+  checked("ArmOptions::substeps", options.substeps, 1, 1000, "");
+  checked("ArmOptions::stop_stiffness", options.stop_stiffness, 0.0, kLargest, "N m/rad");
+  checked("ArmOptions::stop_damping", options.stop_damping, 0.0, kLargest, "N m s/rad");
+  return model;
+}
+
+}  // namespace
+
+struct Arm::Simulation {
+  Simulation(const ArmModel& given, const ArmOptions& options);
+
+  void reset(std::span<const double> q, std::span<const double> v);
+  void sub_step(double h) noexcept;
+  void read_state() noexcept;
+  void load(const Eigen::VectorXd& joint_torque) noexcept;
+  void find_free_acceleration() noexcept;
+  void require_inertia_at_every_joint();
+
+  ArmModel model;
+  int substeps;
+  int links;
+  detail::ImplicitJoints joints;
+  std::unique_ptr<btMultiBody> body;
+  World world;
+  ArmFaults faults;
+  Eigen::VectorXd torque, q, v, a;  // as set; state; acceleration
+  Eigen::MatrixXd M_inverse;
+  // Bullet's scratch memory; spatial vectors have 6 entries for the base, then the joints.
+  btAlignedObjectArray<btScalar> scalars;
+  btAlignedObjectArray<btVector3> vectors;
+  btAlignedObjectArray<btMatrix3x3> matrices;
+  std::vector<btScalar> unit_force, response;
+};
+
+Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options)
+    : model(validated(given, options)),
+      substeps(options.substeps),
+      links(static_cast<int>(model.links.size())),
+      joints(model, options),
+      body(detail::make_multibody(model)),
+      world(*body),
+      torque(Eigen::VectorXd::Zero(links)),
+      q(torque),
+      v(torque),
+      a(torque),
+      M_inverse(links, links),
+      unit_force(6 + model.links.size()),
+      response(6 + model.links.size()) {
+  std::vector<double> start;
+  for (const ArmLink& link : model.links) start.push_back(std::clamp(0.0, link.lower, link.upper));
+  reset(start, {});
+  require_inertia_at_every_joint();
+  sub_step(1e-3);  // the first step sizes Bullet's scratch memory
+  reset(start, {});
+}
+
+void Arm::Simulation::reset(std::span<const double> at, std::span<const double> moving) {
+  if (at.size() != model.links.size() || (!moving.empty() && moving.size() != at.size())) {
+    throw SetupError("arm '" + model.name + "': reset needs " + std::to_string(links) +
+                     " positions, and as many velocities or none");
+  }
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const ArmLink& link = model.links[i];
+    checked("joint '" + link.joint_name + "': position", at[i], link.lower, link.upper, "rad or m");
+    if (!moving.empty() && !std::isfinite(moving[i])) {
+      throw SetupError("joint '" + link.joint_name + "': velocity is not finite");
+    }
+  }
+  torque.setZero();
+  body->clearForcesAndTorques();
+  body->clearVelocities();
+  body->setBaseWorldTransform(detail::to_bullet(model.X_WB));
+  for (int i = 0; i < links; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    body->setJointPos(i, at[joint]);
+    body->setJointVel(i, moving.empty() ? 0.0 : moving[joint]);
+  }
+  read_state();
+}
+
+void Arm::Simulation::read_state() noexcept {
+  for (int i = 0; i < links; ++i) {
+    q[i] = body->getJointPos(i);
+    v[i] = body->getJointVel(i);
+  }
+}
+
+void Arm::Simulation::load(const Eigen::VectorXd& joint_torque) noexcept {
+  body->clearForcesAndTorques();
+  for (int i = 0; i < links; ++i) {
+    body->addLinkForce(i, detail::to_bullet(Vec3(body->getLinkMass(i) * model.gravity_W)));
+    body->addJointTorque(i, joint_torque[i]);
+  }
+}
+
+// a = M^-1 (u - c) by the articulated-body algorithm, and M^-1 column by column from what that
+// leaves behind: the accelerations that a unit torque at one joint adds.
+void Arm::Simulation::find_free_acceleration() noexcept {
+  body->computeAccelerationsArticulatedBodyAlgorithmMultiDof(0.0, scalars, vectors, matrices, false,
+                                                             false, false);
+  for (int i = 0; i < links; ++i) a[i] = scalars[links + 6 + i];
+  for (int i = 0; i < links; ++i) {
+    unit_force[6 + static_cast<std::size_t>(i)] = 1.0;
+    body->calcAccelerationDeltasMultiDof(unit_force.data(), response.data(), scalars, vectors);
+    unit_force[6 + static_cast<std::size_t>(i)] = 0.0;
+    M_inverse.col(i) = Eigen::Map<const Eigen::VectorXd>(response.data() + 6, links);
+  }
+}
+
+void Arm::Simulation::require_inertia_at_every_joint() {
+  load(torque);
+  find_free_acceleration();
+  for (int i = 0; i < links; ++i) {
+    if (M_inverse(i, i) > 0.0) continue;  // Bullet answers 0 for a joint that moves no mass
+    throw SetupError("joint '" + model.links[static_cast<std::size_t>(i)].joint_name +
+                     "' moves no mass; give its link a mass or an inertia about the joint axis");
+  }
+}
+
+void Arm::Simulation::sub_step(double h) noexcept {
+  load(joints.linearize(q, v, torque, h));                          // weight and joint torque
+  find_free_acceleration();                                         // -> a, M^-1
+  const Eigen::VectorXd& extra = joints.solve(M_inverse, a, v, h);  // -> a with rotors, friction
+  if (!extra.allFinite()) {
+    faults.state = true;
+    body->clearVelocities();
+    v.setZero();
+    return;
+  }
+  for (int i = 0; i < links; ++i) body->addJointTorque(i, extra[i]);
+  world.step(h);  // v += h a, q += h v
+  read_state();
+}
+
+Arm::Arm(const ArmModel& model, const ArmOptions& options)
+    : simulation_(std::make_unique<Simulation>(model, options)) {}
+Arm::~Arm() = default;
+Arm::Arm(Arm&&) noexcept = default;
+Arm& Arm::operator=(Arm&&) noexcept = default;
+
+int Arm::links() const noexcept {
+  return simulation_->links;
+}
+
+void Arm::reset(std::span<const double> q, std::span<const double> v) {
+  simulation_->reset(q, v);
+}
+
+void Arm::set_torques(std::span<const double> torques) noexcept {
+  for (std::size_t i = 0; i < simulation_->model.links.size(); ++i) {
+    const bool usable = i < torques.size() && std::isfinite(torques[i]);
+    simulation_->torque[static_cast<Eigen::Index>(i)] = usable ? torques[i] : 0.0;
+    if (!usable) simulation_->faults.torque = true;
+  }
+}
+
+void Arm::step(double period) noexcept {
+  if (!(period > 0.0 && std::isfinite(period))) {
+    simulation_->faults.period = true;
+    return;
+  }
+  const double h = period / simulation_->substeps;
+  for (int part = 0; part < simulation_->substeps; ++part) simulation_->sub_step(h);
+}
+
+void Arm::read_positions(std::span<double> out) const noexcept {
+  const auto count = std::min(out.size(), simulation_->model.links.size());
+  std::copy_n(simulation_->q.begin(), count, out.begin());
+}
+
+void Arm::read_velocities(std::span<double> out) const noexcept {
+  const auto count = std::min(out.size(), simulation_->model.links.size());
+  std::copy_n(simulation_->v.begin(), count, out.begin());
+}
+
+ArmFaults Arm::faults() const noexcept {
+  return simulation_->faults;
+}
+
+void Arm::clear_faults() noexcept {
+  simulation_->faults = {};
+}
+
+}  // namespace repel::bullet

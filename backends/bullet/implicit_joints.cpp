@@ -1,0 +1,87 @@
+#include "implicit_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace repel::bullet::detail {
+namespace {
+
+constexpr int kFrictionSweeps = 100;
+constexpr double kSettled = 1e-14;  // [rad/s] largest change of a sweep that ends the search
+
+Eigen::VectorXd gathered(const ArmModel& model, double ArmLink::*field) {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(model.links.size()));
+  std::transform(model.links.begin(), model.links.end(), values.begin(),
+                 [field](const ArmLink& link) { return link.*field; });
+  return values;
+}
+
+}  // namespace
+
+ImplicitJoints::ImplicitJoints(const ArmModel& model, const ArmOptions& options)
+    : lower_(gathered(model, &ArmLink::lower)),
+      upper_(gathered(model, &ArmLink::upper)),
+      rotor_inertia_(gathered(model, &ArmLink::rotor_inertia)),
+      viscous_(gathered(model, &ArmLink::viscous_friction)),
+      coulomb_(gathered(model, &ArmLink::coulomb_friction)),
+      diagonal_(lower_.size()),
+      torque_(lower_.size()),
+      friction_(lower_.size()),
+      column_(lower_.size()),
+      stop_stiffness_(options.stop_stiffness),
+      stop_damping_(options.stop_damping) {}
+
+const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
+                                                 const Eigen::VectorXd& torque, double h) noexcept {
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double next = q[i] + h * v[i];
+    const double beyond = next - std::clamp(next, lower_[i], upper_[i]);
+    // A stop pushes, never pulls: it damps on the way in only.
+    const double damping = viscous_[i] + (beyond * v[i] > 0.0 ? stop_damping_ : 0.0);
+    const double stiffness = beyond == 0.0 ? 0.0 : stop_stiffness_;
+    diagonal_[i] = rotor_inertia_[i] + h * damping + h * h * stiffness;
+    torque_[i] = torque[i] - damping * v[i] - stiffness * beyond;
+  }
+  return torque_;
+}
+
+const Eigen::VectorXd& ImplicitJoints::solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a,
+                                             const Eigen::VectorXd& v, double h) noexcept {
+  add_diagonal(M_inverse, a);
+  find_friction(M_inverse, a, v, h);
+  torque_ = friction_ - diagonal_.cwiseProduct(a);
+  return torque_;
+}
+
+// W = M^-1 and a = M^-1 b become (M + D)^-1 and (M + D)^-1 b, one entry of D after the other
+// (Sherman-Morrison): with w the i-th column of W and d the i-th entry of D,
+//     a <- a - w d a_i / (1 + d W_ii),      W <- W - w d w^T / (1 + d W_ii).
+void ImplicitJoints::add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexcept {
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    const double scale = diagonal_[i] / (1.0 + diagonal_[i] * W(i, i));
+    column_ = W.col(i);
+    a -= (scale * a[i]) * column_;
+    for (Eigen::Index j = 0; j < a.size(); ++j) W.col(j) -= (scale * column_[j]) * column_;
+  }
+}
+
+// The friction torques f are those within +-F that leave the least kinetic energy at the end of
+// the sub-step. One joint at a time (projected Gauss-Seidel): with W = (M + D)^-1 the torque that
+// brings v' = v + h a to rest changes f_i by -v'_i / (h W_ii); it is cut to the bounds.
+void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
+                                   const Eigen::VectorXd& v, double h) noexcept {
+  friction_.setZero();
+  for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
+    double largest_change = 0.0;
+    for (Eigen::Index i = 0; i < a.size(); ++i) {
+      const double stopping = friction_[i] - (v[i] / h + a[i]) / W(i, i);
+      const double change = std::clamp(stopping, -coulomb_[i], coulomb_[i]) - friction_[i];
+      friction_[i] += change;
+      a += change * W.col(i);
+      largest_change = std::max(largest_change, h * std::abs(change) * W(i, i));
+    }
+    if (largest_change <= kSettled) return;
+  }
+}
+
+}  // namespace repel::bullet::detail

@@ -1,0 +1,30 @@
+/// @file
+/// From an ArmModel to Bullet's articulated body.
+#pragma once
+
+#include <memory>
+
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+
+#include <repel/world/arm.hpp>
+
+namespace repel::bullet::detail {
+
+/// `v` in Bullet's type, same frame and unit.
+[[nodiscard]] inline btVector3 to_bullet(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// The pose `X` in Bullet's type.
+[[nodiscard]] btTransform to_bullet(const Pose& X);
+
+/// Throws SetupError unless the Bullet library that was loaded computes in double precision.
+void require_double_precision();
+
+/// Throws SetupError naming the joint and the number of `model` that is out of range.
+void require_valid(const ArmModel& model);
+
+/// The articulated body of `model`, with every damping, clamp and sleep of Bullet switched off.
+[[nodiscard]] std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model);
+
+}  // namespace repel::bullet::detail

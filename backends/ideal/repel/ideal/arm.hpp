@@ -1,0 +1,102 @@
+/// @file
+/// A reference arm without an engine: joints that do not feel each other or gravity.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// One joint of an IdealArm.
+struct IdealJoint {
+  double inertia = 1.0;           ///< [kg m^2] or [kg]; > 0
+  double viscous_friction = 0.0;  ///< [N m s/rad] or [N s/m]; >= 0
+};
+
+/// An arm whose joints obey inertia * a = torque - viscous_friction * v, each on its own, by
+/// semi-implicit Euler with the friction at the new velocity. Satisfies TorqueDrivenArm.
+class IdealArm {
+ public:
+  /// Starts at rest at zero.
+  /// @throws SetupError when there is no joint, or an inertia or friction is out of range
+  explicit IdealArm(std::span<const IdealJoint> joints) {
+    if (joints.empty()) throw SetupError("an IdealArm needs at least one joint");
+    for (const IdealJoint& joint : joints) joints_.push_back({validated(joint), 0.0, 0.0, 0.0});
+  }
+
+  /// Number of joints.
+  [[nodiscard]] int links() const noexcept { return static_cast<int>(joints_.size()); }
+
+  /// Puts the arm at rest at `q` [rad] or [m] with zero torque. The fault stays.
+  /// @throws SetupError when the size is wrong or an entry is not finite
+  void reset(std::span<const double> q) {
+    const bool finite = std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); });
+    if (q.size() != joints_.size() || !finite) {
+      throw SetupError("reset needs " + std::to_string(joints_.size()) + " finite positions");
+    }
+    for (std::size_t i = 0; i < q.size(); ++i) joints_[i] = {joints_[i].constants, q[i], 0.0, 0.0};
+  }
+
+  /// Joint torques [N m] or forces [N], held until the next call. An entry that is not finite or
+  /// missing counts as zero and sets `torque_fault`.
+  void set_torques(std::span<const double> torques) noexcept {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const bool usable = i < torques.size() && std::isfinite(torques[i]);
+      joints_[i].torque = usable ? torques[i] : 0.0;
+      torque_fault_ = torque_fault_ || !usable;
+    }
+  }
+
+  /// Moves the arm by `period` [s]; does nothing when that is not finite and positive.
+  void step(double period) noexcept {
+    if (!(period > 0.0 && std::isfinite(period))) return;
+    for (Joint& joint : joints_) {
+      const auto [inertia, viscous_friction] = joint.constants;
+      joint.velocity = (inertia * joint.velocity + period * joint.torque) /
+                       (inertia + period * viscous_friction);
+      joint.position += period * joint.velocity;
+    }
+  }
+
+  /// Joint positions [rad] or [m]; fills as many as `out` holds.
+  void read_positions(std::span<double> out) const noexcept {
+    const auto count = std::min(out.size(), joints_.size());
+    for (std::size_t i = 0; i < count; ++i) out[i] = joints_[i].position;
+  }
+
+  /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
+  void read_velocities(std::span<double> out) const noexcept {
+    const auto count = std::min(out.size(), joints_.size());
+    for (std::size_t i = 0; i < count; ++i) out[i] = joints_[i].velocity;
+  }
+
+  /// True once an entry of `set_torques` was refused.
+  [[nodiscard]] bool torque_fault() const noexcept { return torque_fault_; }
+  void clear_fault() noexcept { torque_fault_ = false; }
+
+ private:
+  struct Joint {
+    IdealJoint constants;
+    double position, velocity, torque;  // [rad], [rad/s], [N m]
+  };
+
+  static IdealJoint validated(const IdealJoint& joint) {
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    constexpr double kSmallest = std::numeric_limits<double>::min();
+    checked("IdealJoint::inertia", joint.inertia, kSmallest, kLargest, "kg m^2");
+    checked("IdealJoint::viscous_friction", joint.viscous_friction, 0.0, kLargest, "N m s/rad");
+    return joint;
+  }
+
+  std::vector<Joint> joints_;
+  bool torque_fault_ = false;
+};
+
+}  // namespace repel
