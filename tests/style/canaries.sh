@@ -23,8 +23,9 @@ for tree in "$here"/canaries/rules/*; do
 done
 
 # The rules are the words in brackets in what check.sh prints and the first words of breach().
-for rule in $(sed -n 's/.*: \[\([a-z-]*\)\] .*/\1/p; s/.*breach("\([a-z-]*\)".*/\1/p' \
-  "$here/check.sh" "$here/lines.awk" | sort -u); do
+rules=$(sed -n 's/.*: \[\([a-z-]*\)\] .*/\1/p; s/.*breach("\([a-z-]*\)".*/\1/p' \
+  "$here/check.sh" "$here/lines.awk" | sort -u)
+for rule in $rules; do
   [ -d "$here/canaries/rules/$rule" ] || fail "the rule $rule has no canary"
 done
 exit "$failed"

@@ -1,0 +1,91 @@
+#!/bin/sh
+# check.sh BUILD: installs the finished build folder BUILD into a scratch folder, moves what it
+# installed, and uses the library in every way a stranger would.
+set -eu
+here=$(dirname "$(readlink -f "$0")")
+root=$(readlink -f "$here/../..")
+build=$(readlink -f "$1")
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+strict="-std=c++20 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror"
+
+# Runs a step; what it said is shown only if it fails.
+step() {
+  title=$1
+  shift
+  if "$@" >"$scratch/log" 2>&1; then
+    echo "ok      $title"
+  else
+    echo "FAILED  $title"
+    cat "$scratch/log"
+    exit 1
+  fi
+}
+
+# configure CONSUMER CMAKE-ARGS...
+configure() {
+  source=$here/$1
+  shift
+  rm -rf "$scratch/build"
+  cmake -S "$source" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" "$@"
+}
+
+# works CONSUMER CMAKE-ARGS...: configures, builds and runs.
+works() {
+  configure "$@" && cmake --build "$scratch/build" --target consumer && "$scratch/build/consumer"
+}
+
+# fails_saying TEXT CONSUMER CMAKE-ARGS...: configuring fails, and the message holds TEXT.
+fails_saying() {
+  text=$1
+  shift
+  ! configure "$@" >"$scratch/said" 2>&1 || return 1
+  tr -s ' \n' ' ' <"$scratch/said" | tee "$scratch/flat"
+  grep -qF "$text" "$scratch/flat"
+}
+
+# plain COMPILER FLAGS...: no build system at all.
+plain() {
+  "$@" -o "$scratch/plain" && "$scratch/plain"
+}
+
+install_and_move() {
+  cmake --install "$build" --prefix "$scratch/first" && mv "$scratch/first" "$scratch/moved"
+}
+prefix=$scratch/moved
+step "install, then move" install_and_move
+package=$(dirname "$(find "$prefix" -name repel-config.cmake)")
+
+parts=core
+for part in ideal robots bullet scene; do
+  [ ! -e "$package/repel-$part.cmake" ] || parts="$parts;$part"
+done
+
+step "find_package, core only, nothing else installed" works find_package -DPARTS=core \
+  -DCMAKE_DISABLE_FIND_PACKAGE_orocos_kdl=ON -DCMAKE_DISABLE_FIND_PACKAGE_urdfdom=ON \
+  -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
+step "find_package, $parts" works find_package "-DPARTS=$parts"
+step "find_package, a part that does not exist" \
+  fails_saying "repel has no part 'cellar'" find_package -DPARTS=cellar
+case $parts in *scene*)
+  step "find_package, a part whose packages are gone" \
+    fails_saying "apt-get install libyaml-cpp-dev" find_package -DPARTS=scene \
+    -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON ;;
+esac
+rm -f "$package/repel-bullet.cmake"
+step "find_package, a part that was not built" \
+  fails_saying "without its part 'bullet': apt-get install libbullet-dev" \
+  find_package -DPARTS=bullet
+step "add_subdirectory" works add_subdirectory "-DREPEL=$root"
+
+sources="$here/main.cpp $here/elsewhere.cpp"
+PKG_CONFIG_PATH=$prefix/share/pkgconfig
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046,SC2086
+step "pkg-config and g++" plain g++ -std=c++20 $sources $(pkg-config --cflags --libs repel)
+for compiler in g++ clang++; do
+  command -v $compiler >/dev/null || continue
+  # shellcheck disable=SC2086
+  step "$compiler -I core, all warnings" \
+    plain $compiler $strict $sources -I "$root/core" -isystem /usr/include/eigen3
+done
