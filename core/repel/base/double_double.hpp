@@ -1,0 +1,78 @@
+/// @file
+/// A number held as the unevaluated sum of two doubles: about 32 digits, for what double cannot
+/// decide.
+#pragma once
+
+#include <cmath>
+
+#ifdef __FAST_MATH__
+#error "repel needs IEEE arithmetic: compile without -ffast-math"
+#endif
+
+namespace repel {
+
+/// `hi + lo` with |lo| at most half an ulp of hi. Each operation is right to about 2^-102,
+/// relative. Error-free sum: Knuth, TAOCP 2, 4.2.2; error-free product: by fused multiply-add.
+struct DoubleDouble {
+  double hi = 0.0;
+  double lo = 0.0;
+
+  DoubleDouble() = default;
+  DoubleDouble(double value) noexcept : hi(value) {}  // NOLINT(google-explicit-constructor)
+  DoubleDouble(double high, double low) noexcept : hi(high), lo(low) {}
+
+  explicit operator double() const noexcept { return hi + lo; }
+
+  [[nodiscard]] static DoubleDouble sum(double a, double b) noexcept {
+    const double s = a + b;
+    const double b_part = s - a;
+    return {s, (a - (s - b_part)) + (b - b_part)};
+  }
+  [[nodiscard]] static DoubleDouble product(double a, double b) noexcept {
+    const double p = a * b;
+    return {p, std::fma(a, b, -p)};
+  }
+  /// As `sum`, for |a| >= |b|.
+  [[nodiscard]] static DoubleDouble ordered_sum(double a, double b) noexcept {
+    const double s = a + b;
+    return {s, b - (s - a)};
+  }
+
+  friend DoubleDouble operator+(DoubleDouble a, DoubleDouble b) noexcept {
+    DoubleDouble high = sum(a.hi, b.hi);
+    const DoubleDouble low = sum(a.lo, b.lo);
+    high = ordered_sum(high.hi, high.lo + low.hi);
+    return ordered_sum(high.hi, high.lo + low.lo);
+  }
+  friend DoubleDouble operator-(DoubleDouble a) noexcept { return {-a.hi, -a.lo}; }
+  friend DoubleDouble operator-(DoubleDouble a, DoubleDouble b) noexcept { return a + (-b); }
+  friend DoubleDouble operator*(DoubleDouble a, DoubleDouble b) noexcept {
+    const DoubleDouble p = product(a.hi, b.hi);
+    return ordered_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
+  }
+  friend DoubleDouble operator/(DoubleDouble a, DoubleDouble b) noexcept {
+    const double first = a.hi / b.hi;
+    const DoubleDouble rest = a - b * DoubleDouble(first);
+    const double second = rest.hi / b.hi;
+    const DoubleDouble last = rest - b * DoubleDouble(second);
+    return ordered_sum(first, second) + DoubleDouble(last.hi / b.hi);
+  }
+  DoubleDouble& operator+=(DoubleDouble b) noexcept { return *this = *this + b; }
+
+  friend bool operator<(DoubleDouble a, DoubleDouble b) noexcept {
+    return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo);
+  }
+  friend bool operator>(DoubleDouble a, DoubleDouble b) noexcept { return b < a; }
+  friend bool operator<=(DoubleDouble a, DoubleDouble b) noexcept { return !(b < a); }
+  friend bool operator>=(DoubleDouble a, DoubleDouble b) noexcept { return !(a < b); }
+};
+
+/// Square root, right to about 2^-100 relative; 0 for a value that is not positive.
+[[nodiscard]] inline DoubleDouble sqrt(DoubleDouble a) noexcept {
+  if (!(a.hi > 0.0)) return 0.0;
+  const double root = std::sqrt(a.hi);
+  const DoubleDouble rest = a - DoubleDouble::product(root, root);
+  return DoubleDouble::ordered_sum(root, rest.hi / (2.0 * root));
+}
+
+}  // namespace repel

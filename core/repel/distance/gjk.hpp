@@ -1,0 +1,194 @@
+/// @file
+/// The distance of two convex sets by the algorithm of Gilbert, Johnson and Keerthi (1988), with a
+/// certificate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <repel/distance/query.hpp>
+#include <repel/distance/simplex.hpp>
+#include <repel/geometry/convex.hpp>
+
+namespace repel {
+
+/// The distance of two convex sets, between proven bounds.
+struct Gap {
+  double distance = 0.0;  ///< [m] best value; 0 when the sets meet
+  double lower = 0.0;     ///< [m] the distance is at least this
+  double upper = std::numeric_limits<double>::infinity();  ///< [m] and at most this
+  bool meets = false;       ///< the sets are proven to share a point
+  Vec3 n_BA_W{0, 0, 0};     ///< unit, from B to A; zero when the sets meet or touch
+  Vec3 p_AQa_W{0, 0, 0};    ///< [m] witness point on A, from the origin of A
+  Vec3 p_AQb_W{0, 0, 0};    ///< [m] witness point on B, from the origin of A
+  int iterations = 0;       ///< support-map pairs evaluated
+  bool extended = false;    ///< decided in extended precision
+  QueryEnd end = QueryEnd::bad_input;
+};
+
+namespace detail {
+
+/// One run of the algorithm in the precision of T. The difference is formed in world axes around
+/// the origin of A, so that nothing grows with the distance from the world's origin.
+///
+///   v        point of A - B nearest to the origin so far; |v| bounds the distance from above
+///   w        support point of A - B along -v; v.w / |v| bounds it from below
+///   margin_  what rounding can move a support value by [m]
+template <class T>
+class Gjk {
+ public:
+  Gjk(const Convex& A, const Pose& X_WA, const Convex& B, const Pose& X_WB) noexcept
+      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB) {
+    const Vec<T> p_WA(Vec3(X_WA.translation()));
+    p_AB_ = Vec<T>(Vec3(X_WB.translation())) - p_WA;
+    const double size = A.reach() + B.reach() + to_vec3(p_AB_).norm();
+    margin_ = 8.0 * epsilon(T{}) * size;
+    if (!(A.is_polytope() && B.is_polytope())) margin_ = std::max(margin_, 2e-15 * size);
+  }
+
+  Gap run(const QueryOptions& options, WarmStart& warm) noexcept {
+    start(warm);
+    Gap gap;
+    gap.end = iterate(options, gap);
+    finish(gap);
+    store(warm);
+    return gap;
+  }
+
+ private:
+  static constexpr double epsilon(double) noexcept { return 0x1p-52; }
+  static constexpr double epsilon(DoubleDouble) noexcept { return 0x1p-98; }
+
+  DifferencePoint<T> difference(const Convex::Point& a, const Convex::Point& b) const noexcept {
+    DifferencePoint<T> p;
+    p.a = rotate(X_WA_, Vec<T>(T(a.p.x), T(a.p.y), T(a.p.z)));
+    p.w = p.a - (rotate(X_WB_, Vec<T>(T(b.p.x), T(b.p.y), T(b.p.z))) + p_AB_);
+    p.ww = dot(p.w, p.w);
+    p.name_a = a.name;
+    p.name_b = b.name;
+    return p;
+  }
+
+  /// The point of A - B farthest along -v.
+  DifferencePoint<T> support(const Vec<T>& v) const noexcept {
+    return difference(A_.support(rotate_transposed(X_WA_, -v)),
+                      B_.support(rotate_transposed(X_WB_, v)));
+  }
+
+  void start(const WarmStart& warm) noexcept {
+    for (int i = 0; i < std::min<int>(warm.size, 4); ++i) {
+      const Convex::Point a = A_.point(warm.a[i]);
+      const Convex::Point b = B_.point(warm.b[i]);
+      if (!simplex_.holds(a.name, b.name)) simplex_.append(difference(a, b));
+    }
+    if (simplex_.size() == 0) {
+      Vec<T> centres = -p_AB_;
+      if (!(dot(centres, centres) > T(0.0))) centres = {T(1.0), T(0.0), T(0.0)};
+      simplex_.restart(support(centres));
+      ++iterations_;
+    } else {
+      encloses_ = simplex_.project_all(T(margin_)) == Projection::encloses;
+    }
+  }
+
+  QueryEnd iterate(const QueryOptions& options, Gap& gap) noexcept {
+    const T tolerance(options.tolerance);
+    bool separated = false;
+    while (!encloses_) {
+      const T length = sqrt_of(simplex_.vv());
+      if (length <= T(margin_)) return QueryEnd::touching;
+      if (iterations_ >= options.iterations) return QueryEnd::budget_spent;
+      const DifferencePoint<T> w = support(simplex_.v());
+      ++iterations_;
+      const T vw = dot(simplex_.v(), w.w);
+      const double below = static_cast<double>(vw / length) - margin_;
+      gap.lower = std::max(gap.lower, below);
+      separated = separated || below > margin_;
+      if (below > options.ignore_beyond) return QueryEnd::far_apart;
+      const T slack = simplex_.vv() - vw;
+      if (slack <= tolerance * simplex_.vv() || slack <= T(0.25 * margin_) * length) break;
+      if (simplex_.holds(w.name_a, w.name_b)) break;
+      const Simplex<T> before = simplex_;
+      const Projection step = simplex_.add(w, T(margin_));
+      if (step == Projection::no_nearer) break;
+      // What has been proven apart stays apart: an enclosing simplex is then a rounding error.
+      if (step == Projection::encloses && separated) {
+        simplex_ = before;
+        break;
+      }
+      encloses_ = step == Projection::encloses;
+    }
+    return QueryEnd::converged;
+  }
+
+  void finish(Gap& gap) const noexcept {
+    gap.iterations = iterations_;
+    gap.meets = encloses_;
+    if (encloses_) {
+      gap.lower = gap.upper = 0.0;
+      return;
+    }
+    Vec<T> a;
+    Vec<T> w;
+    for (int i = 0; i < simplex_.size(); ++i) {
+      a = a + simplex_.weight(i) * simplex_.point(i).a;
+      w = w + simplex_.weight(i) * simplex_.point(i).w;
+    }
+    const T length = sqrt_of(simplex_.vv());
+    gap.p_AQa_W = to_vec3(a);
+    gap.p_AQb_W = to_vec3(a - w);
+    // The witness points are points of the sets whatever v has suffered: they bound from above.
+    gap.upper = static_cast<double>(sqrt_of(dot(w, w))) * (1.0 + 0x1p-51) + margin_;
+    gap.lower *= 1.0 - 0x1p-51;
+    gap.distance = std::clamp(static_cast<double>(length), gap.lower, gap.upper);
+    if (length > T(0.0)) gap.n_BA_W = to_vec3((T(1.0) / length) * simplex_.v());
+  }
+
+  void store(WarmStart& warm) const noexcept {
+    warm.size = static_cast<std::uint8_t>(simplex_.size());
+    for (int i = 0; i < simplex_.size(); ++i) {
+      warm.a[i] = simplex_.point(i).name_a;
+      warm.b[i] = simplex_.point(i).name_b;
+    }
+  }
+
+  static double sqrt_of(double x) noexcept { return std::sqrt(x); }
+  static DoubleDouble sqrt_of(DoubleDouble x) noexcept { return sqrt(x); }
+
+  const Convex& A_;
+  const Convex& B_;
+  const Pose& X_WA_;
+  const Pose& X_WB_;
+  Vec<T> p_AB_;
+  double margin_ = 0.0;
+  Simplex<T> simplex_;
+  bool encloses_ = false;
+  int iterations_ = 0;
+};
+
+/// True when a result in double is as sharp as it may be claimed: the bracket, rounding included,
+/// is narrow against the distance itself.
+[[nodiscard]] inline bool is_certified(const Gap& gap, const QueryOptions& options) noexcept {
+  if (gap.meets || gap.end == QueryEnd::far_apart || gap.end == QueryEnd::budget_spent) return true;
+  return gap.upper - gap.lower <= std::max(1e-7, 2.0 * options.tolerance) * gap.upper;
+}
+
+}  // namespace detail
+
+/// The distance of A and B. What double precision cannot certify - a gap near rounding, a needle
+/// whose normal is noise - is decided in extended precision when both sets are polytopes.
+/// Cost: one support pair when the warm start still holds, else a few more; at most
+/// `options.iterations` in each precision. No heap, no lock.
+[[nodiscard]] inline Gap gap_between(const Convex& A, const Pose& X_WA, const Convex& B,
+                                     const Pose& X_WB, const QueryOptions& options,
+                                     WarmStart& warm) noexcept {
+  Gap gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
+  if (detail::is_certified(gap, options) || !(A.is_polytope() && B.is_polytope())) return gap;
+  const int spent = gap.iterations;
+  gap = detail::Gjk<DoubleDouble>(A, X_WA, B, X_WB).run(options, warm);
+  gap.iterations += spent;
+  gap.extended = true;
+  return gap;
+}
+
+}  // namespace repel

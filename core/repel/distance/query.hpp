@@ -1,0 +1,36 @@
+/// @file
+/// What is asked of a distance query and how it can end.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace repel {
+
+/// Why a query stopped. The default is the one that claims nothing.
+enum class QueryEnd : std::uint8_t {
+  bad_input,     ///< a pose or an option was not finite: nothing is claimed, mend the input
+  converged,     ///< the bracket is as narrow as `QueryOptions::tolerance` asks
+  touching,      ///< the shapes touch: the sign is 0 as far as arithmetic can tell
+  far_apart,     ///< the gap is proven larger than `QueryOptions::ignore_beyond`
+  budget_spent,  ///< the bracket is true but wide: raise `QueryOptions::iterations`
+};
+
+struct QueryOptions {
+  double tolerance = 1e-14;  ///< largest (v.v - v.w) / v.v, the relative duality gap
+  int iterations = 256;      ///< cap on support-map pairs in each precision; at least 1
+  double ignore_beyond = std::numeric_limits<double>::infinity();  ///< [m]
+};
+
+/// What a query leaves for the next one on the same pair: the names of up to four point pairs and
+/// the pair of levels they belong to. Any content is safe; good content saves iterations.
+struct WarmStart {
+  std::array<std::uint32_t, 4> a{};  ///< Convex::Point::name on A
+  std::array<std::uint32_t, 4> b{};  ///< and on B
+  std::uint8_t size = 0;
+  std::uint8_t level_a = 0;
+  std::uint8_t level_b = 0;
+};
+
+}  // namespace repel

@@ -1,0 +1,203 @@
+/// @file
+/// The simplex of the distance algorithm and the projection of the origin onto it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include <repel/base/vec.hpp>
+
+namespace repel::detail {
+
+/// A point of the difference A - B with the two points it came from.
+template <class T>
+struct DifferencePoint {
+  Vec<T> w;                  ///< [m] a - b
+  Vec<T> a;                  ///< [m] point of A, from the origin of A, world axes
+  T ww{};                    ///< [m^2] w.w
+  std::uint32_t name_a = 0;  ///< Convex::Point::name
+  std::uint32_t name_b = 0;
+};
+
+enum class Projection : std::uint8_t {
+  nearer,     ///< the simplex now holds the feature nearest to the origin
+  encloses,   ///< the origin lies deeper than the margin inside all four faces
+  no_nearer,  ///< nothing nearer than before: the simplex is unchanged
+};
+
+/// Up to four difference points and the point v of their hull nearest to the origin.
+///
+/// The projection takes the nearest of all features that could hold v instead of walking through
+/// Voronoi regions: with needles and near-parallel faces the region tests contradict each other
+/// through rounding, the minimum does not. A face is reached along its normal from its nearest
+/// vertex, an edge from its nearer end and then made orthogonal to the edge again, so that the
+/// error of v is that of the small vectors and not of the long ones.
+template <class T>
+class Simplex {
+ public:
+  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] const DifferencePoint<T>& point(int i) const noexcept { return points_[i]; }
+  [[nodiscard]] T weight(int i) const noexcept { return weights_[i]; }
+  [[nodiscard]] const Vec<T>& v() const noexcept { return v_; }  ///< [m]
+  [[nodiscard]] T vv() const noexcept { return vv_; }            ///< [m^2]
+
+  [[nodiscard]] bool holds(std::uint32_t name_a, std::uint32_t name_b) const noexcept {
+    for (int i = 0; i < size_; ++i) {
+      if (points_[i].name_a == name_a && points_[i].name_b == name_b) return true;
+    }
+    return false;
+  }
+
+  /// Starts again from one point.
+  void restart(const DifferencePoint<T>& p) noexcept {
+    points_[0] = p;
+    size_ = 1;
+    weights_[0] = T(1.0);
+    v_ = p.w;
+    vv_ = p.ww;
+  }
+
+  /// Adds a point without projecting; for a warm start. At most four.
+  void append(const DifferencePoint<T>& p) noexcept { points_[size_++] = p; }
+
+  /// Projects the origin onto the hull of all points. `margin` [m].
+  Projection project_all(T margin) noexcept {
+    vv_ = T(std::numeric_limits<double>::infinity());
+    return project(-1, margin);
+  }
+
+  /// Adds `p` (at most four points then) and moves to the nearest feature that has `p` in it: no
+  /// other one can be nearer than the present v.
+  Projection add(const DifferencePoint<T>& p, T margin) noexcept {
+    points_[size_++] = p;
+    const Projection result = project(size_ - 1, margin);
+    if (result == Projection::no_nearer) --size_;
+    return result;
+  }
+
+ private:
+  struct Feature {
+    T vv{};
+    Vec<T> v;
+    int size = 0;
+    std::array<int, 3> index{};
+    std::array<T, 3> weight{};
+  };
+
+  Projection project(int newest, T margin) noexcept {
+    Feature best;
+    best.vv = vv_;
+    if (size_ == 4) {
+      if (project_tetrahedron(newest, margin, best)) return Projection::encloses;
+    } else if (size_ == 3) {
+      project_triangle({0, 1, 2}, newest, best);
+    } else if (size_ == 2) {
+      project_edge(0, 1, newest, best);
+    } else {
+      consider_vertex(0, best);
+    }
+    if (best.size == 0) return Projection::no_nearer;
+    keep(best);
+    return Projection::nearer;
+  }
+
+  void keep(const Feature& f) noexcept {
+    std::array<DifferencePoint<T>, 3> kept;
+    for (int i = 0; i < f.size; ++i) kept[i] = points_[f.index[i]];
+    for (int i = 0; i < f.size; ++i) {
+      points_[i] = kept[i];
+      weights_[i] = f.weight[i];
+    }
+    size_ = f.size;
+    v_ = f.v;
+    vv_ = f.vv;
+  }
+
+  void consider_vertex(int i, Feature& best) const noexcept {
+    const DifferencePoint<T>& p = points_[i];
+    if (p.ww < best.vv) best = {p.ww, p.w, 1, {i, 0, 0}, {T(1.0), T(0.0), T(0.0)}};
+  }
+
+  // v = p + t e, e = q - p, t = -p.e / e.e, written from the end that is nearer to the origin.
+  void project_edge(int i, int j, int newest, Feature& best) const noexcept {
+    if (points_[j].ww < points_[i].ww) std::swap(i, j);
+    const Vec<T>& p = points_[i].w;
+    const Vec<T> e = points_[j].w - p;
+    const T ee = dot(e, e);
+    const T along = -dot(p, e);
+    const T zero(0.0);
+    if (along > zero && along < ee) {
+      const T t = along / ee;
+      Vec<T> v = p + t * e;
+      v = v - (dot(v, e) / ee) * e;
+      const T vv = dot(v, v);
+      if (vv < best.vv) best = {vv, v, 2, {i, j, 0}, {T(1.0) - t, t, zero}};
+      return;
+    }
+    if (newest < 0 || newest == i) consider_vertex(i, best);
+    if (newest < 0 || newest == j) consider_vertex(j, best);
+  }
+
+  // v = n (n.p) / n.n, n the normal, p the nearest vertex; the weights are the areas of the three
+  // triangles that v makes with the sides.
+  void project_triangle(std::array<int, 3> f, int newest, Feature& best) const noexcept {
+    const Vec<T>& p = points_[f[0]].w;
+    const Vec<T>& q = points_[f[1]].w;
+    const Vec<T>& r = points_[f[2]].w;
+    const Vec<T> n = cross(q - p, r - p);
+    const T nn = dot(n, n);
+    const T zero(0.0);
+    if (nn > zero) {
+      int nearest = points_[f[1]].ww < points_[f[0]].ww ? f[1] : f[0];
+      if (points_[f[2]].ww < points_[nearest].ww) nearest = f[2];
+      const Vec<T> v = (dot(n, points_[nearest].w) / nn) * n;
+      const Vec<T> vp = p - v;
+      const Vec<T> vq = q - v;
+      const Vec<T> vr = r - v;
+      const T area_p = dot(n, cross(vq, vr));
+      const T area_q = dot(n, cross(vr, vp));
+      const T area_r = dot(n, cross(vp, vq));
+      if (area_p > zero && area_q > zero && area_r > zero) {
+        const T vv = dot(v, v);
+        const T scale = T(1.0) / (area_p + area_q + area_r);
+        if (vv < best.vv) best = {vv, v, 3, f, {scale * area_p, scale * area_q, scale * area_r}};
+        return;
+      }
+    }
+    for (const auto& [i, j] : {std::pair{f[0], f[1]}, {f[1], f[2]}, {f[2], f[0]}}) {
+      if (newest < 0 || newest == i || newest == j) project_edge(i, j, newest, best);
+    }
+  }
+
+  // True when the origin is inside by more than the margin; else the faces it is not inside of are
+  // tried. A face whose opposite vertex lies within the margin of its plane has no inner side.
+  bool project_tetrahedron(int newest, T margin, Feature& best) const noexcept {
+    constexpr std::array<std::array<int, 4>, 4> faces{
+        {{0, 1, 3, 2}, {1, 2, 3, 0}, {2, 0, 3, 1}, {0, 1, 2, 3}}};
+    bool inside = true;
+    const T zero(0.0);
+    for (const auto& [i, j, k, opposite] : faces) {
+      const Vec<T>& p = points_[i].w;
+      const Vec<T> n = cross(points_[j].w - p, points_[k].w - p);
+      const T limit = margin * margin * dot(n, n);
+      const T height = dot(n, points_[opposite].w - p);
+      const T depth = height > zero ? -dot(n, p) : dot(n, p);
+      const bool inner = depth > zero && depth * depth > limit && height * height > limit;
+      if (inner) continue;
+      inside = false;
+      if (newest < 0 || newest == i || newest == j || newest == k) {
+        project_triangle({i, j, k}, newest, best);
+      }
+    }
+    return inside;
+  }
+
+  std::array<DifferencePoint<T>, 4> points_;
+  std::array<T, 4> weights_{};
+  int size_ = 0;
+  Vec<T> v_;
+  T vv_{};
+};
+
+}  // namespace repel::detail

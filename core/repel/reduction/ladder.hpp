@@ -1,0 +1,94 @@
+/// @file
+/// The ladder of nested sub-shapes by which overlap is measured (Anderson 1993, section 2.1).
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/geometry/convex.hpp>
+
+namespace repel {
+
+/// How a shape is reduced.
+struct ReductionOptions {
+  int levels = 8;  ///< steps until the shape has lost its thickness; 1 to 64
+};
+
+/// One sub-shape: every point of `core` lies at least `depth` inside the shape.
+struct Level {
+  Convex core;
+  double depth = 0.0;  ///< [m]
+  double order = 0.0;  ///< where the level stands among those of another shape, see Ladder
+};
+
+/// The levels of one shape: A_0 first, a point last, with
+///
+///     A_i+1 + Ball(depth_i+1 - depth_i) inside A_i      and      A_0 + Ball(depth_0) = the shape,
+///
+/// so that rounding (a sphere is a point with a depth) is a depth like any other. Two ladders are
+/// merged by `order`: by the depth lost while there is thickness to lose, and after that by how far
+/// the flat remains have shrunk. The merged pairs are nested, which is what the walk along them
+/// rests on; see separation.hpp.
+using Ladder = std::vector<Level>;
+
+namespace detail {
+
+/// Flat levels come after every level that still gains depth, of either shape.
+inline constexpr double flat_order = 1e9;
+
+/// A box loses thickness evenly to a rectangle, the rectangle its width to a line, the line its
+/// length to a point (Figure 4 a, b, c). Coinciding steps fall together.
+inline Ladder box_ladder(const Vec3& half_extents, int levels) {
+  Vec3 sorted = half_extents;
+  std::sort(sorted.begin(), sorted.end());
+  const auto eroded = [&](double t) -> Vec3 {
+    return (half_extents.array() - t).max(0.0).matrix();
+  };
+  Ladder ladder{{Convex::box(half_extents), 0.0, 0.0}};
+  for (int i = 1; i <= levels && sorted[0] > 0.0; ++i) {
+    const double t = i == levels ? sorted[0] : sorted[0] * i / levels;
+    ladder.push_back({Convex::box(eroded(t)), t, t});
+  }
+  for (const double t : {sorted[1], sorted[2]}) {
+    if (ladder.back().core.vertex_count() == 1 || t == sorted[0]) continue;
+    if (t == sorted[1] && sorted[1] == sorted[2] && ladder.back().order > flat_order) continue;
+    ladder.push_back({Convex::box(eroded(t)), sorted[0], flat_order + t});
+  }
+  return ladder;
+}
+
+/// A cylinder shrinks to its axis and then to a point; a disk to a thin disc and then to a point
+/// (Figure 4 e, f).
+inline Ladder cylinder_ladder(double radius, double half_length, int levels) {
+  const double thickness = std::min(radius, half_length);
+  const double rest = std::max(radius, half_length);
+  Ladder ladder{{Convex::cylinder(radius, half_length), 0.0, 0.0}};
+  for (int i = 1; i <= levels; ++i) {
+    const double t = i == levels ? thickness : thickness * i / levels;
+    ladder.push_back({Convex::cylinder(radius - t, half_length - t), t, t});
+  }
+  if (rest > thickness) {
+    ladder.push_back({Convex::box(Vec3::Zero()), thickness, flat_order + rest});
+  }
+  return ladder;
+}
+
+/// A sphere is a point with a depth (Figure 4 d).
+inline Ladder sphere_ladder(double radius) {
+  return {{Convex::box(Vec3::Zero()), radius, 0.0}};
+}
+
+/// A capsule is a segment with a depth, then a point with the same depth.
+inline Ladder capsule_ladder(double radius, double half_length) {
+  Ladder ladder{{Convex::box({0.0, 0.0, half_length}), radius, 0.0}};
+  if (half_length > 0.0) {
+    ladder.push_back({Convex::box(Vec3::Zero()), radius, flat_order + half_length});
+  }
+  return ladder;
+}
+
+}  // namespace detail
+}  // namespace repel

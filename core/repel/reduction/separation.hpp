@@ -1,0 +1,238 @@
+/// @file
+/// The signed distance of two shapes: the answer for one pair.
+#pragma once
+
+#include <repel/distance/gjk.hpp>
+#include <repel/reduction/shape.hpp>
+
+namespace repel {
+
+/// The answer for one pair; never claims more than was proven. A default one claims nothing.
+struct Separation {
+  double distance = 0.0;  ///< [m] > 0 the gap, < 0 minus the intrusion distance
+  double lower = -std::numeric_limits<double>::infinity();  ///< [m] the true signed distance lies
+  double upper = std::numeric_limits<double>::infinity();   ///< [m] in [lower, upper], always
+  /// [m] Witness points in world. On the shapes while they are apart; in overlap, on the levels
+  /// compared and carried out by their depth, so (p_WA - p_WB).extraction_W stays the distance.
+  Vec3 p_WA{0, 0, 0};
+  Vec3 p_WB{0, 0, 0};
+  Vec3 extraction_W{0, 0, 0};  ///< unit; moving A along it takes A away from B
+  int level = 0;               ///< 0: the shapes themselves; k: k-th step of the reduction
+  int iterations = 0;          ///< support-map pairs evaluated
+  QueryEnd end = QueryEnd::bad_input;
+};
+
+namespace detail {
+
+/// The chain of level pairs of two ladders, merged by Level::order, and the walk to the two pairs
+/// that decide: the last that meets and the first that does not.
+///
+/// With T the summed depth of a pair of levels and d their distance, the signed distance is
+/// min (d - T) over the chain. Along the chain the pairs are nested, so d never falls, and where it
+/// is positive it gains at least what T gains. Hence only the last meeting pair (-T) and the first
+/// apart (d - T) can hold the minimum, wherever the walk begins.
+class LadderWalk {
+ public:
+  LadderWalk(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB,
+             const QueryOptions& options, WarmStart& warm) noexcept
+      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), options_(options), warm_(warm) {}
+
+  Separation run() noexcept {
+    i_ = warm_.level_a;
+    j_ = warm_.level_b;
+    if (!on_chain()) i_ = j_ = 0;
+    const int longest = A_.levels() + B_.levels() + 2;
+    for (int step = 0; step < longest; ++step) {
+      const Gap gap = query();
+      const bool meets = gap.meets || gap.end == QueryEnd::touching;
+      const bool decided = meets ? went_in(gap) : went_out(gap);
+      if (decided) break;
+    }
+    warm_.level_a = static_cast<std::uint8_t>(i_);
+    warm_.level_b = static_cast<std::uint8_t>(j_);
+    return answer();
+  }
+
+ private:
+  [[nodiscard]] double order_a(int i) const noexcept {
+    return i < A_.levels() ? A_.level(i).order : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double order_b(int j) const noexcept {
+    return j < B_.levels() ? B_.level(j).order : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] bool on_chain() const noexcept {
+    return i_ < A_.levels() && j_ < B_.levels() &&
+           std::max(order_a(i_), order_b(j_)) < std::min(order_a(i_ + 1), order_b(j_ + 1));
+  }
+  [[nodiscard]] bool at_start() const noexcept { return i_ == 0 && j_ == 0; }
+  [[nodiscard]] bool at_end() const noexcept {
+    return i_ + 1 == A_.levels() && j_ + 1 == B_.levels();
+  }
+  [[nodiscard]] double depth() const noexcept { return A_.level(i_).depth + B_.level(j_).depth; }
+
+  void step_in() noexcept {
+    const double a = order_a(i_ + 1);
+    const double b = order_b(j_ + 1);
+    i_ += a <= b ? 1 : 0;
+    j_ += b <= a ? 1 : 0;
+  }
+  void step_out() noexcept {
+    const double a = order_a(i_);
+    const double b = order_b(j_);
+    i_ -= a >= b ? 1 : 0;
+    j_ -= b >= a ? 1 : 0;
+  }
+
+  Gap query() noexcept {
+    QueryOptions options = options_;
+    options.iterations = std::max(1, options_.iterations - iterations_);
+    options.ignore_beyond += at_start() ? depth() : std::numeric_limits<double>::infinity();
+    const Gap gap = gap_between(A_.level(i_).core, X_WA_, B_.level(j_).core, X_WB_, options, warm_);
+    iterations_ += gap.iterations;
+    return gap;
+  }
+
+  /// This pair meets: is the next one known to be apart?
+  bool went_in(const Gap& gap) noexcept {
+    meets_ = true;
+    touches_ = at_start() && gap.end == QueryEnd::touching;
+    depth_met_ = depth();
+    margin_ = gap.upper;
+    if (apart_ || at_end() || spent()) return true;
+    step_in();
+    return false;
+  }
+
+  /// This pair is apart: is the one before it known to meet?
+  bool went_out(const Gap& gap) noexcept {
+    apart_ = true;
+    gap_ = gap;
+    apart_i_ = i_;
+    apart_j_ = j_;
+    if (meets_ || at_start() || spent() || gap.end == QueryEnd::budget_spent) return true;
+    const double here = depth();
+    const bool far_out = gap.distance > here;
+    step_out();
+    // A pair that met not would be apart by at least the depth it gains on the next.
+    if (gap.distance <= here - depth()) return true;
+    if (far_out) {
+      // Out of the overlap altogether, it seems: begin again with the shapes themselves.
+      i_ = j_ = 0;
+      apart_ = false;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool spent() const noexcept { return iterations_ >= options_.iterations; }
+
+  [[nodiscard]] Separation answer() const noexcept;
+  void choose_direction(Separation& s) const noexcept;
+  [[nodiscard]] double overlap_along(const Vec3& n_W) const noexcept;
+
+  const Shape& A_;
+  const Shape& B_;
+  const Pose& X_WA_;
+  const Pose& X_WB_;
+  const QueryOptions& options_;
+  WarmStart& warm_;
+  int i_ = 0;
+  int j_ = 0;
+  int iterations_ = 0;
+  bool meets_ = false;
+  bool apart_ = false;
+  bool touches_ = false;
+  double depth_met_ = 0.0;  ///< [m] T of the last pair that meets
+  double margin_ = 0.0;     ///< [m] how far from meeting it may be, by rounding
+  Gap gap_;                 ///< of the first pair that is apart
+  int apart_i_ = 0;
+  int apart_j_ = 0;
+};
+
+/// How far A would have to move along `n_W` to leave B behind [m]; no less than the penetration
+/// depth.
+inline double LadderWalk::overlap_along(const Vec3& n_W) const noexcept {
+  const Vec<double> n(n_W);
+  const Vec3 b = X_WB_.linear() * to_vec3(B_.level(0).core.support(rotate_transposed(X_WB_, n)).p);
+  const Vec3 a = X_WA_.linear() * to_vec3(A_.level(0).core.support(rotate_transposed(X_WA_, -n)).p);
+  const Vec3 apart = X_WB_.translation() - X_WA_.translation();
+  return n_W.dot(b - a + apart) + A_.level(0).depth + B_.level(0).depth;
+}
+
+/// Both shapes shrunk to one common point: the way out is the shortest along an axis of either.
+inline void LadderWalk::choose_direction(Separation& s) const noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 12; ++k) {
+    const Mat3& R = k < 6 ? X_WA_.linear() : X_WB_.linear();
+    const Vec3 n = (k % 2 == 0 ? 1.0 : -1.0) * R.col(k % 6 / 2);
+    const double overlap = overlap_along(n);
+    if (overlap < least) {
+      least = overlap;
+      s.extraction_W = n;
+    }
+  }
+  s.p_WA = s.p_WB = X_WA_.translation();
+}
+
+inline Separation LadderWalk::answer() const noexcept {
+  Separation s;
+  const double none = std::numeric_limits<double>::infinity();
+  const double met = meets_ ? -depth_met_ : none;
+  const double slack = 1e-14 * (A_.reach() + B_.reach());
+  s.iterations = iterations_ + (apart_ ? 1 : 12);
+  s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
+  if (apart_) {
+    const double depth_a = A_.level(apart_i_).depth;
+    const double depth_b = B_.level(apart_j_).depth;
+    s.extraction_W = gap_.n_BA_W;
+    s.p_WA = X_WA_.translation() + gap_.p_AQa_W - depth_a * s.extraction_W;
+    s.p_WB = X_WA_.translation() + gap_.p_AQb_W + depth_b * s.extraction_W;
+    s.distance = std::min(gap_.distance - depth_a - depth_b, met);
+    s.upper = std::min(gap_.upper - depth_a - depth_b, met + margin_);
+    s.end = gap_.end;
+  } else {
+    choose_direction(s);
+    s.distance = met;
+    s.upper = met + margin_;
+    s.end = at_end() ? QueryEnd::converged : QueryEnd::budget_spent;
+  }
+  const bool plain = apart_ && apart_i_ == 0 && apart_j_ == 0;
+  s.lower = plain && gap_.lower > 0.0
+                ? gap_.lower - A_.level(0).depth - B_.level(0).depth
+                : std::min(s.distance, -overlap_along(s.extraction_W) - slack);
+  if (!plain) s.upper += slack;
+  if (touches_) s.end = QueryEnd::touching;
+  return s;
+}
+
+}  // namespace detail
+
+/// The signed distance of A and B.
+///
+/// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from
+/// GJK, right to a few 1e-15 of their size, and relatively to 1e-7 however small the gap. In overlap
+/// it is the intrusion distance of the reduction (Anderson 1993, section 2.1): continuous, 1-Lipschitz
+/// in translation, never deeper than the penetration depth; `lower` and `upper` bracket the true one.
+///
+/// @param X_WA,X_WB rigid poses in the world [m]; not finite ends in bad_input
+/// @param warm what the last call on this pair left; any content is safe
+/// Cost: one to three support pairs per call when warm. No heap, no lock, bounded by
+/// `options.iterations`.
+[[nodiscard]] inline Separation separation(const Shape& A, const Pose& X_WA, const Shape& B,
+                                           const Pose& X_WB, const QueryOptions& options,
+                                           WarmStart& warm) noexcept {
+  const bool options_hold = options.tolerance >= 0.0 && options.iterations >= 1 &&
+                            !(options.ignore_beyond < 0.0) &&
+                            options.ignore_beyond == options.ignore_beyond;
+  if (!is_finite(X_WA) || !is_finite(X_WB) || !options_hold) return {};
+  return detail::LadderWalk(A, X_WA, B, X_WB, options, warm).run();
+}
+
+/// The same without a warm start.
+[[nodiscard]] inline Separation separation(const Shape& A, const Pose& X_WA, const Shape& B,
+                                           const Pose& X_WB,
+                                           const QueryOptions& options = {}) noexcept {
+  WarmStart cold;
+  return separation(A, X_WA, B, X_WB, options, cold);
+}
+
+}  // namespace repel

@@ -1,0 +1,77 @@
+/// @file
+/// Convex shapes as users build them.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/reduction/hull_ladder.hpp>
+#include <repel/reduction/ladder.hpp>
+
+namespace repel {
+
+/// A convex shape around the origin of its own frame, with its reduced forms. An immutable value:
+/// copies share the data. Building allocates and throws SetupError for a size that is not allowed.
+class Shape {
+ public:
+  /// Largest size accepted [m]: beyond it products of lengths lose meaning.
+  static constexpr double largest = 1e6;
+
+  /// Faces at +-`half_extents` [m], each 0 to 1e6; a zero makes a rectangle, a segment or a point.
+  static Shape box(const Vec3& half_extents, const ReductionOptions& options = {}) {
+    checked("half extent x", half_extents.x(), 0.0, largest, "m");
+    checked("half extent y", half_extents.y(), 0.0, largest, "m");
+    checked("half extent z", half_extents.z(), 0.0, largest, "m");
+    return Shape(detail::box_ladder(half_extents, levels_of(options)));
+  }
+
+  /// `radius` [m] 0 to 1e6. Exact: a point with a radius.
+  static Shape sphere(double radius, const ReductionOptions& options = {}) {
+    (void)levels_of(options);
+    return Shape(detail::sphere_ladder(checked("radius", radius, 0.0, largest, "m")));
+  }
+
+  /// All points within `radius` [m] of the segment of +-`half_length` [m] on the z axis. Exact.
+  static Shape capsule(double radius, double half_length, const ReductionOptions& options = {}) {
+    (void)levels_of(options);
+    checked("radius", radius, 0.0, largest, "m");
+    checked("half length", half_length, 0.0, largest, "m");
+    return Shape(detail::capsule_ladder(radius, half_length));
+  }
+
+  /// Around the z axis, flat ends at +-`half_length` [m]. The rim is a true circle, not a prism.
+  static Shape cylinder(double radius, double half_length, const ReductionOptions& options = {}) {
+    checked("radius", radius, 0.0, largest, "m");
+    checked("half length", half_length, 0.0, largest, "m");
+    return Shape(detail::cylinder_ladder(radius, half_length, levels_of(options)));
+  }
+
+  /// The convex hull of 1 to 10 000 points [m]; they may coincide, lie inside, on a line or in a
+  /// plane.
+  static Shape hull(std::span<const Vec3> points, const ReductionOptions& options = {}) {
+    checked("number of points", static_cast<double>(points.size()), 1.0, 10000.0, "");
+    for (const Vec3& p : points) {
+      for (int axis = 0; axis < 3; ++axis) checked("coordinate", p[axis], -largest, largest, "m");
+    }
+    return Shape(detail::hull_ladder(points, levels_of(options)));
+  }
+
+  [[nodiscard]] int levels() const noexcept { return static_cast<int>(ladder_->size()); }
+  [[nodiscard]] const Level& level(int i) const noexcept { return (*ladder_)[i]; }
+  /// [m] distance of the farthest point from the origin of the shape.
+  [[nodiscard]] double reach() const noexcept {
+    return ladder_->front().core.reach() + ladder_->front().depth;
+  }
+
+ private:
+  explicit Shape(Ladder ladder) : ladder_(std::make_shared<const Ladder>(std::move(ladder))) {}
+
+  static int levels_of(const ReductionOptions& options) {
+    return static_cast<int>(checked("reduction levels", options.levels, 1.0, 64.0, ""));
+  }
+
+  std::shared_ptr<const Ladder> ladder_;
+};
+
+}  // namespace repel

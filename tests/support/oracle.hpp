@@ -1,0 +1,147 @@
+/// @file
+/// The exact distance of two small polytopes, by an algorithm that shares no code and no idea with
+/// the one under test: Wolfe's minimum-norm point (1976) in 113-bit arithmetic, over all differences
+/// of vertices, accepted only when its duality gap proves it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <quadmath.h>
+
+#include <repel/base/types.hpp>
+
+namespace repel::oracle {
+
+__extension__ typedef __float128 Real;
+
+struct Point {
+  Real x[3];
+};
+
+inline Real dot(const Point& a, const Point& b) {
+  return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
+}
+
+/// Vertex of the polytope in the world: the exact value of R v + p for the doubles given.
+inline Point placed(const Pose& X, const Vec3& v) {
+  Point p{};
+  for (int i = 0; i < 3; ++i) {
+    p.x[i] = X.translation()[i];
+    for (int k = 0; k < 3; ++k) p.x[i] += Real(X.linear()(i, k)) * Real(v[k]);
+  }
+  return p;
+}
+
+struct Truth {
+  Real distance = 0;  ///< [m] 0 when the polytopes meet
+  double normal[3] = {0, 0, 0};  ///< unit, from B to A
+};
+
+/// Weights of the point nearest to the origin on the affine hull of the corral: w0 + E t with
+/// E'E t = -E'w0, E the differences to the first point. False when the corral is degenerate.
+inline bool affine_weights(const std::vector<Point>& corral, std::vector<Real>& weights) {
+  const std::size_t n = corral.size() - 1;
+  std::vector<Point> e(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int k = 0; k < 3; ++k) e[i].x[k] = corral[i + 1].x[k] - corral[0].x[k];
+  }
+  Real m[4][5] = {};
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) m[i][j] = dot(e[i], e[j]);
+    m[i][n] = -dot(e[i], corral[0]);
+  }
+  for (std::size_t column = 0; column < n; ++column) {
+    std::size_t pivot = column;
+    for (std::size_t r = column + 1; r < n; ++r) {
+      if (fabsq(m[r][column]) > fabsq(m[pivot][column])) pivot = r;
+    }
+    std::swap(m[pivot], m[column]);
+    if (fabsq(m[column][column]) <= 1e-30Q * dot(e[column], e[column])) return false;
+    for (std::size_t r = 0; r < n; ++r) {
+      if (r == column) continue;
+      const Real factor = m[r][column] / m[column][column];
+      for (std::size_t c = column; c <= n; ++c) m[r][c] -= factor * m[column][c];
+    }
+  }
+  weights.assign(n + 1, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    weights[i + 1] = m[i][n] / m[i][i];
+    weights[0] -= weights[i + 1];
+  }
+  return true;
+}
+
+/// The distance of the hulls of `a` under X_WA and `b` under X_WB; nothing when 113 bits could not
+/// prove it, which a test must treat as its own failure.
+inline std::optional<Truth> distance(const std::vector<Vec3>& a, const Pose& X_WA,
+                                     const std::vector<Vec3>& b, const Pose& X_WB) {
+  std::vector<Point> differences;
+  for (const Vec3& va : a) {
+    const Point pa = placed(X_WA, va);
+    for (const Vec3& vb : b) {
+      const Point pb = placed(X_WB, vb);
+      differences.push_back({{pa.x[0] - pb.x[0], pa.x[1] - pb.x[1], pa.x[2] - pb.x[2]}});
+    }
+  }
+  Real size2 = 0;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    const Real d = dot(differences[i], differences[i]);
+    size2 = d > size2 ? d : size2;
+    if (d < dot(differences[start], differences[start])) start = i;
+  }
+  std::vector<Point> corral{differences[start]};
+  std::vector<Real> weights{1};
+  std::vector<Real> target;
+  Point x = corral[0];
+  for (int major = 0; major < 500; ++major) {
+    const Real xx = dot(x, x);
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < differences.size(); ++i) {
+      if (dot(x, differences[i]) < dot(x, differences[best])) best = i;
+    }
+    const Real gap = xx - dot(x, differences[best]);
+    const Real length = sqrtq(xx);
+    if (xx <= size2 * 1e-54Q) return Truth{};
+    if (gap <= xx * 1e-24Q || gap <= size2 * 1e-32Q) {
+      return Truth{length, {double(x.x[0] / length), double(x.x[1] / length),
+                            double(x.x[2] / length)}};
+    }
+    corral.push_back(differences[best]);
+    weights.push_back(0);
+    for (int minor = 0; minor < 20; ++minor) {
+      if (corral.size() > 4 || !affine_weights(corral, target)) return std::nullopt;
+      Real theta = 1;
+      for (std::size_t i = 0; i < corral.size(); ++i) {
+        if (target[i] <= 0 && weights[i] - target[i] > 0) {
+          const Real t = weights[i] / (weights[i] - target[i]);
+          theta = t < theta ? t : theta;
+        }
+      }
+      std::vector<Point> kept;
+      std::vector<Real> kept_weights;
+      bool dropped = false;
+      for (std::size_t i = 0; i < corral.size(); ++i) {
+        const Real w = (1 - theta) * weights[i] + theta * target[i];
+        if (theta < 1 && target[i] <= 0 && w <= 1e-32Q) {
+          dropped = true;
+          continue;
+        }
+        kept.push_back(corral[i]);
+        kept_weights.push_back(w);
+      }
+      corral = kept;
+      weights = kept_weights;
+      if (theta >= 1 || !dropped) break;
+    }
+    x = {};
+    for (std::size_t i = 0; i < corral.size(); ++i) {
+      for (int k = 0; k < 3; ++k) x.x[k] += weights[i] * corral[i].x[k];
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace repel::oracle
