@@ -11,7 +11,7 @@ packages_of() {
 # Runs a command; says nothing but a progress line on a terminal, and everything if it fails.
 quietly() {
   log=$(mktemp)
-  { "$@" </dev/null 2>&1 && echo succeeded; } | tee "$log" | show_progress
+  if "$@" </dev/null 2>&1; then echo succeeded; fi | tee "$log" | show_progress
   if [ "$(tail -n 1 "$log")" != succeeded ]; then
     cat "$log" >&2
     rm -f "$log"
