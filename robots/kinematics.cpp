@@ -1,0 +1,165 @@
+#include <repel/robots/kinematics.hpp>
+
+#include <cassert>
+#include <cstddef>
+#include <kdl/chain.hpp>
+#include <kdl/chaindynparam.hpp>
+#include <kdl/chainfksolverpos_recursive.hpp>
+#include <string>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+
+namespace repel {
+namespace {
+
+KDL::Vector to_kdl(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+KDL::Frame to_kdl(const Pose& X) {
+  const Mat3 R = X.linear();
+  return {KDL::Rotation(R(0, 0), R(0, 1), R(0, 2),  //
+                        R(1, 0), R(1, 1), R(1, 2),  //
+                        R(2, 0), R(2, 1), R(2, 2)),
+          to_kdl(X.translation())};
+}
+
+Pose from_kdl(const KDL::Frame& X) {
+  Pose result = Pose::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) result(row, column) = X.M(row, column);
+    result(row, 3) = X.p(row);
+  }
+  return result;
+}
+
+KDL::RigidBodyInertia inertia_of(const ArmLink& link) {
+  const Mat3& I = link.I_C_L;
+  return KDL::RigidBodyInertia(
+      link.mass, to_kdl(link.p_LC),
+      KDL::RotationalInertia(I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)));
+}
+
+KDL::Segment segment_of(const ArmLink& link) {
+  const auto type = link.type == JointType::revolute ? KDL::Joint::RotAxis : KDL::Joint::TransAxis;
+  const KDL::Frame X_PJ = to_kdl(link.X_PJ);
+  const KDL::Joint joint(link.joint_name, X_PJ.p, X_PJ.M * to_kdl(link.axis_J), type);
+  return KDL::Segment(link.name, joint, X_PJ, inertia_of(link));
+}
+
+void require_usable(const ArmLink& link) {
+  const bool finite = is_finite(link.X_PJ) && is_finite(link.p_LC) && link.I_C_L.allFinite() &&
+                      link.mass - link.mass == 0.0;
+  if (!finite) throw SetupError("link '" + link.name + "' holds a value that is not finite");
+  const std::string axis_length = "length of the axis of joint '" + link.joint_name + "'";
+  checked(axis_length, link.axis_J.norm(), 1.0 - 1e-9, 1.0 + 1e-9, "");
+}
+
+KDL::Chain chain_of(const ArmModel& arm) {
+  if (arm.links.empty()) throw SetupError("arm '" + arm.name + "' has no link; allowed: 1 or more");
+  if (!is_finite(arm.X_WB) || !is_finite(arm.X_LT) || !is_finite(arm.gravity_W)) {
+    throw SetupError("arm '" + arm.name + "' has a base, tool or gravity that is not finite");
+  }
+  KDL::Chain chain;
+  for (const ArmLink& link : arm.links) {
+    require_usable(link);
+    chain.addSegment(segment_of(link));
+  }
+  return chain;
+}
+
+}  // namespace
+
+struct Kinematics::Impl {
+  struct Axis {
+    JointType type;
+    Vec3 direction_L;
+    Vec3 direction_W;
+  };
+
+  explicit Impl(const ArmModel& arm)
+      : chain(chain_of(arm)),
+        poses_solver(chain),
+        // KDL works in the base frame.
+        gravity_solver(chain, to_kdl(Vec3(arm.X_WB.linear().transpose() * arm.gravity_W))),
+        q(chain.getNrOfJoints()),
+        gravity(chain.getNrOfJoints()),
+        X_BL(chain.getNrOfSegments()),
+        X_WL(chain.getNrOfSegments() + 1, arm.X_WB),
+        X_LT(arm.X_LT) {
+    for (const ArmLink& link : arm.links) axes.push_back({link.type, link.axis_J, Vec3::Zero()});
+  }
+
+  void place_links() noexcept {
+    poses_solver.JntToCart(q, X_BL);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      X_WL[i + 1] = X_WL[0] * from_kdl(X_BL[i]);
+      axes[i].direction_W = X_WL[i + 1].linear() * axes[i].direction_L;
+    }
+    X_WT = X_WL.back() * X_LT;
+  }
+
+  KDL::Chain chain;  // the solvers refer to it
+  KDL::ChainFkSolverPos_recursive poses_solver;
+  KDL::ChainDynParam gravity_solver;
+  KDL::JntArray q;
+  KDL::JntArray gravity;
+  std::vector<KDL::Frame> X_BL;
+  std::vector<Pose> X_WL;  // the base, then the links
+  Pose X_LT;
+  Pose X_WT;
+  std::vector<Axis> axes;
+};
+
+Kinematics::Kinematics(const ArmModel& arm) : impl_(std::make_unique<Impl>(arm)) {
+  impl_->place_links();
+}
+Kinematics::Kinematics(Kinematics&&) noexcept = default;
+Kinematics& Kinematics::operator=(Kinematics&&) noexcept = default;
+Kinematics::~Kinematics() = default;
+
+int Kinematics::links() const noexcept {
+  return static_cast<int>(impl_->axes.size());
+}
+
+void Kinematics::update(std::span<const double> q) noexcept {
+  assert(q.size() == impl_->axes.size());
+  for (std::size_t i = 0; i < impl_->axes.size(); ++i) impl_->q(static_cast<unsigned>(i)) = q[i];
+  impl_->place_links();
+}
+
+const Pose& Kinematics::X_WL(int link) const noexcept {
+  assert(link >= -1 && link < links());
+  return impl_->X_WL[static_cast<std::size_t>(link + 1)];
+}
+
+const Pose& Kinematics::X_WT() const noexcept {
+  return impl_->X_WT;
+}
+
+void Kinematics::jacobian(int link, const Vec3& p_WQ, JacobianRef J) const noexcept {
+  assert(J.cols() == links());
+  J.setZero();
+  for (int joint = 0; joint <= link; ++joint) {
+    const auto& axis = impl_->axes[static_cast<std::size_t>(joint)];
+    if (axis.type == JointType::prismatic) {
+      J.col(joint).head<3>() = axis.direction_W;
+    } else {
+      J.col(joint).head<3>() = axis.direction_W.cross(p_WQ - X_WL(joint).translation());
+      J.col(joint).tail<3>() = axis.direction_W;
+    }
+  }
+}
+
+void Kinematics::tool_jacobian(JacobianRef J) const noexcept {
+  jacobian(links() - 1, X_WT().translation(), J);
+}
+
+void Kinematics::gravity_torques(std::span<double> out) noexcept {
+  assert(out.size() == impl_->axes.size());
+  impl_->gravity_solver.JntToGravity(impl_->q, impl_->gravity);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = impl_->gravity(static_cast<unsigned>(i));
+}
+
+}  // namespace repel

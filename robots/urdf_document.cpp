@@ -1,0 +1,264 @@
+#include "urdf_document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include <repel/base/setup_error.hpp>
+
+namespace repel::detail {
+namespace {
+
+using Element = tinyxml2::XMLElement;
+
+/// What an attribute that holds numbers may hold.
+struct NumberRule {
+  std::string_view element, attribute;
+  std::size_t count;
+  double low, high;
+  bool required;
+  std::string_view unit;
+};
+
+constexpr NumberRule number_rules[] = {
+    {"origin", "xyz", 3, -1e4, 1e4, false, "m"},
+    {"origin", "rpy", 3, -1e3, 1e3, false, "rad"},
+    {"box", "size", 3, 1e-6, 1e4, true, "m"},
+    {"sphere", "radius", 1, 1e-6, 1e4, true, "m"},
+    {"cylinder", "radius", 1, 1e-6, 1e4, true, "m"},
+    {"cylinder", "length", 1, 1e-6, 1e4, true, "m"},
+    {"capsule", "radius", 1, 1e-6, 1e4, true, "m"},
+    {"capsule", "length", 1, 1e-6, 1e4, true, "m"},
+    {"mass", "value", 1, 0.0, 1e6, true, "kg"},
+    {"inertia", "ixx", 1, 0.0, 1e9, true, "kg m^2"},
+    {"inertia", "iyy", 1, 0.0, 1e9, true, "kg m^2"},
+    {"inertia", "izz", 1, 0.0, 1e9, true, "kg m^2"},
+    {"inertia", "ixy", 1, -1e9, 1e9, true, "kg m^2"},
+    {"inertia", "ixz", 1, -1e9, 1e9, true, "kg m^2"},
+    {"inertia", "iyz", 1, -1e9, 1e9, true, "kg m^2"},
+    {"axis", "xyz", 3, -1e3, 1e3, true, ""},
+    {"limit", "lower", 1, -1e4, 1e4, false, "rad or m"},
+    {"limit", "upper", 1, -1e4, 1e4, false, "rad or m"},
+    {"limit", "velocity", 1, 1e-6, 1e6, true, "rad/s or m/s"},
+    {"limit", "effort", 1, 1e-6, 1e9, true, "N m or N"},
+    {"dynamics", "damping", 1, 0.0, 1e9, false, "N m s/rad or N s/m"},
+    {"dynamics", "friction", 1, 0.0, 1e9, false, "N m or N"},
+    {"drake:rotor_inertia", "value", 1, 0.0, 1e6, true, "kg m^2"},
+    {"drake:gear_ratio", "value", 1, -1e6, 1e6, true, ""},
+};
+
+/// The numbers of a white-space separated list, or nothing when any of it is not a number.
+std::optional<std::vector<double>> numbers_in(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::vector<double> numbers;
+  for (;;) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    if (text.empty()) return numbers;
+    std::string_view word = text.substr(0, text.find_first_of(blanks));
+    text.remove_prefix(word.size());
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+    numbers.push_back(number);
+  }
+}
+
+bool obeys(const NumberRule& rule, std::string_view text) {
+  const auto numbers = numbers_in(text);
+  if (!numbers || numbers->size() != rule.count) return false;
+  for (const double x : *numbers) {
+    if (!(x >= rule.low && x <= rule.high)) return false;  // NaN fails both
+  }
+  return true;
+}
+
+std::string allowed(const NumberRule& rule) {
+  std::string text = rule.count == 1 ? "a number" : std::to_string(rule.count) + " numbers";
+  text += " from " + to_text(rule.low) + " to " + to_text(rule.high);
+  return rule.unit.empty() ? text : text + " " + std::string(rule.unit);
+}
+
+std::string text_of(const Element* element, const char* attribute) {
+  const char* text = element ? element->Attribute(attribute) : nullptr;
+  return text ? text : "";
+}
+
+std::string quoted(std::string_view text) {
+  std::string result(1, '\'');
+  return result.append(text).append(1, '\'');
+}
+
+std::string label(const Element& element) {
+  return std::string(element.Name()) + " '" + text_of(&element, "name") + "'";
+}
+
+const char* kind_in_urdf(const urdf::Geometry& geometry) {
+  switch (geometry.type) {
+    case urdf::Geometry::SPHERE:
+      return "sphere";
+    case urdf::Geometry::BOX:
+      return "box";
+    case urdf::Geometry::CYLINDER:
+      return "cylinder";
+    case urdf::Geometry::MESH:
+      return "mesh";
+  }
+  return "";
+}
+
+/// The value of a number attribute that has passed its rule.
+double number_of(const Element* element, double otherwise) {
+  return element ? numbers_in(text_of(element, "value"))->front() : otherwise;
+}
+
+}  // namespace
+
+UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std::move(file)) {
+  if (xml_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw SetupError(std::string("not well-formed XML: ") + xml_.ErrorStr(), file_,
+                     xml_.ErrorLineNum());
+  }
+  robot_ = xml_.FirstChildElement("robot");
+  if (!robot_) throw SetupError("no <robot> element; allowed: one", file_, 1);
+  index_names();
+  for (const auto* child = robot_->FirstChildElement(); child;
+       child = child->NextSiblingElement()) {
+    const std::string_view name = child->Name();
+    if (name == "link" || name == "joint" || name == "transmission") {
+      check_numbers(*child, label(*child));
+    }
+    if (name == "joint") check_joint(*child);
+  }
+}
+
+void UrdfDocument::index_names() {
+  const auto index = [this](const char* tag, auto& elements) {
+    for (auto* e = robot_->FirstChildElement(tag); e; e = e->NextSiblingElement(tag)) {
+      const std::string name = text_of(e, "name");
+      if (name.empty()) fail(e, "a <" + std::string(tag) + "> has no name; allowed: a unique one");
+      if (!elements.emplace(name, e).second) fail(e, "a second " + label(*e) + "; allowed: one");
+    }
+  };
+  index("link", links_);
+  index("joint", joints_);
+  for (const auto& [name, link] : links_) {
+    for (auto* e = link->FirstChildElement("collision"); e;
+         e = e->NextSiblingElement("collision")) {
+      shapes_[name].push_back(shape_of(*e, label(*link)));
+    }
+  }
+}
+
+const Element* UrdfDocument::shape_of(const Element& collision, const std::string& owner) const {
+  const Element* geometry = collision.FirstChildElement("geometry");
+  const Element* shape = geometry ? geometry->FirstChildElement() : nullptr;
+  if (!shape || shape->NextSiblingElement() || geometry->NextSiblingElement("geometry")) {
+    fail(&collision, owner + ": a <collision> holds no shape or more than one; allowed: one of " +
+                         "box, sphere, cylinder, capsule");
+  }
+  return shape;
+}
+
+void UrdfDocument::check_numbers(const Element& element, const std::string& owner) const {
+  const std::string_view name = element.Name();
+  if (name == "visual") return;  // never read
+  for (const NumberRule& rule : number_rules) {
+    if (rule.element != name) continue;
+    const std::string attribute(rule.attribute);
+    const char* text = element.Attribute(attribute.c_str());
+    if (!text && !rule.required) continue;
+    if (text && obeys(rule, text)) continue;
+    fail(&element, owner + ": " + attribute + " of <" + std::string(name) + "> is " +
+                       (text ? quoted(text) : "missing") + "; allowed: " + allowed(rule));
+  }
+  for (const auto* child = element.FirstChildElement(); child;
+       child = child->NextSiblingElement()) {
+    check_numbers(*child, owner);
+  }
+}
+
+void UrdfDocument::check_joint(const Element& joint) const {
+  const std::string type = text_of(&joint, "type");
+  if (type == "fixed") return;
+  if (type != "revolute" && type != "continuous" && type != "prismatic") {
+    fail(&joint, label(joint) + ": type is '" + type +
+                     "'; allowed: revolute, continuous, prismatic, fixed");
+  }
+  if (const auto* mimic = joint.FirstChildElement("mimic")) {
+    fail(mimic, label(joint) + " mimics '" + text_of(mimic, "joint") +
+                    "'; allowed: joints that move by themselves");
+  }
+  const auto* limit = joint.FirstChildElement("limit");
+  if (!limit) fail(&joint, label(joint) + ": <limit> is missing; allowed: one");
+  if (type == "continuous") return;
+  const auto lower = numbers_in(text_of(limit, "lower"));
+  const auto upper = numbers_in(text_of(limit, "upper"));
+  if (lower->empty() || upper->empty() || !(lower->front() < upper->front())) {
+    fail(limit, label(joint) + ": limits are '" + text_of(limit, "lower") + "' to '" +
+                    text_of(limit, "upper") + "'; allowed: lower below upper");
+  }
+}
+
+std::string UrdfDocument::text_for_urdfdom() const {
+  tinyxml2::XMLDocument copy;
+  xml_.DeepCopy(&copy);
+  for (auto* link = copy.FirstChildElement("robot")->FirstChildElement("link"); link;
+       link = link->NextSiblingElement("link")) {
+    for (auto* e = link->FirstChildElement("collision"); e;
+         e = e->NextSiblingElement("collision")) {
+      if (auto* capsule = e->FirstChildElement("geometry")->FirstChildElement("capsule")) {
+        capsule->SetName("cylinder");
+      }
+    }
+  }
+  tinyxml2::XMLPrinter printer;
+  copy.Print(&printer);
+  return printer.CStr();
+}
+
+void UrdfDocument::require_all_collisions(const urdf::ModelInterface& model) const {
+  for (const auto& [name, shapes] : shapes_) {
+    const auto link = model.getLink(name);
+    const std::size_t parsed = link ? link->collision_array.size() : 0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const Element* shape = shapes[i];
+      const std::string_view in_file = is_capsule(name, i) ? "cylinder" : shape->Name();
+      const bool kept = i < parsed && kind_in_urdf(*link->collision_array[i]->geometry) == in_file;
+      if (kept && in_file != "mesh") continue;
+      fail(shape, "link '" + name + "': collision " + std::to_string(i + 1) + " of " +
+                      std::to_string(shapes.size()) + " is a <" + shape->Name() +
+                      ">, which would be lost; allowed: box, sphere, cylinder, capsule" +
+                      (in_file == "mesh" ? " (a mesh is not convex by itself)" : ""));
+    }
+  }
+}
+
+bool UrdfDocument::is_capsule(const std::string& link, std::size_t index) const {
+  return std::string_view(shapes_.at(link)[index]->Name()) == "capsule";
+}
+
+double UrdfDocument::rotor_inertia(const std::string& joint) const {
+  for (const auto* e = robot_->FirstChildElement("transmission"); e;
+       e = e->NextSiblingElement("transmission")) {
+    const auto* actuator = e->FirstChildElement("actuator");
+    if (text_of(e->FirstChildElement("joint"), "name") != joint || !actuator) continue;
+    const double ratio = number_of(actuator->FirstChildElement("drake:gear_ratio"), 1.0);
+    return number_of(actuator->FirstChildElement("drake:rotor_inertia"), 0.0) * ratio * ratio;
+  }
+  return 0.0;
+}
+
+void UrdfDocument::fail_at_link(const std::string& name, const std::string& what) const {
+  fail(links_.at(name), "link '" + name + "' " + what);
+}
+
+void UrdfDocument::fail_at_joint(const std::string& name, const std::string& what) const {
+  fail(joints_.at(name), "joint '" + name + "' " + what);
+}
+
+void UrdfDocument::fail(const Element* at, const std::string& what) const {
+  throw SetupError(what, file_, at->GetLineNum());
+}
+
+}  // namespace repel::detail

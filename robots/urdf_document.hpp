@@ -1,0 +1,57 @@
+/// @file
+/// The XML behind a URDF file: what urdfdom drops, accepts blindly or has no word for is looked at
+/// here, where lines are known.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tinyxml2.h>
+#include <urdf_model/model.h>
+
+namespace repel::detail {
+
+/// A URDF text that has passed every check that can be made on the text alone.
+class UrdfDocument {
+ public:
+  using Element = tinyxml2::XMLElement;
+
+  /// Throws SetupError when the text is not XML, a number is malformed, not finite or out of range,
+  /// a joint lacks a limit or cannot be one of a serial arm, or two links or joints share a name.
+  UrdfDocument(std::string_view text, std::string file);
+
+  /// The text for urdfdom, which knows no capsule: each stands there as the cylinder inside it.
+  [[nodiscard]] std::string text_for_urdfdom() const;
+
+  /// Throws SetupError naming the first collision element that is not in `model`, or is a mesh.
+  void require_all_collisions(const urdf::ModelInterface& model) const;
+
+  /// True when the collision element `index` of `link` is a capsule in the file.
+  [[nodiscard]] bool is_capsule(const std::string& link, std::size_t index) const;
+
+  /// Motor and gear inertia seen at `joint` [kg m^2] or [kg]: of its transmission, the Drake
+  /// elements rotor_inertia * gear_ratio^2; 0 when there is none.
+  [[nodiscard]] double rotor_inertia(const std::string& joint) const;
+
+  /// Throws SetupError at the line of the link or joint called `name`.
+  [[noreturn]] void fail_at_link(const std::string& name, const std::string& what) const;
+  [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const;
+
+ private:
+  [[noreturn]] void fail(const Element* at, const std::string& what) const;
+  void index_names();
+  void check_numbers(const Element& element, const std::string& owner) const;
+  void check_joint(const Element& joint) const;
+  [[nodiscard]] const Element* shape_of(const Element& collision, const std::string& owner) const;
+
+  std::string file_;
+  tinyxml2::XMLDocument xml_;
+  const Element* robot_ = nullptr;
+  std::map<std::string, const Element*> links_;
+  std::map<std::string, const Element*> joints_;
+  std::map<std::string, std::vector<const Element*>> shapes_;  // of collisions, by link
+};
+
+}  // namespace repel::detail

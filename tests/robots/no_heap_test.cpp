@@ -1,0 +1,76 @@
+// Counts every malloc of this program, those inside KDL and Eigen included.
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "arms.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// AddressSanitizer brings its own malloc; there the test below says that it was skipped.
+#ifndef __SANITIZE_ADDRESS__
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* realloc(void* old, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(old, size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+}
+#endif
+
+namespace repel {
+namespace {
+
+TEST(NoHeap, UpdateJacobianAndGravityDoNotAllocate) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer owns malloc";
+#endif
+  constexpr unsigned seed = 7;
+  for (const ArmModel& arm : test::all_arms()) {
+    SCOPED_TRACE(arm.name + ", seed " + std::to_string(seed));
+    std::mt19937_64 random(seed);
+    Kinematics kinematics(arm);
+    Eigen::Matrix<double, 6, Eigen::Dynamic> J(6, kinematics.links());
+    std::vector<double> torques(arm.links.size());
+    for (int sample = 0; sample < 100; ++sample) {
+      const auto q = test::random_joints(arm, random);
+      const long before = allocations;
+      kinematics.update(q);
+      kinematics.tool_jacobian(J);
+      kinematics.jacobian(0, Vec3::Zero(), J);
+      kinematics.gravity_torques(torques);
+      ASSERT_EQ(allocations - before, 0);
+    }
+  }
+}
+
+TEST(NoHeap, TheCounterSeesAnAllocation) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer owns malloc";
+#endif
+  const long before = allocations;
+  Eigen::VectorXd v(1000);
+  v.setZero();
+  EXPECT_GT(allocations - before, 0) << v.sum();
+}
+
+}  // namespace
+}  // namespace repel
