@@ -1,15 +1,8 @@
 #include "repel/bullet/arm.hpp"
 
-#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
-#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
-#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
-#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
@@ -19,34 +12,6 @@
 
 namespace repel::bullet {
 namespace {
-
-/// Bullet's world without anything in it that could collide, and so with the smallest pools.
-class World {
- public:
-  explicit World(btMultiBody& body)
-      : configuration_(smallest_pools()),
-        dispatcher_(&configuration_),
-        world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
-    world_.setGravity({0, 0, 0});  // the arm brings its own weight
-    world_.addMultiBody(&body);
-  }
-
-  void step(double h) noexcept { world_.stepSimulation(h, 0); }
-
- private:
-  static btDefaultCollisionConstructionInfo smallest_pools() {
-    btDefaultCollisionConstructionInfo info;
-    info.m_defaultMaxPersistentManifoldPoolSize = 1;
-    info.m_defaultMaxCollisionAlgorithmPoolSize = 1;
-    return info;
-  }
-
-  btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_;
-  btDbvtBroadphase broadphase_;
-  btMultiBodyConstraintSolver solver_;
-  btMultiBodyDynamicsWorld world_;
-};
 
 ArmModel validated(const ArmModel& model, const ArmOptions& options) {
   constexpr double kLargest = std::numeric_limits<double>::max();
@@ -75,7 +40,6 @@ struct Arm::Simulation {
   int links;
   detail::ImplicitJoints joints;
   std::unique_ptr<btMultiBody> body;
-  World world;
   ArmFaults faults;
   Eigen::VectorXd torque, q, v, a;  // as set; state; acceleration
   Eigen::MatrixXd M_inverse;
@@ -92,7 +56,6 @@ Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options)
       links(static_cast<int>(model.links.size())),
       joints(model, options),
       body(detail::make_multibody(model)),
-      world(*body),
       torque(Eigen::VectorXd::Zero(links)),
       q(torque),
       v(torque),
@@ -116,8 +79,8 @@ void Arm::Simulation::reset(std::span<const double> at, std::span<const double> 
   for (std::size_t i = 0; i < at.size(); ++i) {
     const ArmLink& link = model.links[i];
     checked("joint '" + link.joint_name + "': position", at[i], link.lower, link.upper, "rad or m");
-    if (!moving.empty() && !std::isfinite(moving[i])) {
-      throw SetupError("joint '" + link.joint_name + "': velocity is not finite");
+    if (!std::isfinite(at[i]) || (!moving.empty() && !std::isfinite(moving[i]))) {
+      throw SetupError("joint '" + link.joint_name + "': position or velocity is not finite");
     }
   }
   torque.setZero();
@@ -171,18 +134,20 @@ void Arm::Simulation::require_inertia_at_every_joint() {
   }
 }
 
+// Bullet's own world is left out: it integrates only what its articulated-body algorithm answers,
+// so D and f would have to go back in as torques. That costs a second run of the algorithm and
+// multiplies the rounding error of a by D / M.
 void Arm::Simulation::sub_step(double h) noexcept {
-  load(joints.linearize(q, v, torque, h));                          // weight and joint torque
-  find_free_acceleration();                                         // -> a, M^-1
-  const Eigen::VectorXd& extra = joints.solve(M_inverse, a, v, h);  // -> a with rotors, friction
-  if (!extra.allFinite()) {
+  load(joints.linearize(q, v, torque, h));  // weight and joint torque
+  find_free_acceleration();                 // -> a, M^-1
+  joints.solve(M_inverse, a, v, h);         // -> a with rotors, stops and friction
+  v += h * a;
+  if (!v.allFinite() || !(q + h * v).allFinite()) {
     faults.state = true;
-    body->clearVelocities();
     v.setZero();
-    return;
   }
-  for (int i = 0; i < links; ++i) body->addJointTorque(i, extra[i]);
-  world.step(h);  // v += h a, q += h v
+  for (int i = 0; i < links; ++i) body->setJointVel(i, v[i]);
+  body->stepPositionsMultiDof(h);  // q += h v
   read_state();
 }
 

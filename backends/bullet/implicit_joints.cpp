@@ -36,7 +36,7 @@ const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const double next = q[i] + h * v[i];
     const double beyond = next - std::clamp(next, lower_[i], upper_[i]);
-    // A stop pushes, never pulls: it damps on the way in only.
+    // On the way out a damper would hold the joint back: a stop damps on the way in only.
     const double damping = viscous_[i] + (beyond * v[i] > 0.0 ? stop_damping_ : 0.0);
     const double stiffness = beyond == 0.0 ? 0.0 : stop_stiffness_;
     diagonal_[i] = rotor_inertia_[i] + h * damping + h * h * stiffness;
@@ -45,12 +45,10 @@ const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const
   return torque_;
 }
 
-const Eigen::VectorXd& ImplicitJoints::solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a,
-                                             const Eigen::VectorXd& v, double h) noexcept {
+void ImplicitJoints::solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v,
+                           double h) noexcept {
   add_diagonal(M_inverse, a);
   find_friction(M_inverse, a, v, h);
-  torque_ = friction_ - diagonal_.cwiseProduct(a);
-  return torque_;
 }
 
 // W = M^-1 and a = M^-1 b become (M + D)^-1 and (M + D)^-1 b, one entry of D after the other

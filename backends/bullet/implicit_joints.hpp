@@ -32,9 +32,8 @@ class ImplicitJoints {
                                    const Eigen::VectorXd& torque, double h) noexcept;
 
   /// Turns `a`, the free acceleration, into the acceleration, and `M_inverse` into (M + D)^-1.
-  /// Returns f - D a, the torque that is to be added to u to make the engine produce `a`.
-  const Eigen::VectorXd& solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a,
-                               const Eigen::VectorXd& v, double h) noexcept;
+  void solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v,
+             double h) noexcept;
 
  private:
   void add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexcept;

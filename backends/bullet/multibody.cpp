@@ -9,8 +9,6 @@
 namespace repel::bullet::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Bullet's frame B of a link: at the centre of mass, along the principal axes of inertia.
 struct PrincipalFrame {
   Pose X_LB = Pose::Identity();
@@ -111,13 +109,10 @@ std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model) {
     X_PA = X_LB;
   }
   body->finalizeMultiDof();
-  // Bullet's defaults would falsify physics: 4 % damping, a clamp at 100 rad/s, falling asleep.
+  // Bullet damps by 4 % unless told not to. Its clamp of speeds at 100 rad/s and its putting to
+  // sleep are at work only in its world, which is not used.
   body->setLinearDamping(0.0);
   body->setAngularDamping(0.0);
-  body->setMaxCoordinateVelocity(kInfinity);
-  body->setMaxAppliedImpulse(kInfinity);
-  body->setCanSleep(false);
-  body->setUseGyroTerm(true);
   return body;
 }
 

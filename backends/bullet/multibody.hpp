@@ -15,7 +15,7 @@ namespace repel::bullet::detail {
   return {v.x(), v.y(), v.z()};
 }
 
-/// The pose `X` in Bullet's type.
+/// `X` in Bullet's type.
 [[nodiscard]] btTransform to_bullet(const Pose& X);
 
 /// Throws SetupError unless the Bullet library that was loaded computes in double precision.
@@ -24,7 +24,7 @@ void require_double_precision();
 /// Throws SetupError naming the joint and the number of `model` that is out of range.
 void require_valid(const ArmModel& model);
 
-/// The articulated body of `model`, with every damping, clamp and sleep of Bullet switched off.
+/// The articulated body of `model`, at zero, without Bullet's own damping.
 [[nodiscard]] std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model);
 
 }  // namespace repel::bullet::detail

@@ -183,6 +183,9 @@ TEST(BulletArm, SetUpRefusesOptionsAndStatesOutOfRange) {
   EXPECT_THROW(arm.reset(std::vector(5, 0.0)), SetupError);
   EXPECT_THROW(arm.reset(std::vector(6, 3.0)), SetupError);
   EXPECT_THROW(arm.reset(std::vector(6, std::nan(""))), SetupError);
+  Arm free(turntable(1.0));
+  EXPECT_THROW(free.reset(std::vector{kInfinity}), SetupError);
+  EXPECT_THROW(free.reset(std::vector{0.0}, std::vector{kInfinity}), SetupError);
 }
 
 }  // namespace

@@ -64,20 +64,21 @@ TEST(BulletArmDynamics, PendulumNeitherGainsNorLosesEnergyOverAMinute) {
   arm.reset(std::vector{1.0});
   const double lowest = potential_energy(model, {0.0});
   const double start = energy(model, arm) - lowest;
-  const auto mean_over = [&](int ticks) {
-    double sum = 0.0;
+  const auto largest_over = [&](int ticks) {
+    double largest = 0.0;
     for (int tick = 0; tick < ticks; ++tick) {
       arm.step(1.0 / 400);
-      sum += energy(model, arm) - lowest;
+      largest = std::max(largest, energy(model, arm) - lowest);
     }
-    return sum / ticks;
+    return largest;
   };
-  const double early = mean_over(4000);
-  for (int tick = 0; tick < 16000; ++tick) arm.step(1.0 / 400);
-  const double late = mean_over(4000);
-  RecordProperty("relative_drift_per_minute", std::to_string((late - early) / start));
-  EXPECT_NEAR((late - early) / start, 0.0, 1e-5);
-  EXPECT_NEAR(energy(model, arm) - lowest, start, 2e-3 * start);
+  const double early = largest_over(4000);
+  largest_over(16000);
+  const double late = largest_over(4000);
+  RecordProperty("relative_ripple", std::to_string((early - start) / start));
+  RecordProperty("relative_drift", std::to_string((late - early) / start));
+  EXPECT_NEAR(early, start, 2e-3 * start);  // the scheme ripples once a swing ...
+  EXPECT_NEAR(late, early, 1e-6 * start);   // ... and comes back
 }
 
 struct TwoLink {

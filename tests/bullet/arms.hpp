@@ -47,63 +47,46 @@ inline ArmModel turntable(double inertia) {
 /// The PUMA 560 of Armstrong, Khatib and Burdick (1986) in standard DH, gravity along -z of the
 /// base. Frame i of a link stands where its joint axis is, so it is frame i - 1 of the DH table.
 inline ArmModel puma560() {
-  struct Row {
-    double alpha, a, d, mass;
-    Vec3 p_DH, moments;  // in DH frame i
-    double gear, motor_inertia, motor_friction, lower, upper;
+  struct Joint {
+    double alpha, a, d;                         // DH: [rad], [m], [m]
+    double lower, upper;                        // [degrees]
+    double gear, motor_inertia, motor_viscous;  // [], [kg m^2], [N m s/rad] at the motor
   };
-  const std::array<Row, 6> rows{{
-      {kPi / 2, 0, 0, 0, {0, 0, 0}, {0, .35, 0}, -62.6111, 200e-6, 1.48e-3, -160, 160},
-      {0,
-       .4318,
-       0,
-       17.4,
-       {-.3638, .006, .2275},
-       {.13, .524, .539},
-       107.815,
-       200e-6,
-       .817e-3,
-       -45,
-       225},
-      {-kPi / 2,
-       .0203,
-       .15005,
-       4.8,
-       {-.0203, -.0141, .070},
-       {.066, .086, .0125},
-       -53.7063,
-       200e-6,
-       1.38e-3,
-       -225,
-       45},
-      {kPi / 2,
-       0,
-       .4318,
-       .82,
-       {0, .019, 0},
-       {1.8e-3, 1.3e-3, 1.8e-3},
-       76.0364,
-       33e-6,
-       71.2e-6,
-       -110,
-       170},
-      {-kPi / 2, 0, 0, .34, {0, 0, 0}, {.3e-3, .4e-3, .3e-3}, 71.923, 33e-6, 82.6e-6, -100, 100},
-      {0, 0, 0, .09, {0, 0, .032}, {.15e-3, .15e-3, .04e-3}, 76.686, 33e-6, 36.7e-6, -266, 266},
+  struct Body {
+    double mass;
+    Vec3 p_DC, moments;  // in DH frame D of the link
+  };
+  const std::array<Joint, 6> joints{{
+      {kPi / 2, 0, 0, -160, 160, -62.6111, 200e-6, 1.48e-3},
+      {0, .4318, 0, -45, 225, 107.815, 200e-6, .817e-3},
+      {-kPi / 2, .0203, .15005, -225, 45, -53.7063, 200e-6, 1.38e-3},
+      {kPi / 2, 0, .4318, -110, 170, 76.0364, 33e-6, 71.2e-6},
+      {-kPi / 2, 0, 0, -100, 100, 71.923, 33e-6, 82.6e-6},
+      {0, 0, 0, -266, 266, 76.686, 33e-6, 36.7e-6},
+  }};
+  const std::array<Body, 6> bodies{{
+      {0, {0, 0, 0}, {0, .35, 0}},
+      {17.4, {-.3638, .006, .2275}, {.13, .524, .539}},
+      {4.8, {-.0203, -.0141, .070}, {.066, .086, .0125}},
+      {.82, {0, .019, 0}, {1.8e-3, 1.3e-3, 1.8e-3}},
+      {.34, {0, 0, 0}, {.3e-3, .4e-3, .3e-3}},
+      {.09, {0, 0, .032}, {.15e-3, .15e-3, .04e-3}},
   }};
   ArmModel model;
   model.name = "puma560";
   Pose X_PJ = Pose::Identity();
-  for (const Row& row : rows) {
-    const Pose X_LD = Eigen::Translation3d(row.a, 0, row.d) *
-                      Eigen::AngleAxisd(row.alpha, Vec3::UnitX()) * Pose::Identity();
-    ArmLink link = link_with(row.mass, X_LD * row.p_DH, Vec3::Zero());
-    link.joint_name = "joint" + std::to_string(model.links.size() + 1);
-    link.I_C_L = X_LD.linear() * row.moments.asDiagonal() * X_LD.linear().transpose();
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const auto& [alpha, a, d, lower, upper, gear, motor_inertia, motor_viscous] = joints[i];
+    const Pose X_LD = Eigen::Translation3d(a, 0, d) * Pose(Eigen::AngleAxisd(alpha, Vec3::UnitX()));
+    const Mat3 R_LD = X_LD.linear();
+    ArmLink link = link_with(bodies[i].mass, X_LD * bodies[i].p_DC, Vec3::Zero());
+    link.joint_name = "joint" + std::to_string(i + 1);
+    link.I_C_L = R_LD * bodies[i].moments.asDiagonal() * R_LD.transpose();
     link.X_PJ = X_PJ;
-    link.rotor_inertia = row.motor_inertia * row.gear * row.gear;
-    link.viscous_friction = row.motor_friction * row.gear * row.gear;
-    link.lower = row.lower * kPi / 180.0;
-    link.upper = row.upper * kPi / 180.0;
+    link.rotor_inertia = motor_inertia * gear * gear;
+    link.viscous_friction = motor_viscous * gear * gear;
+    link.lower = lower * kPi / 180.0;
+    link.upper = upper * kPi / 180.0;
     model.links.push_back(link);
     X_PJ = X_LD;
   }
