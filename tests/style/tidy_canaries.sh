@@ -6,9 +6,9 @@ here=$(dirname "$(readlink -f "$0")")
 config=$here/../../.clang-tidy
 failed=0
 
-for pattern in $(sed -n '/^Checks:/,/^WarningsAsErrors/p' "$config" | sed -n 's/^  -*\([a-z].*\)/\1/p' |
-  tr -d ','); do
-  case $pattern in clang-diagnostic-*) continue ;; esac  # the compiler's warnings: never listed
+patterns=$(sed -n '/^Checks:/,/^WarningsAsErrors/s/^  -*\([a-z][^,]*\),*$/\1/p' "$config")
+for pattern in $patterns; do
+  [ "$pattern" != 'clang-diagnostic-*' ] || continue  # the compiler's warnings are never listed
   clang-tidy --checks="-*,$pattern" --list-checks 2>/dev/null | grep -q '^    ' ||
     { echo ".clang-tidy: $pattern names no check"; failed=1; }
 done
