@@ -16,7 +16,9 @@ class SetupError : public std::runtime_error {
   /// @param file the file it stands in; empty for a value given in code
   /// @param line its line, from 1; 0 when there is none
   explicit SetupError(const std::string& what_is_wrong, std::string file = {}, int line = 0)
-      : std::runtime_error(place(file, line) + what_is_wrong), file_(std::move(file)), line_(line) {}
+      : std::runtime_error(place(file, line) + what_is_wrong),
+        file_(std::move(file)),
+        line_(line) {}
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   [[nodiscard]] int line() const noexcept { return line_; }
@@ -38,7 +40,8 @@ class SetupError : public std::runtime_error {
   return {digits, end};
 }
 
-/// Returns `value` when `low <= value <= high`; throws SetupError naming it, its unit and the range.
+/// Returns `value` when `low <= value <= high`; throws SetupError naming it, its unit and the
+/// range.
 inline double checked(std::string_view name, double value, double low, double high,
                       std::string_view unit) {
   if (value >= low && value <= high) return value;  // NaN fails both

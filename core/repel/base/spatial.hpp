@@ -30,8 +30,12 @@ struct Wrench {
   }
 };
 
-[[nodiscard]] inline Twist operator+(Twist a, const Twist& b) noexcept { return a += b; }
-[[nodiscard]] inline Wrench operator+(Wrench a, const Wrench& b) noexcept { return a += b; }
+[[nodiscard]] inline Twist operator+(Twist a, const Twist& b) noexcept {
+  return a += b;
+}
+[[nodiscard]] inline Wrench operator+(Wrench a, const Wrench& b) noexcept {
+  return a += b;
+}
 
 [[nodiscard]] inline Twist operator*(double scale, const Twist& V) noexcept {
   return {scale * V.linear, scale * V.angular};

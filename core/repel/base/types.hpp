@@ -1,8 +1,8 @@
 /// @file
 /// The vector and pose types every room shares, in SI units.
 ///
-/// Frames are part of a name: `X_WB` is the pose of B in W, `p_WQ` the position of Q from the origin
-/// of W, `n_AB_W` a direction from A to B expressed in W.
+/// Frames are part of a name: `X_WB` is the pose of B in W, `p_WQ` the position of Q from the
+/// origin of W, `n_AB_W` a direction from A to B expressed in W.
 #pragma once
 
 #include <Eigen/Geometry>

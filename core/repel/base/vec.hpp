@@ -36,7 +36,9 @@ template <class T>
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-[[nodiscard]] inline Vec3 to_vec3(const Vec<double>& v) noexcept { return {v.x, v.y, v.z}; }
+[[nodiscard]] inline Vec3 to_vec3(const Vec<double>& v) noexcept {
+  return {v.x, v.y, v.z};
+}
 [[nodiscard]] inline Vec3 to_vec3(const Vec<DoubleDouble>& v) noexcept {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }

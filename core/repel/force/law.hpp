@@ -21,9 +21,9 @@ namespace repel {
 /// So the force is continuous, never pulls, and grows less when the body retreats (d' > 0): leaving
 /// is never resisted. A low ceiling makes a membrane, which can be pushed through.
 struct ForceLaw {
-  double range = 0.02;           ///< r [m] where the force begins
-  double surface_force = 100.0;  ///< F [N] at distance 0
-  double damping = 50.0;         ///< c0 [N s/m]
+  double range = 0.02;                                       ///< r [m] where the force begins
+  double surface_force = 100.0;                              ///< F [N] at distance 0
+  double damping = 50.0;                                     ///< c0 [N s/m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [N] greatest force of the pair
 
   /// phi(d) [N], never negative, without the ceiling.

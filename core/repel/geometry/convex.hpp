@@ -60,9 +60,12 @@ class Convex {
   template <class T>
   [[nodiscard]] Point support(const Vec<T>& d) const noexcept {
     switch (kind_) {
-      case Kind::box: return box_support(d);
-      case Kind::cylinder: return cylinder_support(d);
-      case Kind::polytope: break;
+      case Kind::box:
+        return box_support(d);
+      case Kind::cylinder:
+        return cylinder_support(d);
+      case Kind::polytope:
+        break;
     }
     const std::uint32_t i = vertices_.scan(d);
     return {i, Vec<double>(vertices_.vertex(i))};
@@ -72,9 +75,12 @@ class Convex {
   /// and its reduced forms: the same corner, the same vertex, the same angle.
   [[nodiscard]] Point point(std::uint32_t name) const noexcept {
     switch (kind_) {
-      case Kind::box: return box_corner(name);
-      case Kind::cylinder: return rim_point(name);
-      case Kind::polytope: break;
+      case Kind::box:
+        return box_corner(name);
+      case Kind::cylinder:
+        return rim_point(name);
+      case Kind::polytope:
+        break;
     }
     const std::uint32_t i = name < static_cast<std::uint32_t>(vertices_.size()) ? name : 0U;
     return {i, Vec<double>(vertices_.vertex(i))};

@@ -65,7 +65,9 @@ class IncrementalHull {
     const double height = (points_[s[3]] - o).dot(n);
     if (!(std::abs(height) > 10.0 * tolerance_)) return false;
     if (height > 0.0) std::swap(s[1], s[2]);
-    for (const auto& f : {std::array{s[0], s[1], s[2]}, {s[0], s[3], s[1]}, {s[1], s[3], s[2]},
+    for (const auto& f : {std::array{s[0], s[1], s[2]},
+                          {s[0], s[3], s[1]},
+                          {s[1], s[3], s[2]},
                           {s[2], s[3], s[0]}}) {
       push(f[0], f[1], f[2]);
     }

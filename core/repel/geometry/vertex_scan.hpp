@@ -39,7 +39,8 @@ class VertexScan {
   [[nodiscard]] std::uint32_t scan(const Vec<DoubleDouble>& d) const noexcept;
 
  private:
-  [[nodiscard]] DoubleDouble exact_product(std::size_t i, const Vec<DoubleDouble>& d) const noexcept {
+  [[nodiscard]] DoubleDouble exact_product(std::size_t i,
+                                           const Vec<DoubleDouble>& d) const noexcept {
     return dot(Vec<DoubleDouble>(x_[i], y_[i], z_[i]), d);
   }
 
@@ -67,8 +68,8 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
   }
   int winner = 0;
   for (int lane = 1; lane < lanes; ++lane) {
-    const bool farther = best[lane] > best[winner] ||
-                         (best[lane] == best[winner] && index[lane] < index[winner]);
+    const bool farther =
+        best[lane] > best[winner] || (best[lane] == best[winner] && index[lane] < index[winner]);
     if (farther) winner = lane;
   }
   return index[winner] < size_ ? static_cast<std::uint32_t>(index[winner]) : 0U;

@@ -11,12 +11,12 @@ namespace repel::network {
 
 /// Gains of the coupling; translation and rotation apart.
 struct CouplingGains {
-  double stiffness = 2000.0;          ///< K [N/m]
-  double damping = 120.0;             ///< B [N s/m]
-  double force_limit = 60.0;          ///< [N] the spring stretches no further than this
-  double angular_stiffness = 60.0;    ///< [N m/rad]
-  double angular_damping = 4.0;       ///< [N m s/rad]
-  double torque_limit = 8.0;          ///< [N m]
+  double stiffness = 2000.0;        ///< K [N/m]
+  double damping = 120.0;           ///< B [N s/m]
+  double force_limit = 60.0;        ///< [N] the spring stretches no further than this
+  double angular_stiffness = 60.0;  ///< [N m/rad]
+  double angular_damping = 4.0;     ///< [N m s/rad]
+  double torque_limit = 8.0;        ///< [N m]
 };
 
 /// A spring K parallel to a damper B between the commanded and the actual tool frame. The command

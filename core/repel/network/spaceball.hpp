@@ -10,11 +10,11 @@
 namespace repel::network {
 
 struct SpaceballOptions {
-  double dead_band = 0.002;          ///< [m/s] rates below are rest
-  double saturation = 0.25;          ///< [m/s]
-  double angular_dead_band = 0.01;   ///< [rad/s]
-  double angular_saturation = 1.0;   ///< [rad/s]
-  double time_constant = 0.05;       ///< [s] of the low pass; 0 for none
+  double dead_band = 0.002;         ///< [m/s] rates below are rest
+  double saturation = 0.25;         ///< [m/s]
+  double angular_dead_band = 0.01;  ///< [rad/s]
+  double angular_saturation = 1.0;  ///< [rad/s]
+  double time_constant = 0.05;      ///< [s] of the low pass; 0 for none
 };
 
 /// Dead band, saturation and a first-order low pass, each on the length of the vector, so that the

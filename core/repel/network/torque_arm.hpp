@@ -2,17 +2,19 @@
 /// TORQUE ARM: a force-reflecting lever of one degree of freedom, simulated, with a hand on it.
 #pragma once
 
+#include <algorithm>
+
 namespace repel::network {
 
 /// The lever and the hand that holds it.
 struct TorqueArmOptions {
-  double inertia = 0.01;            ///< [kg m^2] lever
-  double friction = 0.05;           ///< [N m s/rad] of its bearing
-  double hand_stiffness = 20.0;     ///< [N m/rad] how firmly the hand leads
-  double hand_damping = 0.6;        ///< [N m s/rad]
-  double torque_limit = 10.0;       ///< [N m] most the motor can reflect
-  double velocity_scale = 0.1;      ///< s_v [m/rad] tool motion per lever motion
-  double force_scale = 0.1;         ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
+  double inertia = 0.01;         ///< [kg m^2] lever
+  double friction = 0.05;        ///< [N m s/rad] of its bearing
+  double hand_stiffness = 20.0;  ///< [N m/rad] how firmly the hand leads
+  double hand_damping = 0.6;     ///< [N m s/rad]
+  double torque_limit = 10.0;    ///< [N m] most the motor can reflect
+  double velocity_scale = 0.1;   ///< s_v [m/rad] tool motion per lever motion
+  double force_scale = 0.1;      ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
 };
 
 /// A one-port: torque in, rate out. The hand follows its own course through a spring and a damper,
@@ -27,6 +29,7 @@ class TorqueArm {
   /// motor. Returns the rate of the lever [rad/s]. Semi-implicit Euler: the dampers act on the new
   /// rate, so that no gain makes them unstable.
   double step(double hand_rate, double torque, double period) noexcept {
+    torque = std::clamp(torque, -options_.torque_limit, options_.torque_limit);
     hand_angle_ += period * hand_rate;
     const double spring = options_.hand_stiffness * (hand_angle_ - angle_);
     const double push = spring + options_.hand_damping * hand_rate + torque;

@@ -85,8 +85,8 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
     if (!(room > 0.0)) break;
     const bool last = i + 1 == levels;
     const double target = last ? 0.95 * room : room / (levels - i);
-    const int sweeps = static_cast<int>(
-        std::clamp(2e7 / (static_cast<double>(vertices.size() * facets.size()) * levels), 1.0, 60.0));
+    const int sweeps = static_cast<int>(std::clamp(
+        2e7 / (static_cast<double>(vertices.size() * facets.size()) * levels), 1.0, 60.0));
     double won = room;
     for (Vec3& v : vertices) {
       v = moved_inside(facets, v, target, deep, sweeps);

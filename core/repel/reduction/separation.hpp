@@ -209,9 +209,10 @@ inline Separation LadderWalk::answer() const noexcept {
 /// The signed distance of A and B.
 ///
 /// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from
-/// GJK, right to a few 1e-15 of their size, and relatively to 1e-7 however small the gap. In overlap
-/// it is the intrusion distance of the reduction (Anderson 1993, section 2.1): continuous, 1-Lipschitz
-/// in translation, never deeper than the penetration depth; `lower` and `upper` bracket the true one.
+/// GJK, right to a few 1e-15 of their size, and relatively to 1e-7 however small the gap. In
+/// overlap it is the intrusion distance of the reduction (Anderson 1993, section 2.1): continuous,
+/// 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and `upper` bracket
+/// the true one.
 ///
 /// @param X_WA,X_WB rigid poses in the world [m]; not finite ends in bad_input
 /// @param warm what the last call on this pair left; any content is safe

@@ -1,0 +1,22 @@
+/// @file
+/// Ids that cannot be mixed up.
+#pragma once
+
+#include <cstdint>
+
+namespace repel {
+
+/// An index with a type of its own: a body's id is not a part's.
+template <class Tag>
+struct Id {
+  std::int32_t index = -1;
+
+  [[nodiscard]] bool valid() const noexcept { return index >= 0; }
+  friend bool operator==(Id, Id) noexcept = default;
+};
+
+using BodyId = Id<struct BodyTag>;
+using PartId = Id<struct PartTag>;
+using PairId = Id<struct PairTag>;
+
+}  // namespace repel

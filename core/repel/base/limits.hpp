@@ -1,0 +1,16 @@
+/// @file
+/// Every capacity in one place.
+#pragma once
+
+namespace repel {
+
+/// What a world may hold. Set-up that needs more throws SetupError naming the field to raise;
+/// nothing grows after set-up.
+struct Limits {
+  int bodies = 64;      ///< rigid bodies, the fixed one included
+  int parts = 20000;    ///< convex parts of all bodies
+  int pairs = 1 << 20;  ///< pairs of parts
+  int threads = 16;     ///< worker threads of the coprocessor
+};
+
+}  // namespace repel

@@ -1,0 +1,50 @@
+/// @file
+/// A wait-free mailbox for the newest value from one writer thread to one reader thread.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace repel {
+
+/// Three copies: one being written, one being read, one in between that the two sides swap for
+/// theirs. Neither side ever waits, and a value is taken whole or not at all. Values that nobody
+/// took are overwritten: the reader sees the newest. Memory: three T, sized once from a prototype.
+template <class T>
+class Mailbox {
+ public:
+  explicit Mailbox(const T& prototype)
+      : slots_{Slot{prototype}, Slot{prototype}, Slot{prototype}} {}
+
+  /// Writer: the value to fill in. Its content is that of some earlier post.
+  [[nodiscard]] T& draft() noexcept { return slots_[writing_].value; }
+  /// Writer: makes the draft the newest value.
+  void post() noexcept {
+    writing_ = between_.exchange(writing_ | fresh, std::memory_order_acq_rel) & index_mask;
+  }
+
+  /// Reader: moves on to the newest value; false when there is none since the last time.
+  bool take() noexcept {
+    if ((between_.load(std::memory_order_relaxed) & fresh) == 0U) return false;
+    reading_ = between_.exchange(reading_, std::memory_order_acq_rel) & index_mask;
+    return true;
+  }
+  /// Reader: the value last taken; the prototype before that.
+  [[nodiscard]] const T& newest() const noexcept { return slots_[reading_].value; }
+
+ private:
+  static constexpr std::uint32_t fresh = 4;
+  static constexpr std::uint32_t index_mask = 3;
+  // Two sides that share a cache line would slow each other down.
+  struct alignas(64) Slot {
+    T value;
+  };
+
+  std::array<Slot, 3> slots_;
+  alignas(64) std::atomic<std::uint32_t> between_{1};
+  alignas(64) std::uint32_t writing_ = 0;
+  alignas(64) std::uint32_t reading_ = 2;
+};
+
+}  // namespace repel

@@ -1,0 +1,44 @@
+/// @file
+/// What went wrong during a tick, as bits. Every bit says what was done about it and what to mend.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace repel {
+
+/// The sum of what a tick noticed; 0 is a clean tick.
+using Status = std::uint32_t;
+
+namespace status {
+inline constexpr Status bad_pose = 1U << 0;  ///< a pose was not finite or not rigid: the last good
+                                             ///< one was kept and the force ramps to zero
+inline constexpr Status bad_command = 1U << 1;  ///< the operator's input was not finite: taken as
+                                                ///< rest, the force ramps to zero
+inline constexpr Status bad_joints = 1U
+                                     << 2;  ///< the arm reported joints that are not finite: the
+                                            ///< last good ones were kept, the force ramps to zero
+inline constexpr Status clock_fault = 1U << 3;  ///< the clock stood still or ran back: the force
+                                                ///< ramps to zero
+inline constexpr Status stale_pairs = 1U << 4;  ///< some near pairs kept an old answer, widened by
+                                                ///< the motion since: raise the budget or threads
+inline constexpr Status late_result = 1U
+                                      << 5;  ///< the coprocessor did not answer in time: its last
+                                             ///< forces were used; raise the budget or lower rate
+inline constexpr Status torque_limit = 1U << 6;  ///< a joint torque was cut to its limit
+inline constexpr Status failsafe = bad_pose | bad_command | bad_joints | clock_fault;
+}  // namespace status
+
+/// The names of the bits that are set, comma by comma; "ok" when none is. Not for the tick.
+[[nodiscard]] inline std::string to_text(Status bits) {
+  static constexpr const char* names[] = {"bad_pose",    "bad_command", "bad_joints",
+                                          "clock_fault", "stale_pairs", "late_result",
+                                          "torque_limit"};
+  std::string text;
+  for (unsigned i = 0; i < 7; ++i) {
+    if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);
+  }
+  return text.empty() ? "ok" : text;
+}
+
+}  // namespace repel

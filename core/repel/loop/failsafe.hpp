@@ -1,0 +1,50 @@
+/// @file
+/// What happens to the forces when an input cannot be trusted.
+#pragma once
+
+#include <algorithm>
+
+#include <repel/base/status.hpp>
+
+namespace repel {
+
+struct FailsafeOptions {
+  double fall = 0.05;  ///< [s] in which the force ramps to zero after a fault
+  double hold = 0.25;  ///< [s] without a fault before it comes back
+  double rise = 0.5;   ///< [s] in which it comes back
+};
+
+/// A gain on every force: 1 while inputs are sound, ramped to 0 by a fault of
+/// `status::failsafe`, held there until inputs have been sound for a while, then ramped back.
+class Failsafe {
+ public:
+  explicit Failsafe(const FailsafeOptions& options = {}) noexcept : options_(options) {}
+
+  /// The gain for this tick, 0 to 1.
+  [[nodiscard]] double step(Status status, double period) noexcept {
+    if ((status & status::failsafe) != 0U) {
+      sound_for_ = 0.0;
+      tripped_ = true;
+    } else {
+      sound_for_ += period;
+    }
+    if (tripped_ && (gain_ > 0.0 || sound_for_ < options_.hold)) {
+      gain_ = std::max(0.0, gain_ - period / options_.fall);
+    } else {
+      tripped_ = false;
+      gain_ = std::min(1.0, gain_ + period / options_.rise);
+    }
+    return gain_;
+  }
+
+  /// True from a fault until the force has begun to come back.
+  [[nodiscard]] bool tripped() const noexcept { return tripped_; }
+
+ private:
+  FailsafeOptions options_;
+  double gain_ = 1.0;
+  double sound_for_ = 0.0;
+  bool tripped_ = false;
+};
+
+}  // namespace repel

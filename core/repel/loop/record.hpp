@@ -1,0 +1,82 @@
+/// @file
+/// What is kept of every tick, and what a run amounts to.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <repel/base/status.hpp>
+#include <repel/schedule/pair_block.hpp>
+
+namespace repel {
+
+/// One tick, as logged.
+struct TickRecord {
+  std::int64_t tick = 0;
+  double time = 0.0;       ///< [s] since the first tick
+  std::int32_t phase = 0;  ///< of the operator's script
+  Status status = 0;
+  Vec3 p_WT{0, 0, 0};         ///< [m] tool
+  Vec3 v_WT{0, 0, 0};         ///< [m/s]
+  Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
+  Wrench coupling;            ///< [N, N m] from the operator's side on the tool
+  double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
+  double gain = 1.0;          ///< of the fail-safe
+  PairTotals pairs;
+};
+
+/// Keeps the ticks of a run in memory taken at set-up; those beyond it are counted and left out.
+class Recorder {
+ public:
+  explicit Recorder(std::size_t capacity) { records_.reserve(capacity); }
+
+  void add(const TickRecord& record) noexcept {
+    if (records_.size() < records_.capacity()) {
+      records_.push_back(record);
+    } else {
+      ++dropped_;
+    }
+  }
+  [[nodiscard]] const std::vector<TickRecord>& records() const noexcept { return records_; }
+  [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  std::vector<TickRecord> records_;
+  std::int64_t dropped_ = 0;
+};
+
+/// Sums and extremes of a run.
+struct RunTotals {
+  std::int64_t ticks = 0;
+  std::int64_t near = 0;        ///< pair evaluations that were due, summed over ticks
+  std::int64_t evaluated = 0;   ///< and made
+  std::int64_t iterations = 0;  ///< support-map pairs
+  std::int64_t stale = 0;       ///< stale answers used, summed over ticks
+  int most_stale = 0;           ///< in one tick
+  std::int64_t oldest_age = 0;  ///< [ticks]
+  double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
+  PairId nearest_pair;
+  double peak_force = 0.0;                      ///< [N] greatest virtual force on the tool
+  std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
+
+  void add(const TickRecord& r) noexcept {
+    ++ticks;
+    near += r.pairs.near;
+    evaluated += r.pairs.evaluated;
+    iterations += r.pairs.iterations;
+    stale += r.pairs.stale;
+    most_stale = std::max(most_stale, r.pairs.stale);
+    oldest_age = std::max(oldest_age, r.pairs.oldest_age);
+    if (r.pairs.nearest < nearest) {
+      nearest = r.pairs.nearest;
+      nearest_pair = r.pairs.nearest_pair;
+    }
+    peak_force = std::max(peak_force, r.virtual_force.force.norm());
+    for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
+  }
+};
+
+}  // namespace repel

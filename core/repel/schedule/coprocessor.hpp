@@ -1,0 +1,192 @@
+/// @file
+/// The coprocessor: threads that turn the newest poses into the newest forces. It stands for the
+/// attached processor of the paper (section 4).
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <repel/base/mailbox.hpp>
+#include <repel/base/status.hpp>
+#include <repel/schedule/pair_worker.hpp>
+
+namespace repel {
+
+struct CoprocessorOptions {
+  int threads = 0;                            ///< 0: the pairs are worked through in the caller
+  Budget budget;                              ///< per tick
+  std::chrono::nanoseconds period{2500000};   ///< between ticks, so that idle workers can sleep
+  std::chrono::nanoseconds patience{500000};  ///< how long the caller waits for an answer
+  bool lock_step = false;  ///< wait for every answer (up to a second) and never sleep: for replays
+};
+
+/// Host and workers exchange motions and forces through wait-free mailboxes. A worker always takes
+/// the newest motion whole; the host takes the newest forces. When they are not those of this tick
+/// the host goes on with what it has, and says so.
+class Coprocessor {
+ public:
+  /// Evaluates every pair once and starts the threads. May allocate and throw.
+  Coprocessor(const World& world, const CoprocessorOptions& options)
+      : world_(&world), options_(options) {
+    checked("threads", options.threads, 0, world.limits().threads, "");
+    const int workers = std::max(1, options.threads);
+    total_.on_body.resize(world.body_count());
+    for (int i = 0; i < workers; ++i) {
+      seats_.push_back(std::make_unique<Seat>(world, options.budget, i, workers));
+    }
+    for (int i = 0; i < options.threads; ++i) {
+      seats_[i]->thread = std::jthread(
+          [this, seat = seats_[i].get()](const std::stop_token& stop) { serve(*seat, stop); });
+    }
+  }
+  Coprocessor(const Coprocessor&) = delete;
+  Coprocessor& operator=(const Coprocessor&) = delete;
+
+  /// The forces at the newest motion the workers have answered; those of `world.motion()` unless
+  /// `late()` says otherwise. Cost with threads: one copy of the motion, the wait, one sum.
+  const PairForces& exchange() noexcept {
+    const Motion& motion = world_->motion();
+    late_ = false;
+    if (options_.threads == 0) {
+      seats_.front()->worker.run(motion);
+      sum([](const Seat& seat) -> const Answer& { return seat.answer_here(); });
+      return total_;
+    }
+    for (auto& seat : seats_) {
+      Motion& draft = seat->inbox.draft();
+      draft.tick = motion.tick;
+      std::copy(motion.bodies.begin(), motion.bodies.end(), draft.bodies.begin());
+      seat->inbox.post();
+    }
+    wait_for(motion.tick);
+    sum([](const Seat& seat) -> const Answer& { return seat.outbox.newest(); });
+    return total_;
+  }
+
+  /// True when some worker had not answered this tick and its older forces were used.
+  [[nodiscard]] bool late() const noexcept { return late_; }
+  [[nodiscard]] int threads() const noexcept { return options_.threads; }
+
+  /// The last answer for a pair. Only with 0 threads, or between ticks in lock step: the workers
+  /// write it.
+  [[nodiscard]] const Separation& separation_of(PairId id) const noexcept {
+    const int block = id.index / detail::PairBlock::capacity;
+    const auto& seat = *seats_[block % seats_.size()];
+    return seat.worker.blocks()[block / seats_.size()].separation_of(id.index %
+                                                                     detail::PairBlock::capacity);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Answer = std::vector<PairForces>;  // by block of the worker
+
+  struct Seat {
+    Seat(const World& world, const Budget& budget, int index, int stride)
+        : worker(world, budget, index, stride), inbox(world.motion()), outbox(primed(world)) {}
+
+    Answer primed(const World& world) {
+      worker.prime(world.motion());
+      Answer answer;
+      for (const auto& block : worker.blocks()) answer.push_back(block.forces());
+      here = answer;
+      return answer;
+    }
+    void copy_to(Answer& answer) const noexcept {
+      for (std::size_t b = 0; b < answer.size(); ++b) {
+        const PairForces& from = worker.blocks()[b].forces();
+        answer[b].tick = from.tick;
+        answer[b].totals = from.totals;
+        std::copy(from.on_body.begin(), from.on_body.end(), answer[b].on_body.begin());
+      }
+    }
+    [[nodiscard]] const Answer& answer_here() const noexcept {
+      copy_to(here);
+      return here;
+    }
+
+    detail::PairWorker worker;
+    Mailbox<Motion> inbox;
+    mutable Answer here;
+    Mailbox<Answer> outbox;
+    std::jthread thread;
+  };
+
+  static void relax(int spins) noexcept {
+    if (spins % 4096 == 4095) std::this_thread::yield();
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+  }
+
+  void wait_for(std::int64_t tick) noexcept {
+    const auto patience =
+        options_.lock_step ? std::chrono::nanoseconds(std::chrono::seconds(1)) : options_.patience;
+    const auto until = Clock::now() + patience;
+    for (auto& seat : seats_) {
+      for (int spins = 0;; ++spins) {
+        seat->outbox.take();
+        const Answer& answer = seat->outbox.newest();
+        if (answer.empty() || answer.front().tick == tick) break;
+        if (spins % 16 == 15 && Clock::now() >= until) {
+          late_ = true;
+          break;
+        }
+        relax(spins);
+      }
+    }
+  }
+
+  /// Adds up block by block in the order of the pairs, whoever worked on them.
+  template <class AnswerOf>
+  void sum(AnswerOf&& answer_of) noexcept {
+    total_.clear();
+    total_.tick = world_->motion().tick;
+    const std::size_t workers = seats_.size();
+    for (std::size_t b = 0;; ++b) {
+      const Answer& answer = answer_of(*seats_[b % workers]);
+      if (b / workers >= answer.size()) break;
+      const PairForces& block = answer[b / workers];
+      for (std::size_t i = 0; i < total_.on_body.size(); ++i) total_.on_body[i] += block.on_body[i];
+      total_.totals.add(block.totals);
+      const std::int64_t behind = total_.tick - block.tick;
+      if (behind > 0) {
+        total_.totals.stale += block.totals.near - block.totals.stale;
+        total_.totals.oldest_age =
+            std::max(total_.totals.oldest_age, block.totals.oldest_age + behind);
+      }
+    }
+  }
+
+  /// A worker answers, then sleeps until shortly before the next motion is due and spins for it.
+  void serve(Seat& seat, const std::stop_token& stop) noexcept {
+    const auto nap = options_.period - std::min(options_.period / 2, nanoseconds_before);
+    for (int spins = 0; !stop.stop_requested(); ++spins) {
+      if (!seat.inbox.take()) {
+        relax(spins);
+        if (!options_.lock_step && spins > spins_before_nap) {
+          std::this_thread::sleep_for(options_.period / 8);
+        }
+        continue;
+      }
+      seat.worker.run(seat.inbox.newest());
+      seat.copy_to(seat.outbox.draft());
+      seat.outbox.post();
+      spins = 0;
+      if (!options_.lock_step) std::this_thread::sleep_for(nap);
+    }
+  }
+
+  static constexpr std::chrono::nanoseconds nanoseconds_before{200000};
+  static constexpr int spins_before_nap = 200000;
+
+  const World* world_;
+  CoprocessorOptions options_;
+  PairForces total_;
+  bool late_ = false;
+  std::vector<std::unique_ptr<Seat>> seats_;
+};
+
+}  // namespace repel

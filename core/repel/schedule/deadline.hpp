@@ -1,0 +1,108 @@
+/// @file
+/// Deadline accounting: how long ticks took, how late they began, how many missed their period.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cstdint>
+
+namespace repel {
+
+/// A histogram of durations with 64 bins to each doubling, so that any percentile is right to 1.6 %
+/// from 64 ns to 4 s, in 16 kB and without keeping the samples. The maximum is exact.
+class DurationHistogram {
+ public:
+  void record(std::chrono::nanoseconds duration) noexcept {
+    const std::int64_t ns = duration.count() > 0 ? duration.count() : 0;
+    ++bins_[bin_of(static_cast<std::uint64_t>(ns))];
+    ++count_;
+    if (ns > max_) max_ = ns;
+  }
+
+  /// The duration that a share `p` (0 to 1) of the samples does not exceed [us]; 0 without samples.
+  [[nodiscard]] double percentile_us(double p) const noexcept {
+    if (count_ == 0) return 0.0;
+    const double wanted = p * static_cast<double>(count_);
+    std::int64_t seen = 0;
+    for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
+      seen += bins_[bin];
+      if (static_cast<double>(seen) >= wanted && seen > 0) {
+        const double top = static_cast<double>(upper_edge(bin));
+        return 1e-3 * (top < static_cast<double>(max_) ? top : static_cast<double>(max_));
+      }
+    }
+    return max_us();
+  }
+  [[nodiscard]] double max_us() const noexcept { return 1e-3 * static_cast<double>(max_); }
+  [[nodiscard]] std::int64_t count() const noexcept { return count_; }
+
+ private:
+  static constexpr int fine_bits = 6;
+  static constexpr std::size_t bin_count = std::size_t{32} << fine_bits;
+
+  // Values below 64 have a bin each; above, the leading bit and the next six name the bin.
+  [[nodiscard]] static std::size_t bin_of(std::uint64_t ns) noexcept {
+    if (ns < (1U << fine_bits)) return static_cast<std::size_t>(ns);
+    const int shift = static_cast<int>(std::bit_width(ns)) - 1 - fine_bits;
+    const std::size_t bin = (static_cast<std::size_t>(shift + 1) << fine_bits) +
+                            static_cast<std::size_t>((ns >> shift) - (1U << fine_bits));
+    return bin < bin_count ? bin : bin_count - 1;
+  }
+  [[nodiscard]] static std::uint64_t upper_edge(std::size_t bin) noexcept {
+    if (bin < (1U << fine_bits)) return bin;
+    const std::size_t shift = (bin >> fine_bits) - 1;
+    return (((bin & ((1U << fine_bits) - 1)) + (1U << fine_bits) + 1) << shift) - 1;
+  }
+
+  std::array<std::int64_t, bin_count> bins_{};
+  std::int64_t count_ = 0;
+  std::int64_t max_ = 0;
+};
+
+/// Judges every tick: it misses its deadline when it has not finished one period after it was due.
+class DeadlineMonitor {
+ public:
+  explicit DeadlineMonitor(std::chrono::nanoseconds period) noexcept : period_(period) {}
+
+  /// @param lateness how long after it was due the tick began
+  /// @param compute how long it took
+  void record(std::chrono::nanoseconds lateness, std::chrono::nanoseconds compute) noexcept {
+    wakeup_.record(lateness);
+    compute_.record(compute);
+    const bool missed = lateness + compute > period_;
+    misses_ += missed ? 1 : 0;
+    const std::size_t slot = static_cast<std::size_t>(ticks_ % window);
+    recent_misses_ += (missed ? 1 : 0) - (recent_[slot] ? 1 : 0);
+    recent_[slot] = missed;
+    ++ticks_;
+    const double rate = success_rate();
+    if (rate < lowest_) lowest_ = rate;
+  }
+
+  [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
+  [[nodiscard]] std::int64_t misses() const noexcept { return misses_; }
+  /// Share of the last 100 ticks (of all, while there are fewer) that met their deadline, 0 to 1.
+  [[nodiscard]] double success_rate() const noexcept {
+    const std::int64_t seen = ticks_ < window ? ticks_ : window;
+    return seen == 0 ? 1.0 : 1.0 - static_cast<double>(recent_misses_) / static_cast<double>(seen);
+  }
+  /// The least `success_rate` there has been.
+  [[nodiscard]] double lowest_success_rate() const noexcept { return lowest_; }
+  [[nodiscard]] const DurationHistogram& compute() const noexcept { return compute_; }
+  [[nodiscard]] const DurationHistogram& wakeup() const noexcept { return wakeup_; }
+
+ private:
+  static constexpr std::int64_t window = 100;
+
+  std::chrono::nanoseconds period_;
+  std::int64_t ticks_ = 0;
+  std::int64_t misses_ = 0;
+  std::int64_t recent_misses_ = 0;
+  double lowest_ = 1.0;
+  std::array<bool, window> recent_{};
+  DurationHistogram compute_;
+  DurationHistogram wakeup_;
+};
+
+}  // namespace repel

@@ -1,0 +1,134 @@
+/// @file
+/// The world model: bodies, their convex parts, the pairs that must stay apart.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <repel/base/ids.hpp>
+#include <repel/base/limits.hpp>
+#include <repel/force/law.hpp>
+#include <repel/reduction/shape.hpp>
+
+namespace repel {
+
+/// Where a body is, how it moves and how far it has come.
+struct BodyState {
+  Pose X_WB = Pose::Identity();  ///< [m]
+  Twist V_WB;                    ///< [m/s, rad/s] of the body's origin, world axes
+  double travel = 0.0;           ///< [m] no point of the body has moved farther since set-up
+  double turn = 0.0;             ///< [m] the share of `travel` that is due to rotation
+};
+
+/// All bodies at one instant: what the host hands to the coprocessor.
+struct Motion {
+  std::int64_t tick = 0;
+  std::vector<BodyState> bodies;  ///< by BodyId
+};
+
+/// A convex part of a body.
+struct Part {
+  std::string name;
+  BodyId body;
+  Shape shape;
+  Pose X_BP = Pose::Identity();  ///< [m] in its body
+};
+
+/// Two parts to be kept apart, and how.
+struct Pair {
+  PartId a;  ///< the part that is pushed along the extraction direction
+  PartId b;  ///< and the one it is pushed away from
+  ForceLaw law;
+};
+
+/// The model is built once, through the functions that throw; `place` is the only one for the tick.
+class World {
+ public:
+  explicit World(const Limits& limits = {}) : limits_(limits) { add_body("world"); }
+
+  /// The body that never moves: walls, tables, everything bolted down.
+  static constexpr BodyId fixed{0};
+
+  BodyId add_body(const std::string& name, const Pose& X_WB = Pose::Identity()) {
+    if (static_cast<int>(motion_.bodies.size()) >= limits_.bodies) over("bodies", limits_.bodies);
+    check_rigid(name, X_WB);
+    body_names_.push_back(name);
+    reach_.push_back(0.0);
+    motion_.bodies.push_back({X_WB, {}, 0.0, 0.0});
+    return {static_cast<std::int32_t>(motion_.bodies.size()) - 1};
+  }
+
+  PartId add_part(BodyId body, const std::string& name, const Shape& shape,
+                  const Pose& X_BP = Pose::Identity()) {
+    if (static_cast<int>(parts_.size()) >= limits_.parts) over("parts", limits_.parts);
+    if (body.index < 0 || body.index >= body_count())
+      throw SetupError("part " + name + ": no such body");
+    check_rigid(name, X_BP);
+    double& reach = reach_[body.index];
+    reach = std::max(reach, X_BP.translation().norm() + shape.reach());
+    parts_.push_back({name, body, shape, X_BP});
+    return {static_cast<std::int32_t>(parts_.size()) - 1};
+  }
+
+  PairId add_pair(PartId a, PartId b, const ForceLaw& law) {
+    if (static_cast<int>(pairs_.size()) >= limits_.pairs) over("pairs", limits_.pairs);
+    for (const PartId id : {a, b}) {
+      if (id.index < 0 || id.index >= static_cast<int>(parts_.size())) {
+        throw SetupError("a pair names a part that does not exist");
+      }
+    }
+    if (part(a).body == part(b).body) {
+      throw SetupError("parts " + part(a).name + " and " + part(b).name + " are of one body");
+    }
+    pairs_.push_back({a, b, checked(law)});
+    return {static_cast<std::int32_t>(pairs_.size()) - 1};
+  }
+
+  /// Moves a body. False, and nothing changed, when the pose or twist is not finite or not rigid.
+  bool place(BodyId body, const Pose& X_WB, const Twist& V_WB) noexcept {
+    if (!is_finite(X_WB) || !is_finite(V_WB) || !is_rigid(X_WB, 1e-6)) return false;
+    BodyState& state = motion_.bodies[body.index];
+    // |R - R'| (Frobenius) is 2 sqrt(2) sin(angle / 2), without the cancellation of an arc cosine.
+    const double chord = (X_WB.linear() - state.X_WB.linear()).norm() / std::sqrt(2.0);
+    const double turned = reach_[body.index] * chord;
+    const double rounding = 1e-14 * (X_WB.translation().norm() + reach_[body.index]);
+    state.travel += (X_WB.translation() - state.X_WB.translation()).norm() + turned + rounding;
+    state.turn += turned + rounding;
+    state.X_WB = X_WB;
+    state.V_WB = V_WB;
+    return true;
+  }
+
+  /// The present state of all bodies; the tick number is the caller's to count.
+  [[nodiscard]] Motion& motion() noexcept { return motion_; }
+  [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
+  [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
+  [[nodiscard]] int body_count() const noexcept { return static_cast<int>(motion_.bodies.size()); }
+  [[nodiscard]] const std::string& body_name(BodyId id) const noexcept {
+    return body_names_[id.index];
+  }
+  [[nodiscard]] const std::vector<Part>& parts() const noexcept { return parts_; }
+  [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
+  [[nodiscard]] const Part& part(PartId id) const noexcept { return parts_[id.index]; }
+  [[nodiscard]] const Pair& pair(PairId id) const noexcept { return pairs_[id.index]; }
+
+ private:
+  static void check_rigid(const std::string& name, const Pose& X) {
+    if (!is_finite(X) || !is_rigid(X)) throw SetupError(name + ": its pose is not a rigid one");
+  }
+  [[noreturn]] static void over(const std::string& field, int limit) {
+    throw SetupError("more " + field + " than Limits::" + field +
+                     " allows: " + std::to_string(limit));
+  }
+
+  Limits limits_;
+  std::vector<std::string> body_names_;
+  std::vector<double> reach_;  ///< [m] farthest point of each body from its origin
+  Motion motion_;
+  std::vector<Part> parts_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace repel
