@@ -2,6 +2,7 @@
 # library links them as $<BUILD_INTERFACE:repel_house>: they stay out of the installed package.
 if(PROJECT_IS_TOP_LEVEL)
   set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  set(CMAKE_CXX_EXTENSIONS OFF)
   set(CMAKE_COMPILE_WARNING_AS_ERROR ON)  # off with: cmake --compile-no-warning-as-error
   if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release)
