@@ -34,10 +34,27 @@ core_headers_without_a_test() {
 }
 
 core_headers_not_in_the_umbrella() {
+  reached=$(included_from_the_umbrella)
   for header in $(core_headers); do
-    grep -qsF "#include <repel/$header.hpp>" core/repel/repel.hpp ||
-      echo "core/repel/$header.hpp:1: [umbrella] core/repel/repel.hpp does not include it"
+    echo "$reached" | grep -qxF "repel/$header.hpp" ||
+      echo "core/repel/$header.hpp:1: [umbrella] repel/repel.hpp does not lead to it"
   done
+}
+
+# Every core header that repel/repel.hpp includes, directly or through others.
+included_from_the_umbrella() {
+  find core -name '*.hpp' -exec grep -H '^#include <repel/' {} + 2>/dev/null |
+    sed 's#^core/\(.*\):.*<\(.*\)>.*#\1 \2#' | awk '
+      { from[NR] = $1; to[NR] = $2 }
+      END {
+        reached["repel/repel.hpp"] = more = 1
+        while (more) {
+          more = 0
+          for (i = 1; i <= NR; i++)
+            if (reached[from[i]] && !reached[to[i]]) more = reached[to[i]] = 1
+        }
+        for (header in reached) if (reached[header]) print header
+      }'
 }
 
 # Links of Markdown pages to files of this repository.

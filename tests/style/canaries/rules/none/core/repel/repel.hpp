@@ -1,6 +1,5 @@
 /// @file
-/// A canary.
+/// A canary: it leads to base/other.hpp through the other one.
 #pragma once
 
-#include <repel/base/other.hpp>
 #include <repel/geometry/canary.hpp>
