@@ -1,0 +1,76 @@
+/// @file
+/// Reads a scene file: the robot, its tool, the obstacles, the operator's script. The format stands
+/// in scenes/README.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <repel/base/types.hpp>
+#include <repel/force/law.hpp>
+#include <repel/network/coupling.hpp>
+#include <repel/network/operator.hpp>
+#include <repel/network/spaceball.hpp>
+#include <repel/network/torque_arm.hpp>
+#include <repel/reduction/shape.hpp>
+
+namespace repel::scene {
+
+/// One convex part P of the tool.
+struct Part {
+  std::string name;
+  Shape shape;
+  std::string kind;              ///< box, sphere, capsule, cylinder or hull
+  Pose X_BP = Pose::Identity();  ///< [m] in the tool frame
+};
+
+/// One convex part P of the world.
+struct Obstacle {
+  std::string name;
+  Shape shape;
+  std::string kind;              ///< box, sphere, capsule, cylinder or hull
+  Pose X_WP = Pose::Identity();  ///< [m]
+  ForceLaw law;
+};
+
+/// Which robot, where it stands and how it starts.
+struct RobotChoice {
+  std::string urdf;              ///< path; one that the scene file gives is relative to that file
+  std::string base_link;         ///< empty: the root of the chain
+  std::string tip_link;          ///< empty: the end of the chain
+  std::vector<double> start;     ///< [rad] or [m], one for each moving joint, base outward
+  Pose X_WB = Pose::Identity();  ///< [m] base in the world
+  Pose X_LT = Pose::Identity();  ///< [m] tool frame in the tip link
+};
+
+/// What the distance queries of one tick may cost.
+struct Budget {
+  double wall_us = 0.0;         ///< [us] 0: no limit
+  std::int64_t work_units = 0;  ///< support-map pairs; 0: no limit
+  int threads = 1;              ///< that share the queries, the tick's own included
+};
+
+struct Scene {
+  std::string name;
+  std::string file;
+  double rate_hz = 400.0;  ///< [Hz] of the tick
+  RobotChoice robot;
+  std::vector<Part> tool;
+  std::vector<Obstacle> obstacles;
+  network::CouplingGains coupling;
+  network::SpaceballOptions spaceball;
+  network::TorqueArmOptions torque_arm;
+  network::Script script;
+  Budget budget;
+};
+
+/// Reads the scene file at `path`. Throws SetupError, naming file, line, value and what is allowed,
+/// for anything that is not exactly as scenes/README.md states it.
+[[nodiscard]] Scene load(const std::string& path);
+
+/// The same for text; `file` is the name that errors give and that paths are relative to.
+[[nodiscard]] Scene parse(std::string_view yaml, const std::string& file);
+
+}  // namespace repel::scene

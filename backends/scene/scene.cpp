@@ -1,0 +1,308 @@
+#include <repel/scene/scene.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include <repel/base/setup_error.hpp>
+
+#include "yaml.hpp"
+
+namespace repel::scene {
+namespace {
+
+constexpr Rule position{unit::length, -Shape::largest, Shape::largest};
+constexpr Rule extent{unit::length, 0.0, Shape::largest};
+constexpr Rule angles{unit::angle, -1e3, 1e3};
+
+using Laws = std::map<std::string, ForceLaw>;
+
+/// Rotations about the fixed x, then y, then z axis, as in URDF.
+Pose pose_of(const Map& map) {
+  Vec3 p = Vec3::Zero();
+  Vec3 rpy = Vec3::Zero();
+  map.read("position", position, p);
+  map.read("rpy", angles, rpy);
+  Pose X = Pose::Identity();
+  X.translation() = p;
+  X.linear() =
+      (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+       Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+          .toRotationMatrix();
+  return X;
+}
+
+Pose pose_at(const Map& parent, std::string_view key) {
+  const Value* value = parent.find(key);
+  if (!value) return Pose::Identity();
+  const Map map(*value);
+  map.allow({"position", "rpy"});
+  return pose_of(map);
+}
+
+/// The keys of a shape of some `kind`.
+std::vector<std::string_view> size_keys(std::string_view kind) {
+  if (kind == "box") return {"size"};
+  if (kind == "sphere") return {"radius"};
+  if (kind == "hull") return {"points"};
+  return {"radius", "length"};
+}
+
+Shape shape_of(const Map& map, std::string_view kind) {
+  if (kind == "box") return Shape::box(0.5 * map.at("size").vector(extent));
+  if (kind == "hull") {
+    std::vector<Vec3> points;
+    for (const Value& point : map.at("points").list()) points.push_back(point.vector(position));
+    return Shape::hull(points);
+  }
+  const double radius = map.at("radius").number(extent);
+  if (kind == "sphere") return Shape::sphere(radius);
+  const double half_length = 0.5 * map.at("length").number(extent);
+  return kind == "capsule" ? Shape::capsule(radius, half_length)
+                           : Shape::cylinder(radius, half_length);
+}
+
+/// What a part of the tool and an obstacle have in common. `keys` are those it may have besides.
+Part part_of(const Value& value, const Map& map, std::span<const std::string_view> keys) {
+  std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
+  common.insert(common.end(), keys.begin(), keys.end());
+  auto any = common;
+  any.insert(any.end(), {"size", "radius", "length", "points"});
+  map.allow(any);
+  const std::string name = map.at("name").text();
+  const std::string kind =
+      map.at("shape").word_of({"box", "sphere", "capsule", "cylinder", "hull"});
+  const auto sizes = size_keys(kind);
+  common.insert(common.end(), sizes.begin(), sizes.end());
+  map.allow(common);
+  try {
+    return {name, shape_of(map, kind), kind, pose_of(map)};
+  } catch (const SetupError& error) {
+    if (error.line() > 0) throw;
+    value.fail(kind + " '" + name + "': " + error.what());
+  }
+}
+
+/// Throws SetupError when `name` has been seen before.
+void require_new(std::set<std::string>& names, const Map& map) {
+  const Value& name = map.at("name");
+  if (!names.insert(name.text()).second) name.fail_with_value("a name no other entry has");
+}
+
+std::vector<Part> tool_of(const Value& value) {
+  std::vector<Part> parts;
+  std::set<std::string> names;
+  for (const Value& entry : value.list()) {
+    const Map map(entry);
+    parts.push_back(part_of(entry, map, {}));
+    require_new(names, map);
+  }
+  if (parts.empty()) value.fail("'tool' has no part; allowed: 1 or more");
+  return parts;
+}
+
+ForceLaw law_of(const Value& value) {
+  const Map map(value);
+  map.allow({"range", "surface_force", "damping", "ceiling"});
+  ForceLaw law;
+  map.read("range", {unit::length, 1e-6, 1e3}, law.range);
+  map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
+  map.read("damping", {unit::damping, 0.0, 1e6}, law.damping);
+  map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
+  return law;
+}
+
+Laws laws_of(const Map& scene) {
+  Laws laws{{"default", {}}};
+  if (const Value* value = scene.find("laws")) {
+    const Map map(*value);
+    for (const auto& [name, law] : map.entries()) laws[name] = law_of(law);
+  }
+  return laws;
+}
+
+const ForceLaw& law_called(const Laws& laws, const Map& map) {
+  const Value* name = map.find("law");
+  const auto found = laws.find(name ? name->text() : "default");
+  if (found != laws.end()) return found->second;
+  std::string defined;
+  for (const auto& [known, law] : laws) defined += (defined.empty() ? "" : ", ") + known;
+  name->fail_with_value("a law under 'laws': " + defined);
+}
+
+std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws) {
+  constexpr std::string_view keys[] = {"law"};
+  std::vector<Obstacle> obstacles;
+  std::set<std::string> names;
+  for (const Value& entry : value.list()) {
+    const Map map(entry);
+    Part part = part_of(entry, map, keys);
+    require_new(names, map);
+    obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
+                         part.X_BP, law_called(laws, map)});
+  }
+  return obstacles;
+}
+
+RobotChoice robot_of(const Value& value, const std::string& file) {
+  const Map map(value);
+  map.allow({"urdf", "base_link", "tip_link", "start", "base", "tool_frame"});
+  RobotChoice robot;
+  const Value& urdf = map.at("urdf");
+  const auto path = std::filesystem::path(file).parent_path() / urdf.text();
+  std::error_code unused;
+  if (!std::filesystem::is_regular_file(path, unused)) {
+    urdf.fail_with_value("a file; there is none at " + path.lexically_normal().string());
+  }
+  robot.urdf = path.lexically_normal().string();
+  map.read("base_link", robot.base_link);
+  map.read("tip_link", robot.tip_link);
+  robot.start = map.at("start").numbers(angles, 1, 64);
+  robot.X_WB = pose_at(map, "base");
+  robot.X_LT = pose_at(map, "tool_frame");
+  return robot;
+}
+
+network::CouplingGains coupling_of(const Map& scene) {
+  network::CouplingGains gains;
+  const Value* value = scene.find("coupling");
+  if (!value) return gains;
+  const Map map(*value);
+  map.allow({"stiffness", "damping", "force_limit", "angular_stiffness", "angular_damping",
+             "torque_limit"});
+  map.read("stiffness", {unit::stiffness, 1e-3, 1e7}, gains.stiffness);
+  map.read("damping", {unit::damping, 0.0, 1e6}, gains.damping);
+  map.read("force_limit", {unit::force, 0.0, 1e6}, gains.force_limit);
+  map.read("angular_stiffness", {unit::angular_stiffness, 1e-3, 1e6}, gains.angular_stiffness);
+  map.read("angular_damping", {unit::angular_damping, 0.0, 1e6}, gains.angular_damping);
+  map.read("torque_limit", {unit::torque, 0.0, 1e6}, gains.torque_limit);
+  return gains;
+}
+
+network::SpaceballOptions spaceball_of(const Map& scene) {
+  network::SpaceballOptions options;
+  const Value* value = scene.find("spaceball");
+  if (!value) return options;
+  const Map map(*value);
+  map.allow(
+      {"dead_band", "saturation", "angular_dead_band", "angular_saturation", "time_constant"});
+  map.read("dead_band", {unit::speed, 0.0, 10.0}, options.dead_band);
+  map.read("saturation", {unit::speed, 0.0, 10.0}, options.saturation);
+  map.read("angular_dead_band", {unit::angular_speed, 0.0, 100.0}, options.angular_dead_band);
+  map.read("angular_saturation", {unit::angular_speed, 0.0, 100.0}, options.angular_saturation);
+  map.read("time_constant", {unit::time, 0.0, 100.0}, options.time_constant);
+  return options;
+}
+
+network::TorqueArmOptions torque_arm_of(const Map& scene) {
+  network::TorqueArmOptions options;
+  const Value* value = scene.find("torque_arm");
+  if (!value) return options;
+  const Map map(*value);
+  map.allow({"inertia", "friction", "hand_stiffness", "hand_damping", "torque_limit",
+             "velocity_scale", "force_scale"});
+  map.read("inertia", {unit::inertia, 1e-6, 1e3}, options.inertia);
+  map.read("friction", {unit::angular_damping, 0.0, 1e3}, options.friction);
+  map.read("hand_stiffness", {unit::angular_stiffness, 0.0, 1e5}, options.hand_stiffness);
+  map.read("hand_damping", {unit::angular_damping, 0.0, 1e4}, options.hand_damping);
+  map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
+  map.read("velocity_scale", {unit::length_per_angle, 0.0, 100.0}, options.velocity_scale);
+  options.force_scale = options.velocity_scale;  // lossless unless the file says otherwise
+  map.read("force_scale", {unit::length, 0.0, 100.0}, options.force_scale);
+  return options;
+}
+
+Vec3 direction_of(const Value& value) {
+  const Vec3 direction = value.vector({unit::none, -1e3, 1e3});
+  if (direction.norm() < 1e-6) value.fail_with_value("a direction, longer than 1e-6");
+  return direction.normalized();
+}
+
+network::Phase phase_of(const Value& value) {
+  const Map map(value);
+  map.allow({"name", "device", "frame", "duration", "linear", "angular", "direction", "lever"});
+  network::Phase phase;
+  phase.name = map.at("name").text();
+  map.read("duration", {unit::time, 1e-3, 86400.0}, phase.duration);
+  if (const Value* frame = map.find("frame")) {
+    const bool is_tool = frame->word_of({"world", "tool"}) == "tool";
+    phase.frame = is_tool ? network::PhaseFrame::tool : network::PhaseFrame::world;
+  }
+  if (map.at("device").word_of({"spaceball", "torque_arm"}) == "spaceball") {
+    map.allow({"name", "device", "frame", "duration", "linear", "angular"});
+    map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
+    map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
+  } else {
+    map.allow({"name", "device", "frame", "duration", "direction", "lever"});
+    phase.master = network::Master::torque_arm;
+    phase.direction = direction_of(map.at("direction"));
+    phase.lever_rate = map.at("lever").number({unit::angular_speed, -100.0, 100.0, true});
+  }
+  return phase;
+}
+
+network::Script script_of(const Map& scene) {
+  network::Script script;
+  const Value* value = scene.find("script");
+  if (!value) return script;
+  std::set<std::string> names;
+  for (const Value& entry : value->list()) {
+    script.push_back(phase_of(entry));
+    require_new(names, Map(entry));
+  }
+  return script;
+}
+
+Budget budget_of(const Map& scene) {
+  Budget budget;
+  const Value* value = scene.find("budget");
+  if (!value) return budget;
+  const Map map(*value);
+  map.allow({"wall", "work", "threads"});
+  if (const Value* wall = map.find("wall")) {
+    budget.wall_us = 1e6 * wall->number({unit::time, 0.0, 1.0});
+  }
+  if (const Value* work = map.find("work")) budget.work_units = work->integer(0, 1'000'000'000);
+  if (const Value* threads = map.find("threads")) {
+    budget.threads = static_cast<int>(threads->integer(1, 64));
+  }
+  return budget;
+}
+
+}  // namespace
+
+Scene parse(std::string_view yaml, const std::string& file) {
+  const Value document = Value::document(yaml, file);
+  const Map map(document);
+  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "coupling", "spaceball",
+             "torque_arm", "script", "budget"});
+  Scene scene;
+  scene.file = file;
+  scene.name = std::filesystem::path(file).stem().string();
+  map.read("name", scene.name);
+  map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
+  scene.robot = robot_of(map.at("robot"), file);
+  scene.tool = tool_of(map.at("tool"));
+  scene.obstacles = obstacles_of(map.at("obstacles"), laws_of(map));
+  scene.coupling = coupling_of(map);
+  scene.spaceball = spaceball_of(map);
+  scene.torque_arm = torque_arm_of(map);
+  scene.script = script_of(map);
+  scene.budget = budget_of(map);
+  return scene;
+}
+
+Scene load(const std::string& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw SetupError("this is a directory; allowed: a scene file", path);
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw SetupError("the file cannot be opened; allowed: a scene file", path);
+  const std::string yaml{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) throw SetupError("the file cannot be read; allowed: a scene file", path);
+  return parse(yaml, path);
+}
+
+}  // namespace repel::scene

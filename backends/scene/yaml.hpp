@@ -1,0 +1,84 @@
+/// @file
+/// Strict access to YAML: every value knows its name and line, nothing is guessed, nothing skipped.
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include <repel/base/types.hpp>
+
+#include "units.hpp"
+
+namespace repel::scene {
+
+/// One value of a file. Its functions throw SetupError, naming file, line, value and what is
+/// allowed, when it is not what is asked for.
+class Value {
+ public:
+  Value(YAML::Node node, std::string name, std::shared_ptr<const std::string> file)
+      : node_(std::move(node)), name_(std::move(name)), file_(std::move(file)) {}
+
+  /// The only document of a text.
+  [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
+
+  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail_with_value(const std::string& allowed) const;
+
+  /// A scalar that is not empty.
+  [[nodiscard]] std::string text() const;
+  /// One of `words`.
+  [[nodiscard]] std::string word_of(std::initializer_list<std::string_view> words) const;
+  [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
+  [[nodiscard]] double number(const Rule& rule) const { return numbers(rule, 1, 1).front(); }
+  [[nodiscard]] Vec3 vector(const Rule& rule) const;
+  [[nodiscard]] std::vector<double> numbers(const Rule& rule, std::size_t least,
+                                            std::size_t most) const;
+  /// The entries of a list.
+  [[nodiscard]] std::vector<Value> list() const;
+
+ private:
+  friend class Map;
+  YAML::Node node_;
+  std::string name_;
+  std::shared_ptr<const std::string> file_;
+};
+
+/// A map of a file, keys unique.
+class Map {
+ public:
+  explicit Map(const Value& value);
+
+  /// Throws SetupError for a key that is not in `keys`, naming the nearest.
+  void allow(std::span<const std::string_view> keys) const;
+  void allow(std::initializer_list<std::string_view> keys) const {
+    allow(std::span<const std::string_view>(keys.begin(), keys.size()));
+  }
+
+  /// The value of `key`; throws SetupError when it is missing.
+  [[nodiscard]] const Value& at(std::string_view key) const;
+  /// The value of `key`; null when it is missing.
+  [[nodiscard]] const Value* find(std::string_view key) const;
+
+  /// Sets `out` when `key` is there.
+  void read(std::string_view key, const Rule& rule, double& out) const;
+  void read(std::string_view key, const Rule& rule, Vec3& out) const;
+  void read(std::string_view key, std::string& out) const;
+
+  [[nodiscard]] const std::vector<std::pair<std::string, Value>>& entries() const {
+    return entries_;
+  }
+
+ private:
+  Value self_;
+  std::vector<std::pair<std::string, Value>> entries_;
+};
+
+}  // namespace repel::scene
