@@ -54,8 +54,8 @@ inline Solid box(const Vec3& h) {
   return s;
 }
 inline Solid random_box(Rng& rng, double low, double high) {
-  return box({log_uniform(rng, low, high), log_uniform(rng, low, high),
-              log_uniform(rng, low, high)});
+  return box(
+      {log_uniform(rng, low, high), log_uniform(rng, low, high), log_uniform(rng, low, high)});
 }
 inline Solid cloud(Rng& rng, int count, double size) {
   Solid s;
@@ -75,9 +75,10 @@ inline Solid prism(int sides, double radius, double half_length) {
 
 inline const std::vector<std::string>& names() {
   static const std::vector<std::string> all{
-      "random boxes",   "random hulls",     "parallel faces", "nearly parallel faces",
-      "parallel edges", "crossed edges",    "needles",        "plates",
-      "ten km away",    "scales 1e-3:1e3",  "vertex on vertex", "prisms", "mixed"};
+      "random boxes",   "random hulls",    "parallel faces",   "nearly parallel faces",
+      "parallel edges", "crossed edges",   "needles",          "plates",
+      "ten km away",    "scales 1e-3:1e3", "vertex on vertex", "prisms",
+      "mixed"};
   return all;
 }
 
@@ -143,6 +144,5 @@ inline Pair draw(const std::string& family, Rng& rng) {
   }
   return p;
 }
-
 
 }  // namespace repel::families

@@ -1,7 +1,7 @@
 /// @file
 /// The exact distance of two small polytopes, by an algorithm that shares no code and no idea with
-/// the one under test: Wolfe's minimum-norm point (1976) in 113-bit arithmetic, over all differences
-/// of vertices, accepted only when its duality gap proves it.
+/// the one under test: Wolfe's minimum-norm point (1976) in 113-bit arithmetic, over all
+/// differences of vertices, accepted only when its duality gap proves it.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ inline Point placed(const Pose& X, const Vec3& v) {
 }
 
 struct Truth {
-  Real distance = 0;  ///< [m] 0 when the polytopes meet
+  Real distance = 0;             ///< [m] 0 when the polytopes meet
   double normal[3] = {0, 0, 0};  ///< unit, from B to A
 };
 
@@ -106,8 +106,8 @@ inline std::optional<Truth> distance(const std::vector<Vec3>& a, const Pose& X_W
     const Real length = sqrtq(xx);
     if (xx <= size2 * 1e-54Q) return Truth{};
     if (gap <= xx * 1e-24Q || gap <= size2 * 1e-32Q) {
-      return Truth{length, {double(x.x[0] / length), double(x.x[1] / length),
-                            double(x.x[2] / length)}};
+      return Truth{length,
+                   {double(x.x[0] / length), double(x.x[1] / length), double(x.x[2] / length)}};
     }
     corral.push_back(differences[best]);
     weights.push_back(0);

@@ -20,6 +20,7 @@ struct CoprocessorOptions {
   Budget budget;                              ///< per tick
   std::chrono::nanoseconds period{2500000};   ///< between ticks, so that idle workers can sleep
   std::chrono::nanoseconds patience{500000};  ///< how long the caller waits for an answer
+  void (*on_thread_start)(int index) noexcept = nullptr;  ///< called in each worker: priority etc.
   bool lock_step = false;  ///< wait for every answer (up to a second) and never sleep: for replays
 };
 

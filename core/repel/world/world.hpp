@@ -9,6 +9,7 @@
 
 #include <repel/base/ids.hpp>
 #include <repel/base/limits.hpp>
+#include <repel/base/spatial.hpp>
 #include <repel/force/law.hpp>
 #include <repel/reduction/shape.hpp>
 
@@ -24,7 +25,7 @@ struct BodyState {
 
 /// All bodies at one instant: what the host hands to the coprocessor.
 struct Motion {
-  std::int64_t tick = 0;
+  std::int64_t tick = -1;         ///< -1: before the first one
   std::vector<BodyState> bodies;  ///< by BodyId
 };
 

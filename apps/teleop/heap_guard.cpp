@@ -1,0 +1,75 @@
+#include "heap_guard.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define REPEL_COUNTS_HEAP 1
+#else
+#define REPEL_COUNTS_HEAP 0
+#endif
+
+namespace repel::teleop {
+namespace {
+
+thread_local int guarded = 0;
+std::atomic<std::int64_t> counted{0};
+
+}  // namespace
+
+HeapGuard::HeapGuard() noexcept {
+  ++guarded;
+}
+HeapGuard::~HeapGuard() {
+  --guarded;
+}
+
+void HeapGuard::watch_this_thread() noexcept {
+  ++guarded;
+}
+
+std::int64_t HeapGuard::allocations() noexcept {
+  return REPEL_COUNTS_HEAP != 0 ? counted.load(std::memory_order_relaxed) : -1;
+}
+
+[[maybe_unused]] static void count() noexcept {
+  if (guarded > 0) counted.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace repel::teleop
+
+#if REPEL_COUNTS_HEAP
+// The C library's own functions, under the names it keeps for replacements like these.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
+  repel::teleop::count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  repel::teleop::count();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  repel::teleop::count();
+  return __libc_realloc(old, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  repel::teleop::count();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  *out = memalign(alignment, size);
+  return *out == nullptr ? ENOMEM : 0;
+}
+}
+#endif

@@ -1,0 +1,134 @@
+/// @file
+/// Runs a scene: an operator drives a simulated arm through a world of virtual walls.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+
+#include "report.hpp"
+#include "run.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace repel;
+
+std::atomic<bool> interrupted{false};
+
+struct Arguments {
+  std::string scene = "anderson_4x8";
+  double rate_hz = 0.0;  ///< 0: the scene's own
+  int threads = -1;      ///< -1: the scene's own
+  teleop::RunOptions run;
+  std::string report;
+  std::string log;
+};
+
+/// Folders in which a scene is looked for by name: beside the source this was built in, or where
+/// it was installed.
+std::vector<fs::path> scene_folders() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  return {program / "../../../scenes", program / "../share/repel/scenes"};
+}
+
+std::string scene_list() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::path& folder : scene_folders()) {
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  std::string text;
+  for (const std::string& name : names) text += "\n  " + name;
+  return text;
+}
+
+std::string find_scene(const std::string& name) {
+  if (fs::exists(name)) return name;
+  std::error_code error;
+  for (const fs::path& folder : scene_folders()) {
+    const fs::path path = folder / (name + ".yaml");
+    if (fs::exists(path, error)) return fs::weakly_canonical(path).string();
+  }
+  throw SetupError("no such scene: a file or one of" + scene_list(), name);
+}
+
+void describe(CLI::App& app, Arguments& a) {
+  app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
+  app.add_option("--seconds", a.run.seconds, "Scene time to run [s]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
+      ->check(CLI::Range(1.0, 20000.0));
+  app.add_flag(
+      "--fast", a.run.fast,
+      "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
+      "scene do not apply, counted ones do");
+  app.add_option("--backend", a.run.backend,
+                 "Simulated arm: bullet (dynamics, gravity, friction) or ideal (free joints)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"bullet", "ideal"}));
+  app.add_option("--threads", a.threads,
+                 "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
+      ->check(CLI::Range(0, 16));
+  app.add_option("--report", a.report, "Write the report as JSON to FILE");
+  app.add_option("--log", a.log, "Write every tick as CSV to FILE");
+  app.footer("Scenes:" + scene_list() +
+             "\n\nBack ends:\n  bullet, ideal\n\nDevices (chosen phase by phase in the scene):\n"
+             "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n\n"
+             "Exit status: 0 it ran, 1 bad scene, 2 bad usage.");
+}
+
+void show(const scene::Scene& scene, const teleop::Progress& p) {
+  const auto phase = static_cast<std::size_t>(p.phase);
+  const std::string name = phase < scene.script.size() ? scene.script[phase].name : "script over";
+  std::fprintf(stderr, "\r%7.2f s  %-28.28s force %7.2f N  misses %lld  %-12s\033[K", p.time,
+               name.c_str(), p.force, static_cast<long long>(p.misses), to_text(p.status).c_str());
+}
+
+void run(const Arguments& arguments) {
+  const scene::Scene scene = scene::load(find_scene(arguments.scene));
+  teleop::RunOptions options = arguments.run;
+  options.rate_hz = arguments.rate_hz > 0.0 ? arguments.rate_hz : scene.rate_hz;
+  options.threads = arguments.threads >= 0 ? arguments.threads : scene.budget.threads;
+  options.keep_records = !arguments.log.empty();
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const teleop::RunResult result =
+      teleop::run(scene, options, interrupted, [&](const teleop::Progress& p) {
+        if (terminal) show(scene, p);
+      });
+  if (terminal) std::fputs("\r\033[K", stderr);
+  if (!arguments.report.empty()) teleop::write_json(result, arguments.report);
+  if (!arguments.log.empty()) teleop::write_csv(result, arguments.log);
+  teleop::print_report(result, stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Drives a simulated arm through a world of virtual walls.", "teleop");
+  describe(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  try {
+    run(arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "teleop: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

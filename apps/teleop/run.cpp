@@ -1,0 +1,185 @@
+#include "run.hpp"
+
+#include <time.h>
+
+#include <cmath>
+#include <thread>
+
+#include <repel/ideal/arm.hpp>
+#include <repel/loop/tick.hpp>
+#ifdef REPEL_TELEOP_BULLET
+#include <repel/bullet/arm.hpp>
+#endif
+
+#include "cell.hpp"
+#include "heap_guard.hpp"
+
+namespace repel::teleop {
+namespace {
+
+using std::chrono::nanoseconds;
+using std::chrono::steady_clock;
+
+/// Wakes the loop at multiples of the period: sleeps, then spins the last stretch, because a sleep
+/// alone overshoots and a spin alone is throttled by the scheduler.
+class Metronome {
+ public:
+  explicit Metronome(nanoseconds period) : period_(period), due_(now() + period) {}
+
+  /// Returns once the next tick is due. Returns how late that is.
+  nanoseconds wait() {
+    const nanoseconds sleep_until = due_ - spin;
+    if (sleep_until > now()) {
+      const timespec until{sleep_until.count() / 1000000000, sleep_until.count() % 1000000000};
+      clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    }
+    nanoseconds late = now() - due_;
+    while (late.count() < 0) late = now() - due_;
+    due_ += period_;
+    return late;
+  }
+
+  /// After a pause of more than a second, gives up the ticks that were missed; returns how many.
+  std::int64_t catch_up() {
+    if (now() - due_ < std::chrono::seconds(1)) return 0;
+    const std::int64_t lost = (now() - due_) / period_;
+    due_ += lost * period_;
+    return lost;
+  }
+
+ private:
+  static constexpr nanoseconds spin{150000};
+
+  static nanoseconds now() {
+    return std::chrono::duration_cast<nanoseconds>(steady_clock::now().time_since_epoch());
+  }
+
+  nanoseconds period_;
+  nanoseconds due_;
+};
+
+CoprocessorOptions coprocessor_options(const scene::Scene& scene, const RunOptions& options,
+                                       nanoseconds period) {
+  CoprocessorOptions result;
+  result.threads = options.threads;
+  result.period = period;
+  result.patience = period / 4;
+  result.lock_step = options.fast;
+  result.on_thread_start = options.fast ? nullptr : &follow_real_time;
+  result.budget.work_units = scene.budget.work_units;
+  // A clock would make two runs differ: without one only the counted budget holds.
+  if (!options.fast) {
+    result.budget.wall = nanoseconds(std::llround(1e3 * scene.budget.wall_us));
+    if (result.budget.wall.count() > 0) result.patience = result.budget.wall + period / 20;
+  }
+  return result;
+}
+
+/// Prints progress from its own thread, so that a slow terminal cannot hold up a tick.
+class ProgressThread {
+ public:
+  ProgressThread(Mailbox<Progress>& box, const std::function<void(const Progress&)>& show)
+      : thread_([&box, &show](const std::stop_token& stop) {
+          while (!stop.stop_requested()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+            if (box.take()) show(box.newest());
+          }
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+Progress progress_of(const TickRecord& record, const RunResult& result) noexcept {
+  return {record.time,          record.phase,
+          record.pairs.nearest, record.virtual_force.force.norm(),
+          record.status,        result.deadline.misses()};
+}
+
+template <TorqueDrivenArm Arm>
+void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& stop,
+              const std::function<void(const Progress&)>& show) {
+  const RunOptions& options = result.options;
+  const double period_s = 1.0 / options.rate_hz;
+  const nanoseconds period(std::llround(1e9 * period_s));
+  result.deadline = DeadlineMonitor(period);
+  const auto ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.rate_hz));
+  const std::int64_t kept = options.keep_records ? std::min<std::int64_t>(ticks, 4000000) : 0;
+  Recorder recorder(static_cast<std::size_t>(kept));
+  Mailbox<Progress> progress({});
+  const ProgressThread printing(progress, show);
+
+  result.machine = describe_machine(options.fast ? "not by the clock" : request_real_time());
+  Coprocessor coprocessor(cell.world, coprocessor_options(result.scene, options, period));
+  network::ScriptedOperator the_operator(result.scene.script, result.scene.spaceball,
+                                         result.scene.torque_arm);
+  Teleoperator teleoperator(cell.model, arm, cell.kinematics, cell.world, cell.tool, coprocessor,
+                            the_operator, result.scene.coupling, period);
+  Metronome metronome(period);
+  for (std::int64_t k = 1; k <= ticks && !stop; ++k) {
+    const nanoseconds late = options.fast ? nanoseconds(0) : metronome.wait();
+    const auto begin = steady_clock::now();
+    const TickRecord* record = nullptr;
+    {
+      const HeapGuard guard;
+      record = &teleoperator.tick(options.fast ? k * period : begin.time_since_epoch());
+    }
+    const auto end = steady_clock::now();
+    arm.step(period_s);
+    result.arm_step.record(steady_clock::now() - end);
+    result.deadline.record(late, end - begin);
+    result.totals.add(*record);
+    if (options.keep_records) recorder.add(*record);
+    progress.draft() = progress_of(*record, result);
+    progress.post();
+    if (!options.fast) result.skipped_ticks += metronome.catch_up();
+  }
+  result.interrupted = stop;
+  result.allocations_in_tick = HeapGuard::allocations();
+  result.records = recorder.records();
+  result.records_dropped = options.keep_records ? recorder.dropped() : 0;
+}
+
+std::string name_of(const World& world, PairId id) {
+  if (!id.valid()) return {};
+  const Pair& pair = world.pair(id);
+  return world.part(pair.a).name + " - " + world.part(pair.b).name;
+}
+
+/// Joints of an arm without dynamics of its own: what the motors and the heaviest pose would weigh.
+std::vector<IdealJoint> ideal_joints(const ArmModel& model) {
+  std::vector<IdealJoint> joints;
+  for (const ArmLink& link : model.links) {
+    joints.push_back({std::max(0.1, link.rotor_inertia), std::max(1.0, link.viscous_friction)});
+  }
+  return joints;
+}
+
+}  // namespace
+
+RunResult run(const scene::Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
+              const std::function<void(const Progress&)>& show) {
+  RunResult result;
+  result.options = options;
+  result.scene = scene;
+  const bool ideal = options.backend == "ideal";
+  Cell cell(scene, !ideal);
+  result.pairs = static_cast<int>(cell.world.pairs().size());
+  if (ideal) {
+    IdealArm arm(ideal_joints(cell.model));
+    arm.reset(cell.start);
+    run_with(arm, cell, result, stop, show);
+  } else {
+#ifdef REPEL_TELEOP_BULLET
+    bullet::Arm arm(cell.model);
+    arm.reset(cell.start);
+    run_with(arm, cell, result, stop, show);
+#else
+    throw SetupError("backend bullet is not built in; to have it: apt-get install libbullet-dev");
+#endif
+  }
+  result.nearest_pair = name_of(cell.world, result.totals.nearest_pair);
+  return result;
+}
+
+}  // namespace repel::teleop

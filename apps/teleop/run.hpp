@@ -1,0 +1,61 @@
+/// @file
+/// Runs a scene, by the clock or as fast as it goes.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <repel/loop/record.hpp>
+#include <repel/scene/scene.hpp>
+#include <repel/schedule/deadline.hpp>
+
+#include "machine.hpp"
+
+namespace repel::teleop {
+
+struct RunOptions {
+  double seconds = 20.0;           ///< [s] of scene time
+  double rate_hz = 400.0;          ///< [Hz]
+  bool fast = false;               ///< not by the clock: as fast as it goes, bitwise repeatable
+  std::string backend = "bullet";  ///< "bullet" or "ideal"
+  int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
+  bool keep_records = false;       ///< for a log
+};
+
+/// Everything there is to say about a run.
+struct RunResult {
+  RunOptions options;
+  scene::Scene scene;
+  int pairs = 0;
+  RunTotals totals;
+  DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
+  DurationHistogram arm_step;             ///< time of the simulated arm, outside the tick
+  std::int64_t skipped_ticks = 0;         ///< given up after a pause of more than a second
+  std::int64_t allocations_in_tick = -1;  ///< -1: could not be counted
+  std::string nearest_pair;               ///< "part - obstacle"; empty without one
+  std::vector<TickRecord> records;
+  std::int64_t records_dropped = 0;
+  bool interrupted = false;
+  Machine machine;
+};
+
+/// What a run shows of itself while it lasts.
+struct Progress {
+  double time = 0.0;  ///< [s]
+  std::int32_t phase = 0;
+  double nearest = 0.0;  ///< [m] in this tick
+  double force = 0.0;    ///< [N]
+  Status status = 0;
+  std::int64_t misses = 0;
+};
+
+/// Builds the scene and runs it. `show` is called from a thread of its own, a few times a second.
+/// Ends early when `stop` becomes true.
+/// @throws SetupError for a scene that cannot be built
+[[nodiscard]] RunResult run(const scene::Scene& scene, const RunOptions& options,
+                            const std::atomic<bool>& stop,
+                            const std::function<void(const Progress&)>& show);
+
+}  // namespace repel::teleop
