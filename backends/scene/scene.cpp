@@ -225,7 +225,7 @@ network::Phase phase_of(const Value& value) {
   map.allow({"name", "device", "frame", "duration", "linear", "angular", "direction", "lever"});
   network::Phase phase;
   phase.name = map.at("name").text();
-  map.read("duration", {unit::time, 1e-3, 86400.0}, phase.duration);
+  phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
   if (const Value* frame = map.find("frame")) {
     const bool is_tool = frame->word_of({"world", "tool"}) == "tool";
     phase.frame = is_tool ? network::PhaseFrame::tool : network::PhaseFrame::world;
