@@ -9,6 +9,7 @@
 #include <repel/loop/failsafe.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/network/coupling.hpp>
+#include <repel/network/friction.hpp>
 #include <repel/network/joint_limits.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/schedule/coprocessor.hpp>
@@ -116,14 +117,15 @@ class Teleoperator {
     return coupling_.step(wanted, X_WT_, V_WT_, period_);
   }
 
-  // tau = g(q) + J'F + joint limits, cut to what each joint can give.
+  // tau = g(q) + J'F + dry friction + joint limits, cut to what each joint can give.
   void drive(const Wrench& on_tool) noexcept {
     kinematics_.gravity_torques(torques_);
     for (std::size_t i = 0; i < torques_.size(); ++i) {
       const ArmLink& link = model_.links[i];
       const auto column = jacobian_.col(static_cast<Eigen::Index>(i));
-      torques_[i] += column.template head<3>().dot(on_tool.force) +
-                     column.template tail<3>().dot(on_tool.torque) +
+      const double asked = column.template head<3>().dot(on_tool.force) +
+                           column.template tail<3>().dot(on_tool.torque);
+      torques_[i] += asked + friction_(link.coulomb_friction, v_[i], asked) +
                      limits_(q_[i], v_[i], link.lower, link.upper);
       const double most = link.effort_limit > 0.0 ? link.effort_limit : 1e9;
       if (!(std::abs(torques_[i]) <= most)) {
@@ -155,6 +157,7 @@ class Teleoperator {
   network::ScriptedOperator& operator_;
   network::Coupling coupling_;
   network::JointLimits limits_;
+  network::FrictionCompensation friction_;
   Failsafe failsafe_;
   double period_;                              ///< [s]
   std::vector<double> q_, v_, new_q_, new_v_;  ///< [rad], [rad/s]
