@@ -108,15 +108,12 @@ class Gjk {
       const T slack = simplex_.vv() - vw;
       if (slack <= tolerance * simplex_.vv() || slack <= T(0.25 * margin_) * length) break;
       if (simplex_.holds(w.name_a, w.name_b)) break;
-      const Simplex<T> before = simplex_;
       const Projection step = simplex_.add(w, T(margin_));
-      if (step == Projection::no_nearer) break;
+      if (step == Projection::nearer) continue;
       // What has been proven apart stays apart: an enclosing simplex is then a rounding error.
-      if (step == Projection::encloses && separated) {
-        simplex_ = before;
-        break;
-      }
-      encloses_ = step == Projection::encloses;
+      encloses_ = step == Projection::encloses && !separated;
+      if (encloses_) simplex_.append(w);
+      break;
     }
     return QueryEnd::converged;
   }

@@ -68,11 +68,12 @@ class Simplex {
   }
 
   /// Adds `p` (at most four points then) and moves to the nearest feature that has `p` in it: no
-  /// other one can be nearer than the present v.
+  /// other one can be nearer than the present v. Without a nearer one, or when the four points
+  /// enclose the origin, the simplex stays as it was.
   Projection add(const DifferencePoint<T>& p, T margin) noexcept {
     points_[size_++] = p;
     const Projection result = project(size_ - 1, margin);
-    if (result == Projection::no_nearer) --size_;
+    if (result != Projection::nearer) --size_;
     return result;
   }
 

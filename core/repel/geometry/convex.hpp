@@ -29,6 +29,8 @@ class Convex {
     Convex set(Kind::box);
     set.size_ = Vec<double>(half_extents);
     set.reach_ = half_extents.norm();
+    set.thick_axes_ = (half_extents.x() > 0.0 ? 1U : 0U) | (half_extents.y() > 0.0 ? 2U : 0U) |
+                      (half_extents.z() > 0.0 ? 4U : 0U);
     return set;
   }
   /// Around the z axis; `radius` and `half_length` [m] at least 0.
@@ -98,9 +100,7 @@ class Convex {
 
   // A corner of a flat box has several names; the lowest stands for all.
   [[nodiscard]] Point box_corner(std::uint32_t name) const noexcept {
-    const unsigned thick =
-        (size_.x > 0.0 ? 1U : 0U) | (size_.y > 0.0 ? 2U : 0U) | (size_.z > 0.0 ? 4U : 0U);
-    name &= thick;
+    name &= thick_axes_;
     return {name,
             {(name & 1U) != 0U ? size_.x : -size_.x, (name & 2U) != 0U ? size_.y : -size_.y,
              (name & 4U) != 0U ? size_.z : -size_.z}};
@@ -141,7 +141,8 @@ class Convex {
   }
 
   Kind kind_;
-  Vec<double> size_;  ///< [m] half extents; for a cylinder radius, radius, half length
+  std::uint32_t thick_axes_ = 0;  ///< of a box: bit per axis with an extent
+  Vec<double> size_;              ///< [m] half extents; for a cylinder radius, radius, half length
   double reach_ = 0.0;
   VertexScan vertices_;
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
@@ -11,12 +12,28 @@
 
 namespace repel {
 
+namespace detail {
+
+// As many numbers as one register of the target holds. The arithmetic is the same for all widths,
+// and so is the vertex found.
+#if defined(__AVX512F__)
+inline constexpr int lane_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int lane_bytes = 32;
+#else
+inline constexpr int lane_bytes = 16;
+#endif
+inline constexpr int lane_count = lane_bytes / 8;
+using Lanes = double __attribute__((vector_size(lane_bytes)));
+
+}  // namespace detail
+
 /// The vertices of a polytope, structure of arrays, padded with the first vertex to full lanes.
 /// `scan` gives the same vertex whether the compiler has wide registers or not: the lanes only
 /// change the order in which candidates are compared, and ties go to the lowest index.
 class VertexScan {
  public:
-  static constexpr int lanes = 4;
+  static constexpr int lanes = 8;  ///< the arrays are padded to a multiple of this
 
   VertexScan() = default;
   explicit VertexScan(std::span<const Vec3> vertices) : size_(static_cast<int>(vertices.size())) {
@@ -49,30 +66,43 @@ class VertexScan {
 };
 
 inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
-  // Each lane keeps its own best, so that no comparison waits for the one before it.
-  double best[lanes];
-  std::int64_t index[lanes];
-  for (int lane = 0; lane < lanes; ++lane) {
-    best[lane] = -std::numeric_limits<double>::infinity();
-    index[lane] = 0;
+  // Each lane keeps its own best, so that no comparison waits for the one before it. Indices travel
+  // as doubles: they share the registers and the masks of the products.
+  using detail::Lanes;
+  constexpr int width = detail::lane_count;
+  constexpr int rows = lanes / width;
+  Lanes best[rows];
+  Lanes index[rows];
+  Lanes here[rows];
+  for (int row = 0; row < rows; ++row) {
+    for (int lane = 0; lane < width; ++lane) here[row][lane] = row * width + lane;
+    best[row] = Lanes{} - std::numeric_limits<double>::infinity();
+    index[row] = Lanes{};
   }
-  const auto count = static_cast<std::int64_t>(x_.size());
-  for (std::int64_t i = 0; i < count; i += lanes) {
-    for (int lane = 0; lane < lanes; ++lane) {
-      const auto k = static_cast<std::size_t>(i + lane);
-      const double along = x_[k] * d.x + y_[k] * d.y + z_[k] * d.z;
-      const bool farther = along > best[lane];
-      best[lane] = farther ? along : best[lane];
-      index[lane] = farther ? i + lane : index[lane];
+  const std::size_t count = x_.size();
+  for (std::size_t i = 0; i < count; i += lanes) {
+    for (int row = 0; row < rows; ++row) {
+      Lanes x, y, z;
+      std::memcpy(&x, &x_[i + row * width], sizeof x);
+      std::memcpy(&y, &y_[i + row * width], sizeof y);
+      std::memcpy(&z, &z_[i + row * width], sizeof z);
+      const Lanes along = x * d.x + y * d.y + z * d.z;
+      const auto farther = along > best[row];
+      best[row] = farther ? along : best[row];
+      index[row] = farther ? here[row] : index[row];
+      here[row] += lanes;
     }
   }
-  int winner = 0;
-  for (int lane = 1; lane < lanes; ++lane) {
-    const bool farther =
-        best[lane] > best[winner] || (best[lane] == best[winner] && index[lane] < index[winner]);
-    if (farther) winner = lane;
+  double farthest = best[0][0];
+  double winner = index[0][0];
+  for (int k = 1; k < lanes; ++k) {
+    const double along = best[k / width][k % width];
+    const double i = index[k / width][k % width];
+    const bool farther = along > farthest || (along == farthest && i < winner);
+    farthest = farther ? along : farthest;
+    winner = farther ? i : winner;
   }
-  return index[winner] < size_ ? static_cast<std::uint32_t>(index[winner]) : 0U;
+  return winner < size_ ? static_cast<std::uint32_t>(winner) : 0U;
 }
 
 inline std::uint32_t VertexScan::scan(const Vec<DoubleDouble>& d) const noexcept {

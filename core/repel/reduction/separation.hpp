@@ -178,7 +178,6 @@ inline Separation LadderWalk::answer() const noexcept {
   const double none = std::numeric_limits<double>::infinity();
   const double met = meets_ ? -depth_met_ : none;
   const double slack = 1e-14 * (A_.reach() + B_.reach());
-  s.iterations = iterations_ + (apart_ ? 1 : 12);
   s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
   if (apart_) {
     const double depth_a = A_.level(apart_i_).depth;
@@ -196,6 +195,7 @@ inline Separation LadderWalk::answer() const noexcept {
     s.end = at_end() ? QueryEnd::converged : QueryEnd::budget_spent;
   }
   const bool plain = apart_ && apart_i_ == 0 && apart_j_ == 0;
+  s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
   s.lower = plain && gap_.lower > 0.0
                 ? gap_.lower - A_.level(0).depth - B_.level(0).depth
                 : std::min(s.distance, -overlap_along(s.extraction_W) - slack);
