@@ -295,7 +295,8 @@ Scene parse(std::string_view yaml, const std::string& file) {
 }
 
 Scene load(const std::string& path) {
-  if (std::filesystem::is_directory(path)) {
+  std::error_code unused;
+  if (std::filesystem::is_directory(path, unused)) {
     throw SetupError("this is a directory; allowed: a scene file", path);
   }
   std::ifstream file(path, std::ios::binary);

@@ -63,7 +63,7 @@ Value Value::document(std::string_view yaml, const std::string& file) {
 }
 
 void Value::fail(const std::string& what) const {
-  throw SetupError(what, *file_, line_of(node_.Mark()));
+  throw SetupError(what, *file_, line_of(mark_));
 }
 
 void Value::fail_with_value(const std::string& allowed) const {
@@ -135,6 +135,7 @@ Map::Map(const Value& value) : self_(value) {
     const std::string name = key.text();
     if (find(name)) key.fail("a second key " + quoted(name) + "; allowed: one");
     entries_.emplace_back(name, Value(entry.second, name, value.file_));
+    if (entry.second.IsNull()) entries_.back().second.mark_ = key.mark_;
   }
 }
 

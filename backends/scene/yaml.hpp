@@ -24,7 +24,10 @@ namespace repel::scene {
 class Value {
  public:
   Value(YAML::Node node, std::string name, std::shared_ptr<const std::string> file)
-      : node_(std::move(node)), name_(std::move(name)), file_(std::move(file)) {}
+      : node_(std::move(node)),
+        name_(std::move(name)),
+        file_(std::move(file)),
+        mark_(node_.Mark()) {}
 
   /// The only document of a text.
   [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
@@ -49,6 +52,7 @@ class Value {
   YAML::Node node_;
   std::string name_;
   std::shared_ptr<const std::string> file_;
+  YAML::Mark mark_;  // of the key where the value is empty: such a value has no place of its own
 };
 
 /// A map of a file, keys unique.

@@ -1,0 +1,106 @@
+// The scenes and the page on their format, as they stand in the repository.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <scene/yaml_text.hpp>
+
+namespace repel::scene {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The first fenced block of YAML in a Markdown page.
+std::string example_in(const std::string& page) {
+  const std::string fence = "```yaml\n";
+  const auto begin = page.find(fence) + fence.size();
+  return page.substr(begin, page.find("```", begin) - begin);
+}
+
+TEST(SceneFiles, TheExampleOfThePageLoads) {
+  const std::string page = text_of("scenes/README.md");
+  ASSERT_NE(page.find("```yaml\n"), std::string::npos);
+  const Scene scene = parse(example_in(page), "scenes/README.md");
+  EXPECT_EQ(scene.tool.size(), 1U);
+  EXPECT_EQ(scene.obstacles.size(), 1U);
+  EXPECT_EQ(scene.obstacles[0].law.surface_force, 120.0);
+  EXPECT_EQ(scene.script.size(), 2U);
+}
+
+TEST(SceneFiles, EveryKeyTheReaderKnowsIsOnThePage) {
+  const std::string page = text_of("scenes/README.md");
+  std::istringstream words(text_of("backends/scene/scene.cpp"));
+  int keys = 0;
+  std::string part;
+  // Every second part is a string literal.
+  while (std::getline(words, part, '"') && std::getline(words, part, '"')) {
+    if (part.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != std::string::npos) continue;
+    EXPECT_NE(page.find("`" + part + "`"), std::string::npos) << part << " is not on the page";
+    ++keys;
+  }
+  EXPECT_GT(keys, 50);
+}
+
+TEST(SceneFiles, EverySceneLoads) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Scene scene = load(entry.path().string());
+    EXPECT_EQ(scene.name, entry.path().stem().string());
+    EXPECT_FALSE(scene.script.empty()) << scene.name;
+    EXPECT_EQ(scene.robot.start.size(), 6U) << scene.name;
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 3);
+}
+
+TEST(SceneFiles, TheSceneOfThePaperHasItsNumbers) {
+  const Scene scene = load("scenes/anderson_4x8.yaml");
+  EXPECT_EQ(scene.rate_hz, 400.0);
+  EXPECT_EQ(scene.tool.size(), 4U);
+  EXPECT_EQ(scene.obstacles.size(), 8U);
+  double duration = 0.0;
+  bool with_lever = false;
+  for (const auto& phase : scene.script) {
+    duration += phase.duration;
+    with_lever = with_lever || phase.master == network::Master::torque_arm;
+  }
+  EXPECT_GT(duration, 15.0);
+  EXPECT_LT(duration, 30.0);
+  EXPECT_TRUE(with_lever);
+}
+
+TEST(SceneFiles, ThousandsOfObstaclesLoad) {
+  std::string text = testing::base_scene;
+  for (int i = 1; i < 2500; ++i) {
+    text += "  - {name: wall_" + std::to_string(i) +
+            ", shape: box, size: 1 2 3 cm, position: " + std::to_string(i) + " 0 0 mm}\n";
+  }
+  const Scene scene = testing::parsed(text);
+  ASSERT_EQ(scene.obstacles.size(), 2500U);
+  EXPECT_EQ(scene.obstacles[2499].X_WP.translation().x(), 2.499);
+}
+
+TEST(SceneFiles, AnErrorAmongThousandsNamesItsLine) {
+  std::string text = testing::base_scene;
+  for (int i = 1; i < 2500; ++i) {
+    const std::string size = i == 2000 ? "1 2 cm" : "1 2 3 cm";
+    text += "  - {name: wall_" + std::to_string(i) + ", shape: box, size: " + size + "}\n";
+  }
+  try {
+    (void)testing::parsed(text);
+    FAIL() << "the scene was accepted";
+  } catch (const SetupError& error) {
+    EXPECT_EQ(error.line(), 2007);
+  }
+}
+
+}  // namespace
+}  // namespace repel::scene

@@ -1,0 +1,180 @@
+// What a scene says, in SI units, and what it means when it says nothing.
+#include <clocale>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <scene/yaml_text.hpp>
+
+namespace repel::scene {
+namespace {
+
+using testing::base_scene;
+using testing::changed;
+using testing::parsed;
+
+constexpr double pi = std::numbers::pi;
+
+ForceLaw law_with(const std::string& key_and_value) {
+  return parsed(base_scene + "laws: {default: {" + key_and_value + "}}\n").obstacles[0].law;
+}
+
+TEST(SceneValue, LengthsMayBeInMetresCentimetresOrMillimetres) {
+  EXPECT_EQ(law_with("range: 0.025 m").range, 0.025);
+  EXPECT_EQ(law_with("range: 2.5 cm").range, 0.025);
+  EXPECT_EQ(law_with("range: 25 mm").range, 0.025);
+}
+
+TEST(SceneValue, ForcesMayBeInNewtonOrKilonewton) {
+  EXPECT_EQ(law_with("surface_force: 120 N").surface_force, 120.0);
+  EXPECT_EQ(law_with("surface_force: 0.12 kN").surface_force, 120.0);
+}
+
+TEST(SceneValue, StiffnessesAndDampingsMayBeInMultiples) {
+  const auto gains = [](const std::string& text) {
+    return parsed(base_scene + "coupling: {" + text + "}\n").coupling;
+  };
+  EXPECT_EQ(gains("stiffness: 3 N/mm").stiffness, 3000.0);
+  EXPECT_EQ(gains("stiffness: 3 kN/m").stiffness, 3000.0);
+  EXPECT_EQ(gains("stiffness: 3000 N/m").stiffness, 3000.0);
+  EXPECT_EQ(gains("damping: 0.2 kN s/m").damping, 200.0);
+  EXPECT_EQ(gains("angular_stiffness: 15 N m/rad").angular_stiffness, 15.0);
+  EXPECT_EQ(gains("angular_damping: 2 N m s/rad").angular_damping, 2.0);
+  EXPECT_EQ(gains("torque_limit: 500 mN m").torque_limit, 0.5);
+}
+
+TEST(SceneValue, TimesRatesAndBudgetsHaveTheirUnits) {
+  const Scene scene = parsed(base_scene +
+                             "rate: 0.5 kHz\n"
+                             "budget: {wall: 0.5 ms, work: 20000, threads: 2}\n"
+                             "spaceball: {time_constant: 40 ms, saturation: 30 cm/s}\n");
+  EXPECT_EQ(scene.rate_hz, 500.0);
+  EXPECT_DOUBLE_EQ(scene.budget.wall_us, 500.0);
+  EXPECT_EQ(scene.budget.work_units, 20000);
+  EXPECT_EQ(scene.budget.threads, 2);
+  EXPECT_EQ(scene.spaceball.time_constant, 0.04);
+  EXPECT_EQ(scene.spaceball.saturation, 0.3);
+}
+
+TEST(SceneValue, AnglesMayBeInDegreesOrRadians) {
+  const auto degrees = parsed(base_scene).robot.start;
+  ASSERT_EQ(degrees.size(), 6U);
+  EXPECT_DOUBLE_EQ(degrees[1], pi / 4);
+  EXPECT_DOUBLE_EQ(degrees[2], pi);
+  EXPECT_EQ(parsed(changed("0 45 180 0 45 0 deg", "0 1.5 rad")).robot.start[1], 1.5);
+}
+
+TEST(SceneValue, RollPitchYawTurnAboutFixedAxesInThatOrder) {
+  const Scene scene = parsed(changed("size: 1 2 3 m", "size: 1 2 3 m, rpy: 90 0 90 deg"));
+  // Roll takes y to z; yaw, about the fixed z, leaves it there. Roll leaves x, yaw takes it to y.
+  const Mat3 R = scene.obstacles[0].X_WP.linear();
+  EXPECT_NEAR((R * Vec3::UnitY() - Vec3::UnitZ()).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((R * Vec3::UnitX() - Vec3::UnitY()).norm(), 0.0, 1e-15);
+}
+
+TEST(SceneValue, EveryShapeHasTheSizeItStates) {
+  const auto reach = [](const std::string& shape) {
+    return parsed(changed("shape: box, size: 1 2 3 m", shape)).obstacles[0].shape.reach();
+  };
+  EXPECT_NEAR(reach("shape: box, size: 2 4 4 m"), 3.0, 1e-12);
+  EXPECT_NEAR(reach("shape: sphere, radius: 2 m"), 2.0, 1e-12);
+  EXPECT_NEAR(reach("shape: capsule, radius: 2 m, length: 6 m"), 5.0, 1e-12);
+  EXPECT_NEAR(reach("shape: cylinder, radius: 3 m, length: 8 m"), 5.0, 1e-12);
+  EXPECT_NEAR(reach("shape: hull, points: [0 0 0 m, 3 0 0 m, 0 400 0 cm, 0 0 1 m]"), 4.0, 1e-12);
+}
+
+TEST(SceneValue, PosesOfBaseToolAndPartsAreRead) {
+  const Scene scene = parsed(changed("20 mm}", "20 mm, position: 1 2 3 mm}") + "name: a room\n");
+  EXPECT_EQ(scene.name, "a room");
+  EXPECT_EQ(scene.tool[0].X_BP.translation(), Vec3(0.001, 0.002, 0.003));
+  const Scene moved = parsed(
+      changed("tool:", "  base: {position: 1 0 0 m}\n  tool_frame: {position: 0 0 15 cm}\ntool:"));
+  EXPECT_EQ(moved.robot.X_WB.translation(), Vec3(1.0, 0.0, 0.0));
+  EXPECT_EQ(moved.robot.X_LT.translation(), Vec3(0.0, 0.0, 0.15));
+}
+
+TEST(SceneValue, ASceneThatSaysLittleHasTheStatedDefaults) {
+  const Scene scene = parsed(base_scene);
+  EXPECT_EQ(scene.name, "test");
+  EXPECT_EQ(scene.file, "scenes/test.yaml");
+  EXPECT_EQ(scene.robot.urdf, "robots/puma560.urdf");
+  EXPECT_EQ(scene.rate_hz, 400.0);
+  EXPECT_EQ(scene.tool[0].kind, "sphere");
+  EXPECT_EQ(scene.obstacles[0].law.range, 0.02);
+  EXPECT_EQ(scene.obstacles[0].law.surface_force, 100.0);
+  EXPECT_EQ(scene.obstacles[0].law.damping, 50.0);
+  EXPECT_TRUE(std::isinf(scene.obstacles[0].law.ceiling));
+  EXPECT_TRUE(scene.script.empty());
+  EXPECT_EQ(scene.budget.wall_us, 0.0);
+  EXPECT_EQ(scene.budget.work_units, 0);
+  EXPECT_EQ(scene.budget.threads, 1);
+}
+
+TEST(SceneValue, AnObstacleTakesTheLawItNamesOrTheDefault) {
+  const Scene scene = parsed(base_scene +
+                             "  - {name: skin, shape: sphere, radius: 1 m, law: soft}\n"
+                             "laws: {default: {range: 1 cm}, soft: {ceiling: 5 N}}\n");
+  EXPECT_EQ(scene.obstacles[0].law.range, 0.01);
+  EXPECT_EQ(scene.obstacles[1].law.range, 0.02);
+  EXPECT_EQ(scene.obstacles[1].law.ceiling, 5.0);
+}
+
+TEST(SceneValue, TheScriptIsReadPhaseByPhase) {
+  const Scene scene =
+      parsed(base_scene +
+             "script:\n"
+             "  - {name: a, device: spaceball, duration: 2 s, linear: 1 2 3 mm/s, angular: 0 0 180 "
+             "deg/s}\n"
+             "  - {name: b, device: torque_arm, duration: 1 s, frame: tool, direction: 0 3 4, "
+             "lever: 90 deg/s}\n");
+  ASSERT_EQ(scene.script.size(), 2U);
+  EXPECT_EQ(scene.script[0].master, network::Master::spaceball);
+  EXPECT_EQ(scene.script[0].frame, network::PhaseFrame::world);
+  EXPECT_EQ(scene.script[0].duration, 2.0);
+  EXPECT_EQ(scene.script[0].rates.linear, Vec3(0.001, 0.002, 0.003));
+  EXPECT_DOUBLE_EQ(scene.script[0].rates.angular.z(), pi);
+  EXPECT_EQ(scene.script[1].name, "b");
+  EXPECT_EQ(scene.script[1].master, network::Master::torque_arm);
+  EXPECT_EQ(scene.script[1].frame, network::PhaseFrame::tool);
+  EXPECT_NEAR((scene.script[1].direction - Vec3(0.0, 0.6, 0.8)).norm(), 0.0, 1e-15);
+  EXPECT_DOUBLE_EQ(scene.script[1].lever_rate, pi / 2);
+}
+
+TEST(SceneValue, TheLeverIsLosslessUnlessTheFileSaysOtherwise) {
+  const auto arm = [](const std::string& text) {
+    return parsed(base_scene + "torque_arm: {" + text + "}\n").torque_arm;
+  };
+  EXPECT_EQ(arm("velocity_scale: 0.3 m/rad").force_scale, 0.3);
+  EXPECT_EQ(arm("velocity_scale: 0.3 m/rad, force_scale: 50 mm").force_scale, 0.05);
+}
+
+TEST(SceneValue, ADeviceMayFailByRatesThatAreNotANumber) {
+  const Scene scene = parsed(
+      base_scene +
+      "script:\n"
+      "  - {name: a, device: spaceball, duration: 1 s, linear: nan 0 0 mm/s, angular: 0 nan 0 "
+      "rad/s}\n"
+      "  - {name: b, device: torque_arm, duration: 1 s, direction: 1 0 0, lever: nan rad/s}\n");
+  EXPECT_TRUE(std::isnan(scene.script[0].rates.linear.x()));
+  EXPECT_TRUE(std::isnan(scene.script[0].rates.angular.y()));
+  EXPECT_TRUE(std::isnan(scene.script[1].lever_rate));
+}
+
+TEST(SceneValue, AnEmptyRoomIsAllowedWhenItSaysSo) {
+  const Scene scene =
+      parsed(changed("obstacles:\n  - {name: wall, shape: box, size: 1 2 3 m}", "obstacles: []"));
+  EXPECT_TRUE(scene.obstacles.empty());
+}
+
+TEST(SceneValue, NumbersAreReadAlikeInEveryLocale) {
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"}) {
+    if (std::setlocale(LC_ALL, name)) break;  // where none is installed, "C" is tested
+  }
+  EXPECT_EQ(law_with("range: 2.5 cm").range, 0.025);
+  std::setlocale(LC_ALL, before.c_str());
+}
+
+}  // namespace
+}  // namespace repel::scene
