@@ -78,6 +78,9 @@ step "find_package, a part that was not built" \
   find_package -DPARTS=bullet
 step "add_subdirectory" works add_subdirectory "-DREPEL=$root"
 
+[ ! -e "$prefix/bin/teleop" ] ||
+  step "the installed program" "$prefix/bin/teleop" --seconds 0.1 --fast
+
 sources="$here/main.cpp $here/elsewhere.cpp"
 PKG_CONFIG_PATH=$prefix/share/pkgconfig
 export PKG_CONFIG_PATH
