@@ -138,7 +138,8 @@ class Gjk {
     gap.upper = static_cast<double>(sqrt_of(dot(w, w))) * (1.0 + 0x1p-51) + margin_;
     gap.lower *= 1.0 - 0x1p-51;
     gap.distance = std::clamp(static_cast<double>(length), gap.lower, gap.upper);
-    if (length > T(0.0)) gap.n_BA_W = to_vec3((T(1.0) / length) * simplex_.v());
+    // Adding zero turns a negative zero into a positive one.
+    if (length > T(0.0)) gap.n_BA_W = to_vec3((T(1.0) / length) * simplex_.v()) + Vec3::Zero();
   }
 
   void store(WarmStart& warm) const noexcept {

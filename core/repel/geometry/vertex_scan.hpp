@@ -71,13 +71,12 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
   using detail::Lanes;
   constexpr int width = detail::lane_count;
   constexpr int rows = lanes / width;
-  Lanes best[rows];
-  Lanes index[rows];
-  Lanes here[rows];
+  Lanes best[rows]{};
+  Lanes index[rows]{};
+  Lanes here[rows]{};
   for (int row = 0; row < rows; ++row) {
     for (int lane = 0; lane < width; ++lane) here[row][lane] = row * width + lane;
     best[row] = Lanes{} - std::numeric_limits<double>::infinity();
-    index[row] = Lanes{};
   }
   const std::size_t count = x_.size();
   for (std::size_t i = 0; i < count; i += lanes) {
