@@ -71,12 +71,14 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
   using detail::Lanes;
   constexpr int width = detail::lane_count;
   constexpr int rows = lanes / width;
-  Lanes best[rows]{};
-  Lanes index[rows]{};
-  Lanes here[rows]{};
+  static constexpr double first_indices[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  Lanes best[rows];
+  Lanes index[rows];
+  Lanes here[rows];
   for (int row = 0; row < rows; ++row) {
-    for (int lane = 0; lane < width; ++lane) here[row][lane] = row * width + lane;
+    std::memcpy(&here[row], &first_indices[row * width], sizeof here[row]);
     best[row] = Lanes{} - std::numeric_limits<double>::infinity();
+    index[row] = here[row];
   }
   const std::size_t count = x_.size();
   for (std::size_t i = 0; i < count; i += lanes) {

@@ -1,0 +1,142 @@
+/// @file
+/// What one query and one tick cost: pairs of boxes and hulls, cold and warm, and the tick of 4
+/// tool parts against 8 obstacles, with every pair near and with most of them skipped.
+///
+/// Warm means solved one tick earlier, then moved 0.5 mm and 0.1 degree. Answers are checked before
+/// anything is timed: cold and warm must agree, and the bracket must hold both.
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+#include <repel/repel.hpp>
+
+namespace {
+
+using namespace repel;
+
+constexpr std::uint64_t seed = 20;
+using Rng = std::mt19937_64;
+
+double uniform(Rng& rng, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(rng);
+}
+Vec3 direction(Rng& rng) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(rng), normal(rng), normal(rng)).normalized();
+}
+Mat3 turn(Rng& rng, double angle) {
+  return Eigen::AngleAxisd(angle, direction(rng)).toRotationMatrix();
+}
+
+/// Vertices 0 asks for a box, else a hull of that many points on a sphere.
+Shape random_shape(Rng& rng, std::int64_t vertices) {
+  if (vertices == 0) {
+    return Shape::box({uniform(rng, 0.1, 0.5), uniform(rng, 0.1, 0.5), uniform(rng, 0.1, 0.5)});
+  }
+  std::vector<Vec3> points;
+  for (std::int64_t i = 0; i < vertices; ++i) points.push_back(0.5 * direction(rng));
+  return Shape::hull(points, {.levels = 1});
+}
+
+/// A pair of shapes, apart, at two poses of B one tick from each other.
+struct Case {
+  Shape A, B;
+  Pose X_WA = Pose::Identity();
+  Pose X_WB[2] = {Pose::Identity(), Pose::Identity()};
+  WarmStart warm{};
+};
+
+std::vector<Case> cases(std::int64_t vertices) {
+  Rng rng(seed);
+  std::vector<Case> all;
+  for (int i = 0; i < 256; ++i) {
+    Case c{.A = random_shape(rng, vertices), .B = random_shape(rng, vertices)};
+    c.X_WA.linear() = turn(rng, uniform(rng, 0.0, 3.0));
+    c.X_WB[0].linear() = turn(rng, uniform(rng, 0.0, 3.0));
+    c.X_WB[0].translation() = uniform(rng, 1.4, 2.5) * direction(rng);
+    c.X_WB[1] = c.X_WB[0];
+    c.X_WB[1].translation() += 0.0005 * direction(rng);
+    c.X_WB[1].linear() = turn(rng, 0.1 * M_PI / 180.0) * c.X_WB[0].linear();
+    all.push_back(std::move(c));
+  }
+  return all;
+}
+
+/// Solves every case cold and warm; false when they disagree.
+bool answers_hold(std::vector<Case>& all) {
+  for (Case& c : all) {
+    (void)separation(c.A, c.X_WA, c.B, c.X_WB[1], {}, c.warm);
+    const Separation warm = separation(c.A, c.X_WA, c.B, c.X_WB[0], {}, c.warm);
+    const Separation cold = separation(c.A, c.X_WA, c.B, c.X_WB[0]);
+    if (std::abs(warm.distance - cold.distance) > 1e-12 || warm.distance > cold.upper ||
+        warm.distance < cold.lower || !(cold.distance > 0.0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void pair_cold(benchmark::State& state) {
+  std::vector<Case> all = cases(state.range(0));
+  if (!answers_hold(all)) return state.SkipWithError("wrong answer");
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Case& c = all[i++ % all.size()];
+    benchmark::DoNotOptimize(separation(c.A, c.X_WA, c.B, c.X_WB[0]));
+  }
+}
+
+void pair_warm(benchmark::State& state) {
+  std::vector<Case> all = cases(state.range(0));
+  if (!answers_hold(all)) return state.SkipWithError("wrong answer");
+  std::size_t i = 0;
+  for (auto _ : state) {
+    Case& c = all[i % all.size()];
+    benchmark::DoNotOptimize(separation(c.A, c.X_WA, c.B, c.X_WB[i / all.size() % 2], {}, c.warm));
+    ++i;
+  }
+}
+
+/// 4 tool boxes and 8 obstacle boxes. `range` [m] decides how many of the 32 pairs are near.
+void tick_4x8(benchmark::State& state) {
+  Rng rng(seed);
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const ForceLaw law{.range = 1e-3 * static_cast<double>(state.range(0))};
+  std::vector<PartId> parts;
+  for (int i = 0; i < 4; ++i) {
+    Pose X = Pose::Identity();
+    X.translation() = 0.05 * direction(rng);
+    parts.push_back(world.add_part(tool, "part", Shape::box({0.03, 0.04, 0.05}), X));
+  }
+  for (int i = 0; i < 8; ++i) {
+    Pose X = Pose::Identity();
+    X.translation() = uniform(rng, 0.3, 0.5) * direction(rng);
+    X.linear() = turn(rng, uniform(rng, 0.0, 3.0));
+    const PartId wall = world.add_part(World::fixed, "wall", Shape::box({0.05, 0.1, 0.07}), X);
+    for (const PartId part : parts) world.add_pair(part, wall, law);
+  }
+  Coprocessor coprocessor(world, {});
+  double near = 0.0;
+  std::int64_t tick = 0;
+  for (auto _ : state) {
+    const double angle = 1e-3 * static_cast<double>(tick);
+    Pose X = Pose::Identity();
+    X.translation() = 0.05 * Vec3(std::sin(angle), std::sin(1.3 * angle), std::sin(1.7 * angle));
+    world.motion().tick = tick++;
+    world.place(tool, X, {});
+    const PairForces& forces = coprocessor.exchange();
+    near += forces.totals.near;
+    benchmark::DoNotOptimize(forces.on_body.data());
+  }
+  state.counters["near_pairs"] = near / static_cast<double>(tick);
+}
+
+}  // namespace
+
+BENCHMARK(pair_cold)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
+BENCHMARK(pair_warm)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
+BENCHMARK(tick_4x8)->ArgName("range_mm")->Arg(20)->Arg(2000);
+
+BENCHMARK_MAIN();
