@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -39,7 +40,8 @@ class Teleoperator {
         new_q_(model.links.size()),
         new_v_(model.links.size()),
         torques_(model.links.size()),
-        jacobian_(6, static_cast<Eigen::Index>(model.links.size())) {
+        jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(model.links.size()))),
+        new_jacobian_(jacobian_) {
     begin_tick({});
     read_joints();
     place_tool();
@@ -62,6 +64,8 @@ class Teleoperator {
   }
 
  private:
+  using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
   void begin_tick(std::chrono::nanoseconds now) noexcept {
     record_.status = now > last_now_ ? 0U : status::clock_fault;
     last_now_ = now;
@@ -84,16 +88,22 @@ class Teleoperator {
 
   void place_tool() noexcept {
     kinematics_.update(q_);
-    kinematics_.tool_jacobian(jacobian_);
-    X_WT_ = kinematics_.X_WT();
-    V_WT_ = {};
+    kinematics_.tool_jacobian(new_jacobian_);
+    const Pose X_WT = kinematics_.X_WT();
+    Twist V_WT;
     for (std::size_t i = 0; i < v_.size(); ++i) {
-      const auto column = jacobian_.col(static_cast<Eigen::Index>(i));
-      V_WT_.linear += v_[i] * column.template head<3>();
-      V_WT_.angular += v_[i] * column.template tail<3>();
+      const auto column = new_jacobian_.col(static_cast<Eigen::Index>(i));
+      V_WT.linear += v_[i] * column.template head<3>();
+      V_WT.angular += v_[i] * column.template tail<3>();
     }
     world_.motion().tick = next_tick_;
-    if (!world_.place(tool_, X_WT_, V_WT_)) record_.status |= status::bad_pose;
+    if (world_.place(tool_, X_WT, V_WT)) {
+      X_WT_ = X_WT;
+      V_WT_ = V_WT;
+      jacobian_.swap(new_jacobian_);
+    } else {
+      record_.status |= status::bad_pose;
+    }
   }
 
   [[nodiscard]] Wrench push_away() noexcept {
@@ -130,7 +140,7 @@ class Teleoperator {
       const double most = link.effort_limit > 0.0 ? link.effort_limit : 1e9;
       if (!(std::abs(torques_[i]) <= most)) {
         record_.status |= status::torque_limit;
-        torques_[i] = std::clamp(torques_[i], -most, most);
+        torques_[i] = std::isnan(torques_[i]) ? 0.0 : std::clamp(torques_[i], -most, most);
       }
     }
     arm_.set_torques(torques_);
@@ -162,7 +172,7 @@ class Teleoperator {
   double period_;                              ///< [s]
   std::vector<double> q_, v_, new_q_, new_v_;  ///< [rad], [rad/s]
   std::vector<double> torques_;                ///< [N m]
-  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian_;
+  Jacobian jacobian_, new_jacobian_;
   Pose X_WT_ = Pose::Identity();
   Twist V_WT_;
   Wrench coupled_;
