@@ -26,14 +26,15 @@ class TorqueArm {
   void reset() noexcept { angle_ = rate_ = hand_angle_ = felt_ = 0.0; }
 
   /// One period with the hand leading at `hand_rate` [rad/s] against `torque` [N m] from the
-  /// motor. Returns the rate of the lever [rad/s]. Semi-implicit Euler: the dampers act on the new
-  /// rate, so that no gain makes them unstable.
+  /// motor. Returns the rate of the lever [rad/s]. Implicit Euler: spring and dampers act on the
+  /// new angle and rate, so that no gain makes them unstable.
   double step(double hand_rate, double torque, double period) noexcept {
     torque = std::clamp(torque, -options_.torque_limit, options_.torque_limit);
     hand_angle_ += period * hand_rate;
     const double spring = options_.hand_stiffness * (hand_angle_ - angle_);
     const double push = spring + options_.hand_damping * hand_rate + torque;
-    const double drag = options_.friction + options_.hand_damping;
+    const double drag =
+        options_.friction + options_.hand_damping + period * options_.hand_stiffness;
     rate_ = (rate_ + period * push / options_.inertia) / (1.0 + period * drag / options_.inertia);
     angle_ += period * rate_;
     felt_ = torque;
