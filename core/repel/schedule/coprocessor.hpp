@@ -39,8 +39,11 @@ class Coprocessor {
       seats_.push_back(std::make_unique<Seat>(world, options.budget, i, workers));
     }
     for (int i = 0; i < options.threads; ++i) {
-      seats_[i]->thread = std::jthread(
-          [this, seat = seats_[i].get()](const std::stop_token& stop) { serve(*seat, stop); });
+      seats_[i]->thread =
+          std::jthread([this, i, seat = seats_[i].get()](const std::stop_token& stop) {
+            if (options_.on_thread_start != nullptr) options_.on_thread_start(i);
+            serve(*seat, stop);
+          });
     }
   }
   Coprocessor(const Coprocessor&) = delete;
