@@ -22,8 +22,9 @@ class PairWorker {
       const int first = b * PairBlock::capacity;
       blocks_.emplace_back(world, first, std::min(PairBlock::capacity, pairs - first));
     }
-    if (budget.work_units > 0)
-      units_per_block_ = std::max<std::int64_t>(1, budget.work_units / blocks);
+    if (budget.work_units > 0) {
+      units_per_block_ = std::max<std::int64_t>(1, budget.work_units / std::max(1, blocks));
+    }
     for (std::size_t i = 0; i < X_WP_.size(); ++i) {
       const Part& part = world.parts()[i];
       X_WP_[i] = world.motion().bodies[part.body.index].X_WB * part.X_BP;
@@ -37,7 +38,8 @@ class PairWorker {
     for (PairBlock& block : blocks_) block.run(motion, X_WP_, no_limit, Clock::time_point::max());
   }
 
-  /// One tick, beginning with the block at which the last one ran out of time.
+  /// One tick, beginning after the block at which the last one ran out of time: a block that takes
+  /// the whole budget goes on where it stopped when its turn comes again.
   void run(const Motion& motion) noexcept {
     const Clock::time_point deadline =
         budget_.wall.count() > 0 ? Clock::now() + budget_.wall : Clock::time_point::max();
@@ -50,7 +52,7 @@ class PairWorker {
       blocks_[b].run(motion, X_WP_, units_per_block_, deadline);
       if (!late && deadline != Clock::time_point::max() && Clock::now() >= deadline) {
         late = true;
-        next_ = b;
+        next_ = (b + 1) % count;
       }
     }
   }
