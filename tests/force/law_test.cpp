@@ -1,0 +1,176 @@
+#include <repel/force/law.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace repel {
+namespace {
+
+constexpr unsigned seed = 1993;
+
+double uniform(std::mt19937_64& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+std::vector<ForceLaw> random_laws(int count) {
+  std::mt19937_64 random(seed);
+  std::vector<ForceLaw> laws;
+  for (int i = 0; i < count; ++i) {
+    laws.push_back(
+        {uniform(random, 1e-3, 0.1), uniform(random, 1.0, 500.0), uniform(random, 0.0, 300.0)});
+    if (i % 3 == 0) laws.back().ceiling = uniform(random, 1.0, 1000.0);
+  }
+  return laws;
+}
+
+TEST(ForceLaw, RisesFromZeroWithZeroSlopeAtTheRange) {
+  for (const ForceLaw& law : random_laws(50)) {
+    EXPECT_EQ(law(law.range, 0.0), 0.0);
+    EXPECT_EQ(law(2.0 * law.range, -1.0), 0.0);
+    for (const double share : {1e-2, 1e-4, 1e-6}) {
+      // A force of second order in the distance to the range.
+      const double inside = law.spring(law.range * (1.0 - share));
+      EXPECT_NEAR(inside, law.surface_force * share * share,
+                  1e-9 * law.surface_force * share * share + 1e-15 * law.surface_force)
+          << "seed " << seed;
+      EXPECT_GT(inside, 0.0);
+    }
+  }
+}
+
+TEST(ForceLaw, IsSmoothAtTheSurface) {
+  for (const ForceLaw& law : random_laws(50)) {
+    const double h = 1e-5 * law.range;
+    EXPECT_NEAR(law.spring(0.0), law.surface_force, 1e-12 * law.surface_force);
+    const double outside = (law.spring(0.0) - law.spring(h)) / h;
+    const double inside = (law.spring(-h) - law.spring(0.0)) / h;
+    EXPECT_NEAR(outside, inside, 1e-4 * law.stiffness()) << "seed " << seed;
+    EXPECT_NEAR(inside, law.stiffness(), 1e-4 * law.stiffness());
+  }
+}
+
+TEST(ForceLaw, GrowsWithIntrusionAndHasNoJump) {
+  for (const ForceLaw& law : random_laws(50)) {
+    const double step = law.range / 1000.0;
+    double last = 0.0;
+    for (double d = 1.2 * law.range; d > -3.0 * law.range; d -= step) {
+      const double f = law.spring(d);
+      ASSERT_GE(f, last) << "at " << d << ", seed " << seed;
+      ASSERT_LE(f - last, 1.0001 * law.stiffness() * step) << "at " << d << ", seed " << seed;
+      last = f;
+    }
+    EXPECT_GT(last, law.surface_force);
+  }
+}
+
+TEST(ForceLaw, NeverPullsAndNeverExceedsItsCeiling) {
+  std::mt19937_64 random(seed);
+  int limited = 0;
+  for (const ForceLaw& law : random_laws(100)) {
+    for (int i = 0; i < 200; ++i) {
+      const double f = law(uniform(random, -3.0, 1.5) * law.range, uniform(random, -10.0, 10.0));
+      ASSERT_GE(f, 0.0) << "seed " << seed;
+      ASSERT_LE(f, law.ceiling) << "seed " << seed;
+      limited += f == law.ceiling ? 1 : 0;
+    }
+  }
+  EXPECT_GT(limited, 100) << "the sample does not reach the ceiling, seed " << seed;
+}
+
+TEST(ForceLaw, RetreatNeverMeetsMoreForceThanRest) {
+  std::mt19937_64 random(seed);
+  for (const ForceLaw& law : random_laws(100)) {
+    for (int i = 0; i < 100; ++i) {
+      const double d = uniform(random, -2.0, 1.0) * law.range;
+      const double rate = uniform(random, 0.0, 5.0);
+      ASSERT_LE(law(d, rate), law(d, 0.0)) << "seed " << seed;
+      ASSERT_GE(law(d, -rate), law(d, 0.0)) << "seed " << seed;
+    }
+  }
+}
+
+TEST(ForceLaw, DampingBeginsAtZeroAtTheRangeAndIsFullFromTheSurfaceOn) {
+  const ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 50.0};
+  EXPECT_EQ(law.damper(0.02), 0.0);
+  EXPECT_EQ(law.damper(0.03), 0.0);
+  EXPECT_NEAR(law.damper(0.01), 25.0, 1e-12);
+  EXPECT_EQ(law.damper(0.0), 50.0);
+  EXPECT_EQ(law.damper(-0.01), 50.0);
+}
+
+TEST(ForceLaw, SpringGivesBackOnAClosedPathWhatItTook) {
+  for (const ForceLaw& law : random_laws(20)) {
+    // Once in and out again, deep enough for both branches; work by Simpson's rule.
+    constexpr int steps = 20000;
+    const auto distance = [&](double s) {
+      return law.range * (0.25 + 1.25 * std::cos(2.0 * std::numbers::pi * s)) +
+             0.1 * law.range * std::sin(6.0 * std::numbers::pi * s);
+    };
+    double work = 0.0;
+    double flow = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      const double a = distance(static_cast<double>(i) / steps);
+      const double b = distance(static_cast<double>(i + 1) / steps);
+      const double mean = (law.spring(a) + 4.0 * law.spring(0.5 * (a + b)) + law.spring(b)) / 6.0;
+      work += mean * (b - a);
+      flow += std::abs(mean * (b - a));
+    }
+    EXPECT_GT(flow, 0.1 * law.surface_force * law.range);
+    EXPECT_NEAR(work, 0.0, 1e-9 * flow) << "seed " << seed;
+  }
+}
+
+TEST(ForceLaw, DamperOnlyTakesEnergy) {
+  ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 80.0};
+  constexpr int steps = 20000;
+  constexpr double T = 1.0 / steps;
+  double work = 0.0;  // done by the force on the body
+  for (int i = 0; i < steps; ++i) {
+    const double s = 2.0 * std::numbers::pi * (i + 0.5) / steps;
+    const double d = 0.02 * (0.3 + std::cos(s));
+    const double rate = -0.02 * 2.0 * std::numbers::pi * std::sin(s);
+    work += T * law(d, rate) * rate;
+  }
+  EXPECT_LT(work, -0.01);
+}
+
+TEST(ForceLaw, DistanceThatIsNotANumberGivesNoForce) {
+  EXPECT_EQ(ForceLaw{}(std::nan(""), 0.0), 0.0);
+}
+
+TEST(ForceLaw, CheckedNamesTheFieldItRefuses) {
+  const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
+  struct Bad {
+    const char* name;
+    double ForceLaw::*field;
+    std::vector<double> values;
+  };
+  const Bad bad[] = {{"range", &ForceLaw::range, {0.0, -1.0, nan, infinity}},
+                     {"surface force", &ForceLaw::surface_force, {-1.0, nan, infinity}},
+                     {"damping", &ForceLaw::damping, {-1e-9, nan, infinity}},
+                     {"ceiling", &ForceLaw::ceiling, {-1.0, nan}}};
+  for (const Bad& b : bad) {
+    for (const double value : b.values) {
+      ForceLaw law;
+      law.*b.field = value;
+      try {
+        checked(law);
+        ADD_FAILURE() << b.name << " " << value << " was accepted";
+      } catch (const SetupError& error) {
+        EXPECT_EQ(std::string(error.what()).find(b.name), 0U) << error.what();
+        EXPECT_NE(std::string(error.what()).find("allowed: "), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_NO_THROW(checked(ForceLaw{}));
+  EXPECT_NO_THROW(checked(ForceLaw{.range = 0.01, .surface_force = 0.0, .damping = 0.0}));
+}
+
+}  // namespace
+}  // namespace repel

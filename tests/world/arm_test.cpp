@@ -1,0 +1,60 @@
+#include <repel/world/arm.hpp>
+
+#include <gtest/gtest.h>
+
+namespace repel {
+namespace {
+
+struct Arm {
+  void set_torques(std::span<const double>) noexcept {}
+  void step(double) noexcept {}
+  void read_positions(std::span<double>) const noexcept {}
+  void read_velocities(std::span<double>) const noexcept {}
+};
+
+struct Kinematics {
+  void update(std::span<const double>) noexcept {}
+  [[nodiscard]] Pose X_WT() const noexcept { return Pose::Identity(); }
+  void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
+  void gravity_torques(std::span<double>) noexcept {}
+};
+
+struct ArmThatCannotStep {
+  void set_torques(std::span<const double>) noexcept {}
+  void read_positions(std::span<double>) const noexcept {}
+  void read_velocities(std::span<double>) const noexcept {}
+};
+
+struct ArmThatReportsFailure : Arm {
+  bool set_torques(std::span<const double>) noexcept { return false; }
+};
+
+struct ArmThatChangesWhenRead : ArmThatCannotStep {
+  void step(double) noexcept {}
+  void read_positions(std::span<double>) noexcept {}
+};
+
+struct KinematicsWithoutGravity {
+  void update(std::span<const double>) noexcept {}
+  [[nodiscard]] Pose X_WT() const noexcept { return Pose::Identity(); }
+  void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
+};
+
+static_assert(TorqueDrivenArm<Arm>);
+static_assert(!TorqueDrivenArm<ArmThatCannotStep>);
+static_assert(!TorqueDrivenArm<ArmThatReportsFailure>);
+static_assert(!TorqueDrivenArm<ArmThatChangesWhenRead>);
+static_assert(ArmKinematics<Kinematics>);
+static_assert(!ArmKinematics<KinematicsWithoutGravity>);
+static_assert(!ArmKinematics<Arm>);
+
+TEST(ArmModel, IsEmptyAndAtTheOriginUnlessSaidOtherwise) {
+  const ArmModel model;
+  EXPECT_TRUE(model.links.empty());
+  EXPECT_TRUE(model.X_WB.isApprox(Pose::Identity()));
+  EXPECT_TRUE(model.X_LT.isApprox(Pose::Identity()));
+  EXPECT_EQ(model.gravity_W, Vec3(0, 0, -9.81));
+}
+
+}  // namespace
+}  // namespace repel
