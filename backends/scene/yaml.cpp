@@ -51,7 +51,7 @@ Value Value::document(std::string_view yaml, const std::string& file) {
     if (documents.empty() || documents.front().IsNull()) {
       throw SetupError("the file is empty; allowed: one scene", file, 1);
     }
-    const Value first(documents.front(), "the scene", std::make_shared<std::string>(file));
+    Value first(documents.front(), "the scene", std::make_shared<std::string>(file));
     if (documents.size() > 1) {
       const Value second(documents[1], "", first.file_);
       second.fail("a second YAML document; allowed: one scene in a file");

@@ -23,11 +23,8 @@ namespace repel::scene {
 /// allowed, when it is not what is asked for.
 class Value {
  public:
-  Value(YAML::Node node, std::string name, std::shared_ptr<const std::string> file)
-      : node_(std::move(node)),
-        name_(std::move(name)),
-        file_(std::move(file)),
-        mark_(node_.Mark()) {}
+  Value(const YAML::Node& node, std::string name, std::shared_ptr<const std::string> file)
+      : node_(node), name_(std::move(name)), file_(std::move(file)), mark_(node.Mark()) {}
 
   /// The only document of a text.
   [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
