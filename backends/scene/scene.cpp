@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
 
 #include "yaml.hpp"
@@ -266,7 +267,7 @@ Budget budget_of(const Map& scene) {
   }
   if (const Value* work = map.find("work")) budget.work_units = work->integer(0, 1'000'000'000);
   if (const Value* threads = map.find("threads")) {
-    budget.threads = static_cast<int>(threads->integer(1, 64));
+    budget.threads = static_cast<int>(threads->integer(0, Limits{}.threads));
   }
   return budget;
 }

@@ -127,7 +127,7 @@ TEST(SceneError, ValuesOutOfTheirRangeAreRefused) {
   expect_refused(base_scene + "rate: 0 Hz\n", 8, {"1 to 1e+05 Hz"});
   expect_refused(base_scene + "coupling: {stiffness: 0 N/m}\n", 8, {"0.001 to 1e+07 N/m"});
   expect_refused(base_scene + "laws: {a: {range: 0 m}}\n", 8, {"1e-06 to 1000 m"});
-  expect_refused(base_scene + "budget: {threads: 0}\n", 8, {"1 to 64"});
+  expect_refused(base_scene + "budget: {threads: -1}\n", 8, {"0 to 16"});
   expect_refused(base_scene + "budget: {work: -1}\n", 8, {"0 to 1000000000"});
   expect_refused(base_scene + "budget: {work: 1.5}\n", 8, {"a whole number"});
   expect_refused(base_scene +

@@ -108,7 +108,7 @@ TEST(SceneValue, ASceneThatSaysLittleHasTheStatedDefaults) {
   EXPECT_TRUE(scene.script.empty());
   EXPECT_EQ(scene.budget.wall_us, 0.0);
   EXPECT_EQ(scene.budget.work_units, 0);
-  EXPECT_EQ(scene.budget.threads, 1);
+  EXPECT_EQ(scene.budget.threads, 0);
 }
 
 TEST(SceneValue, AnObstacleTakesTheLawItNamesOrTheDefault) {

@@ -49,7 +49,7 @@ struct RobotChoice {
 struct Budget {
   double wall_us = 0.0;         ///< [us] 0: no limit
   std::int64_t work_units = 0;  ///< support-map pairs; 0: no limit
-  int threads = 1;              ///< that share the queries, the tick's own included
+  int threads = 0;              ///< of the coprocessor; 0: the tick's own thread does the work
 };
 
 struct Scene {
