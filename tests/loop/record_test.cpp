@@ -1,0 +1,62 @@
+#include <repel/loop/record.hpp>
+
+#include <gtest/gtest.h>
+
+namespace repel {
+namespace {
+
+TickRecord record_with(std::int64_t tick, Status status, double force, double nearest) {
+  TickRecord record;
+  record.tick = tick;
+  record.status = status;
+  record.virtual_force.force = Vec3(0.0, force, 0.0);
+  record.pairs.nearest = nearest;
+  record.pairs.nearest_pair = {static_cast<std::int32_t>(tick)};
+  record.pairs.near = 3;
+  record.pairs.evaluated = 2;
+  record.pairs.stale = static_cast<int>(tick);
+  record.pairs.oldest_age = 2 * tick;
+  record.pairs.iterations = 10;
+  return record;
+}
+
+TEST(Recorder, KeepsWhatItHasRoomForAndCountsTheRest) {
+  Recorder recorder(10);
+  const std::size_t room = recorder.records().capacity();
+  const TickRecord* const memory = recorder.records().data();
+  for (int tick = 0; tick < 25; ++tick) recorder.add(record_with(tick, 0, 0.0, 1.0));
+  EXPECT_EQ(recorder.records().size(), room);
+  EXPECT_EQ(recorder.dropped(), 25 - static_cast<std::int64_t>(room));
+  EXPECT_EQ(recorder.records().data(), memory);   // it has not grown
+  EXPECT_EQ(recorder.records().front().tick, 0);  // the first ones are those kept
+}
+
+TEST(Recorder, WithoutRoomItOnlyCounts) {
+  Recorder recorder(0);
+  recorder.add({});
+  EXPECT_TRUE(recorder.records().empty());
+  EXPECT_EQ(recorder.dropped(), 1);
+}
+
+TEST(RunTotals, AddUpAndKeepTheExtremes) {
+  RunTotals totals;
+  totals.add(record_with(1, status::stale_pairs, 5.0, 0.3));
+  totals.add(record_with(2, status::stale_pairs | status::bad_pose, 9.0, -0.1));
+  totals.add(record_with(3, 0, 2.0, 0.2));
+  EXPECT_EQ(totals.ticks, 3);
+  EXPECT_EQ(totals.near, 9);
+  EXPECT_EQ(totals.evaluated, 6);
+  EXPECT_EQ(totals.iterations, 30);
+  EXPECT_EQ(totals.stale, 6);
+  EXPECT_EQ(totals.most_stale, 3);
+  EXPECT_EQ(totals.oldest_age, 6);
+  EXPECT_EQ(totals.nearest, -0.1);
+  EXPECT_EQ(totals.nearest_pair, PairId{2});
+  EXPECT_EQ(totals.peak_force, 9.0);
+  EXPECT_EQ(totals.status_ticks[0], 1);  // bad_pose
+  EXPECT_EQ(totals.status_ticks[4], 2);  // stale_pairs
+  EXPECT_EQ(totals.status_ticks[1], 0);
+}
+
+}  // namespace
+}  // namespace repel

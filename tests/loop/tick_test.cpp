@@ -1,0 +1,242 @@
+#include <repel/loop/tick.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "loop/slider.hpp"
+
+namespace repel {
+namespace {
+
+using namespace std::chrono_literals;
+using test::SliderCell;
+
+bool is_finite_record(const TickRecord& record) {
+  return is_finite(record.p_WT) && is_finite(record.v_WT) && is_finite(record.virtual_force) &&
+         is_finite(record.coupling) && std::isfinite(record.gain) &&
+         std::isfinite(record.lever_torque);
+}
+
+/// [N] NaN when one of the forces is.
+double largest_force(const SliderCell& cell) {
+  const auto& f = cell.arm.force;
+  const double sum = f[0] + f[1] + f[2];
+  return std::max({std::abs(f[0]), std::abs(f[1]), std::abs(f[2])}) + (sum - sum);
+}
+
+TEST(Tick, MovesTheToolAsTheOperatorAsks) {
+  SliderCell cell(test::push(10.0, 0.05));
+  for (int tick = 0; tick < 400; ++tick) (void)cell.tick();
+  EXPECT_GT(cell.arm.q[0], 0.02);
+  EXPECT_NEAR(cell.arm.q[1], 0.0, 1e-12);
+  EXPECT_NEAR(cell.arm.v[0], 0.048, 0.002);  // the rate less the dead band
+}
+
+TEST(Tick, WallHoldsTheToolAndTheForcesBalance) {
+  SliderCell cell(test::push(20.0, 0.1));
+  TickRecord record;
+  for (int tick = 0; tick < 8000; ++tick) {
+    record = cell.tick();
+    ASSERT_EQ(record.status, 0U) << to_text(record.status);
+    ASSERT_EQ(record.gain, 1.0);
+  }
+  // The coupling pushes with its 60 N and 120 N s/m at 0.098 m/s: less than the wall at its
+  // surface.
+  EXPECT_LT(cell.arm.q[0], 0.15);
+  EXPECT_GT(cell.arm.q[0], 0.13);
+  EXPECT_LT(record.virtual_force.force.x(), -30.0);
+  EXPECT_NEAR(record.virtual_force.force.x() + record.coupling.force.x(), 0.0, 1.0);
+  EXPECT_NEAR(record.v_WT.norm(), 0.0, 1e-3);
+}
+
+TEST(Tick, RecordSaysWhichTickItIs) {
+  SliderCell cell(test::push(0.5, 0.1));
+  for (int tick = 0; tick < 300; ++tick) {
+    const TickRecord& record = cell.tick();
+    ASSERT_EQ(record.tick, tick);
+    ASSERT_NEAR(record.time, 0.0025 * tick, 1e-12);
+    ASSERT_EQ(record.phase, tick < 200 ? 0 : 1);
+    ASSERT_EQ(record.pairs.nearest_pair.valid(), record.pairs.evaluated > 0);
+  }
+}
+
+/// Drives into the wall, spoils one input for 40 ticks, and follows the force down, through the
+/// hold and up again.
+void expect_ramp(const char* name, Status bit, const std::function<void(SliderCell&, bool)>& spoil,
+                 std::chrono::nanoseconds elapsed = SliderCell::period) {
+  SCOPED_TRACE(name);
+  SliderCell cell(test::push(60.0, 0.1));
+  for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(cell.tick().status, 0U);
+  ASSERT_GT(cell.teleoperator.tick(cell.now += SliderCell::period).virtual_force.force.norm(),
+            30.0);
+  const double before = 200.0;  // more than walls and coupling can give here
+
+  spoil(cell, true);
+  double gain = 1.0;
+  for (int tick = 0; tick < 40; ++tick) {
+    const TickRecord& record = cell.tick(elapsed);
+    ASSERT_EQ(record.status & bit, bit) << "tick " << tick << ": " << to_text(record.status);
+    ASSERT_TRUE(is_finite_record(record));
+    ASSERT_LE(record.gain, gain);
+    gain = record.gain;
+    ASSERT_LE(largest_force(cell), gain * before + 1e-12);
+  }
+  EXPECT_EQ(gain, 0.0);
+  EXPECT_EQ(largest_force(cell), 0.0);
+
+  spoil(cell, false);
+  if (elapsed < 0ns) cell.now += 10s;  // past the last good time
+  int held = 0;
+  for (; held < 400 && cell.tick().gain == 0.0; ++held) ASSERT_EQ(largest_force(cell), 0.0);
+  EXPECT_NEAR(held * 0.0025, 0.25, 0.005);
+  double last = 0.0;
+  for (int tick = 0; tick < 300; ++tick) {
+    const TickRecord& record = cell.tick();
+    ASSERT_EQ(record.status, 0U) << to_text(record.status);
+    ASSERT_GE(record.gain, last);
+    last = record.gain;
+  }
+  EXPECT_EQ(last, 1.0);
+  for (int tick = 0; tick < 2000; ++tick) (void)cell.tick();
+  EXPECT_GT(cell.tick().virtual_force.force.norm(), 30.0);  // the wall is back
+}
+
+TEST(Tick, JointsThatAreNotNumbersRampTheForceDownAndItComesBack) {
+  expect_ramp("joints", status::bad_joints,
+              [](SliderCell& cell, bool spoilt) { cell.arm.spoilt = spoilt; });
+}
+
+TEST(Tick, PoseThatIsNotANumberRampsTheForceDownAndItComesBack) {
+  expect_ramp("pose", status::bad_pose,
+              [](SliderCell& cell, bool spoilt) { cell.kinematics.spoilt = spoilt; });
+}
+
+TEST(Tick, ClockThatStandsStillRampsTheForceDownAndItComesBack) {
+  expect_ramp(
+      "clock", status::clock_fault, [](SliderCell&, bool) {}, 0ns);
+}
+
+TEST(Tick, ClockThatRunsBackRampsTheForceDownAndItComesBack) {
+  expect_ramp(
+      "clock", status::clock_fault, [](SliderCell&, bool) {}, -1ms);
+}
+
+TEST(Tick, CommandThatIsNotANumberRampsTheForceDownAndItComesBack) {
+  network::Script script = test::push(4.0, 0.1);
+  network::Phase fault = script.front();
+  fault.duration = 0.1;
+  fault.rates.linear.y() = std::nan("");
+  script.push_back(fault);
+  script.push_back(test::push(10.0, 0.1).front());
+  SliderCell cell(script);
+  for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(cell.tick().status, 0U);
+  double gain = 1.0;
+  for (int tick = 0; tick < 40; ++tick) {
+    const TickRecord& record = cell.tick();
+    ASSERT_EQ(record.status, status::bad_command) << "tick " << tick;
+    ASSERT_TRUE(is_finite_record(record));
+    ASSERT_LE(record.gain, gain);
+    gain = record.gain;
+  }
+  EXPECT_EQ(gain, 0.0);
+  EXPECT_EQ(largest_force(cell), 0.0);
+  for (int tick = 0; tick < 2000; ++tick) {
+    const TickRecord& record = cell.tick();
+    ASSERT_EQ(record.status, 0U);
+    gain = record.gain;
+  }
+  EXPECT_EQ(gain, 1.0);
+  EXPECT_GT(cell.tick().virtual_force.force.norm(), 30.0);
+}
+
+TEST(Tick, CouplingWindsNothingUpDuringAFault) {
+  SliderCell cell(test::push(60.0, 0.2));
+  for (int tick = 0; tick < 10; ++tick) (void)cell.tick();
+  cell.arm.spoilt = true;
+  for (int tick = 0; tick < 4000; ++tick) (void)cell.tick();
+  cell.arm.spoilt = false;
+  double largest = 0.0;
+  for (int tick = 0; tick < 101; ++tick)
+    largest = std::max(largest, cell.tick().coupling.force.norm());
+  // One period of motion and the damper: far from the limit of the spring.
+  EXPECT_LT(largest, 30.0);
+}
+
+TEST(Tick, JointsGetNoMoreThanTheyCanGive) {
+  SliderCell cell(test::push(20.0, 0.2), {}, 8.0);
+  int limited = 0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    const TickRecord& record = cell.tick();
+    ASSERT_LE(largest_force(cell), 8.0);
+    const bool cut = (record.status & status::torque_limit) != 0U;
+    ASSERT_EQ(record.gain, 1.0);
+    if (cut) {
+      EXPECT_EQ(largest_force(cell), 8.0);
+    }
+    limited += cut ? 1 : 0;
+  }
+  EXPECT_GT(limited, 10);
+  EXPECT_LT(limited, 2000);
+}
+
+TEST(Tick, SmallestBudgetIsReportedAndStaysOnTheSafeSide) {
+  CoprocessorOptions options;
+  options.budget.work_units = 1;
+  SliderCell cell(test::push(20.0, 0.05), options, 1000.0, 40);
+  bool stale = false;
+  int near_for = 0;  // ticks in which every wall has been near
+  for (int tick = 0; tick < 3000; ++tick) {
+    const TickRecord& record = cell.tick();
+    ASSERT_TRUE(is_finite_record(record));
+    ASSERT_EQ((record.status & status::stale_pairs) != 0U, record.pairs.stale > 0);
+    near_for = record.pairs.near == 40 ? near_for + 1 : 0;
+    if (near_for > 40) {
+      ASSERT_LE(record.pairs.oldest_age, 40);
+    }
+    stale = stale || record.pairs.stale > 0;
+    ASSERT_LT(cell.arm.q[0], 0.15);
+  }
+  EXPECT_TRUE(stale);
+}
+
+TEST(Tick, SameBitsWithAnyNumberOfThreads) {
+  const auto run = [](int threads) {
+    CoprocessorOptions options;
+    options.threads = threads;
+    options.lock_step = true;
+    SliderCell cell(test::push(20.0, 0.1), options, 1000.0, 200);
+    std::vector<double> trace;
+    for (int tick = 0; tick < 700; ++tick) {
+      const TickRecord& record = cell.tick();
+      for (int axis = 0; axis < 3; ++axis) {
+        trace.push_back(record.p_WT[axis]);
+        trace.push_back(record.virtual_force.force[axis]);
+        trace.push_back(record.virtual_force.torque[axis]);
+      }
+    }
+    return trace;
+  };
+  const auto alone = run(0);
+  EXPECT_EQ(run(1), alone);
+  EXPECT_EQ(run(2), alone);
+}
+
+TEST(Tick, LateCoprocessorIsSaid) {
+  CoprocessorOptions options;
+  options.threads = 1;
+  options.patience = 0ns;
+  SliderCell cell(test::push(60.0, 0.2), options, 1000.0, 4000);
+  int late = 0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    const TickRecord& record = cell.tick();
+    late += (record.status & status::late_result) != 0U ? 1 : 0;
+    ASSERT_TRUE(is_finite_record(record));
+    ASSERT_EQ(record.gain, 1.0);
+  }
+  EXPECT_GT(late, 0);
+}
+
+}  // namespace
+}  // namespace repel

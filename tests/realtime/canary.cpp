@@ -1,0 +1,21 @@
+// Does everything a tick must not do; symbols.sh must refuse this object for each of them.
+#include <cstdlib>
+#include <mutex>
+#include <stdexcept>
+#include <vector>
+
+namespace repel::test {
+
+std::mutex mutex;
+
+double* forbidden(std::vector<double>& grows, double*& old, void*& raw) {
+  const std::lock_guard<std::mutex> lock(mutex);
+  grows.push_back(1.0);
+  std::free(raw);
+  raw = std::malloc(grows.size());
+  if (raw == nullptr) throw std::runtime_error("no memory");
+  delete[] old;
+  return new double[grows.size()];
+}
+
+}  // namespace repel::test

@@ -1,0 +1,138 @@
+// Counts every call to the heap in this program. A file of its own brings its own malloc.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <new>
+
+#include "loop/slider.hpp"
+#include "schedule/boxes.hpp"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define REPEL_COUNTS_HEAP 1
+#else
+#define REPEL_COUNTS_HEAP 0
+#endif
+
+namespace {
+
+std::atomic<bool> watched{false};
+std::atomic<long> calls{0};
+
+[[maybe_unused]] void count() noexcept {
+  if (watched.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+#if REPEL_COUNTS_HEAP
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void __libc_free(void*);
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  count();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* old, std::size_t size) {
+  count();
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  *out = aligned_alloc(alignment, size);
+  return *out == nullptr ? ENOMEM : 0;
+}
+void free(void* memory) {
+  count();
+  __libc_free(memory);
+}
+}
+#endif
+
+namespace repel {
+namespace {
+
+/// Every thread of the program is counted while it lives, and Eigen is told to refuse the heap.
+struct Watch {
+  Watch() {
+    Eigen::internal::set_is_malloc_allowed(false);
+    calls = 0;
+    watched = true;
+  }
+  ~Watch() {
+    watched = false;
+    Eigen::internal::set_is_malloc_allowed(true);
+  }
+};
+
+TEST(Heap, CounterSeesMallocFreeAndNew) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  // Through volatile pointers, so that the compiler cannot leave a pair of calls out.
+  calls = 0;
+  watched = true;
+  int* volatile by_new = new int(1);
+  delete by_new;
+  void* volatile by_malloc = std::malloc(10);
+  std::free(by_malloc);
+  void* volatile aligned = ::operator new(64, std::align_val_t(64));
+  ::operator delete(aligned, std::align_val_t(64));
+  watched = false;
+  EXPECT_EQ(calls, 6);
+}
+
+TEST(Heap, TickTakesNothingFromIt) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const int threads : {0, 2}) {
+    CoprocessorOptions options;
+    options.threads = threads;
+    options.lock_step = true;
+    test::SliderCell cell(test::push(2.0, 0.1), options, 100.0, 200);
+    double peak = 0.0;
+    for (int tick = 0; tick < 700; ++tick) {
+      cell.arm.spoilt = tick > 600 && tick < 610;  // the ways of a fault too
+      const Watch watch;
+      peak = std::max(peak, cell.tick(tick == 650 ? std::chrono::nanoseconds(0) : cell.period)
+                                .virtual_force.force.norm());
+    }
+    EXPECT_EQ(calls, 0) << threads << " threads";
+    EXPECT_GT(peak, 10.0);
+  }
+}
+
+TEST(Heap, CoprocessorTakesNothingFromItWhateverItsBudget) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  using namespace std::chrono_literals;
+  for (const Budget& budget : {Budget{}, Budget{.work_units = 30}, Budget{.wall = 10us}}) {
+    for (const int threads : {0, 2}) {
+      test::Boxes boxes(4, 60, {.range = 0.1}, 3);
+      CoprocessorOptions options;
+      options.threads = threads;
+      options.budget = budget;
+      options.lock_step = true;
+      Coprocessor coprocessor(boxes.world, options);
+      int evaluated = 0;
+      for (int tick = 0; tick < 200; ++tick) {
+        const Watch watch;
+        boxes.move();
+        evaluated += coprocessor.exchange().totals.evaluated;
+      }
+      EXPECT_EQ(calls, 0) << threads << " threads";
+      EXPECT_GT(evaluated, 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace repel

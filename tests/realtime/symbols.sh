@@ -1,0 +1,34 @@
+#!/bin/sh
+# symbols.sh TICK CANARY: the object file of the tick must not lead to the heap, to a throw, to a
+# lock or to output; the canary must be refused for each kind.
+set -eu
+command -v nm >/dev/null || { echo "skipped: nm is missing; to have it: apt-get install binutils"; exit 77; }
+
+heap='malloc|calloc|realloc|free|aligned_alloc|posix_memalign|_Zn[wa].*|_Zd[la].*'
+throw='__cxa_throw|__cxa_rethrow|__cxa_allocate_exception|_ZSt[0-9]+__throw_.*'
+lock='pthread_mutex_.*|pthread_cond_.*|pthread_rwlock_.*|__cxa_guard_.*|sem_.*'
+output='f?printf|f?puts|f?write|_ZSt4c(out|err)|_ZNSo.*'
+
+undefined() {
+  nm -u "$1" | sed 's/.* //; s/@.*//'
+}
+# found KIND OBJECT: the undefined symbols of that kind.
+found() {
+  undefined "$2" | grep -xE "$1" || true
+}
+
+bad=$(found "$heap|$throw|$lock|$output" "$1")
+if [ -n "$bad" ]; then
+  echo "$1 is the tick and needs:"
+  echo "$bad"
+  exit 1
+fi
+# An object without the tick in it would pass too.
+nm -C "$1" | grep -q 'T repel::test::one_tick' || { echo "$1 does not hold the tick"; exit 1; }
+undefined "$1" | grep -qx '_ZNSt6chrono3_V212steady_clock3nowEv' ||
+  { echo "$1 does not reach the budget of the coprocessor"; exit 1; }
+
+for kind in "$heap" "$throw" "$lock"; do
+  [ -n "$(found "$kind" "$2")" ] || { echo "the canary was not refused for $kind"; exit 1; }
+done
+echo "the tick needs only:" $(undefined "$1")
