@@ -63,6 +63,9 @@ class Shape {
   [[nodiscard]] double reach() const noexcept {
     return ladder_->front().core.reach() + ladder_->front().depth;
   }
+  /// [m] depth of the last level: no signed distance to this shape and another falls below minus
+  /// the sum of theirs.
+  [[nodiscard]] double deepest() const noexcept { return ladder_->back().depth; }
 
  private:
   explicit Shape(Ladder ladder) : ladder_(std::make_shared<const Ladder>(std::move(ladder))) {}

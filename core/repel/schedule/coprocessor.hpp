@@ -38,6 +38,7 @@ class Coprocessor {
     for (int i = 0; i < workers; ++i) {
       seats_.push_back(std::make_unique<Seat>(world, options.budget, i, workers));
     }
+    for (const auto& seat : seats_) blocks_ += seat->worker.blocks().size();
     for (int i = 0; i < options.threads; ++i) {
       seats_[i]->thread =
           std::jthread([this, i, seat = seats_[i].get()](const std::stop_token& stop) {
@@ -56,7 +57,9 @@ class Coprocessor {
     late_ = false;
     if (options_.threads == 0) {
       seats_.front()->worker.run(motion);
-      sum([](const Seat& seat) -> const Answer& { return seat.answer_here(); });
+      sum([](const Seat& seat, std::size_t b) -> const PairForces& {
+        return seat.worker.blocks()[b].forces();
+      });
       return total_;
     }
     for (auto& seat : seats_) {
@@ -66,7 +69,9 @@ class Coprocessor {
       seat->inbox.post();
     }
     wait_for(motion.tick);
-    sum([](const Seat& seat) -> const Answer& { return seat.outbox.newest(); });
+    sum([](const Seat& seat, std::size_t b) -> const PairForces& {
+      return seat.outbox.newest()[b];
+    });
     return total_;
   }
 
@@ -95,7 +100,6 @@ class Coprocessor {
       worker.prime(world.motion());
       Answer answer;
       for (const auto& block : worker.blocks()) answer.push_back(block.forces());
-      here = answer;
       return answer;
     }
     void copy_to(Answer& answer) const noexcept {
@@ -106,14 +110,8 @@ class Coprocessor {
         std::copy(from.on_body.begin(), from.on_body.end(), answer[b].on_body.begin());
       }
     }
-    [[nodiscard]] const Answer& answer_here() const noexcept {
-      copy_to(here);
-      return here;
-    }
-
     detail::PairWorker worker;
     Mailbox<Motion> inbox;
-    mutable Answer here;
     Mailbox<Answer> outbox;
     std::jthread thread;
   };
@@ -144,15 +142,14 @@ class Coprocessor {
   }
 
   /// Adds up block by block in the order of the pairs, whoever worked on them.
-  template <class AnswerOf>
-  void sum(AnswerOf&& answer_of) noexcept {
+  template <class ForcesOf>
+  void sum(ForcesOf&& forces_of) noexcept {
     total_.clear();
     total_.tick = world_->motion().tick;
     const std::size_t workers = seats_.size();
-    for (std::size_t b = 0;; ++b) {
-      const Answer& answer = answer_of(*seats_[b % workers]);
-      if (b / workers >= answer.size()) break;
-      const PairForces& block = answer[b / workers];
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      const PairForces& block = forces_of(*seats_[b % workers], b / workers);
+      if (block.totals.near == 0) continue;
       for (std::size_t i = 0; i < total_.on_body.size(); ++i) total_.on_body[i] += block.on_body[i];
       total_.totals.add(block.totals);
       const std::int64_t behind = total_.tick - block.tick;
@@ -190,6 +187,7 @@ class Coprocessor {
   CoprocessorOptions options_;
   PairForces total_;
   bool late_ = false;
+  std::size_t blocks_ = 0;  ///< of all workers
   std::vector<std::unique_ptr<Seat>> seats_;
 };
 

@@ -60,15 +60,28 @@ struct PairForces {
 
 namespace detail {
 
-/// What is remembered of a pair between ticks.
-struct PairState {
-  Separation last;
+/// What decides whether a pair is near: kept apart from the rest, so that thousands of far pairs
+/// fit into the cache.
+struct PairWatch {
+  BodyId body_a;
+  BodyId body_b;
+  double due_at = -std::numeric_limits<double>::infinity();  ///< [m] of travel of both bodies
+};
+
+/// What its force needs, also when it could not be evaluated again.
+struct PairAnswer {
+  double distance = -std::numeric_limits<double>::infinity();  ///< [m] signed, proven from below
+  Vec3 extraction_W{0, 0, 0};                                  ///< unit
+  Vec3 p_AQ_W{0, 0, 0};   ///< [m] witness point on A, from the origin of body A
+  Vec3 p_BA_W{0, 0, 0};   ///< [m] origin of body A from that of body B when it was evaluated
+  double turn = 0.0;      ///< [m] both bodies' BodyState::turn then
+  std::int64_t tick = 0;  ///< when it was evaluated
+};
+
+/// What its next evaluation begins with, and what users may ask for.
+struct PairQuery {
   WarmStart warm;
-  Vec3 p_AQ_W{0, 0, 0};  ///< [m] witness point on A, from the origin of body A
-  Vec3 p_BA_W{0, 0, 0};  ///< [m] origin of body A from that of body B when it was evaluated
-  double turn = 0.0;     ///< [m] both bodies' BodyState::turn then
-  double due_at = -std::numeric_limits<double>::infinity();  ///< [m] of travel; see `is_near`
-  std::int64_t tick = 0;                                     ///< when it was evaluated
+  Separation last;
 };
 
 /// A slice of the world's pairs. All memory is taken at construction.
@@ -77,8 +90,12 @@ class PairBlock {
   static constexpr int capacity = 64;
 
   PairBlock(const World& world, int first, int count)
-      : world_(&world), first_(first), states_(count) {
+      : world_(&world), first_(first), watches_(count), answers_(count), queries_(count) {
     forces_.on_body.resize(world.body_count());
+    for (int i = 0; i < count; ++i) {
+      watches_[i].body_a = world.part(pair(i).a).body;
+      watches_[i].body_b = world.part(pair(i).b).body;
+    }
   }
 
   /// Works through the pairs with at most `work_units` and until `deadline`, beginning where the
@@ -86,73 +103,93 @@ class PairBlock {
   /// @param X_WP pose of every part of the world, by PartId
   void run(const Motion& motion, const std::vector<Pose>& X_WP, std::int64_t work_units,
            std::chrono::steady_clock::time_point deadline) noexcept {
-    forces_.clear();
+    if (forces_.totals.near > 0) forces_.clear();
     forces_.tick = motion.tick;
-    const int count = static_cast<int>(states_.size());
+    const int count = this->count();
     const int begin = cursor_;
     bool spent = false;
     for (int k = 0; k < count; ++k) {
       const int i = begin + k < count ? begin + k : begin + k - count;
       if (!is_near(i, motion)) continue;
-      PairTotals& totals = forces_.totals;
-      ++totals.near;
-      if (!spent && out_of(work_units - totals.iterations, deadline)) {
+      const double least = widened(i, motion);
+      if (least > pair(i).law.range) {
+        watch_for(i, motion, least - pair(i).law.range);
+        continue;
+      }
+      ++forces_.totals.near;
+      const std::int64_t left = work_units - forces_.totals.iterations;
+      if (!spent && is_spent(left, deadline)) {
         spent = true;
         cursor_ = i;
       }
-      const std::int64_t left = work_units - totals.iterations;
-      if (!spent) evaluate(i, motion, X_WP, left);
-      add_force(i, motion, spent);
+      if (spent) {
+        count_stale(motion.tick - answers_[i].tick);
+        push(i, motion, least);
+      } else {
+        evaluate(i, motion, X_WP, left);
+        push(i, motion, queries_[i].last.distance);
+      }
     }
   }
 
   [[nodiscard]] const PairForces& forces() const noexcept { return forces_; }
-  [[nodiscard]] const Separation& separation_of(int i) const noexcept { return states_[i].last; }
+  [[nodiscard]] const Separation& separation_of(int i) const noexcept { return queries_[i].last; }
   [[nodiscard]] int first() const noexcept { return first_; }
-  [[nodiscard]] int count() const noexcept { return static_cast<int>(states_.size()); }
+  [[nodiscard]] int count() const noexcept { return static_cast<int>(watches_.size()); }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  [[nodiscard]] static bool out_of(std::int64_t units, Clock::time_point deadline) noexcept {
+  [[nodiscard]] static bool is_spent(std::int64_t units, Clock::time_point deadline) noexcept {
     if (units <= 0) return true;
     return deadline != Clock::time_point::max() && Clock::now() >= deadline;
   }
 
   [[nodiscard]] const Pair& pair(int i) const noexcept { return world_->pairs()[first_ + i]; }
-  [[nodiscard]] const BodyState& body(PartId part, const Motion& motion) const noexcept {
-    return motion.bodies[world_->part(part).body.index];
+  [[nodiscard]] const BodyState& body_a(int i, const Motion& motion) const noexcept {
+    return motion.bodies[watches_[i].body_a.index];
+  }
+  [[nodiscard]] const BodyState& body_b(int i, const Motion& motion) const noexcept {
+    return motion.bodies[watches_[i].body_b.index];
   }
 
   /// A pair whose bodies together have not travelled its clearance since it was evaluated cannot
-  /// have come within range: it costs this comparison and nothing else.
+  /// have come within range: it costs this comparison and nothing else. One that might by that
+  /// count is looked at once more, along the direction that parts it (`widened`).
   [[nodiscard]] bool is_near(int i, const Motion& motion) const noexcept {
-    const Pair& p = pair(i);
-    return body(p.a, motion).travel + body(p.b, motion).travel >= states_[i].due_at;
+    return body_a(i, motion).travel + body_b(i, motion).travel >= watches_[i].due_at;
+  }
+
+  /// @param clearance [m] what the bodies may travel before the pair can be within range
+  void watch_for(int i, const Motion& motion, double clearance) noexcept {
+    watches_[i].due_at = clearance > 0.0
+                             ? body_a(i, motion).travel + body_b(i, motion).travel + clearance
+                             : -std::numeric_limits<double>::infinity();
   }
 
   void evaluate(int i, const Motion& motion, const std::vector<Pose>& X_WP,
                 std::int64_t units) noexcept {
     const Pair& p = pair(i);
-    PairState& state = states_[i];
-    const BodyState& A = body(p.a, motion);
-    const BodyState& B = body(p.b, motion);
+    const BodyState& A = body_a(i, motion);
+    const BodyState& B = body_b(i, motion);
     QueryOptions options;
     options.iterations = static_cast<int>(std::min<std::int64_t>(options.iterations, units));
-    state.last = separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
-                            X_WP[p.b.index], options, state.warm);
-    state.p_AQ_W = state.last.p_WA - A.X_WB.translation();
-    state.p_BA_W = A.X_WB.translation() - B.X_WB.translation();
-    state.turn = A.turn + B.turn;
-    state.tick = motion.tick;
-    const double clearance = state.last.lower - p.law.range;
-    state.due_at = clearance > 0.0 ? A.travel + B.travel + clearance
-                                   : -std::numeric_limits<double>::infinity();
+    Separation& s = queries_[i].last;
+    s = separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
+                   X_WP[p.b.index], options, queries_[i].warm);
+    const bool proven = s.lower > 0.0 || s.end == QueryEnd::budget_spent;
+    answers_[i] = {proven ? s.lower : s.distance,
+                   s.extraction_W,
+                   s.p_WA - A.X_WB.translation(),
+                   A.X_WB.translation() - B.X_WB.translation(),
+                   A.turn + B.turn,
+                   motion.tick};
+    watch_for(i, motion, s.lower - p.law.range);
     PairTotals& totals = forces_.totals;
     ++totals.evaluated;
-    totals.iterations += state.last.iterations;
-    if (state.last.distance < totals.nearest) {
-      totals.nearest = state.last.distance;
+    totals.iterations += s.iterations;
+    if (s.distance < totals.nearest) {
+      totals.nearest = s.distance;
       totals.nearest_pair = {first_ + i};
     }
   }
@@ -160,43 +197,49 @@ class PairBlock {
   /// The least signed distance the pair can have now. While apart, the plane across the extraction
   /// direction still parts the shapes once it is moved by what they have moved along it; in overlap
   /// the distance falls no faster than the bodies move. Rotation takes at most `turn` either way.
-  [[nodiscard]] double widened(const PairState& state, const BodyState& A,
-                               const BodyState& B) const noexcept {
-    const Vec3 moved = A.X_WB.translation() - B.X_WB.translation() - state.p_BA_W;
-    const double turned = A.turn + B.turn - state.turn;
-    const bool open = state.last.end == QueryEnd::budget_spent;
-    const double then = open ? state.last.lower : state.last.distance;
-    const double along = then > 0.0 ? state.last.extraction_W.dot(moved) : -moved.norm();
-    return then + along - turned;
+  /// And no answer is ever deeper than both shapes' last levels.
+  [[nodiscard]] double widened(int i, const Motion& motion) const noexcept {
+    const PairAnswer& then = answers_[i];
+    const BodyState& A = body_a(i, motion);
+    const BodyState& B = body_b(i, motion);
+    const Vec3 moved = A.X_WB.translation() - B.X_WB.translation() - then.p_BA_W;
+    const double along = then.distance > 0.0 ? then.extraction_W.dot(moved) : -moved.norm();
+    const double turned = A.turn + B.turn - then.turn;
+    const double now = then.distance + along - turned;
+    if (now > 0.0) return now;
+    const Pair& p = pair(i);
+    return std::max(now, -world_->part(p.a).shape.deepest() - world_->part(p.b).shape.deepest());
   }
 
-  void add_force(int i, const Motion& motion, bool stale) noexcept {
-    const Pair& p = pair(i);
-    const PairState& state = states_[i];
-    const BodyState& A = body(p.a, motion);
-    const BodyState& B = body(p.b, motion);
-    PairTotals& totals = forces_.totals;
-    if (stale) {
-      ++totals.stale;
-      totals.oldest_age = std::max(totals.oldest_age, motion.tick - state.tick);
-    }
-    const double distance = stale ? widened(state, A, B) : state.last.distance;
-    if (!(distance < p.law.range)) return;
-    const Vec3& n = state.last.extraction_W;
-    const Vec3 p_BQ_W = state.p_AQ_W + A.X_WB.translation() - B.X_WB.translation();
-    const Vec3 v_A = moved_to(A.V_WB, state.p_AQ_W).linear;
+  void count_stale(std::int64_t age) noexcept {
+    ++forces_.totals.stale;
+    forces_.totals.oldest_age = std::max(forces_.totals.oldest_age, age);
+  }
+
+  /// The force of the pair at that distance, on both bodies.
+  void push(int i, const Motion& motion, double distance) noexcept {
+    const ForceLaw& law = pair(i).law;
+    if (!(distance < law.range)) return;
+    const BodyState& A = body_a(i, motion);
+    const BodyState& B = body_b(i, motion);
+    const Vec3& n = answers_[i].extraction_W;
+    const Vec3& p_AQ_W = answers_[i].p_AQ_W;
+    const Vec3 p_BQ_W = p_AQ_W + A.X_WB.translation() - B.X_WB.translation();
+    const Vec3 v_A = moved_to(A.V_WB, p_AQ_W).linear;
     const Vec3 v_B = moved_to(B.V_WB, p_BQ_W).linear;
-    const double size = p.law(distance, n.dot(v_A - v_B));
-    totals.peak_force = std::max(totals.peak_force, size);
+    const double size = law(distance, n.dot(v_A - v_B));
+    forces_.totals.peak_force = std::max(forces_.totals.peak_force, size);
     const Vec3 f = size * n;
-    forces_.on_body[world_->part(p.a).body.index] += wrench_of_force(f, state.p_AQ_W);
-    forces_.on_body[world_->part(p.b).body.index] += wrench_of_force(-f, p_BQ_W);
+    forces_.on_body[watches_[i].body_a.index] += wrench_of_force(f, p_AQ_W);
+    forces_.on_body[watches_[i].body_b.index] += wrench_of_force(-f, p_BQ_W);
   }
 
   const World* world_;
   int first_ = 0;   ///< PairId of the first pair
   int cursor_ = 0;  ///< where the next tick begins
-  std::vector<PairState> states_;
+  std::vector<PairWatch> watches_;
+  std::vector<PairAnswer> answers_;
+  std::vector<PairQuery> queries_;
   PairForces forces_;
 };
 
