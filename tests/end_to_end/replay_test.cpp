@@ -1,0 +1,81 @@
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace {
+
+TEST(Replay, SameBitsEveryTimeAndWithAnyNumberOfThreads) {
+  const Folder folder;
+  for (const std::string backend : {"bullet", "ideal"}) {
+    std::string first;
+    for (const int threads : {0, 0, 1, 2}) {
+      const std::string log = folder / "log.csv";
+      const Ending ending =
+          teleop("anderson_4x8 --fast --seconds 2.5 --backend " + backend + " --threads " +
+                 std::to_string(threads) + " --log " + quoted(log));
+      ASSERT_EQ(ending.status, 0) << ending;
+      const std::string text = text_of(log);
+      ASSERT_GT(text.size(), 100000U);
+      if (first.empty()) first = text;
+      EXPECT_TRUE(text == first) << backend << ", " << threads << " threads: another log";
+    }
+    // Something happened that could have differed.
+    const Columns last = columns_of(folder / "log.csv");
+    double peak = 0.0;
+    for (const double f : last.at("virtual_fz_n")) {
+      peak = std::max(peak, std::abs(f));
+    }
+    EXPECT_GT(peak, 1.0) << backend;
+  }
+}
+
+TEST(Replay, SameBitsUnderACountedBudget) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "scene.yaml", robot_text() + table_text() + push_text() + "budget: {work: 1, threads: 2}\n");
+  std::string first;
+  for (const int threads : {0, 2}) {
+    const Ending ending = teleop(quoted(scene) + " --fast --seconds 2 --threads " +
+                                 std::to_string(threads) + " --log " + quoted(folder / "log.csv"));
+    ASSERT_EQ(ending.status, 0) << ending;
+    const std::string text = text_of(folder / "log.csv");
+    if (first.empty()) first = text;
+    EXPECT_TRUE(text == first) << threads << " threads: another log";
+  }
+}
+
+TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
+  const Folder folder;
+  const Ending ending =
+      teleop("anderson_4x8 --seconds 1 --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const auto report = report_of(folder / "report.json");
+  for (const char* key :
+       {"scene", "backend", "rate_hz", "ticks", "deadline_misses", "success_rate_last_100",
+        "compute_us", "wakeup_us", "pairs", "pairs_evaluated_per_tick", "pairs_stale",
+        "oldest_age_ticks", "nearest_m", "deepest_m", "peak_force_n", "allocations_in_tick",
+        "machine"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+  }
+  for (const char* times : {"compute_us", "wakeup_us"}) {
+    for (const char* key : {"p50", "p99", "p99_9", "max"}) {
+      EXPECT_TRUE(report.at(times).at(key).is_number()) << times << ' ' << key;
+    }
+    EXPECT_LE(report.at(times).at("p50"), report.at(times).at("p99"));
+    EXPECT_LE(report.at(times).at("p99"), report.at(times).at("p99_9"));
+    EXPECT_LE(report.at(times).at("p99_9"), report.at(times).at("max"));
+  }
+  for (const char* key : {"cpu", "kernel", "scheduler", "compiler", "commit"}) {
+    EXPECT_FALSE(report.at("machine").at(key).get<std::string>().empty()) << key;
+  }
+  EXPECT_EQ(report.at("scene"), "anderson_4x8");
+  EXPECT_EQ(report.at("backend"), "bullet");
+  EXPECT_EQ(report.at("rate_hz"), 400.0);
+  EXPECT_EQ(report.at("ticks"), 400);
+  EXPECT_EQ(report.at("pairs"), 32);
+  // null where a sanitizer's allocator is in place.
+  const auto& allocations = report.at("allocations_in_tick");
+  EXPECT_TRUE(allocations.is_null() || allocations == 0) << allocations;
+}
+
+}  // namespace
+}  // namespace repel::test

@@ -1,0 +1,147 @@
+#include <repel/scene/scene.hpp>
+
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace {
+
+constexpr const char* forces[] = {
+    "virtual_fx_n",  "virtual_fy_n",  "virtual_fz_n",  "virtual_tx_nm", "virtual_ty_nm",
+    "virtual_tz_nm", "coupling_fx_n", "coupling_fy_n", "coupling_fz_n", "lever_torque_nm"};
+
+void expect_finite_forces(const Columns& log) {
+  for (const char* column : forces) {
+    for (const double value : log.at(column)) ASSERT_TRUE(std::isfinite(value)) << column;
+  }
+}
+
+// The finger tips are 20 mm before the tool frame, which points down.
+constexpr double tip = 0.02;
+
+TEST(Scene, TheDefaultOnePushesTheToolAndLetsItThroughTheMembraneOnly) {
+  const Folder folder;
+  const Ending ending = teleop("--fast --seconds 24 --log " + quoted(folder / "log.csv") +
+                               " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const auto report = report_of(folder / "report.json");
+  const Columns log = columns_of(folder / "log.csv");
+  ASSERT_EQ(log.at("tick").size(), 9600U);
+  expect_finite_forces(log);
+  EXPECT_GT(report.at("peak_force_n"), 10.0);
+  EXPECT_FALSE(report.at("status_ticks").contains("stale_pairs")) << report;
+
+  const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/anderson_4x8.yaml");
+  const scene::Obstacle* membrane = nullptr;
+  for (const scene::Obstacle& obstacle : scene.obstacles) {
+    if (std::isfinite(obstacle.law.ceiling)) membrane = &obstacle;
+  }
+  ASSERT_NE(membrane, nullptr);
+  const Vec3 centre = membrane->X_WP.translation();
+  double lowest = 1.0;     // [m] tips below the middle of the membrane
+  double intrusion = 0.0;  // [m] into a wall, where the membrane is out of reach
+  for (std::size_t i = 0; i < log.at("tick").size(); ++i) {
+    const Vec3 p(log.at("x_m")[i], log.at("y_m")[i], log.at("z_m")[i] - tip);
+    const bool over = (p - centre).head<2>().norm() < 0.2;
+    if (over) lowest = std::min(lowest, p.z() - centre.z());
+    if (!over) intrusion = std::max(intrusion, -log.at("nearest_m")[i]);
+  }
+  EXPECT_LT(lowest, -0.005) << "the membrane was not crossed";
+  EXPECT_LT(intrusion, 0.001) << "a wall was entered";
+}
+
+TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
+  const Folder folder;
+  for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    for (const std::string backend : {"bullet", "ideal"}) {
+      const Ending ending =
+          teleop(quoted(entry.path().string()) + " --fast --seconds 1 --backend " + backend +
+                 " --report " + quoted(folder / "report.json"));
+      ASSERT_EQ(ending.status, 0) << entry.path() << '\n' << ending;
+      const auto report = report_of(folder / "report.json");
+      for (const char* fault : {"bad_pose", "bad_command", "bad_joints", "clock_fault"}) {
+        EXPECT_FALSE(report.at("status_ticks").contains(fault)) << entry.path() << ' ' << fault;
+      }
+    }
+  }
+}
+
+TEST(Scene, NoObstaclesMeansNoForce) {
+  const Folder folder;
+  for (const char* budget : {"", "budget: {work: 100}\n"}) {
+    const std::string scene =
+        folder.with("empty.yaml", robot_text() + "obstacles: []\n" + push_text() + budget);
+    const Ending ending =
+        teleop(quoted(scene) + " --fast --seconds 1 --report " + quoted(folder / "report.json"));
+    ASSERT_EQ(ending.status, 0) << budget << ending;
+    const auto report = report_of(folder / "report.json");
+    EXPECT_EQ(report.at("pairs"), 0);
+    EXPECT_EQ(report.at("peak_force_n"), 0.0);
+    EXPECT_TRUE(report.at("nearest_m").is_null());
+  }
+}
+
+TEST(Scene, OperatorThatSendsNoNumbersIsSaidAndForcesStayFinite) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "fault.yaml",
+      robot_text() + table_text() +
+          "script:\n"
+          "  - {name: push, device: spaceball, duration: 800 ms, linear: 0 0 -100 mm/s}\n"
+          "  - {name: fail, device: spaceball, duration: 200 ms, linear: nan 0 0 mm/s}\n"
+          "  - {name: lever, device: torque_arm, duration: 200 ms, direction: 0 0 -1, lever: nan "
+          "rad/s}\n");
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 2 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("bad_command")) << ending;
+  EXPECT_EQ(report_of(folder / "report.json").at("status_ticks").at("bad_command"), 160);
+  const Columns log = columns_of(folder / "log.csv");
+  expect_finite_forces(log);
+  EXPECT_GT(*std::max_element(log.at("virtual_fz_n").begin(), log.at("virtual_fz_n").end()), 1.0);
+  EXPECT_EQ(log.at("gain")[319], 1.0);
+  EXPECT_EQ(log.at("gain")[479], 0.0);
+}
+
+/// Four tool parts among 2500 little blocks under the tool, all within range.
+std::string crowd() {
+  std::string text = "name: crowd\n" + robot_text();
+  for (const char* part : {"a", "b", "c"}) {
+    text += std::string("  - {name: ") + part +
+            ", shape: box, size: 20 20 60 mm, position: 0 0 -30 mm}\n";
+  }
+  text += "laws:\n  default: {range: 1 m, surface_force: 0.01 N, damping: 0.01 N s/m}\n";
+  text += "budget: {wall: 50 us}\nobstacles:\n";
+  for (int i = 0; i < 2500; ++i) {
+    const int x = 350 + 10 * (i % 50);
+    const int y = -400 + 10 * (i / 50);
+    text += "  - {name: block" + std::to_string(i) +
+            ", shape: box, size: 9 9 9 mm, position: " + std::to_string(x) + " " +
+            std::to_string(y) + " 380 mm}\n";
+  }
+  return text + push_text();
+}
+
+TEST(Scene, TenThousandPairsInFiftyMicrosecondsRunByTheClockAndAreReportedHonestly) {
+  const Folder folder;
+  const std::string scene = folder.with("crowd.yaml", crowd());
+  const Ending ending = teleop(quoted(scene) + " --seconds 1 --log " + quoted(folder / "log.csv") +
+                               " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const auto report = report_of(folder / "report.json");
+  EXPECT_EQ(report.at("ticks"), 400);
+  EXPECT_EQ(report.at("pairs"), 10000);
+  EXPECT_GT(report.at("pairs_stale"), 0);
+  EXPECT_GT(report.at("oldest_age_ticks"), 0);
+  EXPECT_GT(report.at("status_ticks").at("stale_pairs"), 0);
+  EXPECT_LT(report.at("pairs_evaluated_per_tick"), 10000.0);
+  const double rate = report.at("success_rate_last_100");
+  EXPECT_TRUE(rate >= 0.0 && rate <= 1.0) << rate;
+  const auto& allocations = report.at("allocations_in_tick");
+  EXPECT_TRUE(allocations.is_null() || allocations == 0) << allocations;
+  expect_finite_forces(columns_of(folder / "log.csv"));
+}
+
+}  // namespace
+}  // namespace repel::test
