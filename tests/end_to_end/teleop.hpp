@@ -30,7 +30,7 @@ inline std::string text_of(const fs::path& path) {
 class Folder {
  public:
   Folder() {
-    std::string name = (fs::temp_directory_path() / "repel_e2e_XXXXXX").string();
+    std::string name = (fs::temp_directory_path() / "repel_").string() + std::string(6, 'X');
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
     path_ = name;
   }

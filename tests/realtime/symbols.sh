@@ -2,7 +2,10 @@
 # symbols.sh TICK CANARY: the object file of the tick must not lead to the heap, to a throw, to a
 # lock or to output; the canary must be refused for each kind.
 set -eu
-command -v nm >/dev/null || { echo "skipped: nm is missing; to have it: apt-get install binutils"; exit 77; }
+if ! command -v nm >/dev/null; then
+  echo "skipped: nm is missing; to have it: apt-get install binutils"
+  exit 77
+fi
 
 heap='malloc|calloc|realloc|free|aligned_alloc|posix_memalign|_Zn[wa].*|_Zd[la].*'
 throw='__cxa_throw|__cxa_rethrow|__cxa_allocate_exception|_ZSt[0-9]+__throw_.*'
@@ -31,4 +34,4 @@ undefined "$1" | grep -qx '_ZNSt6chrono3_V212steady_clock3nowEv' ||
 for kind in "$heap" "$throw" "$lock"; do
   [ -n "$(found "$kind" "$2")" ] || { echo "the canary was not refused for $kind"; exit 1; }
 done
-echo "the tick needs only:" $(undefined "$1")
+echo "the tick needs only: $(undefined "$1" | tr '\n' ' ')"
