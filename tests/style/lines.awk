@@ -34,7 +34,7 @@ function check_core_include(path, room) {
 BEGIN {
   count = split(rooms, names, " ")
   for (i = 1; i <= count; i++) order[names[i]] = i
-  open_work = "TO" "DO|FIX" "ME|XX" "X"
+  open_work = "(^|[^A-Za-z])(TO" "DO|FIX" "ME|XX" "X)([^A-Za-z]|$)"
   machine_path = "(^|[^A-Za-z0-9_.$}])/(home|work|root|Users|mnt|media)/"
 }
 
