@@ -16,7 +16,8 @@ namespace repel {
 
 /// How much a tick may cost.
 struct Budget {
-  std::int64_t work_units = 0;  ///< support-map pairs per tick, all blocks together; 0 = no limit
+  std::int64_t work_units = 0;  ///< support-map pairs per tick, all blocks together; 0 = no limit.
+                                ///< Each block finishes the pair it is at
   std::chrono::nanoseconds wall{0};  ///< per tick and thread; 0 = no limit
 };
 
@@ -98,8 +99,9 @@ class PairBlock {
     }
   }
 
-  /// Works through the pairs with at most `work_units` and until `deadline`, beginning where the
-  /// last tick had to stop, so that no pair starves.
+  /// Works through the pairs until `work_units` are spent or `deadline` is reached, beginning where
+  /// the last tick had to stop, so that no pair starves. The pair in hand is finished: half an
+  /// answer would cost most of a whole one and might say less than the old one.
   /// @param X_WP pose of every part of the world, by PartId
   void run(const Motion& motion, const std::vector<Pose>& X_WP, std::int64_t work_units,
            std::chrono::steady_clock::time_point deadline) noexcept {
@@ -126,7 +128,7 @@ class PairBlock {
         count_stale(motion.tick - answers_[i].tick);
         push(i, motion, least);
       } else {
-        evaluate(i, motion, X_WP, left);
+        evaluate(i, motion, X_WP);
         push(i, motion, queries_[i].last.distance);
       }
     }
@@ -167,16 +169,13 @@ class PairBlock {
                              : -std::numeric_limits<double>::infinity();
   }
 
-  void evaluate(int i, const Motion& motion, const std::vector<Pose>& X_WP,
-                std::int64_t units) noexcept {
+  void evaluate(int i, const Motion& motion, const std::vector<Pose>& X_WP) noexcept {
     const Pair& p = pair(i);
     const BodyState& A = body_a(i, motion);
     const BodyState& B = body_b(i, motion);
-    QueryOptions options;
-    options.iterations = static_cast<int>(std::min<std::int64_t>(options.iterations, units));
     Separation& s = queries_[i].last;
     s = separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
-                   X_WP[p.b.index], options, queries_[i].warm);
+                   X_WP[p.b.index], {}, queries_[i].warm);
     const bool proven = s.lower > 0.0 || s.end == QueryEnd::budget_spent;
     answers_[i] = {proven ? s.lower : s.distance,
                    s.extraction_W,
