@@ -1,0 +1,108 @@
+/// @file
+/// A world of boxes, a random motion through it, and its forces evaluated the plain way.
+#pragma once
+
+#include <repel/schedule/pair_block.hpp>
+
+#include <string>
+#include <vector>
+
+#include "support/families.hpp"
+
+namespace repel::test {
+
+inline bool is_finite(const PairForces& forces) {
+  for (const Wrench& F : forces.on_body) {
+    if (!repel::is_finite(F)) return false;
+  }
+  return true;
+}
+
+inline Pose random_pose(families::Rng& random, double within) {
+  Pose X = Pose::Identity();
+  X.linear() = families::rotation(random);
+  for (int axis = 0; axis < 3; ++axis) {
+    X.translation()[axis] = families::uniform(random, -within, within);
+  }
+  return X;
+}
+
+inline Shape random_box(families::Rng& random) {
+  return Shape::box({families::uniform(random, 0.01, 0.08), families::uniform(random, 0.01, 0.08),
+                     families::uniform(random, 0.01, 0.08)});
+}
+
+/// A tool of `tool_parts` boxes among `obstacles` boxes within 0.4 m, and how it wanders.
+struct Boxes {
+  World world;
+  BodyId tool;
+  families::Rng random;
+  Pose X_WT = Pose::Identity();
+
+  Boxes(int tool_parts, int obstacles, const ForceLaw& law, unsigned seed) : random(seed) {
+    tool = world.add_body("tool");
+    std::vector<PartId> parts;
+    for (int i = 0; i < tool_parts; ++i) {
+      parts.push_back(world.add_part(tool, "tool part " + std::to_string(i), random_box(random),
+                                     random_pose(random, 0.08)));
+    }
+    for (int i = 0; i < obstacles; ++i) {
+      const PartId obstacle = world.add_part(World::fixed, "obstacle " + std::to_string(i),
+                                             random_box(random), random_pose(random, 0.4));
+      for (const PartId part : parts) world.add_pair(part, obstacle, law);
+    }
+  }
+
+  /// One tick of up to 3 mm and 0.02 rad, now and then a leap, kept near the obstacles.
+  void move() {
+    const bool leap = families::count_between(random, 0, 99) == 0;
+    const double angle = families::uniform(random, 0.0, leap ? 1.0 : 0.02);
+    X_WT.linear() = Eigen::Quaterniond(families::small_rotation(random, angle) * X_WT.linear())
+                        .normalized()
+                        .toRotationMatrix();
+    X_WT.translation() +=
+        families::uniform(random, 0.0, leap ? 0.2 : 0.003) * families::direction(random);
+    X_WT.translation() *= std::min(1.0, 0.35 / std::max(1e-9, X_WT.translation().norm()));
+    const Twist V{families::uniform(random, 0.0, 0.5) * families::direction(random),
+                  families::uniform(random, 0.0, 1.0) * families::direction(random)};
+    ++world.motion().tick;
+    world.place(tool, X_WT, V);
+  }
+};
+
+inline Pose pose_of(const World& world, PartId id) {
+  const Part& part = world.part(id);
+  return world.motion().bodies[part.body.index].X_WB * part.X_BP;
+}
+
+/// The separation of a pair as it is now, from a cold start.
+inline Separation separation_now(const World& world, const Pair& pair) {
+  return separation(world.part(pair.a).shape, pose_of(world, pair.a), world.part(pair.b).shape,
+                    pose_of(world, pair.b));
+}
+
+/// Velocity of the point of a body that is now at `p_WQ`.
+inline Vec3 velocity_at(const World& world, BodyId body, const Vec3& p_WQ) {
+  const BodyState& state = world.motion().bodies[body.index];
+  return state.V_WB.linear + state.V_WB.angular.cross(p_WQ - state.X_WB.translation());
+}
+
+/// The forces of all pairs now, each asked anew; torques by the definition of a torque.
+inline std::vector<Wrench> forces_now(const World& world, bool at_rest = false) {
+  std::vector<Wrench> on_body(world.body_count());
+  for (const Pair& pair : world.pairs()) {
+    const Separation s = separation_now(world, pair);
+    const BodyId a = world.part(pair.a).body;
+    const BodyId b = world.part(pair.b).body;
+    const Vec3 v = velocity_at(world, a, s.p_WA) - velocity_at(world, b, s.p_WA);
+    const Vec3 f = pair.law(s.distance, at_rest ? 0.0 : s.extraction_W.dot(v)) * s.extraction_W;
+    const auto arm = [&](BodyId id) -> Vec3 {
+      return s.p_WA - world.motion().bodies[id.index].X_WB.translation();
+    };
+    on_body[a.index] += {f, arm(a).cross(f)};
+    on_body[b.index] += {-f, arm(b).cross(-f)};
+  }
+  return on_body;
+}
+
+}  // namespace repel::test

@@ -1,0 +1,244 @@
+#include <repel/schedule/pair_block.hpp>
+
+#include <gtest/gtest.h>
+
+#include "schedule/boxes.hpp"
+
+namespace repel {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
+constexpr auto no_deadline = Clock::time_point::max();
+constexpr unsigned seed = 4008;
+
+std::vector<Pose> part_poses(const World& world) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < world.parts().size(); ++i) {
+    poses.push_back(test::pose_of(world, {static_cast<std::int32_t>(i)}));
+  }
+  return poses;
+}
+
+/// One block that holds every pair of a small world.
+struct Block {
+  explicit Block(const World& the_world)
+      : world(&the_world), block(the_world, 0, static_cast<int>(the_world.pairs().size())) {}
+  const PairForces& run(std::int64_t units = no_limit) {
+    block.run(world->motion(), part_poses(*world), units, no_deadline);
+    return block.forces();
+  }
+  const World* world;
+  detail::PairBlock block;
+};
+
+/// A tool and a wall, both free to move, that touch at one known point.
+struct TwoBodies {
+  World world;
+  BodyId a, b;
+
+  TwoBodies() {
+    a = world.add_body("a");
+    b = world.add_body("b");
+    Pose X_AP = Pose::Identity();
+    X_AP.translation() = Vec3(0.0, 0.0, 0.3);
+    const PartId ball = world.add_part(a, "ball", Shape::sphere(0.1), X_AP);
+    const PartId wall = world.add_part(b, "wall", Shape::box({1.0, 1.0, 0.1}));
+    world.add_pair(ball, wall, {.range = 0.02, .surface_force = 100.0, .damping = 50.0});
+  }
+};
+
+TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
+  double peak = 0.0;
+  std::int64_t skipped = 0;
+  for (unsigned run = 0; run < 3; ++run) {
+    test::Boxes boxes(4, 8, {.range = 0.03}, seed + run);
+    Block block(boxes.world);
+    block.run();
+    for (int tick = 0; tick < 1500; ++tick) {
+      boxes.move();
+      const PairForces& forces = block.run();
+      const auto direct = test::forces_now(boxes.world);
+      for (std::size_t body = 0; body < direct.size(); ++body) {
+        ASSERT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-9)
+            << "tick " << tick << ", seed " << seed + run;
+        ASSERT_LE((forces.on_body[body].torque - direct[body].torque).norm(), 1e-9)
+            << "tick " << tick << ", seed " << seed + run;
+      }
+      ASSERT_EQ(forces.totals.near, forces.totals.evaluated);
+      ASSERT_EQ(forces.totals.stale, 0);
+      skipped += block.block.count() - forces.totals.near;
+      peak = std::max(peak, forces.totals.peak_force);
+    }
+  }
+  // The sample means something: pairs pushed, and most visits were saved.
+  EXPECT_GT(peak, 50.0);
+  EXPECT_GT(skipped, 3 * 1500 * 32 / 2);
+}
+
+TEST(PairBlock, PairsThatCannotBeInRangeCostNothing) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
+  Pose far = Pose::Identity();
+  far.translation().x() = 2.0;
+  const PartId wall = world.add_part(World::fixed, "wall", Shape::sphere(0.1), far);
+  world.add_pair(part, wall, {.range = 0.02});
+  Block block(world);
+  EXPECT_EQ(block.run().totals.evaluated, 1);
+  Pose X = Pose::Identity();
+  int evaluated = 0;
+  for (int i = 0; i < 178; ++i) {  // 1.78 m: the clearance
+    X.translation().x() += 0.01;
+    world.place(tool, X, {});
+    if (i < 170) {
+      EXPECT_EQ(block.run().totals.iterations, 0) << "after " << X.translation().x();
+    }
+    evaluated += block.run().totals.evaluated;
+  }
+  EXPECT_GT(evaluated, 0);  // and it is asked in time
+}
+
+TEST(PairBlock, WrenchIsAboutTheOriginOfTheBody) {
+  TwoBodies two;
+  Pose X_WA = Pose::Identity();
+  X_WA.translation() = Vec3(0.4, -0.2, 0.3 - 0.1);  // ball centre at z = 0.5, wall's face at 0.1
+  Pose X_WB = Pose::Identity();
+  X_WB.translation() = Vec3(0.1, 0.2, 0.29);  // face at 0.39, ball's lowest point at 0.4
+  two.world.place(two.a, X_WA, {});
+  two.world.place(two.b, X_WB, {});
+  const PairForces forces = Block(two.world).run();
+  const Vec3 f(0.0, 0.0, 25.0);  // half the range: a quarter of the force
+  const Vec3 touch(0.4, -0.2, 0.4);
+  EXPECT_LE((forces.on_body[two.a.index].force - f).norm(), 1e-9);
+  EXPECT_LE((forces.on_body[two.a.index].torque - (touch - X_WA.translation()).cross(f)).norm(),
+            1e-9);
+  EXPECT_LE((forces.on_body[two.b.index].force + f).norm(), 1e-9);
+  EXPECT_LE((forces.on_body[two.b.index].torque + (touch - X_WB.translation()).cross(f)).norm(),
+            1e-9);
+}
+
+TEST(PairBlock, ActionAndReactionCancelAboutACommonPoint) {
+  families::Rng random(seed);
+  int pushed = 0;
+  for (int i = 0; i < 500; ++i) {
+    TwoBodies two;
+    two.world.place(two.a, test::random_pose(random, 0.3), {{0.1, 0.2, 0.3}, {1, 2, 3}});
+    two.world.place(two.b, test::random_pose(random, 0.3), {{-0.1, 0.0, 0.3}, {3, 2, 1}});
+    const PairForces forces = Block(two.world).run();
+    Wrench sum;
+    for (const BodyId id : {two.a, two.b}) {
+      const Vec3 p_WB = two.world.motion().bodies[id.index].X_WB.translation();
+      sum += moved_to(forces.on_body[id.index], -p_WB);
+    }
+    EXPECT_LE(sum.force.norm(), 1e-12) << "seed " << seed;
+    EXPECT_LE(sum.torque.norm(), 1e-10) << "seed " << seed;
+    pushed += forces.totals.peak_force > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(pushed, 150) << "seed " << seed;
+  EXPECT_LT(pushed, 500) << "seed " << seed;
+}
+
+TEST(PairBlock, StalePairsNeverClaimMoreDistanceThanThereIs) {
+  int compared = 0;
+  for (unsigned run = 0; run < 3; ++run) {
+    // In reach of everything, so that all pairs are near; at rest, so that force shows distance.
+    test::Boxes boxes(1, 1, {.range = 2.0, .surface_force = 100.0, .damping = 0.0}, seed + run);
+    Block block(boxes.world);
+    for (int tick = 0; tick < 600; ++tick) {
+      boxes.move();
+      const bool fresh = tick % 7 == 0;
+      const PairForces& forces = block.run(fresh ? no_limit : 0);
+      ASSERT_EQ(forces.totals.stale, fresh ? 0 : 1);
+      ASSERT_EQ(forces.totals.oldest_age, tick % 7);
+      const double felt = forces.on_body[boxes.tool.index].force.norm();
+      const Pair& pair = boxes.world.pairs().front();
+      const double truth = pair.law(test::separation_now(boxes.world, pair).distance, 0.0);
+      ASSERT_GE(felt, truth - 1e-9) << "tick " << tick << ", seed " << seed + run;
+      compared += fresh ? 0 : 1;
+    }
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+TEST(PairBlock, BudgetIsOverdrawnByOnePairAtMost) {
+  test::Boxes boxes(4, 16, {.range = 2.0}, seed);
+  Block block(boxes.world);
+  std::int64_t dearest = 0;
+  for (int tick = 0; tick < 300; ++tick) {
+    boxes.move();
+    for (const Pair& pair : boxes.world.pairs()) {
+      dearest = std::max<std::int64_t>(dearest, test::separation_now(boxes.world, pair).iterations);
+    }
+    const std::int64_t units = 1 + tick % 60;
+    const PairTotals& totals = block.run(units).totals;
+    ASSERT_LT(totals.iterations, units + dearest) << "tick " << tick << ", seed " << seed;
+    ASSERT_EQ(totals.evaluated + totals.stale, totals.near);
+    ASSERT_GE(totals.evaluated, 1);
+  }
+  EXPECT_GT(dearest, 0);
+}
+
+TEST(PairBlock, NoPairWaitsLongerThanTheBlockHasPairs) {
+  // With a single unit one pair is asked in each tick, in turn.
+  test::Boxes boxes(4, 16, {.range = 2.0}, seed);
+  Block block(boxes.world);
+  block.run();
+  std::int64_t oldest = 0;
+  for (int tick = 0; tick < 400; ++tick) {
+    boxes.move();
+    oldest = std::max(oldest, block.run(1).totals.oldest_age);
+  }
+  EXPECT_LE(oldest, detail::PairBlock::capacity) << "seed " << seed;
+  EXPECT_GE(oldest, detail::PairBlock::capacity - 1);
+}
+
+// A pair that is asked is asked to the end: half an answer could be wrong by any amount.
+TEST(PairBlock, AnswersUnderABudgetAreWholeAndNeverPushLessThanTheTruth) {
+  for (unsigned run = 0; run < 20; ++run) {
+    test::Boxes boxes(1, 1, {.range = 2.0, .surface_force = 100.0, .damping = 0.0}, seed + run);
+    Block block(boxes.world);
+    block.run();
+    for (int tick = 0; tick < 200; ++tick) {
+      boxes.move();
+      const PairForces& forces = block.run(tick % 3);
+      ASSERT_NE(block.block.separation_of(0).end, QueryEnd::budget_spent);
+      const Pair& pair = boxes.world.pairs().front();
+      const double truth = pair.law(test::separation_now(boxes.world, pair).distance, 0.0);
+      ASSERT_GE(forces.on_body[boxes.tool.index].force.norm(), truth - 1e-9)
+          << "tick " << tick << ", seed " << seed + run;
+    }
+  }
+}
+
+TEST(PairBlock, DeadlineThatHasPassedLeavesEverythingStale) {
+  test::Boxes boxes(4, 8, {.range = 2.0}, seed);
+  Block block(boxes.world);
+  block.run();
+  boxes.move();
+  block.block.run(boxes.world.motion(), part_poses(boxes.world), no_limit,
+                  Clock::time_point::min());
+  const PairForces& forces = block.block.forces();
+  EXPECT_EQ(forces.totals.evaluated, 0);
+  EXPECT_EQ(forces.totals.near, 32);
+  EXPECT_EQ(forces.totals.stale, 32);
+  EXPECT_EQ(forces.totals.oldest_age, 1);
+  EXPECT_TRUE(test::is_finite(forces));
+}
+
+TEST(PairTotals, SumKeepsTheNearestAndTheExtremes) {
+  PairTotals a{3, 2, 1, 5, 10, 0.2, {4}, 7.0};
+  const PairTotals b{1, 1, 0, 9, 3, 0.1, {8}, 6.0};
+  a.add(b);
+  EXPECT_EQ(a.near, 4);
+  EXPECT_EQ(a.evaluated, 3);
+  EXPECT_EQ(a.stale, 1);
+  EXPECT_EQ(a.oldest_age, 9);
+  EXPECT_EQ(a.iterations, 13);
+  EXPECT_EQ(a.nearest, 0.1);
+  EXPECT_EQ(a.nearest_pair, PairId{8});
+  EXPECT_EQ(a.peak_force, 7.0);
+}
+
+}  // namespace
+}  // namespace repel

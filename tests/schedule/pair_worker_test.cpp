@@ -1,0 +1,122 @@
+#include <repel/schedule/pair_worker.hpp>
+
+#include <gtest/gtest.h>
+
+#include "schedule/boxes.hpp"
+
+namespace repel {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr unsigned seed = 1950;
+constexpr ForceLaw reaches_everything{.range = 2.0};
+
+PairTotals totals_of(const detail::PairWorker& worker) {
+  PairTotals totals;
+  for (const auto& block : worker.blocks()) totals.add(block.forces().totals);
+  return totals;
+}
+
+TEST(PairWorker, TakesEveryStrideThBlockAndAllPairsAreTakenOnce) {
+  const test::Boxes boxes(4, 50, {}, seed);  // 200 pairs: three full blocks and one of 8
+  std::vector<int> owners(200, 0);
+  for (int index = 0; index < 3; ++index) {
+    const detail::PairWorker worker(boxes.world, {}, index, 3);
+    for (const auto& block : worker.blocks()) {
+      EXPECT_EQ(block.first() / detail::PairBlock::capacity % 3, index);
+      for (int i = 0; i < block.count(); ++i) ++owners[block.first() + i];
+    }
+  }
+  for (const int owner : owners) EXPECT_EQ(owner, 1);
+}
+
+TEST(PairWorker, WorldWithoutPairsIsNoTrouble) {
+  World world;
+  for (const std::int64_t units : {0, 100}) {
+    detail::PairWorker worker(world, {.work_units = units}, 0, 1);
+    worker.prime(world.motion());
+    worker.run(world.motion());
+    EXPECT_TRUE(worker.blocks().empty());
+  }
+}
+
+TEST(PairWorker, PrimingAsksEveryPairWhateverTheBudget) {
+  const test::Boxes boxes(4, 50, reaches_everything, seed);
+  detail::PairWorker worker(boxes.world, {.work_units = 1, .wall = 1ns}, 0, 1);
+  worker.prime(boxes.world.motion());
+  EXPECT_EQ(totals_of(worker).evaluated, 200);
+  EXPECT_EQ(totals_of(worker).stale, 0);
+}
+
+TEST(PairWorker, WorkUnitsAreSharedAmongTheBlocks) {
+  test::Boxes boxes(4, 64, reaches_everything, seed);  // 256 pairs, 4 blocks
+  constexpr std::int64_t units = 200;
+  detail::PairWorker worker(boxes.world, {.work_units = units}, 0, 1);
+  worker.prime(boxes.world.motion());
+  std::int64_t dearest = 0;
+  for (int tick = 0; tick < 100; ++tick) {
+    boxes.move();
+    for (const Pair& pair : boxes.world.pairs()) {
+      dearest = std::max<std::int64_t>(dearest, test::separation_now(boxes.world, pair).iterations);
+    }
+    worker.run(boxes.world.motion());
+    const PairTotals totals = totals_of(worker);
+    ASSERT_LT(totals.iterations, units + 4 * dearest) << "seed " << seed;
+    ASSERT_EQ(totals.evaluated + totals.stale, totals.near);
+    ASSERT_LE(totals.oldest_age, detail::PairBlock::capacity);
+    for (const auto& block : worker.blocks()) ASSERT_GE(block.forces().totals.evaluated, 1);
+  }
+}
+
+TEST(PairWorker, OneNanosecondIsSpentHonestly) {
+  test::Boxes boxes(4, 50, {.range = 2.0, .damping = 0.0}, seed);
+  detail::PairWorker worker(boxes.world, {.wall = 1ns}, 0, 1);
+  worker.prime(boxes.world.motion());
+  for (int tick = 0; tick < 50; ++tick) {
+    boxes.move();
+    worker.run(boxes.world.motion());
+    const PairTotals totals = totals_of(worker);
+    ASSERT_EQ(totals.near, 200);
+    ASSERT_EQ(totals.evaluated, 0);
+    ASSERT_EQ(totals.stale, 200);
+    ASSERT_EQ(totals.oldest_age, tick + 1);
+    for (const auto& block : worker.blocks()) ASSERT_TRUE(test::is_finite(block.forces()));
+  }
+}
+
+TEST(PairWorker, NoBlockStarvesOnAWallBudgetThatIsTooShortForOne) {
+  test::Boxes boxes(4, 160, reaches_everything, seed);  // 640 pairs, 10 blocks
+  detail::PairWorker worker(boxes.world, {.wall = 20us}, 0, 1);
+  worker.prime(boxes.world.motion());
+  // Until every answer is younger than the run; how long that takes is the machine's affair.
+  constexpr int most = 20000;
+  int tick = 0;
+  bool all_refreshed = false;
+  while (!all_refreshed && tick < most) {
+    boxes.move();
+    worker.run(boxes.world.motion());
+    ++tick;
+    all_refreshed = totals_of(worker).oldest_age < tick;
+  }
+  EXPECT_TRUE(all_refreshed) << "after " << tick << " ticks, seed " << seed;
+}
+
+TEST(PairWorker, TenThousandPairsInFiftyMicrosecondsAreReportedStaleAndStayFinite) {
+  test::Boxes boxes(4, 2500, reaches_everything, seed);
+  detail::PairWorker worker(boxes.world, {.wall = 50us}, 0, 1);
+  worker.prime(boxes.world.motion());
+  int ticks_with_stale = 0;
+  for (int tick = 0; tick < 200; ++tick) {
+    boxes.move();
+    worker.run(boxes.world.motion());
+    const PairTotals totals = totals_of(worker);
+    ASSERT_EQ(totals.near, 10000);
+    ASSERT_EQ(totals.evaluated + totals.stale, totals.near);
+    ticks_with_stale += totals.stale > 0 ? 1 : 0;
+    for (const auto& block : worker.blocks()) ASSERT_TRUE(test::is_finite(block.forces()));
+  }
+  EXPECT_GT(ticks_with_stale, 100);
+}
+
+}  // namespace
+}  // namespace repel
