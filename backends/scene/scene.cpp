@@ -149,7 +149,7 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws) {
 
 RobotChoice robot_of(const Value& value, const std::string& file) {
   const Map map(value);
-  map.allow({"urdf", "base_link", "tip_link", "start", "base", "tool_frame"});
+  map.allow({"urdf", "tip_link", "start", "base", "tool_frame"});
   RobotChoice robot;
   const Value& urdf = map.at("urdf");
   const auto path = std::filesystem::path(file).parent_path() / urdf.text();
@@ -158,7 +158,6 @@ RobotChoice robot_of(const Value& value, const std::string& file) {
     urdf.fail_with_value("a file; there is none at " + path.lexically_normal().string());
   }
   robot.urdf = path.lexically_normal().string();
-  map.read("base_link", robot.base_link);
   map.read("tip_link", robot.tip_link);
   robot.start = map.at("start").numbers(angles, 1, 64);
   robot.X_WB = pose_at(map, "base");

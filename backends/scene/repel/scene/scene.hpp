@@ -38,7 +38,6 @@ struct Obstacle {
 /// Which robot, where it stands and how it starts.
 struct RobotChoice {
   std::string urdf;              ///< path; one that the scene file gives is relative to that file
-  std::string base_link;         ///< empty: the root of the chain
   std::string tip_link;          ///< empty: the end of the chain
   std::vector<double> start;     ///< [rad] one for each moving joint, base outward
   Pose X_WB = Pose::Identity();  ///< [m] base in the world
