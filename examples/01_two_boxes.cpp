@@ -16,8 +16,9 @@ int main() {
     X_WTool.translation() = Vec3(0.1, 0.0, height);
     const Separation s = separation(tool, X_WTool, table, X_WTable, {}, warm);
     const double force = wall(s.distance, 0.0);  // at rest
-    std::printf("tool at %.3f m: distance %+.3f m, way out (%.0f %.0f %.0f), force %.2f N\n", height,
-                s.distance, s.extraction_W.x(), s.extraction_W.y(), s.extraction_W.z(), force);
+    const Vec3& n = s.extraction_W;
+    std::printf("tool at %.3f m: distance %+.3f m, way out (%.0f %.0f %.0f), force %.2f N\n",
+                height, s.distance, n.x(), n.y(), n.z(), force);
   }
   return 0;
 }

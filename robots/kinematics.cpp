@@ -131,7 +131,7 @@ void Kinematics::update(std::span<const double> q) noexcept {
 
 const Pose& Kinematics::X_WL(int link) const noexcept {
   assert(link >= -1 && link < links());
-  return impl_->X_WL[static_cast<std::size_t>(link + 1)];
+  return impl_->X_WL[static_cast<std::size_t>(link) + 1U];
 }
 
 const Pose& Kinematics::X_WT() const noexcept {
@@ -152,6 +152,7 @@ void Kinematics::jacobian(int link, const Vec3& p_WQ, JacobianRef J) const noexc
   }
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is a view and is written through
 void Kinematics::tool_jacobian(JacobianRef J) const noexcept {
   jacobian(links() - 1, X_WT().translation(), J);
 }

@@ -120,9 +120,8 @@ class ArmBuilder {
     if (node.name == tip_) robot_.arm.X_LT = X_LN;
     // The rest of the chain comes last, so that `links.back()` is still this link for its branches.
     for (const bool in_chain : {false, true}) {
-      for (std::size_t i = 0; i < node.child_links.size(); ++i) {
-        const urdf::Link& child = *node.child_links[i];
-        if (chain_.contains(child.name) == in_chain) add_child(child, link, X_LN);
+      for (const auto& child : node.child_links) {
+        if (chain_.contains(child->name) == in_chain) add_child(*child, link, X_LN);
       }
     }
   }

@@ -1,6 +1,7 @@
 # Writes the commit of SOURCE to OUTPUT; "unknown" outside a git checkout.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12
-                OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+                OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE
+                ERROR_QUIET RESULT_VARIABLE failed)
 if(failed)
   set(commit unknown)
 endif()

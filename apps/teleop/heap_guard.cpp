@@ -14,8 +14,11 @@
 namespace repel::teleop {
 namespace {
 
+// What malloc does to them has no place to be passed through.
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 thread_local int guarded = 0;
 std::atomic<std::int64_t> counted{0};
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 }  // namespace
 
@@ -42,6 +45,7 @@ std::int64_t HeapGuard::allocations() noexcept {
 
 #if REPEL_COUNTS_HEAP
 // The C library's own functions, under the names it keeps for replacements like these.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -72,4 +76,5 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
   return *out == nullptr ? ENOMEM : 0;
 }
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 #endif

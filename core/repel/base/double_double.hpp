@@ -18,7 +18,7 @@ struct DoubleDouble {
   double lo = 0.0;
 
   DoubleDouble() = default;
-  DoubleDouble(double value) noexcept : hi(value) {}  // NOLINT(google-explicit-constructor)
+  DoubleDouble(double value) noexcept : hi(value) {}
   DoubleDouble(double high, double low) noexcept : hi(high), lo(low) {}
 
   explicit operator double() const noexcept { return hi + lo; }

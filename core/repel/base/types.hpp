@@ -19,6 +19,7 @@ using Pose = Eigen::Isometry3d;
   const auto& M = X.matrix();
   double zero = 0.0;
   for (int column = 0; column < 4; ++column) {
+    // NOLINTNEXTLINE(misc-redundant-expression)
     for (int row = 0; row < 3; ++row) zero += M(row, column) - M(row, column);
   }
   return zero == 0.0;

@@ -87,7 +87,7 @@ class LadderWalk {
     QueryOptions options = options_;
     options.iterations = std::max(1, options_.iterations - iterations_);
     options.ignore_beyond += at_start() ? depth() : std::numeric_limits<double>::infinity();
-    const Gap gap = gap_between(A_.level(i_).core, X_WA_, B_.level(j_).core, X_WB_, options, warm_);
+    Gap gap = gap_between(A_.level(i_).core, X_WA_, B_.level(j_).core, X_WB_, options, warm_);
     iterations_ += gap.iterations;
     return gap;
   }
