@@ -15,16 +15,16 @@ inline double penetration_depth(const Vec3& half_a, const Pose& X_WA, const Vec3
   };
   Point between{};
   for (int i = 0; i < 3; ++i) between.x[i] = Real(X_WB.translation()[i]) - X_WA.translation()[i];
-  Real least = 1e300Q;
+  Real least = Real(1e300);
   const auto try_axis = [&](Point n) {
-    const Real length = sqrtq(dot(n, n));
-    if (length < 1e-12Q) return;
+    const Real length = square_root(dot(n, n));
+    if (length < Real(1e-12)) return;
     Real reach = 0;
     for (int k = 0; k < 3; ++k) {
-      reach += half_a[k] * fabsq(dot(axis_of(X_WA, k), n));
-      reach += half_b[k] * fabsq(dot(axis_of(X_WB, k), n));
+      reach += half_a[k] * magnitude(dot(axis_of(X_WA, k), n));
+      reach += half_b[k] * magnitude(dot(axis_of(X_WB, k), n));
     }
-    const Real overlap = (reach - fabsq(dot(between, n))) / length;
+    const Real overlap = (reach - magnitude(dot(between, n))) / length;
     least = overlap < least ? overlap : least;
   };
   for (int i = 0; i < 3; ++i) {

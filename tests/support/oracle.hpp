@@ -4,17 +4,34 @@
 /// differences of vertices, accepted only when its duality gap proves it.
 #pragma once
 
+#include <cfloat>
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
-
-#include <quadmath.h>
 
 #include <repel/base/types.hpp>
 
 namespace repel::oracle {
 
+#if LDBL_MANT_DIG == 113
+using Real = long double;
+#else
 __extension__ typedef __float128 Real;
+#endif
+
+inline Real magnitude(Real x) {
+  return x < 0 ? -x : x;
+}
+
+/// To 113 bits, by Newton's iteration from the root in double; 0 below 1e-300.
+inline Real square_root(Real x) {
+  if (!(x > Real(1e-300))) return 0;
+  Real root = std::sqrt(static_cast<double>(x));
+  for (int i = 0; i < 3; ++i) root = (root + x / root) / 2;
+  return root;
+}
 
 struct Point {
   Real x[3];
@@ -55,10 +72,10 @@ inline bool affine_weights(const std::vector<Point>& corral, std::vector<Real>& 
   for (std::size_t column = 0; column < n; ++column) {
     std::size_t pivot = column;
     for (std::size_t r = column + 1; r < n; ++r) {
-      if (fabsq(m[r][column]) > fabsq(m[pivot][column])) pivot = r;
+      if (magnitude(m[r][column]) > magnitude(m[pivot][column])) pivot = r;
     }
     std::swap(m[pivot], m[column]);
-    if (fabsq(m[column][column]) <= 1e-30Q * dot(e[column], e[column])) return false;
+    if (magnitude(m[column][column]) <= Real(1e-30) * dot(e[column], e[column])) return false;
     for (std::size_t r = 0; r < n; ++r) {
       if (r == column) continue;
       const Real factor = m[r][column] / m[column][column];
@@ -103,9 +120,9 @@ inline std::optional<Truth> distance(const std::vector<Vec3>& a, const Pose& X_W
       if (dot(x, differences[i]) < dot(x, differences[best])) best = i;
     }
     const Real gap = xx - dot(x, differences[best]);
-    const Real length = sqrtq(xx);
-    if (xx <= size2 * 1e-54Q) return Truth{};
-    if (gap <= xx * 1e-24Q || gap <= size2 * 1e-32Q) {
+    const Real length = square_root(xx);
+    if (xx <= size2 * Real(1e-54)) return Truth{};
+    if (gap <= xx * Real(1e-24) || gap <= size2 * Real(1e-32)) {
       return Truth{length,
                    {double(x.x[0] / length), double(x.x[1] / length), double(x.x[2] / length)}};
     }
@@ -125,7 +142,7 @@ inline std::optional<Truth> distance(const std::vector<Vec3>& a, const Pose& X_W
       bool dropped = false;
       for (std::size_t i = 0; i < corral.size(); ++i) {
         const Real w = (1 - theta) * weights[i] + theta * target[i];
-        if (theta < 1 && target[i] <= 0 && w <= 1e-32Q) {
+        if (theta < 1 && target[i] <= 0 && w <= Real(1e-32)) {
           dropped = true;
           continue;
         }

@@ -1,0 +1,50 @@
+#include <repel/base/status.hpp>
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <set>
+#include <string>
+
+namespace repel {
+namespace {
+
+constexpr Status every_bit[] = {status::bad_pose,    status::bad_command, status::bad_joints,
+                                status::clock_fault, status::stale_pairs, status::late_result,
+                                status::torque_limit};
+
+TEST(Status, ACleanTickReadsOk) {
+  EXPECT_EQ(to_text(Status{0}), "ok");
+}
+
+TEST(Status, EveryBitIsOneBitWithANameOfItsOwn) {
+  std::set<std::string> names;
+  Status all = 0;
+  for (const Status bit : every_bit) {
+    EXPECT_EQ(std::popcount(bit), 1);
+    EXPECT_EQ(all & bit, 0U);
+    all |= bit;
+    EXPECT_NE(to_text(bit), "ok");
+    names.insert(to_text(bit));
+  }
+  EXPECT_EQ(names.size(), std::size(every_bit));
+}
+
+TEST(Status, TheNamesAreThoseOfTheBits) {
+  EXPECT_EQ(to_text(status::bad_pose), "bad_pose");
+  EXPECT_EQ(to_text(status::clock_fault), "clock_fault");
+  EXPECT_EQ(to_text(status::torque_limit), "torque_limit");
+}
+
+TEST(Status, SeveralBitsAreListedCommaByComma) {
+  EXPECT_EQ(to_text(status::bad_pose | status::stale_pairs | status::late_result),
+            "bad_pose, stale_pairs, late_result");
+}
+
+TEST(Status, FailsafeIsEveryFaultOfTheInputAndNothingElse) {
+  EXPECT_EQ(status::failsafe,
+            status::bad_pose | status::bad_command | status::bad_joints | status::clock_fault);
+}
+
+}  // namespace
+}  // namespace repel

@@ -1,0 +1,51 @@
+#include <repel/base/vec.hpp>
+
+#include <gtest/gtest.h>
+
+#include <support/families.hpp>
+
+namespace repel {
+namespace {
+
+constexpr unsigned seed = 5;
+
+template <class T>
+class VecOf : public ::testing::Test {};
+using Precisions = ::testing::Types<double, DoubleDouble>;
+TYPED_TEST_SUITE(VecOf, Precisions);
+
+TYPED_TEST(VecOf, AgreesWithEigen) {
+  families::Rng rng(seed);
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+    const Vec3 a = families::direction(rng);
+    const Vec3 b = families::direction(rng);
+    Pose X = Pose::Identity();
+    X.linear() = families::rotation(rng);
+    X.translation() = 100.0 * families::direction(rng);
+    const Vec<TypeParam> u(a);
+    const Vec<TypeParam> v(b);
+    EXPECT_LE((to_vec3(u + v) - (a + b)).norm(), 1e-15);
+    EXPECT_LE((to_vec3(u - v) - (a - b)).norm(), 1e-15);
+    EXPECT_EQ(to_vec3(-u), -a);
+    EXPECT_LE((to_vec3(TypeParam(3.0) * u) - 3.0 * a).norm(), 1e-15);
+    EXPECT_NEAR(static_cast<double>(dot(u, v)), a.dot(b), 1e-15);
+    EXPECT_LE((to_vec3(cross(u, v)) - a.cross(b)).norm(), 1e-15);
+    // Directions: the translation takes no part.
+    EXPECT_LE((to_vec3(rotate(X, u)) - X.linear() * a).norm(), 1e-15);
+    EXPECT_LE((to_vec3(rotate_transposed(X, u)) - X.linear().transpose() * a).norm(), 1e-15);
+  }
+}
+
+TYPED_TEST(VecOf, StartsAsZero) {
+  EXPECT_EQ(to_vec3(Vec<TypeParam>{}), Vec3(0, 0, 0));
+}
+
+TEST(Vec, ExtendedPrecisionSeesACancellationThatDoubleDoesNot) {
+  const Vec<DoubleDouble> u(DoubleDouble(1.0), DoubleDouble(1e-20), DoubleDouble(-1.0));
+  const Vec<DoubleDouble> ones(DoubleDouble(1.0), DoubleDouble(1.0), DoubleDouble(1.0));
+  EXPECT_EQ(static_cast<double>(dot(u, ones)), 1e-20);
+}
+
+}  // namespace
+}  // namespace repel
