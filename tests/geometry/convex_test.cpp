@@ -1,0 +1,180 @@
+#include <repel/geometry/convex.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <support/families.hpp>
+
+namespace repel {
+namespace {
+
+using families::Rng;
+using families::uniform;
+
+constexpr unsigned seed = 43;
+
+struct Sample {
+  std::string name;
+  Convex set;
+  std::vector<Vec3> points;  ///< [m] many points of the set, its extreme ones among them
+};
+
+Sample box_sample(Rng& rng, const std::string& name, const Vec3& h) {
+  Sample s{name, Convex::box(h), families::box(h).vertices};
+  for (int i = 0; i < 500; ++i) {
+    s.points.push_back(
+        h.cwiseProduct(Vec3(uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1))));
+  }
+  return s;
+}
+
+Sample cylinder_sample(const std::string& name, double radius, double half_length) {
+  Sample s{name, Convex::cylinder(radius, half_length), {}};
+  for (int i = 0; i < 720; ++i) {
+    const double angle = i * M_PI / 360.0;
+    for (const double z : {-half_length, 0.0, half_length}) {
+      s.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+      s.points.emplace_back(0.0, 0.0, z);
+    }
+  }
+  return s;
+}
+
+std::vector<Sample> samples() {
+  Rng rng(seed);
+  std::vector<Sample> all;
+  all.push_back(box_sample(rng, "cube", {1, 1, 1}));
+  all.push_back(box_sample(rng, "brick", {0.1, 1.5, 0.7}));
+  all.push_back(box_sample(rng, "rectangle", {0.4, 0.0, 0.7}));
+  all.push_back(box_sample(rng, "segment", {0.0, 0.0, 0.7}));
+  all.push_back(box_sample(rng, "point", {0, 0, 0}));
+  all.push_back(cylinder_sample("cylinder", 0.5, 1.0));
+  all.push_back(cylinder_sample("disc", 0.5, 0.0));
+  all.push_back(cylinder_sample("axis", 0.0, 1.0));
+  for (const int count : {1, 2, 3, 8, 33}) {
+    const std::vector<Vec3> vertices = families::cloud(rng, count, 0.9).vertices;
+    all.push_back({"hull of " + std::to_string(count), Convex::polytope(vertices), vertices});
+  }
+  return all;
+}
+
+/// Random directions, and those along axes and edges, where support points are not unique.
+std::vector<Vec3> directions() {
+  Rng rng(seed);
+  std::vector<Vec3> all;
+  for (int i = 0; i < 500; ++i) all.push_back(families::direction(rng));
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) all.emplace_back(x, y, z);
+    }
+  }
+  return all;
+}
+
+bool holds(const Sample& sample, const Vec3& p, double tolerance) {
+  for (const Vec3& d : directions()) {
+    double farthest = -1e300;
+    for (const Vec3& q : sample.points) farthest = std::max(farthest, d.dot(q));
+    if (d.dot(p) > farthest + tolerance) return false;
+  }
+  return true;
+}
+
+TEST(Convex, NoPointOfTheSetIsFartherThanTheSupportPoint) {
+  for (const Sample& sample : samples()) {
+    SCOPED_TRACE(sample.name + ", seed " + std::to_string(seed));
+    for (const Vec3& d : directions()) {
+      const double support = d.dot(to_vec3(sample.set.support(Vec<double>(d)).p));
+      double farthest = -1e300;
+      for (const Vec3& p : sample.points) farthest = std::max(farthest, d.dot(p));
+      EXPECT_GE(support, farthest - 1e-15) << d.transpose();
+      // The samples of a rim are half a degree apart.
+      EXPECT_LE(support, farthest + 2e-5) << d.transpose();
+    }
+  }
+}
+
+TEST(Convex, ExtendedPrecisionFindsTheSameSupport) {
+  for (const Sample& sample : samples()) {
+    for (const Vec3& d : directions()) {
+      const Vec3 p = to_vec3(sample.set.support(Vec<double>(d)).p);
+      const Vec3 q = to_vec3(sample.set.support(Vec<DoubleDouble>(d)).p);
+      EXPECT_NEAR(d.dot(p), d.dot(q), 1e-15) << sample.name << ", " << d.transpose();
+    }
+  }
+}
+
+TEST(Convex, TheNameOfASupportPointBringsItBack) {
+  for (const Sample& sample : samples()) {
+    SCOPED_TRACE(sample.name + ", seed " + std::to_string(seed));
+    // The angle on a rim is named in steps of about 1e-8.
+    const double tolerance = sample.set.vertex_count() == 0 ? 1e-7 : 0.0;
+    for (const Vec3& d : directions()) {
+      const Convex::Point p = sample.set.support(Vec<double>(d));
+      const Convex::Point again = sample.set.point(p.name);
+      EXPECT_EQ(again.name, p.name);
+      EXPECT_LE((to_vec3(again.p) - to_vec3(p.p)).norm(), tolerance) << d.transpose();
+    }
+  }
+}
+
+TEST(Convex, AnyNameGivesAPointOfTheSet) {
+  Rng rng(seed);
+  for (const Sample& sample : samples()) {
+    std::vector<std::uint32_t> names{0U, 1U, 7U, 0xFFFFFFFFU, 0x0FFFFFFFU, 0x40000000U};
+    for (int i = 0; i < 40; ++i) names.push_back(static_cast<std::uint32_t>(rng()));
+    for (const std::uint32_t name : names) {
+      const Vec3 p = to_vec3(sample.set.point(name).p);
+      EXPECT_TRUE(holds(sample, p, 2e-5)) << sample.name << ", name " << name << ", seed " << seed;
+      EXPECT_LE(p.norm(), sample.set.reach() * (1.0 + 1e-15)) << sample.name << ", name " << name;
+    }
+  }
+}
+
+TEST(Convex, NamesThatStandForOnePointBecomeOne) {
+  const Convex segment = Convex::box({0.0, 0.0, 1.0});
+  EXPECT_EQ(segment.point(3).name, segment.point(0).name);
+  EXPECT_EQ(segment.point(7).name, segment.point(4).name);
+  EXPECT_NE(segment.point(0).name, segment.point(4).name);
+}
+
+TEST(Convex, ANameSurvivesTheReductionOfItsSet) {
+  const Vec3 d(0.3, -0.5, 0.8);
+  const std::uint32_t corner = Convex::box({1, 2, 3}).support(Vec<double>(d)).name;
+  EXPECT_EQ(to_vec3(Convex::box({0.5, 1.5, 2.5}).point(corner).p), Vec3(0.5, -1.5, 2.5));
+  const std::uint32_t rim = Convex::cylinder(1, 2).support(Vec<double>(d)).name;
+  const Convex smaller = Convex::cylinder(0.5, 1.5);
+  const Vec3 expected = to_vec3(smaller.support(Vec<double>(d)).p);
+  EXPECT_LE((to_vec3(smaller.point(rim).p) - expected).norm(), 1e-7);
+}
+
+TEST(Convex, ReachIsTheDistanceOfTheFarthestPoint) {
+  for (const Sample& sample : samples()) {
+    double farthest = 0.0;
+    for (const Vec3& p : sample.points) farthest = std::max(farthest, p.norm());
+    EXPECT_NEAR(sample.set.reach(), farthest, 1e-15) << sample.name;
+  }
+}
+
+TEST(Convex, VertexCountTellsWhatAFlatSetIs) {
+  EXPECT_EQ(Convex::box({1, 2, 3}).vertex_count(), 8);
+  EXPECT_EQ(Convex::box({1, 0, 3}).vertex_count(), 4);
+  EXPECT_EQ(Convex::box({0, 0, 3}).vertex_count(), 2);
+  EXPECT_EQ(Convex::box({0, 0, 0}).vertex_count(), 1);
+  EXPECT_EQ(Convex::cylinder(1, 2).vertex_count(), 0);
+  EXPECT_EQ(Convex::cylinder(0, 2).vertex_count(), 2);
+  EXPECT_EQ(Convex::cylinder(0, 0).vertex_count(), 1);
+}
+
+TEST(Convex, OnlyACurvedSetIsNoPolytope) {
+  EXPECT_TRUE(Convex::box({1, 2, 3}).is_polytope());
+  EXPECT_FALSE(Convex::cylinder(1, 2).is_polytope());
+  EXPECT_FALSE(Convex::cylinder(1, 0).is_polytope());
+  EXPECT_TRUE(Convex::cylinder(0, 2).is_polytope());
+}
+
+}  // namespace
+}  // namespace repel

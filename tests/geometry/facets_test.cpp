@@ -1,0 +1,161 @@
+#include <repel/geometry/facets.hpp>
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <support/families.hpp>
+
+namespace repel {
+namespace {
+
+using families::Rng;
+
+constexpr unsigned seed = 47;
+
+/// What makes a list of triangles the surface of the hull of `points`.
+void expect_is_the_hull(const std::vector<Facet>& facets, const std::vector<Vec3>& points) {
+  ASSERT_FALSE(facets.empty());
+  double size = 0.0;
+  for (const Vec3& p : points) size = std::max(size, p.norm());
+  std::map<std::pair<int, int>, int> edges;
+  std::set<int> corners;
+  for (const Facet& f : facets) {
+    EXPECT_NEAR(f.n.norm(), 1.0, 1e-14);
+    double farthest = -1e300;
+    for (const Vec3& p : points) farthest = std::max(farthest, f.n.dot(p));
+    EXPECT_LE(farthest, f.offset) << "a point is outside";
+    EXPECT_GE(farthest, f.offset - 1e-15 * size) << "the half space does not touch the hull";
+    for (int k = 0; k < 3; ++k) {
+      corners.insert(f.vertices[k]);
+      ++edges[{f.vertices[k], f.vertices[(k + 1) % 3]}];
+      EXPECT_NEAR(f.n.dot(points[f.vertices[k]]), f.offset, 1e-10 * size);
+    }
+  }
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1) << "two facets go round one edge the same way";
+    EXPECT_EQ(edges.count({edge.second, edge.first}), 1U) << "an edge has one facet only";
+  }
+  const int undirected = static_cast<int>(edges.size()) / 2;
+  EXPECT_EQ(static_cast<int>(corners.size()) - undirected + static_cast<int>(facets.size()), 2);
+}
+
+/// [m^3] by the divergence theorem; right only when all facets are turned outward.
+double volume(const std::vector<Facet>& facets, const std::vector<Vec3>& points) {
+  double six_times = 0.0;
+  for (const auto& f : facets) {
+    six_times += points[f.vertices[0]].dot(points[f.vertices[1]].cross(points[f.vertices[2]]));
+  }
+  return six_times / 6.0;
+}
+
+TEST(Facets, ACubeHasTwelveTrianglesAndItsOwnVolume) {
+  Rng rng(seed);
+  for (int i = 0; i < 50; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", cube " + std::to_string(i));
+    std::vector<Vec3> corners = families::box({0.5, 0.5, 0.5}).vertices;
+    const Mat3 R = i == 0 ? Mat3(Mat3::Identity()) : families::rotation(rng);
+    for (Vec3& p : corners) p = R * p;
+    const std::vector<Facet> facets = hull_facets(corners);
+    expect_is_the_hull(facets, corners);
+    EXPECT_EQ(facets.size(), 12U);
+    EXPECT_NEAR(volume(facets, corners), 1.0, 1e-14);
+    for (const Facet& f : facets) EXPECT_NEAR(f.offset, 0.5, 1e-14);
+  }
+}
+
+TEST(Facets, HullsOfRandomCloudsAreClosedSurfaces) {
+  Rng rng(seed);
+  for (const int count : {4, 5, 6, 8, 12, 20, 50, 100, 300}) {
+    for (int i = 0; i < 10; ++i) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(count) + " points");
+      std::vector<Vec3> points;
+      for (int k = 0; k < count; ++k) {
+        points.push_back(families::uniform(rng, 0.2, 1.0) * families::direction(rng));
+      }
+      expect_is_the_hull(hull_facets(points), points);
+    }
+  }
+}
+
+TEST(Facets, PointsOnASphereAreAllCorners) {
+  Rng rng(seed);
+  const std::vector<Vec3> points = families::cloud(rng, 200, 2.0).vertices;
+  const std::vector<Facet> facets = hull_facets(points);
+  expect_is_the_hull(facets, points);
+  EXPECT_EQ(facets.size(), 2U * 200U - 4U);
+}
+
+TEST(Facets, FarFromTheOriginTheHullIsTheSame) {
+  Rng rng(seed);
+  std::vector<Vec3> points = families::cloud(rng, 30, 1.0).vertices;
+  const std::size_t count = hull_facets(points).size();
+  for (Vec3& p : points) p += Vec3(50, -20, 30);
+  const std::vector<Facet> facets = hull_facets(points);
+  expect_is_the_hull(facets, points);
+  EXPECT_EQ(facets.size(), count);
+}
+
+TEST(Facets, PointsInsideAndRepeatedPointsChangeNothing) {
+  Rng rng(seed);
+  const std::vector<Vec3> points = families::cloud(rng, 20, 1.0).vertices;
+  std::vector<Vec3> more = points;
+  for (int i = 0; i < 40; ++i) more.push_back(0.05 * families::direction(rng));
+  more.insert(more.end(), points.begin(), points.end());
+  const std::vector<Facet> facets = hull_facets(more);
+  expect_is_the_hull(facets, more);
+  EXPECT_EQ(facets.size(), hull_facets(points).size());
+  EXPECT_NEAR(volume(facets, more), volume(hull_facets(points), points), 1e-14);
+}
+
+TEST(Facets, ManyPointsOnEachFaceOfABoxStillGiveTheBox) {
+  Rng rng(seed);
+  for (const bool turned : {false, true}) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + (turned ? ", turned" : ""));
+    const Mat3 R = turned ? families::rotation(rng) : Mat3(Mat3::Identity());
+    std::vector<Vec3> points;
+    for (int x = 0; x < 4; ++x) {
+      for (int y = 0; y < 4; ++y) {
+        for (int z = 0; z < 4; ++z) points.push_back(R * Vec3(x, y, z));
+      }
+    }
+    const std::vector<Facet> facets = hull_facets(points);
+    expect_is_the_hull(facets, points);
+    EXPECT_NEAR(volume(facets, points), 27.0, 1e-10);
+  }
+}
+
+TEST(Facets, NeedlesAndPlatesHaveFacetsDownToAMillionth) {
+  Rng rng(seed);
+  for (const Vec3& h : {Vec3(1e-6, 1e-6, 1.0), Vec3(1.0, 1.0, 1e-6), Vec3(1e-6, 1e-3, 1.0)}) {
+    std::vector<Vec3> corners = families::box(h).vertices;
+    const Mat3 R = families::rotation(rng);
+    for (Vec3& p : corners) p = R * p;
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", box " + std::to_string(h.x()));
+    const std::vector<Facet> facets = hull_facets(corners);
+    expect_is_the_hull(facets, corners);
+    EXPECT_NEAR(volume(facets, corners) / (8.0 * h.prod()), 1.0, 1e-6);
+  }
+}
+
+TEST(Facets, PointsWithoutAVolumeHaveNone) {
+  Rng rng(seed);
+  const Mat3 R = families::rotation(rng);
+  std::vector<Vec3> plane, line;
+  for (int i = 0; i < 30; ++i) {
+    plane.push_back(R * Vec3(families::uniform(rng, -1, 1), families::uniform(rng, -1, 1), 0.4));
+    line.push_back(R * Vec3(families::uniform(rng, -1, 1), 0.2, 0.4));
+  }
+  EXPECT_TRUE(hull_facets(plane).empty()) << "seed " << seed;
+  EXPECT_TRUE(hull_facets(line).empty()) << "seed " << seed;
+  EXPECT_TRUE(hull_facets(std::vector<Vec3>(10, Vec3(1, 2, 3))).empty());
+  EXPECT_TRUE(hull_facets(std::vector<Vec3>(10, Vec3::Zero())).empty());
+  EXPECT_TRUE(hull_facets(families::cloud(rng, 3, 1.0).vertices).empty());
+  EXPECT_TRUE(hull_facets({}).empty());
+}
+
+}  // namespace
+}  // namespace repel
