@@ -26,12 +26,15 @@ class Metronome {
  public:
   explicit Metronome(nanoseconds period) : period_(period), due_(now() + period) {}
 
-  /// Returns once the next tick is due. Returns how late that is.
-  nanoseconds wait() {
+  /// Returns once the next tick is due, and how late that is. `rehearse` is called after the
+  /// sleep, when there is time for it.
+  template <class Rehearse>
+  nanoseconds wait(Rehearse&& rehearse) {
     const nanoseconds sleep_until = due_ - spin;
     if (sleep_until > now()) {
       const timespec until{sleep_until.count() / 1000000000, sleep_until.count() % 1000000000};
       clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+      if (due_ - now() > spin / 2) rehearse();
     }
     nanoseconds late = now() - due_;
     while (late.count() < 0) late = now() - due_;
@@ -117,7 +120,8 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
                             the_operator, result.scene.coupling, period);
   Metronome metronome(period);
   for (std::int64_t k = 1; k <= ticks && !stop; ++k) {
-    const nanoseconds late = options.fast ? nanoseconds(0) : metronome.wait();
+    const nanoseconds late =
+        options.fast ? nanoseconds(0) : metronome.wait([&] { teleoperator.rehearse(); });
     const auto begin = steady_clock::now();
     const TickRecord* record = nullptr;
     {

@@ -75,6 +75,12 @@ class Coprocessor {
     return total_;
   }
 
+  /// Without threads: asks the near pairs of the last motion again and forgets the answers, which
+  /// brings code and data of the next exchange into the caches. With threads: nothing.
+  void rehearse() const noexcept {
+    if (options_.threads == 0) seats_.front()->worker.rehearse(world_->motion());
+  }
+
   /// True when some worker had not answered this tick and its older forces were used.
   [[nodiscard]] bool late() const noexcept { return late_; }
   [[nodiscard]] int threads() const noexcept { return options_.threads; }

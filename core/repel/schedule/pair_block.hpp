@@ -134,6 +134,21 @@ class PairBlock {
     }
   }
 
+  /// Asks up to `most` pairs again that were near at the last tick, and forgets the answers.
+  /// Returns how many.
+  int rehearse(const Motion& motion, const std::vector<Pose>& X_WP, int most) const noexcept {
+    int asked = 0;
+    for (int i = 0; i < count() && asked < most; ++i) {
+      if (!is_near(i, motion)) continue;
+      WarmStart warm = queries_[i].warm;
+      const Pair& p = pair(i);
+      (void)separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
+                       X_WP[p.b.index], {}, warm);
+      ++asked;
+    }
+    return asked;
+  }
+
   [[nodiscard]] const PairForces& forces() const noexcept { return forces_; }
   [[nodiscard]] const Separation& separation_of(int i) const noexcept { return queries_[i].last; }
   [[nodiscard]] int first() const noexcept { return first_; }

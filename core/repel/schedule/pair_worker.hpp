@@ -57,10 +57,17 @@ class PairWorker {
     }
   }
 
+  /// Does the work of a tick on the first few near pairs and forgets it.
+  void rehearse(const Motion& motion) const noexcept {
+    int pairs = rehearsed_pairs;
+    for (const PairBlock& block : blocks_) pairs -= block.rehearse(motion, X_WP_, pairs);
+  }
+
   [[nodiscard]] const std::vector<PairBlock>& blocks() const noexcept { return blocks_; }
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr int rehearsed_pairs = 8;
   static constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 
   void place_parts(const Motion& motion) noexcept {
