@@ -169,8 +169,10 @@ void UrdfDocument::check_numbers(const Element& element, const std::string& owne
     const char* text = element.Attribute(attribute.c_str());
     if (!text && !rule.required) continue;
     if (text && obeys(rule, text)) continue;
-    fail(&element, owner + ": " + attribute + " of <" + std::string(name) + "> is " +
-                       (text ? quoted(text) : "missing") + "; allowed: " + allowed(rule));
+    std::string wrong = owner + ": ";
+    wrong += attribute + " of <" + std::string(name) + "> is ";
+    wrong += (text ? quoted(text) : "missing") + "; allowed: " + allowed(rule);
+    fail(&element, wrong);
   }
   for (const auto* child = element.FirstChildElement(); child;
        child = child->NextSiblingElement()) {

@@ -27,7 +27,7 @@ using Pose = Eigen::Isometry3d;
 
 /// True when every entry of `v` is finite.
 [[nodiscard]] inline bool is_finite(const Vec3& v) noexcept {
-  return (v - v).sum() == 0.0;
+  return (v - v).sum() == 0.0;  // NOLINT(misc-redundant-expression)
 }
 
 /// True when the rotation of `X` is orthonormal and right-handed within `tolerance` per entry.
