@@ -86,7 +86,7 @@ TEST(PairWorker, OneNanosecondIsSpentHonestly) {
 
 TEST(PairWorker, NoBlockStarvesOnAWallBudgetThatIsTooShortForOne) {
   test::Boxes boxes(4, 160, reaches_everything, seed);  // 640 pairs, 10 blocks
-  detail::PairWorker worker(boxes.world, {.wall = 20us}, 0, 1);
+  detail::PairWorker worker(boxes.world, {.wall = 5us}, 0, 1);
   worker.prime(boxes.world.motion());
   // Until every answer is younger than the run; how long that takes is the machine's affair.
   constexpr int most = 20000;
