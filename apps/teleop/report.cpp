@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -36,6 +37,34 @@ void print_times(const char* name, const DurationHistogram& h, std::FILE* out) {
                h.percentile_us(0.5), h.percentile_us(0.99), h.percentile_us(0.999), h.max_us());
 }
 
+/// The obstacles that pushed, hardest first.
+void print_obstacles(const RunResult& r, std::FILE* out) {
+  constexpr std::size_t most = 10;
+  std::vector<ObstacleResult> touched;
+  for (const ObstacleResult& o : r.obstacles) {
+    if (o.peak_force > 0.0) touched.push_back(o);
+  }
+  std::sort(touched.begin(), touched.end(), [](const ObstacleResult& a, const ObstacleResult& b) {
+    return a.peak_force > b.peak_force;
+  });
+  for (std::size_t i = 0; i < std::min(most, touched.size()); ++i) {
+    std::fprintf(out, "    %-20s peak %8.2f N   nearest %9.3f mm\n", touched[i].name.c_str(),
+                 touched[i].peak_force, 1e3 * touched[i].nearest);
+  }
+  if (touched.size() > most) std::fprintf(out, "    and %zu more\n", touched.size() - most);
+}
+
+/// Every obstacle; its nearest is null while its pairs have never been asked.
+ordered_json obstacle_list(const RunResult& r) {
+  ordered_json list = ordered_json::array();
+  for (const ObstacleResult& o : r.obstacles) {
+    const ordered_json nearest =
+        std::isfinite(o.nearest) ? ordered_json(o.nearest) : ordered_json(nullptr);
+    list.push_back({{"name", o.name}, {"nearest_m", nearest}, {"peak_force_n", o.peak_force}});
+  }
+  return list;
+}
+
 void close_checked(std::ofstream& file, const std::string& path) {
   file.close();
   if (!file) throw SetupError("cannot write the file", path);
@@ -70,6 +99,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                  1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * deepest(r));
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
+  print_obstacles(r, out);
   std::fprintf(out, "  allocations in tick    %s\n",
                r.allocations_in_tick < 0 ? "not counted (another allocator is in place)"
                                          : std::to_string(r.allocations_in_tick).c_str());
@@ -112,6 +142,7 @@ void write_json(const RunResult& r, const std::string& path) {
       {"nearest_pair", r.nearest_pair},
       {"deepest_m", deepest(r)},
       {"peak_force_n", t.peak_force},
+      {"obstacles", obstacle_list(r)},
       {"allocations_in_tick",
        r.allocations_in_tick < 0 ? ordered_json(nullptr) : ordered_json(r.allocations_in_tick)},
       {"status_ticks", status_counts(r)},

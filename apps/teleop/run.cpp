@@ -99,6 +99,22 @@ Progress progress_of(const TickRecord& record, const RunResult& result) noexcept
           record.status,        result.deadline.misses()};
 }
 
+/// Pairs are laid out obstacle by obstacle, with every part of the tool in turn.
+std::vector<ObstacleResult> obstacle_results(const Cell& cell, const Coprocessor& coprocessor) {
+  std::vector<ObstacleResult> results;
+  PartId last;
+  const World& world = cell.world;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
+    const PartId obstacle = world.pair({i}).b;
+    if (obstacle != last) results.push_back({.name = world.part(obstacle).name});
+    last = obstacle;
+    const PairExtremes& extremes = coprocessor.extremes_of({i});
+    results.back().nearest = std::min(results.back().nearest, extremes.nearest);
+    results.back().peak_force = std::max(results.back().peak_force, extremes.peak_force);
+  }
+  return results;
+}
+
 template <TorqueDrivenArm Arm>
 void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {
@@ -138,6 +154,8 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     progress.post();
     if (!options.fast) result.skipped_ticks += metronome.catch_up();
   }
+  coprocessor.stop();
+  result.obstacles = obstacle_results(cell, coprocessor);
   result.interrupted = stop;
   result.allocations_in_tick = HeapGuard::allocations();
   result.records = recorder.records();

@@ -5,7 +5,9 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include <repel/loop/record.hpp>
 #include <repel/scene/scene.hpp>
@@ -24,6 +26,13 @@ struct RunOptions {
   bool keep_records = false;       ///< for a log
 };
 
+/// What one obstacle did in a run.
+struct ObstacleResult {
+  std::string name;
+  double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
+  double peak_force = 0.0;                                   ///< [N] of one pair with it
+};
+
 /// Everything there is to say about a run.
 struct RunResult {
   RunOptions options;
@@ -35,6 +44,7 @@ struct RunResult {
   std::int64_t skipped_ticks = 0;         ///< given up after a pause of more than a second
   std::int64_t allocations_in_tick = -1;  ///< -1: could not be counted
   std::string nearest_pair;               ///< "part - obstacle"; empty without one
+  std::vector<ObstacleResult> obstacles;  ///< in the order of the scene
   std::vector<TickRecord> records;
   std::int64_t records_dropped = 0;
   bool interrupted = false;

@@ -88,10 +88,17 @@ class Coprocessor {
   /// The last answer for a pair. Only with 0 threads, or between ticks in lock step: the workers
   /// write it.
   [[nodiscard]] const Separation& separation_of(PairId id) const noexcept {
-    const int block = id.index / detail::PairBlock::capacity;
-    const auto& seat = *seats_[block % seats_.size()];
-    return seat.worker.blocks()[block / seats_.size()].separation_of(id.index %
-                                                                     detail::PairBlock::capacity);
+    return block_of(id).separation_of(id.index % detail::PairBlock::capacity);
+  }
+  /// How near a pair has come and how hard it has pushed. On the same condition.
+  [[nodiscard]] const PairExtremes& extremes_of(PairId id) const noexcept {
+    return block_of(id).extremes_of(id.index % detail::PairBlock::capacity);
+  }
+
+  /// Ends the threads, waiting for each to finish its tick. Not for the tick; nothing is exchanged
+  /// afterwards.
+  void stop() {
+    for (auto& seat : seats_) seat->thread = {};
   }
 
  private:
@@ -122,8 +129,15 @@ class Coprocessor {
     std::jthread thread;
   };
 
-  static void relax(int spins) noexcept {
-    if (spins % 4096 == 4095) std::this_thread::yield();
+  [[nodiscard]] const detail::PairBlock& block_of(PairId id) const noexcept {
+    const std::size_t block = static_cast<std::size_t>(id.index) / detail::PairBlock::capacity;
+    return seats_[block % seats_.size()]->worker.blocks()[block / seats_.size()];
+  }
+
+  /// One turn of a spinning wait. In lock step threads may outnumber the processors and must make
+  /// room for each other; by the clock a tick makes no system call.
+  void relax(int spins) const noexcept {
+    if (options_.lock_step && spins % 4096 == 4095) std::this_thread::yield();
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
 #endif

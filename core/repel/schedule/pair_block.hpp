@@ -59,6 +59,13 @@ struct PairForces {
   }
 };
 
+/// The extremes of one pair since set-up.
+struct PairExtremes {
+  double nearest =
+      std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
+  double peak_force = 0.0;                      ///< [N]
+};
+
 namespace detail {
 
 /// What decides whether a pair is near: kept apart from the rest, so that thousands of far pairs
@@ -72,17 +79,19 @@ struct PairWatch {
 /// What its force needs, also when it could not be evaluated again.
 struct PairAnswer {
   double distance = -std::numeric_limits<double>::infinity();  ///< [m] signed, proven from below
-  Vec3 extraction_W{0, 0, 0};                                  ///< unit
-  Vec3 p_AQ_W{0, 0, 0};   ///< [m] witness point on A, from the origin of body A
-  Vec3 p_BA_W{0, 0, 0};   ///< [m] origin of body A from that of body B when it was evaluated
-  double turn = 0.0;      ///< [m] both bodies' BodyState::turn then
-  std::int64_t tick = 0;  ///< when it was evaluated
+  bool parted = false;         ///< a plane across extraction_W parts the shapes at that distance
+  Vec3 extraction_W{0, 0, 0};  ///< unit
+  Vec3 p_AQ_W{0, 0, 0};        ///< [m] witness point on A, from the origin of body A
+  Vec3 p_BA_W{0, 0, 0};        ///< [m] origin of body A from that of body B when it was evaluated
+  double turn = 0.0;           ///< [m] both bodies' BodyState::turn then
+  std::int64_t tick = 0;       ///< when it was evaluated
 };
 
 /// What its next evaluation begins with, and what users may ask for.
 struct PairQuery {
   WarmStart warm;
   Separation last;
+  PairExtremes extremes;
 };
 
 /// A slice of the world's pairs. All memory is taken at construction.
@@ -129,7 +138,7 @@ class PairBlock {
         push(i, motion, least);
       } else {
         evaluate(i, motion, X_WP);
-        push(i, motion, queries_[i].last.distance);
+        push(i, motion, answers_[i].distance);
       }
     }
   }
@@ -151,6 +160,9 @@ class PairBlock {
 
   [[nodiscard]] const PairForces& forces() const noexcept { return forces_; }
   [[nodiscard]] const Separation& separation_of(int i) const noexcept { return queries_[i].last; }
+  [[nodiscard]] const PairExtremes& extremes_of(int i) const noexcept {
+    return queries_[i].extremes;
+  }
   [[nodiscard]] int first() const noexcept { return first_; }
   [[nodiscard]] int count() const noexcept { return static_cast<int>(watches_.size()); }
 
@@ -191,8 +203,10 @@ class PairBlock {
     Separation& s = queries_[i].last;
     s = separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
                    X_WP[p.b.index], {}, queries_[i].warm);
-    const bool proven = s.lower > 0.0 || s.end == QueryEnd::budget_spent;
-    answers_[i] = {proven ? s.lower : s.distance,
+    // A query that was cut short is answered by its proven bound, whose direction is not known.
+    const bool cut_short = s.end == QueryEnd::budget_spent;
+    answers_[i] = {cut_short ? s.lower : s.distance,
+                   s.lower > 0.0 && !cut_short,
                    s.extraction_W,
                    s.p_WA - A.X_WB.translation(),
                    A.X_WB.translation() - B.X_WB.translation(),
@@ -202,6 +216,7 @@ class PairBlock {
     PairTotals& totals = forces_.totals;
     ++totals.evaluated;
     totals.iterations += s.iterations;
+    queries_[i].extremes.nearest = std::min(queries_[i].extremes.nearest, s.distance);
     if (s.distance < totals.nearest) {
       totals.nearest = s.distance;
       totals.nearest_pair = {first_ + i};
@@ -217,7 +232,7 @@ class PairBlock {
     const BodyState& A = body_a(i, motion);
     const BodyState& B = body_b(i, motion);
     const Vec3 moved = A.X_WB.translation() - B.X_WB.translation() - then.p_BA_W;
-    const double along = then.distance > 0.0 ? then.extraction_W.dot(moved) : -moved.norm();
+    const double along = then.parted ? then.extraction_W.dot(moved) : -moved.norm();
     const double turned = A.turn + B.turn - then.turn;
     const double now = then.distance + along - turned;
     if (now > 0.0) return now;
@@ -243,6 +258,7 @@ class PairBlock {
     const Vec3 v_B = moved_to(B.V_WB, p_BQ_W).linear;
     const double size = law(distance, n.dot(v_A - v_B));
     forces_.totals.peak_force = std::max(forces_.totals.peak_force, size);
+    queries_[i].extremes.peak_force = std::max(queries_[i].extremes.peak_force, size);
     const Vec3 f = size * n;
     forces_.on_body[watches_[i].body_a.index] += wrench_of_force(f, p_AQ_W);
     forces_.on_body[watches_[i].body_b.index] += wrench_of_force(-f, p_BQ_W);
