@@ -57,34 +57,32 @@ struct Truth {
 };
 
 /// Weights of the point nearest to the origin on the affine hull of the corral: w0 + E t with
-/// E'E t = -E'w0, E the differences to the first point. False when the corral is degenerate.
+/// E = QR and R t = -Q'w0, E the differences to the first point. Gram and Schmidt, each step twice:
+/// normal equations would square the smallness of an angle. False when the corral is degenerate.
 inline bool affine_weights(const std::vector<Point>& corral, std::vector<Real>& weights) {
   const std::size_t n = corral.size() - 1;
-  std::vector<Point> e(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (int k = 0; k < 3; ++k) e[i].x[k] = corral[i + 1].x[k] - corral[0].x[k];
-  }
-  Real m[4][5] = {};
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) m[i][j] = dot(e[i], e[j]);
-    m[i][n] = -dot(e[i], corral[0]);
-  }
-  for (std::size_t column = 0; column < n; ++column) {
-    std::size_t pivot = column;
-    for (std::size_t r = column + 1; r < n; ++r) {
-      if (magnitude(m[r][column]) > magnitude(m[pivot][column])) pivot = r;
+  Point q[3];
+  Real r[3][4] = {};  // the last column is the right-hand side
+  for (std::size_t j = 0; j < n; ++j) {
+    for (int k = 0; k < 3; ++k) q[j].x[k] = corral[j + 1].x[k] - corral[0].x[k];
+    const Real length = square_root(dot(q[j], q[j]));
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t i = 0; i < j; ++i) {
+        const Real along = dot(q[i], q[j]);
+        r[i][j] += along;
+        for (int k = 0; k < 3; ++k) q[j].x[k] -= along * q[i].x[k];
+      }
     }
-    std::swap(m[pivot], m[column]);
-    if (magnitude(m[column][column]) <= Real(1e-30) * dot(e[column], e[column])) return false;
-    for (std::size_t r = 0; r < n; ++r) {
-      if (r == column) continue;
-      const Real factor = m[r][column] / m[column][column];
-      for (std::size_t c = column; c <= n; ++c) m[r][c] -= factor * m[column][c];
-    }
+    r[j][j] = square_root(dot(q[j], q[j]));
+    if (r[j][j] <= Real(1e-28) * length) return false;
+    for (int k = 0; k < 3; ++k) q[j].x[k] /= r[j][j];
+    r[j][3] = -dot(q[j], corral[0]);
   }
   weights.assign(n + 1, 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    weights[i + 1] = m[i][n] / m[i][i];
+  for (std::size_t i = n; i-- > 0;) {
+    weights[i + 1] = r[i][3];
+    for (std::size_t j = i + 1; j < n; ++j) weights[i + 1] -= r[i][j] * weights[j + 1];
+    weights[i + 1] /= r[i][i];
     weights[0] -= weights[i + 1];
   }
   return true;

@@ -1,0 +1,29 @@
+#include <repel/distance/query.hpp>
+
+#include <gtest/gtest.h>
+
+#include <type_traits>
+
+namespace repel {
+namespace {
+
+TEST(Query, TheDefaultEndClaimsNothing) {
+  EXPECT_EQ(QueryEnd{}, QueryEnd::bad_input);
+}
+
+TEST(Query, TheDefaultOptionsAreUsable) {
+  const QueryOptions options;
+  EXPECT_GT(options.tolerance, 0.0);
+  EXPECT_LE(options.tolerance, 1e-12);
+  EXPECT_GE(options.iterations, 100);
+  EXPECT_EQ(options.ignore_beyond, std::numeric_limits<double>::infinity());
+}
+
+TEST(Query, AWarmStartIsEmptyAtFirstAndSmallEnoughToKeepPerPair) {
+  EXPECT_EQ(WarmStart{}.size, 0);
+  static_assert(std::is_trivially_copyable_v<WarmStart>);
+  static_assert(sizeof(WarmStart) <= 40);
+}
+
+}  // namespace
+}  // namespace repel
