@@ -69,20 +69,20 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
   // Each lane keeps its own best, so that no comparison waits for the one before it. Indices travel
   // as doubles: they share the registers and the masks of the products.
   using detail::Lanes;
-  constexpr int width = detail::lane_count;
-  constexpr int rows = lanes / width;
+  constexpr std::size_t width = detail::lane_count;
+  constexpr std::size_t rows = lanes / width;
   static constexpr double first_indices[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
   Lanes best[rows];
   Lanes index[rows];
   Lanes here[rows];
-  for (int row = 0; row < rows; ++row) {
+  for (std::size_t row = 0; row < rows; ++row) {
     std::memcpy(&here[row], &first_indices[row * width], sizeof here[row]);
     best[row] = Lanes{} - std::numeric_limits<double>::infinity();
     index[row] = here[row];
   }
   const std::size_t count = x_.size();
   for (std::size_t i = 0; i < count; i += lanes) {
-    for (int row = 0; row < rows; ++row) {
+    for (std::size_t row = 0; row < rows; ++row) {
       Lanes x, y, z;
       std::memcpy(&x, &x_[i + row * width], sizeof x);
       std::memcpy(&y, &y_[i + row * width], sizeof y);
@@ -96,7 +96,7 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
   }
   double farthest = best[0][0];
   double winner = index[0][0];
-  for (int k = 1; k < lanes; ++k) {
+  for (std::size_t k = 1; k < lanes; ++k) {
     const double along = best[k / width][k % width];
     const double i = index[k / width][k % width];
     const bool farther = along > farthest || (along == farthest && i < winner);

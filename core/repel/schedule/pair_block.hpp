@@ -205,7 +205,7 @@ class PairBlock {
                    X_WP[p.b.index], {}, queries_[i].warm);
     // A query that was cut short is answered by its proven bound, whose direction is not known.
     const bool cut_short = s.end == QueryEnd::budget_spent;
-    answers_[i] = {cut_short ? s.lower : s.distance,
+    answers_[i] = {cut_short || s.lower > 0.0 ? s.lower : s.distance,
                    s.lower > 0.0 && !cut_short,
                    s.extraction_W,
                    s.p_WA - A.X_WB.translation(),
