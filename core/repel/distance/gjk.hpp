@@ -134,10 +134,12 @@ class Gjk {
     const T length = sqrt_of(simplex_.vv());
     gap.p_AQa_W = to_vec3(a);
     gap.p_AQb_W = to_vec3(a - w);
-    // The witness points are points of the sets whatever v has suffered: they bound from above.
-    gap.upper = static_cast<double>(sqrt_of(dot(w, w))) * (1.0 + 0x1p-51) + margin_;
+    // The witness points are points of the sets whatever v has suffered from a thin simplex: their
+    // distance bounds from above, and is the better value.
+    const double between = static_cast<double>(sqrt_of(dot(w, w)));
+    gap.upper = between * (1.0 + 0x1p-51) + margin_;
     gap.lower *= 1.0 - 0x1p-51;
-    gap.distance = std::clamp(static_cast<double>(length), gap.lower, gap.upper);
+    gap.distance = std::clamp(between, gap.lower, gap.upper);
     // Adding zero turns a negative zero into a positive one.
     if (length > T(0.0)) gap.n_BA_W = to_vec3((T(1.0) / length) * simplex_.v()) + Vec3::Zero();
   }
