@@ -14,8 +14,8 @@ struct Machine {
   std::string commit;
 };
 
-/// Asks for a real-time priority and for locked memory, each of which may be refused. Returns what
-/// was granted, in words.
+/// Asks for a real-time priority, locked memory and waking processors, each of which may be
+/// refused. Returns what was granted, in words.
 [[nodiscard]] std::string request_real_time();
 
 /// Gives the calling thread the real-time priority one below the caller of request_real_time, if

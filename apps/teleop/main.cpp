@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace repel;
 
+// A signal handler has nothing else to write to.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<bool> interrupted{false};
 
 struct Arguments {
@@ -114,21 +116,21 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Arguments arguments;
-  CLI::App app("Drives a simulated arm through a world of virtual walls.", "teleop");
-  describe(app, arguments);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
-  try {
+    Arguments arguments;
+    CLI::App app("Drives a simulated arm through a world of virtual walls.", "teleop");
+    describe(app, arguments);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
+    std::signal(SIGINT, [](int) { interrupted = true; });
+    std::signal(SIGTERM, [](int) { interrupted = true; });
     run(arguments);
+    return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "teleop: %s\n", error.what());
     return 1;
   }
-  return 0;
 }

@@ -26,16 +26,16 @@ class Metronome {
  public:
   explicit Metronome(nanoseconds period) : period_(period), due_(now() + period) {}
 
-  /// Returns once the next tick is due, and how late that is. `rehearse` is called after the
-  /// sleep, when there is time for it.
+  /// Returns once the next tick is due, and how late that is. While there is time after the sleep,
+  /// `rehearse` is called again and again: it keeps the processor as it should find the tick.
   template <class Rehearse>
   nanoseconds wait(Rehearse&& rehearse) {
     const nanoseconds sleep_until = due_ - spin;
     if (sleep_until > now()) {
       const timespec until{sleep_until.count() / 1000000000, sleep_until.count() % 1000000000};
       clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-      if (due_ - now() > spin / 2) rehearse();
     }
+    while (due_ - now() > spin / 4) rehearse();
     nanoseconds late = now() - due_;
     while (late.count() < 0) late = now() - due_;
     due_ += period_;
