@@ -18,11 +18,16 @@ inline double depth_in(const std::vector<Facet>& facets, const Vec3& x) {
   return depth;
 }
 
+inline Vec3 centroid_of(std::span<const Vec3> vertices) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& v : vertices) sum += v / static_cast<double>(vertices.size());
+  return sum;
+}
+
 /// A point near the deepest one: walks away from the nearest plane in steps that shrink. Whatever
 /// it finds is honest, since its depth is measured afterwards.
 inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> vertices) {
-  Vec3 x = Vec3::Zero();
-  for (const Vec3& v : vertices) x += v / static_cast<double>(vertices.size());
+  Vec3 x = centroid_of(vertices);
   Vec3 best = x;
   double best_depth = depth_in(facets, x);
   double step = best_depth;
@@ -70,17 +75,17 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
 /// Each vertex of a level moves to the nearest point it finds that is `t` deeper; the hull of the
 /// moved vertices is the next level. So no level has more vertices than its parent, a vertex keeps
 /// its index from level to level, and the depth of a level is the sum of what each step is measured
-/// to have won. Flat input has no depth: it goes to its centroid at once.
+/// to have won. The last solid level goes to its centroid, and so does flat input, which has no
+/// depth.
 inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
   std::vector<Vec3> vertices(points.begin(), points.end());
   Ladder ladder{{Convex::polytope(vertices), 0.0, 0.0}};
-  Vec3 deep = Vec3::Zero();
-  for (const Vec3& v : vertices) deep += v / static_cast<double>(vertices.size());
+  Vec3 centroid = centroid_of(vertices);
   double depth = 0.0;
   for (int i = 0; i < levels; ++i) {
     const std::vector<Facet> facets = hull_facets(vertices);
     if (facets.empty()) break;
-    deep = deep_point(facets, vertices);
+    const Vec3 deep = deep_point(facets, vertices);
     const double room = depth_in(facets, deep);
     if (!(room > 0.0)) break;
     const bool last = i + 1 == levels;
@@ -96,10 +101,11 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
     won -= 1e-12 * ladder.front().core.reach();
     if (!(won > 0.0)) break;
     depth += won;
-    ladder.push_back({Convex::polytope(vertices), depth, depth});
+    append(ladder, Convex::polytope(vertices), depth, depth);
+    centroid = centroid_of(vertices);
   }
   if (points.size() > 1) {
-    ladder.push_back({Convex::polytope(std::span(&deep, 1)), depth, flat_order});
+    append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
   }
   return ladder;
 }
