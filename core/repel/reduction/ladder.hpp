@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -39,6 +40,13 @@ namespace detail {
 /// Flat levels come after every level that still gains depth, of either shape.
 inline constexpr double flat_order = 1e9;
 
+/// Adds a level, behind the last one in any case: orders that rounding made equal would leave the
+/// walk along the chain without a way.
+inline void append(Ladder& ladder, Convex core, double depth, double order) {
+  const double next = std::nextafter(ladder.back().order, std::numeric_limits<double>::infinity());
+  ladder.push_back({std::move(core), depth, std::max(order, next)});
+}
+
 /// A box loses thickness evenly to a rectangle, the rectangle its width to a line, the line its
 /// length to a point (Figure 4 a, b, c). Coinciding steps fall together.
 inline Ladder box_ladder(const Vec3& half_extents, int levels) {
@@ -50,12 +58,12 @@ inline Ladder box_ladder(const Vec3& half_extents, int levels) {
   Ladder ladder{{Convex::box(half_extents), 0.0, 0.0}};
   for (int i = 1; i <= levels && sorted[0] > 0.0; ++i) {
     const double t = i == levels ? sorted[0] : sorted[0] * i / levels;
-    ladder.push_back({Convex::box(eroded(t)), t, t});
+    append(ladder, Convex::box(eroded(t)), t, t);
   }
   for (const double t : {sorted[1], sorted[2]}) {
     if (ladder.back().core.vertex_count() == 1 || t == sorted[0]) continue;
     if (t == sorted[1] && sorted[1] == sorted[2] && ladder.back().order > flat_order) continue;
-    ladder.push_back({Convex::box(eroded(t)), sorted[0], flat_order + t});
+    append(ladder, Convex::box(eroded(t)), sorted[0], flat_order + t);
   }
   return ladder;
 }
@@ -66,12 +74,12 @@ inline Ladder cylinder_ladder(double radius, double half_length, int levels) {
   const double thickness = std::min(radius, half_length);
   const double rest = std::max(radius, half_length);
   Ladder ladder{{Convex::cylinder(radius, half_length), 0.0, 0.0}};
-  for (int i = 1; i <= levels; ++i) {
+  for (int i = 1; i <= levels && thickness > 0.0; ++i) {
     const double t = i == levels ? thickness : thickness * i / levels;
-    ladder.push_back({Convex::cylinder(radius - t, half_length - t), t, t});
+    append(ladder, Convex::cylinder(radius - t, half_length - t), t, t);
   }
   if (rest > thickness) {
-    ladder.push_back({Convex::box(Vec3::Zero()), thickness, flat_order + rest});
+    append(ladder, Convex::box(Vec3::Zero()), thickness, flat_order + rest);
   }
   return ladder;
 }
@@ -85,7 +93,7 @@ inline Ladder sphere_ladder(double radius) {
 inline Ladder capsule_ladder(double radius, double half_length) {
   Ladder ladder{{Convex::box({0.0, 0.0, half_length}), radius, 0.0}};
   if (half_length > 0.0) {
-    ladder.push_back({Convex::box(Vec3::Zero()), radius, flat_order + half_length});
+    append(ladder, Convex::box(Vec3::Zero()), radius, flat_order + half_length);
   }
   return ladder;
 }
