@@ -1,0 +1,268 @@
+#include <repel/reduction/shape.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <repel/reduction/separation.hpp>
+#include <support/families.hpp>
+
+namespace repel {
+namespace {
+
+using families::Rng;
+
+constexpr unsigned seed = 701;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+template <class Build>
+void expect_refused(const std::string& thing, const std::string& value, Build build) {
+  try {
+    build();
+    ADD_FAILURE() << thing << " of " << value << " was accepted";
+  } catch (const SetupError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find(thing), std::string::npos) << text;
+    EXPECT_NE(text.find(value), std::string::npos) << text;
+    EXPECT_NE(text.find("allowed"), std::string::npos) << text;
+  }
+}
+
+TEST(Shape, SizesThatAreNotAllowedAreNamed) {
+  for (const double bad : {-1e-300, -1.0, not_a_number, infinite, -infinite, 1.0000001e6}) {
+    const std::string value = to_text(bad);
+    expect_refused("radius", value, [&] { (void)Shape::sphere(bad); });
+    expect_refused("radius", value, [&] { (void)Shape::capsule(bad, 1); });
+    expect_refused("half length", value, [&] { (void)Shape::capsule(1, bad); });
+    expect_refused("radius", value, [&] { (void)Shape::cylinder(bad, 1); });
+    expect_refused("half length", value, [&] { (void)Shape::cylinder(1, bad); });
+    expect_refused("half extent x", value, [&] { (void)Shape::box({bad, 1, 1}); });
+    expect_refused("half extent y", value, [&] { (void)Shape::box({1, bad, 1}); });
+    expect_refused("half extent z", value, [&] { (void)Shape::box({1, 1, bad}); });
+  }
+}
+
+TEST(Shape, HullPointsThatAreNotAllowedAreNamed) {
+  for (const double bad : {not_a_number, infinite, -infinite, 1.0000001e6, -2e6}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<Vec3> points = families::box({1, 1, 1}).vertices;
+      points[5][axis] = bad;
+      expect_refused("coordinate", to_text(bad), [&] { (void)Shape::hull(points); });
+    }
+  }
+  expect_refused("number of points", "0", [] { (void)Shape::hull({}); });
+  const std::vector<Vec3> many(10001, Vec3(1, 2, 3));
+  expect_refused("number of points", "10001", [&] { (void)Shape::hull(many); });
+}
+
+TEST(Shape, TheLimitsThemselvesAreAllowed) {
+  EXPECT_EQ(Shape::sphere(1e6).reach(), 1e6);
+  EXPECT_EQ(Shape::sphere(0.0).reach(), 0.0);
+  EXPECT_EQ(Shape::box({0, 0, 0}).levels(), 1);
+  EXPECT_EQ(Shape::box({1e6, 1e6, 1e6}).deepest(), 1e6);
+  EXPECT_EQ(Shape::hull(std::vector<Vec3>(10000, Vec3(1e6, 0, 0))).reach(), 1e6);
+  EXPECT_EQ(Shape::box({1, 1, 1}, {.levels = 64}).levels(), 65);
+  EXPECT_EQ(Shape::box({1, 1, 1}, {.levels = 1}).levels(), 2);
+}
+
+TEST(Shape, LevelsThatAreNotAllowedAreNamed) {
+  const std::vector<Vec3> points = families::box({1, 1, 1}).vertices;
+  for (const int levels : {0, 65, -1, std::numeric_limits<int>::max()}) {
+    const std::string value = to_text(levels);
+    const ReductionOptions options{.levels = levels};
+    expect_refused("reduction levels", value, [&] { (void)Shape::box({1, 1, 1}, options); });
+    expect_refused("reduction levels", value, [&] { (void)Shape::sphere(1, options); });
+    expect_refused("reduction levels", value, [&] { (void)Shape::capsule(1, 1, options); });
+    expect_refused("reduction levels", value, [&] { (void)Shape::cylinder(1, 1, options); });
+    expect_refused("reduction levels", value, [&] { (void)Shape::hull(points, options); });
+  }
+}
+
+TEST(Shape, CopiesShareTheirLevels) {
+  const Shape original = Shape::box({1, 2, 3});
+  const Shape copy = original;  // NOLINT(performance-unnecessary-copy-initialization)
+  EXPECT_EQ(&copy.level(0), &original.level(0));
+  EXPECT_NE(&Shape::box({1, 2, 3}).level(0), &original.level(0));
+}
+
+TEST(Shape, ReachIsTheFarthestPoint) {
+  EXPECT_EQ(Shape::box({2, 3, 6}).reach(), 7.0);
+  EXPECT_EQ(Shape::sphere(0.3).reach(), 0.3);
+  EXPECT_EQ(Shape::capsule(0.25, 0.5).reach(), 0.75);
+  EXPECT_EQ(Shape::cylinder(3, 4).reach(), 5.0);
+  EXPECT_EQ(Shape::hull(std::vector<Vec3>{{0, 0, 1}, {0, -2, 0}, {1, 0, 0}}).reach(), 2.0);
+}
+
+// The closed forms below know nothing of support maps.
+
+Pose random_pose(Rng& rng, double reach) {
+  Pose X = Pose::Identity();
+  X.linear() = families::rotation(rng);
+  X.translation() = families::uniform(rng, 0.0, reach) * families::direction(rng);
+  return X;
+}
+
+/// [m] of the point from the box around the origin, 0 inside.
+double point_to_box(const Vec3& p, const Vec3& half_extents) {
+  return (p.cwiseAbs() - half_extents).cwiseMax(0.0).norm();
+}
+
+/// [m] of the point from the segment of +-`half_length` on the z axis.
+double point_to_segment(const Vec3& p, double half_length) {
+  return (p - Vec3(0, 0, std::clamp(p.z(), -half_length, half_length))).norm();
+}
+
+/// Right to a few 1e-15 of the size, within its own bracket, and the direction is the one given.
+void expect_exact(const Separation& s, double distance, double size) {
+  EXPECT_NEAR(s.distance, distance, 1e-14 * size);
+  EXPECT_LE(s.lower, distance + 2e-16 * size);
+  EXPECT_GE(s.upper, distance - 2e-16 * size);
+  EXPECT_LE(s.upper - s.lower, 1e-6 * size);
+  EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-14);
+  EXPECT_NEAR((s.p_WA - s.p_WB).dot(s.extraction_W), distance, 1e-13 * size);
+}
+
+TEST(Shape, TwoSpheresAreExactApartAndInOverlap) {
+  Rng rng(seed);
+  int overlaps = 0;
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    const double a = families::uniform(rng, 0, 1);
+    const double b = families::uniform(rng, 0, 1);
+    const Pose X_WA = random_pose(rng, 1);
+    const Pose X_WB = random_pose(rng, 1);
+    const Vec3 apart = X_WA.translation() - X_WB.translation();
+    const Separation s = separation(Shape::sphere(a), X_WA, Shape::sphere(b), X_WB);
+    expect_exact(s, apart.norm() - a - b, 4.0);
+    EXPECT_LE((s.extraction_W - apart.normalized()).norm(), 1e-13 / apart.norm());
+    overlaps += s.distance < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(overlaps, 300);
+  EXPECT_LT(overlaps, 900);
+}
+
+TEST(Shape, ASphereAndACapsuleAreExactApartAndInOverlap) {
+  Rng rng(seed);
+  int overlaps = 0;
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    const double a = families::uniform(rng, 0, 0.5);
+    const double b = families::uniform(rng, 0, 0.5);
+    const double half_length = families::uniform(rng, 0, 1);
+    const Pose X_WA = random_pose(rng, 1);
+    const Pose X_WB = random_pose(rng, 1);
+    const Vec3 centre = X_WB.inverse() * X_WA.translation();
+    const Separation s = separation(Shape::sphere(a), X_WA, Shape::capsule(b, half_length), X_WB);
+    expect_exact(s, point_to_segment(centre, half_length) - a - b, 4.0);
+    overlaps += s.distance < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(overlaps, 300);
+  EXPECT_LT(overlaps, 900);
+}
+
+TEST(Shape, CrossedCapsulesAreExactApartAndInOverlap) {
+  Rng rng(seed);
+  for (int i = 0; i < 300; ++i) {
+    const double apart = families::uniform(rng, 0.01, 0.6);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", axes apart by " + std::to_string(apart));
+    const Pose X_W0 = random_pose(rng, 2);
+    Pose X_0A = Pose::Identity();
+    X_0A.linear() = Eigen::AngleAxisd(families::uniform(rng, 0.3, 2.8), Vec3::UnitY()).matrix();
+    X_0A.translation() = Vec3(0, apart, families::uniform(rng, -0.3, 0.3));
+    const Separation s =
+        separation(Shape::capsule(0.1, 0.5), X_W0 * X_0A, Shape::capsule(0.2, 0.5), X_W0);
+    expect_exact(s, apart - 0.3, 5.0);
+    EXPECT_LE((s.extraction_W - X_W0.linear().col(1)).norm(), 1e-6);
+  }
+}
+
+TEST(Shape, ParallelCapsulesAreExactApartAndInOverlap) {
+  Rng rng(seed);
+  for (int i = 0; i < 300; ++i) {
+    const double apart = families::uniform(rng, 0.01, 0.6);
+    const double along = families::uniform(rng, -2, 2);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", axes apart by " + std::to_string(apart) +
+                 ", shifted by " + std::to_string(along));
+    const Pose X_W0 = random_pose(rng, 2);
+    Pose X_0A = Pose::Identity();
+    X_0A.translation() = Vec3(0, apart, along);
+    const double ends = std::max(0.0, std::abs(along) - 0.9);
+    const Separation s =
+        separation(Shape::capsule(0.1, 0.5), X_W0 * X_0A, Shape::capsule(0.2, 0.4), X_W0);
+    expect_exact(s, std::hypot(apart, ends) - 0.3, 5.0);
+  }
+}
+
+TEST(Shape, ASphereBesideABoxIsExactApartAndInShallowOverlap) {
+  Rng rng(seed);
+  int overlaps = 0;
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    const Vec3 h = families::random_box(rng, 0.1, 1.0).half_extents;
+    const Pose X_WB = random_pose(rng, 1);
+    const Vec3 centre = families::uniform(rng, 0.1, 2.0) * families::direction(rng);
+    const double to_box = point_to_box(centre, h);
+    if (to_box < 1e-3) continue;
+    Pose X_WA = random_pose(rng, 1);
+    X_WA.translation() = X_WB * centre;
+    const double radius = to_box * families::uniform(rng, 0.5, 1.5);
+    const Separation s = separation(Shape::sphere(radius), X_WA, Shape::box(h), X_WB);
+    expect_exact(s, to_box - radius, 5.0);
+    overlaps += s.distance < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(overlaps, 200);
+}
+
+TEST(Shape, CylindersApartHaveTheDistanceOfTheirClosedForms) {
+  Rng rng(seed);
+  const Shape A = Shape::cylinder(0.2, 0.5);
+  const Shape B = Shape::cylinder(0.3, 0.4);
+  for (int i = 0; i < 300; ++i) {
+    const double across = i % 3 == 0 ? 0.0 : families::uniform(rng, 0, 1.5);
+    const double along = i % 3 == 1 ? 0.0 : families::uniform(rng, -2, 2);
+    const double sides = std::max(0.0, across - 0.5);
+    const double caps = std::max(0.0, std::abs(along) - 0.9);
+    const double gap = std::hypot(sides, caps);
+    if (gap < 1e-3) continue;
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", across " + std::to_string(across) +
+                 ", along " + std::to_string(along));
+    const Pose X_WB = random_pose(rng, 2);
+    const double angle = families::uniform(rng, 0, 6);
+    Pose X_BA = Pose::Identity();
+    X_BA.translation() = Vec3(across * std::cos(angle), across * std::sin(angle), along);
+    const Separation s = separation(A, X_WB * X_BA, B, X_WB);
+    EXPECT_NEAR(s.distance, gap, 1e-12);
+    EXPECT_LE(s.lower, gap + 1e-15);
+    EXPECT_GE(s.upper, gap - 1e-15);
+    EXPECT_EQ(s.end, QueryEnd::converged);
+  }
+}
+
+TEST(Shape, ASphereBesideACylinderIsExact) {
+  Rng rng(seed);
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    const double radius = families::uniform(rng, 0.05, 0.5);
+    const double half_length = families::uniform(rng, 0.05, 1.0);
+    const Pose X_WB = random_pose(rng, 2);
+    const Vec3 centre = families::uniform(rng, 0.1, 2.0) * families::direction(rng);
+    const double sides = std::max(0.0, std::hypot(centre.x(), centre.y()) - radius);
+    const double caps = std::max(0.0, std::abs(centre.z()) - half_length);
+    const double gap = std::hypot(sides, caps);
+    if (gap < 0.01) continue;
+    Pose X_WA = Pose::Identity();
+    X_WA.translation() = X_WB * centre;
+    const double ball = gap * families::uniform(rng, 0.2, 1.5);
+    const Separation s =
+        separation(Shape::sphere(ball), X_WA, Shape::cylinder(radius, half_length), X_WB);
+    EXPECT_NEAR(s.distance, gap - ball, 1e-12);
+    EXPECT_LE(s.lower, gap - ball + 2e-15);
+    EXPECT_GE(s.upper, gap - ball - 2e-15);
+  }
+}
+
+}  // namespace
+}  // namespace repel
