@@ -8,6 +8,7 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "report.hpp"
 #include "run.hpp"
@@ -60,16 +61,52 @@ std::string find_scene(const std::string& name) {
     const fs::path path = folder / (name + ".yaml");
     if (fs::exists(path, error)) return fs::weakly_canonical(path).string();
   }
-  throw SetupError("no such scene: a file or one of" + scene_list(), name);
+  throw SetupError("no such scene; allowed: a file or one of" + scene_list(),
+                   name.empty() ? "''" : name);
 }
+
+/// A number between two others. CLI::Range lets NaN pass.
+CLI::Validator between(double low, double high) {
+  return {[low, high](const std::string& text) {
+            double value = 0.0;
+            const bool number = CLI::detail::lexical_cast(text, value);
+            if (number && value >= low && value <= high) return std::string();
+            return text + " is not a number from " + to_text(low) + " to " + to_text(high);
+          },
+          to_text(low) + " to " + to_text(high), "between"};
+}
+
+/// A file for output, opened before the run so that a long one is not made in vain.
+class Output {
+ public:
+  explicit Output(const std::string& path) : path_(path) {
+    if (path.empty()) return;
+    file_.open(path);
+    check();
+  }
+  [[nodiscard]] bool wanted() const { return !path_.empty(); }
+  [[nodiscard]] std::ostream& stream() { return file_; }
+  void close() {
+    file_.close();
+    check();
+  }
+
+ private:
+  void check() const {
+    if (!file_) throw SetupError("cannot write the file", path_);
+  }
+
+  std::string path_;
+  std::ofstream file_;
+};
 
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds, "Scene time to run [s]")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(between(0.0, 1e6));
   app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
-      ->check(CLI::Range(1.0, 20000.0));
+      ->check(between(1.0, 1e5));
   app.add_flag(
       "--fast", a.run.fast,
       "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
@@ -86,14 +123,20 @@ void describe(CLI::App& app, Arguments& a) {
   app.footer("Scenes:" + scene_list() +
              "\n\nBack ends:\n  bullet, ideal\n\nDevices (chosen phase by phase in the scene):\n"
              "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n\n"
-             "Exit status: 0 it ran, 1 bad scene, 2 bad usage.");
+             "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage.");
 }
 
-void show(const scene::Scene& scene, const teleop::Progress& p) {
+/// One line that is written over on a terminal, and a line every five seconds elsewhere.
+void show(const scene::Scene& scene, const teleop::Progress& p, bool terminal) {
+  static double next = 0.0;
+  if (!terminal && p.time < next) return;
+  next = p.time + 5.0;
   const auto phase = static_cast<std::size_t>(p.phase);
   const std::string name = phase < scene.script.size() ? scene.script[phase].name : "script over";
-  std::fprintf(stderr, "\r%7.2f s  %-28.28s force %7.2f N  misses %lld  %-12s\033[K", p.time,
-               name.c_str(), p.force, static_cast<long long>(p.misses), to_text(p.status).c_str());
+  std::fprintf(stderr, "%s%7.2f s  %-28.28s force %7.2f N  misses %lld  %-12s%s",
+               terminal ? "\r" : "", p.time, name.c_str(), p.force,
+               static_cast<long long>(p.misses), to_text(p.status).c_str(),
+               terminal ? "\033[K" : "\n");
 }
 
 void run(const Arguments& arguments) {
@@ -102,15 +145,21 @@ void run(const Arguments& arguments) {
   options.rate_hz = arguments.rate_hz > 0.0 ? arguments.rate_hz : scene.rate_hz;
   options.threads = arguments.threads >= 0 ? arguments.threads : scene.budget.threads;
   options.keep_records = !arguments.log.empty();
+  Output report(arguments.report);
+  Output log(arguments.log);
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const teleop::RunResult result =
-      teleop::run(scene, options, interrupted, [&](const teleop::Progress& p) {
-        if (terminal) show(scene, p);
-      });
+  const teleop::RunResult result = teleop::run(
+      scene, options, interrupted, [&](const teleop::Progress& p) { show(scene, p, terminal); });
   if (terminal) std::fputs("\r\033[K", stderr);
-  if (!arguments.report.empty()) teleop::write_json(result, arguments.report);
-  if (!arguments.log.empty()) teleop::write_csv(result, arguments.log);
   teleop::print_report(result, stdout);
+  if (report.wanted()) {
+    teleop::write_json(result, report.stream());
+    report.close();
+  }
+  if (log.wanted()) {
+    teleop::write_csv(result, log.stream());
+    log.close();
+  }
 }
 
 }  // namespace

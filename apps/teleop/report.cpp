@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 namespace repel::teleop {
 namespace {
@@ -65,11 +65,6 @@ ordered_json obstacle_list(const RunResult& r) {
   return list;
 }
 
-void close_checked(std::ofstream& file, const std::string& path) {
-  file.close();
-  if (!file) throw SetupError("cannot write the file", path);
-}
-
 }  // namespace
 
 void print_report(const RunResult& r, std::FILE* out) {
@@ -94,6 +89,14 @@ void print_report(const RunResult& r, std::FILE* out) {
                per_tick(r, t.near), per_tick(r, t.evaluated));
   std::fprintf(out, "  stale pairs            most %d in a tick, oldest answer %lld ticks\n",
                t.most_stale, static_cast<long long>(t.oldest_age));
+  if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
+    std::fprintf(out, "  wall budget            %g us, exceeded by the whole tick %lld times\n",
+                 r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
+  }
+  if (r.scene.budget.work_units > 0) {
+    std::fprintf(out, "  work budget            %lld support pairs per tick\n",
+                 static_cast<long long>(r.scene.budget.work_units));
+  }
   if (!r.nearest_pair.empty()) {
     std::fprintf(out, "  nearest                %.3f mm (%s), deepest intrusion %.3f mm\n",
                  1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * deepest(r));
@@ -113,7 +116,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                r.machine.compiler.c_str(), r.machine.commit.c_str());
 }
 
-void write_json(const RunResult& r, const std::string& path) {
+void write_json(const RunResult& r, std::ostream& file) {
   const auto& t = r.totals;
   ordered_json report = {
       {"scene", r.scene.name},
@@ -131,6 +134,10 @@ void write_json(const RunResult& r, const std::string& path) {
       {"compute_us", percentiles(r.deadline.compute())},
       {"wakeup_us", percentiles(r.deadline.wakeup())},
       {"simulated_arm_us", percentiles(r.arm_step)},
+      {"budget",
+       {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
+        {"work_units", r.scene.budget.work_units},
+        {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}}},
       {"pairs", r.pairs},
       {"pairs_near_per_tick", per_tick(r, t.near)},
       {"pairs_evaluated_per_tick", per_tick(r, t.evaluated)},
@@ -152,14 +159,11 @@ void write_json(const RunResult& r, const std::string& path) {
         {"scheduler", r.machine.scheduler},
         {"compiler", r.machine.compiler},
         {"commit", r.machine.commit}}}};
-  std::ofstream file(path);
   // A byte that is not UTF-8 in a name must not cost the report.
   file << report.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
-  close_checked(file, path);
 }
 
-void write_csv(const RunResult& r, const std::string& path) {
-  std::ofstream file(path);
+void write_csv(const RunResult& r, std::ostream& file) {
   file << "tick,time_s,phase,status,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,"
           "virtual_fx_n,virtual_fy_n,virtual_fz_n,virtual_tx_nm,virtual_ty_nm,virtual_tz_nm,"
           "coupling_fx_n,coupling_fy_n,coupling_fz_n,lever_torque_nm,gain,nearest_m,pairs_near,"
@@ -174,7 +178,6 @@ void write_csv(const RunResult& r, const std::string& path) {
          << to_text(k.pairs.nearest) << ',' << k.pairs.near << ',' << k.pairs.evaluated << ','
          << k.pairs.stale << ',' << k.pairs.oldest_age << '\n';
   }
-  close_checked(file, path);
 }
 
 }  // namespace repel::teleop

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdio>
-#include <string>
+#include <iosfwd>
 
 #include "run.hpp"
 
@@ -12,10 +12,10 @@ namespace repel::teleop {
 /// Prints the table to `out`.
 void print_report(const RunResult& result, std::FILE* out);
 
-/// Writes the report as JSON. Throws SetupError when `path` cannot be written.
-void write_json(const RunResult& result, const std::string& path);
+/// Writes the report as JSON.
+void write_json(const RunResult& result, std::ostream& out);
 
-/// Writes one line per tick. Throws SetupError when `path` cannot be written.
-void write_csv(const RunResult& result, const std::string& path);
+/// Writes one line per tick.
+void write_csv(const RunResult& result, std::ostream& out);
 
 }  // namespace repel::teleop

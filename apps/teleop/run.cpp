@@ -24,18 +24,19 @@ using std::chrono::steady_clock;
 /// alone overshoots and a spin alone is throttled by the scheduler.
 class Metronome {
  public:
-  explicit Metronome(nanoseconds period) : period_(period), due_(now() + period) {}
+  explicit Metronome(nanoseconds period)
+      : period_(period), spin_(std::min(longest_spin, period / 4)), due_(now() + period) {}
 
   /// Returns once the next tick is due, and how late that is. While there is time after the sleep,
   /// `rehearse` is called again and again: it keeps the processor as it should find the tick.
   template <class Rehearse>
   nanoseconds wait(Rehearse&& rehearse) {
-    const nanoseconds sleep_until = due_ - spin;
+    const nanoseconds sleep_until = due_ - spin_;
     if (sleep_until > now()) {
       const timespec until{sleep_until.count() / 1000000000, sleep_until.count() % 1000000000};
       clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
     }
-    while (due_ - now() > spin / 4) rehearse();
+    while (due_ - now() > spin_ / 4) rehearse();
     nanoseconds late = now() - due_;
     while (late.count() < 0) late = now() - due_;
     due_ += period_;
@@ -51,13 +52,14 @@ class Metronome {
   }
 
  private:
-  static constexpr nanoseconds spin{150000};
+  static constexpr nanoseconds longest_spin{150000};
 
   static nanoseconds now() {
     return std::chrono::duration_cast<nanoseconds>(steady_clock::now().time_since_epoch());
   }
 
   nanoseconds period_;
+  nanoseconds spin_;
   nanoseconds due_;
 };
 
@@ -97,6 +99,25 @@ Progress progress_of(const TickRecord& record, const RunResult& result) noexcept
   return {record.time,          record.phase,
           record.pairs.nearest, record.virtual_force.force.norm(),
           record.status,        result.deadline.misses()};
+}
+
+bool over_budget(const scene::Budget& budget, nanoseconds compute) {
+  return budget.wall_us > 0.0 && 1e-3 * static_cast<double>(compute.count()) > budget.wall_us;
+}
+
+std::string name_of(const World& world, PairId id) {
+  const Pair& pair = world.pair(id);
+  return world.part(pair.a).name + " - " + world.part(pair.b).name;
+}
+
+/// The nearest of all evaluations, those before the first tick included.
+void find_nearest(const World& world, const Coprocessor& coprocessor, RunResult& result) {
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
+    const double nearest = coprocessor.extremes_of({i}).nearest;
+    if (nearest > result.totals.nearest) continue;
+    result.totals.nearest = nearest;
+    result.nearest_pair = name_of(world, {i});
+  }
 }
 
 /// Pairs are laid out obstacle by obstacle, with every part of the tool in turn.
@@ -149,6 +170,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     result.arm_step.record(steady_clock::now() - end);
     result.deadline.record(late, end - begin);
     result.totals.add(*record);
+    result.over_budget += over_budget(result.scene.budget, end - begin) ? 1 : 0;
     if (options.keep_records) recorder.add(*record);
     progress.draft() = progress_of(*record, result);
     progress.post();
@@ -156,16 +178,11 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   }
   coprocessor.stop();
   result.obstacles = obstacle_results(cell, coprocessor);
+  find_nearest(cell.world, coprocessor, result);
   result.interrupted = stop;
   result.allocations_in_tick = HeapGuard::allocations();
   result.records = recorder.records();
   result.records_dropped = options.keep_records ? recorder.dropped() : 0;
-}
-
-std::string name_of(const World& world, PairId id) {
-  if (!id.valid()) return {};
-  const Pair& pair = world.pair(id);
-  return world.part(pair.a).name + " - " + world.part(pair.b).name;
 }
 
 /// Joints of an arm without dynamics of its own: what the motors and the heaviest pose would weigh.
@@ -200,7 +217,6 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
     throw SetupError("backend bullet is not built in; to have it: apt-get install libbullet-dev");
 #endif
   }
-  result.nearest_pair = name_of(cell.world, result.totals.nearest_pair);
   return result;
 }
 

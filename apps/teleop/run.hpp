@@ -40,8 +40,9 @@ struct RunResult {
   int pairs = 0;
   RunTotals totals;
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
-  DurationHistogram arm_step;             ///< time of the simulated arm, outside the tick
-  std::int64_t skipped_ticks = 0;         ///< given up after a pause of more than a second
+  DurationHistogram arm_step;      ///< time of the simulated arm, outside the tick
+  std::int64_t over_budget = 0;    ///< ticks that computed longer than the scene's wall budget
+  std::int64_t skipped_ticks = 0;  ///< given up after a pause of more than a second
   std::int64_t allocations_in_tick = -1;  ///< -1: could not be counted
   std::string nearest_pair;               ///< "part - obstacle"; empty without one
   std::vector<ObstacleResult> obstacles;  ///< in the order of the scene

@@ -38,12 +38,12 @@ template <class T>
 class Gjk {
  public:
   Gjk(const Convex& A, const Pose& X_WA, const Convex& B, const Pose& X_WB) noexcept
-      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB) {
+      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), named_exactly_(A.is_polytope() && B.is_polytope()) {
     const Vec<T> p_WA(Vec3(X_WA.translation()));
     p_AB_ = Vec<T>(Vec3(X_WB.translation())) - p_WA;
     const double size = A.reach() + B.reach() + to_vec3(p_AB_).norm();
     margin_ = 8.0 * epsilon(T{}) * size;
-    if (!(A.is_polytope() && B.is_polytope())) margin_ = std::max(margin_, 2e-15 * size);
+    if (!named_exactly_) margin_ = std::max(margin_, 2e-15 * size);
   }
 
   Gap run(const QueryOptions& options, WarmStart& warm) noexcept {
@@ -107,7 +107,8 @@ class Gjk {
       if (below > options.ignore_beyond) return QueryEnd::far_apart;
       const T slack = simplex_.vv() - vw;
       if (slack <= tolerance * simplex_.vv() || slack <= T(0.25 * margin_) * length) break;
-      if (simplex_.holds(w.name_a, w.name_b)) break;
+      // Names of points on a curve are rounded: another point may bear the same one.
+      if (named_exactly_ && simplex_.holds(w.name_a, w.name_b)) break;
       const Projection step = simplex_.add(w, T(margin_));
       if (step == Projection::nearer) continue;
       // What has been proven apart stays apart: an enclosing simplex is then a rounding error.
@@ -159,6 +160,7 @@ class Gjk {
   const Convex& B_;
   const Pose& X_WA_;
   const Pose& X_WB_;
+  bool named_exactly_;
   Vec<T> p_AB_;
   double margin_ = 0.0;
   Simplex<T> simplex_;
@@ -183,7 +185,13 @@ class Gjk {
                                      const Pose& X_WB, const QueryOptions& options,
                                      WarmStart& warm) noexcept {
   Gap gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
-  if (detail::is_certified(gap, options) || !(A.is_polytope() && B.is_polytope())) return gap;
+  if (detail::is_certified(gap, options)) return gap;
+  if (!(A.is_polytope() && B.is_polytope())) {
+    // Points of a curve are themselves rounded: more digits would not narrow the bracket.
+    const bool wide = gap.upper - gap.lower > 1e-7 * (A.reach() + B.reach());
+    if (wide && gap.end == QueryEnd::converged) gap.end = QueryEnd::budget_spent;
+    return gap;
+  }
   const int spent = gap.iterations;
   gap = detail::Gjk<DoubleDouble>(A, X_WA, B, X_WB).run(options, warm);
   gap.iterations += spent;

@@ -14,7 +14,8 @@ enum class QueryEnd : std::uint8_t {
   converged,     ///< the bracket is as narrow as `QueryOptions::tolerance` asks
   touching,      ///< the shapes touch: the sign is 0 as far as arithmetic can tell
   far_apart,     ///< the gap is proven larger than `QueryOptions::ignore_beyond`
-  budget_spent,  ///< the bracket is true but wide: raise `QueryOptions::iterations`
+  budget_spent,  ///< the bracket is true but wide: raise `QueryOptions::iterations`, or accept it
+                 ///< for a curved shape a million times larger than the other
 };
 
 struct QueryOptions {

@@ -171,20 +171,28 @@ class Simplex {
     }
   }
 
-  // True when the origin is inside by more than the margin; else the faces it is not inside of are
-  // tried. A face whose opposite vertex lies within the margin of its plane has no inner side.
+  // True when the origin is surely inside; else the faces it is not inside of are tried. With n the
+  // normal of a face and e1, e2 its edges, the volume n.p is only known to within
+  // margin (|n| + (|e1| + |e2|) |p|): every difference point may be off by the margin. A face that
+  // is thin, or whose opposite vertex is too near to its plane, has no inner side.
   bool project_tetrahedron(int newest, T margin, Feature& best) const noexcept {
     constexpr std::array<std::array<int, 4>, 4> faces{
         {{0, 1, 3, 2}, {1, 2, 3, 0}, {2, 0, 3, 1}, {0, 1, 2, 3}}};
     bool inside = true;
     const T zero(0.0);
+    const T unsure = T(4.0) * margin * margin;
     for (const auto& [i, j, k, opposite] : faces) {
       const Vec<T>& p = points_[i].w;
-      const Vec<T> n = cross(points_[j].w - p, points_[k].w - p);
-      const T limit = margin * margin * dot(n, n);
-      const T height = dot(n, points_[opposite].w - p);
+      const Vec<T> e1 = points_[j].w - p;
+      const Vec<T> e2 = points_[k].w - p;
+      const Vec<T> to_opposite = points_[opposite].w - p;
+      const Vec<T> n = cross(e1, e2);
+      const T nn = dot(n, n);
+      const T edges = dot(e1, e1) + dot(e2, e2);
+      const T height = dot(n, to_opposite);
       const T depth = height > zero ? -dot(n, p) : dot(n, p);
-      const bool inner = depth > zero && depth * depth > limit && height * height > limit;
+      const bool inner = depth > zero && depth * depth > unsure * (nn + edges * points_[i].ww) &&
+                         height * height > unsure * (nn + edges * dot(to_opposite, to_opposite));
       if (inner) continue;
       inside = false;
       if (newest < 0 || newest == i || newest == j || newest == k) {

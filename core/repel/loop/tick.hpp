@@ -67,7 +67,7 @@ class Teleoperator {
   /// moment before it is due: a tick that begins cold takes several times as long.
   void rehearse() noexcept {
     kinematics_.update(q_);
-    kinematics_.tool_jacobian(jacobian_);
+    kinematics_.tool_jacobian(new_jacobian_);
     kinematics_.gravity_torques(torques_);
     coprocessor_.rehearse();
   }

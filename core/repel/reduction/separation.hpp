@@ -79,8 +79,8 @@ class LadderWalk {
   void step_out() noexcept {
     const double a = order_a(i_);
     const double b = order_b(j_);
-    i_ -= a >= b ? 1 : 0;
-    j_ -= b >= a ? 1 : 0;
+    i_ -= a >= b && i_ > 0 ? 1 : 0;
+    j_ -= b >= a && j_ > 0 ? 1 : 0;
   }
 
   Gap query() noexcept {
@@ -109,12 +109,14 @@ class LadderWalk {
     gap_ = gap;
     apart_i_ = i_;
     apart_j_ = j_;
-    if (meets_ || at_start() || spent() || gap.end == QueryEnd::budget_spent) return true;
+    if (meets_ || at_start()) return true;
     const double here = depth();
     const bool far_out = gap.distance > here;
     step_out();
     // A pair that met not would be apart by at least the depth it gains on the next.
     if (gap.distance <= here - depth()) return true;
+    cut_short_ = spent() || gap.end == QueryEnd::budget_spent;
+    if (cut_short_) return true;
     if (far_out) {
       // Out of the overlap altogether, it seems: begin again with the shapes themselves.
       i_ = j_ = 0;
@@ -141,6 +143,7 @@ class LadderWalk {
   bool meets_ = false;
   bool apart_ = false;
   bool touches_ = false;
+  bool cut_short_ = false;  ///< the iterations ran out before the deciding pairs were found
   double depth_met_ = 0.0;  ///< [m] T of the last pair that meets
   double margin_ = 0.0;     ///< [m] how far from meeting it may be, by rounding
   Gap gap_;                 ///< of the first pair that is apart
@@ -200,7 +203,12 @@ inline Separation LadderWalk::answer() const noexcept {
                 ? gap_.lower - A_.level(0).depth - B_.level(0).depth
                 : std::min(s.distance, -overlap_along(s.extraction_W) - slack);
   if (!plain) s.upper += slack;
-  if (touches_) s.end = QueryEnd::touching;
+  // A point deep inside, in one plane with all support points found, looks like contact to GJK.
+  if (touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
+  if (cut_short_) s.end = QueryEnd::budget_spent;
+  // The subtractions above may each have rounded inward.
+  s.lower = std::nextafter(s.lower, -none);
+  s.upper = std::nextafter(s.upper, none);
   return s;
 }
 

@@ -192,11 +192,12 @@ class Coprocessor {
         }
         continue;
       }
+      const auto taken = Clock::now();
       seat.worker.run(seat.inbox.newest());
       seat.copy_to(seat.outbox.draft());
       seat.outbox.post();
       spins = 0;
-      if (!options_.lock_step) std::this_thread::sleep_for(nap);
+      if (!options_.lock_step) std::this_thread::sleep_until(taken + nap);
     }
   }
 

@@ -41,9 +41,9 @@ class PairWorker {
   /// One tick, beginning after the block at which the last one ran out of time: a block that takes
   /// the whole budget goes on where it stopped when its turn comes again.
   void run(const Motion& motion) noexcept {
+    place_parts(motion);
     const Clock::time_point deadline =
         budget_.wall.count() > 0 ? Clock::now() + budget_.wall : Clock::time_point::max();
-    place_parts(motion);
     const std::size_t count = blocks_.size();
     const std::size_t begin = next_;
     bool late = false;
