@@ -1,5 +1,5 @@
 // Laws of the signed distance in overlap. References: the 15 axes of two boxes in 113-bit
-// arithmetic, right everywhere; dense directions for cylinders, right to 1e-6 m.
+// arithmetic, right everywhere; dense directions for cylinders, right to 1e-4 m.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,6 @@ TEST(SeparationInOverlap, BracketHoldsTheExactDepthAndTheSignIsRight) {
     EXPECT_LE(s.lower, truth);
     EXPECT_GE(s.upper, truth);
     EXPECT_EQ(s.distance > 0.0, truth > 0.0);
-    EXPECT_EQ(s.distance < 0.0, truth < 0.0);
     EXPECT_EQ(s.level == 0, truth > 0.0);
     EXPECT_LE(-s.distance, std::max(0.0, -truth) + 1e-15 * boxes.size());
     EXPECT_EQ(s.end, QueryEnd::converged);
@@ -69,6 +68,24 @@ TEST(SeparationInOverlap, BracketHoldsTheExactDepthAndTheSignIsRight) {
   }
   EXPECT_GT(overlaps, 1500 * 3 / 10);
   EXPECT_LT(overlaps, 1500 * 8 / 10);
+}
+
+// Where the shapes meet and their next levels are apart by more than these have lost, the distance
+// stands still at 0. Eroded by t a box draws back by at most t sqrt(3), which bounds how deep.
+TEST(SeparationInOverlap, IsZeroOnlyInOverlapShallowerThanTheFirstStep) {
+  for (const int levels : {1, 8, 64}) {
+    SCOPED_TRACE(of_seed("levels", levels));
+    Rng rng(seed);
+    int zero = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const PosedBoxes boxes = test::overlapping_boxes(rng, {.levels = levels});
+      if (boxes.separate().distance < 0.0) continue;
+      ++zero;
+      const double first_step = boxes.A.level(1).depth + boxes.B.level(1).depth;
+      EXPECT_LE(boxes.depth(), (std::sqrt(3.0) - 1.0) * first_step + 1e-15);
+    }
+    EXPECT_LE(zero, levels == 1 ? 100 : 20) << "of 1000";
+  }
 }
 
 TEST(SeparationInOverlap, MostOfTheExactDepthOfRandomBoxesIsReported) {
@@ -235,55 +252,60 @@ TEST(SeparationInOverlap, AThinFingerPressedIntoABlockIsFeltAllTheWay) {
       boxes.X_WA.translation() = above + (0.12 + reach - pressed) * Vec3::UnitZ();
       const Separation s = boxes.separate();
       EXPECT_LT(s.distance, before) << "no deeper at " << pressed;
-      EXPECT_GE(-s.distance, 0.8 * pressed) << "at " << pressed;
+      EXPECT_GE(-s.distance, i == 0 ? pressed - 1e-15 : 0.6 * pressed) << "at " << pressed;
       EXPECT_LE(-s.distance, pressed + 1e-15);
       EXPECT_GT(s.extraction_W.z(), 0.9);
       before = s.distance;
     }
+    EXPECT_LT(before, -0.04) << "eight times the half width of the finger";
   }
 }
 
 /// [m] far point of a cylinder along the unit vector n, from its centre.
 double cylinder_reach(double radius, double half_length, const Vec3& axis, const Vec3& n) {
-  const double cosine = axis.dot(n);
-  return half_length * std::abs(cosine) + radius * std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return half_length * std::abs(axis.dot(n)) + radius * axis.cross(n).norm();
 }
 
-/// [m] the penetration depth of two cylinders, at most 1e-6 too large: the least overlap over a
-/// spiral of directions, its best ones improved by ever smaller random steps.
-double sampled_depth(const Vec3& size_a, const Pose& X_WA, const Vec3& size_b, const Pose& X_WB,
-                     Rng& rng) {
-  const Vec3 between = X_WB.translation() - X_WA.translation();
-  const auto overlap = [&](const Vec3& n) {
-    return cylinder_reach(size_a.x(), size_a.z(), X_WA.linear().col(2), n) +
-           cylinder_reach(size_b.x(), size_b.z(), X_WB.linear().col(2), n) - between.dot(n);
-  };
+struct PosedCylinder {
+  double radius, half_length;  ///< [m]
+  Pose X_WC = Pose::Identity();
+};
+
+/// [m] how far A must move along the unit vector n to leave B.
+double overlap(const PosedCylinder& A, const PosedCylinder& B, const Vec3& n) {
+  return cylinder_reach(A.radius, A.half_length, A.X_WC.linear().col(2), n) +
+         cylinder_reach(B.radius, B.half_length, B.X_WC.linear().col(2), n) -
+         (A.X_WC.translation() - B.X_WC.translation()).dot(n);
+}
+
+/// [m] the penetration depth, at most a little too large: the least overlap over a spiral of
+/// directions, its best ones improved by random steps that shrink when they fail.
+double sampled_depth(const PosedCylinder& A, const PosedCylinder& B, Rng& rng) {
   std::vector<std::pair<double, Vec3>> found;
-  for (int i = 0; i < 1000; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / 1000.0;
+  const auto add = [&](const Vec3& n) { found.emplace_back(overlap(A, B, n), n); };
+  for (int i = 0; i < 2000; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / 2000.0;
     const double angle = 2.399963229728653 * i;
     const double across = std::sqrt(1.0 - z * z);
-    const Vec3 n(across * std::cos(angle), across * std::sin(angle), z);
-    found.emplace_back(overlap(n), n);
+    add({across * std::cos(angle), across * std::sin(angle), z});
   }
-  for (const Pose* X : {&X_WA, &X_WB}) {
-    for (const double sign : {-1.0, 1.0}) {
-      const Vec3 n = sign * X->linear().col(2);
-      found.emplace_back(overlap(n), n);
-    }
+  for (const double sign : {-1.0, 1.0}) {
+    add(sign * A.X_WC.linear().col(2));
+    add(sign * B.X_WC.linear().col(2));
   }
   std::partial_sort(found.begin(), found.begin() + 8, found.end(),
                     [](const auto& x, const auto& y) { return x.first < y.first; });
   double least = 1e300;
   for (int k = 0; k < 8; ++k) {
     auto [best, n] = found[k];
-    for (double step = 0.1; step > 1e-8; step *= 0.95) {
-      for (int draw = 0; draw < 4; ++draw) {
-        const Vec3 tried = (n + step * families::direction(rng)).normalized();
-        if (overlap(tried) >= best) continue;
-        best = overlap(tried);
-        n = tried;
-      }
+    double step = 0.1;
+    for (int draw = 0; draw < 1000; ++draw) {
+      const Vec3 tried = (n + step * families::direction(rng)).normalized();
+      const double value = overlap(A, B, tried);
+      step *= value < best ? 1.5 : 0.95;
+      if (value >= best) continue;
+      best = value;
+      n = tried;
     }
     least = std::min(least, best);
   }
@@ -292,26 +314,29 @@ double sampled_depth(const Vec3& size_a, const Pose& X_WA, const Vec3& size_b, c
 
 TEST(SeparationInOverlap, CylindersLieInsideTheirBracket) {
   Rng rng(seed);
+  const auto random_cylinder = [&] {
+    PosedCylinder C{families::uniform(rng, 0.1, 0.5), families::uniform(rng, 0.1, 0.5)};
+    C.X_WC.linear() = families::rotation(rng);
+    C.X_WC.translation() = families::uniform(rng, 0, 0.4) * families::direction(rng);
+    return C;
+  };
   int overlaps = 0;
   for (int i = 0; i < 300; ++i) {
     SCOPED_TRACE(of_seed("pair", i));
-    const double radius_a = families::uniform(rng, 0.1, 0.5);
-    const double radius_b = families::uniform(rng, 0.1, 0.5);
-    const Vec3 size_a(radius_a, radius_a, families::uniform(rng, 0.1, 0.5));
-    const Vec3 size_b(radius_b, radius_b, families::uniform(rng, 0.1, 0.5));
-    Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
-    X_WA.linear() = families::rotation(rng);
-    X_WB.linear() = families::rotation(rng);
-    X_WB.translation() = families::uniform(rng, 0, 0.7) * families::direction(rng);
-    const double depth = sampled_depth(size_a, X_WA, size_b, X_WB, rng);
+    const PosedCylinder A = random_cylinder();
+    const PosedCylinder B = random_cylinder();
+    const double depth = sampled_depth(A, B, rng);
     if (depth < 1e-3) continue;
     ++overlaps;
-    const Separation s = separation(Shape::cylinder(radius_a, size_a.z()), X_WA,
-                                    Shape::cylinder(radius_b, size_b.z()), X_WB);
-    EXPECT_GE(-s.lower, depth - 1e-6);
+    const Separation s = separation(Shape::cylinder(A.radius, A.half_length), A.X_WC,
+                                    Shape::cylinder(B.radius, B.half_length), B.X_WC);
+    // The overlap along any direction bounds the depth; the samples come within 1e-4 of it.
+    EXPECT_NEAR(-s.lower, overlap(A, B, s.extraction_W), 1e-13);
+    EXPECT_GE(-s.lower, overlap(A, B, s.extraction_W) - 1e-15);
+    EXPECT_GE(-s.lower, depth - 1e-4);
+    EXPECT_LE(-s.distance, depth + 1e-14);
     EXPECT_LE(-s.upper, depth);
-    EXPECT_LE(-s.distance, depth + 1e-12);
-    EXPECT_LT(s.distance, 0.0);
+    EXPECT_LE(s.distance, 0.0);
   }
   EXPECT_GT(overlaps, 100);
 }

@@ -121,6 +121,8 @@ TEST(Separation, ACorruptedWarmStartGivesTheSameAnswer) {
   int overlaps = 0, total = 0;
   for (const Shape& A : shapes) {
     for (const Shape& B : shapes) {
+      // The support points of a rim are all different: GJK ends near the same answer, not in it.
+      const bool round = &A == &shapes[4] || &B == &shapes[4];
       for (int i = 0; i < 60; ++i, ++total) {
         SCOPED_TRACE(of_seed("pair", total));
         const PosedBoxes poses = test::random_boxes(rng, 1.2);
@@ -134,9 +136,10 @@ TEST(Separation, ACorruptedWarmStartGivesTheSameAnswer) {
         }
         const Separation s = separation(A, poses.X_WA, B, poses.X_WB, {}, warm);
         const Separation cold = separation(A, poses.X_WA, B, poses.X_WB);
-        EXPECT_NEAR(s.distance, cold.distance, 1e-12);
+        EXPECT_NEAR(s.distance, cold.distance, round ? 1e-10 : 1e-13);
         EXPECT_EQ(s.end, cold.end);
-        EXPECT_LE(s.lower, cold.distance + 1e-12);
+        EXPECT_LE(s.lower, cold.upper);
+        EXPECT_GE(s.upper, cold.lower);
         overlaps += cold.distance < 0.0 ? 1 : 0;
       }
     }
@@ -210,6 +213,21 @@ TEST(Separation, BoxesThatKissTouch) {
         EXPECT_NEAR(s.extraction_W[axis], -sign, 1e-6);
       }
     }
+  }
+}
+
+TEST(Separation, ASphereDeepInACylinderDoesNotTouchIt) {
+  Rng rng(seed);
+  const Shape sphere = Shape::sphere(0.1);
+  const Shape cylinder = Shape::cylinder(0.2, 0.5);
+  for (int i = 0; i < 2000; ++i) {
+    SCOPED_TRACE(of_seed("pose", i));
+    Pose X_WB = Pose::Identity();
+    X_WB.linear() = families::rotation(rng);
+    X_WB.translation() = families::uniform(rng, 0, 0.19) * families::direction(rng);
+    const Separation s = separation(sphere, Pose::Identity(), cylinder, X_WB);
+    EXPECT_EQ(s.end, QueryEnd::converged);
+    EXPECT_LE(s.distance, -0.1);
   }
 }
 
