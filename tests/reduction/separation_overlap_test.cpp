@@ -219,6 +219,36 @@ TEST(SeparationInOverlap, WarmEqualsColdAlongSweeps) {
   EXPECT_LT(warm_cost, cold_cost) << "the warm start saves nothing";
 }
 
+TEST(SeparationInOverlap, HullsChangeNoFasterThanTheyMoveWarmOrCold) {
+  Rng rng(seed);
+  int inside = 0, total = 0;
+  for (int i = 0; i < 30; ++i) {
+    SCOPED_TRACE(of_seed("sweep", i));
+    const Shape A =
+        Shape::hull(families::cloud(rng, families::count_between(rng, 4, 40), 0.5).vertices);
+    const Shape B =
+        Shape::hull(families::cloud(rng, families::count_between(rng, 4, 40), 0.8).vertices);
+    PosedBoxes poses = test::random_boxes(rng, 0.1);
+    const Sweep sweep(poses, rng);
+    WarmStart warm;
+    Separation before = separation(A, poses.X_WA, B, poses.X_WB, {}, warm);
+    for (double share = 0.0; share < 1.0; share += families::log_uniform(rng, 1e-6, 2e-2)) {
+      const Vec3 was = poses.X_WA.translation();
+      poses.X_WA.translation() = sweep.at(share);
+      const Separation now = separation(A, poses.X_WA, B, poses.X_WB, {}, warm);
+      const Separation cold = separation(A, poses.X_WA, B, poses.X_WB);
+      ASSERT_NEAR(now.distance, cold.distance, 1e-13);
+      ASSERT_LE(std::abs(now.distance - before.distance),
+                (poses.X_WA.translation() - was).norm() + 1e-12);
+      before = now;
+      inside += now.distance < 0.0 ? 1 : 0;
+      ++total;
+    }
+  }
+  EXPECT_GT(inside, total / 20);
+  EXPECT_LT(inside, total * 9 / 10);
+}
+
 TEST(SeparationInOverlap, SwappingTheShapesTurnsTheExtractionRound) {
   Rng rng(seed);
   int overlaps = 0;
