@@ -388,5 +388,33 @@ TEST(ClosedForms, ConcentricSpheresAreAsDeepAsBothRadii) {
   EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-14);
 }
 
+// When every level met, both witnesses once were the origin of A and their product was 0.
+TEST(ClosedForms, WitnessesOfConcentricSpheresAreTheDistanceApart) {
+  const Separation s = separation(Shape::sphere(0.25), home, Shape::sphere(0.5), home);
+  EXPECT_EQ(s.distance, -0.75);
+  EXPECT_NEAR((s.p_WA - s.p_WB).dot(s.extraction_W), s.distance, 1e-15);
+}
+
+// The names of points on a cylinder are angles to 1e-8: a warm start from them once stalled with a
+// bracket of 1e-9 to 1e-8 m.
+TEST(ClosedForms, ParallelCylindersAreRightFromTheWarmStartOfANearbyPose) {
+  const Shape A = Shape::cylinder(0.5, 1.0);
+  const Shape B = Shape::cylinder(0.25, 0.75);
+  const Pose X_WA = Pose::Identity();
+  Pose X_WB = Pose::Identity();
+  X_WB.translation() = Vec3(3, 4, 0.25);
+  families::Rng rng(1993);
+  for (int i = 0; i < 1000; ++i) {
+    WarmStart warm;
+    const Pose nearby = families::moved_a_little(X_WA, rng);
+    ASSERT_NE(separation(A, nearby, B, X_WB, {}, warm).end, QueryEnd::bad_input);
+    const Separation s = separation(A, X_WA, B, X_WB, {}, warm);
+    EXPECT_NEAR(s.distance, 4.25, 1e-11) << "seed 1993, motion " << i;
+    if (s.end == QueryEnd::converged) {
+      EXPECT_LE(s.upper - s.lower, 1e-11) << "seed 1993, motion " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace repel

@@ -175,6 +175,28 @@ class Gjk {
   return gap.upper - gap.lower <= std::max(1e-7, 2.0 * options.tolerance) * gap.upper;
 }
 
+/// What can still be done for a curved set, whose points are themselves rounded, so that more
+/// digits would not help: points kept from the last tick are rounded more coarsely than fresh ones,
+/// and may lie too close together to tell the way. A bracket that stays wide is said to be.
+[[nodiscard]] inline Gap narrowed(Gap gap, const Convex& A, const Pose& X_WA, const Convex& B,
+                                  const Pose& X_WB, const QueryOptions& options, bool began_warm,
+                                  WarmStart& warm) noexcept {
+  const double size = A.reach() + B.reach();
+  if (gap.end != QueryEnd::converged || gap.meets) return gap;
+  if (began_warm && gap.upper - gap.lower > 1e-12 * size) {
+    WarmStart cold;
+    Gap again = Gjk<double>(A, X_WA, B, X_WB).run(options, cold);
+    again.iterations += gap.iterations;
+    if (again.upper - again.lower < gap.upper - gap.lower) {
+      gap = again;
+      warm = cold;
+    }
+  }
+  const bool wide = gap.upper - gap.lower > 1e-7 * size;
+  if (wide && !is_certified(gap, options)) gap.end = QueryEnd::budget_spent;
+  return gap;
+}
+
 }  // namespace detail
 
 /// The distance of A and B. What double precision cannot certify - a gap near rounding, a needle
@@ -184,14 +206,12 @@ class Gjk {
 [[nodiscard]] inline Gap gap_between(const Convex& A, const Pose& X_WA, const Convex& B,
                                      const Pose& X_WB, const QueryOptions& options,
                                      WarmStart& warm) noexcept {
+  const bool began_warm = warm.size > 0;
   Gap gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
-  if (detail::is_certified(gap, options)) return gap;
   if (!(A.is_polytope() && B.is_polytope())) {
-    // Points of a curve are themselves rounded: more digits would not narrow the bracket.
-    const bool wide = gap.upper - gap.lower > 1e-7 * (A.reach() + B.reach());
-    if (wide && gap.end == QueryEnd::converged) gap.end = QueryEnd::budget_spent;
-    return gap;
+    return detail::narrowed(gap, A, X_WA, B, X_WB, options, began_warm, warm);
   }
+  if (detail::is_certified(gap, options)) return gap;
   const int spent = gap.iterations;
   gap = detail::Gjk<DoubleDouble>(A, X_WA, B, X_WB).run(options, warm);
   gap.iterations += spent;

@@ -173,7 +173,9 @@ inline void LadderWalk::choose_direction(Separation& s) const noexcept {
       s.extraction_W = n;
     }
   }
-  s.p_WA = s.p_WB = X_WA_.translation();
+  const Vec3 common = X_WA_ * to_vec3(A_.level(i_).core.point(0).p);
+  s.p_WA = common - A_.level(i_).depth * s.extraction_W;
+  s.p_WB = common + B_.level(j_).depth * s.extraction_W;
 }
 
 inline Separation LadderWalk::answer() const noexcept {
