@@ -13,7 +13,8 @@ struct Separation {
   double lower = -std::numeric_limits<double>::infinity();  ///< [m] the true signed distance lies
   double upper = std::numeric_limits<double>::infinity();   ///< [m] in [lower, upper], always
   /// [m] Witness points in world. On the shapes while they are apart; in overlap, on the levels
-  /// compared and carried out by their depth, so (p_WA - p_WB).extraction_W stays the distance.
+  /// compared and carried out by their depth. (p_WA - p_WB).extraction_W is the distance, or more
+  /// where a pair of levels that meets decides it.
   Vec3 p_WA{0, 0, 0};
   Vec3 p_WB{0, 0, 0};
   Vec3 extraction_W{0, 0, 0};  ///< unit; moving A along it takes A away from B
@@ -219,10 +220,11 @@ inline Separation LadderWalk::answer() const noexcept {
 /// The signed distance of A and B.
 ///
 /// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from
-/// GJK, right to a few 1e-15 of their size, and relatively to 1e-7 however small the gap. In
-/// overlap it is the intrusion distance of the reduction (Anderson 1993, section 2.1): continuous,
-/// 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and `upper` bracket
-/// the true one.
+/// GJK: for polytopes and rounded ones right to a few 1e-15 of their size, and relatively to 1e-7
+/// however small the gap; for cylinders right within the bracket, which `docs/distance.md` states.
+/// In overlap it is the intrusion distance of the reduction (Anderson 1993, section 2.1):
+/// continuous, 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and
+/// `upper` bracket the true one.
 ///
 /// @param X_WA,X_WB rigid poses in the world [m]; not finite ends in bad_input
 /// @param warm what the last call on this pair left; any content is safe
