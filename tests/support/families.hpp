@@ -86,26 +86,14 @@ inline int count_between(Rng& rng, int low, int high) {
   return std::uniform_int_distribution<int>(low, high)(rng);
 }
 
-/// A pair of the family with the centres `apart` [m] from each other; it may overlap.
-inline Pair draw(const std::string& family, Rng& rng) {
+/// The shapes of a pair of the family.
+inline Pair draw_shapes(const std::string& family, Rng& rng) {
   Pair p;
   p.A = random_box(rng, 0.1, 1.0);
   p.B = random_box(rng, 0.1, 1.0);
-  p.X_WA.linear() = rotation(rng);
-  p.X_WB.linear() = rotation(rng);
-  p.X_WB.translation() = uniform(rng, 1.0, 4.0) * direction(rng);
-  const Mat3 R = p.X_WA.linear();
   if (family == "random hulls") {
     p.A = cloud(rng, count_between(rng, 4, 16), uniform(rng, 0.3, 1.0));
     p.B = cloud(rng, count_between(rng, 4, 16), uniform(rng, 0.3, 1.0));
-  } else if (family == "parallel faces") {
-    p.X_WB.linear() = R;
-  } else if (family == "nearly parallel faces") {
-    p.X_WB.linear() = R * small_rotation(rng, log_uniform(rng, 1e-15, 1e-3));
-  } else if (family == "parallel edges") {
-    p.X_WB.linear() = R * Eigen::AngleAxisd(uniform(rng, 0, 3), Vec3::UnitZ());
-    const Vec3 across = R * Vec3(uniform(rng, -1, 1), uniform(rng, -1, 1), 0.05).normalized();
-    p.X_WB.translation() = uniform(rng, 1.0, 4.0) * across;
   } else if (family == "crossed edges") {
     p.A = box({0.01, 0.01, uniform(rng, 0.5, 2)});
     p.B = box({0.01, 0.01, uniform(rng, 0.5, 2)});
@@ -115,33 +103,61 @@ inline Pair draw(const std::string& family, Rng& rng) {
   } else if (family == "plates") {
     p.A = box({1.0, 1.0, log_uniform(rng, 1e-6, 1e-3)});
     if (count_between(rng, 0, 1) == 0) p.B = box({log_uniform(rng, 1e-6, 1e-3), 1.0, 1.0});
+  } else if (family == "scales 1e-3:1e3") {
+    p.A = random_box(rng, 1e-3, 2e-3);
+    p.B = random_box(rng, 3e2, 1e3);
+  } else if (family == "prisms") {
+    p.A = prism(count_between(rng, 3, 9), uniform(rng, 0.2, 1), uniform(rng, 0.01, 1));
+    p.B = prism(count_between(rng, 3, 9), uniform(rng, 0.2, 1), uniform(rng, 0.01, 1));
+  } else if (family == "mixed") {
+    p.A = cloud(rng, count_between(rng, 1, 6), log_uniform(rng, 1e-2, 10));
+    p.B = random_box(rng, 1e-2, 10);
+  }
+  return p;
+}
+
+/// From the origin, the vertex of `s` farthest along `n` when it is turned by `R`.
+inline Vec3 top(const Solid& s, const Mat3& R, const Vec3& n) {
+  Vec3 best = R * s.vertices[0];
+  for (const Vec3& v : s.vertices) {
+    if (n.dot(R * v) > n.dot(best)) best = R * v;
+  }
+  return best;
+}
+
+/// Poses of the family for its shapes, the centres some way from each other; they may overlap.
+inline void draw_poses(const std::string& family, Pair& p, Rng& rng) {
+  p.X_WA = p.X_WB = Pose::Identity();
+  const Mat3 R = rotation(rng);
+  p.X_WA.linear() = R;
+  p.X_WB.linear() = rotation(rng);
+  p.X_WB.translation() = uniform(rng, 1.0, 4.0) * direction(rng);
+  if (family == "parallel faces" || (family == "prisms" && count_between(rng, 0, 1) == 0)) {
+    p.X_WB.linear() = R;
+  } else if (family == "nearly parallel faces") {
+    p.X_WB.linear() = R * small_rotation(rng, log_uniform(rng, 1e-15, 1e-3));
+  } else if (family == "parallel edges") {
+    p.X_WB.linear() = R * Eigen::AngleAxisd(uniform(rng, 0, 3), Vec3::UnitZ());
+    const Vec3 across = R * Vec3(uniform(rng, -1, 1), uniform(rng, -1, 1), 0.05).normalized();
+    p.X_WB.translation() = uniform(rng, 1.0, 4.0) * across;
   } else if (family == "ten km away") {
     const Vec3 far = 1e4 * direction(rng);
     p.X_WA.translation() += far;
     p.X_WB.translation() += far;
   } else if (family == "scales 1e-3:1e3") {
-    p.A = random_box(rng, 1e-3, 2e-3);
-    p.B = random_box(rng, 3e2, 1e3);
     p.X_WB.translation() = uniform(rng, 500, 2000) * direction(rng);
   } else if (family == "vertex on vertex") {
     const Vec3 n = direction(rng);
-    const auto top = [&](const Solid& s, const Mat3& Q, double sign) {
-      Vec3 best = Q * s.vertices[0];
-      for (const Vec3& v : s.vertices) {
-        if (sign * n.dot(Q * v) > sign * n.dot(best)) best = Q * v;
-      }
-      return best;
-    };
-    p.X_WB.translation() = top(p.A, R, 1) - top(p.B, p.X_WB.linear(), -1) + 0.1 * n;
-  } else if (family == "prisms") {
-    p.A = prism(count_between(rng, 3, 9), uniform(rng, 0.2, 1), uniform(rng, 0.01, 1));
-    p.B = prism(count_between(rng, 3, 9), uniform(rng, 0.2, 1), uniform(rng, 0.01, 1));
-    if (count_between(rng, 0, 1) == 0) p.X_WB.linear() = R;
+    p.X_WB.translation() = top(p.A, R, n) - top(p.B, p.X_WB.linear(), -n) + 0.1 * n;
   } else if (family == "mixed") {
-    p.A = cloud(rng, count_between(rng, 1, 6), log_uniform(rng, 1e-2, 10));
-    p.B = random_box(rng, 1e-2, 10);
     p.X_WB.translation() = uniform(rng, 1, 20) * direction(rng);
   }
+}
+
+/// A seeded pair of the family; it may overlap.
+inline Pair draw(const std::string& family, Rng& rng) {
+  Pair p = draw_shapes(family, rng);
+  draw_poses(family, p, rng);
   return p;
 }
 

@@ -28,20 +28,34 @@ inline double size(const Pair& p) {
   return largest;
 }
 
+/// The same pair with B moved along `n` by `step` [m].
+inline Pair shifted(Pair p, const double (&n)[3], double step) {
+  for (int i = 0; i < 3; ++i) p.X_WB.translation()[i] += step * n[i];
+  return p;
+}
+
 /// Moves B along the normal until the pair is about `gap` [m] apart, as near as the doubles of a
-/// pose allow. Nothing when the pair of the family overlaps.
-inline std::optional<Pair> apart_by(Pair p, double gap) {
+/// pose allow, or in overlap where it is negative. Nothing when the pair of the family overlaps.
+inline std::optional<Pair> apart_by(const Pair& p, double gap) {
   const auto found = truth(p);
   if (!found || !(found->distance > 0)) return std::nullopt;
-  const double step = static_cast<double>(found->distance) - gap;
-  for (int i = 0; i < 3; ++i) p.X_WB.translation()[i] += step * found->normal[i];
-  return p;
+  return shifted(p, found->normal, static_cast<double>(found->distance) - gap);
 }
 
 /// A seeded pair of the family, `gap` [m] apart.
 inline Pair draw_apart(const std::string& family, Rng& rng, double gap) {
   while (true) {
     if (const auto p = apart_by(draw(family, rng), gap)) return *p;
+  }
+}
+
+/// A seeded pair of the family, at most `depth` [m] deep. The ends of both are pushed into each
+/// other: where they are thin they may come out on the other side, so that is tried again.
+inline Pair draw_overlapping(const std::string& family, Rng& rng, double depth) {
+  while (true) {
+    const Pair p = draw_apart(family, rng, -depth);
+    const auto found = truth(p);
+    if (found && !(found->distance > 0)) return p;
   }
 }
 

@@ -1,162 +1,209 @@
 /// @file
-/// The exact distance of two small polytopes, by an algorithm that shares no code and no idea with
-/// the one under test: Wolfe's minimum-norm point (1976) in 113-bit arithmetic, over all
-/// differences of vertices, accepted only when its duality gap proves it.
+/// The exact distance of two small polytopes, by algorithms that share no code and no idea with the
+/// one under test: all pairs of features are ranked in double and the best are computed with 113
+/// bits. An answer is accepted only when its duality gap, with 113 bits, proves it.
 #pragma once
 
-#include <cfloat>
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include <repel/base/types.hpp>
+#include <support/nearest.hpp>
+#include <support/placed.hpp>
+#include <support/polytope.hpp>
+#include <support/wolfe.hpp>
 
 namespace repel::oracle {
-
-#if LDBL_MANT_DIG == 113
-using Real = long double;
-#else
-__extension__ typedef __float128 Real;
-#endif
-
-inline Real magnitude(Real x) {
-  return x < 0 ? -x : x;
-}
-
-/// To 113 bits, by Newton's iteration from the root in double; 0 below 1e-300.
-inline Real square_root(Real x) {
-  if (!(x > Real(1e-300))) return 0;
-  Real root = std::sqrt(static_cast<double>(x));
-  for (int i = 0; i < 3; ++i) root = (root + x / root) / 2;
-  return root;
-}
-
-struct Point {
-  Real x[3];
-};
-
-inline Real dot(const Point& a, const Point& b) {
-  return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
-}
-
-/// Vertex of the polytope in the world: the exact value of R v + p for the doubles given.
-inline Point placed(const Pose& X, const Vec3& v) {
-  Point p{};
-  for (int i = 0; i < 3; ++i) {
-    p.x[i] = X.translation()[i];
-    for (int k = 0; k < 3; ++k) p.x[i] += Real(X.linear()(i, k)) * Real(v[k]);
-  }
-  return p;
-}
 
 struct Truth {
   Real distance = 0;             ///< [m] 0 when the polytopes meet
   double normal[3] = {0, 0, 0};  ///< unit, from B to A
 };
 
-/// Weights of the point nearest to the origin on the affine hull of the corral: w0 + E t with
-/// E = QR and R t = -Q'w0, E the differences to the first point. Gram and Schmidt, each step twice:
-/// normal equations would square the smallness of an angle. False when the corral is degenerate.
-inline bool affine_weights(const std::vector<Point>& corral, std::vector<Real>& weights) {
-  const std::size_t n = corral.size() - 1;
-  Point q[3];
-  Real r[3][4] = {};  // the last column is the right-hand side
-  for (std::size_t j = 0; j < n; ++j) {
-    for (int k = 0; k < 3; ++k) q[j].x[k] = corral[j + 1].x[k] - corral[0].x[k];
-    const Real length = square_root(dot(q[j], q[j]));
-    for (int pass = 0; pass < 2; ++pass) {
-      for (std::size_t i = 0; i < j; ++i) {
-        const Real along = dot(q[i], q[j]);
-        r[i][j] += along;
-        for (int k = 0; k < 3; ++k) q[j].x[k] -= along * q[i].x[k];
-      }
-    }
-    r[j][j] = square_root(dot(q[j], q[j]));
-    if (r[j][j] <= Real(1e-28) * length) return false;
-    for (int k = 0; k < 3; ++k) q[j].x[k] /= r[j][j];
-    r[j][3] = -dot(q[j], corral[0]);
-  }
-  weights.assign(n + 1, 1);
-  for (std::size_t i = n; i-- > 0;) {
-    weights[i + 1] = r[i][3];
-    for (std::size_t j = i + 1; j < n; ++j) weights[i + 1] -= r[i][j] * weights[j + 1];
-    weights[i + 1] /= r[i][i];
-    weights[0] -= weights[i + 1];
-  }
-  return true;
+inline Truth truth_at(const Point& v, Real size) {
+  const Real length = square_root(dot(v, v));
+  if (length <= size * Real(1e-27)) return {};
+  const Rough n = rough((1 / length) * v);
+  return {length, {n.x[0], n.x[1], n.x[2]}};
 }
 
-/// The distance of the hulls of `a` under X_WA and `b` under X_WB; nothing when 113 bits could not
+/// By Wolfe's minimum-norm point over all differences of vertices. Nothing when 113 bits could not
 /// prove it, which a test must treat as its own failure.
+inline std::optional<Truth> distance_by_wolfe(PlacedPair& pair) {
+  const Point start = pair.support(pair.A.exact(0) - pair.B.exact(0));
+  const Real size = pair.size();
+  const Bracket found = minimum_norm([&](const Point& x) { return pair.support(x); }, start, size);
+  const Real unsure = found.upper - found.lower;
+  const bool proven =
+      unsure <= found.upper * Real(1e-23) || found.upper * unsure <= size * size * Real(1e-31);
+  return proven ? std::optional(truth_at(found.nearest, size)) : std::nullopt;
+}
+
+/// Pairs of features of two posed polytopes: a vertex and a triangle of a face, or two edges.
+class Features {
+ public:
+  Features(const Polytope& A, const Pose& X_WA, const Polytope& B, const Pose& X_WB)
+      : A_(A),
+        B_(B),
+        pair_(A.vertices(), X_WA, B.vertices(), X_WB),
+        R_WA_(X_WA.linear()),
+        R_WB_(X_WB.linear()) {}
+
+  /// The exact distance of disjoint polytopes; nothing when no pair of features is proven nearest.
+  std::optional<Truth> nearest_of_best() {
+    rank();
+    const std::size_t tried = std::min<std::size_t>(candidates_.size(), 12);
+    for (std::size_t i = 0; i < tried; ++i) {
+      const Point v = nearest(candidates_[i]);
+      if (proven(v)) return truth_at(v, pair_.size());
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] PlacedPair& pair() { return pair_; }
+
+ private:
+  struct Candidate {
+    double vv = 0.0;          ///< [m^2]
+    int a[3] = {-1, -1, -1};  ///< vertices of A: one, two or three
+    int b[3] = {-1, -1, -1};
+  };
+
+  /// The difference of two vertices.
+  Point exact(int a, int b) { return pair_.A.exact(a) - pair_.B.exact(b); }
+  Rough rough(int a, int b) { return pair_.A.rough(a) - pair_.B.rough(b); }
+
+  void offer(const Candidate& c) {
+    if (c.vv > limit_) return;
+    const double rounding = 1e-14 * pair_.size();
+    const double length = std::sqrt(c.vv) + rounding;
+    limit_ = std::min(limit_, length * length);
+    candidates_.push_back(c);
+  }
+
+  /// All pairs of features that can be nearest as far as doubles can tell, the best first. What is
+  /// parallel or shares a vertex ties; any of them gives the same point.
+  void rank() {
+    vertices_and_faces(B_, R_WB_, pair_.B, pair_.A, false);
+    vertices_and_faces(A_, R_WA_, pair_.A, pair_.B, true);
+    edges_and_edges();
+    vertices_and_edges(A_, B_, false);
+    vertices_and_edges(B_, A_, true);
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& x, const Candidate& y) { return x.vv < y.vv; });
+  }
+
+  void vertices_and_faces(const Polytope& faced, const Mat3& R, const Placed& placed,
+                          const Placed& points, bool faces_of_a) {
+    for (const Face& face : faced.faces()) {
+      const Rough n = oracle::rough(Vec3(R * face.n));
+      const double offset = dot(n, placed.rough(face.corners[0]));
+      for (int i = 0; i < points.count(); ++i) {
+        const double height = dot(n, points.rough(i)) - offset;
+        const double doubt = 1e-12 * pair_.size();
+        if (height < -doubt || (height > doubt && height * height > limit_ + doubt)) continue;
+        for (std::size_t k = 2; k < face.corners.size(); ++k) {
+          offer(vertex_and_triangle(i, face, k, faces_of_a));
+        }
+      }
+    }
+  }
+
+  Candidate vertex_and_triangle(int i, const Face& face, std::size_t k, bool faces_of_a) {
+    Candidate c;
+    int* const one = faces_of_a ? c.b : c.a;
+    int* const three = faces_of_a ? c.a : c.b;
+    one[0] = i;
+    three[0] = face.corners[0];
+    three[1] = face.corners[k - 1];
+    three[2] = face.corners[k];
+    const Rough v = faces_of_a
+                        ? nearest_on_triangle(rough(c.a[0], i), rough(c.a[1], i), rough(c.a[2], i))
+                        : nearest_on_triangle(rough(i, c.b[0]), rough(i, c.b[1]), rough(i, c.b[2]));
+    c.vv = dot(v, v);
+    return c;
+  }
+
+  void edges_and_edges() {
+    for (const auto& a : A_.edges()) {
+      const Rough e = pair_.A.rough(a[1]) - pair_.A.rough(a[0]);
+      for (const auto& b : B_.edges()) {
+        const Rough f = pair_.B.rough(b[0]) - pair_.B.rough(b[1]);
+        const Rough p = rough(a[0], b[0]);
+        const Rough n = cross(e, f);
+        const double across = dot(n, p);
+        if (across * across > limit_ * 1.000001 * dot(n, n)) continue;
+        const Rough v = nearest_inside_parallelogram(p, e, f);
+        offer({dot(v, v), {a[0], a[1], -1}, {b[0], b[1], -1}});
+      }
+    }
+  }
+
+  /// Needed where one of the two has no face: a segment or a point.
+  void vertices_and_edges(const Polytope& pointed, const Polytope& edged, bool edges_of_a) {
+    if (!edged.faces().empty()) return;
+    for (int i = 0; i < static_cast<int>(pointed.vertices().size()); ++i) {
+      for (const auto& e : edged.edges()) {
+        Candidate c;
+        (edges_of_a ? c.b : c.a)[0] = i;
+        std::copy(e.begin(), e.end(), edges_of_a ? c.a : c.b);
+        const Rough v = edges_of_a ? nearest_on_segment(rough(e[0], i), rough(e[1], i))
+                                   : nearest_on_segment(rough(i, e[0]), rough(i, e[1]));
+        c.vv = dot(v, v);
+        offer(c);
+      }
+      if (edged.edges().empty()) {
+        const Rough v = edges_of_a ? rough(0, i) : rough(i, 0);
+        offer(edges_of_a ? Candidate{dot(v, v), {0, -1, -1}, {i, -1, -1}}
+                         : Candidate{dot(v, v), {i, -1, -1}, {0, -1, -1}});
+      }
+    }
+  }
+
+  Point nearest(const Candidate& c) {
+    const Point p = exact(c.a[0], c.b[0]);
+    if (c.a[2] >= 0) return nearest_on_triangle(p, exact(c.a[1], c.b[0]), exact(c.a[2], c.b[0]));
+    if (c.b[2] >= 0) return nearest_on_triangle(p, exact(c.a[0], c.b[1]), exact(c.a[0], c.b[2]));
+    if (c.a[1] >= 0 && c.b[1] >= 0) {
+      return nearest_inside_parallelogram(p, exact(c.a[1], c.b[0]) - p, exact(c.a[0], c.b[1]) - p);
+    }
+    if (c.a[1] >= 0) return nearest_on_segment(p, exact(c.a[1], c.b[0]));
+    if (c.b[1] >= 0) return nearest_on_segment(p, exact(c.a[0], c.b[1]));
+    return p;
+  }
+
+  /// The duality gap: v is a point of A - B, and no other lies farther along -v.
+  bool proven(const Point& v) {
+    const Real vv = dot(v, v);
+    const Real gap = vv - (pair_.A.least(v) - pair_.B.most(v));
+    const Real size = pair_.size();
+    // The distance is right to gap / |v|.
+    return gap <= size * size * Real(1e-33) || gap * gap <= vv * size * size * Real(1e-48);
+  }
+
+  const Polytope& A_;
+  const Polytope& B_;
+  PlacedPair pair_;
+  Mat3 R_WA_, R_WB_;
+  double limit_ = 1e300;  ///< [m^2] what is farther is not nearest
+  std::vector<Candidate> candidates_;
+};
+
+/// The distance of two polytopes; nothing when 113 bits could not prove it, which a test must treat
+/// as its own failure.
+inline std::optional<Truth> distance(const Polytope& A, const Pose& X_WA, const Polytope& B,
+                                     const Pose& X_WB) {
+  Features features(A, X_WA, B, X_WB);
+  const bool small = std::max(A.vertices().size(), B.vertices().size()) <= Polytope::most;
+  const auto found = small ? features.nearest_of_best() : std::nullopt;
+  return found ? found : distance_by_wolfe(features.pair());
+}
+
+/// The distance of the hulls of `a` under X_WA and `b` under X_WB.
 inline std::optional<Truth> distance(const std::vector<Vec3>& a, const Pose& X_WA,
                                      const std::vector<Vec3>& b, const Pose& X_WB) {
-  std::vector<Point> differences;
-  for (const Vec3& va : a) {
-    const Point pa = placed(X_WA, va);
-    for (const Vec3& vb : b) {
-      const Point pb = placed(X_WB, vb);
-      differences.push_back({{pa.x[0] - pb.x[0], pa.x[1] - pb.x[1], pa.x[2] - pb.x[2]}});
-    }
-  }
-  Real size2 = 0;
-  std::size_t start = 0;
-  for (std::size_t i = 0; i < differences.size(); ++i) {
-    const Real d = dot(differences[i], differences[i]);
-    size2 = d > size2 ? d : size2;
-    if (d < dot(differences[start], differences[start])) start = i;
-  }
-  std::vector<Point> corral{differences[start]};
-  std::vector<Real> weights{1};
-  std::vector<Real> target;
-  Point x = corral[0];
-  for (int major = 0; major < 500; ++major) {
-    const Real xx = dot(x, x);
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < differences.size(); ++i) {
-      if (dot(x, differences[i]) < dot(x, differences[best])) best = i;
-    }
-    const Real gap = xx - dot(x, differences[best]);
-    const Real length = square_root(xx);
-    if (xx <= size2 * Real(1e-54)) return Truth{};
-    if (gap <= xx * Real(1e-24) || gap <= size2 * Real(1e-32)) {
-      return Truth{length,
-                   {double(x.x[0] / length), double(x.x[1] / length), double(x.x[2] / length)}};
-    }
-    corral.push_back(differences[best]);
-    weights.push_back(0);
-    for (int minor = 0; minor < 20; ++minor) {
-      if (corral.size() > 4 || !affine_weights(corral, target)) return std::nullopt;
-      Real theta = 1;
-      for (std::size_t i = 0; i < corral.size(); ++i) {
-        if (target[i] <= 0 && weights[i] - target[i] > 0) {
-          const Real t = weights[i] / (weights[i] - target[i]);
-          theta = t < theta ? t : theta;
-        }
-      }
-      std::vector<Point> kept;
-      std::vector<Real> kept_weights;
-      bool dropped = false;
-      for (std::size_t i = 0; i < corral.size(); ++i) {
-        const Real w = (1 - theta) * weights[i] + theta * target[i];
-        if (theta < 1 && target[i] <= 0 && w <= Real(1e-32)) {
-          dropped = true;
-          continue;
-        }
-        kept.push_back(corral[i]);
-        kept_weights.push_back(w);
-      }
-      corral = kept;
-      weights = kept_weights;
-      if (theta >= 1 || !dropped) break;
-    }
-    x = {};
-    for (std::size_t i = 0; i < corral.size(); ++i) {
-      for (int k = 0; k < 3; ++k) x.x[k] += weights[i] * corral[i].x[k];
-    }
-  }
-  return std::nullopt;
+  return distance(Polytope(a), X_WA, Polytope(b), X_WB);
 }
 
 }  // namespace repel::oracle
