@@ -1,0 +1,167 @@
+/// @file
+/// Which vertices of a large polytope can be the farthest along a direction: a table of the
+/// directions, for a support map whose cost does not grow with the number of vertices.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <repel/base/vec.hpp>
+
+namespace repel {
+
+/// The directions, sorted into the square cells of a cube around the origin, and for each cell the
+/// vertices among which is the farthest one along any of its directions.
+///
+/// A vertex u is left out of a cell when another one is farther along each of the cell's four
+/// corners by more than rounding can take back: every direction of the cell is a sum of multiples
+/// of the corners, so u is never the farthest. Hence the first best of `candidates(d)` is the very
+/// vertex that a scan of all of them would find, flat and nearly flat regions, repeated and nearly
+/// repeated vertices included; climbing along edges gets lost in those. A cell that holds the
+/// normal of a flat face has all corners of that face.
+class SupportTable {
+ public:
+  SupportTable() = default;
+  /// Of at least one vertex [m]. Set-up: it allocates. Cost: a few passes over the vertices.
+  explicit SupportTable(std::span<const Vec3> vertices);
+
+  [[nodiscard]] bool empty() const noexcept { return first_.empty(); }
+
+  /// Indices, in ascending order, of the vertices that can have the largest product with `d`, as
+  /// computed in double or better; for a `d` that is zero or not finite, of some vertices. The
+  /// table must not be empty.
+  [[nodiscard]] std::span<const std::uint32_t> candidates(const Vec<double>& d) const noexcept {
+    const std::size_t cell = cell_of(d);
+    return {candidates_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+  }
+
+ private:
+  using List = std::vector<std::uint32_t>;
+
+  // Face 2 k lies across the positive axis k, face 2 k + 1 across the negative one; the cells of a
+  // face are counted along the axis after k, then along the one after that.
+  [[nodiscard]] std::size_t cell_of(const Vec<double>& d) const noexcept {
+    const double x = std::abs(d.x);
+    const double y = std::abs(d.y);
+    const double z = std::abs(d.z);
+    if (x >= y && x >= z) return cell_at(d.x > 0.0 ? 0 : 1, d.y / x, d.z / x);
+    if (y >= z) return cell_at(d.y > 0.0 ? 2 : 3, d.z / y, d.x / y);
+    return cell_at(d.z > 0.0 ? 4 : 5, d.x / z, d.y / z);
+  }
+  [[nodiscard]] std::size_t cell_at(std::size_t face, double u, double v) const noexcept {
+    return (face * width_ + step_at(v)) * width_ + step_at(u);
+  }
+  [[nodiscard]] std::size_t step_at(double u) const noexcept {
+    const double width = static_cast<double>(width_);
+    const double step = 0.5 * (u + 1.0) * width;
+    if (!(step > 0.0)) return 0;  // also when u is not a number
+    return step < width ? static_cast<std::size_t>(step) : width_ - 1;
+  }
+
+  /// The directions at the corners of a cell of a face that is `width` cells wide.
+  [[nodiscard]] static std::array<Vec3, 4> corners_of(std::size_t face, std::size_t width,
+                                                      std::size_t row, std::size_t column);
+  [[nodiscard]] static List pruned(std::span<const Vec3> vertices, double margin, const List& list,
+                                   const std::array<Vec3, 4>& corners);
+
+  std::size_t width_ = 1;             ///< cells along the edge of a face
+  std::vector<std::uint32_t> first_;  ///< where the candidates of each cell begin, and their end
+  List candidates_;
+};
+
+inline std::array<Vec3, 4> SupportTable::corners_of(std::size_t face, std::size_t width,
+                                                    std::size_t row, std::size_t column) {
+  std::array<Vec3, 4> corners;
+  const auto along = [&](std::size_t step) {
+    return 2.0 * static_cast<double>(step) / static_cast<double>(width) - 1.0;
+  };
+  const std::size_t axis = face / 2;
+  for (std::size_t k = 0; k < 4; ++k) {
+    corners[k][axis] = face % 2 == 0 ? 1.0 : -1.0;
+    corners[k][(axis + 1) % 3] = along(column + k % 2);
+    corners[k][(axis + 2) % 3] = along(row + k / 2);
+  }
+  return corners;
+}
+
+/// The vertices of `list` that no other one beats by `margin` along all four corners, or repeats.
+/// Those with the largest sums are tried as winners; more would hardly shorten a long list.
+inline SupportTable::List SupportTable::pruned(std::span<const Vec3> vertices, double margin,
+                                               const List& list,
+                                               const std::array<Vec3, 4>& corners) {
+  struct Reach {
+    std::uint32_t vertex = 0;
+    double sum = 0.0;
+    std::array<double, 4> along{};
+  };
+  std::vector<Reach> order;
+  order.reserve(list.size());
+  for (const std::uint32_t i : list) {
+    Reach reach{i, 0.0, {}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      reach.along[k] = corners[k].dot(vertices[i]);
+      reach.sum += reach.along[k];
+    }
+    order.push_back(reach);
+  }
+  std::sort(order.begin(), order.end(), [](const Reach& a, const Reach& b) {
+    return a.sum > b.sum || (a.sum == b.sum && a.vertex < b.vertex);
+  });
+  std::vector<Reach> winners;
+  List kept;
+  for (const Reach& v : order) {
+    const bool beaten = std::any_of(winners.begin(), winners.end(), [&](const Reach& u) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < 4; ++k) least = std::min(least, u.along[k] - v.along[k]);
+      return least > margin || vertices[u.vertex] == vertices[v.vertex];
+    });
+    if (beaten) continue;
+    if (winners.size() < 32) winners.push_back(v);
+    kept.push_back(v.vertex);
+  }
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
+  List all(vertices.size());
+  double size = 0.0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    all[i] = static_cast<std::uint32_t>(i);
+    size = std::max(size, vertices[i].cwiseAbs().maxCoeff());
+  }
+  // A product rounds by 9 half ulps of the size at most, a direction moves within its cell by 4
+  // half ulps: together 60 half ulps between two vertices.
+  const double margin = 64.0 * std::numeric_limits<double>::epsilon() * size;
+  std::vector<List> cells;
+  for (std::size_t face = 0; face < 6; ++face) {
+    cells.push_back(pruned(vertices, margin, all, corners_of(face, 1, 0, 0)));
+  }
+  // Halve the cells until there are about as many as vertices.
+  while (width_ < 64 && 6 * width_ * width_ * 2 < vertices.size()) {
+    std::vector<List> finer;
+    finer.reserve(4 * cells.size());
+    const std::size_t width = 2 * width_;
+    for (std::size_t i = 0; i < 4 * cells.size(); ++i) {
+      const std::size_t face = i / (width * width);
+      const std::size_t row = i / width % width;
+      const std::size_t column = i % width;
+      const List& parent = cells[(face * width_ + row / 2) * width_ + column / 2];
+      finer.push_back(pruned(vertices, margin, parent, corners_of(face, width, row, column)));
+    }
+    cells = std::move(finer);
+    width_ = width;
+  }
+  for (const List& cell : cells) {
+    first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
+    candidates_.insert(candidates_.end(), cell.begin(), cell.end());
+  }
+  first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
+}
+
+}  // namespace repel
