@@ -11,6 +11,8 @@
 #include <random>
 #include <repel/repel.hpp>
 
+#include "main.hpp"
+
 namespace {
 
 using namespace repel;
@@ -139,4 +141,7 @@ BENCHMARK(pair_cold)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg
 BENCHMARK(pair_warm)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
 BENCHMARK(tick_4x8)->ArgName("range_mm")->Arg(20)->Arg(2000);
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  return repel::bench::run_benchmarks(argc, argv,
+                                      "core_bench: what one query and one tick of the core cost.");
+}
