@@ -94,7 +94,8 @@ class Axes {
   std::vector<Axis> axes_;
 };
 
-/// [m] positive in overlap; not positive when some axis separates the polytopes. Both closed.
+/// [m] positive in overlap; not positive when some axis separates the polytopes. At least one must
+/// be closed, the other may be flat.
 inline Real penetration_depth(const Polytope& A, const Pose& X_WA, const Polytope& B,
                               const Pose& X_WB) {
   return Axes(A, X_WA, B, X_WB).least_overlap();

@@ -1,0 +1,57 @@
+/// @file
+/// The command line of the programs beside: numbers behind names, and --help.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace repel::accuracy {
+
+/// One option that takes a value.
+struct Option {
+  const char* name;  ///< with its dashes
+  const char* help;
+  double* number = nullptr;
+  std::string* text = nullptr;
+};
+
+inline void print_help(const char* what, const std::vector<Option>& options) {
+  std::printf("%s\n\n", what);
+  for (const Option& o : options) {
+    if (o.number != nullptr) {
+      std::printf("  %-10s %s (%.17g)\n", o.name, o.help, *o.number);
+    } else {
+      std::printf("  %-10s %s\n", o.name, o.help);
+    }
+  }
+}
+
+/// Reads the options; ends the program on --help (status 0) and on what it does not know (2).
+inline void read_command_line(int argc, char** argv, const char* what,
+                              const std::vector<Option>& options) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help") == 0) {
+      print_help(what, options);
+      std::exit(0);
+    }
+    bool known = false;
+    for (const Option& o : options) {
+      if (std::strcmp(argv[i], o.name) != 0 || i + 1 == argc) continue;
+      char* end = nullptr;
+      const char* value = argv[++i];
+      if (o.text != nullptr) *o.text = value;
+      if (o.number != nullptr) *o.number = std::strtod(value, &end);
+      known = o.text != nullptr || *end == '\0';
+      break;
+    }
+    if (known) continue;
+    std::fprintf(stderr, "%s: not understood: %s\n", argv[0], argv[i]);
+    print_help(what, options);
+    std::exit(2);
+  }
+}
+
+}  // namespace repel::accuracy
