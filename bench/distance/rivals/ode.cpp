@@ -1,0 +1,106 @@
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rival.hpp"
+
+namespace repel::bench {
+
+namespace {
+
+/// The planes, points and polygons a convex geom of ODE points to.
+struct Mesh {
+  std::vector<dReal> planes, points;
+  std::vector<unsigned> polygons;
+
+  explicit Mesh(const Solid& s) {
+    for (const Vec3& v : s.vertices) points.insert(points.end(), v.data(), v.data() + 3);
+    for (const auto& [i, j, k] : triangles(s)) {
+      const Vec3& v = s.vertices[i];
+      const Vec3 n = (s.vertices[j] - v).cross(s.vertices[k] - v).normalized();
+      planes.insert(planes.end(), {n.x(), n.y(), n.z(), n.dot(v)});
+      polygons.insert(polygons.end(), {3U, unsigned(i), unsigned(j), unsigned(k)});
+    }
+  }
+};
+
+class Ode {
+ public:
+  static constexpr int most_contacts = 16;
+  struct Result {
+    int count = 0;
+    std::array<dContactGeom, most_contacts> contacts{};
+  };
+
+  Ode(const Task& task, double) : task_(task) {
+    static const int started = dInitODE2(0);
+    (void)started;
+    meshes_.reserve(task.solids.size());
+    for (const Solid& s : task.solids) meshes_.emplace_back(s.box ? Solid{} : s);
+    for (const std::vector<Pose>& X_W : task.X_W) {
+      auto& placed = geoms_.emplace_back();
+      for (std::size_t i = 0; i < X_W.size(); ++i) placed.push_back(geom(i, X_W[i]));
+    }
+  }
+
+  Result cold(const Ask& ask) {
+    const auto& [a, b] = task_.pairs[ask.pair];
+    Result r;
+    r.count = dCollide(geoms_[ask.tick][a].get(), geoms_[ask.tick][b].get(), most_contacts,
+                       r.contacts.data(), sizeof(dContactGeom));
+    return r;
+  }
+  Result warm(const Ask& ask) { return cold(ask); }
+  static Answer read(const Result& r) {
+    if (r.count == 0) return {.distance = std::nan("")};
+    double depth = 0.0;
+    for (int i = 0; i < r.count; ++i) depth = std::max(depth, r.contacts[i].depth);
+    return {.distance = -depth};
+  }
+
+ private:
+  using Geom = std::unique_ptr<dxGeom, void (*)(dxGeom*)>;
+
+  static unsigned count(const std::vector<dReal>& numbers, unsigned each) {
+    return static_cast<unsigned>(numbers.size()) / each;
+  }
+
+  Geom geom(std::size_t i, const Pose& X) {
+    const Solid& s = task_.solids[i];
+    const Mesh& mesh = meshes_[i];
+    const Vec3 sides = 2.0 * s.half_extents;
+    Geom made(s.box
+                  ? dCreateBox(nullptr, sides.x(), sides.y(), sides.z())
+                  : dCreateConvex(nullptr, mesh.planes.data(), count(mesh.planes, 4),
+                                  mesh.points.data(), count(mesh.points, 3), mesh.polygons.data()),
+              dGeomDestroy);
+    dMatrix3 R{};
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) R[4 * row + column] = X.linear()(row, column);
+    }
+    dGeomSetRotation(made.get(), R);
+    dGeomSetPosition(made.get(), X.translation().x(), X.translation().y(), X.translation().z());
+    return made;
+  }
+
+  const Task& task_;
+  std::vector<Mesh> meshes_;
+  std::vector<std::vector<Geom>> geoms_;
+};
+
+const Enlisted enlisted({
+    .name = "ode",
+    .version = "0.16.2 double",
+    .settings = "dCollide on box and convex geoms, deepest contact; it has no distance of pairs "
+                "that are apart, no tolerance, and keeps nothing from tick to tick",
+    .tolerance = 0.0,
+    .sweeps = false,
+    .warms = false,
+    .gaps = false,
+    .load = Adapter<Ode>::load,
+});
+
+}  // namespace
+
+}  // namespace repel::bench
