@@ -1,0 +1,133 @@
+/// @file
+/// On which side of a plane through three points a fourth one lies, decided exactly. Set-up only:
+/// it allocates.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <repel/base/vec.hpp>
+
+namespace repel {
+
+namespace detail {
+
+/// A sum of doubles without any rounding: components that do not overlap, the largest last
+/// (Shewchuk 1997, grow-expansion). Exact unless a product underflows.
+class ExactSum {
+ public:
+  void add(double x) {
+    std::size_t kept = 0;
+    for (const double part : parts_) {
+      const DoubleDouble s = DoubleDouble::sum(x, part);
+      if (s.lo != 0.0) parts_[kept++] = s.lo;
+      x = s.hi;
+    }
+    parts_.resize(kept);
+    if (x != 0.0) parts_.push_back(x);
+  }
+  void add_product(double x, double y) {
+    const DoubleDouble p = DoubleDouble::product(x, y);
+    add(p.lo);
+    add(p.hi);
+  }
+  void add_product(double x, double y, double z) {
+    const DoubleDouble p = DoubleDouble::product(x, y);
+    add_product(p.lo, z);
+    add_product(p.hi, z);
+  }
+  /// The products of each part of x with each of y, and of z.
+  void add_product(DoubleDouble x, DoubleDouble y) {
+    for (const double a : {x.hi, x.lo}) {
+      for (const double b : {y.hi, y.lo}) add_product(a, b);
+    }
+  }
+  void add_product(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
+    for (const double a : {x.hi, x.lo}) {
+      for (const double b : {y.hi, y.lo}) {
+        for (const double c : {z.hi, z.lo}) add_product(a, b, c);
+      }
+    }
+  }
+
+  [[nodiscard]] int sign() const {
+    if (parts_.empty()) return 0;
+    return parts_.back() > 0.0 ? 1 : -1;
+  }
+  [[nodiscard]] DoubleDouble value() const {
+    DoubleDouble sum;
+    for (const double part : parts_) sum += part;
+    return sum;
+  }
+
+ private:
+  std::vector<double> parts_;
+};
+
+/// a - b, exactly.
+inline Vec<DoubleDouble> exact_difference(const Vec3& a, const Vec3& b) {
+  return {DoubleDouble::sum(a.x(), -b.x()), DoubleDouble::sum(a.y(), -b.y()),
+          DoubleDouble::sum(a.z(), -b.z())};
+}
+
+inline int exact_sign_of_determinant(const Vec<DoubleDouble>& u, const Vec<DoubleDouble>& v,
+                                     const Vec<DoubleDouble>& w) {
+  ExactSum sum;
+  sum.add_product(u.x, v.y, w.z);
+  sum.add_product(u.y, v.z, w.x);
+  sum.add_product(u.z, v.x, w.y);
+  sum.add_product(-u.x, v.z, w.y);
+  sum.add_product(-u.y, v.x, w.z);
+  sum.add_product(-u.z, v.y, w.x);
+  return sum.sign();
+}
+
+}  // namespace detail
+
+/// The sign of the volume spanned by b - a, c - a and p - a: 1 when p lies on the side of the plane
+/// from which a, b, c go round counter-clockwise, -1 on the other, 0 in the plane. Right for any
+/// doubles whose triple products do not underflow: double where its error bound allows, then
+/// DoubleDouble with its own, then exact sums.
+[[nodiscard]] inline int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  const Vec3 u = b - a;
+  const Vec3 v = c - a;
+  const Vec3 w = p - a;
+  const double determinant = u.cross(v).dot(w);
+  const Vec3 products = {std::abs(u.y() * v.z()) + std::abs(u.z() * v.y()),
+                         std::abs(u.z() * v.x()) + std::abs(u.x() * v.z()),
+                         std::abs(u.x() * v.y()) + std::abs(u.y() * v.x())};
+  const double magnitude = products.dot(w.cwiseAbs());
+  if (std::abs(determinant) > 1e-15 * magnitude) return determinant > 0.0 ? 1 : -1;
+  const Vec<DoubleDouble> exact_u = detail::exact_difference(b, a);
+  const Vec<DoubleDouble> exact_v = detail::exact_difference(c, a);
+  const Vec<DoubleDouble> exact_w = detail::exact_difference(p, a);
+  const double finer = dot(cross(exact_u, exact_v), exact_w).hi;
+  if (std::abs(finer) > 1e-29 * magnitude) return finer > 0.0 ? 1 : -1;
+  return detail::exact_sign_of_determinant(exact_u, exact_v, exact_w);
+}
+
+/// The unit normal of the plane through a, b, c, on the side from which they go round
+/// counter-clockwise, right to half an ulp or so in each coordinate however thin the triangle; zero
+/// when they lie on a line, exactly.
+[[nodiscard]] inline Vec3 plane_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec<DoubleDouble> u = detail::exact_difference(b, a);
+  const Vec<DoubleDouble> v = detail::exact_difference(c, a);
+  Vec<DoubleDouble> n = cross(u, v);
+  if (!(to_vec3(n).norm() > 1e-12 * to_vec3(u).norm() * to_vec3(v).norm())) {
+    const auto exact = [](DoubleDouble u1, DoubleDouble v2, DoubleDouble u2, DoubleDouble v1) {
+      detail::ExactSum sum;
+      sum.add_product(u1, v2);
+      sum.add_product(-u2, v1);
+      return sum.value();
+    };
+    n = {exact(u.y, v.z, u.z, v.y), exact(u.z, v.x, u.x, v.z), exact(u.x, v.y, u.y, v.x)};
+  }
+  // Scaled first: the square of a thin triangle's normal might underflow.
+  const double scale = to_vec3(n).cwiseAbs().maxCoeff();
+  if (!(scale > 0.0)) return Vec3::Zero();
+  n = DoubleDouble(std::exp2(-std::ilogb(scale))) * n;
+  return to_vec3((DoubleDouble(1.0) / sqrt(dot(n, n))) * n);
+}
+
+}  // namespace repel
