@@ -49,7 +49,7 @@ void expect_is_the_hull(const std::vector<Facet>& facets, const std::vector<Vec3
 double volume(const std::vector<Facet>& facets, const std::vector<Vec3>& points) {
   DoubleDouble six_times;
   const auto from_first = [&](int i) {
-    return detail::exact_difference(points[i], points[facets.front().vertices[0]]);
+    return detail::finer(detail::exact_difference(points[i], points[facets.front().vertices[0]]));
   };
   for (const auto& f : facets) {
     const auto& [a, b, c] = f.vertices;

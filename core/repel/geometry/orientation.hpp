@@ -3,7 +3,7 @@
 /// it allocates.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -65,22 +65,41 @@ class ExactSum {
   std::vector<double> parts_;
 };
 
-/// a - b, exactly.
-inline Vec<DoubleDouble> exact_difference(const Vec3& a, const Vec3& b) {
+/// A difference of two points, exactly: three sums of two doubles.
+using ExactVector = std::array<DoubleDouble, 3>;
+
+/// a - b.
+inline ExactVector exact_difference(const Vec3& a, const Vec3& b) {
   return {DoubleDouble::sum(a.x(), -b.x()), DoubleDouble::sum(a.y(), -b.y()),
           DoubleDouble::sum(a.z(), -b.z())};
 }
 
-inline int exact_sign_of_determinant(const Vec<DoubleDouble>& u, const Vec<DoubleDouble>& v,
-                                     const Vec<DoubleDouble>& w) {
+inline Vec<DoubleDouble> finer(const ExactVector& v) {
+  return {v[0], v[1], v[2]};
+}
+
+inline int exact_sign_of_determinant(const ExactVector& u, const ExactVector& v,
+                                     const ExactVector& w) {
   ExactSum sum;
-  sum.add_product(u.x, v.y, w.z);
-  sum.add_product(u.y, v.z, w.x);
-  sum.add_product(u.z, v.x, w.y);
-  sum.add_product(-u.x, v.z, w.y);
-  sum.add_product(-u.y, v.x, w.z);
-  sum.add_product(-u.z, v.y, w.x);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t after = (k + 1) % 3;
+    const std::size_t last = (k + 2) % 3;
+    sum.add_product(u[k], v[after], w[last]);
+    sum.add_product(-u[k], v[last], w[after]);
+  }
   return sum.sign();
+}
+
+/// Components of the cross product, rounded once.
+inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v) {
+  ExactVector n;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ExactSum sum;
+    sum.add_product(u[(k + 1) % 3], v[(k + 2) % 3]);
+    sum.add_product(-u[(k + 2) % 3], v[(k + 1) % 3]);
+    n[k] = sum.value();
+  }
+  return finer(n);
 }
 
 }  // namespace detail
@@ -99,10 +118,11 @@ inline int exact_sign_of_determinant(const Vec<DoubleDouble>& u, const Vec<Doubl
                          std::abs(u.x() * v.y()) + std::abs(u.y() * v.x())};
   const double magnitude = products.dot(w.cwiseAbs());
   if (std::abs(determinant) > 1e-15 * magnitude) return determinant > 0.0 ? 1 : -1;
-  const Vec<DoubleDouble> exact_u = detail::exact_difference(b, a);
-  const Vec<DoubleDouble> exact_v = detail::exact_difference(c, a);
-  const Vec<DoubleDouble> exact_w = detail::exact_difference(p, a);
-  const double finer = dot(cross(exact_u, exact_v), exact_w).hi;
+  const detail::ExactVector exact_u = detail::exact_difference(b, a);
+  const detail::ExactVector exact_v = detail::exact_difference(c, a);
+  const detail::ExactVector exact_w = detail::exact_difference(p, a);
+  const double finer =
+      dot(cross(detail::finer(exact_u), detail::finer(exact_v)), detail::finer(exact_w)).hi;
   if (std::abs(finer) > 1e-29 * magnitude) return finer > 0.0 ? 1 : -1;
   return detail::exact_sign_of_determinant(exact_u, exact_v, exact_w);
 }
@@ -111,18 +131,10 @@ inline int exact_sign_of_determinant(const Vec<DoubleDouble>& u, const Vec<Doubl
 /// counter-clockwise, right to half an ulp or so in each coordinate however thin the triangle; zero
 /// when they lie on a line, exactly.
 [[nodiscard]] inline Vec3 plane_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec<DoubleDouble> u = detail::exact_difference(b, a);
-  const Vec<DoubleDouble> v = detail::exact_difference(c, a);
-  Vec<DoubleDouble> n = cross(u, v);
-  if (!(to_vec3(n).norm() > 1e-12 * to_vec3(u).norm() * to_vec3(v).norm())) {
-    const auto exact = [](DoubleDouble u1, DoubleDouble v2, DoubleDouble u2, DoubleDouble v1) {
-      detail::ExactSum sum;
-      sum.add_product(u1, v2);
-      sum.add_product(-u2, v1);
-      return sum.value();
-    };
-    n = {exact(u.y, v.z, u.z, v.y), exact(u.z, v.x, u.x, v.z), exact(u.x, v.y, u.y, v.x)};
-  }
+  const detail::ExactVector u = detail::exact_difference(b, a);
+  const detail::ExactVector v = detail::exact_difference(c, a);
+  Vec<DoubleDouble> n = cross(detail::finer(u), detail::finer(v));
+  if (!(to_vec3(n).norm() > 1e-12 * (b - a).norm() * (c - a).norm())) n = detail::exact_cross(u, v);
   // Scaled first: the square of a thin triangle's normal might underflow.
   const double scale = to_vec3(n).cwiseAbs().maxCoeff();
   if (!(scale > 0.0)) return Vec3::Zero();
