@@ -79,9 +79,10 @@ class Libccd {
 const Enlisted enlisted({
     .name = "libccd",
     .version = "2.1",
-    .settings = "ccdGJKPenetration in double, support maps of our own writing; it has no distance "
-                "of pairs that are apart and keeps nothing from tick to tick",
-    .tolerance = 1e-6,
+    .settings = "ccdGJKPenetration in double, support maps of our own writing, the loosest "
+                "tolerance that is right; it has no distance of pairs that are apart and keeps "
+                "nothing from tick to tick",
+    .tolerance = 1e-8,
     .sweeps = false,
     .warms = false,
     .gaps = false,

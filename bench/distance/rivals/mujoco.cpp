@@ -105,8 +105,8 @@ class MuJoCo {
 const Enlisted enlisted({
     .name = "mujoco",
     .version = mj_versionString(),
-    .settings = "mj_geomDistance, native convex collision, box and mesh geoms; keeps nothing "
-                "from tick to tick",
+    .settings = "mj_geomDistance, native convex collision, box and mesh geoms, default tolerance: "
+                "others change neither time nor answers; keeps nothing from tick to tick",
     .tolerance = 1e-6,
     .warms = false,
     .load = Adapter<MuJoCo>::load,
