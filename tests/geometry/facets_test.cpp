@@ -231,6 +231,18 @@ TEST(Facets, TenThousandPointsOnASphereAreAllCorners) {
   EXPECT_NEAR(volume(facets, points), 4.0 / 3.0 * M_PI, 0.01);
 }
 
+TEST(Facets, CornersAreThePointsOfTheFacetsInTheirOrder) {
+  Rng rng(seed);
+  const std::vector<Vec3> box = families::box({0.5, 0.4, 0.3}).vertices;
+  std::vector<Vec3> points;
+  for (const Vec3& p : box) {
+    points.push_back(0.1 * families::direction(rng));
+    points.push_back(p);
+  }
+  EXPECT_EQ(hull_corners(points, hull_facets(points)), box);
+  EXPECT_TRUE(hull_corners(points, {}).empty());
+}
+
 TEST(Facets, PointsWithoutAVolumeHaveNone) {
   Rng rng(seed);
   const Mat3 R = families::rotation(rng);

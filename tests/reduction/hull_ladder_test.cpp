@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <tuple>
@@ -68,7 +69,13 @@ void expect_is_a_ladder(const Ladder& ladder, const Points& points, Rng& rng) {
   ASSERT_FALSE(ladder.empty());
   double size = 0.0;
   for (const Vec3& p : points) size = std::max(size, p.norm());
-  EXPECT_EQ(vertices_of(ladder.front().core), points);
+  const Points corners = vertices_of(ladder.front().core);
+  for (const Vec3& v : corners) {
+    EXPECT_NE(std::find(points.begin(), points.end(), v), points.end()) << "a vertex made up";
+  }
+  for (const Vec3& n : directions_across(corners, rng)) {
+    EXPECT_LE(farthest(points, n), farthest(corners, n) + 2e-15 * size) << "a corner is missing";
+  }
   EXPECT_EQ(ladder.front().depth, 0.0);
   EXPECT_EQ(ladder.back().core.vertex_count(), 1) << "the last level is no point";
   for (std::size_t i = 1; i < ladder.size(); ++i) {
@@ -170,6 +177,27 @@ TEST(HullLadder, NeedlesAreNestedAsDeepAsTheyClaim) {
   }
 }
 
+TEST(HullLadder, ThinAndClusteredHullsAreNestedAsDeepAsTheyClaim) {
+  Rng rng(seed);
+  int solid = 0;
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", hull " + std::to_string(i));
+    Points points = families::cloud(rng, families::count_between(rng, 4, 16), 1.0).vertices;
+    const double thin = families::log_uniform(rng, 1e-15, 1e-2);
+    const std::size_t count = points.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      if (i % 3 == 0) points[k].z() *= thin;
+      if (i % 3 == 1) points[k] = Vec3(thin * points[k].x(), thin * points[k].y(), points[k].z());
+      if (i % 3 == 2) points.push_back(points[k] + thin * families::direction(rng));
+    }
+    points = turned(points, families::rotation(rng));
+    const Ladder ladder = detail::hull_ladder(points, 8);
+    expect_is_a_ladder(ladder, points, rng);
+    solid += ladder.back().depth > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(solid, 200);
+}
+
 TEST(HullLadder, TwoHundredPointsAreNestedAsDeepAsTheyClaim) {
   Rng rng(seed);
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -212,6 +240,76 @@ TEST(HullLadder, PointsInsideAreAllowed) {
   const Ladder ladder = detail::hull_ladder(points, 8);
   expect_is_a_ladder(ladder, points, rng);
   EXPECT_GE(ladder.back().depth, 0.8 * 0.3);
+  EXPECT_EQ(ladder.front().core.vertex_count(), 8) << "a point inside is kept";
+}
+
+TEST(HullLadder, PointsThatAreNoCornersChangeNoLevel) {
+  Rng rng(seed);
+  const Points corners = families::cloud(rng, 30, 1.0).vertices;
+  Points points = corners;
+  for (int i = 0; i < 100; ++i) points.push_back(0.3 * families::direction(rng));
+  points.insert(points.end(), corners.begin(), corners.end());
+  const Ladder ladder = detail::hull_ladder(points, 8);
+  const Ladder plain = detail::hull_ladder(corners, 8);
+  ASSERT_EQ(ladder.size(), plain.size());
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    EXPECT_EQ(vertices_of(ladder[i].core).size(), vertices_of(plain[i].core).size());
+    EXPECT_NEAR(ladder[i].depth, plain[i].depth, 1e-6) << "seed " << seed << ", level " << i;
+  }
+}
+
+TEST(HullLadder, AVertexKeepsItsIndexFromLevelToLevel) {
+  Rng rng(seed);
+  for (const int count : {12, 200, 3000}) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(count) + " points");
+    const Ladder ladder = detail::hull_ladder(families::cloud(rng, count, 1.0).vertices, 8);
+    const Points before = vertices_of(ladder[0].core);
+    const Points after = vertices_of(ladder[1].core);
+    ASSERT_EQ(static_cast<int>(before.size()), count);
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      EXPECT_LE((after[i] - before[i]).norm(), 5.0 * ladder[1].depth) << "vertex " << i;
+    }
+  }
+}
+
+TEST(HullLadder, ManyPointsOnEachFaceOfABoxAreNoObstacle) {
+  Rng rng(seed);
+  for (const double jitter : {0.0, 1e-16, 1e-12, 1e-9}) {
+    for (const bool turn : {false, true}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", jitter " + std::to_string(jitter));
+      Points points;
+      for (int i = 0; i < 729; ++i) {
+        points.emplace_back(0.1 * (i % 9), 0.1 * (i / 9 % 9), 0.1 * (i / 81));
+        points.back() += jitter * families::direction(rng);
+      }
+      if (turn) points = turned(points, families::rotation(rng));
+      const Ladder ladder = detail::hull_ladder(points, 8);
+      expect_is_a_ladder(ladder, points, rng);
+      EXPECT_EQ(ladder.size(), 10U);
+      EXPECT_GE(ladder.back().depth, 0.9 * 0.4);
+    }
+  }
+}
+
+TEST(HullLadder, TenThousandPointsAreNestedAsDeepAsTheyClaim) {
+  Rng rng(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  const Points points = families::cloud(rng, 10000, 1.0).vertices;
+  const Ladder ladder = detail::hull_ladder(points, 8);
+  EXPECT_EQ(ladder.size(), 10U);
+  EXPECT_EQ(ladder[0].core.vertex_count(), 10000);
+  EXPECT_GE(ladder[1].core.vertex_count(), 900);
+  EXPECT_LE(ladder[1].core.vertex_count(), 1014);
+  EXPECT_GE(ladder.back().depth, 0.93) << "nearly a ball of radius 1";
+  // Level 1 against the facets of the surface, the others as all ladders are.
+  const std::vector<Facet> facets = hull_facets(points);
+  for (const Vec3& v : vertices_of(ladder[1].core)) {
+    EXPECT_GE(detail::depth_in(facets, v), ladder[1].depth);
+  }
+  const Points second = vertices_of(ladder[1].core);
+  Ladder inner(ladder.begin() + 1, ladder.end());
+  for (Level& level : inner) level.depth -= ladder[1].depth;
+  expect_is_a_ladder(inner, second, rng);
 }
 
 TEST(HullLadder, TheDeepPointIsInsideEveryPlane) {

@@ -40,4 +40,18 @@ struct Facet {
   return facets;
 }
 
+/// The points that are corners of `facets`, which are those of `points`, in their order [m].
+[[nodiscard]] inline std::vector<Vec3> hull_corners(std::span<const Vec3> points,
+                                                    const std::vector<Facet>& facets) {
+  std::vector<bool> is_corner(points.size());
+  for (const Facet& f : facets) {
+    for (const int i : f.vertices) is_corner[i] = true;
+  }
+  std::vector<Vec3> corners;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_corner[i]) corners.push_back(points[i]);
+  }
+  return corners;
+}
+
 }  // namespace repel

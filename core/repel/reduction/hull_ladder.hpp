@@ -2,11 +2,14 @@
 /// The ladder of an arbitrary convex hull. Set-up only: it allocates.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include <repel/geometry/facets.hpp>
+#include <repel/geometry/vertex_scan.hpp>
 #include <repel/reduction/ladder.hpp>
 
 namespace repel::detail {
@@ -49,18 +52,29 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
 }
 
 /// A point at least `t` inside every plane, close to `v`: sweeps of projections onto the planes
-/// moved in by `t` (Dykstra without memory), then a slide toward `deep`, which is inside.
-inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, const Vec3& deep,
-                         int sweeps) {
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    bool moved = false;
+/// moved in by `t` (Dykstra without memory), then a slide toward `deep`, which is inside. Only the
+/// planes nearby take part in a sweep.
+inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, const Vec3& deep) {
+  std::vector<const Facet*> nearby;
+  for (int round = 0; round < 2; ++round) {
+    nearby.clear();
+    double depth = std::numeric_limits<double>::infinity();
     for (const Facet& f : facets) {
-      const double excess = f.n.dot(v) - (f.offset - t);
-      if (excess <= 0.0) continue;
-      v -= excess * f.n;
-      moved = true;
+      const double here = f.offset - f.n.dot(v);
+      if (here < 2.0 * t) nearby.push_back(&f);
+      depth = std::min(depth, here);
     }
-    if (!moved) break;
+    if (depth >= t) return v;
+    bool moved = true;
+    for (int sweep = 0; sweep < 15 && moved; ++sweep) {
+      moved = false;
+      for (const Facet* f : nearby) {
+        const double excess = f->n.dot(v) - (f->offset - t);
+        if (excess <= 0.0) continue;
+        v -= excess * f->n;
+        moved = moved || excess > 1e-9 * t;
+      }
+    }
   }
   double share = 0.0;
   for (const Facet& f : facets) {
@@ -72,29 +86,59 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   return v + std::min(1.0, share * (1.0 + 1e-12)) * (deep - v);
 }
 
-/// Each vertex of a level moves to the nearest point it finds that is `t` deeper; the hull of the
-/// moved vertices is the next level. So no level has more vertices than its parent, a vertex keeps
-/// its index from level to level, and the depth of a level is the sum of what each step is measured
-/// to have won. The last solid level goes to its centroid, and so does flat input, which has no
-/// depth.
+/// Of more than a thousand corners, moves those to the front that are the farthest along any of
+/// about a thousand directions all around. The number of them, or of all when there are fewer.
+inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
+  constexpr int steps = 13;  // along an edge of a cube around the origin
+  constexpr int directions = 6 * steps * steps;
+  if (corners.size() <= directions) return corners.size();
+  const VertexScan all(corners);
+  std::vector<bool> leads(corners.size());
+  const auto along = [](int step) { return (2.0 * step + 1.0) / steps - 1.0; };
+  for (int i = 0; i < directions; ++i) {
+    Vec3 d;
+    d[i % 3] = i % 2 == 0 ? 1.0 : -1.0;
+    d[(i + 1) % 3] = along(i / 6 % steps);
+    d[(i + 2) % 3] = along(i / 6 / steps);
+    leads[all.scan(Vec<double>(d))] = true;
+  }
+  std::vector<Vec3> rest;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (leads[i]) {
+      corners[count++] = corners[i];
+    } else {
+      rest.push_back(corners[i]);
+    }
+  }
+  std::copy(rest.begin(), rest.end(), corners.begin() + static_cast<std::ptrdiff_t>(count));
+  return count;
+}
+
+/// The first level is the hull of its corners; points that are none are dropped. From there on each
+/// vertex of a level moves to the nearest point it finds that is `t` deeper; the hull of the moved
+/// vertices is the next level. So no level has more vertices than its parent, a vertex keeps its
+/// index from level to level, and the depth of a level is the sum of what each step is measured to
+/// have won. Of a hull with very many corners a thousand move, the first ones. The last solid level
+/// goes to its centroid, and so does flat input, which has no depth.
 inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
+  std::vector<Facet> facets = hull_facets(points);
   std::vector<Vec3> vertices(points.begin(), points.end());
+  if (!facets.empty()) vertices = hull_corners(points, facets);
+  const std::size_t leading = lead_with_extremes(vertices);
   Ladder ladder{{Convex::polytope(vertices), 0.0, 0.0}};
+  vertices.resize(leading);
   Vec3 centroid = centroid_of(vertices);
   double depth = 0.0;
-  for (int i = 0; i < levels; ++i) {
-    const std::vector<Facet> facets = hull_facets(vertices);
-    if (facets.empty()) break;
+  for (int i = 0; i < levels && !facets.empty(); ++i) {
     const Vec3 deep = deep_point(facets, vertices);
     const double room = depth_in(facets, deep);
     if (!(room > 0.0)) break;
     const bool last = i + 1 == levels;
     const double target = last ? 0.95 * room : room / (levels - i);
-    const int sweeps = static_cast<int>(std::clamp(
-        2e7 / (static_cast<double>(vertices.size() * facets.size()) * levels), 1.0, 60.0));
     double won = room;
     for (Vec3& v : vertices) {
-      v = moved_inside(facets, v, target, deep, sweeps);
+      v = moved_inside(facets, v, target, deep);
       won = std::min(won, depth_in(facets, v));
     }
     // What rounding may have cost is taken off the claim.
@@ -103,6 +147,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
     depth += won;
     append(ladder, Convex::polytope(vertices), depth, depth);
     centroid = centroid_of(vertices);
+    facets = hull_facets(vertices);
   }
   if (points.size() > 1) {
     append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
