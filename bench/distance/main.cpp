@@ -79,6 +79,7 @@ bool is_chosen(const std::vector<std::string>& chosen, const std::string& name) 
 /// measurement, the last, whose percentiles are over all.
 class Progress final : public benchmark::BenchmarkReporter {
  public:
+  explicit Progress(std::size_t count) : count_(static_cast<int>(count)) {}
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     if (runs.empty() || runs.back().run_type != Run::RT_Iteration) return;
@@ -87,12 +88,13 @@ class Progress final : public benchmark::BenchmarkReporter {
       std::fprintf(stderr, "%s: %s\n", runs.back().benchmark_name().c_str(),
                    runs.back().error_message.c_str());
     }
-    std::fprintf(stderr, "\r%d measured", ++measured_);
+    std::fprintf(stderr, "\r%d of %d measured", ++measured_, count_);
   }
   void Finalize() override { std::fprintf(stderr, "\n"); }
   [[nodiscard]] bool failed() const { return failed_; }
 
  private:
+  int count_;
   int measured_ = 0;
   bool failed_ = false;
 };
@@ -120,6 +122,7 @@ class Suite {
       }
     }
   }
+  [[nodiscard]] std::size_t size() const { return compared_.size() + swept_.size(); }
   [[nodiscard]] std::string tables() const {
     return comparison_table(compared_) + "\n" + sweep_table(swept_);
   }
@@ -189,7 +192,7 @@ int run(const Options& options, bool to_file) {
   Suite suite(options);
   std::fprintf(stderr, "drawing the tasks and their exact answers\n");
   suite.enlist();
-  Progress progress;
+  Progress progress(suite.size());
   LastRepetition file;
   benchmark::RunSpecifiedBenchmarks(&progress, to_file ? &file : nullptr);
   const Build build = this_build();

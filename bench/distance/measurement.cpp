@@ -39,6 +39,7 @@ bool exceeds(double error, double limit) {
 
 void Measurement::check() {
   std::vector<double> relative;
+  std::vector<double> share;
   if (start_ == Start::warm) rival_->run(task_->asks, start_);
   for (const Ask& ask : task_->asks) {
     const Truth& truth = task_->truth(ask);
@@ -49,6 +50,7 @@ void Measurement::check() {
     const bool outside =
         answer.lower > truth.distance + slack || answer.upper < truth.distance - slack;
     verdict_.outside += outside ? 1 : 0;
+    share.push_back(answer.distance / truth.distance);
     if (task_->task.overlap && !library_.exact_depths) continue;
     const double error = std::abs(answer.distance - truth.distance);
     relative.push_back(error / std::abs(truth.distance));
@@ -57,6 +59,8 @@ void Measurement::check() {
     verdict_.worst_error = std::max(verdict_.worst_error, error);
   }
   std::sort(relative.begin(), relative.end());
+  std::sort(share.begin(), share.end());
+  verdict_.median_share = quantile(share, 0.5);
   verdict_.median_relative = quantile(relative, 0.5);
   verdict_.worst_relative = quantile(relative, 1.0);
 }
@@ -96,6 +100,7 @@ void Measurement::run(benchmark::State& state) {
   state.counters["worst_error_m"] = verdict_.worst_error;
   state.counters["worst_relative_error"] = verdict_.worst_relative;
   state.counters["median_relative_error"] = verdict_.median_relative;
+  state.counters["median_share"] = verdict_.median_share;
   state.counters["tolerance"] = tolerance_;
 }
 

@@ -32,6 +32,7 @@ struct Verdict {
   double worst_error = 0.0;     ///< [m]
   double worst_relative = 0.0;  ///< error / |distance|
   double median_relative = 0.0;
+  double median_share = 0.0;  ///< of the exact distance, in what was answered
 
   /// Answers that earn no time.
   [[nodiscard]] int wrong() const { return std::max({wrong_by_size, wrong_by_distance, outside}); }

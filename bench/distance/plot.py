@@ -12,15 +12,18 @@ LOWEST = 1e-17  # an error of exactly 0 is drawn here
 
 
 def read(path):
-    """{task: {library: [(median ns, worst relative error)]}} of the sweeps in a result file."""
-    tasks = {}
+    """{task: {library: [(median ns, worst relative error)]}}, the loosest tolerance first; a
+    library whose tolerance is fixed has one point."""
     with open(path, encoding="utf-8") as file:
-        for run in json.load(file)["benchmarks"]:
-            parts = run["name"].split("/")
-            if parts[0] != "error":
-                continue
-            point = (run["p50_ns"], max(run["worst_relative_error"], LOWEST))
-            tasks.setdefault(parts[1], {}).setdefault(parts[2], []).append(point)
+        runs = json.load(file)["benchmarks"]
+    tasks = {task: {} for task in ("box", "8v", "32v")}
+    for run in sorted(runs, key=lambda run: -run["tolerance"]):
+        first, second, third, *_ = run["name"].split("/")
+        point = (run["p50_ns"], max(run["worst_relative_error"], LOWEST))
+        if first == "error":
+            tasks[second].setdefault(third, []).append(point)
+        elif first in tasks and second == "cold" and run["tolerance"] == 0:
+            tasks[first][third] = [point]
     return tasks
 
 
@@ -44,7 +47,8 @@ class Panel:
         for digits in range(0, 18, 4):
             y = self.y(10.0**-digits)
             yield f"<path d='M{self.left} {y:.1f}H{right}' stroke='#ddd'/>"
-            yield text(self.left - 5, y + 4, f"1e-{digits}", "text-anchor='end'")
+            yield text(self.left - 5, y + 4, f"1e-{digits}" if digits else "1",
+                       "text-anchor='end'")
         for time in (100, 200, 500, 1000, 2000, 5000, 10000):
             if self.low < math.log10(time) < self.high:
                 x = self.x(time)

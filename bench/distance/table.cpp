@@ -137,11 +137,13 @@ std::string details(const Measurements& all) {
   for (const auto& m : all) {
     const Cost c = m->cost();
     const Verdict& v = m->verdict();
-    const bool unchecked = m->task().overlap && !m->library().exact_depths;
+    const bool bound = m->task().overlap && !m->library().exact_depths;
+    const std::string error = bound ? text("a bound: %.0f %% of the depth", 100.0 * v.median_share)
+                                    : text("%.1e", v.worst_error);
     out += text("| %s, %s | %s | %.0f | %.0f | %.0f | %.0f | %d | %d | %d | %d | %s |\n",
                 m->task().name.c_str(), to_text(m->start()), m->library().name.c_str(), c.p50,
                 c.p99, c.p999, c.worst, v.wrong_by_size, v.wrong_by_distance, v.outside, v.asked,
-                unchecked ? "a bound, see its bracket" : text("%.1e", v.worst_error).c_str());
+                error.c_str());
   }
   return out;
 }

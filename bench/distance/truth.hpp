@@ -1,5 +1,5 @@
 /// @file
-/// Exact distances and penetration depths of polytopes of any size, built on the oracles of the
+/// Exact distances and penetration depths of polytopes, built on the oracles of the
 /// tests.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace repel::bench {
 [[nodiscard]] double exact_gap(const families::Solid& A, const Pose& X_WA, const families::Solid& B,
                                const Pose& X_WB);
 
-/// [m] The penetration depth of two polytopes, to 1e-15 of their size; not positive when they are
-/// apart. Cost: every pair of edges.
+/// [m] The penetration depth of two polytopes of at most 32 vertices; not positive when they are
+/// apart. Throws std::runtime_error when one has no volume.
 [[nodiscard]] double exact_depth(const families::Solid& A, const Pose& X_WA,
                                  const families::Solid& B, const Pose& X_WB);
 
