@@ -28,7 +28,7 @@ inline constexpr int law_count = 12;
 inline constexpr std::array<const char*, law_count> law_names{
     "the sign is right",
     "the bracket holds the truth and the distance",
-    "it ends as converged while apart",
+    "it ends as converged, apart and deeper than 1e-9 of the size",
     "the error is at most 2e-14 of the larger size",
     "the error is at most 1e-6 of the distance",
     "in overlap the distance is never deeper than the depth",

@@ -151,6 +151,8 @@ class Trial {
     } else {
       const double too_deep = static_cast<double>(truth_ - Real(s.distance));
       ask(Law::depth, too_deep <= 2e-14 * size_);
+      const bool deep = -truth() > 1e-9 * size_;
+      ask(Law::ended, !deep || s.end == QueryEnd::converged);
     }
     check_witnesses(s);
   }
