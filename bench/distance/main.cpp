@@ -231,7 +231,10 @@ int main(int argc, char** argv) {
     arguments.push_back(interleaved.data());
     const Options options = parse(initialize(argc + 1, arguments.data()));
     if (options.list) return print_list(), 0;
-    return run(options, to_file);
+    const int code = run(options, to_file);
+    std::fflush(nullptr);
+    // FCL and Coal each bring their own octomap, and the destructors of the two collide.
+    std::quick_exit(code);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

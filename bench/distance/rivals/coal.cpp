@@ -16,6 +16,7 @@ class Coal {
   };
 
   Coal(const Task& task, double tolerance) : task_(task), guesses_(task.pairs.size()) {
+    decide_inflation();
     for (const Solid& s : task.solids) shapes_.push_back(shape(s));
     for (const std::vector<Pose>& X_W : task.X_W) {
       auto& placed = X_W_.emplace_back();
@@ -48,6 +49,14 @@ class Coal {
     coal::Vec3s ray = coal::Vec3s(1, 0, 0);
     coal::support_func_guess_t hint = coal::support_func_guess_t::Zero();
   };
+
+  /// Coal 3.0.3 decides once per process, by the direction of the first support of any box, whether
+  /// to inflate all boxes by 1e-10: a direction off the axes spares it that error.
+  static void decide_inflation() {
+    const coal::Box box(1.0, 1.0, 1.0);
+    int hint = 0;
+    (void)coal::details::getSupport(&box, coal::Vec3s(1.0, 2.0, 3.0), hint);
+  }
 
   static std::shared_ptr<coal::ShapeBase> shape(const Solid& s) {
     std::shared_ptr<coal::ShapeBase> made;
