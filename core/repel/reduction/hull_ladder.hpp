@@ -56,24 +56,17 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
 /// planes nearby take part in a sweep.
 inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, const Vec3& deep) {
   std::vector<const Facet*> nearby;
-  for (int round = 0; round < 2; ++round) {
-    nearby.clear();
-    double depth = std::numeric_limits<double>::infinity();
-    for (const Facet& f : facets) {
-      const double here = f.offset - f.n.dot(v);
-      if (here < 2.0 * t) nearby.push_back(&f);
-      depth = std::min(depth, here);
-    }
-    if (depth >= t) return v;
-    bool moved = true;
-    for (int sweep = 0; sweep < 15 && moved; ++sweep) {
-      moved = false;
-      for (const Facet* f : nearby) {
-        const double excess = f->n.dot(v) - (f->offset - t);
-        if (excess <= 0.0) continue;
-        v -= excess * f->n;
-        moved = moved || excess > 1e-9 * t;
-      }
+  for (const Facet& f : facets) {
+    if (f.offset - f.n.dot(v) < 2.0 * t) nearby.push_back(&f);
+  }
+  bool moved = true;
+  for (int sweep = 0; sweep < 60 && moved; ++sweep) {
+    moved = false;
+    for (const Facet* f : nearby) {
+      const double excess = f->n.dot(v) - (f->offset - t);
+      if (excess <= 0.0) continue;
+      v -= excess * f->n;
+      moved = true;
     }
   }
   double share = 0.0;
