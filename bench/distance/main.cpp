@@ -165,7 +165,7 @@ class Suite {
            std::shared_ptr<CheckedTask> drawn, Start start, double tolerance) {
     Measurement& m = *list.emplace_back(
         std::make_unique<Measurement>(library, std::move(drawn), start, tolerance));
-    constexpr int repetitions = 5;
+    constexpr int repetitions = 10;
     benchmark::RegisterBenchmark(title.c_str(), [&m](benchmark::State& state) { m.run(state); })
         ->UseManualTime()
         ->Unit(benchmark::kNanosecond)

@@ -47,12 +47,13 @@ const Measurement* find(const Measurements& all, const std::string& task, Start 
   return nullptr;
 }
 
-std::string heading(const std::vector<std::string>& columns) {
+/// The first column is words; so are the others where `numbers` is false.
+std::string heading(const std::vector<std::string>& columns, bool numbers = true) {
   std::string line = "|";
   std::string rule = "|";
   for (std::size_t i = 0; i < columns.size(); ++i) {
     line += text(" %s |", columns[i].c_str());
-    rule += i == 0 ? "---|" : "---:|";
+    rule += i > 0 && numbers ? "---:|" : "---|";
   }
   return line + "\n" + rule + "\n";
 }
@@ -67,7 +68,7 @@ std::string cell(const Measurement* m) {
 }
 
 std::string settings_of(const Measurements& all) {
-  std::string out = heading({"library", "version", "tolerance", "setting"});
+  std::string out = heading({"library", "version", "tolerance", "setting"}, false);
   for (const std::string& name : library_names(all)) {
     const auto used = std::find_if(all.begin(), all.end(),
                                    [&](const auto& m) { return m->library().name == name; });
