@@ -43,9 +43,10 @@ void expect_true(const Gap& gap, const oracle::Truth& truth, double size) {
   EXPECT_GT(gap.distance, 0.0);
   EXPECT_LE(error, 2e-14 * size);
   EXPECT_LE(error, 1e-6 * static_cast<double>(truth.distance));
-  EXPECT_NEAR(gap.n_BA_W.norm(), 1.0, 1e-12);
-  const Vec3 between = gap.p_AQa_W - gap.p_AQb_W;
-  EXPECT_LE((between - gap.distance * gap.n_BA_W).norm(), 1e-9 * size);
+  const Vec3 n_BA_W = to_vec3(gap.n_BA_W);
+  EXPECT_NEAR(n_BA_W.norm(), 1.0, 1e-12);
+  const Vec3 between = to_vec3(gap.p_AQa_W - gap.p_AQb_W);
+  EXPECT_LE((between - gap.distance * n_BA_W).norm(), 1e-9 * size);
 }
 
 class Family : public ::testing::TestWithParam<std::string> {

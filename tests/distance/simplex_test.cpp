@@ -59,7 +59,7 @@ TYPED_TEST(SimplexOf, ProjectsTheOriginOntoItsNearestFeature) {
     }
     ++by_size[simplex.size() - 1];
     ASSERT_NEAR(to_vec3(simplex.v()).norm(), static_cast<double>(truth->distance), 1e-14);
-    Vec<TypeParam> v;
+    Vec<TypeParam> v{};
     double sum = 0.0;
     for (int k = 0; k < simplex.size(); ++k) {
       ASSERT_GE(static_cast<double>(simplex.weight(k)), 0.0);

@@ -20,8 +20,8 @@ constexpr unsigned seed = 911;
 /// The first of the candidates with the largest product, in the precision of `d`.
 template <class T>
 std::uint32_t best_candidate(const SupportTable& table, const Points& vertices, const Vec<T>& d) {
-  const Vec<double> rounded{static_cast<double>(d.x), static_cast<double>(d.y),
-                            static_cast<double>(d.z)};
+  const Vec<double> rounded{static_cast<double>(d.x()), static_cast<double>(d.y()),
+                            static_cast<double>(d.z())};
   std::uint32_t best = 0;
   T most(-std::numeric_limits<double>::infinity());
   for (const std::uint32_t i : table.candidates(rounded)) {

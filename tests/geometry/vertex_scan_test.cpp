@@ -84,7 +84,7 @@ TEST(VertexScan, KeepsItsVerticesAsGiven) {
   Rng rng(seed);
   const std::vector<Vec3> vertices = families::cloud(rng, 19, 3.0).vertices;
   const VertexScan scan(vertices);
-  for (std::uint32_t i = 0; i < 19; ++i) EXPECT_EQ(scan.vertex(i), vertices[i]);
+  for (std::uint32_t i = 0; i < 19; ++i) EXPECT_EQ(to_vec3(scan.vertex(i)), vertices[i]);
 }
 
 TEST(VertexScan, ADirectionThatIsNotANumberNamesSomeVertex) {
@@ -109,8 +109,9 @@ TEST(VertexScan, ExtendedPrecisionDecidesWhatDoubleCannot) {
     const Vec<DoubleDouble> d{DoubleDouble::sum(n.x(), 1e-18), DoubleDouble::sum(n.y(), -1e-18),
                               DoubleDouble(n.z())};
     const auto along = [&](std::uint32_t k) {
-      return vertices[k].x() * (Real(d.x.hi) + d.x.lo) + vertices[k].y() * (Real(d.y.hi) + d.y.lo) +
-             vertices[k].z() * (Real(d.z.hi) + d.z.lo);
+      return vertices[k].x() * (Real(d.x().hi) + d.x().lo) +
+             vertices[k].y() * (Real(d.y().hi) + d.y().lo) +
+             vertices[k].z() * (Real(d.z().hi) + d.z().lo);
     };
     std::uint32_t best = 0;
     for (std::uint32_t k = 1; k < vertices.size(); ++k) best = along(k) > along(best) ? k : best;

@@ -9,6 +9,7 @@
 #include <repel/reduction/separation.hpp>
 #include <support/exact_depth.hpp>
 #include <support/families.hpp>
+#include <support/oracle.hpp>
 
 namespace repel::test {
 

@@ -3,62 +3,160 @@
 /// DoubleDouble.
 #pragma once
 
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+
 #include <repel/base/double_double.hpp>
 #include <repel/base/types.hpp>
 
 namespace repel {
 
+/// Vec<T> v; leaves the numbers to be set later, Vec<T>() is zero.
 template <class T>
-struct Vec {
-  T x{}, y{}, z{};
-
+class Vec {
+ public:
   Vec() = default;
-  Vec(T x_, T y_, T z_) noexcept : x(x_), y(y_), z(z_) {}
-  explicit Vec(const Vec3& v) noexcept : x(v.x()), y(v.y()), z(v.z()) {}
+  Vec(T x, T y, T z) noexcept : x_(x), y_(y), z_(z) {}
+  explicit Vec(const Vec3& v) noexcept : x_(v.x()), y_(v.y()), z_(v.z()) {}
+  template <class U>
+  requires(!std::same_as<U, T>) explicit Vec(const Vec<U>& v) noexcept
+      : x_(static_cast<T>(v.x())), y_(static_cast<T>(v.y())), z_(static_cast<T>(v.z())) {}
+
+  [[nodiscard]] T x() const noexcept { return x_; }
+  [[nodiscard]] T y() const noexcept { return y_; }
+  [[nodiscard]] T z() const noexcept { return z_; }
 
   friend Vec operator+(const Vec& a, const Vec& b) noexcept {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
+    return {a.x_ + b.x_, a.y_ + b.y_, a.z_ + b.z_};
   }
   friend Vec operator-(const Vec& a, const Vec& b) noexcept {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
+    return {a.x_ - b.x_, a.y_ - b.y_, a.z_ - b.z_};
   }
-  friend Vec operator-(const Vec& a) noexcept { return {-a.x, -a.y, -a.z}; }
-  friend Vec operator*(T s, const Vec& a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
+  friend Vec operator-(const Vec& a) noexcept { return {-a.x_, -a.y_, -a.z_}; }
+  friend Vec operator*(T s, const Vec& a) noexcept { return {s * a.x_, s * a.y_, s * a.z_}; }
+
+  friend T dot(const Vec& a, const Vec& b) noexcept {
+    return a.x_ * b.x_ + a.y_ * b.y_ + a.z_ * b.z_;
+  }
+  friend Vec cross(const Vec& a, const Vec& b) noexcept {
+    return {a.y_ * b.z_ - a.z_ * b.y_, a.z_ * b.x_ - a.x_ * b.z_, a.x_ * b.y_ - a.y_ * b.x_};
+  }
+  /// The three products of `d` with `a`, `b` and `c`.
+  friend Vec dots(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
+    return {dot(a, d), dot(b, d), dot(c, d)};
+  }
+  friend Vec magnitudes(const Vec& a) noexcept {
+    return {std::abs(a.x_), std::abs(a.y_), std::abs(a.z_)};
+  }
+  friend T sum(const Vec& a) noexcept { return a.x_ + a.y_ + a.z_; }
+  /// `yes ? a : b` without a branch.
+  friend Vec select(bool yes, const Vec& a, const Vec& b) noexcept {
+    return {yes ? a.x_ : b.x_, yes ? a.y_ : b.y_, yes ? a.z_ : b.z_};
+  }
+
+ private:
+  T x_, y_, z_;
 };
 
-template <class T>
-[[nodiscard]] T dot(const Vec<T>& a, const Vec<T>& b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+#ifdef __AVX__
+/// In double the three travel in one register, and a fourth lane that is 0 with them. The same
+/// sums in the same order as above.
+template <>
+class Vec<double> {
+  using Lanes = double __attribute__((vector_size(32)));
+  using Bits = std::int64_t __attribute__((vector_size(32)));
 
-template <class T>
-[[nodiscard]] Vec<T> cross(const Vec<T>& a, const Vec<T>& b) noexcept {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+ public:
+  Vec() = default;
+  Vec(double x, double y, double z) noexcept : lanes_{x, y, z, 0.0} {}
+  explicit Vec(const Vec3& v) noexcept : lanes_{v.x(), v.y(), v.z(), 0.0} {}
+  explicit Vec(const Vec<DoubleDouble>& v) noexcept
+      : Vec(static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())) {}
+  /// From four numbers in memory, the last of which does not count.
+  static Vec from_four(const double* numbers) noexcept {
+    Bits bits;
+    std::memcpy(&bits, numbers, sizeof bits);
+    return Vec((Lanes)(bits & Bits{-1, -1, -1, 0}));
+  }
+
+  [[nodiscard]] double x() const noexcept { return lanes_[0]; }
+  [[nodiscard]] double y() const noexcept { return lanes_[1]; }
+  [[nodiscard]] double z() const noexcept { return lanes_[2]; }
+
+  friend Vec operator+(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ + b.lanes_); }
+  friend Vec operator-(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ - b.lanes_); }
+  friend Vec operator-(const Vec& a) noexcept { return Vec(-a.lanes_); }
+  friend Vec operator*(double s, const Vec& a) noexcept { return Vec(s * a.lanes_); }
+
+  friend double dot(const Vec& a, const Vec& b) noexcept {
+    const Lanes m = a.lanes_ * b.lanes_;
+    return m[0] + m[1] + m[2];
+  }
+  friend Vec cross(const Vec& a, const Vec& b) noexcept {
+    const Lanes m = a.lanes_ * b.turned() - a.turned() * b.lanes_;
+    return Vec(__builtin_shufflevector(m, m, 1, 2, 0, 3));
+  }
+  friend Vec dots(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
+    const Lanes p = a.lanes_ * d.lanes_;
+    const Lanes q = b.lanes_ * d.lanes_;
+    const Lanes r = c.lanes_ * d.lanes_;
+    const Lanes pq =
+        __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
+    const Lanes rr = r + __builtin_shufflevector(r, r, 1, 3, 3, 3);
+    return Vec(__builtin_shufflevector(pq, rr, 0, 1, 4, 7) +
+               __builtin_shufflevector(pq, r, 2, 3, 6, 7));
+  }
+  friend double sum(const Vec& a) noexcept { return a.lanes_[0] + a.lanes_[1] + a.lanes_[2]; }
+  friend Vec magnitudes(const Vec& a) noexcept {
+    return Vec((Lanes)((Bits)a.lanes_ & std::int64_t{0x7FFFFFFFFFFFFFFF}));
+  }
+  friend Vec select(bool yes, const Vec& a, const Vec& b) noexcept {
+    const Bits mask = Bits{} - std::int64_t{yes};
+    return Vec((Lanes)((mask & (Bits)a.lanes_) | (~mask & (Bits)b.lanes_)));
+  }
+
+ private:
+  explicit Vec(const Lanes& lanes) noexcept : lanes_(lanes) {}
+  [[nodiscard]] Lanes turned() const noexcept {
+    return __builtin_shufflevector(lanes_, lanes_, 1, 2, 0, 3);
+  }
+
+  Lanes lanes_;
+};
+#endif
 
 [[nodiscard]] inline Vec3 to_vec3(const Vec<double>& v) noexcept {
-  return {v.x, v.y, v.z};
+  return {v.x(), v.y(), v.z()};
 }
 [[nodiscard]] inline Vec3 to_vec3(const Vec<DoubleDouble>& v) noexcept {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
-/// The rotation of `X` applied to `v` and its transpose applied to `v`: nine products each, in the
-/// precision of T. The transpose carries a direction into the body without assuming that the nine
-/// numbers are exactly orthonormal.
+/// Column `k` of the matrix of `X`: 0 to 2 the rotation, 3 the translation [m].
+template <class T>
+[[nodiscard]] Vec<T> column(const Pose& X, int k) noexcept {
+  const double* c = X.data() + 4 * k;
+  return {T(c[0]), T(c[1]), T(c[2])};
+}
+#ifdef __AVX__
+template <>
+[[nodiscard]] inline Vec<double> column(const Pose& X, int k) noexcept {
+  return Vec<double>::from_four(X.data() + 4 * k);
+}
+#endif
+
+/// The rotation of `X` applied to `v`, in the precision of T.
 template <class T>
 [[nodiscard]] Vec<T> rotate(const Pose& X, const Vec<T>& v) noexcept {
-  const auto& R = X.matrix();
-  return {T(R(0, 0)) * v.x + T(R(0, 1)) * v.y + T(R(0, 2)) * v.z,
-          T(R(1, 0)) * v.x + T(R(1, 1)) * v.y + T(R(1, 2)) * v.z,
-          T(R(2, 0)) * v.x + T(R(2, 1)) * v.y + T(R(2, 2)) * v.z};
+  return v.x() * column<T>(X, 0) + v.y() * column<T>(X, 1) + v.z() * column<T>(X, 2);
 }
+/// Its transpose applied to `v`: it carries a direction into the body without assuming that the
+/// nine numbers are exactly orthonormal.
 template <class T>
 [[nodiscard]] Vec<T> rotate_transposed(const Pose& X, const Vec<T>& v) noexcept {
-  const auto& R = X.matrix();
-  return {T(R(0, 0)) * v.x + T(R(1, 0)) * v.y + T(R(2, 0)) * v.z,
-          T(R(0, 1)) * v.x + T(R(1, 1)) * v.y + T(R(2, 1)) * v.z,
-          T(R(0, 2)) * v.x + T(R(1, 2)) * v.y + T(R(2, 2)) * v.z};
+  return dots(column<T>(X, 0), column<T>(X, 1), column<T>(X, 2), v);
 }
 
 }  // namespace repel

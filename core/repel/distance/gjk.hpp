@@ -6,25 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repel/distance/gap.hpp>
 #include <repel/distance/query.hpp>
 #include <repel/distance/simplex.hpp>
 #include <repel/geometry/convex.hpp>
 
 namespace repel {
-
-/// The distance of two convex sets, between proven bounds.
-struct Gap {
-  double distance = 0.0;                                   ///< [m] best value; 0 when the sets meet
-  double lower = 0.0;                                      ///< [m] the distance is at least this
-  double upper = std::numeric_limits<double>::infinity();  ///< [m] and at most this
-  bool meets = false;                                      ///< the sets are proven to share a point
-  Vec3 n_BA_W{0, 0, 0};   ///< unit, from B to A; zero when the sets meet or touch
-  Vec3 p_AQa_W{0, 0, 0};  ///< [m] witness point on A, from the origin of A
-  Vec3 p_AQb_W{0, 0, 0};  ///< [m] witness point on B, from the origin of A
-  int iterations = 0;     ///< support-map pairs evaluated
-  bool extended = false;  ///< decided in extended precision
-  QueryEnd end = QueryEnd::bad_input;
-};
 
 namespace detail {
 
@@ -44,6 +31,8 @@ class Gjk {
     const double size = A.reach() + B.reach() + to_vec3(p_AB_).norm();
     margin_ = 8.0 * epsilon(T{}) * size;
     if (!named_exactly_) margin_ = std::max(margin_, 2e-15 * size);
+    // Below it the square of a length is lost.
+    margin_ = std::max(margin_, 1e-150);
   }
 
   Gap run(const QueryOptions& options, WarmStart& warm) noexcept {
@@ -61,8 +50,8 @@ class Gjk {
 
   DifferencePoint<T> difference(const Convex::Point& a, const Convex::Point& b) const noexcept {
     DifferencePoint<T> p;
-    p.a = rotate(X_WA_, Vec<T>(T(a.p.x), T(a.p.y), T(a.p.z)));
-    p.w = p.a - (rotate(X_WB_, Vec<T>(T(b.p.x), T(b.p.y), T(b.p.z))) + p_AB_);
+    p.a = rotate(X_WA_, Vec<T>(a.p));
+    p.w = p.a - (rotate(X_WB_, Vec<T>(b.p)) + p_AB_);
     p.ww = dot(p.w, p.w);
     p.name_a = a.name;
     p.name_b = b.name;
@@ -126,15 +115,15 @@ class Gjk {
       gap.lower = gap.upper = 0.0;
       return;
     }
-    Vec<T> a;
-    Vec<T> w;
+    Vec<T> a{};
+    Vec<T> w{};
     for (int i = 0; i < simplex_.size(); ++i) {
       a = a + simplex_.weight(i) * simplex_.point(i).a;
       w = w + simplex_.weight(i) * simplex_.point(i).w;
     }
     const T length = sqrt_of(simplex_.vv());
-    gap.p_AQa_W = to_vec3(a);
-    gap.p_AQb_W = to_vec3(a - w);
+    gap.p_AQa_W = Vec<double>(a);
+    gap.p_AQb_W = Vec<double>(a - w);
     // The witness points are points of the sets whatever v has suffered from a thin simplex: their
     // distance bounds from above, and is the better value.
     const double between = static_cast<double>(sqrt_of(dot(w, w)));
@@ -142,7 +131,7 @@ class Gjk {
     gap.lower *= 1.0 - 0x1p-51;
     gap.distance = std::clamp(between, gap.lower, gap.upper);
     // Adding zero turns a negative zero into a positive one.
-    if (length > T(0.0)) gap.n_BA_W = to_vec3((T(1.0) / length) * simplex_.v()) + Vec3::Zero();
+    if (length > T(0.0)) gap.n_BA_W = Vec<double>((T(1.0) / length) * simplex_.v()) + Vec<double>();
   }
 
   void store(WarmStart& warm) const noexcept {

@@ -71,6 +71,7 @@ class Simplex {
   /// other one can be nearer than the present v. Without a nearer one, or when the four points
   /// enclose the origin, the simplex stays as it was.
   Projection add(const DifferencePoint<T>& p, T margin) noexcept {
+    if (size_ == 4) return Projection::no_nearer;
     points_[size_++] = p;
     const Projection result = project(size_ - 1, margin);
     if (result != Projection::nearer) --size_;
@@ -89,10 +90,11 @@ class Simplex {
   Projection project(int newest, T margin) noexcept {
     Feature best;
     best.vv = vv_;
+    unsigned tried = 0;
     if (size_ == 4) {
-      if (project_tetrahedron(newest, margin, best)) return Projection::encloses;
+      if (project_tetrahedron(newest, margin, tried, best)) return Projection::encloses;
     } else if (size_ == 3) {
-      project_triangle({0, 1, 2}, newest, best);
+      project_triangle({0, 1, 2}, newest, tried, best);
     } else if (size_ == 2) {
       project_edge(0, 1, newest, best);
     } else {
@@ -104,9 +106,9 @@ class Simplex {
   }
 
   void keep(const Feature& f) noexcept {
-    std::array<DifferencePoint<T>, 3> kept;
-    for (int i = 0; i < f.size; ++i) kept[i] = points_[f.index[i]];
-    for (int i = 0; i < f.size; ++i) {
+    const std::array<DifferencePoint<T>, 3> kept{points_[f.index[0]], points_[f.index[1]],
+                                                 points_[f.index[2]]};
+    for (int i = 0; i < 3; ++i) {
       points_[i] = kept[i];
       weights_[i] = f.weight[i];
     }
@@ -117,7 +119,7 @@ class Simplex {
 
   void consider_vertex(int i, Feature& best) const noexcept {
     const DifferencePoint<T>& p = points_[i];
-    if (p.ww < best.vv) best = {p.ww, p.w, 1, {i, 0, 0}, {T(1.0), T(0.0), T(0.0)}};
+    if (p.ww < best.vv) best = {p.ww, p.w, 1, {i, i, i}, {T(1.0), T(0.0), T(0.0)}};
   }
 
   // v = p + t e, e = q - p, t = -p.e / e.e, written from the end that is nearer to the origin.
@@ -129,11 +131,12 @@ class Simplex {
     const T along = -dot(p, e);
     const T zero(0.0);
     if (along > zero && along < ee) {
-      const T t = along / ee;
-      Vec<T> v = p + t * e;
-      v = v - (dot(v, e) / ee) * e;
+      const T scale = T(1.0) / ee;
+      const T t = scale * along;
+      const Vec<T> slanted = p + t * e;
+      const Vec<T> v = slanted - (scale * dot(slanted, e)) * e;
       const T vv = dot(v, v);
-      if (vv < best.vv) best = {vv, v, 2, {i, j, 0}, {T(1.0) - t, t, zero}};
+      if (vv < best.vv) best = {vv, v, 2, {i, j, i}, {T(1.0) - t, t, zero}};
       return;
     }
     if (newest < 0 || newest == i) consider_vertex(i, best);
@@ -141,8 +144,9 @@ class Simplex {
   }
 
   // v = n (n.p) / n.n, n the normal, p the nearest vertex; the weights are the areas of the three
-  // triangles that v makes with the sides.
-  void project_triangle(std::array<int, 3> f, int newest, Feature& best) const noexcept {
+  // triangles that v makes with the sides. `tried` has the edges tried already, by their ends.
+  void project_triangle(std::array<int, 3> f, int newest, unsigned& tried,
+                        Feature& best) const noexcept {
     const Vec<T>& p = points_[f[0]].w;
     const Vec<T>& q = points_[f[1]].w;
     const Vec<T>& r = points_[f[2]].w;
@@ -156,18 +160,21 @@ class Simplex {
       const Vec<T> vp = p - v;
       const Vec<T> vq = q - v;
       const Vec<T> vr = r - v;
-      const T area_p = dot(n, cross(vq, vr));
-      const T area_q = dot(n, cross(vr, vp));
-      const T area_r = dot(n, cross(vp, vq));
-      if (area_p > zero && area_q > zero && area_r > zero) {
+      const Vec<T> areas = dots(cross(vq, vr), cross(vr, vp), cross(vp, vq), n);
+      if (areas.x() > zero && areas.y() > zero && areas.z() > zero) {
         const T vv = dot(v, v);
-        const T scale = T(1.0) / (area_p + area_q + area_r);
-        if (vv < best.vv) best = {vv, v, 3, f, {scale * area_p, scale * area_q, scale * area_r}};
+        const T scale = T(1.0) / sum(areas);
+        if (vv < best.vv) {
+          best = {vv, v, 3, f, {scale * areas.x(), scale * areas.y(), scale * areas.z()}};
+        }
         return;
       }
     }
     for (const auto& [i, j] : {std::pair{f[0], f[1]}, {f[1], f[2]}, {f[2], f[0]}}) {
-      if (newest < 0 || newest == i || newest == j) project_edge(i, j, newest, best);
+      const unsigned edge = 1U << static_cast<unsigned>(i < j ? 4 * i + j : 4 * j + i);
+      if ((tried & edge) != 0U || (newest >= 0 && newest != i && newest != j)) continue;
+      tried |= edge;
+      project_edge(i, j, newest, best);
     }
   }
 
@@ -175,7 +182,7 @@ class Simplex {
   // normal of a face and e1, e2 its edges, the volume n.p is only known to within
   // margin (|n| + (|e1| + |e2|) |p|): every difference point may be off by the margin. A face that
   // is thin, or whose opposite vertex is too near to its plane, has no inner side.
-  bool project_tetrahedron(int newest, T margin, Feature& best) const noexcept {
+  bool project_tetrahedron(int newest, T margin, unsigned& tried, Feature& best) const noexcept {
     constexpr std::array<std::array<int, 4>, 4> faces{
         {{0, 1, 3, 2}, {1, 2, 3, 0}, {2, 0, 3, 1}, {0, 1, 2, 3}}};
     bool inside = true;
@@ -196,7 +203,7 @@ class Simplex {
       if (inner) continue;
       inside = false;
       if (newest < 0 || newest == i || newest == j || newest == k) {
-        project_triangle({i, j, k}, newest, best);
+        project_triangle({i, j, k}, newest, tried, best);
       }
     }
     return inside;

@@ -46,12 +46,12 @@ class SupportTable {
   // Face 2 k lies across the positive axis k, face 2 k + 1 across the negative one; the cells of a
   // face are counted along the axis after k, then along the one after that.
   [[nodiscard]] std::size_t cell_of(const Vec<double>& d) const noexcept {
-    const double x = std::abs(d.x);
-    const double y = std::abs(d.y);
-    const double z = std::abs(d.z);
-    if (x >= y && x >= z) return cell_at(d.x > 0.0 ? 0 : 1, d.y / x, d.z / x);
-    if (y >= z) return cell_at(d.y > 0.0 ? 2 : 3, d.z / y, d.x / y);
-    return cell_at(d.z > 0.0 ? 4 : 5, d.x / z, d.y / z);
+    const double x = std::abs(d.x());
+    const double y = std::abs(d.y());
+    const double z = std::abs(d.z());
+    if (x >= y && x >= z) return cell_at(d.x() > 0.0 ? 0 : 1, d.y() / x, d.z() / x);
+    if (y >= z) return cell_at(d.y() > 0.0 ? 2 : 3, d.z() / y, d.x() / y);
+    return cell_at(d.z() > 0.0 ? 4 : 5, d.x() / z, d.y() / z);
   }
   [[nodiscard]] std::size_t cell_at(std::size_t face, double u, double v) const noexcept {
     return (face * width_ + step_at(v)) * width_ + step_at(u);

@@ -2,6 +2,7 @@
 /// Vertices kept in three padded arrays, and the scan for the one farthest along a direction.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -36,33 +37,36 @@ class VertexScan {
   static constexpr int lanes = 8;  ///< the arrays are padded to a multiple of this
 
   VertexScan() = default;
-  explicit VertexScan(std::span<const Vec3> vertices) : size_(static_cast<int>(vertices.size())) {
-    const std::size_t padded = (vertices.size() + lanes - 1) / lanes * lanes;
-    for (auto* axis : {&x_, &y_, &z_}) axis->reserve(padded);
-    for (std::size_t i = 0; i < padded; ++i) {
+  explicit VertexScan(std::span<const Vec3> vertices)
+      : size_(static_cast<int>(vertices.size())),
+        stride_((vertices.size() + lanes - 1) / lanes * lanes),
+        block_(3 * stride_),
+        rows_(vertices.begin(), vertices.end()) {
+    for (std::size_t i = 0; i < stride_; ++i) {
       const Vec3& v = vertices[i < vertices.size() ? i : 0];
-      x_.push_back(v.x());
-      y_.push_back(v.y());
-      z_.push_back(v.z());
+      for (std::size_t axis = 0; axis < 3; ++axis) block_[axis * stride_ + i] = v[axis];
     }
   }
 
   [[nodiscard]] int size() const noexcept { return size_; }
-  [[nodiscard]] Vec3 vertex(std::uint32_t i) const noexcept { return {x_[i], y_[i], z_[i]}; }
+  /// Vertex i [m]; any number gives some vertex.
+  [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
+    return rows_[i < static_cast<std::uint32_t>(size_) ? i : 0U];
+  }
 
-  /// Index of the vertex with the largest product with `d`. Cost: one pass over the vertices.
+  /// Index of the vertex with the largest product with `d`, the lowest of several. Cost: one pass
+  /// over the vertices.
   [[nodiscard]] std::uint32_t scan(const Vec<double>& d) const noexcept;
   /// The same, decided in extended precision.
   [[nodiscard]] std::uint32_t scan(const Vec<DoubleDouble>& d) const noexcept;
+  /// The largest product itself. Cost: half of `scan`.
+  [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
 
  private:
-  [[nodiscard]] DoubleDouble exact_product(std::size_t i,
-                                           const Vec<DoubleDouble>& d) const noexcept {
-    return dot(Vec<DoubleDouble>(x_[i], y_[i], z_[i]), d);
-  }
-
   int size_ = 0;
-  std::vector<double> x_, y_, z_;  ///< [m]
+  std::size_t stride_ = 0;         ///< from one coordinate's numbers to the next one's
+  std::vector<double> block_;      ///< [m] all x, all y, all z
+  std::vector<Vec<double>> rows_;  ///< [m] the same, vertex by vertex
 };
 
 inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
@@ -80,14 +84,16 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
     best[row] = Lanes{} - std::numeric_limits<double>::infinity();
     index[row] = here[row];
   }
-  const std::size_t count = x_.size();
-  for (std::size_t i = 0; i < count; i += lanes) {
+  const double* x_of = block_.data();
+  const double* y_of = x_of + stride_;
+  const double* z_of = y_of + stride_;
+  for (std::size_t i = 0; i < stride_; i += lanes) {
     for (std::size_t row = 0; row < rows; ++row) {
       Lanes x, y, z;
-      std::memcpy(&x, &x_[i + row * width], sizeof x);
-      std::memcpy(&y, &y_[i + row * width], sizeof y);
-      std::memcpy(&z, &z_[i + row * width], sizeof z);
-      const Lanes along = x * d.x + y * d.y + z * d.z;
+      std::memcpy(&x, x_of + i + row * width, sizeof x);
+      std::memcpy(&y, y_of + i + row * width, sizeof y);
+      std::memcpy(&z, z_of + i + row * width, sizeof z);
+      const Lanes along = x * d.x() + y * d.y() + z * d.z();
       const auto farther = along > best[row];
       best[row] = farther ? along : best[row];
       index[row] = farther ? here[row] : index[row];
@@ -106,11 +112,39 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
   return winner < size_ ? static_cast<std::uint32_t>(winner) : 0U;
 }
 
+inline double VertexScan::largest_product(const Vec<double>& d) const noexcept {
+  using detail::Lanes;
+  constexpr std::size_t width = detail::lane_count;
+  constexpr std::size_t rows = lanes / width;
+  Lanes best[rows];
+  for (Lanes& row : best) row = Lanes{} - std::numeric_limits<double>::infinity();
+  const double* x_of = block_.data();
+  const double* y_of = x_of + stride_;
+  const double* z_of = y_of + stride_;
+  for (std::size_t i = 0; i < stride_; i += lanes) {
+    for (std::size_t row = 0; row < rows; ++row) {
+      Lanes x, y, z;
+      std::memcpy(&x, x_of + i + row * width, sizeof x);
+      std::memcpy(&y, y_of + i + row * width, sizeof y);
+      std::memcpy(&z, z_of + i + row * width, sizeof z);
+      const Lanes along = x * d.x() + y * d.y() + z * d.z();
+      best[row] = along > best[row] ? along : best[row];
+    }
+  }
+  for (std::size_t row = 1; row < rows; ++row) {
+    best[0] = best[row] > best[0] ? best[row] : best[0];
+  }
+  double largest = best[0][0];
+  for (std::size_t k = 1; k < width; ++k) largest = std::max(largest, best[0][k]);
+  return largest;
+}
+
 inline std::uint32_t VertexScan::scan(const Vec<DoubleDouble>& d) const noexcept {
+  const auto product = [&](std::uint32_t i) { return dot(Vec<DoubleDouble>(vertex(i)), d); };
   std::uint32_t winner = 0;
-  DoubleDouble best = exact_product(0, d);
+  DoubleDouble best = product(0);
   for (std::uint32_t i = 1; i < static_cast<std::uint32_t>(size_); ++i) {
-    const DoubleDouble along = exact_product(i, d);
+    const DoubleDouble along = product(i);
     if (along > best) {
       best = along;
       winner = i;

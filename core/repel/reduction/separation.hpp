@@ -3,6 +3,7 @@
 #pragma once
 
 #include <repel/distance/gjk.hpp>
+#include <repel/distance/kept_feature.hpp>
 #include <repel/reduction/shape.hpp>
 
 namespace repel {
@@ -38,13 +39,15 @@ class LadderWalk {
              const QueryOptions& options, WarmStart& warm) noexcept
       : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), options_(options), warm_(warm) {}
 
-  Separation run() noexcept {
+  /// `first` is what a query on the levels of the warm start gave, or nothing.
+  Separation run(const Gap* first) noexcept {
     i_ = warm_.level_a;
     j_ = warm_.level_b;
     if (!on_chain()) i_ = j_ = 0;
+    if (first != nullptr) iterations_ = first->iterations;
     const int longest = A_.levels() + B_.levels() + 2;
     for (int step = 0; step < longest; ++step) {
-      const Gap gap = query();
+      const Gap gap = step == 0 && first != nullptr ? *first : query();
       const bool meets = gap.meets || gap.end == QueryEnd::touching;
       const bool decided = meets ? went_in(gap) : went_out(gap);
       if (decided) break;
@@ -179,40 +182,82 @@ inline void LadderWalk::choose_direction(Separation& s) const noexcept {
   s.p_WB = common + B_.level(j_).depth * s.extraction_W;
 }
 
-inline Separation LadderWalk::answer() const noexcept {
+/// What is left of a bound after sums that may each have rounded inward.
+inline double rounded_down(double lower) noexcept {
+  return lower - 0x1p-51 * std::abs(lower);
+}
+inline double rounded_up(double upper) noexcept {
+  return upper + 0x1p-51 * std::abs(upper);
+}
+
+/// The answer of two cores that are apart, each with its depth [m] around it.
+inline Separation apart(const Gap& gap, double depth_a, double depth_b, const Pose& X_WA) noexcept {
   Separation s;
+  const double depth = depth_a + depth_b;
+  s.distance = gap.distance - depth;
+  s.lower = rounded_down(gap.lower - depth);
+  s.upper = rounded_up(gap.upper - depth);
+  const Vec<double> p_WA = column<double>(X_WA, 3);
+  s.p_WA = to_vec3(p_WA + gap.p_AQa_W - depth_a * gap.n_BA_W);
+  s.p_WB = to_vec3(p_WA + gap.p_AQb_W + depth_b * gap.n_BA_W);
+  s.extraction_W = to_vec3(gap.n_BA_W);
+  s.iterations = gap.iterations;
+  s.end = gap.end;
+  return s;
+}
+
+inline Separation LadderWalk::answer() const noexcept {
+  const bool plain = apart_ && apart_i_ == 0 && apart_j_ == 0;
   const double none = std::numeric_limits<double>::infinity();
   const double met = meets_ ? -depth_met_ : none;
   const double slack = 1e-14 * (A_.reach() + B_.reach());
-  s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
+  Separation s;
   if (apart_) {
-    const double depth_a = A_.level(apart_i_).depth;
-    const double depth_b = B_.level(apart_j_).depth;
-    s.extraction_W = gap_.n_BA_W;
-    s.p_WA = X_WA_.translation() + gap_.p_AQa_W - depth_a * s.extraction_W;
-    s.p_WB = X_WA_.translation() + gap_.p_AQb_W + depth_b * s.extraction_W;
-    s.distance = std::min(gap_.distance - depth_a - depth_b, met);
-    s.upper = std::min(gap_.upper - depth_a - depth_b, met + margin_);
-    s.end = gap_.end;
+    s = apart(gap_, A_.level(apart_i_).depth, B_.level(apart_j_).depth, X_WA_);
+    s.distance = std::min(s.distance, met);
+    s.upper = std::min(s.upper, met + margin_);
   } else {
     choose_direction(s);
     s.distance = met;
     s.upper = met + margin_;
     s.end = at_end() ? QueryEnd::converged : QueryEnd::budget_spent;
   }
-  const bool plain = apart_ && apart_i_ == 0 && apart_j_ == 0;
+  s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
   s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
-  s.lower = plain && gap_.lower > 0.0
-                ? gap_.lower - A_.level(0).depth - B_.level(0).depth
-                : std::min(s.distance, -overlap_along(s.extraction_W) - slack);
-  if (!plain) s.upper += slack;
+  if (!plain || !(gap_.lower > 0.0)) {
+    s.lower = rounded_down(std::min(s.distance, -overlap_along(s.extraction_W) - slack));
+  }
+  if (!plain) s.upper = rounded_up(s.upper + slack);
   // A point deep inside, in one plane with all support points found, looks like contact to GJK.
   if (touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
   if (cut_short_) s.end = QueryEnd::budget_spent;
-  // The subtractions above may each have rounded inward.
-  s.lower = std::nextafter(s.lower, -none);
-  s.upper = std::nextafter(s.upper, none);
   return s;
+}
+
+/// Neither pose has an entry that is not finite or so large that products of three would overflow.
+[[nodiscard]] inline bool are_usable(const Pose& X_WA, const Pose& X_WB) noexcept {
+  // A comparison with what is not a number is false; one settles all.
+  Vec<double> largest;
+  for (int k = 0; k < 4; ++k) {
+    largest = largest + (magnitudes(column<double>(X_WA, k)) + magnitudes(column<double>(X_WB, k)));
+  }
+  return sum(largest) <= 1e15;
+}
+
+/// The signed distance by search, from what the warm start has.
+[[gnu::noinline]] inline Separation searched(const Shape& A, const Pose& X_WA, const Shape& B,
+                                             const Pose& X_WB, const QueryOptions& options,
+                                             WarmStart& warm) noexcept {
+  if (!are_usable(X_WA, X_WB)) return {};
+  LadderWalk walk(A, X_WA, B, X_WB, options, warm);
+  if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
+  const Level& a = A.level(0);
+  const Level& b = B.level(0);
+  QueryOptions of_cores = options;
+  of_cores.ignore_beyond += a.depth + b.depth;
+  const Gap gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
+  if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
+  return walk.run(&gap);
 }
 
 }  // namespace detail
@@ -226,18 +271,27 @@ inline Separation LadderWalk::answer() const noexcept {
 /// continuous, 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and
 /// `upper` bracket the true one.
 ///
-/// @param X_WA,X_WB rigid poses in the world [m]; not finite ends in bad_input
+/// @param X_WA,X_WB rigid poses in the world [m]; not finite, or beyond 1e15 m, ends in bad_input
 /// @param warm what the last call on this pair left; any content is safe
 /// Cost: one to three support pairs per call when warm. No heap, no lock, bounded by
 /// `options.iterations`.
 [[nodiscard]] inline Separation separation(const Shape& A, const Pose& X_WA, const Shape& B,
                                            const Pose& X_WB, const QueryOptions& options,
                                            WarmStart& warm) noexcept {
-  const bool options_hold = options.tolerance >= 0.0 && options.iterations >= 1 &&
-                            !(options.ignore_beyond < 0.0) &&
-                            options.ignore_beyond == options.ignore_beyond;
-  if (!is_finite(X_WA) || !is_finite(X_WB) || !options_hold) return {};
-  return detail::LadderWalk(A, X_WA, B, X_WB, options, warm).run();
+  const bool options_hold =
+      options.tolerance >= 0.0 && options.iterations >= 1 && options.ignore_beyond >= 0.0;
+  if (!options_hold) return {};
+  if (warm.size >= 1 && warm.size <= 3 && warm.level_a == 0 && warm.level_b == 0) {
+    const Level& a = A.level(0);
+    const Level& b = B.level(0);
+    const detail::KeptFeature kept(a.core, X_WA, b.core, X_WB, warm);
+    const double beyond = options.ignore_beyond + a.depth + b.depth;
+    Gap gap;
+    if (kept.still_nearest(options, beyond, gap)) {
+      return detail::apart(gap, a.depth, b.depth, X_WA);
+    }
+  }
+  return detail::searched(A, X_WA, B, X_WB, options, warm);
 }
 
 /// The same without a warm start.
