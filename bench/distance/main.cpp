@@ -71,6 +71,17 @@ Options parse(const std::vector<std::string>& arguments) {
   return options;
 }
 
+/// Throws std::invalid_argument for a name that is not among those known.
+void check_names(const char* what, const std::vector<std::string>& names,
+                 const std::vector<std::string>& known) {
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw std::invalid_argument("there is no " + std::string(what) + " " + name +
+                                  " here (see --list)");
+    }
+  }
+}
+
 bool is_chosen(const std::vector<std::string>& chosen, const std::string& name) {
   return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
 }
@@ -113,6 +124,10 @@ class Suite {
   explicit Suite(Options options) : options_(std::move(options)) {}
 
   void enlist() {
+    std::vector<std::string> built;
+    for (const Library& library : libraries()) built.push_back(library.name);
+    check_names("task", options_.tasks, task_names());
+    check_names("library", options_.rivals, built);
     for (const std::string& name : task_names()) {
       if (!is_chosen(options_.tasks, name)) continue;
       for (const Library& library : libraries()) {
@@ -190,7 +205,7 @@ void print_list() {
 
 int run(const Options& options, bool to_file) {
   Suite suite(options);
-  std::fprintf(stderr, "drawing the tasks and their exact answers\n");
+  std::fprintf(stderr, "drawing the tasks and computing their exact answers\n");
   suite.enlist();
   Progress progress(suite.size());
   LastRepetition file;
@@ -228,7 +243,7 @@ int main(int argc, char** argv) {
     std::vector<char*> arguments(argv, argv + argc);
     // Whatever disturbs the machine meanwhile hits all libraries alike.
     std::string interleaved = "--benchmark_enable_random_interleaving=true";
-    arguments.push_back(interleaved.data());
+    arguments.insert(arguments.begin() + 1, interleaved.data());
     const Options options = parse(initialize(argc + 1, arguments.data()));
     if (options.list) return print_list(), 0;
     const int code = run(options, to_file);
