@@ -76,6 +76,12 @@ class Bytes {
     return {x, y, number()};
   }
 
+  Vec3 near() {
+    const double x = length();
+    const double y = length();
+    return {x, y, length()};
+  }
+
   /// Any numbers, a rigid pose at any place, or, most often, one near the origin.
   Pose pose() {
     Pose X = Pose::Identity();
@@ -84,12 +90,10 @@ class Bytes {
       for (int i = 0; i < 12; ++i) X.matrix()(i % 3, i / 3) = number();
       return X;
     }
-    const double w = length();
-    const double x = length();
-    const double y = length();
-    const Eigen::Quaterniond q(w, x, y, length());
+    const Vec3 axis = near();
+    const Eigen::Quaterniond q(length(), axis.x(), axis.y(), axis.z());
     if (q.norm() > 0.0) X.linear() = q.normalized().toRotationMatrix();
-    X.translation() = kind < 64 ? vector() : Vec3(length(), length(), length());
+    X.translation() = kind < 64 ? vector() : near();
     return X;
   }
 

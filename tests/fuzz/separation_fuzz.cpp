@@ -62,12 +62,6 @@ WarmStart warm_of(Bytes& bytes) {
   return warm;
 }
 
-/// Beyond it products of four lengths overflow.
-constexpr double largest_entry = 1e30;
-
-bool is_answerable(const Pose& X) {
-  return !is_finite(X) || X.matrix().cwiseAbs().maxCoeff() <= largest_entry;
-}
 bool is_rigid_and_near(const Pose& X) {
   return is_finite(X) && is_rigid(X) && X.translation().norm() <= 1e9;
 }
@@ -93,7 +87,6 @@ void check_one(Bytes bytes) {
   if (!A || !B) return;
   const Pose X_WA = bytes.pose();
   const Pose X_WB = bytes.pose();
-  if (!is_answerable(X_WA) || !is_answerable(X_WB)) return;
   const QueryOptions options = options_of(bytes);
   WarmStart warm = warm_of(bytes);
   const bool good_options =
