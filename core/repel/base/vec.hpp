@@ -7,9 +7,14 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include <repel/base/double_double.hpp>
 #include <repel/base/types.hpp>
+
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace repel {
 
@@ -51,12 +56,19 @@ class Vec {
     return {std::abs(a.x_), std::abs(a.y_), std::abs(a.z_)};
   }
   friend T sum(const Vec& a) noexcept { return a.x_ + a.y_ + a.z_; }
-  /// `yes ? a : b` without a branch.
-  friend Vec select(bool yes, const Vec& a, const Vec& b) noexcept {
-    return {yes ? a.x_ : b.x_, yes ? a.y_ : b.y_, yes ? a.z_ : b.z_};
+  /// The products of the coordinates.
+  friend Vec product(const Vec& a, const Vec& b) noexcept {
+    return {a.x_ * b.x_, a.y_ * b.y_, a.z_ * b.z_};
+  }
+  /// Bit k is set when coordinate k has a minus sign, be it that of a negative zero.
+  friend unsigned minus_signs(const Vec& a) noexcept {
+    return (is_minus(a.x_) ? 1U : 0U) | (is_minus(a.y_) ? 2U : 0U) | (is_minus(a.z_) ? 4U : 0U);
   }
 
  private:
+  static bool is_minus(double x) noexcept { return std::signbit(x); }
+  static bool is_minus(DoubleDouble x) noexcept { return std::signbit(x.hi); }
+
   T x_, y_, z_;
 };
 
@@ -112,9 +124,9 @@ class Vec<double> {
   friend Vec magnitudes(const Vec& a) noexcept {
     return Vec((Lanes)((Bits)a.lanes_ & std::int64_t{0x7FFFFFFFFFFFFFFF}));
   }
-  friend Vec select(bool yes, const Vec& a, const Vec& b) noexcept {
-    const Bits mask = Bits{} - std::int64_t{yes};
-    return Vec((Lanes)((mask & (Bits)a.lanes_) | (~mask & (Bits)b.lanes_)));
+  friend Vec product(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ * b.lanes_); }
+  friend unsigned minus_signs(const Vec& a) noexcept {
+    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)a.lanes_)) & 7U;
   }
 
  private:
@@ -134,18 +146,23 @@ class Vec<double> {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
-/// Column `k` of the matrix of `X`: 0 to 2 the rotation, 3 the translation [m].
+/// From four numbers in a row, the last of which does not count.
 template <class T>
-[[nodiscard]] Vec<T> column(const Pose& X, int k) noexcept {
-  const double* c = X.data() + 4 * k;
+[[nodiscard]] Vec<T> from_four(const double* c) noexcept {
   return {T(c[0]), T(c[1]), T(c[2])};
 }
 #ifdef __AVX__
 template <>
-[[nodiscard]] inline Vec<double> column(const Pose& X, int k) noexcept {
-  return Vec<double>::from_four(X.data() + 4 * k);
+[[nodiscard]] inline Vec<double> from_four(const double* c) noexcept {
+  return Vec<double>::from_four(c);
 }
 #endif
+
+/// Column `k` of the matrix of `X`: 0 to 2 the rotation, 3 the translation [m].
+template <class T>
+[[nodiscard]] Vec<T> column(const Pose& X, int k) noexcept {
+  return from_four<T>(X.data() + 4 * k);
+}
 
 /// The rotation of `X` applied to `v`, in the precision of T.
 template <class T>

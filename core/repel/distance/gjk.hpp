@@ -30,7 +30,6 @@ class Gjk {
     p_AB_ = Vec<T>(Vec3(X_WB.translation())) - p_WA;
     const double size = A.reach() + B.reach() + to_vec3(p_AB_).norm();
     margin_ = 8.0 * epsilon(T{}) * size;
-    if (!named_exactly_) margin_ = std::max(margin_, 2e-15 * size);
     // Below it the square of a length is lost.
     margin_ = std::max(margin_, 1e-150);
   }
@@ -48,10 +47,11 @@ class Gjk {
   static constexpr double epsilon(double) noexcept { return 0x1p-52; }
   static constexpr double epsilon(DoubleDouble) noexcept { return 0x1p-98; }
 
-  DifferencePoint<T> difference(const Convex::Point& a, const Convex::Point& b) const noexcept {
+  DifferencePoint<T> difference(const Convex::Point<T>& a,
+                                const Convex::Point<T>& b) const noexcept {
     DifferencePoint<T> p;
-    p.a = rotate(X_WA_, Vec<T>(a.p));
-    p.w = p.a - (rotate(X_WB_, Vec<T>(b.p)) + p_AB_);
+    p.a = rotate(X_WA_, a.p);
+    p.w = p.a - (rotate(X_WB_, b.p) + p_AB_);
     p.ww = dot(p.w, p.w);
     p.name_a = a.name;
     p.name_b = b.name;
@@ -66,8 +66,8 @@ class Gjk {
 
   void start(const WarmStart& warm) noexcept {
     for (int i = 0; i < std::min<int>(warm.size, 4); ++i) {
-      const Convex::Point a = A_.point(warm.a[i]);
-      const Convex::Point b = B_.point(warm.b[i]);
+      const Convex::Point<T> a = A_.template point<T>(warm.a[i]);
+      const Convex::Point<T> b = B_.template point<T>(warm.b[i]);
       if (!simplex_.holds(a.name, b.name)) simplex_.append(difference(a, b));
     }
     if (simplex_.size() == 0) {
@@ -157,54 +157,46 @@ class Gjk {
   int iterations_ = 0;
 };
 
-/// True when a result in double is as sharp as it may be claimed: the bracket, rounding included,
-/// is narrow against the distance itself.
-[[nodiscard]] inline bool is_certified(const Gap& gap, const QueryOptions& options) noexcept {
+/// True when the bracket, rounding included, is as narrow as may be claimed: against the distance
+/// and against the sizes involved, `size` [m].
+[[nodiscard]] inline bool is_certified(const Gap& gap, const QueryOptions& options,
+                                       double size) noexcept {
   if (gap.meets || gap.end == QueryEnd::far_apart || gap.end == QueryEnd::budget_spent) return true;
-  return gap.upper - gap.lower <= std::max(1e-7, 2.0 * options.tolerance) * gap.upper;
-}
-
-/// What can still be done for a curved set, whose points are themselves rounded, so that more
-/// digits would not help: points kept from the last tick are rounded more coarsely than fresh ones,
-/// and may lie too close together to tell the way. A bracket that stays wide is said to be.
-[[nodiscard]] inline Gap narrowed(Gap gap, const Convex& A, const Pose& X_WA, const Convex& B,
-                                  const Pose& X_WB, const QueryOptions& options, bool began_warm,
-                                  WarmStart& warm) noexcept {
-  const double size = A.reach() + B.reach();
-  if (gap.end != QueryEnd::converged || gap.meets) return gap;
-  if (began_warm && gap.upper - gap.lower > 1e-12 * size) {
-    WarmStart cold;
-    Gap again = Gjk<double>(A, X_WA, B, X_WB).run(options, cold);
-    again.iterations += gap.iterations;
-    if (again.upper - again.lower < gap.upper - gap.lower) {
-      gap = again;
-      warm = cold;
-    }
-  }
-  const bool wide = gap.upper - gap.lower > 1e-7 * size;
-  if (wide && !is_certified(gap, options)) gap.end = QueryEnd::budget_spent;
-  return gap;
+  const double width = gap.upper - gap.lower;
+  const double asked = 2.0 * options.tolerance * gap.upper;
+  // One and a half times the margins on either side.
+  return width <= std::max(1e-7 * gap.upper, asked) && width <= asked + 24.0 * 0x1p-52 * size;
 }
 
 }  // namespace detail
 
 /// The distance of A and B. What double precision cannot certify - a gap near rounding, a needle
-/// whose normal is noise - is decided in extended precision when both sets are polytopes.
-/// Cost: one support pair when the warm start still holds, else a few more; at most
-/// `options.iterations` in each precision. No heap, no lock.
+/// whose normal is noise, nearly parallel discs - is decided in extended precision; what even that
+/// leaves wide ends in `budget_spent`.
+/// Cost: a support pair or two when the warm start still holds, else a few more, for curved sets a
+/// few dozen; at most `options.iterations` in each precision. No heap, no lock.
 [[nodiscard]] inline Gap gap_between(const Convex& A, const Pose& X_WA, const Convex& B,
                                      const Pose& X_WB, const QueryOptions& options,
                                      WarmStart& warm) noexcept {
+  const bool curved = !A.is_polytope() || !B.is_polytope();
   const bool began_warm = warm.size > 0;
+  const double size = A.reach() + B.reach() + (X_WB.translation() - X_WA.translation()).norm();
   Gap gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
-  if (!(A.is_polytope() && B.is_polytope())) {
-    return detail::narrowed(gap, A, X_WA, B, X_WB, options, began_warm, warm);
+  if (detail::is_certified(gap, options, size)) return gap;
+  int spent = gap.iterations;
+  if (curved && began_warm) {
+    // Points kept from the last tick may lie too close to fresh ones to tell the way.
+    warm.size = 0;
+    gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
+    gap.iterations += spent;
+    if (detail::is_certified(gap, options, size)) return gap;
+    spent = gap.iterations;
   }
-  if (detail::is_certified(gap, options)) return gap;
-  const int spent = gap.iterations;
   gap = detail::Gjk<DoubleDouble>(A, X_WA, B, X_WB).run(options, warm);
   gap.iterations += spent;
   gap.extended = true;
+  const bool wide = gap.end == QueryEnd::converged && !detail::is_certified(gap, options, size);
+  if (wide) gap.end = QueryEnd::budget_spent;
   return gap;
 }
 

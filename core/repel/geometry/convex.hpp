@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include <repel/base/vec.hpp>
 #include <repel/geometry/support_table.hpp>
@@ -23,11 +24,12 @@ class Convex {
   /// Up to so many vertices a scan of all of them is as fast as a table of directions.
   static constexpr std::size_t largest_scan = 32;
 
-  enum class Kind : std::uint8_t { box, cylinder, polytope };
+  enum class Kind : std::uint8_t { box, cylinder, cone, polytope };
 
+  template <class T>
   struct Point {
     std::uint32_t name = 0;
-    Vec<double> p;  ///< [m] in the frame of the set
+    Vec<T> p;  ///< [m] in the frame of the set
   };
 
   /// Corners at +-`half_extents` [m], each at least 0.
@@ -35,13 +37,6 @@ class Convex {
     Convex set(Kind::box);
     set.size_ = Vec<double>(half_extents);
     set.reach_ = half_extents.norm();
-    std::array<Vec3, 8> corners;
-    for (unsigned i = 0; i < 8; ++i) {
-      corners[i] = {(i & 1U) != 0U ? half_extents.x() : -half_extents.x(),
-                    (i & 2U) != 0U ? half_extents.y() : -half_extents.y(),
-                    (i & 4U) != 0U ? half_extents.z() : -half_extents.z()};
-    }
-    set.vertices_ = VertexScan(corners);
     set.thick_axes_ = (half_extents.x() > 0.0 ? 1U : 0U) | (half_extents.y() > 0.0 ? 2U : 0U) |
                       (half_extents.z() > 0.0 ? 4U : 0U);
     return set;
@@ -51,6 +46,14 @@ class Convex {
     Convex set(Kind::cylinder);
     set.size_ = {radius, radius, half_length};
     set.reach_ = std::hypot(radius, half_length);
+    return set;
+  }
+  /// Around the z axis: a disc of `radius` [m] at `z_base` [m] and the apex at `z_apex` [m], not
+  /// below it. Negative radii are not allowed.
+  static Convex cone(double radius, double z_base, double z_apex) {
+    Convex set(Kind::cone);
+    set.size_ = {radius, z_base, z_apex};
+    set.reach_ = std::max(std::hypot(radius, z_base), std::abs(z_apex));
     return set;
   }
   /// The convex hull of at least one vertex [m].
@@ -65,31 +68,42 @@ class Convex {
   [[nodiscard]] Kind kind() const noexcept { return kind_; }
   /// [m] distance of the farthest point from the origin of the frame.
   [[nodiscard]] double reach() const noexcept { return reach_; }
-  /// True when every point named is exactly representable, so that extended precision helps.
+  /// True when the set is the hull of a few points.
   [[nodiscard]] bool is_polytope() const noexcept {
-    return kind_ != Kind::cylinder || size_.x() == 0.0;
+    return kind_ == Kind::box || kind_ == Kind::polytope || size_.x() == 0.0;
   }
   /// Number of vertices; 0 for a set with a curved boundary.
   [[nodiscard]] int vertex_count() const noexcept;
 
   /// The farthest point along `d`, which need not be unit. T is double or DoubleDouble.
   template <class T>
-  [[nodiscard]] Point support(const Vec<T>& d) const noexcept {
+  [[nodiscard]] Point<T> support(const Vec<T>& d) const noexcept {
     switch (kind_) {
       case Kind::box:
-        return box_support(d);
+        return named<T>(box_corner(~minus_signs(d)));
       case Kind::cylinder:
-        return cylinder_support(d);
+        return rim_support(d, d.z() > T(0.0));
+      case Kind::cone:
+        return cone_support(d);
       case Kind::polytope:
         break;
     }
     const std::uint32_t i = table_.empty() ? vertices_.scan(d) : best_candidate(d);
-    return {i, vertices_.vertex(i)};
+    return named<T>({i, vertices_.vertex(i)});
   }
 
   /// The place alone of the point of that name [m].
   [[nodiscard]] Vec<double> place(std::uint32_t name) const noexcept {
-    return kind_ == Kind::cylinder ? rim_point(name).p : vertices_.vertex(name);
+    switch (kind_) {
+      case Kind::box:
+        return box_corner(name).p;
+      case Kind::cylinder:
+      case Kind::cone:
+        return rim_point<double>(name).p;
+      case Kind::polytope:
+        break;
+    }
+    return vertices_.vertex(name);
   }
 
   /// The largest product of `d` with a point of the set [m] for unit `d`: what `support` reaches,
@@ -99,7 +113,9 @@ class Convex {
       case Kind::box:
         return dot(size_, magnitudes(d));
       case Kind::cylinder:
-        return size_.x() * std::sqrt(d.x() * d.x() + d.y() * d.y()) + size_.z() * std::abs(d.z());
+        return size_.x() * across(d) + size_.z() * std::abs(d.z());
+      case Kind::cone:
+        return std::max(size_.x() * across(d) + size_.y() * d.z(), size_.z() * d.z());
       case Kind::polytope:
         break;
     }
@@ -113,34 +129,48 @@ class Convex {
 
   /// The point of that name; any name gives some point of the set. Names carry over between a set
   /// and its reduced forms: the same corner, the same vertex, the same angle.
-  [[nodiscard]] Point point(std::uint32_t name) const noexcept {
+  template <class T = double>
+  [[nodiscard]] Point<T> point(std::uint32_t name) const noexcept {
     switch (kind_) {
       case Kind::box:
-        return box_corner(name);
+        return named<T>(box_corner(name));
       case Kind::cylinder:
-        return rim_point(name);
+      case Kind::cone:
+        return rim_point<T>(name);
       case Kind::polytope:
         break;
     }
     const std::uint32_t i = name < static_cast<std::uint32_t>(vertices_.size()) ? name : 0U;
-    return {i, vertices_.vertex(i)};
+    return named<T>({i, vertices_.vertex(i)});
   }
 
  private:
   explicit Convex(Kind kind) noexcept : kind_(kind) {}
 
   template <class T>
-  [[nodiscard]] Point box_support(const Vec<T>& d) const noexcept {
-    const T zero(0.0);
-    const unsigned name =
-        (d.x() > zero ? 1U : 0U) | (d.y() > zero ? 2U : 0U) | (d.z() > zero ? 4U : 0U);
-    return box_corner(name);
+  [[nodiscard]] static Point<T> named(const Point<double>& p) noexcept {
+    if constexpr (std::is_same_v<T, double>) {
+      return p;
+    } else {
+      return {p.name, Vec<T>(p.p)};
+    }
+  }
+
+  static double root(double x) noexcept { return std::sqrt(x); }
+  static DoubleDouble root(DoubleDouble x) noexcept { return sqrt(x); }
+  /// Length of `d` across the z axis.
+  template <class T>
+  [[nodiscard]] static T across(const Vec<T>& d) noexcept {
+    return root(d.x() * d.x() + d.y() * d.y());
   }
 
   // A corner of a flat box has several names; the lowest stands for all.
-  [[nodiscard]] Point box_corner(std::uint32_t name) const noexcept {
+  [[nodiscard]] Point<double> box_corner(std::uint32_t name) const noexcept {
     name &= thick_axes_;
-    return {name, vertices_.vertex(name)};
+    static constexpr double signs[8][4] = {{-1, -1, -1, 0}, {1, -1, -1, 0}, {-1, 1, -1, 0},
+                                           {1, 1, -1, 0},   {-1, -1, 1, 0}, {1, -1, 1, 0},
+                                           {-1, 1, 1, 0},   {1, 1, 1, 0}};
+    return {name, product(size_, from_four<double>(signs[name]))};
   }
 
   // The candidates hold the vertex that a scan of all of them would find.
@@ -159,51 +189,75 @@ class Convex {
     return winner;
   }
 
-  template <class T>
-  [[nodiscard]] Point cylinder_support(const Vec<T>& direction) const noexcept {
-    const Vec3 d = to_vec3(direction);
-    const double z = d.z() > 0.0 ? size_.z() : -size_.z();
-    const double across = std::sqrt(d.x() * d.x() + d.y() * d.y());
-    // Along the axis every point of the cap is farthest: its centre stands for all.
-    if (!(across > 1e-300) || size_.x() == 0.0) return {name_of_rim(0.0, 0.0, z), {0.0, 0.0, z}};
-    const double cosine = d.x() / across;
-    const double sine = d.y() / across;
-    return {name_of_rim(cosine, sine, z), {size_.x() * cosine, size_.x() * sine, z}};
+  /// [m] where the disc at the far end, or at the near end, of the z axis stands.
+  [[nodiscard]] double end(bool far) const noexcept {
+    if (kind_ == Kind::cone) return far ? size_.z() : size_.y();
+    return far ? size_.z() : -size_.z();
   }
 
-  // Name of a rim point: bit 31 the side, bit 30 set for the centre of the cap, bits 28 and 29 the
+  /// The farthest point of one of the two discs. Along the axis all are farthest: the centre stands
+  /// for them.
+  template <class T>
+  [[nodiscard]] Point<T> rim_support(const Vec<T>& d, bool far) const noexcept {
+    const T length = across(d);
+    const T z(end(far));
+    const T zero(0.0);
+    if (!(length > T(1e-300)) || size_.x() == 0.0) return {name_of_centre(far), {zero, zero, z}};
+    const T cosine = d.x() / length;
+    const T sine = d.y() / length;
+    const T radius(size_.x());
+    return {name_of_rim(static_cast<double>(cosine), static_cast<double>(sine), far),
+            {radius * cosine, radius * sine, z}};
+  }
+
+  template <class T>
+  [[nodiscard]] Point<T> cone_support(const Vec<T>& d) const noexcept {
+    const T base = T(size_.x()) * across(d) + T(size_.y()) * d.z();
+    if (base > T(size_.z()) * d.z()) return rim_support(d, false);
+    return {name_of_centre(true), {T(0.0), T(0.0), T(size_.z())}};
+  }
+
+  // Name of a rim point: bit 31 the end, bit 30 set for the centre of the disc, bits 28 and 29 the
   // signs of cosine and sine, below them the tangent of half the angle within its quadrant.
   static constexpr double angle_steps = 268435455.0;  // 2^28 - 1
 
-  [[nodiscard]] static std::uint32_t name_of_rim(double cosine, double sine, double z) noexcept {
-    const std::uint32_t side = z > 0.0 ? 1U << 31U : 0U;
-    if (cosine == 0.0 && sine == 0.0) return side | (1U << 30U);
-    const double half_tangent = std::min(1.0, std::abs(sine) / (1.0 + std::abs(cosine)));
-    return side | (cosine < 0.0 ? 1U << 28U : 0U) | (sine < 0.0 ? 1U << 29U : 0U) |
-           static_cast<std::uint32_t>(half_tangent * (angle_steps - 1.0));
+  [[nodiscard]] static std::uint32_t name_of_centre(bool far) noexcept {
+    return (far ? 1U << 31U : 0U) | 1U << 30U;
   }
-  [[nodiscard]] Point rim_point(std::uint32_t name) const noexcept {
-    const double z = (name >> 31U) != 0U ? size_.z() : -size_.z();
-    if ((name & (1U << 30U)) != 0U) return {name, {0.0, 0.0, z}};
-    const double t = static_cast<double>(name & 0x0FFFFFFFU) / (angle_steps - 1.0);
-    const double cosine = (1.0 - t * t) / (1.0 + t * t);
-    const double sine = 2.0 * t / (1.0 + t * t);
-    return {name,
-            {(name & (1U << 28U)) != 0U ? -size_.x() * cosine : size_.x() * cosine,
-             (name & (1U << 29U)) != 0U ? -size_.x() * sine : size_.x() * sine, z}};
+  [[nodiscard]] static std::uint32_t name_of_rim(double cosine, double sine, bool far) noexcept {
+    const double half_tangent = std::abs(sine) / (1.0 + std::abs(cosine));  // 0 to 1
+    const double step = half_tangent <= 1.0 ? half_tangent * (angle_steps - 1.0) : 0.0;
+    return (far ? 1U << 31U : 0U) | (cosine < 0.0 ? 1U << 28U : 0U) |
+           (sine < 0.0 ? 1U << 29U : 0U) | static_cast<std::uint32_t>(step);
+  }
+  template <class T>
+  [[nodiscard]] Point<T> rim_point(std::uint32_t name) const noexcept {
+    const bool far = (name >> 31U) != 0U;
+    const T z(end(far));
+    const bool apex = kind_ == Kind::cone && far;
+    if (apex || (name & (1U << 30U)) != 0U) return {name, {T(0.0), T(0.0), z}};
+    const T one(1.0);
+    const T t = T(static_cast<double>(name & 0x0FFFFFFFU)) / T(angle_steps - 1.0);
+    const T scale = T(size_.x()) / (one + t * t);
+    const T x = scale * (one - t * t);
+    const T y = scale * (T(2.0) * t);
+    return {name, {(name & (1U << 28U)) != 0U ? -x : x, (name & (1U << 29U)) != 0U ? -y : y, z}};
   }
 
+  // What a box needs stands first, together.
   Kind kind_;
   std::uint32_t thick_axes_ = 0;  ///< of a box: bit per axis with an extent
-  Vec<double> size_;              ///< [m] half extents; for a cylinder radius, radius, half length
-  double reach_ = 0.0;
+  double reach_ = 0.0;            ///< [m]
+  Vec<double> size_{};            ///< [m] half extents; for a cylinder radius, radius, half length
   VertexScan vertices_;
   SupportTable table_;  ///< of a polytope with many vertices; else empty
 };
 
 inline int Convex::vertex_count() const noexcept {
   if (kind_ == Kind::polytope) return vertices_.size();
-  if (kind_ == Kind::cylinder) return size_.x() > 0.0 ? 0 : (size_.z() > 0.0 ? 2 : 1);
+  if (kind_ == Kind::cylinder || kind_ == Kind::cone) {
+    return size_.x() > 0.0 ? 0 : (end(true) > end(false) ? 2 : 1);
+  }
   return (size_.x() > 0.0 ? 2 : 1) * (size_.y() > 0.0 ? 2 : 1) * (size_.z() > 0.0 ? 2 : 1);
 }
 

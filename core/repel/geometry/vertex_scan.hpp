@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -10,6 +11,10 @@
 #include <vector>
 
 #include <repel/base/vec.hpp>
+
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace repel {
 
@@ -26,6 +31,30 @@ inline constexpr int lane_bytes = 16;
 #endif
 inline constexpr int lane_count = lane_bytes / 8;
 using Lanes = double __attribute__((vector_size(lane_bytes)));
+
+inline Lanes larger(const Lanes& a, const Lanes& b) noexcept {
+  return a > b ? a : b;
+}
+inline double largest_of(const Lanes& x) noexcept {
+  double largest = x[0];
+  for (int k = 1; k < lane_count; ++k) largest = std::max(largest, x[k]);
+  return largest;
+}
+/// Bit k is set when number k of the `lane_count` ones is `value`.
+inline std::uint64_t lanes_equal(const double* numbers, double value) noexcept {
+#if defined(__AVX512F__)
+  return _mm512_cmp_pd_mask(_mm512_loadu_pd(numbers), _mm512_set1_pd(value), _CMP_EQ_OQ);
+#elif defined(__AVX__)
+  const __m256d equal = _mm256_cmp_pd(_mm256_loadu_pd(numbers), _mm256_set1_pd(value), _CMP_EQ_OQ);
+  return static_cast<std::uint64_t>(_mm256_movemask_pd(equal));
+#else
+  std::uint64_t bits = 0;
+  for (int k = 0; k < lane_count; ++k) {
+    bits |= std::uint64_t{numbers[k] == value} << static_cast<unsigned>(k);
+  }
+  return bits;
+#endif
+}
 
 }  // namespace detail
 
@@ -63,6 +92,9 @@ class VertexScan {
   [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
 
  private:
+  double multiply(std::size_t begin, std::size_t end, const Vec<double>& d,
+                  double* products) const noexcept;
+
   int size_ = 0;
   std::size_t stride_ = 0;         ///< from one coordinate's numbers to the next one's
   std::vector<double> block_;      ///< [m] all x, all y, all z
@@ -70,72 +102,62 @@ class VertexScan {
 };
 
 inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
-  // Each lane keeps its own best, so that no comparison waits for the one before it. Indices travel
-  // as doubles: they share the registers and the masks of the products.
+  // The largest product of a run first, then the lowest vertex that has it: no branch depends on
+  // which one it is.
+  constexpr std::size_t run = 64;
+  double products[run];
+  double farthest = -std::numeric_limits<double>::infinity();
+  std::size_t winner = 0;
+  for (std::size_t begin = 0; begin < stride_; begin += run) {
+    const std::size_t end = std::min(begin + run, stride_);
+    const double largest = multiply(begin, end, d, products);
+    std::uint64_t has_it = 0;
+    for (std::size_t i = begin; i < end; i += detail::lane_count) {
+      has_it |= detail::lanes_equal(products + (i - begin), largest) << (i - begin);
+    }
+    if (largest > farthest && has_it != 0) {
+      farthest = largest;
+      winner = begin + static_cast<std::size_t>(std::countr_zero(has_it));
+    }
+  }
+  return static_cast<std::uint32_t>(winner);
+}
+
+/// The products of the vertices from `begin` to `end` with `d`, and the largest of them.
+inline double VertexScan::multiply(std::size_t begin, std::size_t end, const Vec<double>& d,
+                                   double* products) const noexcept {
   using detail::Lanes;
   constexpr std::size_t width = detail::lane_count;
   constexpr std::size_t rows = lanes / width;
-  static constexpr double first_indices[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
-  Lanes best[rows];
-  Lanes index[rows];
-  Lanes here[rows];
-  for (std::size_t row = 0; row < rows; ++row) {
-    std::memcpy(&here[row], &first_indices[row * width], sizeof here[row]);
-    best[row] = Lanes{} - std::numeric_limits<double>::infinity();
-    index[row] = here[row];
-  }
   const double* x_of = block_.data();
   const double* y_of = x_of + stride_;
   const double* z_of = y_of + stride_;
-  for (std::size_t i = 0; i < stride_; i += lanes) {
+  // Each row keeps its own best, so that no comparison waits for the one before it.
+  Lanes best[rows];
+  for (Lanes& row : best) row = Lanes{} - std::numeric_limits<double>::infinity();
+  for (std::size_t i = begin; i < end; i += lanes) {
     for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t at = i + row * width;
       Lanes x, y, z;
-      std::memcpy(&x, x_of + i + row * width, sizeof x);
-      std::memcpy(&y, y_of + i + row * width, sizeof y);
-      std::memcpy(&z, z_of + i + row * width, sizeof z);
+      std::memcpy(&x, x_of + at, sizeof x);
+      std::memcpy(&y, y_of + at, sizeof y);
+      std::memcpy(&z, z_of + at, sizeof z);
       const Lanes along = x * d.x() + y * d.y() + z * d.z();
-      const auto farther = along > best[row];
-      best[row] = farther ? along : best[row];
-      index[row] = farther ? here[row] : index[row];
-      here[row] += lanes;
+      std::memcpy(products + (at - begin), &along, sizeof along);
+      best[row] = detail::larger(along, best[row]);
     }
   }
-  double farthest = best[0][0];
-  double winner = index[0][0];
-  for (std::size_t k = 1; k < lanes; ++k) {
-    const double along = best[k / width][k % width];
-    const double i = index[k / width][k % width];
-    const bool farther = along > farthest || (along == farthest && i < winner);
-    farthest = farther ? along : farthest;
-    winner = farther ? i : winner;
-  }
-  return winner < size_ ? static_cast<std::uint32_t>(winner) : 0U;
+  for (std::size_t row = 1; row < rows; ++row) best[0] = detail::larger(best[row], best[0]);
+  return detail::largest_of(best[0]);
 }
 
 inline double VertexScan::largest_product(const Vec<double>& d) const noexcept {
-  using detail::Lanes;
-  constexpr std::size_t width = detail::lane_count;
-  constexpr std::size_t rows = lanes / width;
-  Lanes best[rows];
-  for (Lanes& row : best) row = Lanes{} - std::numeric_limits<double>::infinity();
-  const double* x_of = block_.data();
-  const double* y_of = x_of + stride_;
-  const double* z_of = y_of + stride_;
-  for (std::size_t i = 0; i < stride_; i += lanes) {
-    for (std::size_t row = 0; row < rows; ++row) {
-      Lanes x, y, z;
-      std::memcpy(&x, x_of + i + row * width, sizeof x);
-      std::memcpy(&y, y_of + i + row * width, sizeof y);
-      std::memcpy(&z, z_of + i + row * width, sizeof z);
-      const Lanes along = x * d.x() + y * d.y() + z * d.z();
-      best[row] = along > best[row] ? along : best[row];
-    }
+  constexpr std::size_t run = 64;
+  double products[run];
+  double largest = -std::numeric_limits<double>::infinity();
+  for (std::size_t begin = 0; begin < stride_; begin += run) {
+    largest = std::max(largest, multiply(begin, std::min(begin + run, stride_), d, products));
   }
-  for (std::size_t row = 1; row < rows; ++row) {
-    best[0] = best[row] > best[0] ? best[row] : best[0];
-  }
-  double largest = best[0][0];
-  for (std::size_t k = 1; k < width; ++k) largest = std::max(largest, best[0][k]);
   return largest;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -80,6 +81,28 @@ inline Ladder cylinder_ladder(double radius, double half_length, int levels) {
   }
   if (rest > thickness) {
     append(ladder, Convex::box(Vec3::Zero()), thickness, flat_order + rest);
+  }
+  return ladder;
+}
+
+/// A cone keeps its opening and shrinks to the centre of its inscribed ball: moved in by t, the
+/// base rises by t and the apex falls by t / sin(a), a the angle between axis and side.
+inline Ladder cone_ladder(double radius, double half_length, int levels) {
+  const double length = 2.0 * half_length;
+  const double side = std::hypot(radius, length);
+  Ladder ladder{{Convex::cone(radius, -half_length, half_length), 0.0, 0.0}};
+  // The radius of the inscribed ball.
+  const double thickness = radius > 0.0 ? length * radius / (side + radius) : 0.0;
+  for (int i = 1; i < levels && thickness > 0.0; ++i) {
+    const double t = thickness * i / levels;
+    const double scale = 1.0 - static_cast<double>(i) / levels;
+    const double base = t - half_length;
+    append(ladder, Convex::cone(scale * radius, base, base + scale * length), t, t);
+  }
+  if (radius > 0.0 || length > 0.0) {
+    const Vec3 centre{0.0, 0.0, thickness > 0.0 ? thickness - half_length : 0.0};
+    append(ladder, Convex::polytope(std::span(&centre, 1)), thickness,
+           thickness > 0.0 ? thickness : flat_order + std::max(radius, half_length));
   }
   return ladder;
 }

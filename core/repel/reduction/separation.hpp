@@ -2,8 +2,8 @@
 /// The signed distance of two shapes: the answer for one pair.
 #pragma once
 
+#include <repel/distance/feature_search.hpp>
 #include <repel/distance/gjk.hpp>
-#include <repel/distance/kept_feature.hpp>
 #include <repel/reduction/shape.hpp>
 
 namespace repel {
@@ -237,7 +237,7 @@ inline Separation LadderWalk::answer() const noexcept {
 /// Neither pose has an entry that is not finite or so large that products of three would overflow.
 [[nodiscard]] inline bool are_usable(const Pose& X_WA, const Pose& X_WB) noexcept {
   // A comparison with what is not a number is false; one settles all.
-  Vec<double> largest;
+  Vec<double> largest{};
   for (int k = 0; k < 4; ++k) {
     largest = largest + (magnitudes(column<double>(X_WA, k)) + magnitudes(column<double>(X_WB, k)));
   }
@@ -249,13 +249,21 @@ inline Separation LadderWalk::answer() const noexcept {
                                              const Pose& X_WB, const QueryOptions& options,
                                              WarmStart& warm) noexcept {
   if (!are_usable(X_WA, X_WB)) return {};
-  LadderWalk walk(A, X_WA, B, X_WB, options, warm);
-  if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   const Level& a = A.level(0);
   const Level& b = B.level(0);
+  LadderWalk walk(A, X_WA, B, X_WB, options, warm);
+  if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   QueryOptions of_cores = options;
   of_cores.ignore_beyond += a.depth + b.depth;
-  const Gap gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
+  Gap gap;
+  if (a.core.is_polytope() && b.core.is_polytope()) {
+    FeatureSearch search({a.core, X_WA, b.core, X_WB});
+    if (search.run(of_cores, warm, gap)) return apart(gap, a.depth, b.depth, X_WA);
+  }
+  const int spent = gap.iterations;
+  of_cores.iterations = std::max(1, options.iterations - spent);
+  gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
+  gap.iterations += spent;
   if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
   return walk.run(&gap);
 }
@@ -275,19 +283,19 @@ inline Separation LadderWalk::answer() const noexcept {
 /// @param warm what the last call on this pair left; any content is safe
 /// Cost: one to three support pairs per call when warm. No heap, no lock, bounded by
 /// `options.iterations`.
-[[nodiscard]] inline Separation separation(const Shape& A, const Pose& X_WA, const Shape& B,
-                                           const Pose& X_WB, const QueryOptions& options,
-                                           WarmStart& warm) noexcept {
+[[nodiscard, gnu::flatten]] inline Separation separation(const Shape& A, const Pose& X_WA,
+                                                         const Shape& B, const Pose& X_WB,
+                                                         const QueryOptions& options,
+                                                         WarmStart& warm) noexcept {
   const bool options_hold =
       options.tolerance >= 0.0 && options.iterations >= 1 && options.ignore_beyond >= 0.0;
   if (!options_hold) return {};
   if (warm.size >= 1 && warm.size <= 3 && warm.level_a == 0 && warm.level_b == 0) {
     const Level& a = A.level(0);
     const Level& b = B.level(0);
-    const detail::KeptFeature kept(a.core, X_WA, b.core, X_WB, warm);
     const double beyond = options.ignore_beyond + a.depth + b.depth;
     Gap gap;
-    if (kept.still_nearest(options, beyond, gap)) {
+    if (detail::still_nearest({a.core, X_WA, b.core, X_WB}, warm, options, beyond, gap)) {
       return detail::apart(gap, a.depth, b.depth, X_WA);
     }
   }

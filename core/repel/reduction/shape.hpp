@@ -47,6 +47,14 @@ class Shape {
     return Shape(detail::cylinder_ladder(radius, half_length, levels_of(options)));
   }
 
+  /// A disc of `radius` [m] at -`half_length` [m] on the z axis and the apex at +`half_length`,
+  /// each 0 to 1e6. The rim is a true circle.
+  static Shape cone(double radius, double half_length, const ReductionOptions& options = {}) {
+    checked("radius", radius, 0.0, largest, "m");
+    checked("half length", half_length, 0.0, largest, "m");
+    return Shape(detail::cone_ladder(radius, half_length, levels_of(options)));
+  }
+
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, lie inside, on a line or in a
   /// plane.
   static Shape hull(std::span<const Vec3> points, const ReductionOptions& options = {}) {
@@ -58,7 +66,7 @@ class Shape {
   }
 
   [[nodiscard]] int levels() const noexcept { return static_cast<int>(ladder_->size()); }
-  [[nodiscard]] const Level& level(int i) const noexcept { return (*ladder_)[i]; }
+  [[nodiscard]] const Level& level(int i) const noexcept { return first_[i]; }
   /// [m] distance of the farthest point from the origin of the shape.
   [[nodiscard]] double reach() const noexcept {
     return ladder_->front().core.reach() + ladder_->front().depth;
@@ -68,13 +76,15 @@ class Shape {
   [[nodiscard]] double deepest() const noexcept { return ladder_->back().depth; }
 
  private:
-  explicit Shape(Ladder ladder) : ladder_(std::make_shared<const Ladder>(std::move(ladder))) {}
+  explicit Shape(Ladder ladder)
+      : ladder_(std::make_shared<const Ladder>(std::move(ladder))), first_(ladder_->data()) {}
 
   static int levels_of(const ReductionOptions& options) {
     return static_cast<int>(checked("reduction levels", options.levels, 1.0, 64.0, ""));
   }
 
   std::shared_ptr<const Ladder> ladder_;
+  const Level* first_;  ///< of the ladder, at hand
 };
 
 }  // namespace repel

@@ -1,0 +1,126 @@
+/// @file
+/// A vertex, edge or face of the difference A - B, its point nearest to the origin, and the proof
+/// that this is the nearest point of all.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <repel/distance/gap.hpp>
+#include <repel/distance/query.hpp>
+#include <repel/geometry/convex.hpp>
+
+namespace repel::detail {
+
+/// Two convex sets at their poses: the support of A - B, in world axes around the origin of A, so
+/// that nothing grows with the distance from the world's origin.
+struct PosedPair {
+  const Convex& A;
+  const Pose& X_WA;
+  const Convex& B;
+  const Pose& X_WB;
+  Vec<double> p_AB = column<double>(X_WB, 3) - column<double>(X_WA, 3);  ///< [m] world axes
+
+  /// What rounding can move a support value by [m].
+  [[nodiscard]] double margin() const noexcept {
+    return 0x1p-49 * (A.reach() + B.reach() + sum(magnitudes(p_AB)));
+  }
+  /// The least product of v with a point of A - B.
+  [[nodiscard]] double least_product(const Vec<double>& v) const noexcept {
+    return -(A.support_value(rotate_transposed(X_WA, -v)) +
+             B.support_value(rotate_transposed(X_WB, v)) + dot(v, p_AB));
+  }
+};
+
+/// Up to three corners w = a - b of A - B.
+struct Feature {
+  std::array<Vec<double>, 3> a;  ///< [m] points of A, from the origin of A, world axes
+  std::array<Vec<double>, 3> w;  ///< [m]
+  int size = 0;
+
+  [[nodiscard]] Vec<double> mean(const std::array<Vec<double>, 3>& x,
+                                 const Vec<double>& weights) const noexcept {
+    if (size == 1) return x[0];
+    const Vec<double> two = weights.x() * x[0] + weights.y() * x[1];
+    return size == 2 ? two : two + weights.z() * x[2];
+  }
+};
+
+/// The point of a feature nearest to the origin.
+struct Foot {
+  Vec<double> v;                       ///< [m]
+  Vec<double> weights{1.0, 0.0, 0.0};  ///< of the corners; their sum is 1
+};
+
+/// The foot on the span of the corners p, q, r; a weight is negative where it lies beyond them.
+///
+///     face    n = (q - p) x (r - p),  v = n (n.p) / n.n,  weights n.(q x r), n.(r x p), n.(p x q)
+///     edge    e = q - p,              v = p + t e,        weights 1 - t, t       (t = -p.e / e.e)
+///     vertex                          v = p,              weight 1
+[[nodiscard]] inline Foot foot_on(const Feature& f) noexcept {
+  const auto& [p, q, r] = f.w;
+  if (f.size == 1) return {p};
+  const Vec<double> e = q - p;
+  if (f.size == 2) {
+    const double scale = 1.0 / dot(e, e);
+    const double first = scale * dot(e, p);
+    const Vec<double> slanted = p - first * e;
+    // Once more: near contact the first product is right to the size, not to the gap.
+    const double rest = scale * dot(e, slanted);
+    return {slanted - rest * e, {1.0 + (first + rest), -(first + rest), 0.0}};
+  }
+  const Vec<double> n = cross(e, r - p);
+  const Vec<double> areas = dots(cross(q, r), cross(r, p), cross(p, q), n);
+  return {(dot(n, p) / dot(n, n)) * n, (1.0 / sum(areas)) * areas};
+}
+
+/// True when `f` is proven to hold the nearest point of A and B within `options`, or the gap to be
+/// larger than `beyond` [m]; `gap` is the answer then. Never for what is not finite.
+/// @param least_vw the least product of `foot.v` with a point of A - B
+[[nodiscard, gnu::always_inline]] inline bool proves(const Feature& f, const Foot& foot,
+                                                     double least_vw, double margin,
+                                                     const QueryOptions& options, double beyond,
+                                                     Gap& gap) noexcept {
+  const double vv = dot(foot.v, foot.v);
+  const double length = std::sqrt(vv);
+  const double lower = (least_vw / length - margin) * (1.0 - 0x1p-51);
+  // The foot as a point of the sets, whatever v has suffered from a thin face.
+  const Vec<double> w = f.mean(f.w, foot.weights);
+  const double off = sum(magnitudes(w - foot.v));
+  const double upper = (length + off) * (1.0 + 0x1p-51) + margin;
+  const bool converged = vv - least_vw <= std::max(options.tolerance * vv, margin * length) &&
+                         off <= margin &&
+                         upper - lower <= std::max(1e-7, 2.0 * options.tolerance) * upper;
+  const bool far = lower > beyond;
+  const bool inside = foot.weights.x() >= 0.0 && foot.weights.y() >= 0.0 && foot.weights.z() >= 0.0;
+  if (!(inside && (converged || far) && length <= 1e150)) return false;
+  gap.distance = std::clamp(length, lower, upper);
+  gap.lower = lower;
+  gap.upper = upper;
+  // Adding zero turns a negative zero into a positive one.
+  gap.n_BA_W = (1.0 / length) * foot.v + Vec<double>();
+  gap.p_AQa_W = f.mean(f.a, foot.weights);
+  gap.p_AQb_W = gap.p_AQa_W - w;
+  gap.end = far ? QueryEnd::far_apart : QueryEnd::converged;
+  return true;
+}
+
+/// The look at last tick's answer, one to three points kept in `warm`: when they still hold the
+/// nearest one, a single evaluation of both support functions proves it.
+[[nodiscard, gnu::always_inline]] inline bool still_nearest(const PosedPair& pair,
+                                                            const WarmStart& warm,
+                                                            const QueryOptions& options,
+                                                            double beyond, Gap& gap) noexcept {
+  Feature f;
+  f.size = std::min<int>(warm.size, 3);
+  for (int i = 0; i < f.size; ++i) {
+    f.a[i] = rotate(pair.X_WA, pair.A.place(warm.a[i]));
+    f.w[i] = f.a[i] - (rotate(pair.X_WB, pair.B.place(warm.b[i])) + pair.p_AB);
+  }
+  const Foot foot = foot_on(f);
+  gap.iterations = 1;
+  return proves(f, foot, pair.least_product(foot.v), pair.margin(), options, beyond, gap);
+}
+
+}  // namespace repel::detail
