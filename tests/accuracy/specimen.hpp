@@ -60,13 +60,9 @@ struct Specimen {
 
 /// Kinds in the order of the tables.
 inline const std::vector<std::string>& kinds() {
-  static const std::vector<std::string> all{"box",       "hull 4", "hull 16", "hull 100",
-                                            "hull 1000", "sphere", "capsule", "cylinder"};
+  static const std::vector<std::string> all{
+      "box", "hull 4", "hull 16", "hull 100", "hull 1000", "sphere", "capsule", "cylinder", "cone"};
   return all;
-}
-
-inline bool is_curved(const std::string& kind) {
-  return kind == "cylinder" || kind == "cone";
 }
 
 /// A specimen of that kind, 0.3 to 1 m in size.
@@ -88,6 +84,9 @@ inline Specimen make(const std::string& kind, Rng& rng) {
   }
   if (kind == "cylinder") {
     return sized({kind, Shape::cylinder(a, b), {}, {{a, -b}, {a, b}}, 0.0, 0.0});
+  }
+  if (kind == "cone") {
+    return sized({kind, Shape::cone(a, b), {}, {{a, -b}, {0.0, b}}, 0.0, 0.0});
   }
   const int count = std::stoi(kind.substr(5));  // "hull N"
   const auto vertices = families::cloud(rng, count, a + 0.2).vertices;

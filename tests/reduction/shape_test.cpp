@@ -264,5 +264,83 @@ TEST(Shape, ASphereBesideACylinderIsExact) {
   }
 }
 
+/// [m] signed distance of `p` to the cone of `radius` whose apex is at +`half_length` on the z
+/// axis.
+double point_to_cone(const Vec3& p, double radius, double half_length) {
+  // In the half plane of the point and the axis: how far along the side from the apex, how far
+  // outside it, and how far below the base.
+  const double r = std::hypot(p.x(), p.y());
+  const double side = std::hypot(radius, 2.0 * half_length);
+  const double along = (radius * r - 2.0 * half_length * (p.z() - half_length)) / side;
+  const double outside = (2.0 * half_length * r + radius * (p.z() - half_length)) / side;
+  const double below = -half_length - p.z();
+  if (outside <= 0.0 && below <= 0.0) return std::max(outside, below);
+  if (outside > 0.0 && along >= 0.0 && along <= side) return outside;
+  if (below > 0.0 && r <= radius) return below;
+  if (along < 0.0) return std::hypot(r, p.z() - half_length);
+  return std::hypot(r - radius, below);
+}
+
+TEST(Shape, APointBesideAConeHasTheDistanceOfItsClosedForm) {
+  Rng rng(seed);
+  int apart = 0;
+  int overlaps = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+    const double radius = families::uniform(rng, 0.1, 1.0);
+    const double half_length = families::uniform(rng, 0.1, 1.0);
+    const Vec3 p = families::uniform(rng, 0.0, 2.0) * families::direction(rng);
+    const double truth = point_to_cone(p, radius, half_length);
+    Pose X_WA = Pose::Identity();
+    X_WA.linear() = families::rotation(rng);
+    Pose X_WB = X_WA;
+    X_WB.translation() = X_WA.linear() * p;
+    const Separation s =
+        separation(Shape::cone(radius, half_length), X_WA, Shape::sphere(0.0), X_WB);
+    EXPECT_LE(s.lower, truth + 1e-14);
+    EXPECT_GE(s.upper, truth - 1e-14);
+    if (truth > 1e-6) {
+      ++apart;
+      EXPECT_NEAR(s.distance, truth, 1e-13);
+    } else if (truth < 0.0) {
+      ++overlaps;
+      EXPECT_LE(s.distance, 0.0);
+    }
+  }
+  EXPECT_GT(apart, 1000);
+  EXPECT_GT(overlaps, 100);
+}
+
+// Four support points of nearly parallel discs span a tetrahedron as flat as the angle between
+// them: in double its sides contradict each other, and the pair was once taken for touching.
+TEST(Shape, NearlyParallelCylindersThatOverlapDeeplyAreNotTakenForTouching) {
+  const Shape A = Shape::cylinder(0.5083071377448336, 0.31922020571532989);
+  const Shape B = Shape::cylinder(0.40300994799098921, 0.27052640477070666);
+  for (const double angle : {0.0, 1e-15, 1e-12, 1e-9, 1e-6}) {
+    Pose X_WB = Pose::Identity();
+    X_WB.translation() = Vec3(0.05, 0.03, 0.1);
+    X_WB.linear() = Eigen::AngleAxisd(angle, Vec3(0.3, 0.9, 0.1).normalized()).toRotationMatrix();
+    const Separation s = separation(A, Pose::Identity(), B, X_WB);
+    EXPECT_LT(s.distance, -0.4) << angle;
+    EXPECT_LE(s.upper, -0.4) << angle;
+  }
+}
+
+TEST(Shape, ACylinderATenthOfAMicrometreFromAPointHasANarrowBracket) {
+  Rng rng(seed);
+  for (const double gap : {1e-9, 1e-7, 1e-5, 1e-3}) {
+    for (int i = 0; i < 50; ++i) {
+      Pose X_WA = Pose::Identity();
+      X_WA.linear() = families::rotation(rng);
+      Pose X_WB = X_WA;
+      X_WB.translation() = X_WA.linear() * Vec3((0.5 + gap) * Vec3(0.6, 0.8, 0));
+      const Separation s = separation(Shape::cylinder(0.5, 1.0), X_WA, Shape::sphere(0.0), X_WB);
+      EXPECT_EQ(s.end, QueryEnd::converged) << "seed " << seed << ", gap " << gap;
+      EXPECT_LE(s.upper - s.lower, 1e-7 * gap + 1e-15);
+      EXPECT_NEAR(s.distance, gap, 1e-15);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace repel

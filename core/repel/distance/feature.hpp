@@ -35,8 +35,8 @@ struct PosedPair {
 
 /// Up to three corners w = a - b of A - B.
 struct Feature {
-  std::array<Vec<double>, 3> a;  ///< [m] points of A, from the origin of A, world axes
-  std::array<Vec<double>, 3> w;  ///< [m]
+  std::array<Vec<double>, 3> a{};  ///< [m] points of A, from the origin of A, world axes
+  std::array<Vec<double>, 3> w{};  ///< [m]
   int size = 0;
 
   [[nodiscard]] Vec<double> mean(const std::array<Vec<double>, 3>& x,

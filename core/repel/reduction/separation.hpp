@@ -255,8 +255,12 @@ inline Separation LadderWalk::answer() const noexcept {
   if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   QueryOptions of_cores = options;
   of_cores.ignore_beyond += a.depth + b.depth;
+  const bool angular = a.core.is_polytope() && b.core.is_polytope();
+  // What is left between rounded shapes can be much less than the gap of their cores, and a search
+  // on a curve only ever comes nearer.
+  if (!angular || a.depth + b.depth > 0.0) of_cores.tolerance *= 0.01;
   Gap gap;
-  if (a.core.is_polytope() && b.core.is_polytope()) {
+  if (angular) {
     FeatureSearch search({a.core, X_WA, b.core, X_WB});
     if (search.run(of_cores, warm, gap)) return apart(gap, a.depth, b.depth, X_WA);
   }

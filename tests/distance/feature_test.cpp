@@ -1,0 +1,100 @@
+#include <repel/distance/feature.hpp>
+
+#include <gtest/gtest.h>
+
+#include <repel/distance/gjk.hpp>
+#include <support/gaps.hpp>
+
+namespace repel {
+namespace {
+
+using families::Pair;
+using families::Rng;
+
+constexpr unsigned seed = 417;
+
+detail::Feature random_feature(Rng& rng, int size) {
+  detail::Feature f;
+  f.size = size;
+  const Vec3 centre = families::uniform(rng, 0.2, 2.0) * families::direction(rng);
+  for (int i = 0; i < size; ++i) {
+    f.w[i] =
+        Vec<double>(Vec3(centre + families::uniform(rng, 0.1, 1.0) * families::direction(rng)));
+    f.a[i] = f.w[i];
+  }
+  return f;
+}
+
+TEST(Feature, TheFootIsWhereTheSpanIsSeenAtRightAngles) {
+  Rng rng(seed);
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", feature " + std::to_string(i));
+    const detail::Feature f = random_feature(rng, 1 + i % 3);
+    const detail::Foot foot = detail::foot_on(f);
+    EXPECT_NEAR(sum(foot.weights), 1.0, 1e-14);
+    // A thin face multiplies the rounding of its weights.
+    EXPECT_LE(to_vec3(f.mean(f.w, foot.weights) - foot.v).norm(), 1e-9);
+    for (int k = 1; k < f.size; ++k) EXPECT_NEAR(dot(foot.v, f.w[k] - f.w[0]), 0.0, 1e-9);
+  }
+}
+
+detail::PosedPair posed(const Convex& A, const Convex& B, const Pair& p) {
+  return {A, p.X_WA, B, p.X_WB};
+}
+
+TEST(Feature, WhatWasNearestIsConfirmedAndNothingElse) {
+  Rng rng(seed);
+  const double endless = std::numeric_limits<double>::infinity();
+  int confirmed = 0;
+  int rejected = 0;
+  for (int i = 0; i < 2000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    const Pair p = families::draw_apart("random boxes", rng, families::log_uniform(rng, 1e-3, 1.0));
+    const Convex A = families::convex(p.A);
+    const Convex B = families::convex(p.B);
+    const double truth = static_cast<double>(families::truth(p)->distance);
+    WarmStart warm;
+    ASSERT_EQ(gap_between(A, p.X_WA, B, p.X_WB, {}, warm).end, QueryEnd::converged);
+    Gap gap;
+    confirmed += detail::still_nearest(posed(A, B, p), warm, {}, endless, gap) ? 1 : 0;
+    EXPECT_NEAR(gap.distance, truth, 2e-14 * families::size(p));
+    // Any other corner instead of the first is not the answer, and is not taken for it.
+    WarmStart other = warm;
+    other.a[0] = (warm.a[0] + 1 + i % 7) % 8;
+    if (detail::still_nearest(posed(A, B, p), other, {}, endless, gap)) {
+      EXPECT_LE(gap.lower, truth);
+      EXPECT_GE(gap.upper, truth);
+      EXPECT_NEAR(gap.distance, truth, 2e-14 * families::size(p));
+    } else {
+      ++rejected;
+    }
+  }
+  EXPECT_GT(confirmed, 1990);
+  EXPECT_GT(rejected, 1500);
+}
+
+TEST(Feature, ConfirmsNothingThatIsNotFinite) {
+  const Convex box = Convex::box({0.1, 0.2, 0.3});
+  const double nan = std::nan("");
+  const double endless = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, endless, -endless, 1e308}) {
+    for (int entry = 0; entry < 12; ++entry) {
+      for (int size = 1; size <= 3; ++size) {
+        Pose X_WB = Pose::Identity();
+        X_WB.translation() = Vec3(1, 2, 3);
+        X_WB.matrix()(entry % 3, entry / 3) = bad;
+        WarmStart warm;
+        warm.size = static_cast<std::uint8_t>(size);
+        warm.a = {7, 3, 5, 0};
+        warm.b = {0, 1, 2, 0};
+        Gap gap;
+        EXPECT_FALSE(
+            detail::still_nearest({box, Pose::Identity(), box, X_WB}, warm, {}, endless, gap))
+            << bad << " in entry " << entry;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace repel
