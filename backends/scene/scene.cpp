@@ -61,8 +61,9 @@ Shape shape_of(const Map& map, std::string_view kind) {
   const double radius = map.at("radius").number(extent);
   if (kind == "sphere") return Shape::sphere(radius);
   const double half_length = 0.5 * map.at("length").number(extent);
-  return kind == "capsule" ? Shape::capsule(radius, half_length)
-                           : Shape::cylinder(radius, half_length);
+  if (kind == "capsule") return Shape::capsule(radius, half_length);
+  if (kind == "cone") return Shape::cone(radius, half_length);
+  return Shape::cylinder(radius, half_length);
 }
 
 /// What a part of the tool and an obstacle have in common. `keys` are those it may have besides.
@@ -74,7 +75,7 @@ Part part_of(const Value& value, const Map& map, std::span<const std::string_vie
   map.allow(any);
   const std::string name = map.at("name").text();
   const std::string kind =
-      map.at("shape").word_of({"box", "sphere", "capsule", "cylinder", "hull"});
+      map.at("shape").word_of({"box", "sphere", "capsule", "cylinder", "cone", "hull"});
   const auto sizes = size_keys(kind);
   common.insert(common.end(), sizes.begin(), sizes.end());
   map.allow(common);
