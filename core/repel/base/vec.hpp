@@ -12,10 +12,6 @@
 #include <repel/base/double_double.hpp>
 #include <repel/base/types.hpp>
 
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
-
 namespace repel {
 
 /// Vec<T> v; leaves the numbers to be set later, Vec<T>() is zero.
@@ -126,7 +122,7 @@ class Vec<double> {
   }
   friend Vec product(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ * b.lanes_); }
   friend unsigned minus_signs(const Vec& a) noexcept {
-    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)a.lanes_)) & 7U;
+    return static_cast<unsigned>(__builtin_ia32_movmskpd256(a.lanes_)) & 7U;
   }
 
  private:

@@ -12,10 +12,6 @@
 
 #include <repel/base/vec.hpp>
 
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
-
 namespace repel {
 
 namespace detail {
@@ -40,18 +36,16 @@ inline double largest_of(const Lanes& x) noexcept {
   for (int k = 1; k < lane_count; ++k) largest = std::max(largest, x[k]);
   return largest;
 }
-/// Bit k is set when number k of the `lane_count` ones is `value`.
-inline std::uint64_t lanes_equal(const double* numbers, double value) noexcept {
-#if defined(__AVX512F__)
-  return _mm512_cmp_pd_mask(_mm512_loadu_pd(numbers), _mm512_set1_pd(value), _CMP_EQ_OQ);
-#elif defined(__AVX__)
-  const __m256d equal = _mm256_cmp_pd(_mm256_loadu_pd(numbers), _mm256_set1_pd(value), _CMP_EQ_OQ);
-  return static_cast<std::uint64_t>(_mm256_movemask_pd(equal));
+/// Bit k is set when number k of the four is `value`.
+inline std::uint64_t which_equal(const double* four, double value) noexcept {
+#ifdef __AVX__
+  using Four = double __attribute__((vector_size(32)));
+  Four numbers;
+  std::memcpy(&numbers, four, sizeof numbers);
+  return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256((Four)(numbers == value)));
 #else
   std::uint64_t bits = 0;
-  for (int k = 0; k < lane_count; ++k) {
-    bits |= std::uint64_t{numbers[k] == value} << static_cast<unsigned>(k);
-  }
+  for (unsigned k = 0; k < 4; ++k) bits |= std::uint64_t{four[k] == value} << k;
   return bits;
 #endif
 }
@@ -112,8 +106,8 @@ inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
     const std::size_t end = std::min(begin + run, stride_);
     const double largest = multiply(begin, end, d, products);
     std::uint64_t has_it = 0;
-    for (std::size_t i = begin; i < end; i += detail::lane_count) {
-      has_it |= detail::lanes_equal(products + (i - begin), largest) << (i - begin);
+    for (std::size_t i = begin; i < end; i += 4) {
+      has_it |= detail::which_equal(products + (i - begin), largest) << (i - begin);
     }
     if (largest > farthest && has_it != 0) {
       farthest = largest;

@@ -182,12 +182,9 @@ inline void LadderWalk::choose_direction(Separation& s) const noexcept {
   s.p_WB = common + B_.level(j_).depth * s.extraction_W;
 }
 
-/// What is left of a bound after sums that may each have rounded inward.
-inline double rounded_down(double lower) noexcept {
-  return lower - 0x1p-51 * std::abs(lower);
-}
-inline double rounded_up(double upper) noexcept {
-  return upper + 0x1p-51 * std::abs(upper);
+/// A bound after sums that may each have rounded inward; `outward` is its side, -1 or 1.
+inline double widened(double bound, double outward) noexcept {
+  return bound + outward * 0x1p-51 * std::abs(bound);
 }
 
 /// The answer of two cores that are apart, each with its depth [m] around it.
@@ -195,8 +192,8 @@ inline Separation apart(const Gap& gap, double depth_a, double depth_b, const Po
   Separation s;
   const double depth = depth_a + depth_b;
   s.distance = gap.distance - depth;
-  s.lower = rounded_down(gap.lower - depth);
-  s.upper = rounded_up(gap.upper - depth);
+  s.lower = widened(gap.lower - depth, -1.0);
+  s.upper = widened(gap.upper - depth, 1.0);
   const Vec<double> p_WA = column<double>(X_WA, 3);
   s.p_WA = to_vec3(p_WA + gap.p_AQa_W - depth_a * gap.n_BA_W);
   s.p_WB = to_vec3(p_WA + gap.p_AQb_W + depth_b * gap.n_BA_W);
@@ -225,9 +222,9 @@ inline Separation LadderWalk::answer() const noexcept {
   s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
   s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
   if (!plain || !(gap_.lower > 0.0)) {
-    s.lower = rounded_down(std::min(s.distance, -overlap_along(s.extraction_W) - slack));
+    s.lower = widened(std::min(s.distance, -overlap_along(s.extraction_W) - slack), -1.0);
   }
-  if (!plain) s.upper = rounded_up(s.upper + slack);
+  if (!plain) s.upper = widened(s.upper + slack, 1.0);
   // A point deep inside, in one plane with all support points found, looks like contact to GJK.
   if (touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
   if (cut_short_) s.end = QueryEnd::budget_spent;
