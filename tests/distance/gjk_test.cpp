@@ -261,5 +261,23 @@ TEST(Gjk, NeverNeedsMoreThanAFewDozenSupportPairs) {
   EXPECT_LE(worst, 64) << "seed " << seed;
 }
 
+TEST(Gjk, ANarrowRelativeWidthGivesTwelveDigitsDownToANanometre) {
+  Rng rng(seed);
+  int extended = 0;
+  for (const std::string& family : families::names()) {
+    for (int i = 0; i < 60; ++i) {
+      const Pair p = draw_apart(family, rng, log_uniform(rng, 1e-9, 1e-3));
+      const auto truth = families::truth(p);
+      ASSERT_TRUE(truth);
+      const Gap gap = measure(p, {.relative_width = 1e-12});
+      const double distance = static_cast<double>(truth->distance);
+      EXPECT_LE(std::abs(above(*truth, gap.distance)), 1e-12 * distance)
+          << family << ", seed " << seed << ", pair " << i;
+      extended += gap.extended ? 1 : 0;
+    }
+  }
+  EXPECT_GT(extended, 500);
+}
+
 }  // namespace
 }  // namespace repel

@@ -61,7 +61,8 @@ TEST(Separation, OptionsThatMakeNoSenseClaimNothing) {
     for (const QueryOptions& options :
          {QueryOptions{.tolerance = -1e-14}, QueryOptions{.tolerance = not_a_number},
           QueryOptions{.iterations = 0}, QueryOptions{.iterations = -5},
-          QueryOptions{.ignore_beyond = not_a_number}, QueryOptions{.ignore_beyond = -1.0}}) {
+          QueryOptions{.ignore_beyond = not_a_number}, QueryOptions{.ignore_beyond = -1.0},
+          QueryOptions{.relative_width = not_a_number}}) {
       expect_claims_nothing(separation(box, Pose::Identity(), box, X_WB, options));
     }
     EXPECT_NE(separation(box, Pose::Identity(), box, X_WB, {.tolerance = 0.0}).end,

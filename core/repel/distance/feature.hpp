@@ -89,9 +89,9 @@ struct Foot {
   const Vec<double> w = f.mean(f.w, foot.weights);
   const double off = sum(magnitudes(w - foot.v));
   const double upper = (length + off) * (1.0 + 0x1p-51) + margin;
-  const bool converged = vv - least_vw <= std::max(options.tolerance * vv, margin * length) &&
-                         off <= margin &&
-                         upper - lower <= std::max(1e-7, 2.0 * options.tolerance) * upper;
+  const bool converged =
+      vv - least_vw <= std::max(options.tolerance * vv, margin * length) && off <= margin &&
+      upper - lower <= std::max(options.relative_width, 2.0 * options.tolerance) * upper;
   const bool far = lower > beyond;
   const bool inside = foot.weights.x() >= 0.0 && foot.weights.y() >= 0.0 && foot.weights.z() >= 0.0;
   if (!(inside && (converged || far) && length <= 1e150)) return false;

@@ -165,7 +165,8 @@ class Gjk {
   const double width = gap.upper - gap.lower;
   const double asked = 2.0 * options.tolerance * gap.upper;
   // One and a half times the margins on either side.
-  return width <= std::max(1e-7 * gap.upper, asked) && width <= asked + 24.0 * 0x1p-52 * size;
+  return width <= std::max(options.relative_width * gap.upper, asked) &&
+         width <= asked + 24.0 * 0x1p-52 * size;
 }
 
 }  // namespace detail

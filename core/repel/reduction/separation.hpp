@@ -252,8 +252,8 @@ inline Separation LadderWalk::answer() const noexcept {
                                                          const Shape& B, const Pose& X_WB,
                                                          const QueryOptions& options,
                                                          WarmStart& warm) noexcept {
-  const bool options_hold =
-      options.tolerance >= 0.0 && options.iterations >= 1 && options.ignore_beyond >= 0.0;
+  const bool options_hold = options.tolerance >= 0.0 && options.iterations >= 1 &&
+                            options.ignore_beyond >= 0.0 && options.relative_width >= 0.0;
   if (!options_hold) return {};
   if (warm.size >= 1 && warm.size <= 3 && warm.level_a == 0 && warm.level_b == 0) {
     const Level& a = A.level(0);
