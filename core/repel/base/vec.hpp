@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -157,7 +158,7 @@ template <>
 /// Column `k` of the matrix of `X`: 0 to 2 the rotation, 3 the translation [m].
 template <class T>
 [[nodiscard]] Vec<T> column(const Pose& X, int k) noexcept {
-  return from_four<T>(X.data() + 4 * k);
+  return from_four<T>(X.data() + std::ptrdiff_t{4} * k);
 }
 
 /// The rotation of `X` applied to `v`, in the precision of T.
