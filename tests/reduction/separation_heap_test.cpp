@@ -1,67 +1,17 @@
 // Counts every call to the heap in this program: it brings its own malloc.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cerrno>
 #include <cstdlib>
 #include <vector>
 
 #include "reduction/posed_boxes.hpp"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define REPEL_COUNTS_HEAP 1
-#else
-#define REPEL_COUNTS_HEAP 0
-#endif
-
-namespace {
-
-std::atomic<bool> watched{false};
-std::atomic<long> calls{0};
-
-[[maybe_unused]] void count() noexcept {
-  if (watched.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
-}
-
-}  // namespace
-
-#if REPEL_COUNTS_HEAP
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-void __libc_free(void*);
-
-void* malloc(std::size_t size) {
-  count();
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t number, std::size_t size) {
-  count();
-  return __libc_calloc(number, size);
-}
-void* realloc(void* old, std::size_t size) {
-  count();
-  return __libc_realloc(old, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  count();
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
-  *out = aligned_alloc(alignment, size);
-  return *out == nullptr ? ENOMEM : 0;
-}
-void free(void* memory) {
-  count();
-  __libc_free(memory);
-}
-}
-#endif
+#include "support/heap_counter.hpp"
 
 namespace repel {
 namespace {
+
+using test::calls;
+using test::watched;
 
 using families::Rng;
 

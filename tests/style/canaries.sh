@@ -3,8 +3,6 @@
 # (up to a dot), the one named `none` breaks none, and every rule has a tree.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
-REPEL_STYLE_PENDING=nothing
-export REPEL_STYLE_PENDING
 failed=0
 
 fail() {

@@ -67,9 +67,6 @@ dead_links() {
   done
 }
 
-# Rules the tree does not satisfy yet are said, not counted.
-pending=${REPEL_STYLE_PENDING-test-beside}
-
 found=$(breaches)
 [ -z "$found" ] || echo "$found"
-! echo "$found" | grep -vE "\[($pending)\]" | grep -q .
+[ -z "$found" ]

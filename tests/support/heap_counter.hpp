@@ -1,0 +1,61 @@
+/// @file
+/// Counts every call to the heap in the program that includes this, in one of its files only: it
+/// brings its own malloc. Calls are counted while `repel::test::watched` is set.
+#pragma once
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <new>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define REPEL_COUNTS_HEAP 1
+#else
+#define REPEL_COUNTS_HEAP 0
+#endif
+
+namespace repel::test {
+
+inline std::atomic<bool> watched{false};
+inline std::atomic<long> calls{0};
+
+inline void count_call() noexcept {
+  if (watched.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace repel::test
+
+#if REPEL_COUNTS_HEAP
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void __libc_free(void*);
+
+void* malloc(std::size_t size) {
+  repel::test::count_call();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  repel::test::count_call();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* old, std::size_t size) {
+  repel::test::count_call();
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  repel::test::count_call();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  *out = aligned_alloc(alignment, size);
+  return *out == nullptr ? ENOMEM : 0;
+}
+void free(void* memory) {
+  repel::test::count_call();
+  __libc_free(memory);
+}
+}
+#endif
