@@ -61,6 +61,10 @@ class Vec {
   friend unsigned minus_signs(const Vec& a) noexcept {
     return (is_minus(a.x_) ? 1U : 0U) | (is_minus(a.y_) ? 2U : 0U) | (is_minus(a.z_) ? 4U : 0U);
   }
+  /// The sum of `a`, `b` and `c`, each turned round where its coordinate of `d` has a minus sign.
+  friend Vec sum_along(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
+    return (is_minus(d.x_) ? -a : a) + (is_minus(d.y_) ? -b : b) + (is_minus(d.z_) ? -c : c);
+  }
 
  private:
   static bool is_minus(double x) noexcept { return std::signbit(x); }
@@ -124,6 +128,13 @@ class Vec<double> {
   friend Vec product(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ * b.lanes_); }
   friend unsigned minus_signs(const Vec& a) noexcept {
     return static_cast<unsigned>(__builtin_ia32_movmskpd256(a.lanes_)) & 7U;
+  }
+  friend Vec sum_along(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
+    const Bits minus = (Bits)d.lanes_ & std::numeric_limits<std::int64_t>::min();
+    const Bits x = (Bits)a.lanes_ ^ __builtin_shufflevector(minus, minus, 0, 0, 0, 0);
+    const Bits y = (Bits)b.lanes_ ^ __builtin_shufflevector(minus, minus, 1, 1, 1, 1);
+    const Bits z = (Bits)c.lanes_ ^ __builtin_shufflevector(minus, minus, 2, 2, 2, 2);
+    return Vec((Lanes)x + (Lanes)y + (Lanes)z);
   }
 
  private:

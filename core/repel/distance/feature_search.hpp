@@ -17,173 +17,224 @@ class FeatureSearch {
  public:
   static constexpr int cap = 40;  ///< support-map pairs; the careful search takes over then
 
-  explicit FeatureSearch(const PosedPair& pair) noexcept : pair_(pair) {}
+  explicit FeatureSearch(const PosedPair& pair) noexcept
+      : A_(pair.A, pair.X_WA), B_(pair.B, pair.X_WB), p_AB_(pair.p_AB), margin_(pair.margin()) {}
 
   /// True when `gap` is the proven answer. In any case the names of the last feature are left in
   /// `warm`, which may hold points to begin with, and the support-map pairs evaluated in `gap`.
   [[nodiscard, gnu::flatten, gnu::noinline]] bool run(const QueryOptions& options, WarmStart& warm,
                                                       Gap& gap) noexcept {
     gap.iterations = begin(warm);
-    const double margin = pair_.margin();
     const int last = std::min(cap, options.iterations);
+    const double beyond = options.ignore_beyond + 2.0 * margin_;
     bool found = false;
     while (gap.iterations < last) {
-      const Corner n = support(v_);
+      Corner& n = corners_[slots().free];
+      n = support(d_);
       ++gap.iterations;
-      const double vw = dot(v_, n.w);
-      const bool far = vw > (options.ignore_beyond + 2.0 * margin) * std::sqrt(vv_);
-      if (far || vv_ - vw <= options.tolerance * vv_ || holds(n)) {
-        found = accept(vw, margin, options, gap);
+      const double vw = scale_ * dot(d_, n.w);
+      const double length = std::sqrt(vv_);
+      // A corner found again gives v.w = v.v but for rounding.
+      const bool nearest = vv_ - vw <= std::max(options.tolerance * vv_, margin_ * length);
+      if (nearest || vw > beyond * length) {
+        found = accept(vw, options, gap);
         break;
       }
       if (!approach(n)) break;
     }
-    warm.size = static_cast<std::uint8_t>(size_);
-    for (int i = 0; i < size_; ++i) {
-      warm.a[i] = corners_[i].name_a;
-      warm.b[i] = corners_[i].name_b;
+    const Slots in_use = slots();
+    warm.size = in_use.count;
+    for (std::size_t i = 0; i < 3; ++i) {
+      warm.a[i] = corners_[in_use.older[i]].name_a;
+      warm.b[i] = corners_[in_use.older[i]].name_b;
     }
     return found;
   }
 
  private:
+  /// A set at its pose. The edges of a box are turned into world axes once, so that a corner is a
+  /// sum of three of them.
+  class Posed {
+   public:
+    struct Point {
+      std::uint32_t name;
+      Vec<double> p;  ///< [m] from the origin of the set, world axes
+    };
+
+    Posed(const Convex& set, const Pose& X) noexcept : set_(set), X_(X) {
+      if (set.kind() != Convex::Kind::box) return;
+      const Vec<double> half = set.half_extents();
+      edges_ = {half.x() * column<double>(X, 0), half.y() * column<double>(X, 1),
+                half.z() * column<double>(X, 2)};
+    }
+    [[nodiscard]] Point support(const Vec<double>& v) const noexcept {
+      const Vec<double> d = rotate_transposed(X_, v);
+      if (set_.kind() == Convex::Kind::box) {
+        return {set_.corner_name(~minus_signs(d)), sum_along(edges_[0], edges_[1], edges_[2], d)};
+      }
+      return turned(set_.support(d));
+    }
+    [[nodiscard]] Point point(std::uint32_t name) const noexcept {
+      return turned(set_.point(name));
+    }
+
+   private:
+    [[nodiscard]] Point turned(const Convex::Point<double>& point) const noexcept {
+      return {point.name, rotate(X_, point.p)};
+    }
+
+    const Convex& set_;
+    const Pose& X_;
+    std::array<Vec<double>, 3> edges_;
+  };
   struct Corner {
     Vec<double> a;  ///< [m] point of A, from the origin of A, world axes
     Vec<double> w;  ///< [m] a - b
-    std::uint32_t name_a = 0;
-    std::uint32_t name_b = 0;
+    std::uint32_t name_a;
+    std::uint32_t name_b;
   };
-  /// The point nearest to the origin on a feature that has the newest corner, and which of the
-  /// older corners it has, a bit each.
-  struct Candidate {
-    Vec<double> v{};
-    double vv = std::numeric_limits<double>::infinity();
-    unsigned older = 0;
+  /// Which of the four corners are in use: `count` of them, at most three, the last one repeated,
+  /// and one that is not.
+  struct Slots {
+    std::array<std::uint8_t, 3> older;
+    std::uint8_t count;
+    std::uint8_t free;
   };
+  [[nodiscard]] const Slots& slots() const noexcept {
+    static constexpr std::array<Slots, 16> by_bits = [] {
+      std::array<Slots, 16> all{};
+      for (unsigned bits = 1; bits < 15; ++bits) {
+        Slots& s = all[bits];
+        for (std::uint8_t slot = 0; slot < 4; ++slot) {
+          if ((bits >> slot & 1U) == 0U) {
+            s.free = slot;
+          } else if (s.count < 3) {
+            for (std::size_t k = s.count; k < 3; ++k) s.older[k] = slot;
+            ++s.count;
+          }
+        }
+      }
+      return all;
+    }();
+    return by_bits[in_use_];
+  }
 
-  [[nodiscard]] Corner corner(const Convex::Point<double>& a,
-                              const Convex::Point<double>& b) const noexcept {
-    Corner c;
-    c.a = rotate(pair_.X_WA, a.p);
-    c.w = c.a - (rotate(pair_.X_WB, b.p) + pair_.p_AB);
-    c.name_a = a.name;
-    c.name_b = b.name;
-    return c;
+  [[nodiscard]] Corner corner(const Posed::Point& a, const Posed::Point& b) const noexcept {
+    return {a.p, a.p - (b.p + p_AB_), a.name, b.name};
   }
   [[nodiscard]] Corner support(const Vec<double>& v) const noexcept {
-    return corner(pair_.A.support(rotate_transposed(pair_.X_WA, -v)),
-                  pair_.B.support(rotate_transposed(pair_.X_WB, v)));
-  }
-
-  [[nodiscard]] bool holds(const Corner& n) const noexcept {
-    for (int i = 0; i < size_; ++i) {
-      if (corners_[i].name_a == n.name_a && corners_[i].name_b == n.name_b) return true;
-    }
-    return false;
+    return corner(A_.support(-v), B_.support(v));
   }
 
   /// The number of support-map pairs evaluated.
   int begin(const WarmStart& warm) noexcept {
-    size_ = 1;
     const bool cold = warm.size == 0;
     corners_[0] =
-        cold ? support(-pair_.p_AB) : corner(pair_.A.point(warm.a[0]), pair_.B.point(warm.b[0]));
-    v_ = corners_[0].w;
-    vv_ = dot(v_, v_);
-    for (int i = 1; i < std::min<int>(warm.size, 3); ++i) {
-      const Corner n = corner(pair_.A.point(warm.a[i]), pair_.B.point(warm.b[i]));
-      if (!holds(n)) approach(n);
+        cold ? support(-p_AB_) : corner(A_.point(warm.a[0]), B_.point(warm.b[0]));
+    vv_ = std::numeric_limits<double>::infinity();
+    newest_ = 1U;
+    offer_corner(corners_[0].w);
+    for (std::size_t i = 1; i < std::min<std::size_t>(warm.size, 3); ++i) {
+      Corner& n = corners_[slots().free];
+      n = corner(A_.point(warm.a[i]), B_.point(warm.b[i]));
+      approach(n);
     }
     return cold ? 1 : 0;
   }
 
-  [[nodiscard]] bool accept(double vw, double margin, const QueryOptions& options,
-                            Gap& gap) const noexcept {
-    Feature f;
-    f.size = size_;
-    for (int i = 0; i < size_; ++i) {
-      f.a[i] = corners_[i].a;
-      f.w[i] = corners_[i].w;
-    }
-    return proves(f, {v_, foot_on(f).weights}, vw, margin, options, options.ignore_beyond, gap);
+  [[nodiscard]] bool accept(double vw, const QueryOptions& options, Gap& gap) const noexcept {
+    const Slots& in_use = slots();
+    const auto& [p, q, r] = in_use.older;
+    const Feature f{{corners_[p].a, corners_[q].a, corners_[r].a},
+                    {corners_[p].w, corners_[q].w, corners_[r].w},
+                    in_use.count};
+    return proves(f, {scale_ * d_, foot_on(f).weights}, vw, margin_, options, options.ignore_beyond, gap);
   }
 
-  /// Moves to the nearest feature that has `n`; false when none is nearer than the present one, or
-  /// when the corners enclose the origin.
+  /// Moves to the nearest feature that has `n`, the corner in the free slot; false when none is
+  /// nearer than the present one, or when the corners enclose the origin.
   bool approach(const Corner& n) noexcept {
-    const Candidate best = size_ == 1   ? on_edge(0, n.w)
-                           : size_ == 2 ? on_face(0, 1, n.w, normal(0, 1, n.w))
-                                        : on_tetrahedron(n.w);
-    if (!(best.vv < vv_)) return false;
-    // By the bits of the older corners kept, at most two: the first, the second, and how many.
-    static constexpr std::array<std::array<std::uint8_t, 3>, 7> kept{
-        {{0, 0, 0}, {0, 0, 1}, {1, 1, 1}, {0, 1, 2}, {2, 2, 1}, {0, 2, 2}, {1, 2, 2}}};
-    const auto [first, second, count] = kept[best.older];
-    corners_[0] = corners_[first];
-    corners_[1] = corners_[second];
-    corners_[count] = n;
-    size_ = count + 1;
-    v_ = best.v;
-    vv_ = best.vv;
-    return true;
+    const Slots& in_use = slots();
+    const auto& [i, j, k] = in_use.older;
+    newest_ = 1U << in_use.free;
+    if (in_use.count == 1) {
+      offer_edge(i, n.w);
+    } else if (in_use.count == 2) {
+      offer_face(i, j, n.w, cross(corners_[i].w - n.w, corners_[j].w - n.w));
+    } else {
+      offer_tetrahedron(i, j, k, n.w);
+    }
+    return (in_use_ & newest_) != 0U;
   }
 
-  [[nodiscard]] Vec<double> normal(int i, int j, const Vec<double>& n) const noexcept {
-    return cross(corners_[i].w - n, corners_[j].w - n);
+  /// A feature that has the newest corner and the `older` ones, a bit for each slot, with its point
+  /// v = `scale` `d` nearest to the origin, at the square `vv` [m^2] from it.
+  void offer(const Vec<double>& d, double scale, double vv, unsigned older) noexcept {
+    if (!(vv < vv_)) return;
+    d_ = d;
+    scale_ = scale;
+    vv_ = vv;
+    in_use_ = older | newest_;
   }
+  void offer_corner(const Vec<double>& n) noexcept { offer(n, 1.0, dot(n, n), 0U); }
 
-  [[nodiscard]] Candidate on_edge(int i, const Vec<double>& n) const noexcept {
+  void offer_edge(int i, const Vec<double>& n) noexcept {
     const Vec<double> e = corners_[i].w - n;
     const double along = -dot(n, e);
-    const double nn = dot(n, n);
-    if (!(along > 0.0)) return {n, nn, 0U};
-    const double scale = 1.0 / dot(e, e);
-    Vec<double> v = n + (scale * along) * e;
+    if (!(along > 0.0)) return offer_corner(n);
+    const double ee = dot(e, e);
+    const double scale = 1.0 / ee;
+    Vec<double> d = ee * n + along * e;
     // Near contact the first product is right to the size, not to the gap.
-    if (dot(v, v) < 1e-3 * nn) v = v - (scale * dot(v, e)) * e;
-    return {v, dot(v, v), 1U << static_cast<unsigned>(i)};
+    if (dot(d, d) < 1e-3 * ee * along * along) d = d - (scale * dot(d, e)) * e;
+    offer(d, scale, scale * dot(d, d) * scale, bit(i));
   }
 
-  [[nodiscard]] Candidate on_face(int i, int j, const Vec<double>& n,
-                                  const Vec<double>& normal) const noexcept {
+  void offer_face(int i, int j, const Vec<double>& n, const Vec<double>& normal) noexcept {
     const Vec<double>& p = corners_[i].w;
     const Vec<double>& q = corners_[j].w;
     const Vec<double> areas = dots(cross(q, n), cross(n, p), cross(p, q), normal);
-    Candidate best;
     if (areas.x() > 0.0 && areas.y() > 0.0) {
-      if (!(areas.z() > 0.0)) return best;
-      best.v = (dot(normal, n) / dot(normal, normal)) * normal;
-      best.vv = dot(best.v, best.v);
-      best.older = 1U << static_cast<unsigned>(i) | 1U << static_cast<unsigned>(j);
-      return best;
+      const double height = dot(normal, n);
+      const double scale = std::abs(height) / dot(normal, normal);
+      if (areas.z() > 0.0) {
+        offer(std::copysign(1.0, height) * normal, scale, scale * std::abs(height),
+              bit(i) | bit(j));
+      }
+      return;
     }
-    if (!(areas.x() > 0.0)) best = on_edge(j, n);
-    if (areas.y() > 0.0) return best;
-    const Candidate other = on_edge(i, n);
-    return other.vv < best.vv ? other : best;
+    if (!(areas.x() > 0.0)) offer_edge(j, n);
+    if (!(areas.y() > 0.0)) offer_edge(i, n);
   }
 
   // Seen from n, the other three corners span the volume e0 x e1 . e2 whichever comes first, so one
   // product with each normal tells on which side of its face the origin lies.
-  [[nodiscard]] Candidate on_tetrahedron(const Vec<double>& n) const noexcept {
-    const std::array<Vec<double>, 3> e{corners_[0].w - n, corners_[1].w - n, corners_[2].w - n};
+  void offer_tetrahedron(int i, int j, int k, const Vec<double>& n) noexcept {
+    const std::array<int, 4> around{i, j, k, i};
+    const std::array<Vec<double>, 3> e{corners_[i].w - n, corners_[j].w - n, corners_[k].w - n};
     const std::array<Vec<double>, 3> normals{cross(e[0], e[1]), cross(e[1], e[2]),
                                              cross(e[2], e[0])};
     const double volume = dot(normals[0], e[2]);
     unsigned outside = ~minus_signs(volume * dots(normals[0], normals[1], normals[2], n)) & 7U;
-    Candidate best;
     for (; outside != 0U; outside &= outside - 1U) {
-      const int i = std::countr_zero(outside);
-      const Candidate found = on_face(i, i == 2 ? 0 : i + 1, n, normals[i]);
-      if (found.vv < best.vv) best = found;
+      const int face = std::countr_zero(outside);
+      offer_face(around[face], around[face + 1], n, normals[face]);
     }
-    return best;
   }
 
-  PosedPair pair_;
+  [[nodiscard]] static unsigned bit(int slot) noexcept { return 1U << static_cast<unsigned>(slot); }
+
+  Posed A_;
+  Posed B_;
+  Vec<double> p_AB_;  ///< [m] world axes
+  double margin_;     ///< [m] what rounding can move a support value by
   std::array<Corner, 4> corners_;
-  int size_ = 0;
-  Vec<double> v_;    ///< [m] the point of the corners' hull nearest to the origin
+  unsigned in_use_ = 0;  ///< a bit for each corner of the present feature
+  unsigned newest_ = 0;  ///< the bit of the corner to join it
+  // The point v = scale d of that feature nearest to the origin. A support map needs the direction
+  // alone and does not wait for a division.
+  Vec<double> d_;
+  double scale_ = 0.0;
   double vv_ = 0.0;  ///< [m^2]
 };
 

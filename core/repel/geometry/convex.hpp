@@ -75,6 +75,14 @@ class Convex {
   /// Number of vertices; 0 for a set with a curved boundary.
   [[nodiscard]] int vertex_count() const noexcept;
 
+  /// [m] of a box.
+  [[nodiscard]] Vec<double> half_extents() const noexcept { return size_; }
+  /// The name of a box's corner by its signs, bit k set where coordinate k is positive. A corner of
+  /// a flat box has several; the lowest stands for all.
+  [[nodiscard]] std::uint32_t corner_name(std::uint32_t signs) const noexcept {
+    return signs & thick_axes_;
+  }
+
   /// The farthest point along `d`, which need not be unit. T is double or DoubleDouble.
   template <class T>
   [[nodiscard]] Point<T> support(const Vec<T>& d) const noexcept {
@@ -164,9 +172,8 @@ class Convex {
     return root(d.x() * d.x() + d.y() * d.y());
   }
 
-  // A corner of a flat box has several names; the lowest stands for all.
   [[nodiscard]] Point<double> box_corner(std::uint32_t name) const noexcept {
-    name &= thick_axes_;
+    name = corner_name(name);
     static constexpr double signs[8][4] = {{-1, -1, -1, 0}, {1, -1, -1, 0}, {-1, 1, -1, 0},
                                            {1, 1, -1, 0},   {-1, -1, 1, 0}, {1, -1, 1, 0},
                                            {-1, 1, 1, 0},   {1, 1, 1, 0}};

@@ -36,18 +36,10 @@ inline double largest_of(const Lanes& x) noexcept {
   for (int k = 1; k < lane_count; ++k) largest = std::max(largest, x[k]);
   return largest;
 }
-/// Bit k is set when number k of the four is `value`.
-inline std::uint64_t which_equal(const double* four, double value) noexcept {
-#ifdef __AVX__
-  using Four = double __attribute__((vector_size(32)));
-  Four numbers;
-  std::memcpy(&numbers, four, sizeof numbers);
-  return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256((Four)(numbers == value)));
-#else
-  std::uint64_t bits = 0;
-  for (unsigned k = 0; k < 4; ++k) bits |= std::uint64_t{four[k] == value} << k;
-  return bits;
-#endif
+inline double least_of(const Lanes& x) noexcept {
+  double least = x[0];
+  for (int k = 1; k < lane_count; ++k) least = std::min(least, x[k]);
+  return least;
 }
 
 }  // namespace detail
@@ -86,8 +78,14 @@ class VertexScan {
   [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
 
  private:
-  double multiply(std::size_t begin, std::size_t end, const Vec<double>& d,
-                  double* products) const noexcept;
+  /// The products of `d` with as many vertices as there are lanes, beginning with vertex i.
+  [[nodiscard]] detail::Lanes products(std::size_t i, const Vec<double>& d) const noexcept {
+    detail::Lanes x, y, z;
+    std::memcpy(&x, block_.data() + i, sizeof x);
+    std::memcpy(&y, block_.data() + stride_ + i, sizeof y);
+    std::memcpy(&z, block_.data() + 2 * stride_ + i, sizeof z);
+    return x * d.x() + y * d.y() + z * d.z();
+  }
 
   int size_ = 0;
   std::size_t stride_ = 0;         ///< from one coordinate's numbers to the next one's
@@ -95,64 +93,38 @@ class VertexScan {
   std::vector<Vec<double>> rows_;  ///< [m] the same, vertex by vertex
 };
 
+// Each lane keeps its own best and where it found it, in double as well, so that nothing branches on
+// which vertex it is.
 inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
-  // The largest product of a run first, then the lowest vertex that has it: no branch depends on
-  // which one it is.
-  constexpr std::size_t run = 64;
-  double products[run];
-  double farthest = -std::numeric_limits<double>::infinity();
-  std::size_t winner = 0;
-  for (std::size_t begin = 0; begin < stride_; begin += run) {
-    const std::size_t end = std::min(begin + run, stride_);
-    const double largest = multiply(begin, end, d, products);
-    std::uint64_t has_it = 0;
-    for (std::size_t i = begin; i < end; i += 4) {
-      has_it |= detail::which_equal(products + (i - begin), largest) << (i - begin);
-    }
-    if (largest > farthest && has_it != 0) {
-      farthest = largest;
-      winner = begin + static_cast<std::size_t>(std::countr_zero(has_it));
-    }
-  }
-  return static_cast<std::uint32_t>(winner);
-}
-
-/// The products of the vertices from `begin` to `end` with `d`, and the largest of them.
-inline double VertexScan::multiply(std::size_t begin, std::size_t end, const Vec<double>& d,
-                                   double* products) const noexcept {
   using detail::Lanes;
-  constexpr std::size_t width = detail::lane_count;
-  constexpr std::size_t rows = lanes / width;
-  const double* x_of = block_.data();
-  const double* y_of = x_of + stride_;
-  const double* z_of = y_of + stride_;
-  // Each row keeps its own best, so that no comparison waits for the one before it.
-  Lanes best[rows];
-  for (Lanes& row : best) row = Lanes{} - std::numeric_limits<double>::infinity();
-  for (std::size_t i = begin; i < end; i += lanes) {
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t at = i + row * width;
-      Lanes x, y, z;
-      std::memcpy(&x, x_of + at, sizeof x);
-      std::memcpy(&y, y_of + at, sizeof y);
-      std::memcpy(&z, z_of + at, sizeof z);
-      const Lanes along = x * d.x() + y * d.y() + z * d.z();
-      std::memcpy(products + (at - begin), &along, sizeof along);
-      best[row] = detail::larger(along, best[row]);
-    }
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Lanes best = Lanes{} - none;
+  Lanes winner{};
+  Lanes here;
+  for (int k = 0; k < detail::lane_count; ++k) here[k] = k;
+  for (std::size_t i = 0; i < stride_; i += detail::lane_count) {
+    const Lanes along = products(i, d);
+    const auto farther = along > best;
+    best = farther ? along : best;
+    winner = farther ? here : winner;
+    here += detail::lane_count;
   }
-  for (std::size_t row = 1; row < rows; ++row) best[0] = detail::larger(best[row], best[0]);
-  return detail::largest_of(best[0]);
+  const Lanes farthest = Lanes{} + detail::largest_of(best);
+  return static_cast<std::uint32_t>(detail::least_of(best == farthest ? winner : Lanes{} + none));
 }
 
 inline double VertexScan::largest_product(const Vec<double>& d) const noexcept {
-  constexpr std::size_t run = 64;
-  double products[run];
-  double largest = -std::numeric_limits<double>::infinity();
-  for (std::size_t begin = 0; begin < stride_; begin += run) {
-    largest = std::max(largest, multiply(begin, std::min(begin + run, stride_), d, products));
+  using detail::Lanes;
+  // Two rows, so that half of the comparisons need not wait for those before them.
+  Lanes even = Lanes{} - std::numeric_limits<double>::infinity();
+  Lanes odd = even;
+  for (std::size_t i = 0; i < stride_; i += lanes) {
+    for (std::size_t k = 0; k < lanes; k += 2 * detail::lane_count) {
+      even = detail::larger(products(i + k, d), even);
+      odd = detail::larger(products(i + k + detail::lane_count, d), odd);
+    }
   }
-  return largest;
+  return detail::largest_of(detail::larger(odd, even));
 }
 
 inline std::uint32_t VertexScan::scan(const Vec<DoubleDouble>& d) const noexcept {

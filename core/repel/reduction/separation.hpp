@@ -205,32 +205,53 @@ inline Separation LadderWalk::answer() const noexcept {
   return sum(largest) <= 1e15;
 }
 
-/// The signed distance by search, from what the warm start has.
-[[gnu::noinline]] inline Separation searched(const Shape& A, const Pose& X_WA, const Shape& B,
-                                             const Pose& X_WB, const QueryOptions& options,
-                                             WarmStart& warm) noexcept {
+[[nodiscard]] inline bool are_angular(const Level& a, const Level& b) noexcept {
+  return a.core.is_polytope() && b.core.is_polytope();
+}
+
+/// What is asked about the cores so that the rounded shapes have what `options` ask.
+[[nodiscard]] inline QueryOptions options_of_cores(const Level& a, const Level& b,
+                                                   const QueryOptions& options) noexcept {
+  QueryOptions of_cores = options;
+  of_cores.ignore_beyond += a.depth + b.depth;
+  // What is left between rounded shapes can be much less than the gap of their cores, and a search
+  // on a curve only ever comes nearer.
+  if (!are_angular(a, b) || a.depth + b.depth > 0.0) of_cores.tolerance *= 0.01;
+  return of_cores;
+}
+
+/// The signed distance where the quick search, after `spent` support-map pairs, has no proof.
+[[gnu::noinline]] inline Separation carefully_searched(const Shape& A, const Pose& X_WA,
+                                                       const Shape& B, const Pose& X_WB,
+                                                       const QueryOptions& options, int spent,
+                                                       WarmStart& warm) noexcept {
   if (!are_usable(X_WA, X_WB)) return {};
   const Level& a = A.level(0);
   const Level& b = B.level(0);
   LadderWalk walk(A, X_WA, B, X_WB, options, warm);
   if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
-  QueryOptions of_cores = options;
-  of_cores.ignore_beyond += a.depth + b.depth;
-  const bool angular = a.core.is_polytope() && b.core.is_polytope();
-  // What is left between rounded shapes can be much less than the gap of their cores, and a search
-  // on a curve only ever comes nearer.
-  if (!angular || a.depth + b.depth > 0.0) of_cores.tolerance *= 0.01;
-  Gap gap;
-  if (angular) {
-    FeatureSearch search({a.core, X_WA, b.core, X_WB});
-    if (search.run(of_cores, warm, gap)) return apart(gap, a.depth, b.depth, X_WA);
-  }
-  const int spent = gap.iterations;
+  QueryOptions of_cores = options_of_cores(a, b, options);
   of_cores.iterations = std::max(1, options.iterations - spent);
-  gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
+  Gap gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
   gap.iterations += spent;
   if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
   return walk.run(&gap);
+}
+
+/// The signed distance by search, from what the warm start has.
+[[gnu::noinline]] inline Separation searched(const Shape& A, const Pose& X_WA, const Shape& B,
+                                             const Pose& X_WB, const QueryOptions& options,
+                                             WarmStart& warm) noexcept {
+  const Level& a = A.level(0);
+  const Level& b = B.level(0);
+  Gap gap;
+  if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
+    FeatureSearch search({a.core, X_WA, b.core, X_WB});
+    if (search.run(options_of_cores(a, b, options), warm, gap)) {
+      return apart(gap, a.depth, b.depth, X_WA);
+    }
+  }
+  return carefully_searched(A, X_WA, B, X_WB, options, gap.iterations, warm);
 }
 
 }  // namespace detail
