@@ -33,11 +33,11 @@ struct PosedPair {
   }
 };
 
-/// Up to three corners w = a - b of A - B.
+/// Up to three corners w = a - b of A - B; no more than `size` of them are set.
 struct Feature {
-  std::array<Vec<double>, 3> a{};  ///< [m] points of A, from the origin of A, world axes
-  std::array<Vec<double>, 3> w{};  ///< [m]
-  int size = 0;
+  std::array<Vec<double>, 3> a;  ///< [m] points of A, from the origin of A, world axes
+  std::array<Vec<double>, 3> w;  ///< [m]
+  int size;
 
   [[nodiscard]] Vec<double> mean(const std::array<Vec<double>, 3>& x,
                                  const Vec<double>& weights) const noexcept {

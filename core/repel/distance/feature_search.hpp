@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <repel/distance/feature.hpp>
+#include <repel/geometry/turned.hpp>
 
 namespace repel::detail {
 
@@ -52,41 +53,6 @@ class FeatureSearch {
   }
 
  private:
-  /// A set at its pose. The edges of a box are turned into world axes once, so that a corner is a
-  /// sum of three of them.
-  class Posed {
-   public:
-    struct Point {
-      std::uint32_t name;
-      Vec<double> p;  ///< [m] from the origin of the set, world axes
-    };
-
-    Posed(const Convex& set, const Pose& X) noexcept : set_(set), X_(X) {
-      if (set.kind() != Convex::Kind::box) return;
-      const Vec<double> half = set.half_extents();
-      edges_ = {half.x() * column<double>(X, 0), half.y() * column<double>(X, 1),
-                half.z() * column<double>(X, 2)};
-    }
-    [[nodiscard]] Point support(const Vec<double>& v) const noexcept {
-      const Vec<double> d = rotate_transposed(X_, v);
-      if (set_.kind() == Convex::Kind::box) {
-        return {set_.corner_name(~minus_signs(d)), sum_along(edges_[0], edges_[1], edges_[2], d)};
-      }
-      return turned(set_.support(d));
-    }
-    [[nodiscard]] Point point(std::uint32_t name) const noexcept {
-      return turned(set_.point(name));
-    }
-
-   private:
-    [[nodiscard]] Point turned(const Convex::Point<double>& point) const noexcept {
-      return {point.name, rotate(X_, point.p)};
-    }
-
-    const Convex& set_;
-    const Pose& X_;
-    std::array<Vec<double>, 3> edges_;
-  };
   struct Corner {
     Vec<double> a;  ///< [m] point of A, from the origin of A, world axes
     Vec<double> w;  ///< [m] a - b
@@ -119,7 +85,7 @@ class FeatureSearch {
     return by_bits[in_use_];
   }
 
-  [[nodiscard]] Corner corner(const Posed::Point& a, const Posed::Point& b) const noexcept {
+  [[nodiscard]] Corner corner(const Turned::Point& a, const Turned::Point& b) const noexcept {
     return {a.p, a.p - (b.p + p_AB_), a.name, b.name};
   }
   [[nodiscard]] Corner support(const Vec<double>& v) const noexcept {
@@ -224,8 +190,8 @@ class FeatureSearch {
 
   [[nodiscard]] static unsigned bit(int slot) noexcept { return 1U << static_cast<unsigned>(slot); }
 
-  Posed A_;
-  Posed B_;
+  Turned A_;
+  Turned B_;
   Vec<double> p_AB_;  ///< [m] world axes
   double margin_;     ///< [m] what rounding can move a support value by
   std::array<Corner, 4> corners_;

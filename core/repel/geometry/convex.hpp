@@ -75,6 +75,12 @@ class Convex {
   /// Number of vertices; 0 for a set with a curved boundary.
   [[nodiscard]] int vertex_count() const noexcept;
 
+  /// A polytope whose support map is a scan of all vertices: no more than `largest_scan`.
+  [[nodiscard]] bool is_scanned() const noexcept {
+    return kind_ == Kind::polytope && table_.empty();
+  }
+  /// Of a polytope.
+  [[nodiscard]] VertexBlock vertices() const noexcept { return vertices_.block(); }
   /// [m] of a box.
   [[nodiscard]] Vec<double> half_extents() const noexcept { return size_; }
   /// The name of a box's corner by its signs, bit k set where coordinate k is positive. A corner of
@@ -127,7 +133,7 @@ class Convex {
       case Kind::polytope:
         break;
     }
-    if (table_.empty()) return vertices_.largest_product(d);
+    if (table_.empty()) return vertices_.block().largest_product(d);
     double largest = -std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : table_.candidates(d)) {
       largest = std::max(largest, dot(vertices_.vertex(i), d));

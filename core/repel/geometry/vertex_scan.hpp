@@ -3,7 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -44,26 +44,58 @@ inline double least_of(const Lanes& x) noexcept {
 
 }  // namespace detail
 
-/// The vertices of a polytope, structure of arrays, padded with the first vertex to full lanes.
-/// `scan` gives the same vertex whether the compiler has wide registers or not: the lanes only
-/// change the order in which candidates are compared, and ties go to the lowest index.
+/// A view of vertices as three arrays, one after the other: all x, all y, all z, each `stride`
+/// numbers long. `farthest` gives the same vertex whether the compiler has wide registers or not:
+/// the lanes only change the order in which candidates are compared, and ties go to the lowest
+/// index.
+struct VertexBlock {
+  static constexpr std::size_t lanes = 8;  ///< `stride` is a multiple of this
+
+  const double* numbers = nullptr;  ///< [m]
+  std::size_t stride = 0;
+
+  /// Vertex i [m], which must be there.
+  [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
+    return {numbers[i], numbers[stride + i], numbers[2 * stride + i]};
+  }
+  /// Index of the vertex with the largest product with `d`, the lowest of several. Cost: one pass.
+  [[nodiscard]] std::uint32_t farthest(const Vec<double>& d) const noexcept;
+  /// The largest product itself. Cost: half of `farthest`.
+  [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
+  /// The vertices turned by the rotation of `X`, in `room` for 3 x stride numbers.
+  VertexBlock turned(const Pose& X, double* room) const noexcept;
+
+ private:
+  /// Coordinate `axis` of as many vertices as there are lanes, beginning with vertex i.
+  [[nodiscard]] detail::Lanes coordinates(std::size_t axis, std::size_t i) const noexcept {
+    detail::Lanes some;
+    std::memcpy(&some, numbers + axis * stride + i, sizeof some);
+    return some;
+  }
+  [[nodiscard]] detail::Lanes products(std::size_t i, double x, double y, double z) const noexcept {
+    return coordinates(0, i) * x + coordinates(1, i) * y + coordinates(2, i) * z;
+  }
+};
+
+/// The vertices of a polytope as a block, padded with the first vertex to full lanes, and once
+/// more one by one.
 class VertexScan {
  public:
-  static constexpr int lanes = 8;  ///< the arrays are padded to a multiple of this
-
   VertexScan() = default;
   explicit VertexScan(std::span<const Vec3> vertices)
       : size_(static_cast<int>(vertices.size())),
-        stride_((vertices.size() + lanes - 1) / lanes * lanes),
-        block_(3 * stride_),
+        stride_((vertices.size() + VertexBlock::lanes - 1) / VertexBlock::lanes *
+                VertexBlock::lanes),
+        numbers_(3 * stride_),
         rows_(vertices.begin(), vertices.end()) {
     for (std::size_t i = 0; i < stride_; ++i) {
       const Vec3& v = vertices[i < vertices.size() ? i : 0];
-      for (std::size_t axis = 0; axis < 3; ++axis) block_[axis * stride_ + i] = v[axis];
+      for (std::size_t axis = 0; axis < 3; ++axis) numbers_[axis * stride_ + i] = v[axis];
     }
   }
 
   [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] VertexBlock block() const noexcept { return {numbers_.data(), stride_}; }
   /// Vertex i [m]; any number gives some vertex.
   [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
     return rows_[i < static_cast<std::uint32_t>(size_) ? i : 0U];
@@ -71,60 +103,63 @@ class VertexScan {
 
   /// Index of the vertex with the largest product with `d`, the lowest of several. Cost: one pass
   /// over the vertices.
-  [[nodiscard]] std::uint32_t scan(const Vec<double>& d) const noexcept;
+  [[nodiscard]] std::uint32_t scan(const Vec<double>& d) const noexcept {
+    return block().farthest(d);
+  }
   /// The same, decided in extended precision.
   [[nodiscard]] std::uint32_t scan(const Vec<DoubleDouble>& d) const noexcept;
-  /// The largest product itself. Cost: half of `scan`.
-  [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
 
  private:
-  /// The products of `d` with as many vertices as there are lanes, beginning with vertex i.
-  [[nodiscard]] detail::Lanes products(std::size_t i, const Vec<double>& d) const noexcept {
-    detail::Lanes x, y, z;
-    std::memcpy(&x, block_.data() + i, sizeof x);
-    std::memcpy(&y, block_.data() + stride_ + i, sizeof y);
-    std::memcpy(&z, block_.data() + 2 * stride_ + i, sizeof z);
-    return x * d.x() + y * d.y() + z * d.z();
-  }
-
   int size_ = 0;
-  std::size_t stride_ = 0;         ///< from one coordinate's numbers to the next one's
-  std::vector<double> block_;      ///< [m] all x, all y, all z
-  std::vector<Vec<double>> rows_;  ///< [m] the same, vertex by vertex
+  std::size_t stride_ = 0;
+  std::vector<double> numbers_;    ///< [m]
+  std::vector<Vec<double>> rows_;  ///< [m]
 };
 
 // Each lane keeps its own best and where it found it, in double as well, so that nothing branches on
 // which vertex it is.
-inline std::uint32_t VertexScan::scan(const Vec<double>& d) const noexcept {
+inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept {
   using detail::Lanes;
   constexpr double none = std::numeric_limits<double>::infinity();
   Lanes best = Lanes{} - none;
   Lanes winner{};
   Lanes here;
   for (int k = 0; k < detail::lane_count; ++k) here[k] = k;
-  for (std::size_t i = 0; i < stride_; i += detail::lane_count) {
-    const Lanes along = products(i, d);
-    const auto farther = along > best;
-    best = farther ? along : best;
-    winner = farther ? here : winner;
-    here += detail::lane_count;
+  // Unrolled, the end of a short block is a branch of its own, which the machine soon knows.
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < stride; i += lanes) {
+    for (std::size_t k = 0; k < lanes; k += detail::lane_count) {
+      const Lanes along = products(i + k, d.x(), d.y(), d.z());
+      const auto farther = along > best;
+      best = farther ? along : best;
+      winner = farther ? here : winner;
+      here += detail::lane_count;
+    }
   }
   const Lanes farthest = Lanes{} + detail::largest_of(best);
   return static_cast<std::uint32_t>(detail::least_of(best == farthest ? winner : Lanes{} + none));
 }
 
-inline double VertexScan::largest_product(const Vec<double>& d) const noexcept {
+inline double VertexBlock::largest_product(const Vec<double>& d) const noexcept {
   using detail::Lanes;
-  // Two rows, so that half of the comparisons need not wait for those before them.
-  Lanes even = Lanes{} - std::numeric_limits<double>::infinity();
-  Lanes odd = even;
-  for (std::size_t i = 0; i < stride_; i += lanes) {
-    for (std::size_t k = 0; k < lanes; k += 2 * detail::lane_count) {
-      even = detail::larger(products(i + k, d), even);
-      odd = detail::larger(products(i + k + detail::lane_count, d), odd);
+  Lanes largest = Lanes{} - std::numeric_limits<double>::infinity();
+#pragma GCC unroll 4
+  for (std::size_t i = 0; i < stride; i += lanes) {
+    for (std::size_t k = 0; k < lanes; k += detail::lane_count) {
+      largest = detail::larger(products(i + k, d.x(), d.y(), d.z()), largest);
     }
   }
-  return detail::largest_of(detail::larger(odd, even));
+  return detail::largest_of(largest);
+}
+
+inline VertexBlock VertexBlock::turned(const Pose& X, double* room) const noexcept {
+  for (std::size_t i = 0; i < stride; i += detail::lane_count) {
+    for (int row = 0; row < 3; ++row) {
+      const detail::Lanes sum = products(i, X(row, 0), X(row, 1), X(row, 2));
+      std::memcpy(room + static_cast<std::size_t>(row) * stride + i, &sum, sizeof sum);
+    }
+  }
+  return {room, stride};
 }
 
 inline std::uint32_t VertexScan::scan(const Vec<DoubleDouble>& d) const noexcept {
