@@ -122,5 +122,38 @@ TEST(VertexScan, ExtendedPrecisionDecidesWhatDoubleCannot) {
   EXPECT_GT(undecided_in_double, 50);
 }
 
+TEST(VertexBlock, LargestProductsAreThoseOfTheFarthestVertex) {
+  Rng rng(seed);
+  for (int count = 1; count <= 70; ++count) {
+    const VertexScan scan(families::cloud(rng, count, 1.0).vertices);
+    const auto direction = [&](int) { return Vec<double>(families::direction(rng)); };
+    const detail::LaneVec d = detail::LaneVec::of(direction);
+    const detail::Lanes products = scan.block().largest_products(d);
+    const auto each = d.each();
+    for (int k = 0; k < detail::lane_count; ++k) {
+      const Vec<double>& one = each[static_cast<std::size_t>(k)];
+      const Vec<double> farthest = scan.vertex(scan.scan(one));
+      EXPECT_NEAR(products[k], dot(farthest, one), 4e-16) << "seed " << seed << ", " << count;
+      EXPECT_NEAR(scan.block().largest_product(one), products[k], 4e-16);
+    }
+  }
+}
+
+TEST(VertexBlock, TurnsItsVertices) {
+  Rng rng(seed);
+  for (int count = 1; count <= 70; ++count) {
+    const VertexScan scan(families::cloud(rng, count, 1.0).vertices);
+    Pose X = Pose::Identity();
+    X.linear() = families::rotation(rng);
+    X.translation() = Vec3(1, 2, 3);
+    std::vector<double> room(3 * scan.block().stride);
+    const VertexBlock turned = scan.block().turned(X, room.data());
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+      const Vec3 expected = X.linear() * to_vec3(scan.vertex(i));
+      EXPECT_LE((to_vec3(turned.vertex(i)) - expected).norm(), 1e-15) << seed << ", " << count;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace repel

@@ -78,11 +78,13 @@ class Vec {
 /// sums in the same order as above.
 template <>
 class Vec<double> {
-  using Lanes = double __attribute__((vector_size(32)));
   using Bits = std::int64_t __attribute__((vector_size(32)));
 
  public:
+  using Lanes = double __attribute__((vector_size(32)));
+
   Vec() = default;
+  explicit Vec(const Lanes& lanes) noexcept : lanes_(lanes) {}
   Vec(double x, double y, double z) noexcept : lanes_{x, y, z, 0.0} {}
   explicit Vec(const Vec3& v) noexcept : lanes_{v.x(), v.y(), v.z(), 0.0} {}
   explicit Vec(const Vec<DoubleDouble>& v) noexcept
@@ -97,6 +99,7 @@ class Vec<double> {
   [[nodiscard]] double x() const noexcept { return lanes_[0]; }
   [[nodiscard]] double y() const noexcept { return lanes_[1]; }
   [[nodiscard]] double z() const noexcept { return lanes_[2]; }
+  [[nodiscard]] const Lanes& lanes() const noexcept { return lanes_; }
 
   friend Vec operator+(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ + b.lanes_); }
   friend Vec operator-(const Vec& a, const Vec& b) noexcept { return Vec(a.lanes_ - b.lanes_); }
@@ -138,7 +141,6 @@ class Vec<double> {
   }
 
  private:
-  explicit Vec(const Lanes& lanes) noexcept : lanes_(lanes) {}
   [[nodiscard]] Lanes turned() const noexcept {
     return __builtin_shufflevector(lanes_, lanes_, 1, 2, 0, 3);
   }

@@ -95,8 +95,7 @@ class FeatureSearch {
   /// The number of support-map pairs evaluated.
   int begin(const WarmStart& warm) noexcept {
     const bool cold = warm.size == 0;
-    corners_[0] =
-        cold ? support(-p_AB_) : corner(A_.point(warm.a[0]), B_.point(warm.b[0]));
+    corners_[0] = cold ? support(-p_AB_) : corner(A_.point(warm.a[0]), B_.point(warm.b[0]));
     vv_ = std::numeric_limits<double>::infinity();
     newest_ = 1U;
     offer_corner(corners_[0].w);
@@ -114,7 +113,8 @@ class FeatureSearch {
     const Feature f{{corners_[p].a, corners_[q].a, corners_[r].a},
                     {corners_[p].w, corners_[q].w, corners_[r].w},
                     in_use.count};
-    return proves(f, {scale_ * d_, foot_on(f).weights}, vw, margin_, options, options.ignore_beyond, gap);
+    return proves(f, {scale_ * d_, foot_on(f).weights}, vw, margin_, options, options.ignore_beyond,
+                  gap);
   }
 
   /// Moves to the nearest feature that has `n`, the corner in the free slot; false when none is

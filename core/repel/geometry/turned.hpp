@@ -35,8 +35,8 @@ class Turned {
   Turned(const Turned&) = delete;
   Turned& operator=(const Turned&) = delete;
 
-  /// The farthest point along `d`, which need not be unit; where several are, as far as rounding can
-  /// tell, one of them.
+  /// The farthest point along `d`, which need not be unit; where several are, as far as rounding
+  /// can tell, one of them.
   [[nodiscard]] Point support(const Vec<double>& d) const noexcept {
     if (is_box_) {
       const Vec<double> d_own = rotate_transposed(X_, d);

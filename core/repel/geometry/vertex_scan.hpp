@@ -10,39 +10,10 @@
 #include <span>
 #include <vector>
 
+#include <repel/base/lanes.hpp>
 #include <repel/base/vec.hpp>
 
 namespace repel {
-
-namespace detail {
-
-// As many numbers as one register of the target holds. The arithmetic is the same for all widths,
-// and so is the vertex found.
-#if defined(__AVX512F__)
-inline constexpr int lane_bytes = 64;
-#elif defined(__AVX__)
-inline constexpr int lane_bytes = 32;
-#else
-inline constexpr int lane_bytes = 16;
-#endif
-inline constexpr int lane_count = lane_bytes / 8;
-using Lanes = double __attribute__((vector_size(lane_bytes)));
-
-inline Lanes larger(const Lanes& a, const Lanes& b) noexcept {
-  return a > b ? a : b;
-}
-inline double largest_of(const Lanes& x) noexcept {
-  double largest = x[0];
-  for (int k = 1; k < lane_count; ++k) largest = std::max(largest, x[k]);
-  return largest;
-}
-inline double least_of(const Lanes& x) noexcept {
-  double least = x[0];
-  for (int k = 1; k < lane_count; ++k) least = std::min(least, x[k]);
-  return least;
-}
-
-}  // namespace detail
 
 /// A view of vertices as three arrays, one after the other: all x, all y, all z, each `stride`
 /// numbers long. `farthest` gives the same vertex whether the compiler has wide registers or not:
@@ -62,6 +33,8 @@ struct VertexBlock {
   [[nodiscard]] std::uint32_t farthest(const Vec<double>& d) const noexcept;
   /// The largest product itself. Cost: half of `farthest`.
   [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
+  /// The same for each of several directions. Cost: one pass for all.
+  [[nodiscard]] detail::Lanes largest_products(const detail::LaneVec& d) const noexcept;
   /// The vertices turned by the rotation of `X`, in `room` for 3 x stride numbers.
   VertexBlock turned(const Pose& X, double* room) const noexcept;
 
@@ -116,8 +89,8 @@ class VertexScan {
   std::vector<Vec<double>> rows_;  ///< [m]
 };
 
-// Each lane keeps its own best and where it found it, in double as well, so that nothing branches on
-// which vertex it is.
+// Each lane keeps its own best and where it found it, in double as well, so that nothing branches
+// on which vertex it is.
 inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept {
   using detail::Lanes;
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -125,7 +98,7 @@ inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept 
   Lanes winner{};
   Lanes here;
   for (int k = 0; k < detail::lane_count; ++k) here[k] = k;
-  // Unrolled, the end of a short block is a branch of its own, which the machine soon knows.
+    // Unrolled, the end of a short block is a branch of its own, which the machine soon knows.
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < stride; i += lanes) {
     for (std::size_t k = 0; k < lanes; k += detail::lane_count) {
@@ -150,6 +123,15 @@ inline double VertexBlock::largest_product(const Vec<double>& d) const noexcept 
     }
   }
   return detail::largest_of(largest);
+}
+
+inline detail::Lanes VertexBlock::largest_products(const detail::LaneVec& d) const noexcept {
+  detail::Lanes largest = detail::Lanes{} - std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < stride; ++i) {
+    largest = detail::larger(
+        d.x * numbers[i] + d.y * numbers[stride + i] + d.z * numbers[2 * stride + i], largest);
+  }
+  return largest;
 }
 
 inline VertexBlock VertexBlock::turned(const Pose& X, double* room) const noexcept {

@@ -1,5 +1,7 @@
 // Laws of the signed distance in overlap. References: the 15 axes of two boxes in 113-bit
 // arithmetic, right everywhere; dense directions for cylinders, right to 1e-4 m.
+#include <repel/reduction/ladder_walk.hpp>
+
 #include <gtest/gtest.h>
 
 #include <cmath>

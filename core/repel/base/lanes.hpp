@@ -1,0 +1,185 @@
+/// @file
+/// Several numbers in one register of the target: the arithmetic of code that works on several
+/// vertices or pairs at once.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <repel/base/vec.hpp>
+
+namespace repel::detail {
+
+// As many numbers as one register holds. What is computed in a lane does not depend on how many
+// there are.
+#if defined(__AVX512F__)
+inline constexpr int lane_bytes = 64;
+#elif defined(__AVX__)
+inline constexpr int lane_bytes = 32;
+#else
+inline constexpr int lane_bytes = 16;
+#endif
+inline constexpr int lane_count = lane_bytes / 8;
+using Lanes = double __attribute__((vector_size(lane_bytes)));
+/// All bits of a lane are set, or none: what a comparison of Lanes gives.
+using LaneMask = std::int64_t __attribute__((vector_size(lane_bytes)));
+
+/// f(k) in lane k.
+template <class F>
+[[nodiscard]] Lanes lanes_of(const F& f) noexcept {
+  Lanes lanes;
+  for (int k = 0; k < lane_count; ++k) lanes[k] = f(k);
+  return lanes;
+}
+[[nodiscard]] inline Lanes larger(const Lanes& a, const Lanes& b) noexcept {
+  return a > b ? a : b;
+}
+[[nodiscard]] inline Lanes smaller(const Lanes& a, const Lanes& b) noexcept {
+  return a < b ? a : b;
+}
+[[nodiscard]] inline Lanes magnitudes(const Lanes& a) noexcept {
+  return (Lanes)((LaneMask)a & std::int64_t{0x7FFFFFFFFFFFFFFF});
+}
+[[nodiscard]] inline Lanes roots(const Lanes& a) noexcept {
+#if defined(__AVX__) && !defined(__AVX512F__)
+  return __builtin_ia32_sqrtpd256(a);
+#else
+  return lanes_of([&](int k) { return std::sqrt(a[k]); });
+#endif
+}
+[[nodiscard]] inline double largest_of(const Lanes& a) noexcept {
+  double largest = a[0];
+  for (int k = 1; k < lane_count; ++k) largest = std::max(largest, a[k]);
+  return largest;
+}
+[[nodiscard]] inline double least_of(const Lanes& a) noexcept {
+  double least = a[0];
+  for (int k = 1; k < lane_count; ++k) least = std::min(least, a[k]);
+  return least;
+}
+/// Bit k is set when lane k holds.
+[[nodiscard]] inline unsigned bits_of(const LaneMask& mask) noexcept {
+#if defined(__AVX__) && !defined(__AVX512F__)
+  return static_cast<unsigned>(__builtin_ia32_movmskpd256((Lanes)mask));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < lane_count; ++k) bits |= static_cast<unsigned>(mask[k] & 1) << k;
+  return bits;
+#endif
+}
+
+/// A vector in each lane.
+struct LaneVec {
+  Lanes x, y, z;
+
+  /// The same vector in all.
+  [[nodiscard]] static LaneVec all(const Vec<double>& v) noexcept {
+    return {Lanes{} + v.x(), Lanes{} + v.y(), Lanes{} + v.z()};
+  }
+  /// The vector v(k) in lane k.
+  template <class F>
+  [[nodiscard]] static LaneVec of(const F& v) noexcept;
+  /// The vectors one by one.
+  [[nodiscard]] std::array<Vec<double>, lane_count> each() const noexcept;
+
+  friend LaneVec operator+(const LaneVec& a, const LaneVec& b) noexcept {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend LaneVec operator-(const LaneVec& a, const LaneVec& b) noexcept {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend LaneVec operator-(const LaneVec& a) noexcept { return {-a.x, -a.y, -a.z}; }
+  friend LaneVec operator*(const Lanes& s, const LaneVec& a) noexcept {
+    return {s * a.x, s * a.y, s * a.z};
+  }
+  friend Lanes dot(const LaneVec& a, const LaneVec& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  friend LaneVec cross(const LaneVec& a, const LaneVec& b) noexcept {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  friend LaneVec product(const LaneVec& a, const LaneVec& b) noexcept {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+  }
+  friend LaneVec magnitudes(const LaneVec& a) noexcept {
+    return {magnitudes(a.x), magnitudes(a.y), magnitudes(a.z)};
+  }
+  friend Lanes sum(const LaneVec& a) noexcept { return a.x + a.y + a.z; }
+  friend LaneVec either(const LaneMask& first, const LaneVec& a, const LaneVec& b) noexcept {
+    return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+  }
+};
+
+#if defined(__AVX__) && !defined(__AVX512F__)
+template <class F>
+LaneVec LaneVec::of(const F& v) noexcept {
+  const Lanes a = v(0).lanes();
+  const Lanes b = v(1).lanes();
+  const Lanes c = v(2).lanes();
+  const Lanes d = v(3).lanes();
+  const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Lanes xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Lanes y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(xz_ab, xz_cd, 0, 1, 4, 5),
+          __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5),
+          __builtin_shufflevector(xz_ab, xz_cd, 2, 3, 6, 7)};
+}
+inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
+  const Lanes none{};
+  const Lanes xy_ac = __builtin_shufflevector(x, y, 0, 4, 2, 6);
+  const Lanes xy_bd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  const Lanes z_ac = __builtin_shufflevector(z, none, 0, 4, 2, 6);
+  const Lanes z_bd = __builtin_shufflevector(z, none, 1, 5, 3, 7);
+  return {Vec<double>(__builtin_shufflevector(xy_ac, z_ac, 0, 1, 4, 5)),
+          Vec<double>(__builtin_shufflevector(xy_bd, z_bd, 0, 1, 4, 5)),
+          Vec<double>(__builtin_shufflevector(xy_ac, z_ac, 2, 3, 6, 7)),
+          Vec<double>(__builtin_shufflevector(xy_bd, z_bd, 2, 3, 6, 7))};
+}
+#else
+template <class F>
+LaneVec LaneVec::of(const F& v) noexcept {
+  LaneVec lanes;
+  for (int k = 0; k < lane_count; ++k) {
+    const Vec<double> one = v(k);
+    lanes.x[k] = one.x();
+    lanes.y[k] = one.y();
+    lanes.z[k] = one.z();
+  }
+  return lanes;
+}
+inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
+  std::array<Vec<double>, lane_count> all;
+  for (int k = 0; k < lane_count; ++k) all[static_cast<std::size_t>(k)] = {x[k], y[k], z[k]};
+  return all;
+}
+#endif
+
+/// A pose in each lane: the columns of the rotation and the translation [m].
+struct LanePose {
+  LaneVec columns[4];
+
+  /// The same pose in all.
+  [[nodiscard]] static LanePose all(const Pose& X) noexcept {
+    return {LaneVec::all(column<double>(X, 0)), LaneVec::all(column<double>(X, 1)),
+            LaneVec::all(column<double>(X, 2)), LaneVec::all(column<double>(X, 3))};
+  }
+  /// The pose X(k) in lane k.
+  template <class F>
+  [[nodiscard]] static LanePose of(const F& X) noexcept {
+    const auto columns_of = [&](int c) {
+      return LaneVec::of([&](int k) { return column<double>(X(k), c); });
+    };
+    return {columns_of(0), columns_of(1), columns_of(2), columns_of(3)};
+  }
+  [[nodiscard]] LaneVec rotate(const LaneVec& v) const noexcept {
+    return v.x * columns[0] + v.y * columns[1] + v.z * columns[2];
+  }
+  [[nodiscard]] LaneVec rotate_transposed(const LaneVec& v) const noexcept {
+    return {dot(columns[0], v), dot(columns[1], v), dot(columns[2], v)};
+  }
+};
+
+}  // namespace repel::detail

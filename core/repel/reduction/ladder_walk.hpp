@@ -1,0 +1,198 @@
+/// @file
+/// The signed distance of two shapes that overlap, from the levels of their reductions.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include <repel/distance/gjk.hpp>
+#include <repel/reduction/answer.hpp>
+#include <repel/reduction/shape.hpp>
+
+namespace repel::detail {
+
+/// The chain of level pairs of two ladders, merged by Level::order, and the walk to the two pairs
+/// that decide: the last that meets and the first that does not.
+///
+/// With T the summed depth of a pair of levels and d their distance, the signed distance is
+/// min (d - T) over the chain. Along the chain the pairs are nested, so d never falls, and where it
+/// is positive it gains at least what T gains. Hence only the last meeting pair (-T) and the first
+/// apart (d - T) can hold the minimum, wherever the walk begins.
+class LadderWalk {
+ public:
+  LadderWalk(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB,
+             const QueryOptions& options, WarmStart& warm) noexcept
+      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), options_(options), warm_(warm) {}
+
+  /// `first` is what a query on the levels of the warm start gave, or nothing.
+  Separation run(const Gap* first) noexcept {
+    i_ = warm_.level_a;
+    j_ = warm_.level_b;
+    if (!on_chain()) i_ = j_ = 0;
+    if (first != nullptr) iterations_ = first->iterations;
+    const int longest = A_.levels() + B_.levels() + 2;
+    for (int step = 0; step < longest; ++step) {
+      const Gap gap = step == 0 && first != nullptr ? *first : query();
+      const bool meets = gap.meets || gap.end == QueryEnd::touching;
+      const bool decided = meets ? went_in(gap) : went_out(gap);
+      if (decided) break;
+    }
+    warm_.level_a = static_cast<std::uint8_t>(i_);
+    warm_.level_b = static_cast<std::uint8_t>(j_);
+    return answer();
+  }
+
+ private:
+  [[nodiscard]] double order_a(int i) const noexcept {
+    return i < A_.levels() ? A_.level(i).order : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double order_b(int j) const noexcept {
+    return j < B_.levels() ? B_.level(j).order : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] bool on_chain() const noexcept {
+    return i_ < A_.levels() && j_ < B_.levels() &&
+           std::max(order_a(i_), order_b(j_)) < std::min(order_a(i_ + 1), order_b(j_ + 1));
+  }
+  [[nodiscard]] bool at_start() const noexcept { return i_ == 0 && j_ == 0; }
+  [[nodiscard]] bool at_end() const noexcept {
+    return i_ + 1 == A_.levels() && j_ + 1 == B_.levels();
+  }
+  [[nodiscard]] double depth() const noexcept { return A_.level(i_).depth + B_.level(j_).depth; }
+
+  void step_in() noexcept {
+    const double a = order_a(i_ + 1);
+    const double b = order_b(j_ + 1);
+    i_ += a <= b ? 1 : 0;
+    j_ += b <= a ? 1 : 0;
+  }
+  void step_out() noexcept {
+    const double a = order_a(i_);
+    const double b = order_b(j_);
+    i_ -= a >= b && i_ > 0 ? 1 : 0;
+    j_ -= b >= a && j_ > 0 ? 1 : 0;
+  }
+
+  Gap query() noexcept {
+    QueryOptions options = options_;
+    options.iterations = std::max(1, options_.iterations - iterations_);
+    options.ignore_beyond += at_start() ? depth() : std::numeric_limits<double>::infinity();
+    Gap gap = gap_between(A_.level(i_).core, X_WA_, B_.level(j_).core, X_WB_, options, warm_);
+    iterations_ += gap.iterations;
+    return gap;
+  }
+
+  /// This pair meets: is the next one known to be apart?
+  bool went_in(const Gap& gap) noexcept {
+    meets_ = true;
+    touches_ = at_start() && gap.end == QueryEnd::touching;
+    depth_met_ = depth();
+    margin_ = gap.upper;
+    if (apart_ || at_end() || spent()) return true;
+    step_in();
+    return false;
+  }
+
+  /// This pair is apart: is the one before it known to meet?
+  bool went_out(const Gap& gap) noexcept {
+    apart_ = true;
+    gap_ = gap;
+    apart_i_ = i_;
+    apart_j_ = j_;
+    if (meets_ || at_start()) return true;
+    const double here = depth();
+    const bool far_out = gap.distance > here;
+    step_out();
+    // A pair that met not would be apart by at least the depth it gains on the next.
+    if (gap.distance <= here - depth()) return true;
+    cut_short_ = spent() || gap.end == QueryEnd::budget_spent;
+    if (cut_short_) return true;
+    if (far_out) {
+      // Out of the overlap altogether, it seems: begin again with the shapes themselves.
+      i_ = j_ = 0;
+      apart_ = false;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool spent() const noexcept { return iterations_ >= options_.iterations; }
+
+  [[nodiscard]] Separation answer() const noexcept;
+  void choose_direction(Separation& s) const noexcept;
+  [[nodiscard]] double overlap_along(const Vec3& n_W) const noexcept;
+
+  const Shape& A_;
+  const Shape& B_;
+  const Pose& X_WA_;
+  const Pose& X_WB_;
+  const QueryOptions& options_;
+  WarmStart& warm_;
+  int i_ = 0;
+  int j_ = 0;
+  int iterations_ = 0;
+  bool meets_ = false;
+  bool apart_ = false;
+  bool touches_ = false;
+  bool cut_short_ = false;  ///< the iterations ran out before the deciding pairs were found
+  double depth_met_ = 0.0;  ///< [m] T of the last pair that meets
+  double margin_ = 0.0;     ///< [m] how far from meeting it may be, by rounding
+  Gap gap_;                 ///< of the first pair that is apart
+  int apart_i_ = 0;
+  int apart_j_ = 0;
+};
+
+/// How far A would have to move along `n_W` to leave B behind [m]; no less than the penetration
+/// depth.
+inline double LadderWalk::overlap_along(const Vec3& n_W) const noexcept {
+  const Vec<double> n(n_W);
+  const Vec3 b = X_WB_.linear() * to_vec3(B_.level(0).core.support(rotate_transposed(X_WB_, n)).p);
+  const Vec3 a = X_WA_.linear() * to_vec3(A_.level(0).core.support(rotate_transposed(X_WA_, -n)).p);
+  const Vec3 apart = X_WB_.translation() - X_WA_.translation();
+  return n_W.dot(b - a + apart) + A_.level(0).depth + B_.level(0).depth;
+}
+
+/// Both shapes shrunk to one common point: the way out is the shortest along an axis of either.
+inline void LadderWalk::choose_direction(Separation& s) const noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 12; ++k) {
+    const Mat3& R = k < 6 ? X_WA_.linear() : X_WB_.linear();
+    const Vec3 n = (k % 2 == 0 ? 1.0 : -1.0) * R.col(k % 6 / 2);
+    const double overlap = overlap_along(n);
+    if (overlap < least) {
+      least = overlap;
+      s.extraction_W = n;
+    }
+  }
+  const Vec3 common = X_WA_ * to_vec3(A_.level(i_).core.point(0).p);
+  s.p_WA = common - A_.level(i_).depth * s.extraction_W;
+  s.p_WB = common + B_.level(j_).depth * s.extraction_W;
+}
+
+inline Separation LadderWalk::answer() const noexcept {
+  const bool plain = apart_ && apart_i_ == 0 && apart_j_ == 0;
+  const double none = std::numeric_limits<double>::infinity();
+  const double met = meets_ ? -depth_met_ : none;
+  const double slack = 1e-14 * (A_.reach() + B_.reach());
+  Separation s;
+  if (apart_) {
+    s = apart(gap_, A_.level(apart_i_).depth, B_.level(apart_j_).depth, X_WA_);
+    s.distance = std::min(s.distance, met);
+    s.upper = std::min(s.upper, met + margin_);
+  } else {
+    choose_direction(s);
+    s.distance = met;
+    s.upper = met + margin_;
+    s.end = at_end() ? QueryEnd::converged : QueryEnd::budget_spent;
+  }
+  s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
+  s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
+  if (!plain || !(gap_.lower > 0.0)) {
+    s.lower = widened(std::min(s.distance, -overlap_along(s.extraction_W) - slack), -1.0);
+  }
+  if (!plain) s.upper = widened(s.upper + slack, 1.0);
+  // A point deep inside, in one plane with all support points found, looks like contact to GJK.
+  if (touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
+  if (cut_short_) s.end = QueryEnd::budget_spent;
+  return s;
+}
+
+}  // namespace repel::detail

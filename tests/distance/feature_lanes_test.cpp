@@ -1,0 +1,129 @@
+#include <repel/distance/feature_lanes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <repel/distance/feature_search.hpp>
+#include <support/gaps.hpp>
+
+namespace repel::detail {
+namespace {
+
+using families::Pair;
+using families::Rng;
+
+constexpr unsigned seed = 3307;
+
+/// One set against as many others as there are lanes, each with the feature of a search.
+struct Group {
+  Convex A;
+  Pose X_WA;
+  std::vector<Convex> B;
+  std::vector<Pose> X_WB;
+  std::vector<WarmStart> warm;
+
+  Group(Rng& rng, double scale_of_gap) : A(families::convex(draw(rng))) {
+    X_WA.setIdentity();
+    X_WA.linear() = families::rotation(rng);
+    X_WA.translation() = 2.0 * families::direction(rng);
+    for (int k = 0; k < lane_count; ++k) {
+      B.push_back(families::convex(draw(rng)));
+      Pose X = Pose::Identity();
+      X.linear() = families::rotation(rng);
+      X.translation() = X_WA.translation() + scale_of_gap * families::direction(rng);
+      X_WB.push_back(X);
+      warm.emplace_back();
+    }
+    for (std::size_t k = 0; k < B.size(); ++k) {
+      Gap gap;
+      FeatureSearch search({A, X_WA, B[k], X_WB[k]});
+      (void)search.run({}, warm[k], gap);
+    }
+  }
+
+  static families::Solid draw(Rng& rng) {
+    const int vertices = families::count_between(rng, 0, 40);
+    return vertices < 16 ? families::random_box(rng, 0.1, 0.5)
+                         : families::cloud(rng, vertices, 0.5);
+  }
+  [[nodiscard]] LaneGap prove(const QueryOptions& options, double beyond) const {
+    std::array<LaneSet, lane_count> sets;
+    for (std::size_t k = 0; k < sets.size(); ++k) sets[k] = {&B[k], &X_WB[k], &warm[k], beyond};
+    return FeatureLanes(A, LanePose::all(X_WA), sets).prove(options);
+  }
+};
+
+TEST(FeatureLanes, ProvesWhatTheProofOfOnePairProves) {
+  Rng rng(seed);
+  const double infinite = std::numeric_limits<double>::infinity();
+  int proven = 0, refused = 0, disputed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Group group(rng, families::uniform(rng, 0.8, 2.0));
+    // Some have moved so far that another feature is nearer now.
+    if (i % 3 == 0) group.X_WA.linear() = families::small_rotation(rng, 0.5) * group.X_WA.linear();
+    const LaneGap lanes = group.prove({}, infinite);
+    const auto n = lanes.n_BA_W.each();
+    const auto a = lanes.p_AQa_W.each();
+    const auto b = lanes.p_AQb_W.each();
+    for (std::size_t k = 0; k < group.B.size(); ++k) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", group " + std::to_string(i) + ", lane " +
+                   std::to_string(k));
+      if (group.warm[k].size < 1 || group.warm[k].size > 3) continue;
+      Gap one;
+      const bool holds = still_nearest({group.A, group.X_WA, group.B[k], group.X_WB[k]},
+                                       group.warm[k], {}, infinite, one);
+      if (holds != ((lanes.proven >> k & 1U) != 0U)) {
+        ++disputed;
+        continue;
+      }
+      ++(holds ? proven : refused);
+      if (!holds) continue;
+      const int lane = static_cast<int>(k);
+      EXPECT_NEAR(lanes.distance[lane], one.distance, 2e-14);
+      EXPECT_LE(lanes.lower[lane], one.upper);
+      EXPECT_GE(lanes.upper[lane], one.lower);
+      EXPECT_LE(lanes.upper[lane] - lanes.lower[lane], 2.0 * (one.upper - one.lower));
+      EXPECT_LE((to_vec3(n[k]) - to_vec3(one.n_BA_W)).norm(), 1e-12);
+      EXPECT_LE((to_vec3(a[k]) - to_vec3(one.p_AQa_W)).norm(), 1e-12);
+      EXPECT_LE((to_vec3(b[k]) - to_vec3(one.p_AQb_W)).norm(), 1e-12);
+    }
+  }
+  EXPECT_GT(proven, 1000);
+  EXPECT_GT(refused, 200);
+  EXPECT_LE(disputed, (proven + refused) / 1000);  // where rounding decides
+}
+
+TEST(FeatureLanes, SaysWhatIsFartherThanAsked) {
+  Rng rng(seed);
+  int far = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Group group(rng, 3.0);
+    const LaneGap lanes = group.prove({}, 0.5);
+    for (int k = 0; k < lane_count; ++k) {
+      if ((lanes.proven >> k & 1U) == 0U) continue;
+      EXPECT_EQ(lanes.far >> k & 1U, lanes.lower[k] > 0.5 ? 1U : 0U);
+      far += static_cast<int>(lanes.far >> k & 1U);
+    }
+  }
+  EXPECT_GT(far, 200);
+}
+
+TEST(FeatureLanes, AnyContentOfAWarmStartAndAnyPoseIsSafe) {
+  Rng rng(seed);
+  for (int i = 0; i < 200; ++i) {
+    Group group(rng, 1.5);
+    for (WarmStart& warm : group.warm) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        warm.a[k] = static_cast<std::uint32_t>(rng());
+        warm.b[k] = static_cast<std::uint32_t>(rng());
+      }
+    }
+    group.X_WB[0](i % 3, i / 3 % 4) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(group.prove({}, 1.0).proven & 1U, 0U) << "seed " << seed << ", group " << i;
+  }
+}
+
+}  // namespace
+}  // namespace repel::detail
