@@ -18,6 +18,14 @@ enum class QueryEnd : std::uint8_t {
                  ///< for a curved shape a million times larger than the other
 };
 
+/// How deep an overlap is said to be. Each is continuous, changes no faster than the shapes move,
+/// and is never deeper than the penetration depth, the shortest way out.
+enum class Measure : std::uint8_t {
+  reduction,      ///< by the nested levels of both shapes (Anderson 1993); every shape has it
+  deepest_point,  ///< the largest sum of the depths of a common point below both surfaces; for
+                  ///< boxes, hulls of some thickness, spheres and capsules, else as `reduction`
+};
+
 struct QueryOptions {
   double tolerance = 1e-14;  ///< largest (v.v - v.w) / v.v, the relative duality gap
   int iterations = 256;      ///< cap on support-map pairs in each precision; at least 1
@@ -26,11 +34,15 @@ struct QueryOptions {
   /// gaps of boxes and hulls above a micrometre to double; 1e-12 gives the distance of their gaps
   /// to so many digits down to a nanometre, at some microseconds for each gap under a centimetre.
   double relative_width = 1e-7;
+  Measure measure = Measure::reduction;
 };
 
 /// What a query leaves for the next one on the same pair: the names of up to four point pairs and
-/// the pair of levels they belong to. Any content is safe; good content saves iterations.
+/// the pair of levels they belong to, or of the planes that meet at the deepest point. Any content
+/// is safe; good content saves iterations.
 struct WarmStart {
+  static constexpr std::uint8_t deepest_point = 255;  ///< as a level: the names are of planes
+
   std::array<std::uint32_t, 4> a{};  ///< Convex::Point::name on A
   std::array<std::uint32_t, 4> b{};  ///< and on B
   std::uint8_t size = 0;

@@ -108,14 +108,15 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
   return count;
 }
 
+/// The ladder of the hull of `points` with these facets.
+///
 /// The first level is the hull of its corners; points that are none are dropped. From there on each
 /// vertex of a level moves to the nearest point it finds that is `t` deeper; the hull of the moved
 /// vertices is the next level. So no level has more vertices than its parent, a vertex keeps its
 /// index from level to level, and the depth of a level is the sum of what each step is measured to
 /// have won. Of a hull with very many corners a thousand move, the first ones. The last solid level
 /// goes to its centroid, and so does flat input, which has no depth.
-inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
-  std::vector<Facet> facets = hull_facets(points);
+inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<Facet> facets) {
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
@@ -146,6 +147,10 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
     append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
   }
   return ladder;
+}
+
+inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
+  return hull_ladder(points, levels, hull_facets(points));
 }
 
 }  // namespace repel::detail

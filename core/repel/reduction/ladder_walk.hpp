@@ -3,11 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <repel/distance/gjk.hpp>
 #include <repel/reduction/answer.hpp>
-#include <repel/reduction/shape.hpp>
+#include <repel/reduction/way_out.hpp>
 
 namespace repel::detail {
 
@@ -118,7 +119,6 @@ class LadderWalk {
 
   [[nodiscard]] Separation answer() const noexcept;
   void choose_direction(Separation& s) const noexcept;
-  [[nodiscard]] double overlap_along(const Vec3& n_W) const noexcept;
 
   const Shape& A_;
   const Shape& B_;
@@ -140,28 +140,9 @@ class LadderWalk {
   int apart_j_ = 0;
 };
 
-/// How far A would have to move along `n_W` to leave B behind [m]; no less than the penetration
-/// depth.
-inline double LadderWalk::overlap_along(const Vec3& n_W) const noexcept {
-  const Vec<double> n(n_W);
-  const Vec3 b = X_WB_.linear() * to_vec3(B_.level(0).core.support(rotate_transposed(X_WB_, n)).p);
-  const Vec3 a = X_WA_.linear() * to_vec3(A_.level(0).core.support(rotate_transposed(X_WA_, -n)).p);
-  const Vec3 apart = X_WB_.translation() - X_WA_.translation();
-  return n_W.dot(b - a + apart) + A_.level(0).depth + B_.level(0).depth;
-}
-
-/// Both shapes shrunk to one common point: the way out is the shortest along an axis of either.
+/// Both shapes shrunk to one common point: it lies as deep as the levels are.
 inline void LadderWalk::choose_direction(Separation& s) const noexcept {
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 12; ++k) {
-    const Mat3& R = k < 6 ? X_WA_.linear() : X_WB_.linear();
-    const Vec3 n = (k % 2 == 0 ? 1.0 : -1.0) * R.col(k % 6 / 2);
-    const double overlap = overlap_along(n);
-    if (overlap < least) {
-      least = overlap;
-      s.extraction_W = n;
-    }
-  }
+  s.extraction_W = shortest_axis(A_, X_WA_, B_, X_WB_);
   const Vec3 common = X_WA_ * to_vec3(A_.level(i_).core.point(0).p);
   s.p_WA = common - A_.level(i_).depth * s.extraction_W;
   s.p_WB = common + B_.level(j_).depth * s.extraction_W;
@@ -186,7 +167,8 @@ inline Separation LadderWalk::answer() const noexcept {
   s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
   s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
   if (!plain || !(gap_.lower > 0.0)) {
-    s.lower = widened(std::min(s.distance, -overlap_along(s.extraction_W) - slack), -1.0);
+    s.lower = widened(
+        std::min(s.distance, -overlap_along(s.extraction_W, A_, X_WA_, B_, X_WB_) - slack), -1.0);
   }
   if (!plain) s.upper = widened(s.upper + slack, 1.0);
   // A point deep inside, in one plane with all support points found, looks like contact to GJK.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <repel/distance/feature_search.hpp>
+#include <repel/reduction/deepest_point.hpp>
 #include <repel/reduction/ladder_walk.hpp>
 
 namespace repel {
@@ -44,6 +45,42 @@ namespace detail {
   return of_cores;
 }
 
+[[nodiscard]] inline bool is_by_planes(const Shape& A, const Shape& B,
+                                       const QueryOptions& options) noexcept {
+  return options.measure == Measure::deepest_point && !A.planes().empty() && !B.planes().empty();
+}
+
+/// The answer by the deepest common point of the cores; false when there is none.
+[[nodiscard]] inline bool at_deepest_point(const Shape& A, const Pose& X_WA, const Shape& B,
+                                           const Pose& X_WB, WarmStart& warm,
+                                           Separation& s) noexcept {
+  const Level& a = A.level(0);
+  const Level& b = B.level(0);
+  const PosedPlanes planes_a{A.planes(), X_WA, a.core.reach()};
+  const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
+  DeepestPoint deepest(planes_a, planes_b);
+  if (!deepest.solve(warm)) return false;
+  const double depth_a = std::max(0.0, deepest.depth(0)) + a.depth;
+  const double depth_b = std::max(0.0, deepest.depth(1)) + b.depth;
+  const double slack = 1e-14 * (A.reach() + B.reach());
+  const Vec<double> g = deepest.gradient();
+  const double length = std::sqrt(dot(g, g));
+  // Without a gradient no direction is better by this measure.
+  const bool flat = !(length > 1e-9);
+  s.extraction_W = flat ? shortest_axis(A, X_WA, B, X_WB) : to_vec3((-1.0 / length) * g);
+  const Vec3 common = X_WA.translation() + to_vec3(deepest.point());
+  s.p_WA = common - depth_a * s.extraction_W;
+  s.p_WB = common + depth_b * s.extraction_W;
+  s.distance = -(depth_a + depth_b);
+  s.upper = widened(s.distance + slack, 1.0);
+  const double overlap = overlap_along(s.extraction_W, A, X_WA, B, X_WB);
+  s.lower = widened(std::min(s.distance, -overlap - slack), -1.0);
+  s.level = 0;
+  s.iterations = 1 + deepest.pivots() + (flat ? 12 : 0);
+  s.end = QueryEnd::converged;
+  return true;
+}
+
 /// The signed distance where the quick search, after `spent` support-map pairs, has no proof.
 [[gnu::noinline]] inline Separation carefully_searched(const Shape& A, const Pose& X_WA,
                                                        const Shape& B, const Pose& X_WB,
@@ -52,6 +89,7 @@ namespace detail {
   if (!are_usable(X_WA, X_WB)) return {};
   const Level& a = A.level(0);
   const Level& b = B.level(0);
+  if (warm.level_a == WarmStart::deepest_point) warm = {};
   LadderWalk walk(A, X_WA, B, X_WB, options, warm);
   if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   QueryOptions of_cores = options_of_cores(a, b, options);
@@ -59,6 +97,12 @@ namespace detail {
   Gap gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
   gap.iterations += spent;
   if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
+  Separation deepest;
+  if (gap.meets && is_by_planes(A, B, options) &&
+      at_deepest_point(A, X_WA, B, X_WB, warm, deepest)) {
+    deepest.iterations += gap.iterations;
+    return deepest;
+  }
   return walk.run(&gap);
 }
 
@@ -68,6 +112,10 @@ namespace detail {
                                              WarmStart& warm) noexcept {
   const Level& a = A.level(0);
   const Level& b = B.level(0);
+  if (warm.level_a == WarmStart::deepest_point && is_by_planes(A, B, options)) {
+    Separation deepest;
+    if (at_deepest_point(A, X_WA, B, X_WB, warm, deepest)) return deepest;
+  }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
     FeatureSearch search({a.core, X_WA, b.core, X_WB});

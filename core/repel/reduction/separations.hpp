@@ -96,8 +96,8 @@ class PartnerLanes {
 /// lock, bounded by `options.iterations`.
 inline void separations(const Shape& A, const Pose& X_WA, std::span<const Partner> partners,
                         const QueryOptions& options = {}) noexcept {
-  const bool in_lanes = A.level(0).core.is_polytope() && detail::are_usable(options) &&
-                        detail::lane_count >= 4;
+  const bool in_lanes =
+      A.level(0).core.is_polytope() && detail::are_usable(options) && detail::lane_count >= 4;
   detail::PartnerLanes lanes(A, X_WA, options);
   for (const Partner& partner : partners) {
     if (in_lanes && detail::has_feature(*partner.warm) && partner.B->level(0).core.is_polytope()) {

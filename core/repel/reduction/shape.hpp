@@ -6,6 +6,7 @@
 #include <span>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/geometry/planes.hpp>
 #include <repel/reduction/hull_ladder.hpp>
 #include <repel/reduction/ladder.hpp>
 
@@ -23,13 +24,14 @@ class Shape {
     checked("half extent x", half_extents.x(), 0.0, largest, "m");
     checked("half extent y", half_extents.y(), 0.0, largest, "m");
     checked("half extent z", half_extents.z(), 0.0, largest, "m");
-    return Shape(detail::box_ladder(half_extents, levels_of(options)));
+    return Shape(detail::box_ladder(half_extents, levels_of(options)), Planes::box(half_extents));
   }
 
   /// `radius` [m] 0 to 1e6. Exact: a point with a radius.
   static Shape sphere(double radius, const ReductionOptions& options = {}) {
     (void)levels_of(options);
-    return Shape(detail::sphere_ladder(checked("radius", radius, 0.0, largest, "m")));
+    return Shape(detail::sphere_ladder(checked("radius", radius, 0.0, largest, "m")),
+                 Planes::box(Vec3::Zero()));
   }
 
   /// All points within `radius` [m] of the segment of +-`half_length` [m] on the z axis. Exact.
@@ -37,14 +39,14 @@ class Shape {
     (void)levels_of(options);
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::capsule_ladder(radius, half_length));
+    return Shape(detail::capsule_ladder(radius, half_length), Planes::box({0.0, 0.0, half_length}));
   }
 
   /// Around the z axis, flat ends at +-`half_length` [m]. The rim is a true circle, not a prism.
   static Shape cylinder(double radius, double half_length, const ReductionOptions& options = {}) {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::cylinder_ladder(radius, half_length, levels_of(options)));
+    return Shape(detail::cylinder_ladder(radius, half_length, levels_of(options)), Planes());
   }
 
   /// A disc of `radius` [m] at -`half_length` [m] on the z axis and the apex at +`half_length`,
@@ -52,7 +54,7 @@ class Shape {
   static Shape cone(double radius, double half_length, const ReductionOptions& options = {}) {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::cone_ladder(radius, half_length, levels_of(options)));
+    return Shape(detail::cone_ladder(radius, half_length, levels_of(options)), Planes());
   }
 
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, lie inside, on a line or in a
@@ -62,28 +64,37 @@ class Shape {
     for (const Vec3& p : points) {
       for (int axis = 0; axis < 3; ++axis) checked("coordinate", p[axis], -largest, largest, "m");
     }
-    return Shape(detail::hull_ladder(points, levels_of(options)));
+    const std::vector<Facet> facets = hull_facets(points);
+    return Shape(detail::hull_ladder(points, levels_of(options), facets), Planes(facets));
   }
 
-  [[nodiscard]] int levels() const noexcept { return static_cast<int>(ladder_->size()); }
+  [[nodiscard]] int levels() const noexcept { return static_cast<int>(data_->ladder.size()); }
   [[nodiscard]] const Level& level(int i) const noexcept { return first_[i]; }
+  /// Around the core of the first level; empty for cylinders, cones and hulls without thickness.
+  [[nodiscard]] const Planes& planes() const noexcept { return data_->planes; }
   /// [m] distance of the farthest point from the origin of the shape.
   [[nodiscard]] double reach() const noexcept {
-    return ladder_->front().core.reach() + ladder_->front().depth;
+    return data_->ladder.front().core.reach() + data_->ladder.front().depth;
   }
   /// [m] depth of the last level: no signed distance to this shape and another falls below minus
   /// the sum of theirs.
-  [[nodiscard]] double deepest() const noexcept { return ladder_->back().depth; }
+  [[nodiscard]] double deepest() const noexcept { return data_->ladder.back().depth; }
 
  private:
-  explicit Shape(Ladder ladder)
-      : ladder_(std::make_shared<const Ladder>(std::move(ladder))), first_(ladder_->data()) {}
+  struct Data {
+    Ladder ladder;
+    Planes planes;
+  };
+
+  Shape(Ladder ladder, Planes planes)
+      : data_(std::make_shared<const Data>(Data{std::move(ladder), std::move(planes)})),
+        first_(data_->ladder.data()) {}
 
   static int levels_of(const ReductionOptions& options) {
     return static_cast<int>(checked("reduction levels", options.levels, 1.0, 64.0, ""));
   }
 
-  std::shared_ptr<const Ladder> ladder_;
+  std::shared_ptr<const Data> data_;
   const Level* first_;  ///< of the ladder, at hand
 };
 

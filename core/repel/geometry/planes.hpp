@@ -1,0 +1,95 @@
+/// @file
+/// The planes around a polytope, and how deep a point lies below them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <repel/base/lanes.hpp>
+#include <repel/geometry/facets.hpp>
+
+namespace repel {
+
+/// Half spaces n.x <= offset, n unit, whose intersection is a polytope; padded arrays of all n.x,
+/// n.y, n.z and offsets, one after the other. Empty for a set that is not described so.
+class Planes {
+ public:
+  Planes() = default;
+  explicit Planes(std::span<const Facet> facets)
+      : size_(facets.size()),
+        stride_((facets.size() + lanes - 1) / lanes * lanes),
+        numbers_(4 * stride_) {
+    for (std::size_t i = 0; i < stride_; ++i) {
+      const Facet& f = facets[i < facets.size() ? i : 0];
+      for (std::size_t axis = 0; axis < 3; ++axis) numbers_[axis * stride_ + i] = f.n[axis];
+      numbers_[3 * stride_ + i] = f.offset;
+    }
+  }
+  /// Around the box of corners +-`half_extents` [m]. Where one is 0 two planes coincide, and no
+  /// point lies deeper than 0.
+  static Planes box(const Vec3& half_extents) {
+    std::vector<Facet> facets;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {1.0, -1.0}) {
+        facets.push_back({{}, side * Vec3::Unit(axis), half_extents[axis]});
+      }
+    }
+    return Planes(facets);
+  }
+
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(size_); }
+
+  /// Unit, outward; `i` less than size().
+  [[nodiscard]] Vec<double> normal(std::uint32_t i) const noexcept {
+    return {numbers_[i], numbers_[stride_ + i], numbers_[2 * stride_ + i]};
+  }
+  /// [m]
+  [[nodiscard]] double offset(std::uint32_t i) const noexcept { return numbers_[3 * stride_ + i]; }
+
+  struct Nearest {
+    std::uint32_t plane;
+    double depth;  ///< [m] of the point below it; negative above
+  };
+  /// The plane that `x` is least deep below, the first of several: for a point of the polytope, its
+  /// depth. Must not be empty. Cost: one pass over the planes.
+  [[nodiscard]] Nearest nearest(const Vec<double>& x) const noexcept;
+
+ private:
+  static constexpr std::size_t lanes = 8;  ///< the arrays are padded to a multiple of this
+
+  [[nodiscard]] detail::Lanes numbers(std::size_t row, std::size_t i) const noexcept {
+    detail::Lanes some;
+    std::memcpy(&some, numbers_.data() + row * stride_ + i, sizeof some);
+    return some;
+  }
+
+  std::size_t size_ = 0;
+  std::size_t stride_ = 0;
+  std::vector<double> numbers_;
+};
+
+inline Planes::Nearest Planes::nearest(const Vec<double>& x) const noexcept {
+  using detail::Lanes;
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Lanes best = Lanes{} + none;
+  Lanes winner{};
+  Lanes here = detail::lanes_of([](int k) { return static_cast<double>(k); });
+  for (std::size_t i = 0; i < stride_; i += detail::lane_count) {
+    const Lanes height = numbers(0, i) * x.x() + numbers(1, i) * x.y() + numbers(2, i) * x.z();
+    const Lanes depth = numbers(3, i) - height;
+    const auto nearer = depth < best;
+    best = nearer ? depth : best;
+    winner = nearer ? here : winner;
+    here += detail::lane_count;
+  }
+  const double least = detail::least_of(best);
+  const Lanes first = best == Lanes{} + least ? winner : Lanes{} + none;
+  return {static_cast<std::uint32_t>(detail::least_of(first)), least};
+}
+
+}  // namespace repel

@@ -1,0 +1,54 @@
+#include <repel/geometry/planes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <support/families.hpp>
+
+namespace repel {
+namespace {
+
+using families::Rng;
+
+constexpr unsigned seed = 905;
+
+TEST(Planes, TheNearestIsTheFirstOfTheLeastDeep) {
+  Rng rng(seed);
+  for (int count = 4; count <= 40; ++count) {
+    const std::vector<Vec3> points = families::cloud(rng, count, 1.0).vertices;
+    const std::vector<Facet> facets = hull_facets(points);
+    const Planes planes(facets);
+    ASSERT_EQ(planes.size(), facets.size());
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 x = families::uniform(rng, 0.0, 2.0) * families::direction(rng);
+      double least = 1e300;
+      for (const Facet& f : facets) least = std::min(least, f.offset - f.n.dot(x));
+      const Planes::Nearest nearest = planes.nearest(Vec<double>(x));
+      ASSERT_LT(nearest.plane, planes.size());
+      EXPECT_NEAR(nearest.depth, least, 1e-14) << "seed " << seed << ", " << count;
+      const Vec3 n = to_vec3(planes.normal(nearest.plane));
+      EXPECT_NEAR(planes.offset(nearest.plane) - n.dot(x), least, 1e-14);
+    }
+  }
+}
+
+TEST(Planes, OfABoxSayHowDeepAPointIs) {
+  const Planes planes = Planes::box({1.0, 2.0, 3.0});
+  EXPECT_EQ(planes.size(), 6U);
+  EXPECT_DOUBLE_EQ(planes.nearest({0.5, 0.0, 0.0}).depth, 0.5);
+  EXPECT_DOUBLE_EQ(planes.nearest({0.0, -1.9, 0.0}).depth, 2.0 - 1.9);
+  EXPECT_DOUBLE_EQ(planes.nearest({0.0, 0.0, 4.0}).depth, -1.0);
+  EXPECT_DOUBLE_EQ(Planes::box({1.0, 0.0, 1.0}).nearest({0.0, 0.0, 0.0}).depth, 0.0);
+  EXPECT_TRUE(Planes().empty());
+}
+
+TEST(Planes, APointThatIsNotANumberHasSomePlane) {
+  const Planes planes = Planes::box({1.0, 2.0, 3.0});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_LT(planes.nearest({none, none, none}).plane, planes.size());
+}
+
+}  // namespace
+}  // namespace repel

@@ -1,0 +1,308 @@
+// The deepest common point, against a linear programming solver of another kind in 113 bits,
+// against finite differences and against what is exactly true of boxes.
+#include <repel/reduction/deepest_point.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <support/families.hpp>
+#include <support/linear_program.hpp>
+
+#include "reduction/posed_boxes.hpp"
+
+namespace repel {
+namespace {
+
+using families::Rng;
+using oracle::Real;
+
+constexpr unsigned seed = 7331;
+const QueryOptions by_deepest_point{.measure = Measure::deepest_point};
+
+struct Posed {
+  Shape A, B;
+  Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
+
+  [[nodiscard]] Separation separate(WarmStart& warm) const {
+    return separation(A, X_WA, B, X_WB, by_deepest_point, warm);
+  }
+  [[nodiscard]] Separation separate() const {
+    return separation(A, X_WA, B, X_WB, by_deepest_point);
+  }
+  [[nodiscard]] double size() const { return A.reach() + B.reach(); }
+};
+
+Shape random_shape(Rng& rng) {
+  switch (families::count_between(rng, 0, 4)) {
+    case 0:
+      return Shape::hull(families::cloud(rng, families::count_between(rng, 4, 24), 0.5).vertices,
+                         {.levels = 2});
+    case 1:
+      return Shape::sphere(families::uniform(rng, 0.1, 0.5));
+    case 2:
+      return Shape::capsule(families::uniform(rng, 0.1, 0.3), families::uniform(rng, 0.1, 0.5));
+    default:
+      return Shape::box(families::random_box(rng, 0.05, 0.6).half_extents);
+  }
+}
+
+Posed random_pair(Rng& rng) {
+  Posed pair{random_shape(rng), random_shape(rng)};
+  pair.X_WA.linear() = families::rotation(rng);
+  pair.X_WB.linear() = families::rotation(rng);
+  pair.X_WA.translation() = families::uniform(rng, 0.0, 3.0) * families::direction(rng);
+  pair.X_WB.translation() = pair.X_WA.translation() + families::uniform(rng, 0.0, 0.8) *
+                                                          pair.size() * families::direction(rng);
+  return pair;
+}
+
+std::string of_seed(const char* what, int i) {
+  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
+}
+
+/// The linear program around a common point, solved by the tableau; the depths are at least 0.
+double oracle_depth(const Posed& pair, const Vec3& common_W) {
+  oracle::LinearProgram program({0, 0, 0, 0, 0, 0, 1, 1});
+  const auto add = [&](const Shape& shape, const Pose& X_W, bool is_a) {
+    const Vec3 own = X_W.inverse() * common_W;
+    for (std::uint32_t i = 0; i < shape.planes().size(); ++i) {
+      const Vec3 n = to_vec3(shape.planes().normal(i));
+      std::vector<Real> row(8);
+      for (int k = 0; k < 3; ++k) {
+        Real turned = 0;
+        for (int j = 0; j < 3; ++j) turned += Real(X_W(k, j)) * Real(n[j]);
+        row[static_cast<std::size_t>(k)] = turned;
+        row[static_cast<std::size_t>(k) + 3] = -turned;
+      }
+      row[is_a ? 6 : 7] = 1;
+      Real room = shape.planes().offset(i);
+      for (int j = 0; j < 3; ++j) room -= Real(n[j]) * Real(own[j]);
+      program.add(row, std::max(room, Real(0)));
+    }
+  };
+  add(pair.A, pair.X_WA, true);
+  add(pair.B, pair.X_WB, false);
+  return static_cast<double>(program.solve()) + pair.A.level(0).depth + pair.B.level(0).depth;
+}
+
+TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
+  Rng rng(seed);
+  int overlapping = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE(of_seed("pair", i));
+    const Posed pair = random_pair(rng);
+    WarmStart warm;
+    const Separation s = pair.separate(warm);
+    if (warm.level_a != WarmStart::deepest_point) continue;
+    ++overlapping;
+    const Vec3 n = s.extraction_W;
+    const double depth = -s.distance;
+    EXPECT_NEAR((s.p_WA - s.p_WB).dot(n), -depth, 1e-12);
+    const detail::PosedPlanes a{pair.A.planes(), pair.X_WA, pair.A.level(0).core.reach()};
+    const detail::PosedPlanes b{pair.B.planes(), pair.X_WB, pair.B.level(0).core.reach()};
+    detail::DeepestPoint deepest(a, b);
+    WarmStart none;
+    ASSERT_TRUE(deepest.solve(none));
+    const Vec3 x = pair.X_WA.translation() + to_vec3(deepest.point());
+    EXPECT_NEAR(oracle_depth(pair, x), depth, 1e-12);
+  }
+  EXPECT_GT(overlapping, 1000);
+}
+
+TEST(DeepestPoint, IsFoundWhereverPolytopesMeet) {
+  Rng rng(seed);
+  int overlapping = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Posed pair = random_pair(rng);
+    WarmStart warm;
+    const Separation s = pair.separate(warm);
+    if (s.distance >= -1e-9 * pair.size() || !(pair.separate().upper < 0.0)) continue;
+    // Rounded shapes whose cores are apart are answered by those.
+    const bool cores_meet = s.level == 0 && warm.size == 0;
+    if (!cores_meet) continue;
+    ++overlapping;
+    EXPECT_EQ(warm.level_a, WarmStart::deepest_point) << of_seed("pair", i);
+    EXPECT_LE(s.iterations, 60) << of_seed("pair", i);
+  }
+  EXPECT_GT(overlapping, 5000);
+}
+
+TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
+  Rng rng(seed);
+  int inside = 0, outside = 0;
+  for (int i = 0; i < 150; ++i) {
+    SCOPED_TRACE(of_seed("sweep", i));
+    Posed pair = random_pair(rng);
+    const Vec3 along = families::direction(rng);
+    const Vec3 aside = 0.3 * pair.size() * families::direction(rng);
+    const double length = 2.5 * pair.size();
+    constexpr int steps = 200;
+    WarmStart warm;
+    double before = 0.0;
+    for (int k = 0; k <= steps; ++k) {
+      pair.X_WA.translation() =
+          pair.X_WB.translation() + aside + (static_cast<double>(k) / steps - 0.5) * length * along;
+      const Separation s = pair.separate(warm);
+      const Separation cold = pair.separate();
+      EXPECT_NEAR(s.distance, cold.distance, 1e-13 * pair.size());
+      EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-12);
+      EXPECT_LE(s.lower, s.distance);
+      EXPECT_GE(s.upper, s.distance);
+      const double change = k > 0 ? std::abs(s.distance - before) : 0.0;
+      EXPECT_LE(change, length / steps + 1e-12);
+      before = s.distance;
+      ++(s.distance < 0.0 ? inside : outside);
+    }
+  }
+  EXPECT_GT(inside, 3000);
+  EXPECT_GT(outside, 3000);
+}
+
+TEST(DeepestPoint, GrowsOnceAndFallsAlongAStraightLine) {
+  Rng rng(seed);
+  int peaks = 0;
+  for (int i = 0; i < 150; ++i) {
+    SCOPED_TRACE(of_seed("sweep", i));
+    Posed pair = random_pair(rng);
+    const Vec3 along = families::direction(rng);
+    std::vector<double> depths;
+    for (int k = 0; k <= 200; ++k) {
+      pair.X_WA.translation() =
+          pair.X_WB.translation() + (0.01 * k - 1.0) * 0.6 * pair.size() * along;
+      depths.push_back(std::max(0.0, -pair.separate().distance));
+    }
+    for (std::size_t k = 2; k < depths.size(); ++k) {
+      if (depths[k - 2] > 0.0 && depths[k] > 0.0) {
+        EXPECT_GE(depths[k - 1], 0.5 * (depths[k - 2] + depths[k]) - 1e-12) << k;
+        ++peaks;
+      }
+    }
+  }
+  EXPECT_GT(peaks, 5000);
+}
+
+TEST(DeepestPoint, ItsDirectionIsTheGradientByFiniteDifferences) {
+  Rng rng(seed);
+  int smooth = 0;
+  for (int i = 0; i < 4000; ++i) {
+    SCOPED_TRACE(of_seed("pair", i));
+    Posed pair = random_pair(rng);
+    WarmStart warm;
+    const Separation s = pair.separate(warm);
+    if (warm.level_a != WarmStart::deepest_point) continue;
+    const detail::PosedPlanes a{pair.A.planes(), pair.X_WA, pair.A.level(0).core.reach()};
+    const detail::PosedPlanes b{pair.B.planes(), pair.X_WB, pair.B.level(0).core.reach()};
+    detail::DeepestPoint deepest(a, b);
+    ASSERT_TRUE(deepest.solve(warm));
+    const Vec3 g = -to_vec3(deepest.gradient());
+    constexpr double h = 1e-6;
+    Vec3 forward, backward;
+    const Vec3 p = pair.X_WA.translation();
+    for (int axis = 0; axis < 3; ++axis) {
+      pair.X_WA.translation() = p + h * Vec3::Unit(axis);
+      forward[axis] = (pair.separate().distance - s.distance) / h;
+      pair.X_WA.translation() = p - h * Vec3::Unit(axis);
+      backward[axis] = (s.distance - pair.separate().distance) / h;
+    }
+    if ((forward - backward).norm() > 1e-6) continue;  // at an edge of the function
+    ++smooth;
+    EXPECT_LE((forward - g).norm(), 1e-6);
+    EXPECT_LE(g.norm(), 1.0 + 1e-9);
+    if (g.norm() > 1e-9) {
+      EXPECT_LE((s.extraction_W - g.normalized()).norm(), 1e-9);
+    }
+  }
+  EXPECT_GT(smooth, 1000);
+}
+
+TEST(DeepestPoint, TheBracketHoldsTheExactDepthOfBoxes) {
+  Rng rng(seed);
+  std::vector<double> shares;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE(of_seed("pair", i));
+    const test::PosedBoxes boxes = test::overlapping_boxes(rng);
+    const Separation s = boxes.separate(by_deepest_point);
+    EXPECT_LE(s.lower, -boxes.depth());
+    EXPECT_GE(s.upper, -boxes.depth());
+    EXPECT_LT(s.distance, 0.0);
+    shares.push_back(-s.distance / boxes.depth());
+  }
+  EXPECT_GT(test::median(shares), 0.8);
+}
+
+TEST(DeepestPoint, HasNoDeadZoneInShallowContact) {
+  Rng rng(seed);
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE(of_seed("pair", i));
+    test::PosedBoxes boxes = test::random_boxes(rng, 1.5);
+    const Separation apart = boxes.separate();
+    if (!(apart.distance > 0.0)) continue;
+    boxes.X_WA.translation() -= (apart.distance + 1e-6) * apart.extraction_W;
+    const double depth = boxes.depth();
+    if (!(depth > 1e-7)) continue;
+    EXPECT_LT(boxes.separate(by_deepest_point).distance, -0.05 * depth);
+  }
+}
+
+TEST(DeepestPoint, AThinFingerPressedIntoABlockFeelsEveryMillimetre) {
+  const Shape finger = Shape::box({0.004, 0.004, 0.05});
+  const Shape block = Shape::box({0.2, 0.2, 0.1});
+  WarmStart warm;
+  double before = 0.0;
+  for (int mm = 1; mm <= 50; ++mm) {
+    Pose X_WA = Pose::Identity();
+    X_WA.translation().z() = 0.15 - 1e-3 * mm;
+    const Separation s = separation(finger, X_WA, block, Pose::Identity(), by_deepest_point, warm);
+    EXPECT_NEAR(s.distance, -1e-3 * mm, 1e-12);
+    EXPECT_LT(s.distance, before - 9e-4);
+    EXPECT_LE((s.extraction_W - Vec3::UnitZ()).norm(), 1e-9);
+    before = s.distance;
+  }
+}
+
+TEST(DeepestPoint, ConcentricShapesHaveAWayOut) {
+  const std::vector<Shape> shapes{Shape::box({0.3, 0.2, 0.1}), Shape::sphere(0.2),
+                                  Shape::capsule(0.1, 0.3), Shape::box({0.2, 0.2, 0.2})};
+  for (const Shape& A : shapes) {
+    for (const Shape& B : shapes) {
+      const Separation s = separation(A, Pose::Identity(), B, Pose::Identity(), by_deepest_point);
+      EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-12);
+      EXPECT_LT(s.distance, -0.15);
+      EXPECT_LE(s.lower, s.distance);
+    }
+  }
+}
+
+TEST(DeepestPoint, CylindersAndFlatShapesAreAnsweredByReduction) {
+  const Shape cylinder = Shape::cylinder(0.2, 0.3);
+  const Shape box = Shape::box({0.2, 0.3, 0.1});
+  Pose X_WB = Pose::Identity();
+  X_WB.translation() = Vec3(0.1, 0.2, 0.05);
+  const Separation deepest = separation(cylinder, Pose::Identity(), box, X_WB, by_deepest_point);
+  const Separation reduction = separation(cylinder, Pose::Identity(), box, X_WB);
+  EXPECT_EQ(deepest.distance, reduction.distance);
+  EXPECT_EQ(deepest.extraction_W, reduction.extraction_W);
+}
+
+TEST(DeepestPoint, AnyContentOfAWarmStartIsSafe) {
+  Rng rng(seed);
+  for (int i = 0; i < 5000; ++i) {
+    const Posed pair = random_pair(rng);
+    WarmStart warm;
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Small names are those of planes, the others mostly of nothing.
+      const bool small = families::count_between(rng, 0, 1) == 1;
+      warm.a[k] = static_cast<std::uint32_t>(small ? rng() % 12 | (rng() % 2) << 31U : rng());
+      warm.b[k] = static_cast<std::uint32_t>(small ? rng() % 12 | (rng() % 2) << 31U : rng());
+    }
+    warm.level_a = warm.level_b = WarmStart::deepest_point;
+    EXPECT_NEAR(pair.separate(warm).distance, pair.separate().distance, 1e-12)
+        << of_seed("pair", i);
+  }
+}
+
+}  // namespace
+}  // namespace repel
