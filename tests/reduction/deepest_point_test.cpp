@@ -112,22 +112,30 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   EXPECT_GT(overlapping, 1000);
 }
 
-TEST(DeepestPoint, IsFoundWhereverPolytopesMeet) {
+TEST(DeepestPoint, IsFoundWhereverBoxesOverlap) {
   Rng rng(seed);
-  int overlapping = 0;
+  int overlapping = 0, concentric = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Posed pair = random_pair(rng);
-    WarmStart warm;
-    const Separation s = pair.separate(warm);
-    if (s.distance >= -1e-9 * pair.size() || !(pair.separate().upper < 0.0)) continue;
-    // Rounded shapes whose cores are apart are answered by those.
-    const bool cores_meet = s.level == 0 && warm.size == 0;
-    if (!cores_meet) continue;
+    SCOPED_TRACE(of_seed("pair", i));
+    test::PosedBoxes boxes = test::random_boxes(rng, 1.5);
+    if (i % 4 == 0) {
+      const double angle = families::log_uniform(rng, 1e-12, 1e-2);
+      boxes.X_WB.linear() = families::small_rotation(rng, angle) * boxes.X_WA.linear();
+    }
+    if (i % 50 == 1) boxes.X_WB.translation() = boxes.X_WA.translation();
+    const Separation exact = boxes.separate({.measure = Measure::exact});
+    if (!(exact.distance < -1e-9)) continue;
     ++overlapping;
-    EXPECT_EQ(warm.level_a, WarmStart::deepest_point) << of_seed("pair", i);
-    EXPECT_LE(s.iterations, 60) << of_seed("pair", i);
+    concentric += i % 50 == 1 ? 1 : 0;
+    WarmStart warm;
+    const Separation s = boxes.separate(warm, by_deepest_point);
+    EXPECT_EQ(warm.level_a, WarmStart::deepest_point);
+    EXPECT_EQ(s.end, QueryEnd::converged);
+    EXPECT_LE(s.iterations, 100);
+    EXPECT_GE(s.distance, exact.distance - 1e-14);
   }
   EXPECT_GT(overlapping, 5000);
+  EXPECT_GT(concentric, 300);
 }
 
 TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {

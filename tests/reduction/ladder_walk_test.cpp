@@ -18,6 +18,7 @@ using test::PosedBoxes;
 using test::Sweep;
 
 constexpr unsigned seed = 907;
+const QueryOptions by_reduction{.measure = Measure::reduction};
 
 std::string of_seed(const char* what, int i) {
   return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
@@ -31,14 +32,14 @@ TEST(SeparationInOverlap, ChangesNoFasterThanTheBoxesMove) {
     PosedBoxes boxes = test::random_boxes(rng, 0.1, {.levels = 1 + i % 16});
     const Sweep sweep(boxes, rng);
     boxes.X_WA.translation() = sweep.from;
-    double before = boxes.separate().distance;
+    double before = boxes.separate(by_reduction).distance;
     for (double share = 0.0; share < 1.0;) {
       const double step = families::log_uniform(rng, 1e-10, 3e-2);
       const Vec3 was = boxes.X_WA.translation();
       share += step;
       boxes.X_WA.translation() = sweep.at(share);
       const double moved = (boxes.X_WA.translation() - was).norm();
-      const double now = boxes.separate().distance;
+      const double now = boxes.separate(by_reduction).distance;
       ASSERT_LE(std::abs(now - before), moved + 1e-12);
       before = now;
       inside += now < 0.0 ? 1 : 0;
@@ -56,7 +57,7 @@ TEST(SeparationInOverlap, BracketHoldsTheExactDepthAndTheSignIsRight) {
     SCOPED_TRACE(of_seed("pair", i));
     const PosedBoxes boxes = test::random_boxes(rng, 3.0, {.levels = 1 + i % 20});
     const double truth = boxes.truth();
-    const Separation s = boxes.separate();
+    const Separation s = boxes.separate(by_reduction);
     ASSERT_FALSE(std::isnan(truth));
     EXPECT_LE(s.lower, truth);
     EXPECT_GE(s.upper, truth);
@@ -81,7 +82,7 @@ TEST(SeparationInOverlap, IsZeroOnlyInOverlapShallowerThanTheFirstStep) {
     int zero = 0;
     for (int i = 0; i < 1000; ++i) {
       const PosedBoxes boxes = test::overlapping_boxes(rng, {.levels = levels});
-      if (boxes.separate().distance < 0.0) continue;
+      if (boxes.separate(by_reduction).distance < 0.0) continue;
       ++zero;
       const double first_step = boxes.A.level(1).depth + boxes.B.level(1).depth;
       EXPECT_LE(boxes.depth(), (std::sqrt(3.0) - 1.0) * first_step + 1e-15);
@@ -95,7 +96,7 @@ TEST(SeparationInOverlap, MostOfTheExactDepthOfRandomBoxesIsReported) {
   std::vector<double> fractions;
   for (int i = 0; i < 2000; ++i) {
     const PosedBoxes boxes = test::overlapping_boxes(rng);
-    fractions.push_back(-boxes.separate().distance / boxes.depth());
+    fractions.push_back(-boxes.separate(by_reduction).distance / boxes.depth());
   }
   EXPECT_GE(test::median(fractions), 0.6) << "seed " << seed;
   RecordProperty("median_fraction", std::to_string(test::median(fractions)));
@@ -108,7 +109,7 @@ TEST(SeparationInOverlap, MoreLevelsNeverMakeTheMedianErrorLarger) {
     std::vector<double> errors;
     for (int i = 0; i < 400; ++i) {
       const PosedBoxes boxes = test::overlapping_boxes(rng, {.levels = levels});
-      errors.push_back(1.0 + boxes.separate().distance / boxes.depth());
+      errors.push_back(1.0 + boxes.separate(by_reduction).distance / boxes.depth());
     }
     EXPECT_LE(test::median(errors), before) << levels << " levels, seed " << seed;
     before = test::median(errors);
@@ -134,7 +135,7 @@ TEST(SeparationInOverlap, ExtractionIsAUnitVectorEverywhere) {
         Pose X_WB = X_WA;  // the same pose, the same centre, then a centre nearby
         if (i > 3) X_WB.linear() = families::rotation(rng);
         if (i > 8) X_WB.translation() += families::log_uniform(rng, 1e-17, 1) * Vec3::UnitX();
-        const Separation s = separation(shapes[a], X_WA, shapes[b], X_WB);
+        const Separation s = separation(shapes[a], X_WA, shapes[b], X_WB, by_reduction);
         EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-12);
         EXPECT_TRUE(is_finite(s.p_WA) && is_finite(s.p_WB));
         EXPECT_TRUE(std::isfinite(s.lower) && std::isfinite(s.upper));
@@ -152,11 +153,11 @@ TEST(SeparationInOverlap, MovingAByTheLowerBoundAlongTheExtractionSeparates) {
     SCOPED_TRACE(of_seed("pair", i));
     PosedBoxes boxes = test::overlapping_boxes(rng);
     if (i % 10 == 0) boxes.X_WB.translation() = boxes.X_WA.translation();
-    const Separation s = boxes.separate();
+    const Separation s = boxes.separate(by_reduction);
     ASSERT_LT(s.lower, 0.0);
     boxes.X_WA.translation() -= s.lower * s.extraction_W;
     EXPECT_LE(boxes.depth(), 1e-14 * boxes.size());
-    EXPECT_GE(boxes.separate().distance, -1e-14 * boxes.size());
+    EXPECT_GE(boxes.separate(by_reduction).distance, -1e-14 * boxes.size());
   }
 }
 
@@ -180,7 +181,7 @@ TEST(SeparationInOverlap, WitnessPointsAreTheDistanceApartUnlessItStandsStill) {
   for (int i = 0; i < 1000; ++i) {
     SCOPED_TRACE(of_seed("pair", i));
     const PosedBoxes boxes = test::overlapping_boxes(rng);
-    const Separation s = boxes.separate();
+    const Separation s = boxes.separate(by_reduction);
     const double along = (s.p_WA - s.p_WB).dot(s.extraction_W);
     EXPECT_GE(along, s.distance - 1e-14);
     if (std::abs(along - s.distance) < 1e-13) {
@@ -206,8 +207,8 @@ TEST(SeparationInOverlap, WarmEqualsColdAlongSweeps) {
     for (int k = 0; k <= steps; ++k) {
       boxes.X_WA.translation() = sweep.at(static_cast<double>(k) / steps);
       boxes.X_WA.linear() = turn * boxes.X_WA.linear();
-      const Separation by_warm = boxes.separate(warm);
-      const Separation by_cold = boxes.separate();
+      const Separation by_warm = boxes.separate(warm, by_reduction);
+      const Separation by_cold = boxes.separate(by_reduction);
       ASSERT_NEAR(by_warm.distance, by_cold.distance, 1e-13);
       ASSERT_EQ(by_warm.level == 0, by_cold.level == 0);
       warm_cost += by_warm.iterations;
@@ -233,12 +234,12 @@ TEST(SeparationInOverlap, HullsChangeNoFasterThanTheyMoveWarmOrCold) {
     PosedBoxes poses = test::random_boxes(rng, 0.1);
     const Sweep sweep(poses, rng);
     WarmStart warm;
-    Separation before = separation(A, poses.X_WA, B, poses.X_WB, {}, warm);
+    Separation before = separation(A, poses.X_WA, B, poses.X_WB, by_reduction, warm);
     for (double share = 0.0; share < 1.0; share += families::log_uniform(rng, 1e-6, 2e-2)) {
       const Vec3 was = poses.X_WA.translation();
       poses.X_WA.translation() = sweep.at(share);
-      const Separation now = separation(A, poses.X_WA, B, poses.X_WB, {}, warm);
-      const Separation cold = separation(A, poses.X_WA, B, poses.X_WB);
+      const Separation now = separation(A, poses.X_WA, B, poses.X_WB, by_reduction, warm);
+      const Separation cold = separation(A, poses.X_WA, B, poses.X_WB, by_reduction);
       ASSERT_NEAR(now.distance, cold.distance, 1e-13);
       ASSERT_LE(std::abs(now.distance - before.distance),
                 (poses.X_WA.translation() - was).norm() + 1e-12);
@@ -257,8 +258,8 @@ TEST(SeparationInOverlap, SwappingTheShapesTurnsTheExtractionRound) {
   for (int i = 0; i < 1000; ++i) {
     SCOPED_TRACE(of_seed("pair", i));
     const PosedBoxes boxes = test::random_boxes(rng, 3.0);
-    const Separation s = boxes.separate();
-    const Separation swapped = separation(boxes.B, boxes.X_WB, boxes.A, boxes.X_WA);
+    const Separation s = boxes.separate(by_reduction);
+    const Separation swapped = separation(boxes.B, boxes.X_WB, boxes.A, boxes.X_WA, by_reduction);
     EXPECT_NEAR(s.distance, swapped.distance, 1e-14 * boxes.size());
     EXPECT_LE((s.extraction_W + swapped.extraction_W).norm(), 1e-6);
     overlaps += s.distance < 0.0 ? 1 : 0;
@@ -282,7 +283,7 @@ TEST(SeparationInOverlap, AThinFingerPressedIntoABlockIsFeltAllTheWay) {
     double before = 0.0;
     for (double pressed = 0.0005; pressed <= 0.05; pressed += 0.0005) {
       boxes.X_WA.translation() = above + (0.12 + reach - pressed) * Vec3::UnitZ();
-      const Separation s = boxes.separate();
+      const Separation s = boxes.separate(by_reduction);
       EXPECT_LT(s.distance, before) << "no deeper at " << pressed;
       EXPECT_GE(-s.distance, i == 0 ? pressed - 1e-15 : 0.6 * pressed) << "at " << pressed;
       EXPECT_LE(-s.distance, pressed + 1e-15);

@@ -24,6 +24,8 @@ enum class Measure : std::uint8_t {
   reduction,      ///< by the nested levels of both shapes (Anderson 1993); every shape has it
   deepest_point,  ///< the largest sum of the depths of a common point below both surfaces; for
                   ///< boxes, hulls of some thickness, spheres and capsules, else as `reduction`
+  exact,          ///< the penetration depth itself; for boxes, hulls, spheres and capsules, else as
+                  ///< `reduction`
 };
 
 struct QueryOptions {
@@ -34,7 +36,7 @@ struct QueryOptions {
   /// gaps of boxes and hulls above a micrometre to double; 1e-12 gives the distance of their gaps
   /// to so many digits down to a nanometre, at some microseconds for each gap under a centimetre.
   double relative_width = 1e-7;
-  Measure measure = Measure::reduction;
+  Measure measure = Measure::deepest_point;
 };
 
 /// What a query leaves for the next one on the same pair: the names of up to four point pairs and

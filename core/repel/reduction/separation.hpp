@@ -2,6 +2,8 @@
 /// The signed distance of two shapes: the answer for one pair.
 #pragma once
 
+#include <repel/distance/box_depth.hpp>
+#include <repel/distance/expanding_polytope.hpp>
 #include <repel/distance/feature_search.hpp>
 #include <repel/reduction/deepest_point.hpp>
 #include <repel/reduction/ladder_walk.hpp>
@@ -50,16 +52,24 @@ namespace detail {
   return options.measure == Measure::deepest_point && !A.planes().empty() && !B.planes().empty();
 }
 
-/// The answer by the deepest common point of the cores; false when there is none.
+/// Overlap is measured by the levels of the shapes, as asked or for want of what else it takes.
+[[nodiscard]] inline bool is_by_levels(const Shape& A, const Shape& B,
+                                       const QueryOptions& options) noexcept {
+  if (options.measure == Measure::exact) return !are_angular(A.level(0), B.level(0));
+  return !is_by_planes(A, B, options);
+}
+
+/// The answer by the deepest common point of the cores; false when there is none or it takes more
+/// than `most_pivots`.
 [[nodiscard]] inline bool at_deepest_point(const Shape& A, const Pose& X_WA, const Shape& B,
-                                           const Pose& X_WB, WarmStart& warm,
+                                           const Pose& X_WB, int most_pivots, WarmStart& warm,
                                            Separation& s) noexcept {
   const Level& a = A.level(0);
   const Level& b = B.level(0);
   const PosedPlanes planes_a{A.planes(), X_WA, a.core.reach()};
   const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
-  if (!deepest.solve(warm)) return false;
+  if (!deepest.solve(warm, most_pivots)) return false;
   const double depth_a = std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
@@ -81,6 +91,54 @@ namespace detail {
   return true;
 }
 
+/// The answer by the penetration depth; false for curved cores and those without volume.
+/// @param warm names of four corners of A - B that enclose the origin
+[[nodiscard]] inline bool at_exact_depth(const Shape& A, const Pose& X_WA, const Shape& B,
+                                         const Pose& X_WB, const WarmStart& warm,
+                                         Separation& s) noexcept {
+  const Level& a = A.level(0);
+  const Level& b = B.level(0);
+  if (!are_angular(a, b)) return false;
+  const PosedPair pair{a.core, X_WA, b.core, X_WB};
+  const bool boxes = a.core.kind() == Convex::Kind::box && b.core.kind() == Convex::Kind::box;
+  const Depth depth = boxes ? BoxDepth(pair).run() : ExpandingPolytope(pair).run(warm);
+  if (!(depth.upper < std::numeric_limits<double>::infinity())) return false;
+  const double rounded = a.depth + b.depth;
+  s.distance = -(depth.value + rounded);
+  s.lower = std::min(s.distance, widened(-(depth.upper + rounded), -1.0));
+  s.upper = std::max(s.distance, widened(-(depth.lower + rounded), 1.0));
+  s.extraction_W = to_vec3(-depth.n_W);
+  const Vec3 p_WQ = X_WA.translation() + to_vec3(depth.p_AQa_W);
+  s.p_WA = p_WQ - a.depth * s.extraction_W;
+  s.p_WB = s.p_WA - s.distance * s.extraction_W;
+  s.level = 0;
+  s.iterations = depth.iterations;
+  s.end = depth.closed ? QueryEnd::converged : QueryEnd::budget_spent;
+  return true;
+}
+
+/// The last query ended in an overlap that can be measured again without a search for corners
+/// around the origin.
+[[nodiscard]] inline bool overlapped(const Shape& A, const Shape& B,
+                                     const WarmStart& warm) noexcept {
+  if (warm.level_a == WarmStart::deepest_point) return true;
+  return warm.size == 4 && warm.level_a == 0 && A.level(0).core.kind() == Convex::Kind::box &&
+         B.level(0).core.kind() == Convex::Kind::box;
+}
+
+/// The answer to an overlap of the cores by another measure than their levels; false when that is
+/// what is asked, or when the cores do not overlap after all.
+/// @param spent support-map pairs
+[[nodiscard]] inline bool in_overlap(const Shape& A, const Pose& X_WA, const Shape& B,
+                                     const Pose& X_WB, const QueryOptions& options, int spent,
+                                     WarmStart& warm, Separation& s) noexcept {
+  if (is_by_planes(A, B, options)) {
+    return at_deepest_point(A, X_WA, B, X_WB, options.iterations - spent, warm, s);
+  }
+  return options.measure == Measure::exact && at_exact_depth(A, X_WA, B, X_WB, warm, s) &&
+         s.upper < -(A.level(0).depth + B.level(0).depth);
+}
+
 /// The signed distance where the quick search, after `spent` support-map pairs, has no proof.
 [[gnu::noinline]] inline Separation carefully_searched(const Shape& A, const Pose& X_WA,
                                                        const Shape& B, const Pose& X_WB,
@@ -89,7 +147,7 @@ namespace detail {
   if (!are_usable(X_WA, X_WB)) return {};
   const Level& a = A.level(0);
   const Level& b = B.level(0);
-  if (warm.level_a == WarmStart::deepest_point) warm = {};
+  if (!is_by_levels(A, B, options) && (warm.level_a != 0 || warm.level_b != 0)) warm = {};
   LadderWalk walk(A, X_WA, B, X_WB, options, warm);
   if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   QueryOptions of_cores = options_of_cores(a, b, options);
@@ -97,13 +155,21 @@ namespace detail {
   Gap gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
   gap.iterations += spent;
   if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
-  Separation deepest;
-  if (gap.meets && is_by_planes(A, B, options) &&
-      at_deepest_point(A, X_WA, B, X_WB, warm, deepest)) {
-    deepest.iterations += gap.iterations;
-    return deepest;
+  Separation s;
+  // Deep inside, in one plane with all support points found, the origin looks like contact to GJK.
+  const bool meets = gap.meets || gap.end == QueryEnd::touching;
+  if (meets && in_overlap(A, X_WA, B, X_WB, options, gap.iterations, warm, s)) {
+    s.iterations += gap.iterations;
+    return s;
   }
-  return walk.run(&gap);
+  s = walk.run(&gap);
+  // The levels stand in for a measure that could not be finished.
+  const double depth_of_cores = s.distance + a.depth + b.depth;
+  const bool deep = meets && depth_of_cores < -1e-13 * (A.reach() + B.reach());
+  if (deep && !is_by_levels(A, B, options) && s.end == QueryEnd::converged) {
+    s.end = QueryEnd::budget_spent;
+  }
+  return s;
 }
 
 /// The signed distance by search, from what the warm start has.
@@ -112,9 +178,9 @@ namespace detail {
                                              WarmStart& warm) noexcept {
   const Level& a = A.level(0);
   const Level& b = B.level(0);
-  if (warm.level_a == WarmStart::deepest_point && is_by_planes(A, B, options)) {
-    Separation deepest;
-    if (at_deepest_point(A, X_WA, B, X_WB, warm, deepest)) return deepest;
+  if (overlapped(A, B, warm)) {
+    Separation s;
+    if (in_overlap(A, X_WA, B, X_WB, options, 0, warm, s)) return s;
   }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {

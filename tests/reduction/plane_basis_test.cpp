@@ -1,0 +1,73 @@
+#include <repel/reduction/plane_basis.hpp>
+
+#include <gtest/gtest.h>
+
+namespace repel::detail {
+namespace {
+
+/// A cube of half a metre and a smaller one that stands out of its upper face.
+struct Cubes {
+  Planes planes_a = Planes::box({0.5, 0.5, 0.5});
+  Planes planes_b = Planes::box({0.1, 0.1, 0.1});
+  Pose X_WA = Pose::Identity();
+  Pose X_WB = Pose::Identity();
+  PosedPlanes A{planes_a, X_WA, 1.0};
+  PosedPlanes B{planes_b, X_WB, 0.2};
+  PlaneBasis basis;
+
+  Cubes() : basis((X_WB.translation().z() = 0.55, A), B) {}
+};
+
+TEST(PlaneBasis, SolvesItsEquations) {
+  Cubes cubes;
+  PlaneBasis& basis = cubes.basis;
+  basis.add(0, 4);  // z + a <= 0.5
+  basis.add(1, 5);  // -z + b <= -0.45
+  basis.add(1, 0);
+  basis.add(1, 1);
+  basis.add(1, 2);
+  ASSERT_TRUE(basis.weigh());
+  // Four planes of the small cube meet where its lower face is 0.1 deep.
+  EXPECT_NEAR(basis.point().x(), 0.0, 1e-15);
+  EXPECT_NEAR(basis.point().y(), 0.0, 1e-15);
+  EXPECT_NEAR(basis.point().z(), 0.55, 1e-15);
+  EXPECT_NEAR(basis.side(0).level, -0.05, 1e-15);
+  EXPECT_NEAR(basis.side(1).level, 0.1, 1e-15);
+  EXPECT_NEAR(basis.least_multiplier(), 0.0, 1e-15);
+}
+
+TEST(PlaneBasis, ExchangesUntilNothingIsViolated) {
+  Cubes cubes;
+  PlaneBasis& basis = cubes.basis;
+  for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis::first_bound + k);
+  basis.add(1, PlaneBasis::depth_bound);
+  ASSERT_TRUE(basis.weigh());
+  double bound = basis.side(0).level + basis.side(1).level;
+  int exchanges = 0;
+  for (; exchanges < 30; ++exchanges) {
+    const PlaneBasis::Entry entry = basis.most_violated();
+    if (!(entry.violation > 1e-15)) break;
+    ASSERT_TRUE(basis.exchange(entry));
+    ASSERT_TRUE(basis.weigh());
+    EXPECT_GE(basis.least_multiplier(), -1e-12);
+    const double now = basis.side(0).level + basis.side(1).level;
+    EXPECT_LE(now, bound + 1e-15) << "the bound only falls";
+    bound = now;
+  }
+  EXPECT_GT(exchanges, 2);
+  EXPECT_LT(exchanges, 30);
+  // The small cube is 0.05 deep in the large one; no point has more in both.
+  EXPECT_NEAR(bound, 0.05, 1e-14);
+}
+
+TEST(PlaneBasis, EquationsWithoutASolutionAreRefused) {
+  Cubes cubes;
+  PlaneBasis& basis = cubes.basis;
+  for (const std::uint32_t plane : {0U, 0U, 0U}) basis.add(0, plane);
+  basis.add(1, 1);
+  basis.add(1, 2);
+  EXPECT_FALSE(basis.weigh());
+}
+
+}  // namespace
+}  // namespace repel::detail
