@@ -89,7 +89,10 @@ namespace detail {
   if (!are_usable(X_WA, X_WB)) return {};
   const Level& a = A.level(0);
   const Level& b = B.level(0);
-  if (warm.level_a == WarmStart::deepest_point) warm = {};
+  const bool by_planes = is_by_planes(A, B, options);
+  // A walk at the moment of contact leaves levels, and going on from them would leave the measure.
+  const bool at_levels = warm.level_a != 0 || warm.level_b != 0;
+  if (warm.level_a == WarmStart::deepest_point || (by_planes && at_levels)) warm = {};
   LadderWalk walk(A, X_WA, B, X_WB, options, warm);
   if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   QueryOptions of_cores = options_of_cores(a, b, options);
@@ -98,8 +101,7 @@ namespace detail {
   gap.iterations += spent;
   if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
   Separation deepest;
-  if (gap.meets && is_by_planes(A, B, options) &&
-      at_deepest_point(A, X_WA, B, X_WB, warm, deepest)) {
+  if (gap.meets && by_planes && at_deepest_point(A, X_WA, B, X_WB, warm, deepest)) {
     deepest.iterations += gap.iterations;
     return deepest;
   }
