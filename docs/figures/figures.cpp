@@ -1,5 +1,5 @@
 // figures FOLDER: computes the figures of docs/reduction.md. Writes the curves to FOLDER as CSV and
-// prints the table of the plates.
+// prints the tables.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -80,12 +80,21 @@ void write_motions(const std::filesystem::path& folder) {
   write("triangle", [](int levels) { return through_a_rectangle(levels); });
 }
 
+void print_equidistance_regions() {
+  std::puts("## Equidistance regions\n\n| levels | widest |\n|---|---|");
+  for (const int levels : {2, 4, 8, 16, 32, 64}) {
+    const auto samples = answers_along(through_a_rectangle(levels), Measure::reduction, 22000);
+    std::printf("| %d | %.1f mm |\n", levels, 1e3 * widest_flat(samples));
+  }
+}
+
 struct Run {
   const char* name;
   PlatesOptions options;
 };
 constexpr Run runs[] = {
     {"bare, 20 N", {}},
+    {"bare, 150 N", {.press = 150.0}},
     {"held, 20 N", {.held = true}},
     {"held, 150 N", {.press = 150.0, .held = true}},
     {"held, 150 N, deepest point",
@@ -114,7 +123,8 @@ void print_row(const char* run, double rate, const char* witness, const Settled&
 void write_plates(const std::filesystem::path& folder) {
   std::ofstream file = csv(folder / "plates.csv", "run,rate_hz,witness,time_s,tilt_deg,torque_nm");
   std::puts(
-      "| plate | loop | witness | tilt | chatter | torque jump | tilt by the push |\n"
+      "\n## Parallel plates\n\n| plate | loop | witness | tilt | chatter | torque jump | tilt by "
+      "the push |\n"
       "|---|---|---|---|---|---|---|");
   for (const Run& run : runs) {
     for (const double rate : {400.0, 1000.0}) {
@@ -143,6 +153,7 @@ int main(int argc, char** argv) try {
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
   write_motions(folder);
+  print_equidistance_regions();
   write_plates(folder);
   return 0;
 } catch (const std::exception& error) {
