@@ -169,6 +169,21 @@ TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   EXPECT_GT(outside, 3000);
 }
 
+TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
+  Rng rng(seed);
+  int at_levels = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Posed pair = random_pair(rng);
+    // Contact, too shallow for a deepest point, leaves such a warm start.
+    WarmStart warm;
+    (void)separation(pair.A, pair.X_WA, pair.B, pair.X_WB, {}, warm);
+    at_levels += warm.level_a != 0 || warm.level_b != 0 ? 1 : 0;
+    EXPECT_NEAR(pair.separate(warm).distance, pair.separate().distance, 1e-13 * pair.size())
+        << of_seed("pair", i);
+  }
+  EXPECT_GT(at_levels, 100);
+}
+
 TEST(DeepestPoint, GrowsOnceAndFallsAlongAStraightLine) {
   Rng rng(seed);
   int peaks = 0;
