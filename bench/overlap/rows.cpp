@@ -23,15 +23,26 @@ std::string line(const Row& row) {
          text(" %.2g | %.1f | %.1f |\n", 1e3 * c.excess, degrees * c.median_turn, degrees * c.turn);
 }
 
+/// Of the libraries beside ours, each once.
+std::string versions(const Rows& rows) {
+  std::string out = "Set as for distances:";
+  for (const Row& row : rows) {
+    if (row.library.ours || row.warm->task().name != rows.front().warm->task().name) continue;
+    out += " " + row.library.name + " " + row.library.version + ";";
+  }
+  out.back() = '.';
+  return out + "\n";
+}
+
 }  // namespace
 
 std::string overlap_table(const Rows& rows) {
-  std::string out;
+  std::string out = versions(rows);
   std::string input;
   for (const Row& row : rows) {
     if (row.warm->task().name != input) {
       input = row.warm->task().name;
-      out += (out.empty() ? "## " : "\n## ") + input + "\n\n" +
+      out += "\n## " + input + "\n\n" +
              heading({"setting", "cold p50 [ns]", "cold p99", "warm p50", "warm p99",
                       "share of the depth, median", "95 % have at least", "error, median",
                       "error, p95", "wrong or missing", "dead zone, median [mm]", "worst",
