@@ -264,6 +264,12 @@ std::vector<Truth> exact_answers(const Task& task) {
 }
 
 Vec3 centre(const Solid& solid) {
+  const auto faces = triangles(solid);
+  const bool origin_inside = std::all_of(faces.begin(), faces.end(), [&](const auto& face) {
+    const Vec3& v = solid.vertices[face[0]];
+    return (solid.vertices[face[1]] - v).cross(solid.vertices[face[2]] - v).dot(v) > 0.0;
+  });
+  if (origin_inside) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   for (const Vec3& v : solid.vertices) sum += v;
   return sum / static_cast<double>(solid.vertices.size());

@@ -64,7 +64,7 @@ struct Task {
 /// one. Cost: milliseconds a question.
 [[nodiscard]] std::vector<Truth> exact_answers(const Task& task);
 
-/// [m] The mean of the vertices: a point inside.
+/// [m] A point inside: the origin where it is, else the mean of the vertices.
 [[nodiscard]] Vec3 centre(const Solid& solid);
 
 /// The outward triangles of a hull, for rivals that want faces; a box has none.

@@ -65,10 +65,12 @@ class Libccd {
     ccd_.epa_tolerance = tolerance;
     ccd_.mpr_tolerance = tolerance;
     ccd_.center1 = ccd_.center2 = place_centre;
+    std::vector<Vec3> centres;
+    for (const Solid& s : task.solids) centres.push_back(centre(s));
     for (const std::vector<Pose>& X_W : task.X_W) {
       auto& placed = bodies_.emplace_back();
       for (std::size_t i = 0; i < X_W.size(); ++i) {
-        placed.push_back({&task.solids[i], X_W[i], centre(task.solids[i])});
+        placed.push_back({&task.solids[i], X_W[i], centres[i]});
       }
     }
   }
