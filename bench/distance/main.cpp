@@ -3,12 +3,12 @@
 /// against exact answers before their time counts.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <map>
-#include <sstream>
+#include <stdexcept>
 
-#include "../main.hpp"
+#include "program.hpp"
 #include "table.hpp"
 
 namespace repel::bench {
@@ -35,13 +35,6 @@ struct Options {
   bool list = false;
   double seconds = 0.5;
 };
-
-std::vector<std::string> split(const std::string& names) {
-  std::vector<std::string> parts;
-  std::istringstream stream(names);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
 
 /// Throws std::invalid_argument for what is not known.
 Options parse(const std::vector<std::string>& arguments) {
@@ -71,54 +64,6 @@ Options parse(const std::vector<std::string>& arguments) {
   return options;
 }
 
-/// Throws std::invalid_argument for a name that is not among those known.
-void check_names(const char* what, const std::vector<std::string>& names,
-                 const std::vector<std::string>& known) {
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw std::invalid_argument("there is no " + std::string(what) + " " + name +
-                                  " here (see --list)");
-    }
-  }
-}
-
-bool is_chosen(const std::vector<std::string>& chosen, const std::string& name) {
-  return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
-}
-
-/// Progress goes to stderr and the table comes at the end; the file gets, of the repetitions of a
-/// measurement, the last, whose percentiles are over all.
-class Progress final : public benchmark::BenchmarkReporter {
- public:
-  explicit Progress(std::size_t count) : count_(static_cast<int>(count)) {}
-  bool ReportContext(const Context&) override { return true; }
-  void ReportRuns(const std::vector<Run>& runs) override {
-    if (runs.empty() || runs.back().run_type != Run::RT_Iteration) return;
-    failed_ = failed_ || runs.back().error_occurred;
-    if (runs.back().error_occurred) {
-      std::fprintf(stderr, "%s: %s\n", runs.back().benchmark_name().c_str(),
-                   runs.back().error_message.c_str());
-    }
-    std::fprintf(stderr, "\r%d of %d measured", ++measured_, count_);
-  }
-  void Finalize() override { std::fprintf(stderr, "\n"); }
-  [[nodiscard]] bool failed() const { return failed_; }
-
- private:
-  int count_;
-  int measured_ = 0;
-  bool failed_ = false;
-};
-
-class LastRepetition final : public benchmark::JSONReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    if (!runs.empty() && runs.back().run_type == Run::RT_Iteration) {
-      JSONReporter::ReportRuns({runs.back()});
-    }
-  }
-};
-
 class Suite {
  public:
   explicit Suite(Options options) : options_(std::move(options)) {}
@@ -143,9 +88,7 @@ class Suite {
   }
   /// True when one of our own answers is wrong.
   [[nodiscard]] bool is_wrong() const {
-    const auto wrong = [](const auto& m) {
-      return m->library().name == "repel" && m->verdict().wrong() > 0;
-    };
+    const auto wrong = [](const auto& m) { return m->library().ours && m->verdict().wrong() > 0; };
     return std::any_of(compared_.begin(), compared_.end(), wrong);
   }
 
@@ -162,7 +105,7 @@ class Suite {
 
   void add_comparison(const std::string& name, const Library& library) {
     const auto drawn = task(name);
-    if (!(drawn->task.overlap ? library.depths : library.gaps)) return;
+    if (!(drawn->task.overlap ? library.is_checked_in_overlap() : library.gaps)) return;
     for (const Start start : {Start::cold, Start::warm}) {
       const std::string title = name + (start == Start::warm ? "/warm/" : "/cold/") + library.name;
       add(compared_, title, library, drawn, start, library.tolerance);
@@ -180,12 +123,8 @@ class Suite {
            std::shared_ptr<CheckedTask> drawn, Start start, double tolerance) {
     Measurement& m = *list.emplace_back(
         std::make_unique<Measurement>(library, std::move(drawn), start, tolerance));
-    constexpr int repetitions = 10;
-    benchmark::RegisterBenchmark(title.c_str(), [&m](benchmark::State& state) { m.run(state); })
-        ->UseManualTime()
-        ->Unit(benchmark::kNanosecond)
-        ->Repetitions(repetitions)
-        ->MinTime((options_.quick ? 0.1 : 1.0) * options_.seconds / repetitions);
+    const double seconds = (options_.quick ? 0.1 : 1.0) * options_.seconds;
+    bench::enlist(title, seconds, [&m](benchmark::State& state) { m.run(state); });
   }
 
   Options options_;
@@ -203,55 +142,22 @@ void print_list() {
   std::printf("\n%s", REPEL_ABSENT_RIVALS);
 }
 
-int run(const Options& options, bool to_file) {
+int run(const std::vector<std::string>& arguments, bool to_file) {
+  const Options options = parse(arguments);
+  if (options.list) return print_list(), 0;
   Suite suite(options);
   std::fprintf(stderr, "drawing the tasks and computing their exact answers\n");
   suite.enlist();
-  Progress progress(suite.size());
-  LastRepetition file;
-  benchmark::RunSpecifiedBenchmarks(&progress, to_file ? &file : nullptr);
-  const Build build = this_build();
-  std::printf("%s; %s; %s; flags %s; commit %s\n\n%s", build.machine.c_str(),
-              build.compiler.c_str(), build.simd.c_str(), build.flags.c_str(), build.commit.c_str(),
-              suite.tables().c_str());
-  std::printf("\n%s", REPEL_ABSENT_RIVALS);
+  const bool ran = run_enlisted(suite.size(), to_file);
+  std::printf("%s\n\n%s\n%s", build_line().c_str(), suite.tables().c_str(), REPEL_ABSENT_RIVALS);
   if (suite.is_wrong()) std::fprintf(stderr, "an answer of repel is wrong\n");
-  return suite.is_wrong() || progress.failed() ? 1 : 0;
+  return suite.is_wrong() || !ran ? 1 : 0;
 }
 
 }  // namespace
 
-std::vector<Library>& libraries() {
-  static std::vector<Library> all;
-  return all;
-}
-
 }  // namespace repel::bench
 
 int main(int argc, char** argv) {
-  using namespace repel::bench;
-  bool to_file = false;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--help") == 0) return std::printf("%s", about) < 0 ? 1 : 0;
-    to_file = to_file || std::strcmp(argv[i], "--json") == 0;
-  }
-  auto& all = libraries();
-  std::sort(all.begin(), all.end(), [](const Library& a, const Library& b) {
-    return std::pair(a.name != "repel", a.name) < std::pair(b.name != "repel", b.name);
-  });
-  try {
-    std::vector<char*> arguments(argv, argv + argc);
-    // Whatever disturbs the machine meanwhile hits all libraries alike.
-    std::string interleaved = "--benchmark_enable_random_interleaving=true";
-    arguments.insert(arguments.begin() + 1, interleaved.data());
-    const Options options = parse(initialize(argc + 1, arguments.data()));
-    if (options.list) return print_list(), 0;
-    const int code = run(options, to_file);
-    std::fflush(nullptr);
-    // FCL and Coal each bring their own octomap, and the destructors of the two collide.
-    std::quick_exit(code);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
+  return repel::bench::start(argc, argv, repel::bench::about, repel::bench::run);
 }

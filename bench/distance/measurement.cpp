@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 
 namespace repel::bench {
 
@@ -31,37 +32,43 @@ double quantile(const std::vector<double>& sorted, double q) {
   return sorted[static_cast<std::size_t>(std::ceil(q * last))];
 }
 
-bool exceeds(double error, double limit) {
-  return !(error <= limit);  // true for NaN
-}
-
 }  // namespace
 
 void Measurement::check() {
   std::vector<double> relative;
   std::vector<double> share;
+  const bool claims_value = !task_->task.overlap || library_.exact_depths;
   if (start_ == Start::warm) rival_->run(task_->asks, start_);
   for (const Ask& ask : task_->asks) {
     const Truth& truth = task_->truth(ask);
     const Answer answer = rival_->answer(ask, start_);
     ++verdict_.asked;
+    if (!std::isfinite(answer.distance)) {
+      ++verdict_.missing;
+      ++verdict_.wrong_by_size;
+      ++verdict_.wrong_by_distance;
+      continue;
+    }
     // The truth itself is rounded to double.
     const double slack = 1e-15 * truth.size;
     const bool outside =
         answer.lower > truth.distance + slack || answer.upper < truth.distance - slack;
     verdict_.outside += outside ? 1 : 0;
     share.push_back(answer.distance / truth.distance);
-    if (task_->task.overlap && !library_.exact_depths) continue;
     const double error = std::abs(answer.distance - truth.distance);
     relative.push_back(error / std::abs(truth.distance));
-    verdict_.wrong_by_size += exceeds(error, 1e-6 * truth.size) ? 1 : 0;
-    verdict_.wrong_by_distance += exceeds(relative.back(), 1e-6) ? 1 : 0;
+    verdict_.too_deep += task_->task.overlap && library_.ours && share.back() > 1.0 + 1e-6 ? 1 : 0;
+    if (!claims_value) continue;
+    verdict_.wrong_by_size += error > 1e-6 * truth.size ? 1 : 0;
+    verdict_.wrong_by_distance += relative.back() > 1e-6 ? 1 : 0;
     verdict_.worst_error = std::max(verdict_.worst_error, error);
   }
   std::sort(relative.begin(), relative.end());
-  std::sort(share.begin(), share.end());
+  std::sort(share.begin(), share.end(), std::greater<>());
   verdict_.median_share = quantile(share, 0.5);
+  verdict_.low_share = quantile(share, 0.95);
   verdict_.median_relative = quantile(relative, 0.5);
+  verdict_.high_relative = quantile(relative, 0.95);
   verdict_.worst_relative = quantile(relative, 1.0);
 }
 
@@ -96,11 +103,15 @@ void Measurement::run(benchmark::State& state) {
   state.counters["asked"] = verdict_.asked;
   state.counters["wrong_by_size"] = verdict_.wrong_by_size;
   state.counters["wrong_by_distance"] = verdict_.wrong_by_distance;
+  state.counters["missing"] = verdict_.missing;
+  state.counters["too_deep"] = verdict_.too_deep;
   state.counters["outside_bracket"] = verdict_.outside;
   state.counters["worst_error_m"] = verdict_.worst_error;
   state.counters["worst_relative_error"] = verdict_.worst_relative;
   state.counters["median_relative_error"] = verdict_.median_relative;
+  state.counters["p95_relative_error"] = verdict_.high_relative;
   state.counters["median_share"] = verdict_.median_share;
+  state.counters["p5_share"] = verdict_.low_share;
   state.counters["tolerance"] = tolerance_;
 }
 

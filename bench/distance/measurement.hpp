@@ -28,14 +28,20 @@ struct Verdict {
   int asked = 0;
   int wrong_by_size = 0;        ///< off by more than 1e-6 of the larger solid
   int wrong_by_distance = 0;    ///< off by more than 1e-6 of the distance itself
+  int missing = 0;              ///< no finite answer: wrong in both ways
+  int too_deep = 0;             ///< ours, where it claims never to be deeper than the truth
   int outside = 0;              ///< the truth lies outside the bracket that was claimed
   double worst_error = 0.0;     ///< [m]
   double worst_relative = 0.0;  ///< error / |distance|
   double median_relative = 0.0;
-  double median_share = 0.0;  ///< of the exact distance, in what was answered
+  double high_relative = 0.0;  ///< only 5 % are larger
+  double median_share = 0.0;   ///< of the exact distance, in what was answered
+  double low_share = 0.0;      ///< only 5 % are smaller
 
   /// Answers that earn no time.
-  [[nodiscard]] int wrong() const { return std::max({wrong_by_size, wrong_by_distance, outside}); }
+  [[nodiscard]] int wrong() const {
+    return std::max({wrong_by_size, wrong_by_distance, outside, too_deep});
+  }
 };
 
 /// Percentiles of what one question costs, over batches of different questions [ns].

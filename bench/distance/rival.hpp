@@ -2,6 +2,7 @@
 /// What a library must offer to be measured, and the list of those that were built.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -24,6 +25,8 @@ struct Answer {
   /// [m] What is claimed about the true value; infinite where nothing is.
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
+  /// Unit, moving A along it takes A away from B; not finite where the library gives none.
+  Vec3 extraction_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
 /// One library with one task loaded: shapes and poses are in its own types.
@@ -46,9 +49,14 @@ struct Library {
   bool warms = true;       ///< keeps something from tick to tick; else warm is the same as cold
   bool gaps = true;        ///< answers pairs that are apart
   bool depths = true;      ///< answers pairs that overlap
-  /// True when the depth is exact by claim; else a bound, checked against its own bracket.
+  /// True when the depth is exact by claim; else ours is checked against its own bracket, and
+  /// those of others are not checked.
   bool exact_depths = true;
-  std::unique_ptr<Rival> (*load)(const Task&, double tolerance) = nullptr;
+  bool ours = false;
+  std::function<std::unique_ptr<Rival>(const Task&, double tolerance)> load;
+
+  /// Something is claimed about depths that the exact ones can disprove.
+  [[nodiscard]] bool is_checked_in_overlap() const { return depths && (exact_depths || ours); }
 };
 
 /// All libraries of this build, ours first, then by name.
@@ -64,7 +72,8 @@ struct Enlisted {
 template <class Engine>
 class Adapter final : public Rival {
  public:
-  Adapter(const Task& task, double tolerance) : engine_(task, tolerance) {}
+  template <class... Settings>
+  explicit Adapter(const Task& task, const Settings&... settings) : engine_(task, settings...) {}
 
   void run(std::span<const Ask> asks, Start start) override {
     if (start == Start::warm) {

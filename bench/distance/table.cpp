@@ -1,21 +1,12 @@
 #include "table.hpp"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
+
+#include "markdown.hpp"
 
 namespace repel::bench {
 
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
-  char buffer[1024];
-  va_list values;
-  va_start(values, format);
-  std::vsnprintf(buffer, sizeof buffer, format, values);
-  va_end(values);
-  return buffer;
-}
 
 const char* to_text(Start start) {
   return start == Start::warm ? "warm" : "cold";
@@ -45,17 +36,6 @@ const Measurement* find(const Measurements& all, const std::string& task, Start 
     }
   }
   return nullptr;
-}
-
-/// The first column is words; so are the others where `numbers` is false.
-std::string heading(const std::vector<std::string>& columns, bool numbers = true) {
-  std::string line = "|";
-  std::string rule = "|";
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    line += text(" %s |", columns[i].c_str());
-    rule += i > 0 && numbers ? "---:|" : "---|";
-  }
-  return line + "\n" + rule + "\n";
 }
 
 /// The median, or, where answers are wrong, how many are: such a time is not earned.

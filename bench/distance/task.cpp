@@ -28,12 +28,6 @@ Solid in_floats(Solid s) {
   return s;
 }
 
-/// 0 vertices ask for a box, else a hull of that many points on a sphere; about 1 m large.
-Solid draw_solid(Rng& rng, int vertices) {
-  if (vertices == 0) return families::random_box(rng, 0.1, 0.5);
-  return in_floats(families::cloud(rng, vertices, 0.5));
-}
-
 Pose random_pose(Rng& rng, double low, double high) {
   Pose X = Pose::Identity();
   X.linear() = families::rotation(rng);
@@ -92,24 +86,6 @@ Task family_task(const std::string& family, int count) {
   return apart_task(count, 200, 5e-5, [=](Rng& rng) {
     return families::draw_apart(family, rng, families::log_uniform(rng, 1e-4, 1.0));
   });
-}
-
-/// Pairs that overlap by a millimetre or more.
-Task overlap_task(int vertices, int count) {
-  Task task;
-  task.overlap = true;
-  Rng rng(300 + vertices);
-  while (static_cast<int>(task.pairs.size()) < count) {
-    families::Pair p;
-    p.A = draw_solid(rng, vertices);
-    p.B = draw_solid(rng, vertices);
-    p.X_WA.linear() = families::rotation(rng);
-    p.X_WB = random_pose(rng, 0.1, 0.9);
-    const auto depth = [&](const Pose& X_WB) { return exact_depth(p.A, p.X_WA, p.B, X_WB); };
-    if (!(depth(p.X_WB) > 1e-3)) continue;
-    add_pair(task, rng, p, [&](const Pose& X_WB) { return depth(X_WB) > 1e-4; });
-  }
-  return task;
 }
 
 /// True when every pair of the task is apart with its tool and obstacles at these poses.
@@ -219,6 +195,28 @@ const std::vector<std::pair<std::string, Draw>>& recipes() {
 
 }  // namespace
 
+Solid draw_solid(Rng& rng, int vertices) {
+  if (vertices == 0) return families::random_box(rng, 0.1, 0.5);
+  return in_floats(families::cloud(rng, vertices, 0.5));
+}
+
+Task overlap_task(int vertices, int count) {
+  Task task;
+  task.overlap = true;
+  Rng rng(300 + vertices);
+  while (static_cast<int>(task.pairs.size()) < count) {
+    families::Pair p;
+    p.A = draw_solid(rng, vertices);
+    p.B = draw_solid(rng, vertices);
+    p.X_WA.linear() = families::rotation(rng);
+    p.X_WB = random_pose(rng, 0.1, 0.9);
+    const auto depth = [&](const Pose& X_WB) { return exact_depth(p.A, p.X_WA, p.B, X_WB); };
+    if (!(depth(p.X_WB) > 1e-3)) continue;
+    add_pair(task, rng, p, [&](const Pose& X_WB) { return depth(X_WB) > 1e-4; });
+  }
+  return task;
+}
+
 std::vector<Ask> Task::asks() const {
   std::vector<Ask> all;
   const auto visit = [&](std::size_t tick) {
@@ -263,6 +261,18 @@ std::vector<Truth> exact_answers(const Task& task) {
     }
   }
   return answers;
+}
+
+Vec3 centre(const Solid& solid) {
+  const auto faces = triangles(solid);
+  const bool origin_inside = std::all_of(faces.begin(), faces.end(), [&](const auto& face) {
+    const Vec3& v = solid.vertices[face[0]];
+    return (solid.vertices[face[1]] - v).cross(solid.vertices[face[2]] - v).dot(v) > 0.0;
+  });
+  if (origin_inside) return Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& v : solid.vertices) sum += v;
+  return sum / static_cast<double>(solid.vertices.size());
 }
 
 std::vector<std::array<int, 3>> triangles(const Solid& solid) {

@@ -53,9 +53,19 @@ struct Task {
 /// Throws std::invalid_argument for a name that is not in task_names().
 [[nodiscard]] Task make_task(std::string_view name, bool quick);
 
+/// A box of 0.2 m to 1 m, or, where `vertices` is not 0, the hull of so many points on a sphere
+/// 1 m across.
+[[nodiscard]] Solid draw_solid(families::Rng& rng, int vertices);
+
+/// `count` pairs of such solids at random poses that overlap by a millimetre or more.
+[[nodiscard]] Task overlap_task(int vertices, int count);
+
 /// The exact answers, [tick * pairs + pair]. Throws std::runtime_error when 113 bits cannot prove
 /// one. Cost: milliseconds a question.
 [[nodiscard]] std::vector<Truth> exact_answers(const Task& task);
+
+/// [m] A point inside: the origin where it is, else the mean of the vertices.
+[[nodiscard]] Vec3 centre(const Solid& solid);
 
 /// The outward triangles of a hull, for rivals that want faces; a box has none.
 [[nodiscard]] std::vector<std::array<int, 3>> triangles(const Solid& solid);

@@ -5,6 +5,8 @@
 #include <BulletCollision/NarrowPhaseCollision/btPointCollector.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
+#include <cmath>
+
 #include "rival.hpp"
 
 namespace repel::bench {
@@ -41,7 +43,11 @@ class Bullet {
     return closest;
   }
   btPointCollector warm(const Ask& ask) { return cold(ask); }
-  static Answer read(const btPointCollector& closest) { return {.distance = closest.m_distance}; }
+  static Answer read(const btPointCollector& closest) {
+    if (!closest.m_hasResult) return {.distance = std::nan("")};
+    const btVector3& n = closest.m_normalOnBInWorld;
+    return {.distance = closest.m_distance, .extraction_W = {n.x(), n.y(), n.z()}};
+  }
 
  private:
   static std::unique_ptr<btConvexShape> shape(const Solid& s) {

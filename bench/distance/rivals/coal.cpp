@@ -41,7 +41,9 @@ class Coal {
     guess.hint = solver_.support_func_cached_guess;
     return result;
   }
-  static Answer read(const Result& r) { return {.distance = r.distance}; }
+  static Answer read(const Result& r) {
+    return {.distance = r.distance, .extraction_W = -r.n_AB_W};
+  }
 
  private:
   /// What a pair keeps from tick to tick.

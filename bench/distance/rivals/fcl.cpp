@@ -35,7 +35,10 @@ class Fcl {
     return query<fcl::Convexd, fcl::Convexd>(a, X_W[ia], b, X_W[ib]);
   }
   Result warm(const Ask& ask) { return cold(ask); }
-  static Answer read(const Result& r) { return {.distance = r.distance}; }
+  static Answer read(const Result& r) {
+    const Vec3 v = r.distance < 0.0 ? Vec3(r.p_WB - r.p_WA) : Vec3(r.p_WA - r.p_WB);
+    return {.distance = r.distance, .extraction_W = v / v.norm()};
+  }
 
  private:
   static std::shared_ptr<fcl::ShapeBased> shape(const Solid& s) {

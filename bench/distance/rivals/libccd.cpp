@@ -12,6 +12,7 @@ namespace {
 struct Body {
   const Solid* solid = nullptr;
   Pose X_W = Pose::Identity();
+  Vec3 centre = Vec3::Zero();
 };
 
 ccd_vec3_t to_ccd(const Vec3& v) {
@@ -39,6 +40,16 @@ void support(const void* object, const ccd_vec3_t* direction_W, ccd_vec3_t* fart
   *farthest_W = to_ccd(body.X_W * best);
 }
 
+/// A point inside the body, where MPR begins.
+void place_centre(const void* object, ccd_vec3_t* centre_W) {
+  const Body& body = *static_cast<const Body*>(object);
+  *centre_W = to_ccd(body.X_W * body.centre);
+}
+
+using Method = int (*)(const void*, const void*, const ccd_t*, ccd_real_t* depth, ccd_vec3_t* dir,
+                       ccd_vec3_t* pos);
+
+template <Method penetration>
 class Libccd {
  public:
   struct Result {
@@ -52,9 +63,15 @@ class Libccd {
     ccd_.support1 = ccd_.support2 = support;
     ccd_.max_iterations = 1000;
     ccd_.epa_tolerance = tolerance;
+    ccd_.mpr_tolerance = tolerance;
+    ccd_.center1 = ccd_.center2 = place_centre;
+    std::vector<Vec3> centres;
+    for (const Solid& s : task.solids) centres.push_back(centre(s));
     for (const std::vector<Pose>& X_W : task.X_W) {
       auto& placed = bodies_.emplace_back();
-      for (std::size_t i = 0; i < X_W.size(); ++i) placed.push_back({&task.solids[i], X_W[i]});
+      for (std::size_t i = 0; i < X_W.size(); ++i) {
+        placed.push_back({&task.solids[i], X_W[i], centres[i]});
+      }
     }
   }
 
@@ -62,12 +79,14 @@ class Libccd {
     const auto& [a, b] = task_.pairs[ask.pair];
     const std::vector<Body>& bodies = bodies_[ask.tick];
     Result r{};
-    r.apart = ccdGJKPenetration(&bodies[a], &bodies[b], &ccd_, &r.depth, &r.direction_W, &r.p_W);
+    r.apart = penetration(&bodies[a], &bodies[b], &ccd_, &r.depth, &r.direction_W, &r.p_W);
     return r;
   }
   Result warm(const Ask& ask) { return cold(ask); }
   static Answer read(const Result& r) {
-    return {.distance = r.apart == 0 ? -r.depth : std::nan("")};
+    if (r.apart != 0) return {.distance = std::nan("")};
+    const ccd_real_t* out_of_a = r.direction_W.v;  // where B would have to go
+    return {.distance = -r.depth, .extraction_W = -Vec3(out_of_a[0], out_of_a[1], out_of_a[2])};
   }
 
  private:
@@ -86,7 +105,19 @@ const Enlisted enlisted({
     .sweeps = false,
     .warms = false,
     .gaps = false,
-    .load = Adapter<Libccd>::load,
+    .load = Adapter<Libccd<ccdGJKPenetration>>::load,
+});
+
+const Enlisted with_portals({
+    .name = "libccd_mpr",
+    .version = "2.1",
+    .settings = "ccdMPRPenetration, set as libccd; fast, and not meant to be exact",
+    .tolerance = 1e-8,
+    .sweeps = false,
+    .warms = false,
+    .gaps = false,
+    .exact_depths = false,
+    .load = Adapter<Libccd<ccdMPRPenetration>>::load,
 });
 
 }  // namespace

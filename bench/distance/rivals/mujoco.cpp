@@ -1,6 +1,7 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "rival.hpp"
@@ -43,7 +44,10 @@ class MuJoCo {
     return r;
   }
   Result warm(const Ask& ask) { return cold(ask); }
-  static Answer read(const Result& r) { return {.distance = r.distance}; }
+  static Answer read(const Result& r) {
+    const Vec3 v = Eigen::Map<const Vec3>(r.p_WA_p_WB + 3) - Eigen::Map<const Vec3>(r.p_WA_p_WB);
+    return {.distance = r.distance, .extraction_W = v / std::copysign(v.norm(), -r.distance)};
+  }
 
  private:
   static constexpr double far = 1e6;  ///< [m] beyond every gap of the tasks

@@ -9,17 +9,23 @@ namespace repel::bench {
 
 namespace {
 
-/// The planes, points and polygons a convex geom of ODE points to.
+/// The planes, points and polygons a convex geom of ODE points to, around a point inside, as it
+/// wants them.
 struct Mesh {
+  Vec3 origin;
   std::vector<dReal> planes, points;
   std::vector<unsigned> polygons;
 
-  explicit Mesh(const Solid& s) {
-    for (const Vec3& v : s.vertices) points.insert(points.end(), v.data(), v.data() + 3);
+  explicit Mesh(const Solid& s) : origin(centre(s)) {
+    for (const Vec3& v : s.vertices) {
+      const Vec3 p = v - origin;
+      points.insert(points.end(), p.data(), p.data() + 3);
+    }
+    if (s.box) return;
     for (const auto& [i, j, k] : triangles(s)) {
       const Vec3& v = s.vertices[i];
       const Vec3 n = (s.vertices[j] - v).cross(s.vertices[k] - v).normalized();
-      planes.insert(planes.end(), {n.x(), n.y(), n.z(), n.dot(v)});
+      planes.insert(planes.end(), {n.x(), n.y(), n.z(), n.dot(v - origin)});
       polygons.insert(polygons.end(), {3U, unsigned(i), unsigned(j), unsigned(k)});
     }
   }
@@ -37,7 +43,7 @@ class Ode {
     static const int started = dInitODE2(0);
     (void)started;
     meshes_.reserve(task.solids.size());
-    for (const Solid& s : task.solids) meshes_.emplace_back(s.box ? Solid{} : s);
+    for (const Solid& s : task.solids) meshes_.emplace_back(s);
     for (const std::vector<Pose>& X_W : task.X_W) {
       auto& placed = geoms_.emplace_back();
       for (std::size_t i = 0; i < X_W.size(); ++i) placed.push_back(geom(i, X_W[i]));
@@ -54,9 +60,11 @@ class Ode {
   Result warm(const Ask& ask) { return cold(ask); }
   static Answer read(const Result& r) {
     if (r.count == 0) return {.distance = std::nan("")};
-    double depth = 0.0;
-    for (int i = 0; i < r.count; ++i) depth = std::max(depth, r.contacts[i].depth);
-    return {.distance = -depth};
+    const auto* deepest =
+        std::max_element(r.contacts.begin(), r.contacts.begin() + r.count,
+                         [](const auto& a, const auto& b) { return a.depth < b.depth; });
+    const dReal* n = deepest->normal;  // into the first geom
+    return {.distance = -deepest->depth, .extraction_W = {n[0], n[1], n[2]}};
   }
 
  private:
@@ -80,7 +88,8 @@ class Ode {
       for (int column = 0; column < 3; ++column) R[4 * row + column] = X.linear()(row, column);
     }
     dGeomSetRotation(made.get(), R);
-    dGeomSetPosition(made.get(), X.translation().x(), X.translation().y(), X.translation().z());
+    const Vec3 p = X * (s.box ? Vec3::Zero() : mesh.origin);
+    dGeomSetPosition(made.get(), p.x(), p.y(), p.z());
     return made;
   }
 

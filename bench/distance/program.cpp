@@ -1,0 +1,126 @@
+#include "program.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+
+#include "../main.hpp"
+#include "rival.hpp"
+
+namespace repel::bench {
+
+namespace {
+
+/// Progress goes to stderr and the table comes at the end; the file gets, of the repetitions of a
+/// measurement, the last, whose percentiles are over all.
+class Progress final : public benchmark::BenchmarkReporter {
+ public:
+  explicit Progress(std::size_t count) : count_(static_cast<int>(count)) {}
+  bool ReportContext(const Context&) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override {
+    if (runs.empty() || runs.back().run_type != Run::RT_Iteration) return;
+    failed_ = failed_ || runs.back().error_occurred;
+    if (runs.back().error_occurred) {
+      std::fprintf(stderr, "%s: %s\n", runs.back().benchmark_name().c_str(),
+                   runs.back().error_message.c_str());
+    }
+    std::fprintf(stderr, "\r%d of %d measured", ++measured_, count_);
+  }
+  void Finalize() override { std::fprintf(stderr, "\n"); }
+  [[nodiscard]] bool failed() const { return failed_; }
+
+ private:
+  int count_;
+  int measured_ = 0;
+  bool failed_ = false;
+};
+
+class LastRepetition final : public benchmark::JSONReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    if (!runs.empty() && runs.back().run_type == Run::RT_Iteration) {
+      JSONReporter::ReportRuns({runs.back()});
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> split(const std::string& names) {
+  std::vector<std::string> parts;
+  std::istringstream stream(names);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+bool is_chosen(const std::vector<std::string>& chosen, const std::string& name) {
+  return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+}
+
+void check_names(const char* what, const std::vector<std::string>& names,
+                 const std::vector<std::string>& known) {
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw std::invalid_argument("there is no " + std::string(what) + " " + name +
+                                  " here (see --list)");
+    }
+  }
+}
+
+void enlist(const std::string& title, double seconds,
+            const std::function<void(benchmark::State&)>& run) {
+  constexpr int repetitions = 10;
+  benchmark::RegisterBenchmark(title.c_str(), run)
+      ->UseManualTime()
+      ->Unit(benchmark::kNanosecond)
+      ->Repetitions(repetitions)
+      ->MinTime(seconds / repetitions);
+}
+
+bool run_enlisted(std::size_t count, bool to_file) {
+  Progress progress(count);
+  LastRepetition file;
+  benchmark::RunSpecifiedBenchmarks(&progress, to_file ? &file : nullptr);
+  return !progress.failed();
+}
+
+std::string build_line() {
+  const Build build = this_build();
+  return build.machine + "; " + build.compiler + "; " + build.simd + "; flags " + build.flags +
+         "; commit " + build.commit;
+}
+
+int start(int argc, char** argv, const char* about,
+          int (*run)(const std::vector<std::string>& arguments, bool to_file)) {
+  bool to_file = false;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help") == 0) return std::printf("%s", about) < 0 ? 1 : 0;
+    to_file = to_file || std::strcmp(argv[i], "--json") == 0;
+  }
+  std::stable_sort(libraries().begin(), libraries().end(), [](const auto& a, const auto& b) {
+    return a.ours != b.ours ? a.ours : !a.ours && a.name < b.name;
+  });
+  try {
+    std::vector<char*> arguments(argv, argv + argc);
+    // Whatever disturbs the machine meanwhile hits all libraries alike.
+    std::string interleaved = "--benchmark_enable_random_interleaving=true";
+    arguments.insert(arguments.begin() + 1, interleaved.data());
+    const int code = run(initialize(argc + 1, arguments.data()), to_file);
+    std::fflush(nullptr);
+    // FCL and Coal each bring their own octomap, and the destructors of the two collide.
+    std::quick_exit(code);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
+
+std::vector<Library>& libraries() {
+  static std::vector<Library> all;
+  return all;
+}
+
+}  // namespace repel::bench

@@ -1,0 +1,46 @@
+/// @file
+/// Ours, as it is measured.
+#pragma once
+
+#include <repel/repel.hpp>
+
+#include "rival.hpp"
+
+namespace repel::bench {
+
+/// Every answer is exactly one call of `separation`.
+class Repel {
+ public:
+  Repel(const Task& task, const QueryOptions& options, const ReductionOptions& reduction)
+      : task_(task), options_(options), warm_(task.pairs.size()) {
+    for (const Solid& s : task.solids) {
+      shapes_.push_back(s.box ? Shape::box(s.half_extents, reduction)
+                              : Shape::hull(s.vertices, levels(s, reduction)));
+    }
+  }
+
+  Separation cold(const Ask& ask) noexcept {
+    const auto& [a, b] = task_.pairs[ask.pair];
+    const std::vector<Pose>& X_W = task_.X_W[ask.tick];
+    return separation(shapes_[a], X_W[a], shapes_[b], X_W[b], options_);
+  }
+  Separation warm(const Ask& ask) noexcept {
+    const auto& [a, b] = task_.pairs[ask.pair];
+    const std::vector<Pose>& X_W = task_.X_W[ask.tick];
+    return separation(shapes_[a], X_W[a], shapes_[b], X_W[b], options_, warm_[ask.pair]);
+  }
+  static Answer read(const Separation& s) { return {s.distance, s.lower, s.upper, s.extraction_W}; }
+
+ private:
+  // Levels are for overlap: large hulls are asked about gaps only, and load faster with one.
+  static ReductionOptions levels(const Solid& s, const ReductionOptions& reduction) {
+    return s.vertices.size() > 64 ? ReductionOptions{.levels = 1} : reduction;
+  }
+
+  const Task& task_;
+  QueryOptions options_;
+  std::vector<Shape> shapes_;
+  std::vector<WarmStart> warm_;
+};
+
+}  // namespace repel::bench
