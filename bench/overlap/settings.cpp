@@ -29,6 +29,7 @@ const bool added = [] {
     add("reduction " + std::to_string(levels), Measure::reduction, levels, false);
   }
   add("deepest point", Measure::deepest_point, ReductionOptions{}.levels, false);
+  add("exact", Measure::exact, ReductionOptions{}.levels, true);
   return true;
 }();
 
