@@ -47,7 +47,7 @@ TEST(PlaneBasis, ExchangesUntilNothingIsViolated) {
   for (; exchanges < 30; ++exchanges) {
     const PlaneBasis::Entry entry = basis.most_violated();
     if (!(entry.violation > 1e-15)) break;
-    ASSERT_TRUE(basis.exchange(entry));
+    ASSERT_TRUE(basis.exchange(entry, 1e-9));
     ASSERT_TRUE(basis.weigh());
     EXPECT_GE(basis.least_multiplier(), -1e-12);
     const double now = basis.side(0).level + basis.side(1).level;

@@ -19,8 +19,10 @@ namespace repel {
 class Planes {
  public:
   Planes() = default;
-  explicit Planes(std::span<const Facet> facets)
-      : size_(facets.size()),
+  /// @param margin [m] how far outside the polytope a point below all planes can lie, by rounding
+  explicit Planes(std::span<const Facet> facets, double margin = 0.0)
+      : margin_(margin),
+        size_(facets.size()),
         stride_((facets.size() + lanes - 1) / lanes * lanes),
         numbers_(4 * stride_) {
     for (std::size_t i = 0; i < stride_; ++i) {
@@ -42,6 +44,7 @@ class Planes {
   }
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] double margin() const noexcept { return margin_; }
   [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(size_); }
 
   /// Unit, outward; `i` less than size().
@@ -68,6 +71,7 @@ class Planes {
     return some;
   }
 
+  double margin_ = 0.0;
   std::size_t size_ = 0;
   std::size_t stride_ = 0;
   std::vector<double> numbers_;

@@ -25,7 +25,8 @@ namespace repel::detail {
 /// goes out. A basis that was best at the last tick is mostly the best again.
 class DeepestPoint {
  public:
-  static constexpr int cap = 64;  ///< pivots, if no fewer are allowed
+  static constexpr int cap = 64;  ///< pivots of one attempt, of which there are at most three
+  static constexpr int most_pivots = 3 * cap;
 
   DeepestPoint(const PosedPlanes& A, const PosedPlanes& B) noexcept
       : basis_(A, B),
@@ -34,18 +35,21 @@ class DeepestPoint {
   /// Begins with the basis in `warm` where it has one that still holds, and leaves the last one
   /// there. False when the polytopes have no common point deeper than rounding, or none was found.
   [[nodiscard, gnu::flatten, gnu::noinline]] bool solve(WarmStart& warm,
-                                                        int most_pivots = cap) noexcept {
-    bool kept = load(warm) && basis_.weigh() && basis_.least_multiplier() >= -1e-9;
-    if (!kept) begin();
-    if (!kept && !basis_.weigh()) return false;
-    for (pivots_ = 0; pivots_ < std::min(cap, most_pivots); ++pivots_) {
-      const PlaneBasis::Entry entry = basis_.most_violated();
-      if (!(entry.violation > enough()) || basis_.holds(entry)) break;
-      if (!basis_.exchange(entry) || !basis_.weigh()) break;
-      kept = false;
+                                                        int allowed = most_pivots) noexcept {
+    pivots_ = 0;
+    if (load(warm) && basis_.weigh() && basis_.least_multiplier() >= -1e-9 &&
+        improve(1e-9, allowed)) {
+      if (pivots_ > 0) save(warm);
+      return true;
     }
-    if (!kept) save(warm);
-    return is_best();
+    // Planes that are nearly parallel can bar the way to one choice of pivots and not to another.
+    for (const double least_share : {1e-9, 1e-7}) {
+      begin();
+      if (!basis_.weigh() || !improve(least_share, allowed)) continue;
+      save(warm);
+      return true;
+    }
+    return false;
   }
 
   /// The depth of the point below the surface of A (0) or B (1) [m].
@@ -65,13 +69,27 @@ class DeepestPoint {
   [[nodiscard]] int pivots() const noexcept { return pivots_; }
 
  private:
+  /// Exchanges planes until none is violated; whether the point is the deepest then.
+  bool improve(double least_share, int allowed) noexcept {
+    const int begun = pivots_;
+    for (; pivots_ < allowed; ++pivots_) {
+      const PlaneBasis::Entry entry = basis_.most_violated();
+      const int pivots = pivots_ - begun;
+      if (!(entry.violation > enough(pivots)) || basis_.holds(entry) || pivots == cap ||
+          !basis_.exchange(entry, least_share) || !basis_.weigh()) {
+        return is_best();
+      }
+    }
+    return false;
+  }
+
   static constexpr std::uint32_t side_bit = 0x80000000U;  ///< of a name in a warm start: B
   static constexpr std::size_t basis_size = 5;
 
   /// [m] Planes that are nearly parallel say less well where x is than how deep it is: in the end a
   /// small violation is let pass. It is no error of the depth, which is measured at x.
-  [[nodiscard]] double enough() const noexcept {
-    return (pivots_ < 24 ? 1.0 : pivots_ < 40 ? 256.0 : 65536.0) * tolerance_;
+  [[nodiscard]] double enough(int pivots) const noexcept {
+    return (pivots < 24 ? 1.0 : pivots < 40 ? 256.0 : 65536.0) * tolerance_;
   }
   /// The depths at x are as large, to 2e-8 of the size, as the basis says they can be at most.
   [[nodiscard]] bool is_best() const noexcept {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <repel/geometry/facets.hpp>
+#include <repel/geometry/planes.hpp>
 #include <repel/geometry/vertex_scan.hpp>
 #include <repel/reduction/ladder.hpp>
 
@@ -147,6 +148,18 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<
     append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
   }
   return ladder;
+}
+
+/// The planes of the hull of `points` with these facets. Planes that are off by d hold no more than
+/// the hull scaled up by d / r about the centre of a ball of radius r in it: in the tip of a sliver
+/// that is far from the hull.
+inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>& facets) {
+  if (facets.empty()) return Planes();
+  double reach = 0.0;
+  for (const Vec3& p : points) reach = std::max(reach, p.norm());
+  const double radius = depth_in(facets, deep_point(facets, points));
+  const double off = 4e-15 * reach;
+  return Planes(facets, radius > off ? off * (1.0 + 2.0 * reach / radius) : 2.0 * reach);
 }
 
 inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {

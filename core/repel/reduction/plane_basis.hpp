@@ -142,7 +142,8 @@ class PlaneBasis {
 
   /// Takes the entry into the basis for the constraint whose multiplier falls to zero first. False
   /// when none falls: the polytopes have no common point.
-  bool exchange(const Entry& entry) noexcept {
+  /// @param least_share what falls slower than this does not count, being nearly parallel
+  bool exchange(const Entry& entry, double least_share) noexcept {
     Side& into = sides_[entry.side];
     const bool is_plane = entry.name != not_negative;
     const Row entering = is_plane ? row(into, entry.name) : Row{Vec<double>(), 0.0, entry.name};
@@ -153,11 +154,11 @@ class PlaneBasis {
     // is the least parallel to the others (Harris 1973).
     double least = std::numeric_limits<double>::infinity();
     for_each_of_basis([&](Side&, int, double multiplier, double share) {
-      if (share > 1e-9) least = std::min(least, (std::max(multiplier, 0.0) + 1e-10) / share);
+      if (share > least_share) least = std::min(least, (std::max(multiplier, 0.0) + 1e-10) / share);
     });
     Side* from = nullptr;
     int leaving = 0;
-    double fastest = 1e-9;
+    double fastest = least_share;
     for_each_of_basis([&](Side& side, int i, double multiplier, double share) {
       if (!(share > fastest) || std::max(multiplier, 0.0) / share > least) return;
       fastest = share;

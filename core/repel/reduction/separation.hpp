@@ -70,8 +70,11 @@ namespace detail {
   const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
   if (!deepest.solve(warm, most_pivots)) return false;
-  const double depth_a = std::max(0.0, deepest.depth(0)) + a.depth;
-  const double depth_b = std::max(0.0, deepest.depth(1)) + b.depth;
+  // What a shape may lack in its tips of what its planes hold is no depth.
+  const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
+  const double sure = std::max(0.0, found - A.planes().margin() - B.planes().margin()) / found;
+  const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
+  const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
   const Vec<double> g = deepest.gradient();
   const double length = std::sqrt(dot(g, g));
@@ -163,10 +166,13 @@ namespace detail {
     return s;
   }
   s = walk.run(&gap);
-  // The levels stand in for a measure that could not be finished.
+  // The levels stand in for a measure that was not finished: for want of iterations, or else where
+  // they find a depth that is more than rounding.
   const double depth_of_cores = s.distance + a.depth + b.depth;
-  const bool deep = meets && depth_of_cores < -1e-13 * (A.reach() + B.reach());
-  if (deep && !is_by_levels(A, B, options) && s.end == QueryEnd::converged) {
+  const bool deep = depth_of_cores < -1e-13 * (A.reach() + B.reach());
+  const bool spent_early = options.iterations - gap.iterations < DeepestPoint::most_pivots;
+  if (meets && (deep || spent_early) && !is_by_levels(A, B, options) &&
+      s.end == QueryEnd::converged) {
     s.end = QueryEnd::budget_spent;
   }
   return s;

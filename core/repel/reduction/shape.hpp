@@ -65,7 +65,8 @@ class Shape {
       for (int axis = 0; axis < 3; ++axis) checked("coordinate", p[axis], -largest, largest, "m");
     }
     const std::vector<Facet> facets = hull_facets(points);
-    return Shape(detail::hull_ladder(points, levels_of(options), facets), Planes(facets));
+    return Shape(detail::hull_ladder(points, levels_of(options), facets),
+                 detail::hull_planes(points, facets));
   }
 
   [[nodiscard]] int levels() const noexcept { return static_cast<int>(data_->ladder.size()); }
