@@ -327,5 +327,51 @@ TEST(DeepestPoint, AnyContentOfAWarmStartIsSafe) {
   }
 }
 
+// The plane violated most, by rounding alone, was one that held already: exchanged with itself
+// until the pivots ran out, it left the answer to the levels, at 0.284 m.
+TEST(DeepestPoint, APlaneThatHoldsDoesNotEnterAgain) {
+  const Shape A = Shape::box({0x1.5c1c8e5fdddddp-3, 0x1.bc38fbfc8eb97p-3, 0x1.1bd1be26a8918p-2});
+  const Shape B = Shape::box({0x1.10aba620079eap-3, 0x1.d54f612a6f202p-2, 0x1.d36c277c5a87p-4});
+  Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
+  X_WA.linear() << 0x1.5638a33907bdbp-1, 0x1.d52cb8a8e55c5p-3, 0x1.6a502a6c67f7dp-1,
+      -0x1.55c8b9872a19p-2, -0x1.8403628b6314cp-1, 0x1.1f076cdfc8ae5p-1, 0x1.54547d334e18fp-1,
+      -0x1.38c7ed77eac69p-1, -0x1.b865cfaa9441cp-2;
+  X_WB.linear() << 0x1.78cc6b221921dp-1, 0x1.593a9900b502p-1, -0x1.f5df6cec2d798p-5,
+      0x1.55c2772eb336cp-3, -0x1.7cb82170739ap-4, 0x1.f692963681f9dp-1, 0x1.4ff4ea626b33p-1,
+      -0x1.77184d9317105p-1, -0x1.728843426c4ap-3;
+  X_WB.translation() = Vec3(0x1.0712754a48348p-4, -0x1.d72549d7909efp-5, -0x1.1c4f60373cbbp-4);
+  WarmStart warm;
+  const Separation s = separation(A, X_WA, B, X_WB, by_deepest_point, warm);
+  EXPECT_EQ(s.end, QueryEnd::converged);
+  EXPECT_EQ(warm.level_a, WarmStart::deepest_point);
+  EXPECT_LE(s.iterations, 60);
+}
+
+// The plane of a face of this sliver leaves its tip by a multiple of rounding: below all planes is
+// not yet inside, and the depth came out deeper than the way out is long.
+TEST(DeepestPoint, InTheTipOfASliverIsNoDeeperThanTheWayOut) {
+  const std::vector<Vec3> corners{
+      {-0x1.9599f1ae36a33p-1, 0x1.050df068e691ep+2, -0x1.26c72d8604b02p-1},
+      {-0x1.eaad5718590e4p+0, -0x1.45d5233b56324p+1, 0x1.5d37a2ca6598fp+1},
+      {0x1.c1467376755f1p-1, 0x1.f5baa33a39374p+1, -0x1.3599a05b7a1ccp+0},
+      {-0x1.ed464c1870123p+0, -0x1.2d92f08d21a9fp+1, 0x1.718139a7fb78ap+1}};
+  const Shape sliver = Shape::hull(corners);
+  const Shape box = Shape::box({0x1.1e1e5fa943e14p+0, 0x1.18b8e2a122ba4p-1, 0x1.44252887ea06cp-1});
+  Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
+  X_WA.linear() << -0x1.aaacfee2b32e8p-1, -0x1.9c215639f05e7p-2, 0x1.83f6b66ed7c16p-2,
+      -0x1.04da3694ae5a3p-1, 0x1.a678619203f32p-1, -0x1.f3e71d75da128p-3, -0x1.b70cdd18afb59p-3,
+      -0x1.95f4bc0d9f3c2p-2, -0x1.c90d31e53621cp-1;
+  X_WB.linear() << 0x1.505b53c150f9cp-1, -0x1.38d5f375b8487p-1, -0x1.c44aa9c5664b7p-2,
+      0x1.9bee544202ecep-2, -0x1.b0f7beb5b731p-3, 0x1.c8139ea57606dp-1, -0x1.4679c4ebf6392p-1,
+      -0x1.8697584f85b79p-1, 0x1.b5e5d773d8408p-4;
+  X_WB.translation() = Vec3(-0x1.05dddaa6ecea1p+2, 0x1.88e2bd9884c5dp+1, -0x1.40310feec3acp-2);
+  const double depth = 0.0030242285565812753;
+  const Separation s = separation(sliver, X_WA, box, X_WB, by_deepest_point);
+  EXPECT_GE(s.distance, -depth);
+  EXPECT_LE(s.distance, -0.99 * depth);
+  EXPECT_LE(s.lower, -depth);
+  EXPECT_GE(s.upper, -depth);
+}
+
 }  // namespace
 }  // namespace repel
