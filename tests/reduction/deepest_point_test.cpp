@@ -176,7 +176,7 @@ TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
     const Posed pair = random_pair(rng);
     // Contact, too shallow for a deepest point, leaves such a warm start.
     WarmStart warm;
-    (void)separation(pair.A, pair.X_WA, pair.B, pair.X_WB, {}, warm);
+    (void)separation(pair.A, pair.X_WA, pair.B, pair.X_WB, {.measure = Measure::reduction}, warm);
     at_levels += warm.level_a != 0 || warm.level_b != 0 ? 1 : 0;
     EXPECT_NEAR(pair.separate(warm).distance, pair.separate().distance, 1e-13 * pair.size())
         << of_seed("pair", i);
