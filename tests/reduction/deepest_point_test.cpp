@@ -93,7 +93,12 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   int overlapping = 0;
   for (int i = 0; i < 3000; ++i) {
     SCOPED_TRACE(of_seed("pair", i));
-    const Posed pair = random_pair(rng);
+    Posed pair = random_pair(rng);
+    // Planes nearly parallel: in double alone the answer would be off by 1e-8.
+    if (i % 3 == 0) {
+      const double angle = families::log_uniform(rng, 1e-13, 1e-3);
+      pair.X_WB.linear() = families::small_rotation(rng, angle) * pair.X_WA.linear();
+    }
     WarmStart warm;
     const Separation s = pair.separate(warm);
     if (warm.level_a != WarmStart::deepest_point) continue;
@@ -107,7 +112,8 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
     WarmStart none;
     ASSERT_TRUE(deepest.solve(none));
     const Vec3 x = pair.X_WA.translation() + to_vec3(deepest.point());
-    EXPECT_NEAR(oracle_depth(pair, x), depth, 1e-12);
+    const double margin = pair.A.planes().margin() + pair.B.planes().margin();
+    EXPECT_NEAR(oracle_depth(pair, x), depth, 1e-12 + margin);
   }
   EXPECT_GT(overlapping, 1000);
 }

@@ -6,6 +6,7 @@ namespace repel::detail {
 namespace {
 
 /// A cube of half a metre and a smaller one that stands out of its upper face.
+template <class T>
 struct Cubes {
   Planes planes_a = Planes::box({0.5, 0.5, 0.5});
   Planes planes_b = Planes::box({0.1, 0.1, 0.1});
@@ -13,14 +14,14 @@ struct Cubes {
   Pose X_WB = Pose::Identity();
   PosedPlanes A{planes_a, X_WA, 1.0};
   PosedPlanes B{planes_b, X_WB, 0.2};
-  PlaneBasis basis;
+  PlaneBasis<T> basis;
 
   Cubes() : basis((X_WB.translation().z() = 0.55, A), B) {}
 };
 
 TEST(PlaneBasis, SolvesItsEquations) {
-  Cubes cubes;
-  PlaneBasis& basis = cubes.basis;
+  Cubes<double> cubes;
+  PlaneBasis<double>& basis = cubes.basis;
   basis.add(0, 4);  // z + a <= 0.5
   basis.add(1, 5);  // -z + b <= -0.45
   basis.add(1, 0);
@@ -31,26 +32,25 @@ TEST(PlaneBasis, SolvesItsEquations) {
   EXPECT_NEAR(basis.point().x(), 0.0, 1e-15);
   EXPECT_NEAR(basis.point().y(), 0.0, 1e-15);
   EXPECT_NEAR(basis.point().z(), 0.55, 1e-15);
-  EXPECT_NEAR(basis.side(0).level, -0.05, 1e-15);
-  EXPECT_NEAR(basis.side(1).level, 0.1, 1e-15);
+  EXPECT_NEAR(basis.bound(), 0.05, 1e-15);
   EXPECT_NEAR(basis.least_multiplier(), 0.0, 1e-15);
 }
 
 TEST(PlaneBasis, ExchangesUntilNothingIsViolated) {
-  Cubes cubes;
-  PlaneBasis& basis = cubes.basis;
-  for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis::first_bound + k);
-  basis.add(1, PlaneBasis::depth_bound);
+  Cubes<double> cubes;
+  PlaneBasis<double>& basis = cubes.basis;
+  for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis<double>::first_bound + k);
+  basis.add(1, PlaneBasis<double>::depth_bound);
   ASSERT_TRUE(basis.weigh());
-  double bound = basis.side(0).level + basis.side(1).level;
+  double bound = basis.bound();
   int exchanges = 0;
   for (; exchanges < 30; ++exchanges) {
-    const PlaneBasis::Entry entry = basis.most_violated();
+    const auto entry = basis.most_violated(1e-15);
     if (!(entry.violation > 1e-15)) break;
-    ASSERT_TRUE(basis.exchange(entry, 1e-9));
+    ASSERT_TRUE(basis.exchange(entry, 1e-9, 1e-14));
     ASSERT_TRUE(basis.weigh());
     EXPECT_GE(basis.least_multiplier(), -1e-12);
-    const double now = basis.side(0).level + basis.side(1).level;
+    const double now = basis.bound();
     EXPECT_LE(now, bound + 1e-15) << "the bound only falls";
     bound = now;
   }
@@ -61,8 +61,8 @@ TEST(PlaneBasis, ExchangesUntilNothingIsViolated) {
 }
 
 TEST(PlaneBasis, EquationsWithoutASolutionAreRefused) {
-  Cubes cubes;
-  PlaneBasis& basis = cubes.basis;
+  Cubes<double> cubes;
+  PlaneBasis<double>& basis = cubes.basis;
   for (const std::uint32_t plane : {0U, 0U, 0U}) basis.add(0, plane);
   basis.add(1, 1);
   basis.add(1, 2);

@@ -54,13 +54,16 @@ class Planes {
   /// [m]
   [[nodiscard]] double offset(std::uint32_t i) const noexcept { return numbers_[3 * stride_ + i]; }
 
+  template <class T>
   struct Nearest {
     std::uint32_t plane;
-    double depth;  ///< [m] of the point below it; negative above
+    T depth;  ///< [m] of the point below it; negative above
   };
   /// The plane that `x` is least deep below, the first of several: for a point of the polytope, its
   /// depth. Must not be empty. Cost: one pass over the planes.
-  [[nodiscard]] Nearest nearest(const Vec<double>& x) const noexcept;
+  [[nodiscard]] Nearest<double> nearest(const Vec<double>& x) const noexcept;
+  /// The same in extended precision. Cost: two passes.
+  [[nodiscard]] Nearest<DoubleDouble> nearest(const Vec<DoubleDouble>& x) const noexcept;
 
  private:
   static constexpr std::size_t lanes = 8;  ///< the arrays are padded to a multiple of this
@@ -77,7 +80,7 @@ class Planes {
   std::vector<double> numbers_;
 };
 
-inline Planes::Nearest Planes::nearest(const Vec<double>& x) const noexcept {
+inline Planes::Nearest<double> Planes::nearest(const Vec<double>& x) const noexcept {
   using detail::Lanes;
   constexpr double none = std::numeric_limits<double>::infinity();
   Lanes best = Lanes{} + none;
@@ -94,6 +97,19 @@ inline Planes::Nearest Planes::nearest(const Vec<double>& x) const noexcept {
   const double least = detail::least_of(best);
   const Lanes first = best == Lanes{} + least ? winner : Lanes{} + none;
   return {static_cast<std::uint32_t>(detail::least_of(first)), least};
+}
+
+inline Planes::Nearest<DoubleDouble> Planes::nearest(const Vec<DoubleDouble>& x) const noexcept {
+  const Vec<double> rounded(x);
+  const double least = nearest(rounded).depth;
+  const double in_doubt = least + 0x1p-48 * (std::abs(least) + sum(magnitudes(rounded)));
+  Nearest<DoubleDouble> found{0, std::numeric_limits<double>::infinity()};
+  for (std::uint32_t i = 0; i < size(); ++i) {
+    if (offset(i) - dot(normal(i), rounded) > in_doubt) continue;
+    const DoubleDouble depth = DoubleDouble(offset(i)) - dot(Vec<DoubleDouble>(normal(i)), x);
+    if (depth < found.depth) found = {i, depth};
+  }
+  return found;
 }
 
 }  // namespace repel

@@ -2,7 +2,7 @@
 /// The deepest common point of two polytopes: a linear program of five variables.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,120 +25,127 @@ namespace repel::detail {
 /// goes out. A basis that was best at the last tick is mostly the best again.
 class DeepestPoint {
  public:
-  static constexpr int cap = 64;  ///< pivots of one attempt, of which there are at most three
-  static constexpr int most_pivots = 3 * cap;
+  static constexpr int cap = 64;  ///< pivots of one attempt, of which there are at most four
+  static constexpr int most_pivots = 4 * cap;
 
   DeepestPoint(const PosedPlanes& A, const PosedPlanes& B) noexcept
-      : basis_(A, B),
-        tolerance_(0x1p-49 * (A.reach + B.reach + sum(magnitudes(basis_.side(1).p)))) {}
+      : A_(A),
+        B_(B),
+        size_(A.reach + B.reach +
+              sum(magnitudes(column<double>(B.X_W, 3) - column<double>(A.X_W, 3)))) {}
 
   /// Begins with the basis in `warm` where it has one that still holds, and leaves the last one
   /// there. False when the polytopes have no common point deeper than rounding, or none was found.
-  [[nodiscard, gnu::flatten, gnu::noinline]] bool solve(WarmStart& warm,
-                                                        int allowed = most_pivots) noexcept {
+  [[nodiscard]] bool solve(WarmStart& warm, int allowed = most_pivots) noexcept {
     pivots_ = 0;
-    if (load(warm) && basis_.weigh() && basis_.least_multiplier() >= -1e-9 &&
-        improve(1e-9, allowed)) {
-      if (pivots_ > 0) save(warm);
-      return true;
-    }
-    // Planes that are nearly parallel can bar the way to one choice of pivots and not to another.
-    for (const double least_share : {1e-9, 1e-7}) {
-      begin();
-      if (!basis_.weigh() || !improve(least_share, allowed)) continue;
-      save(warm);
-      return true;
-    }
-    return false;
+    const End end = solved_in<double>(warm, allowed);
+    return end == End::best ||
+           (end == End::unclear && solved_in<DoubleDouble>(warm, allowed) == End::best);
   }
 
   /// The depth of the point below the surface of A (0) or B (1) [m].
-  [[nodiscard]] double depth(std::size_t side) const noexcept { return basis_.side(side).depth; }
+  [[nodiscard]] double depth(std::size_t side) const noexcept { return depth_[side]; }
   /// The point [m], from the origin of A, world axes.
-  [[nodiscard]] const Vec<double>& point() const noexcept { return basis_.point(); }
+  [[nodiscard]] const Vec<double>& point() const noexcept { return point_; }
   /// The gradient of the sum of the depths when A moves, world axes; at most 1 long.
-  [[nodiscard]] Vec<double> gradient() const noexcept {
-    const PlaneBasis::Side& side = basis_.side(0);
-    Vec<double> g{};
-    for (int i = 0; i < side.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      g = g + side.multiplier[k] * side.rows[k].n;
-    }
-    return g;
-  }
+  [[nodiscard]] const Vec<double>& gradient() const noexcept { return gradient_; }
   [[nodiscard]] int pivots() const noexcept { return pivots_; }
 
  private:
-  /// Exchanges planes until none is violated; whether the point is the deepest then.
-  bool improve(double least_share, int allowed) noexcept {
-    const int begun = pivots_;
-    for (; pivots_ < allowed; ++pivots_) {
-      const PlaneBasis::Entry entry = basis_.most_violated();
-      const int pivots = pivots_ - begun;
-      if (!(entry.violation > enough(pivots)) || basis_.holds(entry) || pivots == cap ||
-          !basis_.exchange(entry, least_share) || !basis_.weigh()) {
-        return is_best();
-      }
-    }
-    return false;
-  }
+  enum class End { best, none, unclear };
 
   static constexpr std::uint32_t side_bit = 0x80000000U;  ///< of a name in a warm start: B
-  static constexpr std::size_t basis_size = 5;
 
-  /// [m] Planes that are nearly parallel say less well where x is than how deep it is: in the end a
-  /// small violation is let pass. It is no error of the depth, which is measured at x.
-  [[nodiscard]] double enough(int pivots) const noexcept {
-    return (pivots < 24 ? 1.0 : pivots < 40 ? 256.0 : 65536.0) * tolerance_;
+  /// What rounding can move a depth by, as a share of the size.
+  static constexpr double rounding(double) { return 0x1p-49; }
+  static constexpr double rounding(DoubleDouble) { return 0x1p-86; }
+  /// What rounding can move a multiplier by; most are between 0 and 1.
+  static constexpr double least_multiplier(double) { return -1e-14; }
+  static constexpr double least_multiplier(DoubleDouble) { return -1e-24; }
+  static constexpr double least_share(double) { return 1e-9; }
+  static constexpr double least_share(DoubleDouble) { return 1e-18; }
+
+  template <class T>
+  [[gnu::flatten, gnu::noinline]] End solved_in(WarmStart& warm, int allowed) noexcept {
+    PlaneBasis<T> basis(A_, B_);
+    End end = End::unclear;
+    if (load(warm, basis) && basis.weigh() &&
+        basis.least_multiplier() >= T(least_multiplier(T{}))) {
+      const int before = pivots_;
+      end = improved(basis, allowed);
+      if (end == End::best && pivots_ == before) return end;
+    }
+    if (end == End::unclear) {
+      begin(basis);
+      if (basis.weigh()) end = improved(basis, allowed);
+    }
+    save(basis, warm);
+    return end;
   }
-  /// The depths at x are as large, to 2e-8 of the size, as the basis says they can be at most.
-  [[nodiscard]] bool is_best() const noexcept {
-    const double possible = basis_.side(0).level + basis_.side(1).level;
-    return basis_.least_multiplier() >= -1e-6 && std::min(depth(0), depth(1)) >= -tolerance_ &&
-           depth(0) + depth(1) > 4.0 * tolerance_ &&
-           possible - (depth(0) + depth(1)) <= 1e7 * tolerance_;
+
+  /// Exchanges planes until none is violated.
+  template <class T>
+  End improved(PlaneBasis<T>& basis, int allowed) noexcept {
+    const T tolerance(rounding(T{}) * size_);
+    for (int pivots = 0; pivots <= cap; ++pivots) {
+      const auto entry = basis.most_violated(tolerance);
+      if (!(entry.violation > tolerance) || basis.holds(entry)) return judged(basis, tolerance);
+      if (pivots_ == allowed || !basis.exchange(entry, least_share(T{}), -least_multiplier(T{})) ||
+          !basis.weigh())
+        break;
+      ++pivots_;
+    }
+    return End::unclear;
+  }
+
+  /// Whether the depths at the point are as large as they can be at most, and more than rounding.
+  template <class T>
+  End judged(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
+    const T found = basis.depth(0) + basis.depth(1);
+    if (!(basis.least_multiplier() >= T(least_multiplier(T{}))) ||
+        basis.bound() - found > T(4.0) * tolerance) {
+      return End::unclear;
+    }
+    point_ = Vec<double>(basis.point());
+    gradient_ = Vec<double>(basis.gradient());
+    for (std::size_t s = 0; s < 2; ++s) depth_[s] = static_cast<double>(basis.depth(s));
+    return depth_[0] + depth_[1] > 4.0 * rounding(0.0) * size_ ? End::best : End::none;
   }
 
   /// Four planes all around A and the largest depth B can have: a basis of anything.
-  void begin() noexcept {
-    basis_.clear();
-    for (std::uint32_t k = 0; k < 4; ++k) basis_.add(0, PlaneBasis::first_bound + k);
-    basis_.add(1, PlaneBasis::depth_bound);
+  template <class T>
+  static void begin(PlaneBasis<T>& basis) noexcept {
+    basis.clear();
+    for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis<T>::first_bound + k);
+    basis.add(1, PlaneBasis<T>::depth_bound);
   }
-  bool load(const WarmStart& warm) noexcept {
-    basis_.clear();
+  template <class T>
+  static bool load(const WarmStart& warm, PlaneBasis<T>& basis) noexcept {
+    basis.clear();
     if (warm.level_a != WarmStart::deepest_point) return false;
-    for (std::size_t k = 0; k < basis_size; ++k) {
+    for (std::size_t k = 0; k < PlaneBasis<T>::rows; ++k) {
       const std::uint32_t name = k < 4 ? warm.a[k] : warm.b[0];
-      const std::uint32_t own = name & ~side_bit;
-      const PlaneBasis::Side& side = basis_.side(name >> 31U);
-      const bool known = own < side.set.planes.size() ||
-                         (own >= PlaneBasis::first_bound && own <= PlaneBasis::not_negative);
-      if (!known || (own == PlaneBasis::not_negative && side.at_zero)) return false;
-      basis_.add(name >> 31U, own);
+      if (!basis.add(name >> 31U, name & ~side_bit)) return false;
     }
-    return basis_.side(0).count > 0 && basis_.side(1).count > 0;
+    return true;
   }
-  void save(WarmStart& warm) const noexcept {
-    std::size_t k = 0;
-    const auto put = [&](std::uint32_t name) {
-      if (k < basis_size) (k < 4 ? warm.a[k] : warm.b[0]) = name;
-      ++k;
-    };
-    for (const std::size_t s : {0U, 1U}) {
-      const PlaneBasis::Side& side = basis_.side(s);
-      const std::uint32_t bit = s == 0 ? 0U : side_bit;
-      for (int i = 0; i < side.count; ++i) put(side.rows[static_cast<std::size_t>(i)].name | bit);
-      if (side.at_zero) put(PlaneBasis::not_negative | bit);
+  template <class T>
+  static void save(const PlaneBasis<T>& basis, WarmStart& warm) noexcept {
+    for (std::size_t k = 0; k < PlaneBasis<T>::rows; ++k) {
+      (k < 4 ? warm.a[k] : warm.b[0]) = basis.name(k) | (basis.side(k) == 0 ? 0U : side_bit);
     }
     warm.size = 0;
     warm.level_a = WarmStart::deepest_point;
     warm.level_b = WarmStart::deepest_point;
   }
 
-  PlaneBasis basis_;
-  double tolerance_;  ///< [m] what rounding can move a depth by
+  PosedPlanes A_;
+  PosedPlanes B_;
+  double size_;  ///< [m]
   int pivots_ = 0;
+  std::array<double, 2> depth_{};
+  Vec<double> point_{};
+  Vec<double> gradient_{};
 };
 
 }  // namespace repel::detail

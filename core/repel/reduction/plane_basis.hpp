@@ -20,222 +20,258 @@ struct PosedPlanes {
   double reach;  ///< [m] of the polytope around the origin of its frame
 };
 
+/// Which of the five rows of a basis do what, by the set of those that are of B.
+struct BasisRoles {
+  std::array<std::uint8_t, 2> base{};      ///< of A and B: the row that eliminates the depth
+  std::array<std::uint8_t, 3> equation{};  ///< the others, from which x follows
+  std::array<std::uint8_t, 3> side{};      ///< of these
+};
+
+[[nodiscard]] constexpr std::array<BasisRoles, 32> all_basis_roles() {
+  std::array<BasisRoles, 32> all{};
+  for (unsigned of_b = 1; of_b < 31; ++of_b) {
+    std::array<bool, 2> has_base{};
+    std::size_t equations = 0;
+    for (unsigned k = 0; k < 5; ++k) {
+      const unsigned side = of_b >> k & 1U;
+      if (!has_base[side]) {
+        all[of_b].base[side] = static_cast<std::uint8_t>(k);
+        has_base[side] = true;
+      } else {
+        all[of_b].equation[equations] = static_cast<std::uint8_t>(k);
+        all[of_b].side[equations++] = static_cast<std::uint8_t>(side);
+      }
+    }
+  }
+  return all;
+}
+
 /// Five constraints of max a + b (see DeepestPoint) that hold with equality, and what follows from
 /// them: three equations for x once the depths are eliminated, and by the same cofactors the
-/// multipliers.
+/// multipliers. Solutions by cofactors are refined once: the shares of nearly parallel planes
+/// would be large and wrong otherwise.
+template <class T>
 class PlaneBasis {
  public:
+  static constexpr std::size_t rows = 5;
   // Names of constraints, as a warm start keeps them: the index of a plane, or one of those that
   // hold for any point of the polytope and bound the first basis.
   static constexpr std::uint32_t first_bound = 0x7FFFFF00U;  ///< four around the polytope
   static constexpr std::uint32_t depth_bound = first_bound + 4;
-  static constexpr std::uint32_t not_negative = first_bound + 5;
+  static constexpr std::uint32_t not_negative = first_bound + 5;  ///< a depth is at least 0
 
-  struct Row {
-    Vec<double> n;
-    double offset;  ///< [m] around the origin of A
-    std::uint32_t name;
-  };
-  struct Side {
-    Side(const PosedPlanes& of, const Vec<double>& from_a) noexcept : set(of), p(from_a) {}
-
-    const PosedPlanes& set;
-    Vec<double> p;            ///< [m] its origin from that of A, world axes
-    std::array<Row, 5> rows;  ///< of the basis
-    std::array<double, 5> multiplier;
-    std::array<double, 5> share;  ///< of the rows in the one that enters
-    int count = 0;
-    bool at_zero = false;  ///< the constraint of a depth not below 0 is in the basis
-    double zero_multiplier = 0.0;
-    double zero_share = 0.0;
-    double level = 0.0;  ///< [m] the depth by the basis
-    double depth = 0.0;  ///< [m] the depth of x
-  };
   struct Entry {
-    std::size_t side = 0;
+    unsigned side = 0;
     std::uint32_t name = 0;
-    double violation = 0.0;  ///< [m]
+    T violation{0.0};  ///< [m]
   };
 
   PlaneBasis(const PosedPlanes& A, const PosedPlanes& B) noexcept
-      : sides_{Side{A, Vec<double>()},
-               Side{B, column<double>(B.X_W, 3) - column<double>(A.X_W, 3)}} {}
+      : sets_{A, B}, p_{Vec<T>(), column<T>(B.X_W, 3) - column<T>(A.X_W, 3)} {}
 
-  [[nodiscard]] const Side& side(std::size_t s) const noexcept { return sides_[s]; }
   /// [m] from the origin of A, world axes
-  [[nodiscard]] const Vec<double>& point() const noexcept { return x_; }
+  [[nodiscard]] const Vec<T>& point() const noexcept { return x_; }
+  /// [m] of the point below the surface of A (0) or B (1), once most_violated() was asked.
+  [[nodiscard]] T depth(std::size_t side) const noexcept { return depth_[side]; }
+  /// [m] No common point has a larger sum of depths, if no multiplier is negative.
+  [[nodiscard]] T bound() const noexcept { return level_[0] + level_[1] + slack_; }
+  [[nodiscard]] std::uint32_t name(std::size_t k) const noexcept { return rows_[k].name; }
+  [[nodiscard]] unsigned side(std::size_t k) const noexcept { return of_b_ >> k & 1U; }
 
   void clear() noexcept {
-    for (Side& side : sides_) {
-      side.count = 0;
-      side.at_zero = false;
-    }
+    count_ = 0;
+    of_b_ = 0;
   }
-  void add(std::size_t s, std::uint32_t name) noexcept {
-    Side& side = sides_[s];
-    if (name == not_negative) {
-      side.at_zero = true;
-    } else {
-      side.rows[static_cast<std::size_t>(side.count++)] = row(side, name);
+  /// Adds a constraint to fewer than five; false for a name that none has.
+  bool add(unsigned side, std::uint32_t name) noexcept {
+    if (name >= sets_[side].planes.size() && (name < first_bound || name > not_negative)) {
+      return false;
     }
-  }
-
-  /// The three equations for x, its value, the depths there and the multipliers. False when the
-  /// equations have no solution.
-  bool weigh() noexcept {
-    std::array<Vec<double>, 3> rows;
-    std::array<double, 3> values;
-    std::size_t used = 0;
-    for (const Side& side : sides_) {
-      for (int i = side.at_zero ? 0 : 1; i < side.count && used < 3; ++i) {
-        const Row& r = side.rows[static_cast<std::size_t>(i)];
-        const Row& base = side.rows[0];
-        rows[used] = side.at_zero ? r.n : r.n - base.n;
-        values[used++] = side.at_zero ? r.offset : r.offset - base.offset;
-      }
-    }
-    if (used != 3) return false;
-    cofactors_ = {cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
-    const double determinant = dot(rows[0], cofactors_[0]);
-    if (!(std::abs(determinant) > 1e-200)) return false;
-    inverse_ = 1.0 / determinant;
-    x_ = inverse_ *
-         (values[0] * cofactors_[0] + values[1] * cofactors_[1] + values[2] * cofactors_[2]);
-    spread(Vec<double>(), {1.0, 1.0}, &Side::multiplier, &Side::zero_multiplier);
-    for (Side& side : sides_) {
-      side.level = side.at_zero ? 0.0 : side.rows[0].offset - dot(side.rows[0].n, x_);
-    }
+    set_row(count_, side, name);
+    of_b_ |= side << count_;
+    ++count_;
+    if (name == not_negative) put_first(side);
     return true;
   }
 
-  [[nodiscard]] double least_multiplier() const noexcept {
-    double least = std::min(sides_[0].zero_multiplier, sides_[1].zero_multiplier);
-    for (const Side& side : sides_) {
-      for (int i = 0; i < side.count; ++i) {
-        least = std::min(least, side.multiplier[static_cast<std::size_t>(i)]);
-      }
+  /// x, the depths there and the multipliers. False when the equations have no solution.
+  bool weigh() noexcept;
+
+  [[nodiscard]] T least_multiplier() const noexcept {
+    return *std::min_element(multiplier_.begin(), multiplier_.end());
+  }
+  /// The gradient of the sum of the depths when A moves, world axes.
+  [[nodiscard]] Vec<T> gradient() const noexcept {
+    Vec<T> g{};
+    for (std::size_t k = 0; k < rows; ++k) {
+      if (side(k) == 0) g = g + multiplier_[k] * rows_[k].n;
     }
-    return least;
+    return g;
   }
 
-  [[nodiscard]] Entry most_violated() noexcept {
-    Entry most;
-    for (std::size_t s = 0; s < 2; ++s) {
-      Side& side = sides_[s];
-      const Planes::Nearest nearest =
-          side.set.planes.nearest(rotate_transposed(side.set.X_W, x_ - side.p));
-      side.depth = nearest.depth;
-      const double above = side.level - nearest.depth;
+  /// The constraint that the point violates most, or one by no more than `tolerance` [m].
+  [[nodiscard]] Entry most_violated(T tolerance) noexcept {
+    Entry most{0, 0, tolerance};
+    for (unsigned s = 0; s < 2; ++s) {
+      const auto nearest = sets_[s].planes.nearest(rotate_transposed(sets_[s].X_W, x_ - p_[s]));
+      depth_[s] = nearest.depth;
+      const T above = level_[s] - nearest.depth;
       if (above > most.violation) most = {s, nearest.plane, above};
-      if (-side.level > most.violation) most = {s, not_negative, -side.level};
+      if (-level_[s] > most.violation) most = {s, not_negative, -level_[s]};
     }
     return most;
   }
 
   /// Rounding alone can violate a constraint that holds with equality.
   [[nodiscard]] bool holds(const Entry& entry) const noexcept {
-    const Side& side = sides_[entry.side];
-    if (entry.name == not_negative) return side.at_zero;
-    const auto last = side.rows.begin() + side.count;
-    return std::any_of(side.rows.begin(), last, [&](const Row& r) { return r.name == entry.name; });
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (side(k) == entry.side && rows_[k].name == entry.name) return true;
+    }
+    return false;
   }
 
   /// Takes the entry into the basis for the constraint whose multiplier falls to zero first. False
   /// when none falls: the polytopes have no common point.
   /// @param least_share what falls slower than this does not count, being nearly parallel
-  bool exchange(const Entry& entry, double least_share) noexcept {
-    Side& into = sides_[entry.side];
+  /// @param late how far below zero rounding may take a multiplier
+  bool exchange(const Entry& entry, double least_share, double late) noexcept {
     const bool is_plane = entry.name != not_negative;
-    const Row entering = is_plane ? row(into, entry.name) : Row{Vec<double>(), 0.0, entry.name};
-    std::array<double, 2> sums{0.0, 0.0};
-    sums[entry.side] = is_plane ? 1.0 : -1.0;
-    spread(entering.n, sums, &Side::share, &Side::zero_share);
+    set_row(rows, entry.side, entry.name);
+    std::array<T, 2> sums{T(0.0), T(0.0)};
+    sums[entry.side] = T(is_plane ? 1.0 : -1.0);
+    std::array<T, rows> share;
+    spread(rows_[rows].n, sums, share);
     // Of multipliers that fall to zero nearly at once, the one that falls fastest goes: its plane
     // is the least parallel to the others (Harris 1973).
-    double least = std::numeric_limits<double>::infinity();
-    for_each_of_basis([&](Side&, int, double multiplier, double share) {
-      if (share > least_share) least = std::min(least, (std::max(multiplier, 0.0) + 1e-10) / share);
-    });
-    Side* from = nullptr;
-    int leaving = 0;
-    double fastest = least_share;
-    for_each_of_basis([&](Side& side, int i, double multiplier, double share) {
-      if (!(share > fastest) || std::max(multiplier, 0.0) / share > least) return;
-      fastest = share;
-      from = &side;
-      leaving = i;
-    });
-    if (from == nullptr) return false;
-    if (leaving < 0) {
-      from->at_zero = false;
-    } else {
-      from->rows[static_cast<std::size_t>(leaving)] =
-          from->rows[static_cast<std::size_t>(--from->count)];
+    const auto falls_at = [&](std::size_t k, double after) {
+      return (std::max(multiplier_[k], T(0.0)) + T(after)) / share[k];
+    };
+    T least(std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < rows; ++k) {
+      if (share[k] > T(least_share)) least = std::min(least, falls_at(k, late));
     }
-    if (is_plane) {
-      into.rows[static_cast<std::size_t>(into.count++)] = entering;
-    } else {
-      into.at_zero = true;
+    std::size_t leaving = rows;
+    T fastest(least_share);
+    for (std::size_t k = 0; k < rows; ++k) {
+      if (!(share[k] > fastest) || falls_at(k, 0.0) > least) continue;
+      fastest = share[k];
+      leaving = k;
     }
-    return sides_[0].count > 0 && sides_[1].count > 0;
+    if (leaving == rows) return false;
+    rows_[leaving] = rows_[rows];
+    of_b_ = (of_b_ & ~(1U << leaving)) | entry.side << leaving;
+    put_first(entry.side);
+    return true;
   }
 
  private:
-  [[nodiscard]] static Row row(const Side& side, std::uint32_t name) noexcept {
-    const PosedPlanes& set = side.set;
-    Row r{Vec<double>(), set.reach, name};
+  struct Row {
+    Vec<T> n;
+    T offset;  ///< [m] around the origin of A
+    std::uint32_t name;
+  };
+
+  static constexpr std::array<BasisRoles, 32> all_roles = all_basis_roles();
+
+  /// Of the rows of a side, a depth not below 0 comes first: there it eliminates the depth, like a
+  /// plane without a normal.
+  void put_first(unsigned side) noexcept {
+    std::size_t first = count_;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (this->side(k) != side) continue;
+      first = std::min(first, k);
+      if (rows_[k].name == not_negative) std::swap(rows_[k], rows_[first]);
+    }
+  }
+
+  void set_row(std::size_t k, unsigned side, std::uint32_t name) noexcept {
+    Row& row = rows_[k];
+    const PosedPlanes& set = sets_[side];
+    row.name = name;
     if (name < set.planes.size()) {
-      r.n = rotate(set.X_W, set.planes.normal(name));
-      r.offset = set.planes.offset(name);
-    } else if (name < depth_bound) {
-      static constexpr double c = 0.57735026918962576;
-      static constexpr double corners[4][4] = {
-          {c, c, c, 0}, {c, -c, -c, 0}, {-c, c, -c, 0}, {-c, -c, c, 0}};
-      r.n = from_four<double>(corners[(name - first_bound) % 4]);
+      row.n = rotate(set.X_W, Vec<T>(set.planes.normal(name)));
+      row.offset = T(set.planes.offset(name)) + dot(row.n, p_[side]);
+      return;
     }
-    r.offset += dot(r.n, side.p);
-    return r;
+    static constexpr double c = 0.57735026918962576;
+    static constexpr double none[4] = {0, 0, 0, 0};
+    static constexpr double corners[4][4] = {
+        {c, c, c, 0}, {c, -c, -c, 0}, {-c, c, -c, 0}, {-c, -c, c, 0}};
+    row.n = from_four<T>(name < depth_bound ? corners[name - first_bound] : none);
+    row.offset = name == not_negative ? T(0.0) : T(set.reach) + dot(row.n, p_[side]);
   }
-  /// The shares of the constraints of the basis in one with the normal `target` and the factors
-  /// `sums` before the depths of A and B.
-  void spread(Vec<double> target, const std::array<double, 2>& sums,
-              std::array<double, 5> Side::*shares, double Side::*zero_share) noexcept {
-    for (std::size_t s = 0; s < 2; ++s) {
-      if (!sides_[s].at_zero) target = target - sums[s] * sides_[s].rows[0].n;
+
+  /// The shares of the rows in a constraint with the normal `target` and the factors `sums` before
+  /// the depths of A and B.
+  void spread(const Vec<T>& target, const std::array<T, 2>& sums,
+              std::array<T, rows>& shares) const noexcept {
+    const BasisRoles& roles = all_roles[of_b_];
+    const Vec<T> of_depths = sums[0] * rows_[roles.base[0]].n + sums[1] * rows_[roles.base[1]].n;
+    const Vec<T> aim = target - of_depths;
+    Vec<T> t = inverse_ * dots(cofactors_[0], cofactors_[1], cofactors_[2], aim);
+    const Vec<T> rest =
+        aim - (t.x() * equations_[0] + t.y() * equations_[1] + t.z() * equations_[2]);
+    t = t + inverse_ * dots(cofactors_[0], cofactors_[1], cofactors_[2], rest);
+    std::array<T, 2> left = sums;
+    const std::array<T, 3> of_equation{t.x(), t.y(), t.z()};
+    for (std::size_t e = 0; e < 3; ++e) {
+      shares[roles.equation[e]] = of_equation[e];
+      left[roles.side[e]] = left[roles.side[e]] - of_equation[e];
     }
-    const std::array<double, 3> t{inverse_ * dot(cofactors_[0], target),
-                                  inverse_ * dot(cofactors_[1], target),
-                                  inverse_ * dot(cofactors_[2], target)};
-    std::size_t used = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      Side& side = sides_[s];
-      double rest = sums[s];
-      for (int i = side.at_zero ? 0 : 1; i < side.count && used < 3; ++i) {
-        (side.*shares)[static_cast<std::size_t>(i)] = t[used];
-        rest -= t[used++];
-      }
-      if (!side.at_zero) (side.*shares)[0] = rest;
-      side.*zero_share = side.at_zero ? -rest : 0.0;
+      const std::size_t k = roles.base[s];
+      shares[k] = rows_[k].name == not_negative ? -left[s] : left[s];
     }
   }
 
-  /// Calls with the side, the index of the row, or -1 for the depth not below zero, its multiplier
-  /// and its share.
-  template <class F>
-  void for_each_of_basis(const F& f) noexcept {
-    for (Side& side : sides_) {
-      if (side.at_zero) f(side, -1, side.zero_multiplier, side.zero_share);
-      for (int i = 0; i < side.count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        f(side, i, side.multiplier[k], side.share[k]);
-      }
-    }
+  [[nodiscard]] Vec<T> solved(const Vec<T>& values) const noexcept {
+    return inverse_ *
+           (values.x() * cofactors_[0] + values.y() * cofactors_[1] + values.z() * cofactors_[2]);
   }
 
-  std::array<Side, 2> sides_;
-  std::array<Vec<double>, 3> cofactors_;
-  double inverse_ = 0.0;
-  Vec<double> x_;
+  std::array<PosedPlanes, 2> sets_;
+  std::array<Vec<T>, 2> p_;         ///< [m] the origins from that of A, world axes
+  std::array<Row, rows + 1> rows_;  ///< and one that enters
+  std::array<T, rows> multiplier_;
+  std::size_t count_ = 0;
+  unsigned of_b_ = 0;  ///< bit k: row k is of B
+  std::array<Vec<T>, 3> equations_;
+  std::array<Vec<T>, 3> cofactors_;
+  T inverse_{0.0};
+  Vec<T> x_;
+  std::array<T, 2> level_;  ///< [m] the depths by the basis
+  std::array<T, 2> depth_;  ///< [m] the depths of x
+  T slack_{0.0};            ///< [m] what the equations miss in x, weighed
 };
+
+template <class T>
+bool PlaneBasis<T>::weigh() noexcept {
+  const BasisRoles& roles = all_roles[of_b_];
+  if (count_ != rows || roles.base[0] == roles.base[1]) return false;
+  std::array<T, 3> values;
+  for (std::size_t e = 0; e < 3; ++e) {
+    const Row& row = rows_[roles.equation[e]];
+    const Row& base = rows_[roles.base[roles.side[e]]];
+    equations_[e] = row.n - base.n;
+    values[e] = row.offset - base.offset;
+  }
+  cofactors_ = {cross(equations_[1], equations_[2]), cross(equations_[2], equations_[0]),
+                cross(equations_[0], equations_[1])};
+  const T determinant = dot(equations_[0], cofactors_[0]);
+  if (!(determinant > T(1e-200) || -determinant > T(1e-200))) return false;
+  inverse_ = T(1.0) / determinant;
+  const Vec<T> value(values[0], values[1], values[2]);
+  const auto missed = [&] { return value - dots(equations_[0], equations_[1], equations_[2], x_); };
+  x_ = solved(value);
+  x_ = x_ + solved(missed());
+  spread(Vec<T>(), {T(1.0), T(1.0)}, multiplier_);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Row& base = rows_[roles.base[s]];
+    level_[s] = base.offset - dot(base.n, x_);
+  }
+  slack_ = dot(missed(), Vec<T>(multiplier_[roles.equation[0]], multiplier_[roles.equation[1]],
+                                multiplier_[roles.equation[2]]));
+  return true;
+}
 
 }  // namespace repel::detail

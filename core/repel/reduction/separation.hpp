@@ -76,7 +76,7 @@ namespace detail {
   const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
-  const Vec<double> g = deepest.gradient();
+  const Vec<double>& g = deepest.gradient();
   const double length = std::sqrt(dot(g, g));
   // Without a gradient no direction is better by this measure.
   const bool flat = !(length > 1e-9);
