@@ -107,13 +107,23 @@ std::vector<Part> tool_of(const Value& value) {
 
 ForceLaw law_of(const Value& value) {
   const Map map(value);
-  map.allow({"range", "surface_force", "damping", "ceiling"});
+  map.allow({"range", "surface_force", "damping", "ceiling", "passable", "depth", "plateau"});
   ForceLaw law;
+  if (const Value* passable = map.find("passable")) {
+    law.passable = passable->word_of({"yes", "no"}) == "yes";
+  }
+  if (!law.passable) map.allow({"range", "surface_force", "damping", "ceiling", "passable"});
   map.read("range", {unit::length, 1e-6, 1e3}, law.range);
   map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
   map.read("damping", {unit::damping, 0.0, 1e6}, law.damping);
   map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
-  return law;
+  map.read("depth", {unit::length, 0.0, 1e6}, law.depth);
+  map.read("plateau", {unit::none, 0.0, 1.0}, law.plateau);
+  try {
+    return checked(law);
+  } catch (const SetupError& error) {
+    value.fail(error.what());
+  }
 }
 
 Laws laws_of(const Map& scene) {

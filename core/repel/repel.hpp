@@ -11,6 +11,7 @@
 #include <repel/base/types.hpp>
 #include <repel/distance/gjk.hpp>
 #include <repel/force/law.hpp>
+#include <repel/force/passage.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/coupling.hpp>
 #include <repel/network/operator.hpp>

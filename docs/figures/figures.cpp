@@ -1,5 +1,5 @@
-// figures FOLDER: computes the figures of docs/reduction.md. Writes the curves to FOLDER as CSV and
-// prints the tables.
+// figures FOLDER: computes the figures of docs/reduction.md and docs/control.md. Writes the curves
+// to FOLDER as CSV and prints the tables.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "motions.hpp"
+#include "passages.hpp"
 #include "plates.hpp"
 #include "settled.hpp"
 
@@ -143,11 +144,23 @@ void write_plates(const std::filesystem::path& folder) {
   }
 }
 
+void write_passages(const std::filesystem::path& folder) {
+  std::ofstream file = csv(folder / "passages.csv", "body,law,height_mm,up_n,aside_n");
+  for (const Crossing& crossing : crossings()) {
+    for (const bool passable : {false, true}) {
+      for (const CrossingForce& at : forces_along(crossing, passable)) {
+        file << crossing.name << ',' << (passable ? "passable" : "ceiling only") << ','
+             << 1e3 * at.height << ',' << at.f_W.z() << ',' << at.f_W.x() << '\n';
+      }
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   if (argc != 2 || std::string(argv[1]) == "--help") {
-    std::fputs("figures FOLDER: writes the curves of docs/reduction.md to FOLDER as CSV\n", stderr);
+    std::fputs("figures FOLDER: writes the curves of the pictures to FOLDER as CSV\n", stderr);
     return argc == 2 ? 0 : 2;
   }
   const std::filesystem::path folder = argv[1];
@@ -155,6 +168,7 @@ int main(int argc, char** argv) try {
   write_motions(folder);
   print_equidistance_regions();
   write_plates(folder);
+  write_passages(folder);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "figures: %s\n", error.what());

@@ -10,6 +10,7 @@ import sys
 SERIES = {"2 levels": "#e69f00", "8 levels": "#009e73", "32 levels": "#0072b2",
           "deepest point": "#d55e00"}
 WITNESSES = {"filtered": "#e69f00", "plain": "#0072b2", "averaged": "#d55e00"}
+LAWS = {"ceiling only": "#e69f00", "passable": "#0072b2"}
 LEGENDS = {"plain": "plain witness point", "filtered": "filtered over 5 ms",
            "averaged": "averaged over four tilts"}
 
@@ -82,7 +83,7 @@ class Panel:
         return self.top + self.height * (1 - min(max(share, 0), 1))
 
     def points(self, line):
-        low, high = self.x_range
+        low, high = sorted(self.x_range)
         return [(self.x(x), self.y(y)) for x, y in line if low <= x <= high]
 
     def axes(self, x_ticks, y_ticks, x_label, y_label):
@@ -205,9 +206,29 @@ def parallel_plates(folder):
         yield from legend(70 + 200 * i, 20, {name: colour}, LEGENDS)
 
 
+def passages(folder):
+    keys = ("body", "law")
+    forces = {"up": curves(folder, "passages.csv", keys, "height_mm", "up_n"),
+              "aside": curves(folder, "passages.csv", keys, "height_mm", "aside_n")}
+    for i, (body, part, most, words) in enumerate((
+            ("membrane", "up", 15, "through a membrane of 4 mm"),
+            ("tissue", "up", 6, "through tissue of 100 mm"),
+            ("edge of the tissue", "up", 6, "over the edge of the tissue"),
+            ("edge of the tissue", "aside", 6, "the same"))):
+        panel = Panel((70 + 290 * (i % 2), 50 + 250 * (i // 2), 220, 170), (120, -120),
+                      (-most, most))
+        yield text(panel.left, panel.top - 12, words, "font-weight='bold'")
+        yield from panel.axes(range(-100, 101, 50), range(-most, most + 1, most // 3),
+                              "height of the finger [mm]", f"force {part} [N]")
+        for law, colour in LAWS.items():
+            yield panel.curve(forces[part][body, law], colour)
+    yield from legend(590, 70, LAWS)
+
+
 PICTURES = {"into_a_box": (into_a_box, 880, 430),
             "through_a_rectangle": (through_a_rectangle, 840, 510),
-            "parallel_plates": (parallel_plates, 950, 500)}
+            "parallel_plates": (parallel_plates, 950, 500),
+            "passages": (passages, 700, 530)}
 
 
 def main():

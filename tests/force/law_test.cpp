@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -139,6 +141,82 @@ TEST(ForceLaw, DamperOnlyTakesEnergy) {
   EXPECT_LT(work, -0.01);
 }
 
+/// Random passable laws, each of a pair that can be as deep as it says.
+std::vector<ForceLaw> random_passable_laws(int count) {
+  std::mt19937_64 random(seed);
+  std::vector<ForceLaw> laws = random_laws(count);
+  for (ForceLaw& law : laws) {
+    law.passable = true;
+    law.ceiling = uniform(random, 0.01, 0.5) * law.surface_force;
+    law.depth = uniform(random, 0.0, 3.0) * law.range;
+    law.plateau = uniform(random, 0.0, 1.0);
+  }
+  laws.front().depth = 0.0;
+  return laws;
+}
+
+TEST(ForceLaw, PassableRisesToItsCeilingAndFallsToZeroNowhereSteeperThanItsStiffness) {
+  for (const ForceLaw& law : random_passable_laws(100)) {
+    const double step = law.range / 2000.0;
+    double last = 0.0;
+    double peak = 0.0;
+    bool falls = false;
+    for (double d = 1.1 * law.range; d > -law.depth - law.range; d -= step) {
+      const double f = law(d, 0.0);
+      ASSERT_LE(std::abs(f - last), 1.0001 * law.stiffness() * step) << d << ", seed " << seed;
+      falls = falls || f < last;
+      ASSERT_TRUE(!falls || f <= last) << "rises again at " << d << ", seed " << seed;
+      peak = std::max(peak, f);
+      last = f;
+    }
+    EXPECT_EQ(peak, law.ceiling) << "seed " << seed;
+    EXPECT_EQ(law(-law.depth, -1.0), 0.0);
+    EXPECT_EQ(last, 0.0);
+  }
+}
+
+TEST(ForceLaw, PassableHoldsItsCeilingUpToThePlateau) {
+  ForceLaw law{.range = 0.01, .surface_force = 20.0, .ceiling = 5.0, .passable = true};
+  law.depth = 0.06;
+  EXPECT_EQ(law(0.0, 0.0), 5.0);
+  EXPECT_EQ(law(-0.03, 0.0), 5.0);
+  EXPECT_NEAR(law(-0.045, 0.0), 2.5, 1e-12);
+  law.plateau = 0.75;
+  EXPECT_EQ(law(-0.045, 0.0), 5.0);
+  law.depth = 0.0;  // a sheet: the fall must be over at the surface
+  EXPECT_EQ(law(0.0, 0.0), 0.0);
+  EXPECT_EQ(law(5.0 / law.stiffness(), 0.0), 5.0);
+}
+
+TEST(ForceLaw, PassableIsDampedInProportionToItsSpring) {
+  ForceLaw law{
+      .range = 0.01, .surface_force = 20.0, .damping = 10.0, .ceiling = 5.0, .passable = true};
+  law.depth = 0.06;
+  EXPECT_EQ(law(-0.01, -1.0), 5.0) << "above the ceiling";
+  EXPECT_NEAR(law(-0.01, 0.1), 4.0, 1e-12);
+  EXPECT_NEAR(law(-0.045, 0.1), 2.0, 1e-12);
+  EXPECT_NEAR(law(-0.045, -0.1), 3.0, 1e-12);
+  EXPECT_EQ(law(-0.045, 10.0), 0.0);
+}
+
+TEST(ForceLaw, AWallKnowsNothingOfPassage) {
+  std::mt19937_64 random(seed);
+  for (ForceLaw law : random_laws(100)) {
+    law.depth = uniform(random, 0.0, 0.1);
+    law.plateau = uniform(random, 0.0, 1.0);
+    for (int i = 0; i < 100; ++i) {
+      const double d = uniform(random, -3.0, 1.5) * law.range;
+      const double rate = uniform(random, -10.0, 10.0);
+      const double inward = 1.0 - d / law.range;
+      const double spring = d > 0.0 ? law.surface_force * inward * inward
+                                    : law.surface_force * (1.0 - 2.0 * d / law.range);
+      const double damper = law.damping * std::clamp(inward, 0.0, 1.0);
+      const double f = std::clamp(spring - damper * rate, 0.0, law.ceiling);
+      ASSERT_EQ(law(d, rate), d < law.range ? f : 0.0) << "seed " << seed;
+    }
+  }
+}
+
 TEST(ForceLaw, DistanceThatIsNotANumberGivesNoForce) {
   EXPECT_EQ(ForceLaw{}(std::nan(""), 0.0), 0.0);
 }
@@ -154,7 +232,9 @@ TEST(ForceLaw, CheckedNamesTheFieldItRefuses) {
   const Bad bad[] = {{"range", &ForceLaw::range, {0.0, -1.0, nan, infinity}},
                      {"surface force", &ForceLaw::surface_force, {-1.0, nan, infinity}},
                      {"damping", &ForceLaw::damping, {-1e-9, nan, infinity}},
-                     {"ceiling", &ForceLaw::ceiling, {-1.0, nan}}};
+                     {"ceiling", &ForceLaw::ceiling, {-1.0, nan}},
+                     {"depth", &ForceLaw::depth, {-1e-9, nan, infinity}},
+                     {"plateau", &ForceLaw::plateau, {-0.1, 1.1, nan}}};
   for (const Bad& b : bad) {
     for (const double value : b.values) {
       ForceLaw law;
@@ -170,6 +250,23 @@ TEST(ForceLaw, CheckedNamesTheFieldItRefuses) {
   }
   EXPECT_NO_THROW(checked(ForceLaw{}));
   EXPECT_NO_THROW(checked(ForceLaw{.range = 0.01, .surface_force = 0.0, .damping = 0.0}));
+}
+
+TEST(ForceLaw, CheckedAsksOfAPassableBodyACeilingOfUpToHalfTheSurfaceForce) {
+  ForceLaw law{.surface_force = 20.0, .passable = true};
+  for (const double ceiling : {std::numeric_limits<double>::infinity(), 10.1, 0.0}) {
+    law.ceiling = ceiling;
+    try {
+      checked(law);
+      ADD_FAILURE() << ceiling << " was accepted";
+    } catch (const SetupError& error) {
+      EXPECT_NE(std::string(error.what()).find("ceiling of a passable body"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("allowed: 1e-09 to 10 N"), std::string::npos)
+          << error.what();
+    }
+  }
+  law.ceiling = 10.0;
+  EXPECT_NO_THROW(checked(law));
 }
 
 }  // namespace

@@ -116,6 +116,19 @@ TEST(SceneError, AnythingNotFiniteIsRefusedWhereItIsNoTest) {
   }
 }
 
+TEST(SceneError, APassableLawNeedsALowCeilingAndOnlyItHasADepth) {
+  const std::string law = base_scene + "laws: {a: {surface_force: 60 N, ";
+  expect_refused(law + "passable: maybe}}\n", 8, {"'maybe'", "yes", "no"});
+  expect_refused(law + "passable: yes}}\n", 8, {"ceiling of a passable body", "inf N", "30 N"});
+  expect_refused(law + "passable: yes, ceiling: 31 N}}\n", 8, {"31 N", "30 N"});
+  expect_refused(law + "passable: yes, ceiling: 0 N}}\n", 8, {"0 N", "allowed"});
+  expect_refused(law + "ceiling: 5 N, depth: 1 mm}}\n", 8, {"'depth'", "allowed"});
+  expect_refused(law + "passable: no, plateau: 0.5}}\n", 8, {"'plateau'", "allowed"});
+  const std::string passable = law + "passable: yes, ceiling: 5 N, ";
+  expect_refused(passable + "depth: -1 mm}}\n", 8, {"'-1 mm'", "0 to 1e+06 m"});
+  expect_refused(passable + "plateau: 1.1}}\n", 8, {"'1.1'", "0 to 1"});
+}
+
 TEST(SceneError, AnInfiniteRateOfTheOperatorIsRefused) {
   expect_refused(base_scene +
                      "script:\n"

@@ -121,6 +121,17 @@ TEST(SceneValue, AnObstacleTakesTheLawItNamesOrTheDefault) {
   EXPECT_EQ(scene.obstacles[1].law.ceiling, 5.0);
 }
 
+TEST(SceneValue, AnObstacleMayBePassable) {
+  const Scene scene = parsed(base_scene +
+                             "  - {name: skin, shape: sphere, radius: 1 m, law: soft}\n"
+                             "laws: {default: {passable: no, ceiling: 1 kN}, soft: {ceiling: 5 N, "
+                             "passable: yes, depth: 3 cm, plateau: 0.8}}\n");
+  EXPECT_FALSE(scene.obstacles[0].law.passable);
+  EXPECT_TRUE(scene.obstacles[1].law.passable);
+  EXPECT_EQ(scene.obstacles[1].law.depth, 0.03);
+  EXPECT_EQ(scene.obstacles[1].law.plateau, 0.8);
+}
+
 TEST(SceneValue, TheScriptIsReadPhaseByPhase) {
   const Scene scene =
       parsed(base_scene +

@@ -76,6 +76,43 @@ TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
   EXPECT_GT(skipped, 3 * 1500 * 32 / 2);
 }
 
+TEST(PairBlock, PassablePairIsPushedAsItsPassageSaysAndNeverJumps) {
+  const ForceLaw law{.range = 0.02, .surface_force = 60.0, .ceiling = 12.0, .passable = true};
+  test::Boxes boxes(1, 1, law, seed);
+  const Pair& pair = boxes.world.pairs().front();
+  const Shape& tool = boxes.world.part(pair.a).shape;
+  const Shape& obstacle = boxes.world.part(pair.b).shape;
+  const Pose X_WB = test::pose_of(boxes.world, pair.b);
+  Block block(boxes.world);
+  Passage passage;
+  Vec3 last = block.run().on_body[boxes.tool.index].force;
+  double last_travel = 0.0;
+  int pushed = 0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    boxes.move();
+    // Held near the obstacle, and with no speed, which would only add damping.
+    const Vec3 p_BT_W = boxes.X_WT.translation() - X_WB.translation();
+    boxes.X_WT.translation() = X_WB.translation() + std::min(1.0, 0.12 / p_BT_W.norm()) * p_BT_W;
+    boxes.world.place(boxes.tool, boxes.X_WT, {});
+    const Vec3 f = block.run().on_body[boxes.tool.index].force;
+    const Pose X_WA = test::pose_of(boxes.world, pair.a);
+    const Separation s = test::separation_now(boxes.world, pair);
+    const double travel = boxes.world.motion().bodies[boxes.tool.index].travel;
+    int iterations = 0;
+    const double slope = slope_of(s, tool, X_WA, obstacle, X_WB, {}, {}, iterations);
+    const Vec3 expected =
+        s.distance < law.range
+            ? passage.force(pair.law, s.distance, slope * s.extraction_W, travel, Vec3::Zero())
+            : Vec3(Vec3::Zero());
+    ASSERT_LE((f - expected).norm(), 1e-4) << "tick " << tick << ", seed " << seed;
+    ASSERT_LE((f - last).norm(), 1.0001 * law.stiffness() * (travel - last_travel) + 1e-9);
+    pushed += f.norm() > 1.0 ? 1 : 0;
+    last = f;
+    last_travel = travel;
+  }
+  EXPECT_GT(pushed, 400);
+}
+
 TEST(PairBlock, PairsThatCannotBeInRangeCostNothing) {
   World world;
   const BodyId tool = world.add_body("tool");

@@ -44,6 +44,18 @@ TEST(World, HandsOutIdsInOrderAndKeepsWhatItWasGiven) {
   EXPECT_EQ(world.pair(pair).law.range, 0.5);
 }
 
+TEST(World, PairIsNoDeeperThanItsShapesCanBe) {
+  World world;
+  const PartId a = world.add_part(world.add_body("tool"), "finger", Shape::box({0.2, 0.3, 0.1}));
+  const PartId b = world.add_part(World::fixed, "tissue", Shape::box({1, 1, 0.5}));
+  const ForceLaw law{.ceiling = 5.0, .passable = true};
+  EXPECT_NEAR(world.pair(world.add_pair(a, b, law)).law.depth, 0.6, 1e-12);
+  ForceLaw shallow = law;
+  shallow.depth = 0.25;
+  EXPECT_EQ(world.pair(world.add_pair(a, b, shallow)).law.depth, 0.25);
+  EXPECT_TRUE(says(message_of([&] { world.add_pair(a, b, {.passable = true}); }), "ceiling"));
+}
+
 TEST(World, OverAnyLimitNamesTheFieldToRaise) {
   World bodies(Limits{.bodies = 2});
   bodies.add_body("one");

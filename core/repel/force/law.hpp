@@ -19,12 +19,25 @@ namespace repel {
 ///     f      = min(max(0, phi(d) - c(d) d'), ceiling)
 ///
 /// So the force is continuous, never pulls, and grows less when the body retreats (d' > 0): leaving
-/// is never resisted. A low ceiling makes a membrane, which can be pushed through.
+/// is never resisted.
+///
+/// A passable body, membrane or tissue, may be entered and left on its far side. Its spring stops
+/// at the ceiling and falls to zero towards the depth D at which the direction turns round, with k
+/// the `stiffness`:
+///
+///     s(d) = min(phi(d), ceiling) min(1, (D + d) / L)    L = max((1 - plateau) D, ceiling / k)
+///     f    = min(s max(0, 1 - (c0 / ceiling) d'), ceiling)
 struct ForceLaw {
   double range = 0.02;                                       ///< r [m] where the force begins
   double surface_force = 100.0;                              ///< F [N] at distance 0
   double damping = 50.0;                                     ///< c0 [N s/m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [N] greatest force of the pair
+  bool passable = false;                                     ///< may be entered
+  double depth = most;  ///< D [m] intrusion distance where a passable body lets go; World::add_pair
+                        ///< cuts it to the deepest that the two shapes can have
+  double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1
+
+  static constexpr double most = 1e9;  ///< of every number but the ceiling
 
   /// phi(d) [N], never negative, without the ceiling.
   [[nodiscard]] double spring(double distance) const noexcept {
@@ -32,6 +45,19 @@ struct ForceLaw {
     const double inward = 1.0 - distance / range;
     return distance > 0.0 ? surface_force * inward * inward
                           : surface_force * (1.0 - 2.0 * distance / range);
+  }
+
+  /// s(d) [N] of a passable body: 0 to `ceiling`, and nowhere steeper than `stiffness`.
+  [[nodiscard]] double passing_spring(double distance) const noexcept {
+    const double length = std::max((1.0 - plateau) * depth, ceiling / stiffness());
+    const double share = std::clamp((depth + distance) / length, 0.0, 1.0);
+    return std::min(spring(distance), ceiling) * share;
+  }
+
+  /// The force of a passable body [N] whose spring is at `spring` [N]: the damper takes a share of
+  /// the spring, so that both vanish together. With `rate` [m/s] as below.
+  [[nodiscard]] double damped(double spring, double rate) const noexcept {
+    return std::min(spring * std::max(0.0, 1.0 - damping / ceiling * rate), ceiling);
   }
 
   /// c(d) [N s/m].
@@ -44,6 +70,7 @@ struct ForceLaw {
   /// @param rate [m/s] its rate of change; positive on retreat
   [[nodiscard]] double operator()(double distance, double rate) const noexcept {
     if (!(distance < range)) return 0.0;
+    if (passable) return damped(passing_spring(distance), rate);
     return std::clamp(spring(distance) - damper(distance) * rate, 0.0, ceiling);
   }
 
@@ -53,11 +80,18 @@ struct ForceLaw {
 
 /// Returns `law` when every number of it is usable; throws SetupError naming the one that is not.
 inline const ForceLaw& checked(const ForceLaw& law) {
-  constexpr double most = 1e9;
+  constexpr double most = ForceLaw::most;
   checked("range", law.range, 1e-9, most, "m");
   checked("surface force", law.surface_force, 0.0, most, "N");
   checked("damping", law.damping, 0.0, most, "N s/m");
   checked("ceiling", law.ceiling, 0.0, std::numeric_limits<double>::infinity(), "N");
+  checked("depth", law.depth, 0.0, most, "m");
+  checked("plateau", law.plateau, 0.0, 1.0, "");
+  if (law.passable) {
+    // Up to half of the surface force the ceiling is reached before the fall can have to begin.
+    checked("ceiling of a passable body, with this surface force,", law.ceiling, 1e-9,
+            0.5 * law.surface_force, "N");
+  }
   return law;
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include <repel/force/passage.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/world/world.hpp>
 
@@ -81,6 +82,7 @@ struct PairAnswer {
   double distance = -std::numeric_limits<double>::infinity();  ///< [m] signed, proven from below
   bool parted = false;         ///< a plane across extraction_W parts the shapes at that distance
   Vec3 extraction_W{0, 0, 0};  ///< unit
+  double slope = 1.0;          ///< of the distance along it; asked of passable pairs only
   Vec3 p_AQ_W{0, 0, 0};        ///< [m] witness point on A, from the origin of body A
   Vec3 p_BA_W{0, 0, 0};        ///< [m] origin of body A from that of body B when it was evaluated
   double turn = 0.0;           ///< [m] both bodies' BodyState::turn then
@@ -92,6 +94,7 @@ struct PairQuery {
   WarmStart warm;
   Separation last;
   PairExtremes extremes;
+  Passage passage;
 };
 
 /// A slice of the world's pairs. All memory is taken at construction.
@@ -200,14 +203,21 @@ class PairBlock {
     const Pair& p = pair(i);
     const BodyState& A = body_a(i, motion);
     const BodyState& B = body_b(i, motion);
+    const Shape& shape_a = world_->part(p.a).shape;
+    const Shape& shape_b = world_->part(p.b).shape;
+    const Pose& X_WPa = X_WP[p.a.index];
+    const Pose& X_WPb = X_WP[p.b.index];
     Separation& s = queries_[i].last;
-    s = separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
-                   X_WP[p.b.index], {}, queries_[i].warm);
+    s = separation(shape_a, X_WPa, shape_b, X_WPb, {}, queries_[i].warm);
     // A query that was cut short is answered by its proven bound, whose direction is not known.
     const bool cut_short = s.end == QueryEnd::budget_spent;
+    const double slope = p.law.passable ? slope_of(s, shape_a, X_WPa, shape_b, X_WPb, {},
+                                                   queries_[i].warm, s.iterations)
+                                        : 1.0;
     answers_[i] = {cut_short || s.lower > 0.0 ? s.lower : s.distance,
                    s.lower > 0.0 && !cut_short,
                    s.extraction_W,
+                   slope,
                    s.p_WA - A.X_WB.translation(),
                    A.X_WB.translation() - B.X_WB.translation(),
                    A.turn + B.turn,
@@ -256,10 +266,19 @@ class PairBlock {
     const Vec3 p_BQ_W = p_AQ_W + A.X_WB.translation() - B.X_WB.translation();
     const Vec3 v_A = moved_to(A.V_WB, p_AQ_W).linear;
     const Vec3 v_B = moved_to(B.V_WB, p_BQ_W).linear;
-    const double size = law(distance, n.dot(v_A - v_B));
+    const Vec3 v_BA = v_A - v_B;
+    double size = 0.0;
+    Vec3 f;
+    if (law.passable) {
+      f = queries_[i].passage.force(law, distance, answers_[i].slope * n, A.travel + B.travel,
+                                    v_BA);
+      size = f.norm();
+    } else {
+      size = law(distance, n.dot(v_BA));
+      f = size * n;
+    }
     forces_.totals.peak_force = std::max(forces_.totals.peak_force, size);
     queries_[i].extremes.peak_force = std::max(queries_[i].extremes.peak_force, size);
-    const Vec3 f = size * n;
     forces_.on_body[watches_[i].body_a.index] += wrench_of_force(f, p_AQ_W);
     forces_.on_body[watches_[i].body_b.index] += wrench_of_force(-f, p_BQ_W);
   }

@@ -39,9 +39,9 @@ struct Part {
 
 /// Two parts to be kept apart, and how.
 struct Pair {
-  PartId a;  ///< the part that is pushed along the extraction direction
-  PartId b;  ///< and the one it is pushed away from
-  ForceLaw law;
+  PartId a;      ///< the part that is pushed along the extraction direction
+  PartId b;      ///< and the one it is pushed away from
+  ForceLaw law;  ///< its `depth` no more than the two shapes can have
 };
 
 /// The model is built once, through the functions that throw; `place` is the only one for the tick.
@@ -83,7 +83,9 @@ class World {
     if (part(a).body == part(b).body) {
       throw SetupError("parts " + part(a).name + " and " + part(b).name + " are of one body");
     }
-    pairs_.push_back({a, b, checked(law)});
+    Pair pair{a, b, checked(law)};
+    pair.law.depth = std::min(law.depth, part(a).shape.deepest() + part(b).shape.deepest());
+    pairs_.push_back(pair);
     return {static_cast<std::int32_t>(pairs_.size()) - 1};
   }
 

@@ -1,0 +1,82 @@
+/// @file
+/// The force on the way through a passable body.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include <repel/force/law.hpp>
+#include <repel/reduction/separation.hpp>
+
+namespace repel {
+
+/// How fast the signed distance grows along the extraction direction, 0 to 1. It is 1 while the
+/// shapes are apart; in overlap it can be less, and a force that did not know would give back on
+/// the far side of a membrane more than it took, or less.
+/// @param s what `separation` answered to these shapes at these poses
+/// @param warm what it left
+/// @param iterations counts the support-map pairs spent
+/// Cost: in overlap a warm call of `separation`, else nothing.
+[[nodiscard]] inline double slope_of(const Separation& s, const Shape& A, const Pose& X_WA,
+                                     const Shape& B, const Pose& X_WB, const QueryOptions& options,
+                                     WarmStart warm, int& iterations) noexcept {
+  if (!(s.distance < 0.0)) return 1.0;
+  const double step = 1e-6 * (A.reach() + B.reach());
+  Pose X_WA_on = X_WA;
+  X_WA_on.translation() += step * s.extraction_W;
+  const Separation on = separation(A, X_WA_on, B, X_WB, options, warm);
+  iterations += on.iterations;
+  return std::clamp((on.distance - s.distance) / step, 0.0, 1.0);
+}
+
+/// The spring of one passable pair as a vector. The law's is the gradient of a potential,
+/// s(d) grad d, but in overlap that gradient can jump: back while a tool enters, sideways near an
+/// edge, onward when it leaves. The fall of s(d) covers the turn in the middle of a passage. For
+/// all others the spring follows the law's by no more than its stiffness times the motion, and is
+/// never larger than s(d). So
+///
+///     |change of the spring| <= stiffness() x motion
+///
+/// on every way, and what stands still feels no change. Lagging takes energy and never gives any:
+/// docs/control.md.
+class Passage {
+ public:
+  /// Moves the spring towards that of the law.
+  /// @param law of a passable body
+  /// @param distance [m] signed
+  /// @param gradient_W of the distance when A moves: the extraction direction times `slope_of`
+  /// @param travel [m] the way both bodies have come; never falls. The first call has no past
+  /// Returns the spring on A [N], world axes.
+  const Vec3& follow(const ForceLaw& law, double distance, const Vec3& gradient_W,
+                     double travel) noexcept {
+    const double largest = law.passing_spring(distance);
+    double allowed = law.stiffness() * (travel - travel_);
+    travel_ = travel;
+    const double size = spring_W_.norm();
+    if (size > largest) {
+      spring_W_ *= largest / size;
+      allowed -= size - largest;
+    }
+    const Vec3 lag_W = largest * gradient_W - spring_W_;
+    const double lag = lag_W.norm();
+    if (lag > 0.0) spring_W_ += std::clamp(allowed / lag, 0.0, 1.0) * lag_W;
+    return spring_W_;
+  }
+
+  /// The force on A [N], world axes: the spring after `follow`, damped along itself.
+  /// @param v_BA_W [m/s] of A against B where the force acts
+  [[nodiscard]] Vec3 force(const ForceLaw& law, double distance, const Vec3& gradient_W,
+                           double travel, const Vec3& v_BA_W) noexcept {
+    const Vec3& spring_W = follow(law, distance, gradient_W, travel);
+    const double size = spring_W.norm();
+    if (!(size > 0.0)) return Vec3::Zero();
+    const Vec3 way_W = spring_W / size;
+    return law.damped(size, way_W.dot(v_BA_W)) * way_W;
+  }
+
+ private:
+  Vec3 spring_W_{0, 0, 0};                                    ///< [N]
+  double travel_ = -std::numeric_limits<double>::infinity();  ///< [m] at the last call
+};
+
+}  // namespace repel
