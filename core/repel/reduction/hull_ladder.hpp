@@ -117,7 +117,8 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
 /// index from level to level, and the depth of a level is the sum of what each step is measured to
 /// have won. Of a hull with very many corners a thousand move, the first ones. The last solid level
 /// goes to its centroid, and so does flat input, which has no depth.
-inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<Facet> facets) {
+inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
+                          std::vector<Facet> facets) {
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
@@ -125,12 +126,15 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<
   vertices.resize(leading);
   Vec3 centroid = centroid_of(vertices);
   double depth = 0.0;
-  for (int i = 0; i < levels && !facets.empty(); ++i) {
+  double taken = 0.0;
+  for (int i = 1; i <= options.levels && !facets.empty(); ++i) {
     const Vec3 deep = deep_point(facets, vertices);
     const double room = depth_in(facets, deep);
     if (!(room > 0.0)) break;
-    const bool last = i + 1 == levels;
-    const double target = last ? 0.95 * room : room / (levels - i);
+    const double next = even_steps(i, options);
+    const double target =
+        i == options.levels ? 0.95 * room : room * (next - taken) / (options.levels - taken);
+    taken = next;
     double won = room;
     for (Vec3& v : vertices) {
       v = moved_inside(facets, v, target, deep);
@@ -162,8 +166,8 @@ inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>
   return Planes(facets, radius > off ? off * (1.0 + 2.0 * reach / radius) : 2.0 * reach);
 }
 
-inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
-  return hull_ladder(points, levels, hull_facets(points));
+inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options) {
+  return hull_ladder(points, options, hull_facets(points));
 }
 
 }  // namespace repel::detail

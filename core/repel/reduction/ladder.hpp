@@ -17,6 +17,9 @@ namespace repel {
 /// How a shape is reduced.
 struct ReductionOptions {
   int levels = 8;  ///< steps until the shape has lost its thickness; 1 to 64
+  /// The first i of n steps take (i/n)^spacing of the thickness: 1 makes them even, more crowds
+  /// them below the surface, less around the core; 0.25 to 4.
+  double spacing = 1.0;
 };
 
 /// One sub-shape: every point of `core` lies at least `depth` inside the shape.
@@ -48,17 +51,28 @@ inline void append(Ladder& ladder, Convex core, double depth, double order) {
   ladder.push_back({std::move(core), depth, std::max(order, next)});
 }
 
-/// A box loses thickness evenly to a rectangle, the rectangle its width to a line, the line its
+/// As many even steps as the first `i` steps, 1 to all, are worth: `i` itself when all are even.
+inline double even_steps(int i, const ReductionOptions& options) {
+  return i * std::pow(static_cast<double>(i) / options.levels, options.spacing - 1.0);
+}
+
+/// [m] how far the first `i` steps go into a shape of that thickness [m].
+inline double depth_after(int i, const ReductionOptions& options, double thickness) {
+  if (i == options.levels) return thickness;
+  return thickness * even_steps(i, options) / options.levels;
+}
+
+/// A box loses thickness to a rectangle, the rectangle its width to a line, the line its
 /// length to a point (Figure 4 a, b, c). Coinciding steps fall together.
-inline Ladder box_ladder(const Vec3& half_extents, int levels) {
+inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& options) {
   Vec3 sorted = half_extents;
   std::sort(sorted.begin(), sorted.end());
   const auto eroded = [&](double t) -> Vec3 {
     return (half_extents.array() - t).max(0.0).matrix();
   };
   Ladder ladder{{Convex::box(half_extents), 0.0, 0.0}};
-  for (int i = 1; i <= levels && sorted[0] > 0.0; ++i) {
-    const double t = i == levels ? sorted[0] : sorted[0] * i / levels;
+  for (int i = 1; i <= options.levels && sorted[0] > 0.0; ++i) {
+    const double t = depth_after(i, options, sorted[0]);
     append(ladder, Convex::box(eroded(t)), t, t);
   }
   for (const double t : {sorted[1], sorted[2]}) {
@@ -71,12 +85,12 @@ inline Ladder box_ladder(const Vec3& half_extents, int levels) {
 
 /// A cylinder shrinks to its axis and then to a point; a disk to a thin disc and then to a point
 /// (Figure 4 e, f).
-inline Ladder cylinder_ladder(double radius, double half_length, int levels) {
+inline Ladder cylinder_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double thickness = std::min(radius, half_length);
   const double rest = std::max(radius, half_length);
   Ladder ladder{{Convex::cylinder(radius, half_length), 0.0, 0.0}};
-  for (int i = 1; i <= levels && thickness > 0.0; ++i) {
-    const double t = i == levels ? thickness : thickness * i / levels;
+  for (int i = 1; i <= options.levels && thickness > 0.0; ++i) {
+    const double t = depth_after(i, options, thickness);
     append(ladder, Convex::cylinder(radius - t, half_length - t), t, t);
   }
   if (rest > thickness) {
@@ -87,15 +101,15 @@ inline Ladder cylinder_ladder(double radius, double half_length, int levels) {
 
 /// A cone keeps its opening and shrinks to the centre of its inscribed ball: moved in by t, the
 /// base rises by t and the apex falls by t / sin(a), a the angle between axis and side.
-inline Ladder cone_ladder(double radius, double half_length, int levels) {
+inline Ladder cone_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double length = 2.0 * half_length;
   const double side = std::hypot(radius, length);
   Ladder ladder{{Convex::cone(radius, -half_length, half_length), 0.0, 0.0}};
   // The radius of the inscribed ball.
   const double thickness = radius > 0.0 ? length * radius / (side + radius) : 0.0;
-  for (int i = 1; i < levels && thickness > 0.0; ++i) {
-    const double t = thickness * i / levels;
-    const double scale = 1.0 - static_cast<double>(i) / levels;
+  for (int i = 1; i < options.levels && thickness > 0.0; ++i) {
+    const double t = depth_after(i, options, thickness);
+    const double scale = 1.0 - even_steps(i, options) / options.levels;
     const double base = t - half_length;
     append(ladder, Convex::cone(scale * radius, base, base + scale * length), t, t);
   }

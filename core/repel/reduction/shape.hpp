@@ -24,19 +24,19 @@ class Shape {
     checked("half extent x", half_extents.x(), 0.0, largest, "m");
     checked("half extent y", half_extents.y(), 0.0, largest, "m");
     checked("half extent z", half_extents.z(), 0.0, largest, "m");
-    return Shape(detail::box_ladder(half_extents, levels_of(options)), Planes::box(half_extents));
+    return Shape(detail::box_ladder(half_extents, allowed(options)), Planes::box(half_extents));
   }
 
   /// `radius` [m] 0 to 1e6. Exact: a point with a radius.
   static Shape sphere(double radius, const ReductionOptions& options = {}) {
-    (void)levels_of(options);
+    (void)allowed(options);
     return Shape(detail::sphere_ladder(checked("radius", radius, 0.0, largest, "m")),
                  Planes::box(Vec3::Zero()));
   }
 
   /// All points within `radius` [m] of the segment of +-`half_length` [m] on the z axis. Exact.
   static Shape capsule(double radius, double half_length, const ReductionOptions& options = {}) {
-    (void)levels_of(options);
+    (void)allowed(options);
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
     return Shape(detail::capsule_ladder(radius, half_length), Planes::box({0.0, 0.0, half_length}));
@@ -46,7 +46,7 @@ class Shape {
   static Shape cylinder(double radius, double half_length, const ReductionOptions& options = {}) {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::cylinder_ladder(radius, half_length, levels_of(options)), Planes());
+    return Shape(detail::cylinder_ladder(radius, half_length, allowed(options)), Planes());
   }
 
   /// A disc of `radius` [m] at -`half_length` [m] on the z axis and the apex at +`half_length`,
@@ -54,7 +54,7 @@ class Shape {
   static Shape cone(double radius, double half_length, const ReductionOptions& options = {}) {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::cone_ladder(radius, half_length, levels_of(options)), Planes());
+    return Shape(detail::cone_ladder(radius, half_length, allowed(options)), Planes());
   }
 
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, lie inside, on a line or in a
@@ -65,7 +65,7 @@ class Shape {
       for (int axis = 0; axis < 3; ++axis) checked("coordinate", p[axis], -largest, largest, "m");
     }
     const std::vector<Facet> facets = hull_facets(points);
-    return Shape(detail::hull_ladder(points, levels_of(options), facets),
+    return Shape(detail::hull_ladder(points, allowed(options), facets),
                  detail::hull_planes(points, facets));
   }
 
@@ -91,8 +91,10 @@ class Shape {
       : data_(std::make_shared<const Data>(Data{std::move(ladder), std::move(planes)})),
         first_(data_->ladder.data()) {}
 
-  static int levels_of(const ReductionOptions& options) {
-    return static_cast<int>(checked("reduction levels", options.levels, 1.0, 64.0, ""));
+  static const ReductionOptions& allowed(const ReductionOptions& options) {
+    checked("reduction levels", options.levels, 1.0, 64.0, "");
+    checked("spacing of the levels", options.spacing, 0.25, 4.0, "");
+    return options;
   }
 
   std::shared_ptr<const Data> data_;
