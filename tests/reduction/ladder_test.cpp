@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <support/families.hpp>
 
@@ -119,6 +120,34 @@ TEST(Ladder, StepsAreSpacedAsAsked) {
       }
     }
   }
+}
+
+/// Two levels of a cube of half extent 1, the second one smaller by `step`.
+Ladder two_levels(double step, double depth) {
+  const Vec3 inner = Vec3::Constant(1.0 - step);
+  return {{Convex::box(Vec3::Ones()), 0.0, 0.0}, {Convex::box(inner), depth, depth}};
+}
+
+const std::vector<Vec3> sides_of_a_box{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+
+TEST(Ladder, NoLevelClaimsMoreDepthThanItShows) {
+  EXPECT_EQ(detail::verified(two_levels(0.25, 0.25), sides_of_a_box)[1].depth, 0.25);
+  EXPECT_EQ(detail::verified(two_levels(0.25, 0.2), sides_of_a_box)[1].depth, 0.2);
+  EXPECT_NEAR(detail::verified(two_levels(0.25, 0.3), sides_of_a_box)[1].depth, 0.25, 1e-14);
+  EXPECT_NEAR(detail::verified(two_levels(0.25, 0.25 + 1e-12), sides_of_a_box)[1].depth, 0.25,
+              1e-14);
+}
+
+TEST(Ladder, NoStepIsLargerThanTheRoomInTheParent) {
+  Ladder ladder = two_levels(0.5, 0.25);
+  ladder.push_back({Convex::box(Vec3::Constant(0.4)), 0.6, 0.6});
+  ladder = detail::verified(ladder, sides_of_a_box);
+  EXPECT_EQ(ladder[1].depth, 0.25);
+  EXPECT_NEAR(ladder[2].depth, 0.35, 1e-14) << "0.1 deeper than its parent says";
+}
+
+TEST(Ladder, ALevelThatReachesOutOfItsParentIsRefused) {
+  EXPECT_THROW((void)detail::verified(two_levels(-1e-9, 0.0), sides_of_a_box), SetupError);
 }
 
 TEST(Ladder, FlatBoxesHaveNoDepthAndGoOnToAPoint) {

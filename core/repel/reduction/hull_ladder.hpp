@@ -119,6 +119,8 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
 /// goes to its centroid, and so does flat input, which has no depth.
 inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
                           std::vector<Facet> facets) {
+  std::vector<Vec3> sides;
+  for (const Facet& f : facets) sides.push_back(f.n);
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
@@ -151,7 +153,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
   if (points.size() > 1) {
     append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
   }
-  return ladder;
+  return verified(std::move(ladder), sides);
 }
 
 /// The planes of the hull of `points` with these facets. Planes that are off by d hold no more than

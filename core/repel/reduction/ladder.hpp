@@ -62,6 +62,42 @@ inline double depth_after(int i, const ReductionOptions& options, double thickne
   return thickness * even_steps(i, options) / options.levels;
 }
 
+/// The ladder with no more depth than its levels show: along each of `normals` a level ends by its
+/// depth before the first level, and by its step before its parent, within 4e-15 of the reach, less
+/// than queries allow for.
+/// @param normals of all sides of the first level; one of each pair where all levels are symmetric,
+/// one of a side that goes around the axis
+/// Throws SetupError for a level that reaches out of its parent by more than 1e-12 of the reach.
+/// Cost: a support map per level and normal.
+inline Ladder verified(Ladder ladder, std::span<const Vec3> normals) {
+  const double reach = ladder.front().core.reach();
+  // Squares of lengths below 1e-154 m have no digits left.
+  const double rounding = 4e-15 * reach + 1e-150;
+  std::vector<double> outermost;
+  for (const Vec3& n : normals) {
+    outermost.push_back(ladder.front().core.support_value(Vec<double>(n)));
+  }
+  std::vector<double> before = outermost;
+  for (std::size_t k = 1; k < ladder.size(); ++k) {
+    double in_shape = std::numeric_limits<double>::infinity();
+    double in_parent = in_shape;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const double here = ladder[k].core.support_value(Vec<double>(normals[i]));
+      in_shape = std::min(in_shape, outermost[i] - here);
+      in_parent = std::min(in_parent, before[i] - here);
+      before[i] = here;
+    }
+    if (in_parent < -1e-12 * reach - rounding) {
+      throw SetupError("a level reaches out of the one before it");
+    }
+    const double parent = ladder[k - 1].depth;
+    const double shown =
+        std::min(ladder.front().depth + in_shape, parent + std::max(0.0, in_parent)) + rounding;
+    ladder[k].depth = std::max(parent, std::min(ladder[k].depth, shown));
+  }
+  return ladder;
+}
+
 /// A box loses thickness to a rectangle, the rectangle its width to a line, the line its
 /// length to a point (Figure 4 a, b, c). Coinciding steps fall together.
 inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& options) {
@@ -80,8 +116,12 @@ inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& optio
     if (t == sorted[1] && sorted[1] == sorted[2] && ladder.back().order > flat_order) continue;
     append(ladder, Convex::box(eroded(t)), sorted[0], flat_order + t);
   }
-  return ladder;
+  const Vec3 sides[] = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  return verified(std::move(ladder), sides);
 }
+
+/// Sides of a set around the z axis with equal ends.
+inline const Vec3 around_and_along[] = {Vec3::UnitX(), Vec3::UnitZ()};
 
 /// A cylinder shrinks to its axis and then to a point; a disk to a thin disc and then to a point
 /// (Figure 4 e, f).
@@ -96,7 +136,7 @@ inline Ladder cylinder_ladder(double radius, double half_length, const Reduction
   if (rest > thickness) {
     append(ladder, Convex::box(Vec3::Zero()), thickness, flat_order + rest);
   }
-  return ladder;
+  return verified(std::move(ladder), around_and_along);
 }
 
 /// A cone keeps its opening and shrinks to the centre of its inscribed ball: moved in by t, the
@@ -118,7 +158,8 @@ inline Ladder cone_ladder(double radius, double half_length, const ReductionOpti
     append(ladder, Convex::polytope(std::span(&centre, 1)), thickness,
            thickness > 0.0 ? thickness : flat_order + std::max(radius, half_length));
   }
-  return ladder;
+  const Vec3 base_and_side[] = {-Vec3::UnitZ(), Vec3(length, 0.0, radius).stableNormalized()};
+  return verified(std::move(ladder), base_and_side);
 }
 
 /// A sphere is a point with a depth (Figure 4 d).
@@ -132,7 +173,7 @@ inline Ladder capsule_ladder(double radius, double half_length) {
   if (half_length > 0.0) {
     append(ladder, Convex::box(Vec3::Zero()), radius, flat_order + half_length);
   }
-  return ladder;
+  return verified(std::move(ladder), around_and_along);
 }
 
 }  // namespace detail
