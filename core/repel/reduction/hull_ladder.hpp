@@ -80,16 +80,19 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   return v + std::min(1.0, share * (1.0 + 1e-12)) * (deep - v);
 }
 
+/// Directions, all around, along which the farthest corners of a hull with very many lead.
+inline constexpr int leading_steps = 13;  ///< along an edge of a cube around the origin
+inline constexpr std::size_t most_leading = std::size_t{6} * leading_steps * leading_steps;
+
 /// Of more than a thousand corners, moves those to the front that are the farthest along any of
 /// about a thousand directions all around. The number of them, or of all when there are fewer.
 inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
-  constexpr int steps = 13;  // along an edge of a cube around the origin
-  constexpr int directions = 6 * steps * steps;
-  if (corners.size() <= directions) return corners.size();
+  constexpr int steps = leading_steps;
+  if (corners.size() <= most_leading) return corners.size();
   const VertexScan all(corners);
   std::vector<bool> leads(corners.size());
   const auto along = [](int step) { return (2.0 * step + 1.0) / steps - 1.0; };
-  for (int i = 0; i < directions; ++i) {
+  for (int i = 0; i < static_cast<int>(most_leading); ++i) {
     Vec3 d;
     d[i % 3] = i % 2 == 0 ? 1.0 : -1.0;
     d[(i + 1) % 3] = along(i / 6 % steps);
@@ -154,6 +157,15 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
     append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
   }
   return verified(std::move(ladder), sides);
+}
+
+/// [byte] The most that the ladder of so many points holds, all of them corners: no level has more
+/// vertices than its parent.
+[[nodiscard]] inline std::size_t most_ladder_bytes(std::size_t points,
+                                                   const ReductionOptions& options) noexcept {
+  const std::size_t moving = std::min(points, most_leading);
+  return most_ladder_bytes(options) + Convex::most_bytes(points) +
+         static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
 }
 
 /// The planes of the hull of `points` with these facets. Planes that are off by d hold no more than

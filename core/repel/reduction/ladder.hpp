@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -43,6 +44,19 @@ namespace detail {
 
 /// Flat levels come after every level that still gains depth, of either shape.
 inline constexpr double flat_order = 1e9;
+
+/// [byte] of the heap.
+[[nodiscard]] inline std::size_t bytes_of(const Ladder& ladder) noexcept {
+  std::size_t bytes = ladder.capacity() * sizeof(Level);
+  for (const Level& level : ladder) bytes += level.core.bytes();
+  return bytes;
+}
+
+/// [byte] The most that a ladder holds without a polytope: the shape, its levels, a line and a
+/// point.
+[[nodiscard]] inline std::size_t most_ladder_bytes(const ReductionOptions& options) noexcept {
+  return (static_cast<std::size_t>(options.levels) + 3) * sizeof(Level) + Convex::most_bytes(1);
+}
 
 /// Adds a level, behind the last one in any case: orders that rounding made equal would leave the
 /// walk along the chain without a way.

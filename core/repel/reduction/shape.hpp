@@ -2,6 +2,7 @@
 /// Convex shapes as users build them.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -69,6 +70,23 @@ class Shape {
                  detail::hull_planes(points, facets));
   }
 
+  /// [byte] The most that any shape but a hull holds on the heap, known before it is built.
+  static std::size_t most_bytes(const ReductionOptions& options = {}) {
+    return sizeof(Data) + counters + detail::most_ladder_bytes(allowed(options)) +
+           Planes::bytes_of(6);
+  }
+  /// [byte] The same of a hull of so many points, 1 to 10 000; what it holds is about half as much
+  /// when all are corners.
+  static std::size_t most_bytes_of_hull(std::size_t points, const ReductionOptions& options = {}) {
+    checked("number of points", static_cast<double>(points), 1.0, 10000.0, "");
+    return sizeof(Data) + counters + detail::most_ladder_bytes(points, allowed(options)) +
+           Planes::bytes_of(2 * points);
+  }
+
+  /// [byte] held on the heap, by all copies together.
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return sizeof(Data) + counters + detail::bytes_of(data_->ladder) + data_->planes.bytes();
+  }
   [[nodiscard]] int levels() const noexcept { return static_cast<int>(data_->ladder.size()); }
   [[nodiscard]] const Level& level(int i) const noexcept { return first_[i]; }
   /// Around the core of the first level; empty for cylinders, cones and hulls without thickness.
@@ -86,10 +104,14 @@ class Shape {
     Ladder ladder;
     Planes planes;
   };
+  /// [byte] of a shared pointer beside what it points to, at most.
+  static constexpr std::size_t counters = 4 * sizeof(void*);
 
-  Shape(Ladder ladder, Planes planes)
-      : data_(std::make_shared<const Data>(Data{std::move(ladder), std::move(planes)})),
-        first_(data_->ladder.data()) {}
+  Shape(Ladder ladder, Planes planes) {
+    ladder.shrink_to_fit();
+    data_ = std::make_shared<const Data>(Data{std::move(ladder), std::move(planes)});
+    first_ = data_->ladder.data();
+  }
 
   static const ReductionOptions& allowed(const ReductionOptions& options) {
     checked("reduction levels", options.levels, 1.0, 64.0, "");
@@ -98,7 +120,7 @@ class Shape {
   }
 
   std::shared_ptr<const Data> data_;
-  const Level* first_;  ///< of the ladder, at hand
+  const Level* first_ = nullptr;  ///< of the ladder, at hand
 };
 
 }  // namespace repel
