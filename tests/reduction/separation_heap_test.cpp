@@ -75,7 +75,7 @@ void expect_announced(std::size_t announced, Build build) {
 
 TEST(ShapeHeap, HoldsWhatWasAnnouncedAtMost) {
   if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
-  mallopt(M_MMAP_MAX, 0);  // whole pages are no measure
+  test::keep_off_pages();
   Rng rng(seed);
   for (const ReductionOptions& options : {ReductionOptions{.levels = 1},
                                           {.levels = 8},
@@ -108,7 +108,7 @@ std::vector<Vec3> points_of_kind(int kind, int count, Rng& rng) {
 
 TEST(ShapeHeap, AHullHoldsWhatWasAnnouncedAtMost) {
   if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
-  mallopt(M_MMAP_MAX, 0);
+  test::keep_off_pages();
   Rng rng(seed);
   for (const int count : {4, 5, 8, 9, 16, 31, 32, 33, 34, 50, 97, 193, 385, 769, 1100}) {
     for (const int kind : {0, 1, 2, 3, 4}) {

@@ -36,6 +36,13 @@ inline void* taken(void* memory, long sign = 1) noexcept {
   return memory;
 }
 
+/// From here on no block is rounded up to whole pages.
+inline void keep_off_pages() noexcept {
+#if REPEL_COUNTS_HEAP
+  mallopt(M_MMAP_MAX, 0);
+#endif
+}
+
 }  // namespace repel::test
 
 #if REPEL_COUNTS_HEAP
