@@ -123,6 +123,7 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
 inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
                           std::vector<Facet> facets) {
   std::vector<Vec3> sides;
+  sides.reserve(facets.size());
   for (const Facet& f : facets) sides.push_back(f.n);
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
