@@ -156,6 +156,23 @@ TEST(SupportTable, CandidatesAreFewOnASphereHoweverManyItsVertices) {
   }
 }
 
+TEST(SupportTable, HoldsNoMoreThanItsVerticesAllow) {
+  Rng rng(seed);
+  for (const Case& c : cases(rng)) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + c.name);
+    EXPECT_LE(SupportTable(c.points).bytes(), SupportTable::most_bytes(c.points.size()));
+  }
+  Points ends = families::cloud(rng, 1000, 1e-13).vertices;
+  for (std::size_t i = 0; i < ends.size(); i += 2) ends[i] += Vec3(1, 2, 3);
+  const SupportTable table(ends);
+  EXPECT_LE(table.bytes(), SupportTable::most_bytes(ends.size()));
+  const VertexScan scan(ends);
+  for (const Vec3& d : directions(ends, rng)) {
+    if (d.norm() == 0.0) continue;
+    EXPECT_EQ(best_candidate(table, ends, Vec<double>(d)), scan.scan(Vec<double>(d)));
+  }
+}
+
 TEST(SupportTable, EveryDirectionHasACandidate) {
   const SupportTable table(families::prism(50, 1.0, 0.5).vertices);
   const double none = std::numeric_limits<double>::quiet_NaN();

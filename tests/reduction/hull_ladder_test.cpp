@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <tuple>
@@ -110,7 +111,7 @@ TEST(HullLadder, RandomHullsAreNestedAsDeepAsTheyClaim) {
     for (int k = 0; k < count; ++k) {
       points.push_back(families::uniform(rng, 0.3, 1.0) * families::direction(rng));
     }
-    const Ladder ladder = detail::hull_ladder(points, 8);
+    const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
     expect_is_a_ladder(ladder, points, rng);
     EXPECT_GT(ladder.back().depth, 0.0);
   }
@@ -122,7 +123,7 @@ TEST(HullLadder, AHullOnOneSideOfItsOriginIsNestedAsWell) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", hull " + std::to_string(i));
     const Points points =
         turned(families::cloud(rng, 12, 0.2).vertices, families::rotation(rng), Vec3(3, -2, 1));
-    const Ladder ladder = detail::hull_ladder(points, 8);
+    const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
     expect_is_a_ladder(ladder, points, rng);
     EXPECT_GT(ladder.back().depth, 0.0);
   }
@@ -133,10 +134,27 @@ TEST(HullLadder, EveryNumberOfLevelsHolds) {
   const Points points = families::cloud(rng, 20, 1.0).vertices;
   for (const int levels : {1, 2, 8, 64}) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(levels) + " levels");
-    const Ladder ladder = detail::hull_ladder(points, levels);
+    const Ladder ladder = detail::hull_ladder(points, {.levels = levels});
     expect_is_a_ladder(ladder, points, rng);
     EXPECT_LE(ladder.size(), 2U + static_cast<std::size_t>(levels));
     EXPECT_GE(ladder.size(), 3U);
+  }
+}
+
+TEST(HullLadder, StepsAreSpacedAsAsked) {
+  Rng rng(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  const Points points = families::cloud(rng, 40, 1.0).vertices;
+  const double thickness = detail::hull_ladder(points, {.levels = 8}).back().depth;
+  for (const double spacing : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+    SCOPED_TRACE("spacing " + to_text(spacing));
+    const Ladder ladder = detail::hull_ladder(points, {.levels = 8, .spacing = spacing});
+    expect_is_a_ladder(ladder, points, rng);
+    ASSERT_EQ(ladder.size(), 10U);
+    for (int i = 1; i <= 8; ++i) {
+      EXPECT_NEAR(ladder[i].depth, std::pow(i / 8.0, spacing) * thickness, 0.06 * thickness);
+    }
+    EXPECT_NEAR(ladder[1].depth, std::pow(1 / 8.0, spacing) * thickness, 0.1 * ladder[1].depth);
   }
 }
 
@@ -147,7 +165,7 @@ TEST(HullLadder, TheHullOfABoxIsNearlyAsDeepAsTheBox) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", extents " + std::to_string(h.x()) + " " +
                  std::to_string(h.y()) + " " + std::to_string(h.z()));
     const Points points = turned(families::box(h).vertices, families::rotation(rng));
-    const Ladder ladder = detail::hull_ladder(points, 8);
+    const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
     expect_is_a_ladder(ladder, points, rng);
     EXPECT_LE(ladder.back().depth, h.minCoeff());
     EXPECT_GE(ladder.back().depth, 0.8 * h.minCoeff());
@@ -156,7 +174,7 @@ TEST(HullLadder, TheHullOfABoxIsNearlyAsDeepAsTheBox) {
 
 TEST(HullLadder, APlateKeepsItsWidthUntilItsThicknessIsGone) {
   const Points points = families::box({0.5, 0.5, 0.01}).vertices;
-  const Ladder ladder = detail::hull_ladder(points, 8);
+  const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
   ASSERT_GE(ladder.size(), 3U);
   const Convex& last_solid = ladder[ladder.size() - 2].core;
   for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())}) {
@@ -173,7 +191,7 @@ TEST(HullLadder, NeedlesAreNestedAsDeepAsTheyClaim) {
     const double thin = families::log_uniform(rng, 1e-4, 1e-1);
     for (Vec3& p : points) p = Vec3(thin * p.x(), thin * p.y(), p.z());
     points = turned(points, families::rotation(rng));
-    expect_is_a_ladder(detail::hull_ladder(points, 8), points, rng);
+    expect_is_a_ladder(detail::hull_ladder(points, {.levels = 8}), points, rng);
   }
 }
 
@@ -191,7 +209,7 @@ TEST(HullLadder, ThinAndClusteredHullsAreNestedAsDeepAsTheyClaim) {
       if (i % 3 == 2) points.push_back(points[k] + thin * families::direction(rng));
     }
     points = turned(points, families::rotation(rng));
-    const Ladder ladder = detail::hull_ladder(points, 8);
+    const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
     expect_is_a_ladder(ladder, points, rng);
     solid += ladder.back().depth > 0.0 ? 1 : 0;
   }
@@ -202,7 +220,7 @@ TEST(HullLadder, TwoHundredPointsAreNestedAsDeepAsTheyClaim) {
   Rng rng(seed);
   SCOPED_TRACE("seed " + std::to_string(seed));
   const Points points = families::cloud(rng, 200, 1.0).vertices;
-  const Ladder ladder = detail::hull_ladder(points, 8);
+  const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
   expect_is_a_ladder(ladder, points, rng);
   EXPECT_GE(ladder.back().depth, 0.6) << "nearly a ball of radius 1";
 }
@@ -218,7 +236,7 @@ TEST(HullLadder, FlatInputHasNoDepthAndEndsInAPoint) {
   for (const Points& points : {plane, line, Points(5, Vec3(1, 2, 3)), Points{{0, 0, 0}, {1, 0, 0}},
                                Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(points.size()) + " points");
-    const Ladder ladder = detail::hull_ladder(points, 8);
+    const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
     EXPECT_EQ(ladder.size(), 2U);
     EXPECT_EQ(ladder.back().depth, 0.0);
     expect_is_a_ladder(ladder, points, rng);
@@ -227,7 +245,7 @@ TEST(HullLadder, FlatInputHasNoDepthAndEndsInAPoint) {
 
 TEST(HullLadder, OnePointIsALevelOfItsOwn) {
   const Points point{{1, 2, 3}};
-  const Ladder ladder = detail::hull_ladder(point, 8);
+  const Ladder ladder = detail::hull_ladder(point, {.levels = 8});
   EXPECT_EQ(ladder.size(), 1U);
   EXPECT_EQ(ladder.front().depth, 0.0);
 }
@@ -237,7 +255,7 @@ TEST(HullLadder, PointsInsideAreAllowed) {
   Points points = families::box({0.5, 0.4, 0.3}).vertices;
   for (int i = 0; i < 12; ++i) points.push_back(0.2 * families::direction(rng));
   points.push_back(points.front());
-  const Ladder ladder = detail::hull_ladder(points, 8);
+  const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
   expect_is_a_ladder(ladder, points, rng);
   EXPECT_GE(ladder.back().depth, 0.8 * 0.3);
   EXPECT_EQ(ladder.front().core.vertex_count(), 8) << "a point inside is kept";
@@ -249,8 +267,8 @@ TEST(HullLadder, PointsThatAreNoCornersChangeNoLevel) {
   Points points = corners;
   for (int i = 0; i < 100; ++i) points.push_back(0.3 * families::direction(rng));
   points.insert(points.end(), corners.begin(), corners.end());
-  const Ladder ladder = detail::hull_ladder(points, 8);
-  const Ladder plain = detail::hull_ladder(corners, 8);
+  const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
+  const Ladder plain = detail::hull_ladder(corners, {.levels = 8});
   ASSERT_EQ(ladder.size(), plain.size());
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     EXPECT_EQ(vertices_of(ladder[i].core).size(), vertices_of(plain[i].core).size());
@@ -263,7 +281,8 @@ TEST(HullLadder, AVertexKeepsItsIndexFromLevelToLevel) {
   Rng rng(seed);
   for (const int count : {12, 200, 1500}) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(count) + " points");
-    const Ladder ladder = detail::hull_ladder(families::cloud(rng, count, 1.0).vertices, 8);
+    const Ladder ladder =
+        detail::hull_ladder(families::cloud(rng, count, 1.0).vertices, {.levels = 8});
     const Points before = vertices_of(ladder[0].core);
     const Points after = vertices_of(ladder[1].core);
     ASSERT_EQ(static_cast<int>(before.size()), count);
@@ -285,7 +304,7 @@ TEST(HullLadder, ManyPointsOnEachFaceOfABoxAreNoObstacle) {
         points.back() += jitter * families::direction(rng);
       }
       if (turn) points = turned(points, families::rotation(rng));
-      const Ladder ladder = detail::hull_ladder(points, 8);
+      const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
       expect_is_a_ladder(ladder, points, rng);
       EXPECT_EQ(ladder.size(), 10U);
       EXPECT_GE(ladder.back().depth, 0.9 * 0.3);
@@ -297,7 +316,7 @@ TEST(HullLadder, TenThousandPointsAreNestedAsDeepAsTheyClaim) {
   Rng rng(seed);
   SCOPED_TRACE("seed " + std::to_string(seed));
   const Points points = families::cloud(rng, 10000, 1.0).vertices;
-  const Ladder ladder = detail::hull_ladder(points, 8);
+  const Ladder ladder = detail::hull_ladder(points, {.levels = 8});
   EXPECT_EQ(ladder.size(), 10U);
   EXPECT_EQ(ladder[0].core.vertex_count(), 10000);
   EXPECT_GE(ladder[1].core.vertex_count(), 900);

@@ -57,5 +57,73 @@ TEST(SeparationHeap, AQueryTakesNothingFromIt) {
   EXPECT_LT(overlaps, total * 9 / 10);
 }
 
+/// What a shape holds when it is built is what it says, and no more than was announced.
+template <class Build>
+void expect_announced(std::size_t announced, Build build) {
+  test::blocks_held = 0;
+  test::bytes_held = 0;
+  watched = true;
+  const Shape shape = build();
+  watched = false;
+  const auto blocks = static_cast<std::size_t>(test::blocks_held);
+  const auto held = static_cast<std::size_t>(test::bytes_held);
+  // The heap rounds a block up by less than 32 bytes.
+  EXPECT_LE(held, shape.bytes() + 32 * blocks);
+  EXPECT_GE(held + 64, shape.bytes());
+  EXPECT_LE(shape.bytes(), announced);
+}
+
+TEST(ShapeHeap, HoldsWhatWasAnnouncedAtMost) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  test::keep_off_pages();
+  Rng rng(seed);
+  for (const ReductionOptions& options : {ReductionOptions{.levels = 1},
+                                          {.levels = 8},
+                                          {.levels = 64},
+                                          {.levels = 8, .spacing = 2.0}}) {
+    const std::size_t most = Shape::most_bytes(options);
+    expect_announced(most, [&] { return Shape::box({0.1, 0.2, 0.3}, options); });
+    expect_announced(most, [&] { return Shape::box({0.2, 0.2, 0.2}, options); });
+    expect_announced(most, [&] { return Shape::sphere(0.1, options); });
+    expect_announced(most, [&] { return Shape::capsule(0.1, 0.2, options); });
+    expect_announced(most, [&] { return Shape::cylinder(0.1, 0.2, options); });
+    expect_announced(most, [&] { return Shape::cylinder(0.2, 0.1, options); });
+    expect_announced(most, [&] { return Shape::cone(0.2, 0.1, options); });
+    EXPECT_LE(most, 3 * Shape::box({0.1, 0.2, 0.3}, options).bytes());
+  }
+}
+
+/// Of kind 0 to 4: on a sphere, a needle, flat, a prism, two clusters within rounding.
+std::vector<Vec3> points_of_kind(int kind, int count, Rng& rng) {
+  if (kind == 3) return families::prism(count / 2, 0.5, 0.2).vertices;
+  std::vector<Vec3> points = families::cloud(rng, count, 0.5).vertices;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Vec3& p = points[i];
+    if (kind == 1) p = Vec3(1e-3 * p.x(), 1e-3 * p.y(), p.z());
+    if (kind == 2) p.z() = 0.0;
+    if (kind == 4) p = 1e-13 * p + static_cast<double>(i % 2) * Vec3::UnitX();
+  }
+  return points;
+}
+
+TEST(ShapeHeap, AHullHoldsWhatWasAnnouncedAtMost) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  test::keep_off_pages();
+  Rng rng(seed);
+  for (const int count : {4, 5, 8, 9, 16, 31, 32, 33, 34, 50, 97, 193, 385, 769, 1100}) {
+    for (const int kind : {0, 1, 2, 3, 4}) {
+      if (kind == 3 && count < 6) continue;
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(count) +
+                   " points of kind " + std::to_string(kind));
+      const ReductionOptions options{.levels = count < 100 ? 1 + count % 16 : 1};
+      const std::vector<Vec3> points = points_of_kind(kind, count, rng);
+      const std::size_t most = Shape::most_bytes_of_hull(points.size(), options);
+      expect_announced(most, [&] { return Shape::hull(points, options); });
+      if (kind > 1) continue;
+      EXPECT_LE(most, 3 * Shape::hull(points, options).bytes()) << "far too much announced";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace repel

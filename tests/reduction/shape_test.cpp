@@ -81,6 +81,21 @@ TEST(Shape, LevelsThatAreNotAllowedAreNamed) {
   }
 }
 
+TEST(Shape, SpacingsThatAreNotAllowedAreNamed) {
+  const std::vector<Vec3> points = families::box({1, 1, 1}).vertices;
+  for (const double spacing : {0.0, -1.0, 0.2499, 4.001, infinite, not_a_number}) {
+    const std::string value = to_text(spacing);
+    const ReductionOptions options{.spacing = spacing};
+    const std::string name = "spacing of the levels";
+    expect_refused(name, value, [&] { (void)Shape::box({1, 1, 1}, options); });
+    expect_refused(name, value, [&] { (void)Shape::sphere(1, options); });
+    expect_refused(name, value, [&] { (void)Shape::capsule(1, 1, options); });
+    expect_refused(name, value, [&] { (void)Shape::cylinder(1, 1, options); });
+    expect_refused(name, value, [&] { (void)Shape::cone(1, 1, options); });
+    expect_refused(name, value, [&] { (void)Shape::hull(points, options); });
+  }
+}
+
 TEST(Shape, CopiesShareTheirLevels) {
   const Shape original = Shape::box({1, 2, 3});
   const Shape copy = original;  // NOLINT(performance-unnecessary-copy-initialization)

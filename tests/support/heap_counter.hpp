@@ -1,12 +1,15 @@
 /// @file
 /// Counts every call to the heap in the program that includes this, in one of its files only: it
-/// brings its own malloc. Calls are counted while `repel::test::watched` is set.
+/// brings its own malloc. Calls are counted while `repel::test::watched` is set, and so are the
+/// blocks taken and not yet given back, and their bytes, which the heap rounds up.
 #pragma once
 
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <new>
+
+#include <malloc.h>
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define REPEL_COUNTS_HEAP 1
@@ -19,8 +22,25 @@ namespace repel::test {
 inline std::atomic<bool> watched{false};
 inline std::atomic<long> calls{0};
 
+inline std::atomic<long> blocks_held{0};
+inline std::atomic<long> bytes_held{0};
+
 inline void count_call() noexcept {
   if (watched.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
+}
+inline void* taken(void* memory, long sign = 1) noexcept {
+  if (memory == nullptr || !watched.load(std::memory_order_relaxed)) return memory;
+  blocks_held.fetch_add(sign, std::memory_order_relaxed);
+  const long bytes = static_cast<long>(malloc_usable_size(memory));
+  bytes_held.fetch_add(sign * bytes, std::memory_order_relaxed);
+  return memory;
+}
+
+/// From here on no block is rounded up to whole pages.
+inline void keep_off_pages() noexcept {
+#if REPEL_COUNTS_HEAP
+  mallopt(M_MMAP_MAX, 0);
+#endif
 }
 
 }  // namespace repel::test
@@ -35,19 +55,20 @@ void __libc_free(void*);
 
 void* malloc(std::size_t size) {
   repel::test::count_call();
-  return __libc_malloc(size);
+  return repel::test::taken(__libc_malloc(size));
 }
 void* calloc(std::size_t number, std::size_t size) {
   repel::test::count_call();
-  return __libc_calloc(number, size);
+  return repel::test::taken(__libc_calloc(number, size));
 }
 void* realloc(void* old, std::size_t size) {
   repel::test::count_call();
-  return __libc_realloc(old, size);
+  repel::test::taken(old, -1);
+  return repel::test::taken(__libc_realloc(old, size));
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
   repel::test::count_call();
-  return __libc_memalign(alignment, size);
+  return repel::test::taken(__libc_memalign(alignment, size));
 }
 int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
   *out = aligned_alloc(alignment, size);
@@ -55,6 +76,7 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
 }
 void free(void* memory) {
   repel::test::count_call();
+  repel::test::taken(memory, -1);
   __libc_free(memory);
 }
 }

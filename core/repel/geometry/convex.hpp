@@ -65,6 +65,12 @@ class Convex {
     return set;
   }
 
+  /// [byte] held on the heap, and the most that a polytope of so many vertices holds.
+  [[nodiscard]] std::size_t bytes() const noexcept { return vertices_.bytes() + table_.bytes(); }
+  [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
+    return VertexScan::bytes_of(vertices) +
+           (vertices > largest_scan ? SupportTable::most_bytes(vertices) : 0);
+  }
   [[nodiscard]] Kind kind() const noexcept { return kind_; }
   /// [m] distance of the farthest point from the origin of the frame.
   [[nodiscard]] double reach() const noexcept { return reach_; }

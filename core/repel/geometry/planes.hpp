@@ -23,7 +23,7 @@ class Planes {
   explicit Planes(std::span<const Facet> facets, double margin = 0.0)
       : margin_(margin),
         size_(facets.size()),
-        stride_((facets.size() + lanes - 1) / lanes * lanes),
+        stride_(stride_of(facets.size())),
         numbers_(4 * stride_) {
     for (std::size_t i = 0; i < stride_; ++i) {
       const Facet& f = facets[i < facets.size() ? i : 0];
@@ -46,6 +46,11 @@ class Planes {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
   [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(size_); }
+  /// [byte] held on the heap, and what so many planes hold.
+  [[nodiscard]] std::size_t bytes() const noexcept { return numbers_.capacity() * sizeof(double); }
+  [[nodiscard]] static std::size_t bytes_of(std::size_t planes) noexcept {
+    return 4 * stride_of(planes) * sizeof(double);
+  }
 
   /// Unit, outward; `i` less than size().
   [[nodiscard]] Vec<double> normal(std::uint32_t i) const noexcept {
@@ -67,6 +72,10 @@ class Planes {
 
  private:
   static constexpr std::size_t lanes = 8;  ///< the arrays are padded to a multiple of this
+
+  [[nodiscard]] static std::size_t stride_of(std::size_t planes) noexcept {
+    return (planes + lanes - 1) / lanes * lanes;
+  }
 
   [[nodiscard]] detail::Lanes numbers(std::size_t row, std::size_t i) const noexcept {
     detail::Lanes some;

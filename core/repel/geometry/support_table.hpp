@@ -23,14 +23,28 @@ namespace repel {
 /// of the corners, so u is never the farthest. Hence the first best of `candidates(d)` is the very
 /// vertex that a scan of all of them would find, flat and nearly flat regions, repeated and nearly
 /// repeated vertices included; climbing along edges gets lost in those. A cell that holds the
-/// normal of a flat face has all corners of that face.
+/// normal of a flat face has all corners of that face. Where finer cells would have more than
+/// `most_candidates` for each vertex in all, as those of a far corner that is a thousand vertices
+/// within rounding, the coarser ones stay.
 class SupportTable {
  public:
+  /// For each vertex, in all cells: round shapes have 4 to 8, needles and prisms up to 26.
+  static constexpr std::size_t most_candidates = 32;
+
   SupportTable() = default;
   /// Of at least one vertex [m]. Set-up: it allocates. Cost: a few passes over the vertices.
   explicit SupportTable(std::span<const Vec3> vertices);
 
   [[nodiscard]] bool empty() const noexcept { return first_.empty(); }
+
+  /// [byte] held on the heap, and the most that a table of so many vertices holds.
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return (first_.capacity() + candidates_.capacity()) * sizeof(std::uint32_t);
+  }
+  [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
+    const std::size_t width = finest_width(vertices);
+    return (6 * width * width + 1 + most_candidates * vertices) * sizeof(std::uint32_t);
+  }
 
   /// Indices, in ascending order, of the vertices that can have the largest product with `d`, as
   /// computed in double or better; for a `d` that is zero or not finite, of some vertices. The
@@ -63,6 +77,12 @@ class SupportTable {
     return step < width ? static_cast<std::size_t>(step) : width_ - 1;
   }
 
+  /// Halves the cells until there are about as many as vertices.
+  [[nodiscard]] static std::size_t finest_width(std::size_t vertices) noexcept {
+    std::size_t width = 1;
+    while (width < 64 && 6 * width * width * 2 < vertices) width *= 2;
+    return width;
+  }
   /// The directions at the corners of a cell of a face that is `width` cells wide.
   [[nodiscard]] static std::array<Vec3, 4> corners_of(std::size_t face, std::size_t width,
                                                       std::size_t row, std::size_t column);
@@ -142,8 +162,8 @@ inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
   for (std::size_t face = 0; face < 6; ++face) {
     cells.push_back(pruned(vertices, margin, all, corners_of(face, 1, 0, 0)));
   }
-  // Halve the cells until there are about as many as vertices.
-  while (width_ < 64 && 6 * width_ * width_ * 2 < vertices.size()) {
+  while (width_ < finest_width(vertices.size())) {
+    std::size_t count = 0;
     std::vector<List> finer;
     finer.reserve(4 * cells.size());
     const std::size_t width = 2 * width_;
@@ -153,10 +173,16 @@ inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
       const std::size_t column = i % width;
       const List& parent = cells[(face * width_ + row / 2) * width_ + column / 2];
       finer.push_back(pruned(vertices, margin, parent, corners_of(face, width, row, column)));
+      count += finer.back().size();
     }
+    if (count > most_candidates * vertices.size()) break;
     cells = std::move(finer);
     width_ = width;
   }
+  std::size_t count = 0;
+  for (const List& cell : cells) count += cell.size();
+  first_.reserve(cells.size() + 1);
+  candidates_.reserve(count);
   for (const List& cell : cells) {
     first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
     candidates_.insert(candidates_.end(), cell.begin(), cell.end());

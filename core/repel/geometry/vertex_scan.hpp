@@ -57,8 +57,7 @@ class VertexScan {
   VertexScan() = default;
   explicit VertexScan(std::span<const Vec3> vertices)
       : size_(static_cast<int>(vertices.size())),
-        stride_((vertices.size() + VertexBlock::lanes - 1) / VertexBlock::lanes *
-                VertexBlock::lanes),
+        stride_(stride_of(vertices.size())),
         numbers_(3 * stride_),
         rows_(vertices.begin(), vertices.end()) {
     for (std::size_t i = 0; i < stride_; ++i) {
@@ -68,6 +67,13 @@ class VertexScan {
   }
 
   [[nodiscard]] int size() const noexcept { return size_; }
+  /// [byte] held on the heap, and what so many vertices hold.
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return numbers_.capacity() * sizeof(double) + rows_.capacity() * sizeof(Vec<double>);
+  }
+  [[nodiscard]] static std::size_t bytes_of(std::size_t vertices) noexcept {
+    return 3 * stride_of(vertices) * sizeof(double) + vertices * sizeof(Vec<double>);
+  }
   [[nodiscard]] VertexBlock block() const noexcept { return {numbers_.data(), stride_}; }
   /// Vertex i [m]; any number gives some vertex.
   [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
@@ -83,6 +89,10 @@ class VertexScan {
   [[nodiscard]] std::uint32_t scan(const Vec<DoubleDouble>& d) const noexcept;
 
  private:
+  [[nodiscard]] static std::size_t stride_of(std::size_t vertices) noexcept {
+    return (vertices + VertexBlock::lanes - 1) / VertexBlock::lanes * VertexBlock::lanes;
+  }
+
   int size_ = 0;
   std::size_t stride_ = 0;
   std::vector<double> numbers_;    ///< [m]

@@ -80,16 +80,19 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   return v + std::min(1.0, share * (1.0 + 1e-12)) * (deep - v);
 }
 
+/// Directions, all around, along which the farthest corners of a hull with very many lead.
+inline constexpr int leading_steps = 13;  ///< along an edge of a cube around the origin
+inline constexpr std::size_t most_leading = std::size_t{6} * leading_steps * leading_steps;
+
 /// Of more than a thousand corners, moves those to the front that are the farthest along any of
 /// about a thousand directions all around. The number of them, or of all when there are fewer.
 inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
-  constexpr int steps = 13;  // along an edge of a cube around the origin
-  constexpr int directions = 6 * steps * steps;
-  if (corners.size() <= directions) return corners.size();
+  constexpr int steps = leading_steps;
+  if (corners.size() <= most_leading) return corners.size();
   const VertexScan all(corners);
   std::vector<bool> leads(corners.size());
   const auto along = [](int step) { return (2.0 * step + 1.0) / steps - 1.0; };
-  for (int i = 0; i < directions; ++i) {
+  for (int i = 0; i < static_cast<int>(most_leading); ++i) {
     Vec3 d;
     d[i % 3] = i % 2 == 0 ? 1.0 : -1.0;
     d[(i + 1) % 3] = along(i / 6 % steps);
@@ -117,7 +120,11 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
 /// index from level to level, and the depth of a level is the sum of what each step is measured to
 /// have won. Of a hull with very many corners a thousand move, the first ones. The last solid level
 /// goes to its centroid, and so does flat input, which has no depth.
-inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<Facet> facets) {
+inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
+                          std::vector<Facet> facets) {
+  std::vector<Vec3> sides;
+  sides.reserve(facets.size());
+  for (const Facet& f : facets) sides.push_back(f.n);
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
@@ -125,12 +132,15 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<
   vertices.resize(leading);
   Vec3 centroid = centroid_of(vertices);
   double depth = 0.0;
-  for (int i = 0; i < levels && !facets.empty(); ++i) {
+  double taken = 0.0;
+  for (int i = 1; i <= options.levels && !facets.empty(); ++i) {
     const Vec3 deep = deep_point(facets, vertices);
     const double room = depth_in(facets, deep);
     if (!(room > 0.0)) break;
-    const bool last = i + 1 == levels;
-    const double target = last ? 0.95 * room : room / (levels - i);
+    const double next = even_steps(i, options);
+    const double target =
+        i == options.levels ? 0.95 * room : room * (next - taken) / (options.levels - taken);
+    taken = next;
     double won = room;
     for (Vec3& v : vertices) {
       v = moved_inside(facets, v, target, deep);
@@ -147,7 +157,16 @@ inline Ladder hull_ladder(std::span<const Vec3> points, int levels, std::vector<
   if (points.size() > 1) {
     append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
   }
-  return ladder;
+  return verified(std::move(ladder), sides);
+}
+
+/// [byte] The most that the ladder of so many points holds, all of them corners: no level has more
+/// vertices than its parent.
+[[nodiscard]] inline std::size_t most_ladder_bytes(std::size_t points,
+                                                   const ReductionOptions& options) noexcept {
+  const std::size_t moving = std::min(points, most_leading);
+  return most_ladder_bytes(options) + Convex::most_bytes(points) +
+         static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
 }
 
 /// The planes of the hull of `points` with these facets. Planes that are off by d hold no more than
@@ -162,8 +181,8 @@ inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>
   return Planes(facets, radius > off ? off * (1.0 + 2.0 * reach / radius) : 2.0 * reach);
 }
 
-inline Ladder hull_ladder(std::span<const Vec3> points, int levels) {
-  return hull_ladder(points, levels, hull_facets(points));
+inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options) {
+  return hull_ladder(points, options, hull_facets(points));
 }
 
 }  // namespace repel::detail

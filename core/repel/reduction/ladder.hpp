@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <utility>
@@ -17,6 +18,9 @@ namespace repel {
 /// How a shape is reduced.
 struct ReductionOptions {
   int levels = 8;  ///< steps until the shape has lost its thickness; 1 to 64
+  /// The first i of n steps take (i/n)^spacing of the thickness: 1 makes them even, more crowds
+  /// them below the surface, less around the core; 0.25 to 4.
+  double spacing = 1.0;
 };
 
 /// One sub-shape: every point of `core` lies at least `depth` inside the shape.
@@ -41,6 +45,19 @@ namespace detail {
 /// Flat levels come after every level that still gains depth, of either shape.
 inline constexpr double flat_order = 1e9;
 
+/// [byte] of the heap.
+[[nodiscard]] inline std::size_t bytes_of(const Ladder& ladder) noexcept {
+  std::size_t bytes = ladder.capacity() * sizeof(Level);
+  for (const Level& level : ladder) bytes += level.core.bytes();
+  return bytes;
+}
+
+/// [byte] The most that a ladder holds without a polytope: the shape, its levels, a line and a
+/// point.
+[[nodiscard]] inline std::size_t most_ladder_bytes(const ReductionOptions& options) noexcept {
+  return (static_cast<std::size_t>(options.levels) + 3) * sizeof(Level) + Convex::most_bytes(1);
+}
+
 /// Adds a level, behind the last one in any case: orders that rounding made equal would leave the
 /// walk along the chain without a way.
 inline void append(Ladder& ladder, Convex core, double depth, double order) {
@@ -48,17 +65,64 @@ inline void append(Ladder& ladder, Convex core, double depth, double order) {
   ladder.push_back({std::move(core), depth, std::max(order, next)});
 }
 
-/// A box loses thickness evenly to a rectangle, the rectangle its width to a line, the line its
+/// As many even steps as the first `i` steps, 1 to all, are worth: `i` itself when all are even.
+inline double even_steps(int i, const ReductionOptions& options) {
+  return i * std::pow(static_cast<double>(i) / options.levels, options.spacing - 1.0);
+}
+
+/// [m] how far the first `i` steps go into a shape of that thickness [m].
+inline double depth_after(int i, const ReductionOptions& options, double thickness) {
+  if (i == options.levels) return thickness;
+  return thickness * even_steps(i, options) / options.levels;
+}
+
+/// The ladder with no more depth than its levels show: along each of `normals` a level ends by its
+/// depth before the first level, and by its step before its parent, within 4e-15 of the reach, less
+/// than queries allow for.
+/// @param normals of all sides of the first level; one of each pair where all levels are symmetric,
+/// one of a side that goes around the axis
+/// Throws SetupError for a level that reaches out of its parent by more than 1e-12 of the reach.
+/// Cost: a support map per level and normal.
+inline Ladder verified(Ladder ladder, std::span<const Vec3> normals) {
+  const double reach = ladder.front().core.reach();
+  // Squares of lengths below 1e-154 m have no digits left.
+  const double rounding = 4e-15 * reach + 1e-150;
+  std::vector<double> outermost;
+  for (const Vec3& n : normals) {
+    outermost.push_back(ladder.front().core.support_value(Vec<double>(n)));
+  }
+  std::vector<double> before = outermost;
+  for (std::size_t k = 1; k < ladder.size(); ++k) {
+    double in_shape = std::numeric_limits<double>::infinity();
+    double in_parent = in_shape;
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const double here = ladder[k].core.support_value(Vec<double>(normals[i]));
+      in_shape = std::min(in_shape, outermost[i] - here);
+      in_parent = std::min(in_parent, before[i] - here);
+      before[i] = here;
+    }
+    if (in_parent < -1e-12 * reach - rounding) {
+      throw SetupError("a level reaches out of the one before it");
+    }
+    const double parent = ladder[k - 1].depth;
+    const double shown =
+        std::min(ladder.front().depth + in_shape, parent + std::max(0.0, in_parent)) + rounding;
+    ladder[k].depth = std::max(parent, std::min(ladder[k].depth, shown));
+  }
+  return ladder;
+}
+
+/// A box loses thickness to a rectangle, the rectangle its width to a line, the line its
 /// length to a point (Figure 4 a, b, c). Coinciding steps fall together.
-inline Ladder box_ladder(const Vec3& half_extents, int levels) {
+inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& options) {
   Vec3 sorted = half_extents;
   std::sort(sorted.begin(), sorted.end());
   const auto eroded = [&](double t) -> Vec3 {
     return (half_extents.array() - t).max(0.0).matrix();
   };
   Ladder ladder{{Convex::box(half_extents), 0.0, 0.0}};
-  for (int i = 1; i <= levels && sorted[0] > 0.0; ++i) {
-    const double t = i == levels ? sorted[0] : sorted[0] * i / levels;
+  for (int i = 1; i <= options.levels && sorted[0] > 0.0; ++i) {
+    const double t = depth_after(i, options, sorted[0]);
     append(ladder, Convex::box(eroded(t)), t, t);
   }
   for (const double t : {sorted[1], sorted[2]}) {
@@ -66,36 +130,40 @@ inline Ladder box_ladder(const Vec3& half_extents, int levels) {
     if (t == sorted[1] && sorted[1] == sorted[2] && ladder.back().order > flat_order) continue;
     append(ladder, Convex::box(eroded(t)), sorted[0], flat_order + t);
   }
-  return ladder;
+  const Vec3 sides[] = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  return verified(std::move(ladder), sides);
 }
+
+/// Sides of a set around the z axis with equal ends.
+inline const Vec3 around_and_along[] = {Vec3::UnitX(), Vec3::UnitZ()};
 
 /// A cylinder shrinks to its axis and then to a point; a disk to a thin disc and then to a point
 /// (Figure 4 e, f).
-inline Ladder cylinder_ladder(double radius, double half_length, int levels) {
+inline Ladder cylinder_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double thickness = std::min(radius, half_length);
   const double rest = std::max(radius, half_length);
   Ladder ladder{{Convex::cylinder(radius, half_length), 0.0, 0.0}};
-  for (int i = 1; i <= levels && thickness > 0.0; ++i) {
-    const double t = i == levels ? thickness : thickness * i / levels;
+  for (int i = 1; i <= options.levels && thickness > 0.0; ++i) {
+    const double t = depth_after(i, options, thickness);
     append(ladder, Convex::cylinder(radius - t, half_length - t), t, t);
   }
   if (rest > thickness) {
     append(ladder, Convex::box(Vec3::Zero()), thickness, flat_order + rest);
   }
-  return ladder;
+  return verified(std::move(ladder), around_and_along);
 }
 
 /// A cone keeps its opening and shrinks to the centre of its inscribed ball: moved in by t, the
 /// base rises by t and the apex falls by t / sin(a), a the angle between axis and side.
-inline Ladder cone_ladder(double radius, double half_length, int levels) {
+inline Ladder cone_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double length = 2.0 * half_length;
   const double side = std::hypot(radius, length);
   Ladder ladder{{Convex::cone(radius, -half_length, half_length), 0.0, 0.0}};
   // The radius of the inscribed ball.
   const double thickness = radius > 0.0 ? length * radius / (side + radius) : 0.0;
-  for (int i = 1; i < levels && thickness > 0.0; ++i) {
-    const double t = thickness * i / levels;
-    const double scale = 1.0 - static_cast<double>(i) / levels;
+  for (int i = 1; i < options.levels && thickness > 0.0; ++i) {
+    const double t = depth_after(i, options, thickness);
+    const double scale = 1.0 - even_steps(i, options) / options.levels;
     const double base = t - half_length;
     append(ladder, Convex::cone(scale * radius, base, base + scale * length), t, t);
   }
@@ -104,7 +172,8 @@ inline Ladder cone_ladder(double radius, double half_length, int levels) {
     append(ladder, Convex::polytope(std::span(&centre, 1)), thickness,
            thickness > 0.0 ? thickness : flat_order + std::max(radius, half_length));
   }
-  return ladder;
+  const Vec3 base_and_side[] = {-Vec3::UnitZ(), Vec3(length, 0.0, radius).stableNormalized()};
+  return verified(std::move(ladder), base_and_side);
 }
 
 /// A sphere is a point with a depth (Figure 4 d).
@@ -118,7 +187,7 @@ inline Ladder capsule_ladder(double radius, double half_length) {
   if (half_length > 0.0) {
     append(ladder, Convex::box(Vec3::Zero()), radius, flat_order + half_length);
   }
-  return ladder;
+  return verified(std::move(ladder), around_and_along);
 }
 
 }  // namespace detail
