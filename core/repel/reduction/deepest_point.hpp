@@ -25,7 +25,7 @@ namespace repel::detail {
 /// goes out. A basis that was best at the last tick is mostly the best again.
 class DeepestPoint {
  public:
-  static constexpr int cap = 64;  ///< pivots of one attempt, of which there are at most three
+  static constexpr int cap = 72;  ///< pivots of one attempt, of which there are at most three
   static constexpr int most_pivots = 3 * cap;
 
   DeepestPoint(const PosedPlanes& A, const PosedPlanes& B) noexcept
@@ -44,8 +44,7 @@ class DeepestPoint {
     }
     // Planes that are nearly parallel can bar the way to one choice of pivots and not to another.
     for (const double least_share : {1e-9, 1e-7}) {
-      begin();
-      if (!basis_.weigh() || !improve(least_share, allowed)) continue;
+      if (!begin(least_share) || !improve(least_share, allowed)) continue;
       save(warm);
       return true;
     }
@@ -89,7 +88,7 @@ class DeepestPoint {
   /// [m] Planes that are nearly parallel say less well where x is than how deep it is: in the end a
   /// small violation is let pass. It is no error of the depth, which is measured at x.
   [[nodiscard]] double enough(int pivots) const noexcept {
-    return (pivots < 24 ? 1.0 : pivots < 40 ? 256.0 : 65536.0) * tolerance_;
+    return (pivots < 48 ? 1.0 : pivots < 64 ? 256.0 : 65536.0) * tolerance_;
   }
   /// The depths at x are as large, to 2e-8 of the size, as the basis says they can be at most.
   [[nodiscard]] bool is_best() const noexcept {
@@ -99,11 +98,23 @@ class DeepestPoint {
            possible - (depth(0) + depth(1)) <= 1e7 * tolerance_;
   }
 
-  /// Four planes all around A and the largest depth B can have: a basis of anything.
-  void begin() noexcept {
+  /// Four planes all around A and the largest depth B can have: a basis of anything. Between round
+  /// sides the way out mostly is where they face each other, and the search for it would be long.
+  bool begin(double least_share) noexcept {
     basis_.clear();
     for (std::uint32_t k = 0; k < 4; ++k) basis_.add(0, PlaneBasis::first_bound + k);
     basis_.add(1, PlaneBasis::depth_bound);
+    if (!basis_.weigh()) return false;
+    for (const std::size_t s : {0U, 1U}) {
+      if (!basis_.side(s).set.planes.is_round()) continue;
+      for (const std::size_t k : {0U, 1U}) {
+        const PlaneBasis::Entry entry = basis_.facing(s)[k];
+        if (!(entry.violation > 0.0) || basis_.holds(entry)) continue;
+        ++pivots_;
+        if (!basis_.exchange(entry, least_share) || !basis_.weigh()) return false;
+      }
+    }
+    return true;
   }
   bool load(const WarmStart& warm) noexcept {
     basis_.clear();

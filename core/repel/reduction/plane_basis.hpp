@@ -99,8 +99,10 @@ class PlaneBasis {
     const double determinant = dot(rows[0], cofactors_[0]);
     if (!(std::abs(determinant) > 1e-200)) return false;
     inverse_ = 1.0 / determinant;
-    x_ = inverse_ *
-         (values[0] * cofactors_[0] + values[1] * cofactors_[1] + values[2] * cofactors_[2]);
+    x_ = solved({values[0], values[1], values[2]});
+    // Planes that are nearly parallel: what is left is as well determined as x itself.
+    x_ = x_ +
+         solved(Vec<double>(values[0], values[1], values[2]) - dots(rows[0], rows[1], rows[2], x_));
     spread(Vec<double>(), {1.0, 1.0}, &Side::multiplier, &Side::zero_multiplier);
     for (Side& side : sides_) {
       side.level = side.at_zero ? 0.0 : side.rows[0].offset - dot(side.rows[0].n, x_);
@@ -132,6 +134,19 @@ class PlaneBasis {
     return most;
   }
 
+  /// The two tangents of the round side of A (0) or B (1) that face the other, as entries.
+  [[nodiscard]] std::array<Entry, 2> facing(std::size_t s) const noexcept {
+    const Side& side = sides_[s];
+    const Vec<double> across = sides_[1 - s].p - side.p;
+    std::array<Entry, 2> entries;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::uint32_t name = side.set.planes.facing(rotate_transposed(side.set.X_W, across))[k];
+      const Row r = row(side, name);
+      entries[k] = {s, name, side.level + dot(r.n, x_) - r.offset};
+    }
+    return entries;
+  }
+
   /// Rounding alone can violate a constraint that holds with equality.
   [[nodiscard]] bool holds(const Entry& entry) const noexcept {
     const Side& side = sides_[entry.side];
@@ -154,7 +169,7 @@ class PlaneBasis {
     // is the least parallel to the others (Harris 1973).
     double least = std::numeric_limits<double>::infinity();
     for_each_of_basis([&](Side&, int, double multiplier, double share) {
-      if (share > least_share) least = std::min(least, (std::max(multiplier, 0.0) + 1e-10) / share);
+      if (share > least_share) least = std::min(least, (std::max(multiplier, 0.0) + 1e-12) / share);
     });
     Side* from = nullptr;
     int leaving = 0;
@@ -181,6 +196,10 @@ class PlaneBasis {
   }
 
  private:
+  [[nodiscard]] Vec<double> solved(const Vec<double>& values) const noexcept {
+    return inverse_ *
+           (values.x() * cofactors_[0] + values.y() * cofactors_[1] + values.z() * cofactors_[2]);
+  }
   [[nodiscard]] static Row row(const Side& side, std::uint32_t name) noexcept {
     const PosedPlanes& set = side.set;
     Row r{Vec<double>(), set.reach, name};
