@@ -305,13 +305,16 @@ TEST(DeepestPoint, ConcentricShapesHaveAWayOut) {
   }
 }
 
-TEST(DeepestPoint, CylindersAndFlatShapesAreAnsweredByReduction) {
-  const Shape cylinder = Shape::cylinder(0.2, 0.3);
+TEST(DeepestPoint, FlatHullsAreAnsweredByReduction) {
+  const std::vector<Vec3> triangle{{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}, {0.0, 0.3, 0.1}};
+  const Shape flat = Shape::hull(triangle);
   const Shape box = Shape::box({0.2, 0.3, 0.1});
   Pose X_WB = Pose::Identity();
   X_WB.translation() = Vec3(0.1, 0.2, 0.05);
-  const Separation deepest = separation(cylinder, Pose::Identity(), box, X_WB, by_deepest_point);
-  const Separation reduction = separation(cylinder, Pose::Identity(), box, X_WB);
+  const Separation deepest = separation(flat, Pose::Identity(), box, X_WB, by_deepest_point);
+  const Separation reduction =
+      separation(flat, Pose::Identity(), box, X_WB, {.measure = Measure::reduction});
+  EXPECT_LT(deepest.distance, 0.0);
   EXPECT_EQ(deepest.distance, reduction.distance);
   EXPECT_EQ(deepest.extraction_W, reduction.extraction_W);
 }

@@ -23,7 +23,7 @@ enum class QueryEnd : std::uint8_t {
 enum class Measure : std::uint8_t {
   reduction,      ///< by the nested levels of both shapes (Anderson 1993); every shape has it
   deepest_point,  ///< the largest sum of the depths of a common point below both surfaces; for
-                  ///< boxes, hulls of some thickness, spheres and capsules, else as `reduction`
+                  ///< all but hulls without thickness, else as `reduction`
   exact,          ///< the penetration depth itself; for boxes, hulls, spheres and capsules, else as
                   ///< `reduction`
 };

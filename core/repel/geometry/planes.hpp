@@ -2,6 +2,9 @@
 /// The planes around a polytope, and how deep a point lies below them.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -11,17 +14,20 @@
 
 #include <repel/base/lanes.hpp>
 #include <repel/geometry/facets.hpp>
+#include <repel/geometry/tangents.hpp>
 
 namespace repel {
 
 /// Half spaces n.x <= offset, n unit, whose intersection is a polytope; padded arrays of all n.x,
-/// n.y, n.z and offsets, one after the other. Empty for a set that is not described so.
+/// n.y, n.z and offsets, one after the other, and behind them by name those that touch a round
+/// side. Empty for a set that is not described so.
 class Planes {
  public:
   Planes() = default;
   /// @param margin [m] how far outside the polytope a point below all planes can lie, by rounding
-  explicit Planes(std::span<const Facet> facets, double margin = 0.0)
-      : margin_(margin),
+  explicit Planes(std::span<const Facet> facets, double margin = 0.0, Tangents side = {})
+      : side_(side),
+        margin_(margin),
         size_(facets.size()),
         stride_(stride_of(facets.size())),
         numbers_(4 * stride_) {
@@ -42,10 +48,28 @@ class Planes {
     }
     return Planes(facets);
   }
+  /// Around the z axis, flat ends at +-`half_length` [m].
+  static Planes cylinder(double radius, double half_length) {
+    if (!(radius > 0.0)) return box({0.0, 0.0, half_length});
+    const std::array<Facet, 2> ends{
+        {{{}, Vec3::UnitZ(), half_length}, {{}, -Vec3::UnitZ(), half_length}}};
+    return Planes(ends, Tangents::sagitta(radius), {1.0, 0.0, radius});
+  }
+  /// Around the z axis, the base of `radius` [m] at -`half_length` [m], the apex at +`half_length`.
+  static Planes cone(double radius, double half_length) {
+    if (!(radius > 0.0 && half_length > 0.0)) return cylinder(radius, half_length);
+    const double length = 2.0 * half_length;
+    const double side = std::hypot(radius, length);
+    const std::array<Facet, 1> base{{{{}, -Vec3::UnitZ(), half_length}}};
+    // In a sharp apex or rim, planes that are off by rounding hold more.
+    const double sharp = std::min(radius, length) / side;
+    const double margin = Tangents::sagitta(radius) + 4e-15 * side / sharp;
+    return Planes(base, margin, {length / side, radius / side, half_length * radius / side});
+  }
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
-  [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(size_); }
+  [[nodiscard]] std::uint32_t size() const noexcept { return listed() + side_.size(); }
   /// [byte] held on the heap, and what so many planes hold.
   [[nodiscard]] std::size_t bytes() const noexcept { return numbers_.capacity() * sizeof(double); }
   [[nodiscard]] static std::size_t bytes_of(std::size_t planes) noexcept {
@@ -54,10 +78,21 @@ class Planes {
 
   /// Unit, outward; `i` less than size().
   [[nodiscard]] Vec<double> normal(std::uint32_t i) const noexcept {
+    if (i >= size_) return side_.normal(i - listed());
     return {numbers_[i], numbers_[stride_ + i], numbers_[2 * stride_ + i]};
   }
   /// [m]
-  [[nodiscard]] double offset(std::uint32_t i) const noexcept { return numbers_[3 * stride_ + i]; }
+  [[nodiscard]] double offset(std::uint32_t i) const noexcept {
+    return i < size_ ? numbers_[3 * stride_ + i] : side_.offset();
+  }
+
+  /// Some planes touch a round side.
+  [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0; }
+  /// The two of them that face along `x`, seen from the axis. Must be round.
+  [[nodiscard]] std::array<std::uint32_t, 2> facing(const Vec<double>& x) const noexcept {
+    const std::array<std::uint32_t, 2> names = side_.around(x);
+    return {listed() + names[0], listed() + names[1]};
+  }
 
   template <class T>
   struct Nearest {
@@ -83,6 +118,9 @@ class Planes {
     return some;
   }
 
+  [[nodiscard]] std::uint32_t listed() const noexcept { return static_cast<std::uint32_t>(size_); }
+
+  Tangents side_;
   double margin_ = 0.0;
   std::size_t size_ = 0;
   std::size_t stride_ = 0;
@@ -105,7 +143,11 @@ inline Planes::Nearest<double> Planes::nearest(const Vec<double>& x) const noexc
   }
   const double least = detail::least_of(best);
   const Lanes first = best == Lanes{} + least ? winner : Lanes{} + none;
-  return {static_cast<std::uint32_t>(detail::least_of(first)), least};
+  const Nearest<double> of_listed{static_cast<std::uint32_t>(detail::least_of(first)), least};
+  if (side_.size() == 0) return of_listed;
+  const std::uint32_t on_side = side_.nearest(x);
+  const double depth = side_.offset() - dot(side_.normal(on_side), x);
+  return depth < least ? Nearest<double>{listed() + on_side, depth} : of_listed;
 }
 
 inline Planes::Nearest<DoubleDouble> Planes::nearest(const Vec<DoubleDouble>& x) const noexcept {
@@ -113,10 +155,15 @@ inline Planes::Nearest<DoubleDouble> Planes::nearest(const Vec<DoubleDouble>& x)
   const double least = nearest(rounded).depth;
   const double in_doubt = least + 0x1p-48 * (std::abs(least) + sum(magnitudes(rounded)));
   Nearest<DoubleDouble> found{0, std::numeric_limits<double>::infinity()};
-  for (std::uint32_t i = 0; i < size(); ++i) {
-    if (offset(i) - dot(normal(i), rounded) > in_doubt) continue;
+  const auto offer = [&](std::uint32_t i) {
     const DoubleDouble depth = DoubleDouble(offset(i)) - dot(Vec<DoubleDouble>(normal(i)), x);
     if (depth < found.depth) found = {i, depth};
+  };
+  for (std::uint32_t i = 0; i < listed(); ++i) {
+    if (offset(i) - dot(normal(i), rounded) <= in_doubt) offer(i);
+  }
+  if (is_round()) {
+    for (const std::uint32_t i : facing(rounded)) offer(i);
   }
   return found;
 }

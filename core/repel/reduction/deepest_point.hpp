@@ -2,9 +2,11 @@
 /// The deepest common point of two polytopes: a linear program of five variables.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include <repel/distance/query.hpp>
 #include <repel/reduction/plane_basis.hpp>
@@ -25,8 +27,7 @@ namespace repel::detail {
 /// goes out. A basis that was best at the last tick is mostly the best again.
 class DeepestPoint {
  public:
-  static constexpr int cap = 64;  ///< pivots of one attempt, of which there are at most four
-  static constexpr int most_pivots = 4 * cap;
+  static constexpr int most_pivots = 216;  ///< of all attempts in both precisions
 
   DeepestPoint(const PosedPlanes& A, const PosedPlanes& B) noexcept
       : A_(A),
@@ -56,75 +57,105 @@ class DeepestPoint {
 
   static constexpr std::uint32_t side_bit = 0x80000000U;  ///< of a name in a warm start: B
 
-  /// What rounding can move a depth by, as a share of the size.
-  static constexpr double rounding(double) { return 0x1p-49; }
-  static constexpr double rounding(DoubleDouble) { return 0x1p-86; }
-  /// What rounding can move a multiplier by; most are between 0 and 1.
-  static constexpr double least_multiplier(double) { return -1e-14; }
-  static constexpr double least_multiplier(DoubleDouble) { return -1e-24; }
-  static constexpr double least_share(double) { return 1e-9; }
-  static constexpr double least_share(DoubleDouble) { return 1e-18; }
+  /// What the attempts in a precision may cost and what its rounding can do.
+  template <class T>
+  struct Precision {
+    static constexpr bool is_double = std::is_same_v<T, double>;
+    static constexpr int warm_pivots = is_double ? 24 : 40;
+    static constexpr int cold_pivots = is_double ? 72 : 80;
+    static constexpr double of_depth = is_double ? 0x1p-49 : 0x1p-86;  ///< of the size
+    static constexpr double of_multiplier = is_double ? 1e-14 : 1e-24;
+    static constexpr double least_share = is_double ? 1e-9 : 1e-18;
+  };
+  /// By how much multipliers may be told apart where they would all be 0 [-].
+  static constexpr double tilt = 1e-20;
 
   template <class T>
   [[gnu::flatten, gnu::noinline]] End solved_in(WarmStart& warm, int allowed) noexcept {
     PlaneBasis<T> basis(A_, B_);
     End end = End::unclear;
     if (load(warm, basis) && basis.weigh() &&
-        basis.least_multiplier() >= T(least_multiplier(T{}))) {
+        basis.least_multiplier() >= T(-Precision<T>::of_multiplier)) {
       const int before = pivots_;
-      end = improved(basis, allowed);
+      end = improved(basis, std::min(allowed, pivots_ + Precision<T>::warm_pivots));
       if (end == End::best && pivots_ == before) return end;
     }
-    if (end == End::unclear) {
-      begin(basis);
-      if (basis.weigh()) end = improved(basis, allowed);
+    if (end == End::unclear && begin(warm, basis, allowed)) {
+      end = improved(basis, std::min(allowed, pivots_ + Precision<T>::cold_pivots));
     }
     save(basis, warm);
     return end;
   }
 
-  /// Exchanges planes until none is violated.
+  /// Exchanges planes until none is violated, or the pivots reach `most`.
   template <class T>
-  End improved(PlaneBasis<T>& basis, int allowed) noexcept {
-    const T tolerance(rounding(T{}) * size_);
-    for (int pivots = 0; pivots <= cap; ++pivots) {
+  End improved(PlaneBasis<T>& basis, int most) noexcept {
+    const T tolerance(Precision<T>::of_depth * size_);
+    while (true) {
       const auto entry = basis.most_violated(tolerance);
       if (!(entry.violation > tolerance) || basis.holds(entry)) return judged(basis, tolerance);
-      if (pivots_ == allowed || !basis.exchange(entry, least_share(T{}), -least_multiplier(T{})) ||
-          !basis.weigh())
-        break;
-      ++pivots_;
+      if (pivots_ >= most || !exchanged(basis, entry)) return End::unclear;
     }
-    return End::unclear;
+  }
+  template <class T>
+  bool exchanged(PlaneBasis<T>& basis, const typename PlaneBasis<T>::Entry& entry) noexcept {
+    ++pivots_;
+    return basis.exchange(entry, Precision<T>::least_share, Precision<T>::of_multiplier) &&
+           basis.weigh();
   }
 
   /// Whether the depths at the point are as large as they can be at most, and more than rounding.
   template <class T>
   End judged(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
     const T found = basis.depth(0) + basis.depth(1);
-    if (!(basis.least_multiplier() >= T(least_multiplier(T{}))) ||
+    // Twice the tilt can be missing from a multiplier that is 0.
+    if (!(basis.least_multiplier() >= T(-Precision<T>::of_multiplier - 2.0 * tilt)) ||
         basis.bound() - found > T(4.0) * tolerance) {
       return End::unclear;
     }
     point_ = Vec<double>(basis.point());
     gradient_ = Vec<double>(basis.gradient());
     for (std::size_t s = 0; s < 2; ++s) depth_[s] = static_cast<double>(basis.depth(s));
-    return depth_[0] + depth_[1] > 4.0 * rounding(0.0) * size_ ? End::best : End::none;
+    return depth_[0] + depth_[1] > 4.0 * Precision<double>::of_depth * size_ ? End::best
+                                                                             : End::none;
   }
 
-  /// Four planes all around A and the largest depth B can have: a basis of anything.
+  /// Four planes all around A and the largest depth B can have are a basis of anything. Then in
+  /// come the planes of the last tick, or else those of round sides that face the other shape:
+  /// mostly the way out is there, and the search for it would be long.
   template <class T>
-  static void begin(PlaneBasis<T>& basis) noexcept {
+  bool begin(const WarmStart& warm, PlaneBasis<T>& basis, int allowed) noexcept {
     basis.clear();
     for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis<T>::first_bound + k);
     basis.add(1, PlaneBasis<T>::depth_bound);
+    if (!Precision<T>::is_double) basis.tilt({T(0.7 * tilt), T(-0.4 * tilt), T(0.5 * tilt)});
+    bool is_basis = basis.weigh();
+    const auto hint = [&](unsigned side, std::uint32_t name) {
+      if (!is_basis || pivots_ >= allowed || !basis.has_plane(side, name)) return;
+      const auto entry = basis.entry(side, name);
+      if (entry.violation > T(0.0) && !basis.holds(entry)) is_basis = exchanged(basis, entry);
+    };
+    if (warm.level_a == WarmStart::deepest_point) {
+      for (std::size_t k = 0; k < PlaneBasis<T>::rows; ++k) {
+        hint(name_in(warm, k) >> 31U, name_in(warm, k) & ~side_bit);
+      }
+    } else {
+      for (const unsigned side : {0U, 1U}) {
+        if (!basis.is_round(side)) continue;
+        for (const std::uint32_t name : basis.facing(side)) hint(side, name);
+      }
+    }
+    return is_basis;
+  }
+  [[nodiscard]] static std::uint32_t name_in(const WarmStart& warm, std::size_t k) noexcept {
+    return k < 4 ? warm.a[k] : warm.b[0];
   }
   template <class T>
   static bool load(const WarmStart& warm, PlaneBasis<T>& basis) noexcept {
     basis.clear();
     if (warm.level_a != WarmStart::deepest_point) return false;
     for (std::size_t k = 0; k < PlaneBasis<T>::rows; ++k) {
-      const std::uint32_t name = k < 4 ? warm.a[k] : warm.b[0];
+      const std::uint32_t name = name_in(warm, k);
       if (!basis.add(name >> 31U, name & ~side_bit)) return false;
     }
     return true;

@@ -82,9 +82,12 @@ class PlaneBasis {
     count_ = 0;
     of_b_ = 0;
   }
+  /// Adds `tilt`.x to the objective: multipliers that would be 0 together, so that the choice
+  /// between them may go round in a circle, differ by it.
+  void tilt(const Vec<T>& tilt) noexcept { tilt_ = tilt; }
   /// Adds a constraint to fewer than five; false for a name that none has.
   bool add(unsigned side, std::uint32_t name) noexcept {
-    if (name >= sets_[side].planes.size() && (name < first_bound || name > not_negative)) {
+    if (!has_plane(side, name) && (name < first_bound || name > not_negative)) {
       return false;
     }
     set_row(count_, side, name);
@@ -120,6 +123,24 @@ class PlaneBasis {
       if (-level_[s] > most.violation) most = {s, not_negative, -level_[s]};
     }
     return most;
+  }
+
+  /// A plane of A (0) or B (1) and how far the point violates it.
+  [[nodiscard]] Entry entry(unsigned side, std::uint32_t name) noexcept {
+    set_row(rows, side, name);
+    const Row& row = rows_[rows];
+    return {side, name, level_[side] + dot(row.n, x_) - row.offset};
+  }
+  /// The two tangents of the round side of A (0) or B (1) that face the other.
+  [[nodiscard]] std::array<std::uint32_t, 2> facing(unsigned side) const noexcept {
+    const Vec<double> across(p_[1 - side] - p_[side]);
+    return sets_[side].planes.facing(rotate_transposed(sets_[side].X_W, across));
+  }
+  [[nodiscard]] bool has_plane(unsigned side, std::uint32_t name) const noexcept {
+    return name < sets_[side].planes.size();
+  }
+  [[nodiscard]] bool is_round(unsigned side) const noexcept {
+    return sets_[side].planes.is_round();
   }
 
   /// Rounding alone can violate a constraint that holds with equality.
@@ -238,6 +259,7 @@ class PlaneBasis {
   std::array<Vec<T>, 3> equations_;
   std::array<Vec<T>, 3> cofactors_;
   T inverse_{0.0};
+  Vec<T> tilt_{};
   Vec<T> x_;
   std::array<T, 2> level_;  ///< [m] the depths by the basis
   std::array<T, 2> depth_;  ///< [m] the depths of x
@@ -264,7 +286,7 @@ bool PlaneBasis<T>::weigh() noexcept {
   const auto missed = [&] { return value - dots(equations_[0], equations_[1], equations_[2], x_); };
   x_ = solved(value);
   x_ = x_ + solved(missed());
-  spread(Vec<T>(), {T(1.0), T(1.0)}, multiplier_);
+  spread(tilt_, {T(1.0), T(1.0)}, multiplier_);
   for (std::size_t s = 0; s < 2; ++s) {
     const Row& base = rows_[roles.base[s]];
     level_[s] = base.offset - dot(base.n, x_);

@@ -69,10 +69,13 @@ namespace detail {
   const PosedPlanes planes_a{A.planes(), X_WA, a.core.reach()};
   const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
-  if (!deepest.solve(warm, most_pivots)) return false;
-  // What a shape may lack in its tips of what its planes hold is no depth.
+  WarmStart next = warm;
+  if (!deepest.solve(next, most_pivots)) return false;
+  // What a shape may lack of what its planes hold is no depth.
   const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
-  const double sure = std::max(0.0, found - A.planes().margin() - B.planes().margin()) / found;
+  const double sure = 1.0 - (A.planes().margin() + B.planes().margin()) / found;
+  if (!(sure > 0.0)) return false;
+  warm = next;
   const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
@@ -169,7 +172,8 @@ namespace detail {
   // The levels stand in for a measure that was not finished: for want of iterations, or else where
   // they find a depth that is more than rounding.
   const double depth_of_cores = s.distance + a.depth + b.depth;
-  const bool deep = depth_of_cores < -1e-13 * (A.reach() + B.reach());
+  const double margin = A.planes().margin() + B.planes().margin();
+  const bool deep = depth_of_cores < -1e-13 * (A.reach() + B.reach()) - margin;
   const bool spent_early = options.iterations - gap.iterations < DeepestPoint::most_pivots;
   if (meets && (deep || spent_early) && !is_by_levels(A, B, options) &&
       s.end == QueryEnd::converged) {
@@ -205,9 +209,9 @@ namespace detail {
 /// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from
 /// GJK: for polytopes and rounded ones right to a few 1e-15 of their size, and relatively to 1e-7
 /// however small the gap; for cylinders right within the bracket, which `docs/distance.md` states.
-/// In overlap it is the intrusion distance of the reduction (Anderson 1993, section 2.1):
-/// continuous, 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and
-/// `upper` bracket the true one.
+/// In overlap it is minus the depth by `options.measure` (see `docs/reduction.md`): continuous,
+/// 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and `upper` bracket
+/// the true one.
 ///
 /// @param X_WA,X_WB rigid poses in the world [m]; not finite, or beyond 1e15 m, ends in bad_input
 /// @param warm what the last call on this pair left; any content is safe

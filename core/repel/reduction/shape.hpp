@@ -47,7 +47,8 @@ class Shape {
   static Shape cylinder(double radius, double half_length, const ReductionOptions& options = {}) {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::cylinder_ladder(radius, half_length, allowed(options)), Planes());
+    return Shape(detail::cylinder_ladder(radius, half_length, allowed(options)),
+                 Planes::cylinder(radius, half_length));
   }
 
   /// A disc of `radius` [m] at -`half_length` [m] on the z axis and the apex at +`half_length`,
@@ -55,7 +56,8 @@ class Shape {
   static Shape cone(double radius, double half_length, const ReductionOptions& options = {}) {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::cone_ladder(radius, half_length, allowed(options)), Planes());
+    return Shape(detail::cone_ladder(radius, half_length, allowed(options)),
+                 Planes::cone(radius, half_length));
   }
 
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, lie inside, on a line or in a
@@ -89,7 +91,7 @@ class Shape {
   }
   [[nodiscard]] int levels() const noexcept { return static_cast<int>(data_->ladder.size()); }
   [[nodiscard]] const Level& level(int i) const noexcept { return first_[i]; }
-  /// Around the core of the first level; empty for cylinders, cones and hulls without thickness.
+  /// Around the core of the first level; empty for hulls without thickness.
   [[nodiscard]] const Planes& planes() const noexcept { return data_->planes; }
   /// [m] distance of the farthest point from the origin of the shape.
   [[nodiscard]] double reach() const noexcept {
