@@ -33,34 +33,19 @@ struct Options {
   bool sweep = false;
   bool quick = false;
   bool list = false;
-  double seconds = 0.5;
+  double seconds = 0.0;
 };
 
 /// Throws std::invalid_argument for what is not known.
-Options parse(const std::vector<std::string>& arguments) {
+Options parse(Arguments arguments) {
   Options options;
-  for (std::size_t i = 1; i < arguments.size(); ++i) {
-    const std::string& flag = arguments[i];
-    const auto value = [&]() -> const std::string& {
-      if (i + 1 == arguments.size()) throw std::invalid_argument(flag + " needs a value");
-      return arguments[++i];
-    };
-    if (flag == "--task") {
-      options.tasks = split(value());
-    } else if (flag == "--rival") {
-      options.rivals = split(value());
-    } else if (flag == "--seconds") {
-      options.seconds = std::stod(value());
-    } else if (flag == "--sweep") {
-      options.sweep = true;
-    } else if (flag == "--quick") {
-      options.quick = true;
-    } else if (flag == "--list") {
-      options.list = true;
-    } else {
-      throw std::invalid_argument("unknown argument: " + flag + " (see --help)");
-    }
-  }
+  options.tasks = split(arguments.value("--task", ""));
+  options.rivals = split(arguments.value("--rival", ""));
+  options.sweep = arguments.has("--sweep");
+  options.quick = arguments.has("--quick");
+  options.list = arguments.has("--list");
+  options.seconds = std::stod(arguments.value("--seconds", "0.5"));
+  arguments.end();
   return options;
 }
 
@@ -142,7 +127,7 @@ void print_list() {
   std::printf("\n%s", REPEL_ABSENT_RIVALS);
 }
 
-int run(const std::vector<std::string>& arguments, bool to_file) {
+int run(const Arguments& arguments, bool to_file) {
   const Options options = parse(arguments);
   if (options.list) return print_list(), 0;
   Suite suite(options);

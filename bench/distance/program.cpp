@@ -49,6 +49,25 @@ class LastRepetition final : public benchmark::JSONReporter {
 
 }  // namespace
 
+bool Arguments::has(const std::string& flag) {
+  return std::erase(words_, flag) > 0;
+}
+
+std::string Arguments::value(const std::string& flag, const std::string& otherwise) {
+  const auto found = std::find(words_.begin(), words_.end(), flag);
+  if (found == words_.end()) return otherwise;
+  if (found + 1 == words_.end()) throw std::invalid_argument(flag + " needs a value");
+  std::string value = found[1];
+  words_.erase(found, found + 2);
+  return value;
+}
+
+void Arguments::end() const {
+  if (!words_.empty()) {
+    throw std::invalid_argument("unknown argument: " + words_.front() + " (see --help)");
+  }
+}
+
 std::vector<std::string> split(const std::string& names) {
   std::vector<std::string> parts;
   std::istringstream stream(names);
@@ -94,7 +113,7 @@ std::string build_line() {
 }
 
 int start(int argc, char** argv, const char* about,
-          int (*run)(const std::vector<std::string>& arguments, bool to_file)) {
+          int (*run)(const Arguments& arguments, bool to_file)) {
   bool to_file = false;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--help") == 0) return std::printf("%s", about) < 0 ? 1 : 0;
@@ -108,7 +127,7 @@ int start(int argc, char** argv, const char* about,
     // Whatever disturbs the machine meanwhile hits all libraries alike.
     std::string interleaved = "--benchmark_enable_random_interleaving=true";
     arguments.insert(arguments.begin() + 1, interleaved.data());
-    const int code = run(initialize(argc + 1, arguments.data()), to_file);
+    const int code = run(Arguments(initialize(argc + 1, arguments.data())), to_file);
     std::fflush(nullptr);
     // FCL and Coal each bring their own octomap, and the destructors of the two collide.
     std::quick_exit(code);

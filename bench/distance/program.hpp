@@ -10,6 +10,24 @@
 
 namespace repel::bench {
 
+/// The words of a command line, taken out one by one.
+class Arguments {
+ public:
+  /// The name of the program comes first and does not count.
+  explicit Arguments(const std::vector<std::string>& words)
+      : words_(words.begin() + 1, words.end()) {}
+
+  /// Whether `flag` was given.
+  [[nodiscard]] bool has(const std::string& flag);
+  /// What follows `flag`, else `otherwise`. Throws std::invalid_argument where nothing follows.
+  [[nodiscard]] std::string value(const std::string& flag, const std::string& otherwise);
+  /// Throws std::invalid_argument when a word is left.
+  void end() const;
+
+ private:
+  std::vector<std::string> words_;
+};
+
 /// The parts of a list "a,b,c".
 [[nodiscard]] std::vector<std::string> split(const std::string& names);
 
@@ -34,6 +52,6 @@ void enlist(const std::string& title, double seconds,
 /// A whole main function: sorts the libraries, takes out what Google Benchmark knows, and ends the
 /// process with the code that `run` returns, or 2 for what it throws.
 int start(int argc, char** argv, const char* about,
-          int (*run)(const std::vector<std::string>& arguments, bool to_file));
+          int (*run)(const Arguments& arguments, bool to_file));
 
 }  // namespace repel::bench

@@ -14,6 +14,7 @@ namespace repel::bench {
 
 namespace {
 
+using families::random_pose;
 using families::Rng;
 
 /// [m] and [rad] a tool moves in one tick of a millisecond.
@@ -26,13 +27,6 @@ Solid in_floats(Solid s) {
   if (s.box) return s;
   for (Vec3& v : s.vertices) v = v.cast<float>().cast<double>();
   return s;
-}
-
-Pose random_pose(Rng& rng, double low, double high) {
-  Pose X = Pose::Identity();
-  X.linear() = families::rotation(rng);
-  X.translation() = families::uniform(rng, low, high) * families::direction(rng);
-  return X;
 }
 
 /// Adds a pair that is tick_travel on at the second tick; moves there until `holds` accepts.

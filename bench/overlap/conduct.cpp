@@ -83,7 +83,9 @@ void sweep(const Library& library, const Task& task, Conduct& conduct) {
       const double change = std::abs(answer.distance - before.distance);
       const bool overlap = std::min(answer.distance, before.distance) < 0.0;
       if (overlap && std::isfinite(change)) {
-        conduct.excess = std::max(conduct.excess, change - motion(task, {pair, tick}));
+        const double excess = change - motion(task, {pair, tick});
+        if (excess > conduct.excess) conduct.steepest = {pair, tick};
+        conduct.excess = std::max(conduct.excess, excess);
       }
       if (std::max(answer.distance, before.distance) < 0.0) {
         turn = std::max(turn, angle(answer.extraction_W, before.extraction_W));

@@ -12,9 +12,14 @@ struct Conduct {
   double median_dead_zone = 0.0;
   double worst_dead_zone = 0.0;
   double excess = 0.0;  ///< [m] largest change of the value in a step, less the motion of the step
+  Ask steepest;         ///< the step of that change
   double turn = 0.0;    ///< [rad] largest change of the direction in a step
   double median_turn = 0.0;  ///< [rad] of the largest on each way
-  int wrong = 0;             ///< of ours, pressed: not finite, too deep or outside its bracket
+  /// Of ours: pressed not finite, too deep or outside its bracket; on its way through not finite.
+  int wrong = 0;
+
+  /// A distance changes no faster than the solids move; rounding is 1e-15 of them.
+  [[nodiscard]] bool jumps() const { return excess > 1e-12; }
 };
 
 /// Asks the library along both, warm, step by step.

@@ -2,7 +2,6 @@
 /// Overlap side by side: what a depth costs, how near it is to the exact one, and how it behaves
 /// while one solid moves through the other.
 
-#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
@@ -17,7 +16,7 @@ namespace {
 constexpr const char* about =
     "overlap_bench: how deep pairs overlap, by every measure of repel and by other libraries.\n"
     "Exit code 1 when an answer of ours is wrong: deeper than the exact depth, outside its\n"
-    "bracket, or not finite.\n"
+    "bracket, or not finite; or when its value jumps: it changes by more than the solids move.\n"
     "\n"
     "  --rival A,B   only these libraries beside ours; default all that were built\n"
     "  --quick       fewer pairs, less time: a look, not a result\n"
@@ -30,30 +29,17 @@ struct Options {
   std::vector<std::string> rivals;
   bool quick = false;
   bool list = false;
-  double seconds = 0.3;
+  double seconds = 0.0;
 };
 
 /// Throws std::invalid_argument for what is not known.
-Options parse(const std::vector<std::string>& arguments) {
+Options parse(Arguments arguments) {
   Options options;
-  for (std::size_t i = 1; i < arguments.size(); ++i) {
-    const std::string& flag = arguments[i];
-    const bool takes_value = flag == "--rival" || flag == "--seconds";
-    if (takes_value && ++i == arguments.size()) {
-      throw std::invalid_argument(flag + " needs a value");
-    }
-    if (flag == "--rival") {
-      options.rivals = split(arguments[i]);
-    } else if (flag == "--seconds") {
-      options.seconds = std::stod(arguments[i]);
-    } else if (flag == "--quick") {
-      options.quick = true;
-    } else if (flag == "--list") {
-      options.list = true;
-    } else {
-      throw std::invalid_argument("unknown argument: " + flag + " (see --help)");
-    }
-  }
+  options.rivals = split(arguments.value("--rival", ""));
+  options.quick = arguments.has("--quick");
+  options.list = arguments.has("--list");
+  options.seconds = std::stod(arguments.value("--seconds", "0.3"));
+  arguments.end();
   return options;
 }
 
@@ -120,7 +106,7 @@ Rows measure(const Options& options, bool to_file) {
   return rows;
 }
 
-int run(const std::vector<std::string>& arguments, bool to_file) {
+int run(const Arguments& arguments, bool to_file) {
   const Options options = parse(arguments);
   std::vector<std::string> names{"repel"};
   for (const Library& library : libraries()) {
@@ -132,11 +118,9 @@ int run(const std::vector<std::string>& arguments, bool to_file) {
   const Rows rows = measure(options, to_file);
   std::printf("%s\n\n%s\n%s", build_line().c_str(), overlap_table(rows).c_str(),
               REPEL_ABSENT_RIVALS);
-  const bool wrong = std::any_of(rows.begin(), rows.end(), [](const Row& row) {
-    return row.library.ours && row.wrong() + row.conduct.wrong > 0;
-  });
-  if (wrong) std::fprintf(stderr, "an answer of repel is wrong\n");
-  return wrong ? 1 : 0;
+  const std::string wrong = faults(rows);
+  std::fprintf(stderr, "%s", wrong.c_str());
+  return wrong.empty() ? 0 : 1;
 }
 
 }  // namespace

@@ -53,4 +53,22 @@ std::string overlap_table(const Rows& rows) {
   return out;
 }
 
+std::string faults(const Rows& rows) {
+  std::string out;
+  for (const Row& row : rows) {
+    if (!row.library.ours) continue;
+    const std::string who = row.library.name + ", " + row.warm->task().name + ": ";
+    const Conduct& c = row.conduct;
+    if (const int wrong = row.wrong() + c.wrong; wrong > 0) {
+      out += who + text("%d answers are wrong\n", wrong);
+    }
+    if (c.jumps()) {
+      out +=
+          who + text("the value jumps in step %zu of sweep %zu, by %.3g m more than the motion\n",
+                     c.steepest.tick, c.steepest.pair, c.excess);
+    }
+  }
+  return out;
+}
+
 }  // namespace repel::bench

@@ -25,4 +25,7 @@ using Rows = std::vector<Row>;
 /// Input by input: times, errors, wrong answers, dead zones and jumps.
 [[nodiscard]] std::string overlap_table(const Rows& rows);
 
+/// What is wrong with ours, a line each: wrong answers, and a value that jumps.
+[[nodiscard]] std::string faults(const Rows& rows);
+
 }  // namespace repel::bench

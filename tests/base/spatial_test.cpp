@@ -31,7 +31,7 @@ template <class Law>
 void for_samples(Law&& law) {
   Rng rng(seed);
   for (int i = 0; i < 200; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "sample", i));
     law(Sample{{vector(rng), vector(rng)},
                {vector(rng), vector(rng)},
                vector(rng),

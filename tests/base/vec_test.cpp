@@ -17,7 +17,7 @@ TYPED_TEST_SUITE(VecOf, Precisions);
 TYPED_TEST(VecOf, AgreesWithEigen) {
   families::Rng rng(seed);
   for (int i = 0; i < 200; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "sample", i));
     const Vec3 a = families::direction(rng);
     const Vec3 b = families::direction(rng);
     Pose X = Pose::Identity();

@@ -344,7 +344,7 @@ TEST_P(ClosedForm, IsMetAfterARigidMotionOfBoth) {
       Pose X = Pose::Identity();
       X.linear() = families::rotation(rng);
       X.translation() = families::direction(rng);
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", motion " + std::to_string(i));
+      SCOPED_TRACE(families::of_seed(seed, "motion", i));
       const Separation s = separation(c.A, X * c.X_WA, c.B, X * c.X_WB);
       expect_true(s, c, tolerance + 4e-15 * (1.0 + size_of(c)));
     }
@@ -356,7 +356,7 @@ template <class Law>
 void for_warm_starts(const Case& c, Law&& law) {
   Rng rng(seed);
   for (int i = 0; i < 50; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", motion " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "motion", i));
     WarmStart warm;
     const Pose nearby = families::moved_a_little(c.X_WA, rng);
     ASSERT_NE(separation(c.A, nearby, c.B, c.X_WB, {}, warm).end, QueryEnd::bad_input);

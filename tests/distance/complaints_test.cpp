@@ -50,7 +50,7 @@ Separation solve(const families::Pair& p, const QueryOptions& options = {}) {
 }
 
 std::string nth(int i) {
-  return "seed " + std::to_string(seed) + ", pair " + std::to_string(i);
+  return families::of_seed(seed, "pair", i);
 }
 
 /// Whatever the shapes do: numbers, a direction, an ordered bracket.

@@ -19,13 +19,12 @@ TEST(ExpandingPolytope, FindsTheDepthOfBoxes) {
   Rng rng(seed);
   int overlapping = 0;
   for (int i = 0; i < 2000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "pair", i));
     const Convex A = Convex::box(families::random_box(rng, 0.1, 0.5).half_extents);
     const Convex B = Convex::box(families::random_box(rng, 0.1, 0.5).half_extents);
     Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
     X_WA.linear() = families::rotation(rng);
-    X_WB.linear() = families::rotation(rng);
-    X_WB.translation() = families::uniform(rng, 0.0, 0.8) * families::direction(rng);
+    X_WB = families::random_pose(rng, 0.0, 0.8);
     WarmStart warm;
     if (!gap_between(A, X_WA, B, X_WB, {}, warm).meets) continue;
     ++overlapping;

@@ -68,8 +68,7 @@ TEST(FeatureLanes, ProvesWhatTheProofOfOnePairProves) {
     const auto a = lanes.p_AQa_W.each();
     const auto b = lanes.p_AQb_W.each();
     for (std::size_t k = 0; k < group.B.size(); ++k) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", group " + std::to_string(i) + ", lane " +
-                   std::to_string(k));
+      SCOPED_TRACE(families::of_seed(seed, "group", i) + ", lane " + std::to_string(k));
       if (group.warm[k].size < 1 || group.warm[k].size > 3) continue;
       Gap one;
       const bool holds = still_nearest({group.A, group.X_WA, group.B[k], group.X_WB[k]},

@@ -28,7 +28,7 @@ detail::Feature random_feature(Rng& rng, int size) {
 TEST(Feature, TheFootIsWhereTheSpanIsSeenAtRightAngles) {
   Rng rng(seed);
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", feature " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "feature", i));
     const detail::Feature f = random_feature(rng, 1 + i % 3);
     const detail::Foot foot = detail::foot_on(f);
     EXPECT_NEAR(sum(foot.weights), 1.0, 1e-14);
@@ -48,7 +48,7 @@ TEST(Feature, WhatWasNearestIsConfirmedAndNothingElse) {
   int confirmed = 0;
   int rejected = 0;
   for (int i = 0; i < 2000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "pair", i));
     const Pair p = families::draw_apart("random boxes", rng, families::log_uniform(rng, 1e-3, 1.0));
     const Convex A = families::convex(p.A);
     const Convex B = families::convex(p.B);

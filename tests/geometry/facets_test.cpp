@@ -61,7 +61,7 @@ double volume(const std::vector<Facet>& facets, const std::vector<Vec3>& points)
 TEST(Facets, ACubeHasTwelveTrianglesAndItsOwnVolume) {
   Rng rng(seed);
   for (int i = 0; i < 50; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", cube " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "cube", i));
     std::vector<Vec3> corners = families::box({0.5, 0.5, 0.5}).vertices;
     const Mat3 R = i == 0 ? Mat3(Mat3::Identity()) : families::rotation(rng);
     for (Vec3& p : corners) p = R * p;
@@ -203,7 +203,7 @@ TEST(Facets, ThinLatticeAndClusteredHullsAreClosedSurfaces) {
   int solid = 0;
   constexpr int count = 20000;
   for (int i = 0; i < count; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", hull " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "hull", i));
     const std::vector<Vec3> points = thin_points(i % 6, rng);
     const std::vector<Facet> facets = hull_facets(points);
     if (facets.empty()) {

@@ -43,7 +43,7 @@ TEST(Orientation, IsThatOfWholeNumbersOnAndNextToThePlane) {
   int in_plane = 0;
   int beside = 0;
   for (int i = 0; i < 50000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", points " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "points", i));
     const auto number = [&](int bits) {
       return static_cast<std::int64_t>(rng() >> (64 - bits)) - (std::int64_t{1} << (bits - 1));
     };
@@ -99,7 +99,7 @@ TEST(Orientation, IsZeroOnTheLineOfTwoAndOnEachOfThree) {
 TEST(PlaneNormal, IsRightToTheLastBitsForTrianglesOfAnyThinness) {
   Rng rng(seed);
   for (int i = 0; i < 20000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", triangle " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "triangle", i));
     // In the plane z = x / 4 + 1 with few enough bits that the corners lie in it exactly.
     const auto at = [&](double x, double y) { return Vec3(x, y, 0.25 * x + 1.0); };
     const double x = std::ldexp(std::round(families::uniform(rng, -1000, 1000)), -10);

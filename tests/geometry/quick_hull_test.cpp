@@ -40,7 +40,7 @@ TEST(QuickHull, WholeNumbersGiveTheExactHull) {
   Rng rng(seed);
   int hulls = 0;
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", hull " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "hull", i));
     const int range = families::count_between(rng, 1, 6);
     std::vector<Vec3> points;
     for (int k = families::count_between(rng, 4, 60); k > 0; --k) {
@@ -73,7 +73,7 @@ TEST(QuickHull, GridsOnACubeHaveItsEightCornersOnly) {
 TEST(QuickHull, TurnedGridsAndPrismsAreConvexToTheLastBit) {
   Rng rng(seed);
   for (int i = 0; i < 20; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", turn " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "turn", i));
     std::vector<Vec3> points = families::prism(100, 1.0, 0.5).vertices;
     for (int k = 0; k < 216; ++k) points.emplace_back(k % 6, k / 6 % 6, k / 36);
     const Mat3 R = families::rotation(rng);
@@ -97,7 +97,7 @@ TEST(QuickHull, NumbersOfVeryDifferentSizeDoNotBreakIt) {
   Rng rng(seed);
   int hulls = 0;
   for (int i = 0; i < 5000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", hull " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "hull", i));
     std::vector<Vec3> points;
     const auto number = [&] {
       const double x = families::log_uniform(rng, 1e-300, 1.0);

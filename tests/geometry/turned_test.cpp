@@ -29,7 +29,7 @@ TEST(Turned, FindsTheFarthestPointThatTheSetFinds) {
   int same_name = 0, total = 0;
   for (const Convex& set : sets(rng)) {
     for (int i = 0; i < 200; ++i) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", direction " + std::to_string(i));
+      SCOPED_TRACE(families::of_seed(seed, "direction", i));
       Pose X = Pose::Identity();
       X.linear() = families::rotation(rng);
       X.translation() = 5.0 * families::direction(rng);

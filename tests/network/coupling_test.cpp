@@ -10,17 +10,10 @@ namespace {
 constexpr double period = 0.0025;
 constexpr unsigned seed = 9;
 
-Pose random_pose(families::Rng& random) {
-  Pose X = Pose::Identity();
-  X.linear() = families::rotation(random);
-  X.translation() = families::uniform(random, 0.0, 1.0) * families::direction(random);
-  return X;
-}
-
 TEST(Coupling, AtRestThereIsNoForce) {
   families::Rng random(seed);
   for (int i = 0; i < 100; ++i) {
-    const Pose X_WT = random_pose(random);
+    const Pose X_WT = families::random_pose(random, 0.0, 1.0);
     Coupling coupling{CouplingGains{}};
     coupling.reset(X_WT);
     const Wrench F = coupling.step({}, X_WT, {}, period);

@@ -16,6 +16,7 @@
 namespace repel {
 namespace {
 
+using families::of_seed;
 using families::Rng;
 using oracle::Real;
 
@@ -59,10 +60,6 @@ Posed random_pair(Rng& rng) {
   return pair;
 }
 
-std::string of_seed(const char* what, int i) {
-  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
-}
-
 /// The linear program around a common point, solved by the tableau; the depths are at least 0.
 double oracle_depth(const Posed& pair, const Vec3& common_W) {
   oracle::LinearProgram program({0, 0, 0, 0, 0, 0, 1, 1});
@@ -92,7 +89,7 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   Rng rng(seed);
   int overlapping = 0;
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     Posed pair = random_pair(rng);
     // Planes nearly parallel: in double alone the answer would be off by 1e-8.
     if (i % 3 == 0) {
@@ -122,7 +119,7 @@ TEST(DeepestPoint, IsFoundWhereverBoxesOverlap) {
   Rng rng(seed);
   int overlapping = 0, concentric = 0;
   for (int i = 0; i < 20000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::random_boxes(rng, 1.5);
     if (i % 4 == 0) {
       const double angle = families::log_uniform(rng, 1e-12, 1e-2);
@@ -148,7 +145,7 @@ TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   Rng rng(seed);
   int inside = 0, outside = 0;
   for (int i = 0; i < 150; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     Posed pair = random_pair(rng);
     const Vec3 along = families::direction(rng);
     const Vec3 aside = 0.3 * pair.size() * families::direction(rng);
@@ -185,7 +182,7 @@ TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
     (void)separation(pair.A, pair.X_WA, pair.B, pair.X_WB, {.measure = Measure::reduction}, warm);
     at_levels += warm.level_a != 0 || warm.level_b != 0 ? 1 : 0;
     EXPECT_NEAR(pair.separate(warm).distance, pair.separate().distance, 1e-13 * pair.size())
-        << of_seed("pair", i);
+        << of_seed(seed, "pair", i);
   }
   EXPECT_GT(at_levels, 100);
 }
@@ -194,7 +191,7 @@ TEST(DeepestPoint, GrowsOnceAndFallsAlongAStraightLine) {
   Rng rng(seed);
   int peaks = 0;
   for (int i = 0; i < 150; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     Posed pair = random_pair(rng);
     const Vec3 along = families::direction(rng);
     std::vector<double> depths;
@@ -217,7 +214,7 @@ TEST(DeepestPoint, ItsDirectionIsTheGradientByFiniteDifferences) {
   Rng rng(seed);
   int smooth = 0;
   for (int i = 0; i < 4000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     Posed pair = random_pair(rng);
     WarmStart warm;
     const Separation s = pair.separate(warm);
@@ -251,7 +248,7 @@ TEST(DeepestPoint, TheBracketHoldsTheExactDepthOfBoxes) {
   Rng rng(seed);
   std::vector<double> shares;
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const test::PosedBoxes boxes = test::overlapping_boxes(rng);
     const Separation s = boxes.separate(by_deepest_point);
     EXPECT_LE(s.lower, -boxes.depth());
@@ -265,7 +262,7 @@ TEST(DeepestPoint, TheBracketHoldsTheExactDepthOfBoxes) {
 TEST(DeepestPoint, HasNoDeadZoneInShallowContact) {
   Rng rng(seed);
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::random_boxes(rng, 1.5);
     const Separation apart = boxes.separate();
     if (!(apart.distance > 0.0)) continue;
@@ -332,7 +329,7 @@ TEST(DeepestPoint, AnyContentOfAWarmStartIsSafe) {
     }
     warm.level_a = warm.level_b = WarmStart::deepest_point;
     EXPECT_NEAR(pair.separate(warm).distance, pair.separate().distance, 1e-12)
-        << of_seed("pair", i);
+        << of_seed(seed, "pair", i);
   }
 }
 

@@ -11,15 +11,12 @@
 namespace repel {
 namespace {
 
+using families::of_seed;
 using families::Rng;
 using families::Solid;
 
 constexpr unsigned seed = 4096;
 const QueryOptions exact{.measure = Measure::exact};
-
-std::string of_seed(const char* what, int i) {
-  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
-}
 
 void expect_answer(const Separation& s, double depth, double size) {
   EXPECT_EQ(s.end, QueryEnd::converged);
@@ -34,7 +31,7 @@ void expect_answer(const Separation& s, double depth, double size) {
 TEST(ExactDepth, OfBoxesIsTheLeastOverlap) {
   Rng rng(seed);
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const test::PosedBoxes boxes = test::overlapping_boxes(rng);
     expect_answer(boxes.separate(exact), boxes.depth(), boxes.size());
   }
@@ -44,7 +41,7 @@ TEST(ExactDepth, OfBoxesWithNearlyParallelEdgesIsTheLeastOverlap) {
   Rng rng(seed);
   int overlapping = 0;
   for (int i = 0; i < 2000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::overlapping_boxes(rng);
     const double angle = i % 4 == 0 ? 0.0 : families::log_uniform(rng, 1e-15, 1e-3);
     boxes.X_WB.linear() = families::small_rotation(rng, angle) * boxes.X_WA.linear();
@@ -60,7 +57,7 @@ TEST(ExactDepth, OfHullsIsTheLeastOverlap) {
   Rng rng(seed);
   int overlapping = 0, cut_short = 0;
   for (int i = 0; i < 1500; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const auto draw = [&] {
       return i % 5 == 0 ? families::random_box(rng, 0.1, 0.5)
                         : families::cloud(rng, families::count_between(rng, 4, 24), 0.5);
@@ -69,8 +66,7 @@ TEST(ExactDepth, OfHullsIsTheLeastOverlap) {
     const Solid b = families::cloud(rng, families::count_between(rng, 4, 24), 0.5);
     Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
     X_WA.linear() = families::rotation(rng);
-    X_WB.linear() = families::rotation(rng);
-    X_WB.translation() = families::uniform(rng, 0.0, 0.9) * families::direction(rng);
+    X_WB = families::random_pose(rng, 0.0, 0.9);
     const oracle::Polytope polytope_a(a.vertices), polytope_b(b.vertices);
     if (!polytope_a.closed() || !polytope_b.closed()) continue;
     const double depth =
@@ -95,7 +91,7 @@ TEST(ExactDepth, ChangesNoFasterThanTheShapesMove) {
   Rng rng(seed);
   int inside = 0;
   for (int i = 0; i < 100; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     test::PosedBoxes boxes = test::random_boxes(rng, 0.1);
     const test::Sweep sweep(boxes, rng);
     WarmStart warm;

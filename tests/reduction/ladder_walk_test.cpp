@@ -13,6 +13,7 @@
 namespace repel {
 namespace {
 
+using families::of_seed;
 using families::Rng;
 using test::PosedBoxes;
 using test::Sweep;
@@ -20,15 +21,11 @@ using test::Sweep;
 constexpr unsigned seed = 907;
 const QueryOptions by_reduction{.measure = Measure::reduction};
 
-std::string of_seed(const char* what, int i) {
-  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
-}
-
 TEST(SeparationInOverlap, ChangesNoFasterThanTheBoxesMove) {
   Rng rng(seed);
   int inside = 0, total = 0;
   for (int i = 0; i < 60; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     PosedBoxes boxes = test::random_boxes(rng, 0.1, {.levels = 1 + i % 16});
     const Sweep sweep(boxes, rng);
     boxes.X_WA.translation() = sweep.from;
@@ -54,7 +51,7 @@ TEST(SeparationInOverlap, BracketHoldsTheExactDepthAndTheSignIsRight) {
   Rng rng(seed);
   int overlaps = 0;
   for (int i = 0; i < 1500; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const PosedBoxes boxes = test::random_boxes(rng, 3.0, {.levels = 1 + i % 20});
     const double truth = boxes.truth();
     const Separation s = boxes.separate(by_reduction);
@@ -77,7 +74,7 @@ TEST(SeparationInOverlap, BracketHoldsTheExactDepthAndTheSignIsRight) {
 // stands still at 0. Eroded by t a box draws back by at most t sqrt(3), which bounds how deep.
 TEST(SeparationInOverlap, IsZeroOnlyInOverlapShallowerThanTheFirstStep) {
   for (const int levels : {1, 8, 64}) {
-    SCOPED_TRACE(of_seed("levels", levels));
+    SCOPED_TRACE(of_seed(seed, "levels", levels));
     Rng rng(seed);
     int zero = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -127,7 +124,7 @@ TEST(SeparationInOverlap, ExtractionIsAUnitVectorEverywhere) {
   for (std::size_t a = 0; a < shapes.size(); ++a) {
     for (std::size_t b = 0; b < shapes.size(); ++b) {
       for (int i = 0; i < 12; ++i) {
-        SCOPED_TRACE(of_seed("pose", i) + ", shapes " + std::to_string(a) + " " +
+        SCOPED_TRACE(of_seed(seed, "pose", i) + ", shapes " + std::to_string(a) + " " +
                      std::to_string(b));
         Pose X_WA = Pose::Identity();
         if (i > 0) X_WA.linear() = families::rotation(rng);
@@ -150,7 +147,7 @@ TEST(SeparationInOverlap, ExtractionIsAUnitVectorEverywhere) {
 TEST(SeparationInOverlap, MovingAByTheLowerBoundAlongTheExtractionSeparates) {
   Rng rng(seed);
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     PosedBoxes boxes = test::overlapping_boxes(rng);
     if (i % 10 == 0) boxes.X_WB.translation() = boxes.X_WA.translation();
     const Separation s = boxes.separate(by_reduction);
@@ -179,7 +176,7 @@ TEST(SeparationInOverlap, WitnessPointsAreTheDistanceApartUnlessItStandsStill) {
   Rng rng(seed);
   int decided_by_apart = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const PosedBoxes boxes = test::overlapping_boxes(rng);
     const Separation s = boxes.separate(by_reduction);
     const double along = (s.p_WA - s.p_WB).dot(s.extraction_W);
@@ -198,7 +195,7 @@ TEST(SeparationInOverlap, WarmEqualsColdAlongSweeps) {
   Rng rng(seed);
   int inside = 0, total = 0, warm_cost = 0, cold_cost = 0;
   for (int i = 0; i < 40; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     PosedBoxes boxes = test::random_boxes(rng, 0.1, {.levels = 1 + i % 16});
     const Sweep sweep(boxes, rng);
     const int steps = i % 2 == 0 ? 2000 : 20;  // a tool's motion, and leaps
@@ -226,7 +223,7 @@ TEST(SeparationInOverlap, HullsChangeNoFasterThanTheyMoveWarmOrCold) {
   Rng rng(seed);
   int inside = 0, total = 0;
   for (int i = 0; i < 30; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     const Shape A =
         Shape::hull(families::cloud(rng, families::count_between(rng, 4, 40), 0.5).vertices);
     const Shape B =
@@ -256,7 +253,7 @@ TEST(SeparationInOverlap, SwappingTheShapesTurnsTheExtractionRound) {
   Rng rng(seed);
   int overlaps = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const PosedBoxes boxes = test::random_boxes(rng, 3.0);
     const Separation s = boxes.separate(by_reduction);
     const Separation swapped = separation(boxes.B, boxes.X_WB, boxes.A, boxes.X_WA, by_reduction);
@@ -271,7 +268,7 @@ TEST(SeparationInOverlap, SwappingTheShapesTurnsTheExtractionRound) {
 TEST(SeparationInOverlap, AThinFingerPressedIntoABlockIsFeltAllTheWay) {
   Rng rng(seed);
   for (int i = 0; i < 40; ++i) {
-    SCOPED_TRACE(of_seed("finger", i));
+    SCOPED_TRACE(of_seed(seed, "finger", i));
     PosedBoxes boxes({0.005, 0.005, 0.05}, {0.15, 0.15, 0.12});
     const double lean = i == 0 ? 0.0 : families::uniform(rng, 0.0, 0.3);
     boxes.X_WA.linear() = (Eigen::AngleAxisd(families::uniform(rng, 0, 3), Vec3::UnitZ()) *
@@ -355,7 +352,7 @@ TEST(SeparationInOverlap, CylindersLieInsideTheirBracket) {
   };
   int overlaps = 0;
   for (int i = 0; i < 300; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const PosedCylinder A = random_cylinder();
     const PosedCylinder B = random_cylinder();
     const double depth = sampled_depth(A, B, rng);

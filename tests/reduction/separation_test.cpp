@@ -13,16 +13,13 @@
 namespace repel {
 namespace {
 
+using families::of_seed;
 using families::Rng;
 using test::PosedBoxes;
 
 constexpr unsigned seed = 1013;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-std::string of_seed(const char* what, int i) {
-  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
-}
 
 void expect_claims_nothing(const Separation& s) {
   EXPECT_EQ(s.end, QueryEnd::bad_input);
@@ -74,7 +71,7 @@ TEST(Separation, WitnessPointsLieOnTheBoxesWhileTheyAreApart) {
   Rng rng(seed);
   int apart = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const PosedBoxes boxes = test::random_boxes(rng, 4.0);
     const Separation s = boxes.separate();
     if (s.distance <= 0.0) continue;
@@ -93,7 +90,7 @@ TEST(Separation, PairsProvenFarApartStopEarly) {
   Rng rng(seed);
   int far = 0;
   for (int i = 0; i < 500; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const PosedBoxes boxes = test::random_boxes(rng, 4.0);
     const Separation s = boxes.separate({.ignore_beyond = 0.3});
     const double truth = boxes.truth();
@@ -125,7 +122,7 @@ TEST(Separation, ACorruptedWarmStartGivesTheSameAnswer) {
       // The support points of a rim are all different: GJK ends near the same answer, not in it.
       const bool round = &A == &shapes[4] || &B == &shapes[4];
       for (int i = 0; i < 60; ++i, ++total) {
-        SCOPED_TRACE(of_seed("pair", total));
+        SCOPED_TRACE(of_seed(seed, "pair", total));
         const PosedBoxes poses = test::random_boxes(rng, 1.2);
         unsigned char bytes[sizeof(WarmStart)];
         for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(rng());
@@ -157,7 +154,7 @@ TEST(Separation, ABudgetThatRunsOutLeavesATrueBracket) {
     const double truth = boxes.truth();
     WarmStart warm;
     for (int cap = 1; cap <= 6; ++cap, ++total) {
-      SCOPED_TRACE(of_seed("pair", i) + ", " + std::to_string(cap) + " iterations");
+      SCOPED_TRACE(of_seed(seed, "pair", i) + ", " + std::to_string(cap) + " iterations");
       const Separation s = boxes.separate({.iterations = cap});
       EXPECT_LE(s.lower, truth);
       EXPECT_GE(s.upper, truth);
@@ -185,7 +182,7 @@ TEST(Separation, AnAnswerThatIsNotSpentIsTheAnswer) {
     const PosedBoxes boxes = test::random_boxes(rng, 3.0);
     const double full = boxes.separate().distance;
     for (int cap = 1; cap <= 40; ++cap) {
-      SCOPED_TRACE(of_seed("pair", i) + ", " + std::to_string(cap) + " iterations");
+      SCOPED_TRACE(of_seed(seed, "pair", i) + ", " + std::to_string(cap) + " iterations");
       const Separation s = boxes.separate({.iterations = cap});
       if (s.end != QueryEnd::converged) continue;
       EXPECT_NEAR(s.distance, full, 1e-13);
@@ -222,10 +219,8 @@ TEST(Separation, ASphereDeepInACylinderDoesNotTouchIt) {
   const Shape sphere = Shape::sphere(0.1);
   const Shape cylinder = Shape::cylinder(0.2, 0.5);
   for (int i = 0; i < 2000; ++i) {
-    SCOPED_TRACE(of_seed("pose", i));
-    Pose X_WB = Pose::Identity();
-    X_WB.linear() = families::rotation(rng);
-    X_WB.translation() = families::uniform(rng, 0, 0.19) * families::direction(rng);
+    SCOPED_TRACE(of_seed(seed, "pose", i));
+    const Pose X_WB = families::random_pose(rng, 0, 0.19);
     const Separation s = separation(sphere, Pose::Identity(), cylinder, X_WB);
     EXPECT_EQ(s.end, QueryEnd::converged);
     EXPECT_LE(s.distance, -0.1);
@@ -235,7 +230,7 @@ TEST(Separation, ASphereDeepInACylinderDoesNotTouchIt) {
 TEST(Separation, FarFromTheOriginTheAnswerIsTheSame) {
   Rng rng(seed);
   for (int i = 0; i < 300; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     PosedBoxes boxes = test::random_boxes(rng, 3.0);
     // Multiples of 2^-20 keep the doubles of the far pose exact.
     for (Pose* X : {&boxes.X_WA, &boxes.X_WB}) {

@@ -30,13 +30,6 @@ Shape random_shape(Rng& rng) {
   }
 }
 
-Pose random_pose(Rng& rng, double far) {
-  Pose X = Pose::Identity();
-  X.linear() = families::rotation(rng);
-  X.translation() = families::uniform(rng, 0.1, far) * families::direction(rng);
-  return X;
-}
-
 /// A shape, its partners, and the same queries one by one.
 struct Scene {
   Shape A;
@@ -47,10 +40,10 @@ struct Scene {
   std::vector<Separation> answers;
   std::vector<Partner> partners;
 
-  Scene(Rng& rng, int count) : A(random_shape(rng)), X_WA(random_pose(rng, 1.0)) {
+  Scene(Rng& rng, int count) : A(random_shape(rng)), X_WA(families::random_pose(rng, 0.1, 1.0)) {
     for (int i = 0; i < count; ++i) {
       B.push_back(random_shape(rng));
-      X_WB.push_back(random_pose(rng, 2.0));
+      X_WB.push_back(families::random_pose(rng, 0.1, 2.0));
     }
     warm.resize(B.size());
     warm_of_one.resize(B.size());
@@ -80,8 +73,8 @@ TEST(Separations, AreTheSeparationsOneByOneTickAfterTick) {
     for (int tick = 0; tick < 6; ++tick) {
       separations(scene.A, scene.X_WA, scene.partners);
       for (std::size_t k = 0; k < scene.B.size(); ++k) {
-        SCOPED_TRACE("seed " + std::to_string(seed) + ", scene " + std::to_string(i) + ", tick " +
-                     std::to_string(tick) + ", partner " + std::to_string(k));
+        SCOPED_TRACE(families::of_seed(seed, "scene", i) + ", tick " + std::to_string(tick) +
+                     ", partner " + std::to_string(k));
         const Separation one =
             separation(scene.A, scene.X_WA, scene.B[k], scene.X_WB[k], {}, scene.warm_of_one[k]);
         expect_same(scene.answers[k], one);

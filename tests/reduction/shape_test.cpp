@@ -12,6 +12,8 @@
 namespace repel {
 namespace {
 
+using families::of_seed;
+using families::random_pose;
 using families::Rng;
 
 constexpr unsigned seed = 701;
@@ -113,13 +115,6 @@ TEST(Shape, ReachIsTheFarthestPoint) {
 
 // The closed forms below know nothing of support maps.
 
-Pose random_pose(Rng& rng, double reach) {
-  Pose X = Pose::Identity();
-  X.linear() = families::rotation(rng);
-  X.translation() = families::uniform(rng, 0.0, reach) * families::direction(rng);
-  return X;
-}
-
 /// [m] of the point from the box around the origin, 0 inside.
 double point_to_box(const Vec3& p, const Vec3& half_extents) {
   return (p.cwiseAbs() - half_extents).cwiseMax(0.0).norm();
@@ -144,11 +139,11 @@ TEST(Shape, TwoSpheresAreExactApartAndInOverlap) {
   Rng rng(seed);
   int overlaps = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const double a = families::uniform(rng, 0, 1);
     const double b = families::uniform(rng, 0, 1);
-    const Pose X_WA = random_pose(rng, 1);
-    const Pose X_WB = random_pose(rng, 1);
+    const Pose X_WA = random_pose(rng, 0, 1);
+    const Pose X_WB = random_pose(rng, 0, 1);
     const Vec3 apart = X_WA.translation() - X_WB.translation();
     const Separation s = separation(Shape::sphere(a), X_WA, Shape::sphere(b), X_WB);
     expect_exact(s, apart.norm() - a - b, 4.0);
@@ -163,12 +158,12 @@ TEST(Shape, ASphereAndACapsuleAreExactApartAndInOverlap) {
   Rng rng(seed);
   int overlaps = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const double a = families::uniform(rng, 0, 0.5);
     const double b = families::uniform(rng, 0, 0.5);
     const double half_length = families::uniform(rng, 0, 1);
-    const Pose X_WA = random_pose(rng, 1);
-    const Pose X_WB = random_pose(rng, 1);
+    const Pose X_WA = random_pose(rng, 0, 1);
+    const Pose X_WB = random_pose(rng, 0, 1);
     const Vec3 centre = X_WB.inverse() * X_WA.translation();
     const Separation s = separation(Shape::sphere(a), X_WA, Shape::capsule(b, half_length), X_WB);
     expect_exact(s, point_to_segment(centre, half_length) - a - b, 4.0);
@@ -183,7 +178,7 @@ TEST(Shape, CrossedCapsulesAreExactApartAndInOverlap) {
   for (int i = 0; i < 300; ++i) {
     const double apart = families::uniform(rng, 0.01, 0.6);
     SCOPED_TRACE("seed " + std::to_string(seed) + ", axes apart by " + std::to_string(apart));
-    const Pose X_W0 = random_pose(rng, 2);
+    const Pose X_W0 = random_pose(rng, 0, 2);
     Pose X_0A = Pose::Identity();
     X_0A.linear() = Eigen::AngleAxisd(families::uniform(rng, 0.3, 2.8), Vec3::UnitY()).matrix();
     X_0A.translation() = Vec3(0, apart, families::uniform(rng, -0.3, 0.3));
@@ -201,7 +196,7 @@ TEST(Shape, ParallelCapsulesAreExactApartAndInOverlap) {
     const double along = families::uniform(rng, -2, 2);
     SCOPED_TRACE("seed " + std::to_string(seed) + ", axes apart by " + std::to_string(apart) +
                  ", shifted by " + std::to_string(along));
-    const Pose X_W0 = random_pose(rng, 2);
+    const Pose X_W0 = random_pose(rng, 0, 2);
     Pose X_0A = Pose::Identity();
     X_0A.translation() = Vec3(0, apart, along);
     const double ends = std::max(0.0, std::abs(along) - 0.9);
@@ -215,13 +210,13 @@ TEST(Shape, ASphereBesideABoxIsExactApartAndInShallowOverlap) {
   Rng rng(seed);
   int overlaps = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const Vec3 h = families::random_box(rng, 0.1, 1.0).half_extents;
-    const Pose X_WB = random_pose(rng, 1);
+    const Pose X_WB = random_pose(rng, 0, 1);
     const Vec3 centre = families::uniform(rng, 0.1, 2.0) * families::direction(rng);
     const double to_box = point_to_box(centre, h);
     if (to_box < 1e-3) continue;
-    Pose X_WA = random_pose(rng, 1);
+    Pose X_WA = random_pose(rng, 0, 1);
     X_WA.translation() = X_WB * centre;
     const double radius = to_box * families::uniform(rng, 0.5, 1.5);
     const Separation s = separation(Shape::sphere(radius), X_WA, Shape::box(h), X_WB);
@@ -244,7 +239,7 @@ TEST(Shape, CylindersApartHaveTheDistanceOfTheirClosedForms) {
     if (gap < 1e-3) continue;
     SCOPED_TRACE("seed " + std::to_string(seed) + ", across " + std::to_string(across) +
                  ", along " + std::to_string(along));
-    const Pose X_WB = random_pose(rng, 2);
+    const Pose X_WB = random_pose(rng, 0, 2);
     const double angle = families::uniform(rng, 0, 6);
     Pose X_BA = Pose::Identity();
     X_BA.translation() = Vec3(across * std::cos(angle), across * std::sin(angle), along);
@@ -259,10 +254,10 @@ TEST(Shape, CylindersApartHaveTheDistanceOfTheirClosedForms) {
 TEST(Shape, ASphereBesideACylinderIsExact) {
   Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const double radius = families::uniform(rng, 0.05, 0.5);
     const double half_length = families::uniform(rng, 0.05, 1.0);
-    const Pose X_WB = random_pose(rng, 2);
+    const Pose X_WB = random_pose(rng, 0, 2);
     const Vec3 centre = families::uniform(rng, 0.1, 2.0) * families::direction(rng);
     const double sides = std::max(0.0, std::hypot(centre.x(), centre.y()) - radius);
     const double caps = std::max(0.0, std::abs(centre.z()) - half_length);
@@ -301,7 +296,7 @@ TEST(Shape, APointBesideAConeHasTheDistanceOfItsClosedForm) {
   int apart = 0;
   int overlaps = 0;
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", sample " + std::to_string(i));
+    SCOPED_TRACE(of_seed(seed, "sample", i));
     const double radius = families::uniform(rng, 0.1, 1.0);
     const double half_length = families::uniform(rng, 0.1, 1.0);
     const Vec3 p = families::uniform(rng, 0.0, 2.0) * families::direction(rng);

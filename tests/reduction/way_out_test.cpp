@@ -16,7 +16,7 @@ constexpr unsigned seed = 118;
 TEST(WayOut, AShapeMovedByTheOverlapTouches) {
   Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
-    SCOPED_TRACE("seed " + std::to_string(seed) + ", pair " + std::to_string(i));
+    SCOPED_TRACE(families::of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::overlapping_boxes(rng);
     const Vec3 n = families::direction(rng);
     const double overlap = detail::overlap_along(n, boxes.A, boxes.X_WA, boxes.B, boxes.X_WB);

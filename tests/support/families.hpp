@@ -1,9 +1,11 @@
 /// @file
-/// Seeded pairs of polytopes, family by family, of the kinds on which distance code fails.
+/// Seeded pairs of polytopes, family by family, of the kinds on which distance code fails; and what
+/// every test that draws at random needs.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
@@ -31,6 +33,10 @@ inline double uniform(Rng& rng, double low, double high) {
 inline double log_uniform(Rng& rng, double low, double high) {
   return std::exp(uniform(rng, std::log(low), std::log(high)));
 }
+/// Names what was drawn, in the message of a failure.
+inline std::string of_seed(std::uint64_t seed, const char* what, int i) {
+  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
+}
 inline Vec3 direction(Rng& rng) {
   std::normal_distribution<double> normal;
   return Vec3(normal(rng), normal(rng), normal(rng)).normalized();
@@ -43,6 +49,13 @@ inline Mat3 rotation(Rng& rng) {
 }
 inline Mat3 small_rotation(Rng& rng, double angle) {
   return Eigen::AngleAxisd(angle, direction(rng)).toRotationMatrix();
+}
+/// Turned anyhow, its origin `low` to `high` [m] away.
+inline Pose random_pose(Rng& rng, double low, double high) {
+  Pose X = Pose::Identity();
+  X.linear() = rotation(rng);
+  X.translation() = uniform(rng, low, high) * direction(rng);
+  return X;
 }
 
 inline Solid box(const Vec3& h) {
