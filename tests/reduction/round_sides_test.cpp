@@ -12,6 +12,7 @@
 namespace repel {
 namespace {
 
+using families::of_seed;
 using families::Rng;
 using oracle::Real;
 
@@ -101,10 +102,6 @@ Posed random_pair(Rng& rng) {
   return pair;
 }
 
-std::string of_seed(const char* what, int i) {
-  return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
-}
-
 /// By the deepest point, not by levels that stand in for it.
 bool is_measured(const Separation& s, const WarmStart& warm) {
   return s.end == QueryEnd::converged && warm.level_a == WarmStart::deepest_point;
@@ -114,7 +111,7 @@ TEST(RoundSides, NoPointIsDeeperThanTheDeepest) {
   Rng rng(seed);
   int measured = 0, overlapping = 0;
   for (int i = 0; i < 3000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const Posed pair = random_pair(rng);
     WarmStart warm;
     const Separation s = pair.separate(warm);
@@ -146,7 +143,7 @@ TEST(RoundSides, AreThoseOfAPrismOfManySides) {
   Rng rng(seed);
   int measured = 0;
   for (int i = 0; i < 60; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const Posed pair = random_pair(rng);
     WarmStart warm;
     const Separation s = pair.separate(warm);
@@ -185,7 +182,7 @@ TEST(RoundSides, ChangeNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   Rng rng(seed);
   int inside = 0, outside = 0;
   for (int i = 0; i < 150; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     Posed pair = random_pair(rng);
     const Vec3 along = families::direction(rng);
     const Vec3 aside = 0.2 * pair.size() * families::direction(rng);
@@ -222,7 +219,7 @@ TEST(RoundSides, ChangeNoFasterThanTheShapesMoveAndWarmEqualsCold) {
 TEST(RoundSides, TurnedSlowlyWarmEqualsCold) {
   Rng rng(seed);
   for (int i = 0; i < 100; ++i) {
-    SCOPED_TRACE(of_seed("sweep", i));
+    SCOPED_TRACE(of_seed(seed, "sweep", i));
     Posed pair = random_pair(rng);
     const Mat3 turn = families::small_rotation(rng, 1e-3);
     WarmStart warm;
@@ -240,7 +237,7 @@ TEST(RoundSides, TheirDirectionIsTheGradientByFiniteDifferences) {
   Rng rng(seed);
   int smooth = 0;
   for (int i = 0; i < 1500; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     Posed pair = random_pair(rng);
     WarmStart warm;
     const Separation s = pair.separate(warm);
@@ -266,7 +263,7 @@ TEST(RoundSides, OverlapOfANanometreIsOverlap) {
   Rng rng(seed);
   int touching = 0;
   for (int i = 0; i < 1000; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     Posed pair = random_pair(rng);
     pair.X_WB.translation() *= 3.0;
     const Separation apart = pair.separate();
@@ -293,7 +290,7 @@ TEST(RoundSides, TheBracketHoldsTheDepth) {
   Rng rng(seed);
   int overlapping = 0;
   for (int i = 0; i < 100; ++i) {
-    SCOPED_TRACE(of_seed("pair", i));
+    SCOPED_TRACE(of_seed(seed, "pair", i));
     const auto one = accuracy::make(i % 2 == 0 ? "cylinder" : "cone", rng);
     const auto other = accuracy::make(accuracy::kinds()[rng() % accuracy::kinds().size()], rng);
     Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
@@ -356,7 +353,7 @@ TEST(RoundSides, DegenerateOnesAreAnswered) {
   for (const Shape& A : {Shape::cylinder(0.2, 0.0), Shape::cylinder(0.0, 0.2), Shape::cone(0.2, 0),
                          Shape::cone(0.0, 0.2), Shape::cylinder(0, 0), Shape::cone(1e-9, 0.5)}) {
     for (int i = 0; i < 100; ++i) {
-      SCOPED_TRACE(of_seed("pose", i));
+      SCOPED_TRACE(of_seed(seed, "pose", i));
       Pose X_WA = Pose::Identity();
       X_WA.linear() = families::rotation(rng);
       X_WA.translation() = families::uniform(rng, 0.0, 0.3) * families::direction(rng);
