@@ -22,7 +22,7 @@ TEST(Query, TheDefaultOptionsAreUsable) {
 TEST(Query, AWarmStartIsEmptyAtFirstAndSmallEnoughToKeepPerPair) {
   EXPECT_EQ(WarmStart{}.size, 0);
   static_assert(std::is_trivially_copyable_v<WarmStart>);
-  static_assert(sizeof(WarmStart) <= 40);
+  static_assert(sizeof(WarmStart) <= 72);
 }
 
 }  // namespace

@@ -123,4 +123,34 @@ struct Foot {
   return proves(f, foot, pair.least_product(foot.v), pair.margin(), options, beyond, gap);
 }
 
+/// True when the four corners of A - B named in `warm.met_a` and `warm.met_b` are proven to have
+/// the origin between them, so that the sets meet.
+[[nodiscard]] inline bool still_meets(const PosedPair& pair, const WarmStart& warm) noexcept {
+  std::array<Vec<double>, 4> w;
+  for (std::size_t i = 0; i < 4; ++i) {
+    w[i] = rotate(pair.X_WA, pair.A.place(warm.met_a[i])) -
+           (rotate(pair.X_WB, pair.B.place(warm.met_b[i])) + pair.p_AB);
+  }
+  const Vec<double> edge = w[0] - w[1];
+  const Vec<double> across = cross(w[2], w[3]);
+  const Vec<double> along = w[2] - w[3];
+  const Vec<double> other = cross(w[0], w[1]);
+  // Six times the volumes between the origin and each face, turned as seen from its corner.
+  const std::array<double, 4> volumes{dot(w[1], across), -dot(w[0], across), dot(w[3], other),
+                                      -dot(w[2], other)};
+  const std::array<Vec<double>, 4> normals{across + cross(w[1], along), across + cross(w[0], along),
+                                           other + cross(w[3], edge), other + cross(w[2], edge)};
+  const double size = pair.A.reach() + pair.B.reach() + sum(magnitudes(pair.p_AB));
+  const double rounding = 0x1p-46 * size * size * size;
+  const double sign = volumes[0] < 0.0 ? -1.0 : 1.0;
+  const double margin = pair.margin();
+  bool inside = true;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double volume = sign * volumes[k];
+    inside = inside && volume > rounding &&
+             volume * volume > margin * margin * dot(normals[k], normals[k]);
+  }
+  return inside;
+}
+
 }  // namespace repel::detail

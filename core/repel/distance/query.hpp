@@ -50,6 +50,10 @@ struct WarmStart {
   std::uint8_t size = 0;
   std::uint8_t level_a = 0;
   std::uint8_t level_b = 0;
+  /// Of the pair of levels before that one, which meets: point pairs around a common point.
+  std::array<std::uint32_t, 4> met_a{};
+  std::array<std::uint32_t, 4> met_b{};
+  std::uint8_t met_size = 0;  ///< 4 when they are known
 };
 
 }  // namespace repel

@@ -46,7 +46,9 @@ class Planes {
         facets.push_back({{}, side * Vec3::Unit(axis), half_extents[axis]});
       }
     }
-    return Planes(facets);
+    Planes planes(facets);
+    planes.is_box_ = true;
+    return planes;
   }
   /// Around the z axis, flat ends at +-`half_length` [m].
   static Planes cylinder(double radius, double half_length) {
@@ -106,6 +108,10 @@ class Planes {
   [[nodiscard]] Nearest<DoubleDouble> nearest(const Vec<DoubleDouble>& x) const noexcept;
 
  private:
+  /// Of a box, by its three half extents.
+  [[nodiscard]] Nearest<double> nearest_of_box(const Vec<double>& x) const noexcept;
+  [[nodiscard]] Nearest<double> nearest_of_listed(const Vec<double>& x) const noexcept;
+
   static constexpr std::size_t lanes = 8;  ///< the arrays are padded to a multiple of this
 
   [[nodiscard]] static std::size_t stride_of(std::size_t planes) noexcept {
@@ -121,13 +127,25 @@ class Planes {
   [[nodiscard]] std::uint32_t listed() const noexcept { return static_cast<std::uint32_t>(size_); }
 
   Tangents side_;
+  bool is_box_ = false;
   double margin_ = 0.0;
   std::size_t size_ = 0;
   std::size_t stride_ = 0;
   std::vector<double> numbers_;
 };
 
-inline Planes::Nearest<double> Planes::nearest(const Vec<double>& x) const noexcept {
+inline Planes::Nearest<double> Planes::nearest_of_box(const Vec<double>& x) const noexcept {
+  const Vec<double> beyond = magnitudes(x);
+  const std::array<double, 3> depth{offset(0) - beyond.x(), offset(2) - beyond.y(),
+                                    offset(4) - beyond.z()};
+  std::uint32_t axis = depth[1] < depth[0] ? 1 : 0;
+  double least = std::min(depth[0], depth[1]);
+  axis = depth[2] < least ? 2 : axis;
+  least = std::min(least, depth[2]);
+  return {2 * axis + (minus_signs(x) >> axis & 1U), least};
+}
+
+inline Planes::Nearest<double> Planes::nearest_of_listed(const Vec<double>& x) const noexcept {
   using detail::Lanes;
   constexpr double none = std::numeric_limits<double>::infinity();
   Lanes best = Lanes{} + none;
@@ -143,11 +161,16 @@ inline Planes::Nearest<double> Planes::nearest(const Vec<double>& x) const noexc
   }
   const double least = detail::least_of(best);
   const Lanes first = best == Lanes{} + least ? winner : Lanes{} + none;
-  const Nearest<double> of_listed{static_cast<std::uint32_t>(detail::least_of(first)), least};
+  return {static_cast<std::uint32_t>(detail::least_of(first)), least};
+}
+
+inline Planes::Nearest<double> Planes::nearest(const Vec<double>& x) const noexcept {
+  if (is_box_) return nearest_of_box(x);
+  const Nearest<double> of_listed = nearest_of_listed(x);
   if (side_.size() == 0) return of_listed;
   const std::uint32_t on_side = side_.nearest(x);
   const double depth = side_.offset() - dot(side_.normal(on_side), x);
-  return depth < least ? Nearest<double>{listed() + on_side, depth} : of_listed;
+  return depth < of_listed.depth ? Nearest<double>{listed() + on_side, depth} : of_listed;
 }
 
 inline Planes::Nearest<DoubleDouble> Planes::nearest(const Vec<DoubleDouble>& x) const noexcept {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <repel/distance/feature_search.hpp>
 #include <repel/distance/gjk.hpp>
 #include <repel/reduction/answer.hpp>
 #include <repel/reduction/way_out.hpp>
@@ -30,7 +31,10 @@ class LadderWalk {
     i_ = warm_.level_a;
     j_ = warm_.level_b;
     if (!on_chain()) i_ = j_ = 0;
-    if (first != nullptr) iterations_ = first->iterations;
+    if (first != nullptr) {
+      iterations_ = first->iterations;
+      if (first->meets) keep_meeting(warm_);
+    }
     const int longest = A_.levels() + B_.levels() + 2;
     for (int step = 0; step < longest; ++step) {
       const Gap gap = step == 0 && first != nullptr ? *first : query();
@@ -38,8 +42,9 @@ class LadderWalk {
       const bool decided = meets ? went_in(gap) : went_out(gap);
       if (decided) break;
     }
-    warm_.level_a = static_cast<std::uint8_t>(i_);
-    warm_.level_b = static_cast<std::uint8_t>(j_);
+    // The next call does best to begin where the shapes are apart.
+    warm_.level_a = static_cast<std::uint8_t>(apart_ ? apart_i_ : i_);
+    warm_.level_b = static_cast<std::uint8_t>(apart_ ? apart_j_ : j_);
     return answer();
   }
 
@@ -73,13 +78,56 @@ class LadderWalk {
     j_ -= b >= a && j_ > 0 ? 1 : 0;
   }
 
+  /// The pair of levels at hand, from what the last call on either kind of pair left.
   Gap query() noexcept {
+    const Level& a = A_.level(i_);
+    const Level& b = B_.level(j_);
     QueryOptions options = options_;
     options.iterations = std::max(1, options_.iterations - iterations_);
     options.ignore_beyond += at_start() ? depth() : std::numeric_limits<double>::infinity();
-    Gap gap = gap_between(A_.level(i_).core, X_WA_, B_.level(j_).core, X_WB_, options, warm_);
+    Gap gap;
+    if (a.core.is_polytope() && b.core.is_polytope() &&
+        is_quick({a.core, X_WA_, b.core, X_WB_}, options, gap)) {
+      return gap;
+    }
+    WarmStart start = warm_;
+    if (warm_.met_size == 4 && apart_) {
+      start.a = warm_.met_a;
+      start.b = warm_.met_b;
+      start.size = 4;
+    }
+    gap = gap_between(a.core, X_WA_, b.core, X_WB_, options, start);
     iterations_ += gap.iterations;
+    if (gap.meets) {
+      keep_meeting(start);
+    } else {
+      warm_.a = start.a;
+      warm_.b = start.b;
+      warm_.size = start.size;
+    }
     return gap;
+  }
+
+  /// True when the corners that decided last decide again.
+  bool is_quick(const PosedPair& pair, const QueryOptions& options, Gap& gap) noexcept {
+    ++iterations_;
+    if (apart_) {
+      gap.meets = warm_.met_size == 4 && still_meets(pair, warm_);
+      gap.upper = 0.0;
+      gap.end = QueryEnd::converged;
+      return gap.meets;
+    }
+    if (warm_.size < 1 || warm_.size > 3) return false;
+    if (still_nearest(pair, warm_, options, options.ignore_beyond, gap)) return true;
+    const bool found = FeatureSearch(pair).run(options, warm_, gap);
+    iterations_ += gap.iterations;
+    return found;
+  }
+
+  void keep_meeting(const WarmStart& four) noexcept {
+    warm_.met_size = four.size;
+    warm_.met_a = four.a;
+    warm_.met_b = four.b;
   }
 
   /// This pair meets: is the next one known to be apart?

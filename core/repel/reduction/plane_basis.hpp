@@ -10,6 +10,7 @@
 #include <limits>
 
 #include <repel/geometry/planes.hpp>
+#include <repel/reduction/basis_roles.hpp>
 
 namespace repel::detail {
 
@@ -19,32 +20,6 @@ struct PosedPlanes {
   const Pose& X_W;
   double reach;  ///< [m] of the polytope around the origin of its frame
 };
-
-/// Which of the five rows of a basis do what, by the set of those that are of B.
-struct BasisRoles {
-  std::array<std::uint8_t, 2> base{};      ///< of A and B: the row that eliminates the depth
-  std::array<std::uint8_t, 3> equation{};  ///< the others, from which x follows
-  std::array<std::uint8_t, 3> side{};      ///< of these
-};
-
-[[nodiscard]] constexpr std::array<BasisRoles, 32> all_basis_roles() {
-  std::array<BasisRoles, 32> all{};
-  for (unsigned of_b = 1; of_b < 31; ++of_b) {
-    std::array<bool, 2> has_base{};
-    std::size_t equations = 0;
-    for (unsigned k = 0; k < 5; ++k) {
-      const unsigned side = of_b >> k & 1U;
-      if (!has_base[side]) {
-        all[of_b].base[side] = static_cast<std::uint8_t>(k);
-        has_base[side] = true;
-      } else {
-        all[of_b].equation[equations] = static_cast<std::uint8_t>(k);
-        all[of_b].side[equations++] = static_cast<std::uint8_t>(side);
-      }
-    }
-  }
-  return all;
-}
 
 /// Five constraints of max a + b (see DeepestPoint) that hold with equality, and what follows from
 /// them: three equations for x once the depths are eliminated, and by the same cofactors the
@@ -67,7 +42,9 @@ class PlaneBasis {
   };
 
   PlaneBasis(const PosedPlanes& A, const PosedPlanes& B) noexcept
-      : sets_{A, B}, p_{Vec<T>(), column<T>(B.X_W, 3) - column<T>(A.X_W, 3)} {}
+      : sets_{A, B},
+        columns_{columns_of(A.X_W), columns_of(B.X_W)},
+        p_{Vec<T>(), column<T>(B.X_W, 3) - column<T>(A.X_W, 3)} {}
 
   /// [m] from the origin of A, world axes
   [[nodiscard]] const Vec<T>& point() const noexcept { return x_; }
@@ -101,13 +78,16 @@ class PlaneBasis {
   bool weigh() noexcept;
 
   [[nodiscard]] T least_multiplier() const noexcept {
-    return *std::min_element(multiplier_.begin(), multiplier_.end());
+    T least = multiplier_[0];
+    for (const T& multiplier : multiplier_) least = std::min(least, multiplier);
+    return least;
   }
   /// The gradient of the sum of the depths when A moves, world axes.
   [[nodiscard]] Vec<T> gradient() const noexcept {
     Vec<T> g{};
     for (std::size_t k = 0; k < rows; ++k) {
-      if (side(k) == 0) g = g + multiplier_[k] * rows_[k].n;
+      static constexpr std::array<double, 2> counts{1.0, 0.0};
+      g = g + (T(counts[side(k)]) * multiplier_[k]) * rows_[k].n;
     }
     return g;
   }
@@ -116,7 +96,8 @@ class PlaneBasis {
   [[nodiscard]] Entry most_violated(T tolerance) noexcept {
     Entry most{0, 0, tolerance};
     for (unsigned s = 0; s < 2; ++s) {
-      const auto nearest = sets_[s].planes.nearest(rotate_transposed(sets_[s].X_W, x_ - p_[s]));
+      const auto& [x, y, z] = columns_[s];
+      const auto nearest = sets_[s].planes.nearest(dots(x, y, z, x_ - p_[s]));
       depth_[s] = nearest.depth;
       const T above = level_[s] - nearest.depth;
       if (above > most.violation) most = {s, nearest.plane, above};
@@ -192,6 +173,12 @@ class PlaneBasis {
     std::uint32_t name;
   };
 
+  /// Of a rotation; the precision of T.
+  using Columns = std::array<Vec<T>, 3>;
+  [[nodiscard]] static Columns columns_of(const Pose& X) noexcept {
+    return {column<T>(X, 0), column<T>(X, 1), column<T>(X, 2)};
+  }
+
   static constexpr std::array<BasisRoles, 32> all_roles = all_basis_roles();
 
   /// Of the rows of a side, a depth not below 0 comes first: there it eliminates the depth, like a
@@ -210,7 +197,9 @@ class PlaneBasis {
     const PosedPlanes& set = sets_[side];
     row.name = name;
     if (name < set.planes.size()) {
-      row.n = rotate(set.X_W, Vec<T>(set.planes.normal(name)));
+      const Vec<T> n(set.planes.normal(name));
+      const auto& [x, y, z] = columns_[side];
+      row.n = n.x() * x + n.y() * y + n.z() * z;
       row.offset = T(set.planes.offset(name)) + dot(row.n, p_[side]);
       return;
     }
@@ -233,15 +222,13 @@ class PlaneBasis {
     const Vec<T> rest =
         aim - (t.x() * equations_[0] + t.y() * equations_[1] + t.z() * equations_[2]);
     t = t + inverse_ * dots(cofactors_[0], cofactors_[1], cofactors_[2], rest);
-    std::array<T, 2> left = sums;
-    const std::array<T, 3> of_equation{t.x(), t.y(), t.z()};
-    for (std::size_t e = 0; e < 3; ++e) {
-      shares[roles.equation[e]] = of_equation[e];
-      left[roles.side[e]] = left[roles.side[e]] - of_equation[e];
-    }
+    shares[roles.equation[0]] = t.x();
+    shares[roles.equation[1]] = t.y();
+    shares[roles.equation[2]] = t.z();
     for (std::size_t s = 0; s < 2; ++s) {
       const std::size_t k = roles.base[s];
-      shares[k] = rows_[k].name == not_negative ? -left[s] : left[s];
+      const T left = sums[s] - dot(t, from_four<T>(roles.has[s].data()));
+      shares[k] = rows_[k].name == not_negative ? -left : left;
     }
   }
 
@@ -251,6 +238,7 @@ class PlaneBasis {
   }
 
   std::array<PosedPlanes, 2> sets_;
+  std::array<Columns, 2> columns_;
   std::array<Vec<T>, 2> p_;         ///< [m] the origins from that of A, world axes
   std::array<Row, rows + 1> rows_;  ///< and one that enters
   std::array<T, rows> multiplier_;
@@ -280,7 +268,7 @@ bool PlaneBasis<T>::weigh() noexcept {
   cofactors_ = {cross(equations_[1], equations_[2]), cross(equations_[2], equations_[0]),
                 cross(equations_[0], equations_[1])};
   const T determinant = dot(equations_[0], cofactors_[0]);
-  if (!(determinant > T(1e-200) || -determinant > T(1e-200))) return false;
+  if (!(std::abs(static_cast<double>(determinant)) > 1e-200)) return false;
   inverse_ = T(1.0) / determinant;
   const Vec<T> value(values[0], values[1], values[2]);
   const auto missed = [&] { return value - dots(equations_[0], equations_[1], equations_[2], x_); };

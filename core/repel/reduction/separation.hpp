@@ -69,13 +69,11 @@ namespace detail {
   const PosedPlanes planes_a{A.planes(), X_WA, a.core.reach()};
   const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
-  WarmStart next = warm;
-  if (!deepest.solve(next, most_pivots)) return false;
+  if (!deepest.solve(warm, most_pivots)) return false;
   // What a shape may lack of what its planes hold is no depth.
   const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
   const double sure = 1.0 - (A.planes().margin() + B.planes().margin()) / found;
   if (!(sure > 0.0)) return false;
-  warm = next;
   const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
