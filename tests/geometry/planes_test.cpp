@@ -37,17 +37,33 @@ TEST(Planes, TheNearestIsTheFirstOfTheLeastDeep) {
 TEST(Planes, OfABoxSayHowDeepAPointIs) {
   const Planes planes = Planes::box({1.0, 2.0, 3.0});
   EXPECT_EQ(planes.size(), 6U);
-  EXPECT_DOUBLE_EQ(planes.nearest({0.5, 0.0, 0.0}).depth, 0.5);
-  EXPECT_DOUBLE_EQ(planes.nearest({0.0, -1.9, 0.0}).depth, 2.0 - 1.9);
-  EXPECT_DOUBLE_EQ(planes.nearest({0.0, 0.0, 4.0}).depth, -1.0);
-  EXPECT_DOUBLE_EQ(Planes::box({1.0, 0.0, 1.0}).nearest({0.0, 0.0, 0.0}).depth, 0.0);
+  EXPECT_DOUBLE_EQ(planes.nearest(Vec<double>(0.5, 0.0, 0.0)).depth, 0.5);
+  EXPECT_DOUBLE_EQ(planes.nearest(Vec<double>(0.0, -1.9, 0.0)).depth, 2.0 - 1.9);
+  EXPECT_DOUBLE_EQ(planes.nearest(Vec<double>(0.0, 0.0, 4.0)).depth, -1.0);
+  EXPECT_DOUBLE_EQ(Planes::box({1.0, 0.0, 1.0}).nearest(Vec<double>()).depth, 0.0);
   EXPECT_TRUE(Planes().empty());
+}
+
+// A box knows its nearest plane without looking at all; it must be the one a look finds.
+TEST(Planes, OfABoxAreNamedAsInTheList) {
+  families::Rng rng(seed);
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "point", i));
+    const Planes planes = Planes::box(families::random_box(rng, 0.05, 0.6).half_extents);
+    const Vec<double> x(Vec3(families::uniform(rng, 0.0, 1.0) * families::direction(rng)));
+    std::uint32_t least = 0;
+    const auto depth = [&](std::uint32_t p) { return planes.offset(p) - dot(planes.normal(p), x); };
+    for (std::uint32_t p = 0; p < planes.size(); ++p) least = depth(p) < depth(least) ? p : least;
+    EXPECT_EQ(planes.nearest(x).plane, least);
+    EXPECT_EQ(planes.nearest(x).depth, depth(least));
+    EXPECT_EQ(planes.nearest(Vec<DoubleDouble>(x)).plane, least);
+  }
 }
 
 TEST(Planes, APointThatIsNotANumberHasSomePlane) {
   const Planes planes = Planes::box({1.0, 2.0, 3.0});
   const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_LT(planes.nearest({none, none, none}).plane, planes.size());
+  EXPECT_LT(planes.nearest(Vec<double>(none, none, none)).plane, planes.size());
 }
 
 }  // namespace

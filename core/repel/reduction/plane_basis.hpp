@@ -23,8 +23,8 @@ struct PosedPlanes {
 
 /// Five constraints of max a + b (see DeepestPoint) that hold with equality, and what follows from
 /// them: three equations for x once the depths are eliminated, and by the same cofactors the
-/// multipliers. Solutions by cofactors are refined once: the shares of nearly parallel planes
-/// would be large and wrong otherwise.
+/// multipliers. Where planes are nearly parallel solutions by cofactors are refined
+/// once: the others would not hold with equality otherwise.
 template <class T>
 class PlaneBasis {
  public:
@@ -219,9 +219,11 @@ class PlaneBasis {
     const Vec<T> of_depths = sums[0] * rows_[roles.base[0]].n + sums[1] * rows_[roles.base[1]].n;
     const Vec<T> aim = target - of_depths;
     Vec<T> t = inverse_ * dots(cofactors_[0], cofactors_[1], cofactors_[2], aim);
-    const Vec<T> rest =
-        aim - (t.x() * equations_[0] + t.y() * equations_[1] + t.z() * equations_[2]);
-    t = t + inverse_ * dots(cofactors_[0], cofactors_[1], cofactors_[2], rest);
+    if (thin_) {
+      const Vec<T> rest =
+          aim - (t.x() * equations_[0] + t.y() * equations_[1] + t.z() * equations_[2]);
+      t = t + inverse_ * dots(cofactors_[0], cofactors_[1], cofactors_[2], rest);
+    }
     shares[roles.equation[0]] = t.x();
     shares[roles.equation[1]] = t.y();
     shares[roles.equation[2]] = t.z();
@@ -251,6 +253,7 @@ class PlaneBasis {
   Vec<T> x_;
   std::array<T, 2> level_;  ///< [m] the depths by the basis
   std::array<T, 2> depth_;  ///< [m] the depths of x
+  bool thin_ = false;       ///< planes are nearly parallel
   T slack_{0.0};            ///< [m] what the equations miss in x, weighed
 };
 
@@ -273,14 +276,18 @@ bool PlaneBasis<T>::weigh() noexcept {
   const Vec<T> value(values[0], values[1], values[2]);
   const auto missed = [&] { return value - dots(equations_[0], equations_[1], equations_[2], x_); };
   x_ = solved(value);
-  x_ = x_ + solved(missed());
+  thin_ = std::abs(static_cast<double>(inverse_)) > 100.0;
+  if (thin_) x_ = x_ + solved(missed());
   spread(tilt_, {T(1.0), T(1.0)}, multiplier_);
   for (std::size_t s = 0; s < 2; ++s) {
     const Row& base = rows_[roles.base[s]];
     level_[s] = base.offset - dot(base.n, x_);
   }
-  slack_ = dot(missed(), Vec<T>(multiplier_[roles.equation[0]], multiplier_[roles.equation[1]],
-                                multiplier_[roles.equation[2]]));
+  slack_ = T(0.0);
+  if (thin_) {
+    slack_ = dot(missed(), Vec<T>(multiplier_[roles.equation[0]], multiplier_[roles.equation[1]],
+                                  multiplier_[roles.equation[2]]));
+  }
   return true;
 }
 
