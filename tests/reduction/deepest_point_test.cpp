@@ -12,6 +12,7 @@
 #include <support/linear_program.hpp>
 
 #include "reduction/posed_boxes.hpp"
+#include "reduction/posed_shapes.hpp"
 
 namespace repel {
 namespace {
@@ -23,18 +24,7 @@ using oracle::Real;
 constexpr unsigned seed = 7331;
 const QueryOptions by_deepest_point{.measure = Measure::deepest_point};
 
-struct Posed {
-  Shape A, B;
-  Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
-
-  [[nodiscard]] Separation separate(WarmStart& warm) const {
-    return separation(A, X_WA, B, X_WB, by_deepest_point, warm);
-  }
-  [[nodiscard]] Separation separate() const {
-    return separation(A, X_WA, B, X_WB, by_deepest_point);
-  }
-  [[nodiscard]] double size() const { return A.reach() + B.reach(); }
-};
+using Posed = test::PosedShapes;
 
 Shape random_shape(Rng& rng) {
   switch (families::count_between(rng, 0, 4)) {
@@ -143,33 +133,14 @@ TEST(DeepestPoint, IsFoundWhereverBoxesOverlap) {
 
 TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   Rng rng(seed);
-  int inside = 0, outside = 0;
+  test::Steps seen;
   for (int i = 0; i < 150; ++i) {
     SCOPED_TRACE(of_seed(seed, "sweep", i));
-    Posed pair = random_pair(rng);
-    const Vec3 along = families::direction(rng);
-    const Vec3 aside = 0.3 * pair.size() * families::direction(rng);
-    const double length = 2.5 * pair.size();
-    constexpr int steps = 200;
-    WarmStart warm;
-    double before = 0.0;
-    for (int k = 0; k <= steps; ++k) {
-      pair.X_WA.translation() =
-          pair.X_WB.translation() + aside + (static_cast<double>(k) / steps - 0.5) * length * along;
-      const Separation s = pair.separate(warm);
-      const Separation cold = pair.separate();
-      EXPECT_NEAR(s.distance, cold.distance, 1e-13 * pair.size());
-      EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-12);
-      EXPECT_LE(s.lower, s.distance);
-      EXPECT_GE(s.upper, s.distance);
-      const double change = k > 0 ? std::abs(s.distance - before) : 0.0;
-      EXPECT_LE(change, length / steps + 1e-12);
-      before = s.distance;
-      ++(s.distance < 0.0 ? inside : outside);
-    }
+    const Posed pair = random_pair(rng);
+    test::expect_smooth_sweep(pair, rng, 1e-12 * pair.size(), seen);
   }
-  EXPECT_GT(inside, 3000);
-  EXPECT_GT(outside, 3000);
+  EXPECT_GT(seen.inside, 3000);
+  EXPECT_GT(seen.outside, 3000);
 }
 
 TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
@@ -215,7 +186,7 @@ TEST(DeepestPoint, ItsDirectionIsTheGradientByFiniteDifferences) {
   int smooth = 0;
   for (int i = 0; i < 4000; ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
-    Posed pair = random_pair(rng);
+    const Posed pair = random_pair(rng);
     WarmStart warm;
     const Separation s = pair.separate(warm);
     if (warm.level_a != WarmStart::deepest_point) continue;
@@ -224,15 +195,7 @@ TEST(DeepestPoint, ItsDirectionIsTheGradientByFiniteDifferences) {
     detail::DeepestPoint deepest(a, b);
     ASSERT_TRUE(deepest.solve(warm));
     const Vec3 g = -to_vec3(deepest.gradient());
-    constexpr double h = 1e-6;
-    Vec3 forward, backward;
-    const Vec3 p = pair.X_WA.translation();
-    for (int axis = 0; axis < 3; ++axis) {
-      pair.X_WA.translation() = p + h * Vec3::Unit(axis);
-      forward[axis] = (pair.separate().distance - s.distance) / h;
-      pair.X_WA.translation() = p - h * Vec3::Unit(axis);
-      backward[axis] = (s.distance - pair.separate().distance) / h;
-    }
+    const auto [forward, backward] = test::difference_quotients(pair, 1e-6);
     if ((forward - backward).norm() > 1e-6) continue;  // at an edge of the function
     ++smooth;
     EXPECT_LE((forward - g).norm(), 1e-6);

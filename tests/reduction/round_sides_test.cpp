@@ -9,6 +9,8 @@
 #include <accuracy/specimen.hpp>
 #include <support/linear_program.hpp>
 
+#include "reduction/posed_shapes.hpp"
+
 namespace repel {
 namespace {
 
@@ -72,18 +74,12 @@ Body random_body(Rng& rng, int kinds) {
   return body;
 }
 
-struct Posed {
+struct Posed : test::PosedShapes {
   Body a, b;
-  Shape A, B;
-  Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
 
-  Posed(const Body& one, const Body& other) : a(one), b(other), A(one.shape()), B(other.shape()) {}
+  Posed(const Body& one, const Body& other)
+      : PosedShapes{one.shape(), other.shape()}, a(one), b(other) {}
 
-  [[nodiscard]] Separation separate(WarmStart& warm) const {
-    return separation(A, X_WA, B, X_WB, {}, warm);
-  }
-  [[nodiscard]] Separation separate() const { return separation(A, X_WA, B, X_WB); }
-  [[nodiscard]] double size() const { return A.reach() + B.reach(); }
   /// [m] the sum of the depths of a point, at least 0 each, or -1 outside of one
   [[nodiscard]] double depth(const Vec3& x) const {
     const double of_a = a.depth(X_WA.inverse() * x);
@@ -180,40 +176,14 @@ TEST(RoundSides, AreThoseOfAPrismOfManySides) {
 
 TEST(RoundSides, ChangeNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   Rng rng(seed);
-  int inside = 0, outside = 0;
+  test::Steps seen;
   for (int i = 0; i < 150; ++i) {
     SCOPED_TRACE(of_seed(seed, "sweep", i));
-    Posed pair = random_pair(rng);
-    const Vec3 along = families::direction(rng);
-    const Vec3 aside = 0.2 * pair.size() * families::direction(rng);
-    const double length = 2.0 * pair.size();
-    const double error = 1e-9 * pair.size();
-    constexpr int steps = 200;
-    std::array<double, 2> before{};
-    WarmStart warm;
-    for (int k = 0; k <= steps; ++k) {
-      pair.X_WA.translation() =
-          pair.X_WB.translation() + aside + (static_cast<double>(k) / steps - 0.5) * length * along;
-      const Separation s = pair.separate(warm);
-      const Separation cold = pair.separate();
-      ASSERT_NE(s.end, QueryEnd::budget_spent);
-      ASSERT_NE(cold.end, QueryEnd::budget_spent);
-      EXPECT_NEAR(s.distance, cold.distance, error) << k;
-      EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-12);
-      EXPECT_LE(s.lower, s.distance);
-      EXPECT_GE(s.upper, s.distance);
-      if (k > 0) {
-        EXPECT_LE(std::abs(s.distance - before[0]), length / steps + error) << k;
-      }
-      if (k > 1 && before[1] < 0.0 && before[0] < 0.0 && s.distance < 0.0) {
-        EXPECT_LE(before[0], 0.5 * (before[1] + s.distance) + error) << k;
-      }
-      before = {s.distance, before[0]};
-      ++(s.distance < 0.0 ? inside : outside);
-    }
+    const Posed pair = random_pair(rng);
+    test::expect_smooth_sweep(pair, rng, 1e-9 * pair.size(), seen);
   }
-  EXPECT_GT(inside, 3000);
-  EXPECT_GT(outside, 3000);
+  EXPECT_GT(seen.inside, 3000);
+  EXPECT_GT(seen.outside, 3000);
 }
 
 TEST(RoundSides, TurnedSlowlyWarmEqualsCold) {
@@ -238,19 +208,11 @@ TEST(RoundSides, TheirDirectionIsTheGradientByFiniteDifferences) {
   int smooth = 0;
   for (int i = 0; i < 1500; ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
-    Posed pair = random_pair(rng);
+    const Posed pair = random_pair(rng);
     WarmStart warm;
     const Separation s = pair.separate(warm);
     if (!is_measured(s, warm)) continue;
-    constexpr double h = 1e-4;
-    Vec3 forward, backward;
-    const Vec3 p = pair.X_WA.translation();
-    for (int axis = 0; axis < 3; ++axis) {
-      pair.X_WA.translation() = p + h * Vec3::Unit(axis);
-      forward[axis] = (pair.separate().distance - s.distance) / h;
-      pair.X_WA.translation() = p - h * Vec3::Unit(axis);
-      backward[axis] = (s.distance - pair.separate().distance) / h;
-    }
+    const auto [forward, backward] = test::difference_quotients(pair, 1e-4);
     const Vec3 g = 0.5 * (forward + backward);
     if ((forward - backward).norm() > 1e-2 || g.norm() < 0.1) continue;
     ++smooth;
