@@ -39,9 +39,9 @@ class DeepestPoint {
   /// there. False when the polytopes have no common point deeper than rounding, or none was found.
   [[nodiscard]] bool solve(WarmStart& warm, int allowed = most_pivots) noexcept {
     pivots_ = 0;
-    const End end = solved_in<double>(warm, allowed);
+    const End end = solved_in_double(warm, allowed);
     return end == End::best ||
-           (end == End::unclear && solved_in<DoubleDouble>(warm, allowed) == End::best);
+           (end == End::unclear && solved_at_length(warm, allowed) == End::best);
   }
 
   /// The depth of the point below the surface of A (0) or B (1) [m].
@@ -70,8 +70,15 @@ class DeepestPoint {
   /// By how much multipliers may be told apart where they would all be 0 [-].
   static constexpr double tilt = 1e-20;
 
+  [[gnu::flatten, gnu::noinline]] End solved_in_double(WarmStart& warm, int allowed) noexcept {
+    return solved_in<double>(warm, allowed);
+  }
+  [[gnu::noinline]] End solved_at_length(WarmStart& warm, int allowed) noexcept {
+    return solved_in<DoubleDouble>(warm, allowed);
+  }
+
   template <class T>
-  [[gnu::flatten, gnu::noinline]] End solved_in(WarmStart& warm, int allowed) noexcept {
+  End solved_in(WarmStart& warm, int allowed) noexcept {
     PlaneBasis<T> basis(A_, B_);
     End end = End::unclear;
     if (load(warm, basis) && basis.weigh() &&
