@@ -37,17 +37,17 @@ TEST(Planes, TheNearestIsTheFirstOfTheLeastDeep) {
 TEST(Planes, OfABoxSayHowDeepAPointIs) {
   const Planes planes = Planes::box({1.0, 2.0, 3.0});
   EXPECT_EQ(planes.size(), 6U);
-  EXPECT_DOUBLE_EQ(planes.nearest({0.5, 0.0, 0.0}).depth, 0.5);
-  EXPECT_DOUBLE_EQ(planes.nearest({0.0, -1.9, 0.0}).depth, 2.0 - 1.9);
-  EXPECT_DOUBLE_EQ(planes.nearest({0.0, 0.0, 4.0}).depth, -1.0);
-  EXPECT_DOUBLE_EQ(Planes::box({1.0, 0.0, 1.0}).nearest({0.0, 0.0, 0.0}).depth, 0.0);
+  EXPECT_DOUBLE_EQ(planes.nearest(Vec<double>{0.5, 0.0, 0.0}).depth, 0.5);
+  EXPECT_DOUBLE_EQ(planes.nearest(Vec<double>{0.0, -1.9, 0.0}).depth, 2.0 - 1.9);
+  EXPECT_DOUBLE_EQ(planes.nearest(Vec<double>{0.0, 0.0, 4.0}).depth, -1.0);
+  EXPECT_DOUBLE_EQ(Planes::box({1.0, 0.0, 1.0}).nearest(Vec<double>{0.0, 0.0, 0.0}).depth, 0.0);
   EXPECT_TRUE(Planes().empty());
 }
 
 TEST(Planes, APointThatIsNotANumberHasSomePlane) {
   const Planes planes = Planes::box({1.0, 2.0, 3.0});
   const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_LT(planes.nearest({none, none, none}).plane, planes.size());
+  EXPECT_LT(planes.nearest(Vec<double>{none, none, none}).plane, planes.size());
 }
 
 }  // namespace
