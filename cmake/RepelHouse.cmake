@@ -18,6 +18,7 @@ if(REPEL_SANITIZE)
   target_compile_options(repel_house INTERFACE
     -fsanitize=${REPEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(repel_house INTERFACE -fsanitize=${REPEL_SANITIZE})
+  target_compile_definitions(repel_house INTERFACE REPEL_SANITIZED)  # compilers say it differently
 endif()
 
 # repel_test(NAME SOURCES a.cpp LIBRARIES repel::core [LABELS threads]): one GoogleTest binary,

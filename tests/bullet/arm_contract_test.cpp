@@ -11,9 +11,9 @@
 
 #include "arms.hpp"
 
-// Bullet and Eigen allocate by malloc, and so does operator new: count there, below them all. Under
-// AddressSanitizer malloc is taken.
-#ifndef __SANITIZE_ADDRESS__
+// Bullet and Eigen allocate by malloc, and so does operator new: count there, below them all. A
+// sanitizer takes malloc for itself.
+#ifndef REPEL_SANITIZED
 namespace {
 std::atomic<long> allocations{0};
 }  // namespace
@@ -76,7 +76,7 @@ TEST(BulletArm, ResetForgetsTheWholePast) {
   EXPECT_TRUE(same_bits(state_after_a_second(fresh, 7), state_after_a_second(used, 7)));
 }
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef REPEL_SANITIZED
 TEST(BulletArm, AStepAllocatesNothing) {
   Arm arm(puma_with_friction());
   const std::vector torques{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};

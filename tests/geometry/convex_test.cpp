@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <support/draws.hpp>
 #include <support/families.hpp>
 
 namespace repel {
@@ -125,7 +126,8 @@ TEST(Convex, AnyNameGivesAPointOfTheSet) {
   Rng rng(seed);
   for (const Sample& sample : samples()) {
     std::vector<std::uint32_t> names{0U, 1U, 7U, 0xFFFFFFFFU, 0x0FFFFFFFU, 0x40000000U};
-    for (int i = 0; i < 40; ++i) names.push_back(static_cast<std::uint32_t>(rng()));
+    for (int i = 0; i < families::draws(40); ++i)
+      names.push_back(static_cast<std::uint32_t>(rng()));
     for (const std::uint32_t name : names) {
       const Vec3 p = to_vec3(sample.set.point(name).p);
       EXPECT_TRUE(holds(sample, p, 2e-5)) << sample.name << ", name " << name << ", seed " << seed;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <support/draws.hpp>
 #include <support/families.hpp>
 
 namespace repel {
@@ -201,7 +202,7 @@ double thickness(const std::vector<Vec3>& points) {
 TEST(Facets, ThinLatticeAndClusteredHullsAreClosedSurfaces) {
   Rng rng(seed);
   int solid = 0;
-  constexpr int count = 20000;
+  constexpr int count = families::draws(20000);
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE(families::of_seed(seed, "hull", i));
     const std::vector<Vec3> points = thin_points(i % 6, rng);

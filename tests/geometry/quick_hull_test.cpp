@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <support/draws.hpp>
 #include <support/families.hpp>
 
 namespace repel {
@@ -96,7 +97,7 @@ TEST(QuickHull, SizesFromTheTiniestToTheLargestAreAllTheSame) {
 TEST(QuickHull, NumbersOfVeryDifferentSizeDoNotBreakIt) {
   Rng rng(seed);
   int hulls = 0;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < families::draws(5000); ++i) {
     SCOPED_TRACE(families::of_seed(seed, "hull", i));
     std::vector<Vec3> points;
     const auto number = [&] {
@@ -114,7 +115,7 @@ TEST(QuickHull, NumbersOfVeryDifferentSizeDoNotBreakIt) {
     ++hulls;
     EXPECT_EQ(2 * corners.size() - 4, faces.size());
   }
-  EXPECT_GT(hulls, 500);
+  EXPECT_GT(hulls, families::draws(500));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <support/draws.hpp>
 #include <support/families.hpp>
 #include <support/linear_program.hpp>
 
@@ -17,6 +18,7 @@
 namespace repel {
 namespace {
 
+using families::draws;
 using families::of_seed;
 using families::Rng;
 using oracle::Real;
@@ -78,7 +80,7 @@ double oracle_depth(const Posed& pair, const Vec3& common_W) {
 TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   Rng rng(seed);
   int overlapping = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < draws(3000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     Posed pair = random_pair(rng);
     // Planes nearly parallel: in double alone the answer would be off by 1e-8.
@@ -102,13 +104,13 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
     const double margin = pair.A.planes().margin() + pair.B.planes().margin();
     EXPECT_NEAR(oracle_depth(pair, x), depth, 1e-12 + margin);
   }
-  EXPECT_GT(overlapping, 1000);
+  EXPECT_GT(overlapping, draws(1000));
 }
 
 TEST(DeepestPoint, IsFoundWhereverBoxesOverlap) {
   Rng rng(seed);
   int overlapping = 0, concentric = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < draws(20000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::random_boxes(rng, 1.5);
     if (i % 4 == 0) {
@@ -127,8 +129,8 @@ TEST(DeepestPoint, IsFoundWhereverBoxesOverlap) {
     EXPECT_LE(s.iterations, 100);
     EXPECT_GE(s.distance, exact.distance - 1e-14);
   }
-  EXPECT_GT(overlapping, 5000);
-  EXPECT_GT(concentric, 300);
+  EXPECT_GT(overlapping, draws(5000));
+  EXPECT_GT(concentric, draws(300));
 }
 
 TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
@@ -139,6 +141,7 @@ TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
     const Posed pair = random_pair(rng);
     test::expect_smooth_sweep(pair, rng, 1e-12 * pair.size(), seen);
   }
+  EXPECT_EQ(seen.cut_short, 0);
   EXPECT_GT(seen.inside, 3000);
   EXPECT_GT(seen.outside, 3000);
 }
@@ -146,7 +149,7 @@ TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
 TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
   Rng rng(seed);
   int at_levels = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < draws(500); ++i) {
     const Posed pair = random_pair(rng);
     // Contact, too shallow for a deepest point, leaves such a warm start.
     WarmStart warm;
@@ -155,7 +158,7 @@ TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
     EXPECT_NEAR(pair.separate(warm).distance, pair.separate().distance, 1e-13 * pair.size())
         << of_seed(seed, "pair", i);
   }
-  EXPECT_GT(at_levels, 100);
+  EXPECT_GT(at_levels, draws(100));
 }
 
 TEST(DeepestPoint, GrowsOnceAndFallsAlongAStraightLine) {
@@ -184,7 +187,7 @@ TEST(DeepestPoint, GrowsOnceAndFallsAlongAStraightLine) {
 TEST(DeepestPoint, ItsDirectionIsTheGradientByFiniteDifferences) {
   Rng rng(seed);
   int smooth = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < draws(4000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     const Posed pair = random_pair(rng);
     WarmStart warm;
@@ -204,13 +207,13 @@ TEST(DeepestPoint, ItsDirectionIsTheGradientByFiniteDifferences) {
       EXPECT_LE((s.extraction_W - g.normalized()).norm(), 1e-9);
     }
   }
-  EXPECT_GT(smooth, 1000);
+  EXPECT_GT(smooth, draws(1000));
 }
 
 TEST(DeepestPoint, TheBracketHoldsTheExactDepthOfBoxes) {
   Rng rng(seed);
   std::vector<double> shares;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < draws(3000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     const test::PosedBoxes boxes = test::overlapping_boxes(rng);
     const Separation s = boxes.separate(by_deepest_point);
@@ -281,7 +284,7 @@ TEST(DeepestPoint, FlatHullsAreAnsweredByReduction) {
 
 TEST(DeepestPoint, AnyContentOfAWarmStartIsSafe) {
   Rng rng(seed);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < draws(5000); ++i) {
     const Posed pair = random_pair(rng);
     WarmStart warm;
     for (std::size_t k = 0; k < 4; ++k) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <support/draws.hpp>
 #include <support/exact_depth.hpp>
 
 #include "reduction/posed_boxes.hpp"
@@ -11,6 +12,7 @@
 namespace repel {
 namespace {
 
+using families::draws;
 using families::of_seed;
 using families::Rng;
 using families::Solid;
@@ -30,7 +32,7 @@ void expect_answer(const Separation& s, double depth, double size) {
 
 TEST(ExactDepth, OfBoxesIsTheLeastOverlap) {
   Rng rng(seed);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < draws(3000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     const test::PosedBoxes boxes = test::overlapping_boxes(rng);
     expect_answer(boxes.separate(exact), boxes.depth(), boxes.size());
@@ -40,7 +42,7 @@ TEST(ExactDepth, OfBoxesIsTheLeastOverlap) {
 TEST(ExactDepth, OfBoxesWithNearlyParallelEdgesIsTheLeastOverlap) {
   Rng rng(seed);
   int overlapping = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < draws(2000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::overlapping_boxes(rng);
     const double angle = i % 4 == 0 ? 0.0 : families::log_uniform(rng, 1e-15, 1e-3);
@@ -50,13 +52,13 @@ TEST(ExactDepth, OfBoxesWithNearlyParallelEdgesIsTheLeastOverlap) {
     ++overlapping;
     expect_answer(boxes.separate(exact), depth, boxes.size());
   }
-  EXPECT_GT(overlapping, 1000);
+  EXPECT_GT(overlapping, draws(1000));
 }
 
 TEST(ExactDepth, OfHullsIsTheLeastOverlap) {
   Rng rng(seed);
   int overlapping = 0, cut_short = 0;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < draws(1500); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     const auto draw = [&] {
       return i % 5 == 0 ? families::random_box(rng, 0.1, 0.5)
@@ -83,7 +85,7 @@ TEST(ExactDepth, OfHullsIsTheLeastOverlap) {
     }
     expect_answer(s, depth, 1.0);
   }
-  EXPECT_GT(overlapping, 700);
+  EXPECT_GT(overlapping, draws(700));
   EXPECT_EQ(cut_short, 0);
 }
 

@@ -9,8 +9,8 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-// AddressSanitizer brings its own malloc; there the test below says that it was skipped.
-#ifndef __SANITIZE_ADDRESS__
+// A sanitizer brings its own malloc; there the test below says that it was skipped.
+#ifndef REPEL_SANITIZED
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_realloc(void*, std::size_t);
@@ -40,8 +40,8 @@ namespace repel {
 namespace {
 
 TEST(NoHeap, UpdateJacobianAndGravityDoNotAllocate) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer owns malloc";
+#ifdef REPEL_SANITIZED
+  GTEST_SKIP() << "a sanitizer owns malloc";
 #endif
   constexpr unsigned seed = 7;
   for (const ArmModel& arm : test::all_arms()) {
@@ -63,8 +63,8 @@ TEST(NoHeap, UpdateJacobianAndGravityDoNotAllocate) {
 }
 
 TEST(NoHeap, TheCounterSeesAnAllocation) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer owns malloc";
+#ifdef REPEL_SANITIZED
+  GTEST_SKIP() << "a sanitizer owns malloc";
 #endif
   const long before = allocations;
   Eigen::VectorXd v(1000);

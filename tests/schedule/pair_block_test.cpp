@@ -48,9 +48,24 @@ struct TwoBodies {
   }
 };
 
+/// Where two plates pierce each other the deepest points are many, and which of them is found
+/// depends on the last tick.
+bool has_one_deepest_point(const World& world, const detail::PairBlock& block) {
+  for (int i = 0; i < block.count(); ++i) {
+    const Separation now = test::separation_now(world, world.pairs()[i]);
+    const Separation& then = block.separation_of(i);
+    if (!(now.distance < 0.0)) continue;
+    EXPECT_NEAR(then.distance, now.distance, 1e-12);
+    EXPECT_LE((then.extraction_W - now.extraction_W).norm(), 1e-9);
+    if ((then.p_WA - now.p_WA).norm() > 1e-11) return false;
+  }
+  return true;
+}
+
 TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
   double peak = 0.0;
   std::int64_t skipped = 0;
+  int compared = 0;
   for (unsigned run = 0; run < 3; ++run) {
     test::Boxes boxes(4, 8, {.range = 0.03}, seed + run);
     Block block(boxes.world);
@@ -59,7 +74,9 @@ TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
       boxes.move();
       const PairForces& forces = block.run();
       const auto direct = test::forces_now(boxes.world);
-      for (std::size_t body = 0; body < direct.size(); ++body) {
+      const bool comparable = has_one_deepest_point(boxes.world, block.block);
+      compared += comparable ? 1 : 0;
+      for (std::size_t body = 0; body < direct.size() && comparable; ++body) {
         ASSERT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-9)
             << "tick " << tick << ", seed " << seed + run;
         ASSERT_LE((forces.on_body[body].torque - direct[body].torque).norm(), 1e-9)
@@ -72,6 +89,7 @@ TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
     }
   }
   // The sample means something: pairs pushed, and most visits were saved.
+  EXPECT_GT(compared, 3 * 1500 * 9 / 10);
   EXPECT_GT(peak, 50.0);
   EXPECT_GT(skipped, 3 * 1500 * 32 / 2);
 }

@@ -11,7 +11,7 @@
 
 #include <malloc.h>
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(REPEL_SANITIZED)
 #define REPEL_COUNTS_HEAP 1
 #else
 #define REPEL_COUNTS_HEAP 0
