@@ -32,8 +32,12 @@ function(repel_test name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   set_target_properties(${name} PROPERTIES CXX_CLANG_TIDY "")  # GoogleTest's macros are not ours
   add_test(NAME ${name} COMMAND ${name})
+  set(timeout 300)
+  if(REPEL_SANITIZE)
+    set(timeout 1200)
+  endif()
   set_tests_properties(${name} PROPERTIES
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TIMEOUT $<IF:$<BOOL:${REPEL_SANITIZE}>,1200,300>)
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TIMEOUT ${timeout})
   if(ARG_LABELS)
     set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
   endif()
