@@ -77,17 +77,20 @@ namespace detail {
   const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
-  const Vec<double>& g = deepest.gradient();
-  const double length = std::sqrt(dot(g, g));
+  // The way out is against the gradient; its length is left out until it is there.
+  const Vec<double> d = -deepest.gradient();
+  const double times_length = cores_overlap_along(d, A, X_WA, B, X_WB);
+  const double length = std::sqrt(dot(d, d));
   // Without a gradient no direction is better by this measure.
   const bool flat = !(length > 1e-9);
-  s.extraction_W = flat ? shortest_axis(A, X_WA, B, X_WB) : to_vec3((-1.0 / length) * g);
+  s.extraction_W = flat ? shortest_axis(A, X_WA, B, X_WB) : to_vec3((1.0 / length) * d);
   const Vec3 common = X_WA.translation() + to_vec3(deepest.point());
   s.p_WA = common - depth_a * s.extraction_W;
   s.p_WB = common + depth_b * s.extraction_W;
   s.distance = -(depth_a + depth_b);
   s.upper = widened(s.distance + slack, 1.0);
-  const double overlap = overlap_along(s.extraction_W, A, X_WA, B, X_WB);
+  const double overlap = flat ? overlap_along(s.extraction_W, A, X_WA, B, X_WB)
+                              : times_length / length + a.depth + b.depth;
   s.lower = widened(std::min(s.distance, -overlap - slack), -1.0);
   s.level = 0;
   s.iterations = 1 + deepest.pivots() + (flat ? 12 : 0);

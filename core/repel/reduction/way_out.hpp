@@ -2,40 +2,50 @@
 /// Ways out of an overlap.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include <repel/reduction/shape.hpp>
 
 namespace repel::detail {
 
+/// How far A's core would have to move along `d` to leave B's behind, times the length of d [m].
+/// Cost: a support-map pair.
+[[nodiscard]] inline double cores_overlap_along(const Vec<double>& d, const Shape& A,
+                                                const Pose& X_WA, const Shape& B,
+                                                const Pose& X_WB) noexcept {
+  return B.level(0).core.support_value(rotate_transposed(X_WB, d)) +
+         A.level(0).core.support_value(rotate_transposed(X_WA, -d)) +
+         dot(d, column<double>(X_WB, 3) - column<double>(X_WA, 3));
+}
+
 /// How far A would have to move along the unit `n_W` to leave B behind [m]; no less than the
 /// penetration depth. Cost: a support-map pair.
 [[nodiscard]] inline double overlap_along(const Vec3& n_W, const Shape& A, const Pose& X_WA,
                                           const Shape& B, const Pose& X_WB) noexcept {
-  const Level& a = A.level(0);
-  const Level& b = B.level(0);
-  const Vec<double> n(n_W);
-  return b.core.support_value(rotate_transposed(X_WB, n)) +
-         a.core.support_value(rotate_transposed(X_WA, -n)) +
-         dot(n, column<double>(X_WB, 3) - column<double>(X_WA, 3)) + a.depth + b.depth;
+  return cores_overlap_along(Vec<double>(n_W), A, X_WA, B, X_WB) + A.level(0).depth +
+         B.level(0).depth;
 }
 
-/// The axis of either body, world axes, along which A leaves B by the shortest way. Cost: twelve
-/// support-map pairs.
+/// The axis of either body, world axes, along which A leaves B by the shortest way. Cost: six
+/// support-map pairs for boxes, else twelve.
 [[nodiscard]] inline Vec3 shortest_axis(const Shape& A, const Pose& X_WA, const Shape& B,
                                         const Pose& X_WB) noexcept {
+  const auto is_box = [](const Shape& s) { return s.level(0).core.kind() == Convex::Kind::box; };
+  const bool alike = is_box(A) && is_box(B);  // along an axis and against it
+  const Vec<double> p_AB = column<double>(X_WB, 3) - column<double>(X_WA, 3);
   double least = std::numeric_limits<double>::infinity();
-  Vec3 best = Vec3::UnitZ();
-  for (int k = 0; k < 12; ++k) {
-    const Mat3& R = k < 6 ? X_WA.linear() : X_WB.linear();
-    const Vec3 n = (k % 2 == 0 ? 1.0 : -1.0) * R.col(k % 6 / 2);
-    const double overlap = overlap_along(n, A, X_WA, B, X_WB);
-    if (overlap < least) {
-      least = overlap;
-      best = n;
-    }
+  Vec<double> best(0.0, 0.0, 1.0);
+  for (int k = 0; k < 6; ++k) {
+    const Vec<double> n = column<double>(k < 3 ? X_WA : X_WB, k % 3);
+    const double along = cores_overlap_along(n, A, X_WA, B, X_WB);
+    const double against =
+        alike ? along - 2.0 * dot(n, p_AB) : cores_overlap_along(-n, A, X_WA, B, X_WB);
+    if (std::min(along, against) >= least) continue;
+    least = std::min(along, against);
+    best = along <= against ? n : -n;
   }
-  return best;
+  return to_vec3(best);
 }
 
 }  // namespace repel::detail
