@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +97,23 @@ TEST(Finger, IsFeltAllTheWayByTheDeepestPoint) {
 
 TEST(Finger, IsFeltAllTheWayByTheExactDepth) {
   expect_felt_by_all({}, Measure::exact);
+}
+
+// The levels of a cone draw its tip back by 40 mm for each millimetre of depth; docs/reduction.md
+// says so.
+TEST(Finger, ThatIsAConeIsFeltAllTheWayByTheDeepestPointAndLateByLevels) {
+  const Shape cone = Shape::cone(radius, half_length, {.levels = 8});
+  const Shape block = Shape::box(half_block, {.levels = 8});
+  Pose X_WA = Pose::Identity();
+  X_WA.linear() = Eigen::AngleAxisd(M_PI, Vec3::UnitX()).toRotationMatrix();
+  for (const double travel : {0.005, 0.025, 0.05}) {
+    X_WA.translation().z() = half_block.z() + half_length - travel;
+    const Separation s = separation(cone, X_WA, block, Pose::Identity());
+    EXPECT_NEAR(s.distance, -travel, 1e-9);
+    EXPECT_GT(s.extraction_W.z(), 0.99);
+  }
+  const QueryOptions by_levels{.measure = Measure::reduction};
+  EXPECT_NEAR(separation(cone, X_WA, block, Pose::Identity(), by_levels).distance, -0.0012, 5e-5);
 }
 
 }  // namespace
