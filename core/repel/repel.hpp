@@ -12,6 +12,7 @@
 #include <repel/distance/gjk.hpp>
 #include <repel/force/law.hpp>
 #include <repel/force/passage.hpp>
+#include <repel/geometry/box_tree.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/coupling.hpp>
 #include <repel/network/operator.hpp>

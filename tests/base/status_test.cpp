@@ -9,9 +9,9 @@
 namespace repel {
 namespace {
 
-constexpr Status every_bit[] = {status::bad_pose,    status::bad_command, status::bad_joints,
-                                status::clock_fault, status::stale_pairs, status::late_result,
-                                status::torque_limit};
+constexpr Status every_bit[] = {status::bad_pose,     status::bad_command,  status::bad_joints,
+                                status::clock_fault,  status::stale_pairs,  status::late_result,
+                                status::torque_limit, status::crowded_pairs};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");

@@ -70,6 +70,48 @@ struct Boxes {
   }
 };
 
+/// Three bodies that move and the fixed one; pairs at random, some of them twice, their parts named
+/// in either order.
+struct Crowd {
+  World world;
+  std::vector<BodyId> bodies{World::fixed};
+  families::Rng random;
+
+  explicit Crowd(unsigned seed, const Limits& limits = {}) : world(limits), random(seed) {
+    for (int i = 0; i < 3; ++i) bodies.push_back(world.add_body("body"));
+    std::vector<PartId> parts;
+    for (const BodyId body : bodies) {
+      for (int i = 0; i < 8; ++i) {
+        parts.push_back(
+            world.add_part(body, "part", test::random_box(random), test::random_pose(random, 0.3)));
+      }
+    }
+    for (int i = 0; i < 300; ++i) {
+      const PartId a = parts[families::count_between(random, 0, 31)];
+      const PartId b = parts[families::count_between(random, 0, 31)];
+      if (world.part(a).body == world.part(b).body) continue;
+      world.add_pair(a, b, {.range = families::uniform(random, 0.001, 0.05)});
+    }
+    for (const BodyId body : bodies) {
+      if (body != World::fixed) world.place(body, test::random_pose(random, 0.5), {});
+    }
+  }
+
+  void move() {
+    ++world.motion().tick;
+    for (const BodyId body : bodies) {
+      if (body == World::fixed || families::count_between(random, 0, 3) == 0) continue;
+      const bool leap = families::count_between(random, 0, 99) == 0;
+      Pose X = world.motion().bodies[body.index].X_WB;
+      X.linear() = families::small_rotation(random, leap ? 1.0 : 0.01) * X.linear();
+      X.linear() = Eigen::Quaterniond(X.linear()).normalized().toRotationMatrix();
+      X.translation() += (leap ? 0.2 : 0.003) * families::direction(random);
+      X.translation() *= std::min(1.0, 0.5 / std::max(1e-9, X.translation().norm()));
+      world.place(body, X, {});
+    }
+  }
+};
+
 inline Pose pose_of(const World& world, PartId id) {
   const Part& part = world.part(id);
   return world.motion().bodies[part.body.index].X_WB * part.X_BP;

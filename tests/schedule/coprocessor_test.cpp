@@ -94,6 +94,50 @@ TEST(Coprocessor, ForcesAreThoseOfADirectEvaluation) {
   }
 }
 
+/// How many pairs were evaluated in 250 ticks whose forces are compared with those of all pairs.
+std::int64_t expect_forces_of_all_pairs(int threads, const Limits& limits, bool crowded) {
+  test::Crowd crowd(seed, limits);
+  Coprocessor coprocessor(crowd.world, lock_step(threads));
+  std::int64_t evaluated = 0;
+  for (int tick = 0; tick < 250; ++tick) {
+    SCOPED_TRACE(families::of_seed(seed, "tick", tick));
+    crowd.move();
+    const PairForces& forces = coprocessor.exchange();
+    const auto direct = test::forces_now(crowd.world);
+    for (std::size_t body = 0; body < direct.size(); ++body) {
+      EXPECT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-9);
+      EXPECT_LE((forces.on_body[body].torque - direct[body].torque).norm(), 1e-9);
+    }
+    int in_range = 0;
+    for (const Pair& pair : crowd.world.pairs()) {
+      in_range += test::separation_now(crowd.world, pair).distance < pair.law.range ? 1 : 0;
+    }
+    EXPECT_GE(forces.totals.near, in_range);
+    EXPECT_EQ(forces.totals.stale, 0);
+    EXPECT_EQ(forces.totals.crowded > 0, crowded);
+    evaluated += forces.totals.evaluated;
+    if (testing::Test::HasFailure()) break;
+  }
+  return evaluated;
+}
+
+// Several bodies that move, one against the other and against what is fixed.
+TEST(Coprocessor, SkippingPairsChangesNoForce) {
+  const test::Crowd crowd(seed);
+  const auto all = static_cast<std::int64_t>(250 * crowd.world.pairs().size());
+  for (const int threads : {0, 1, 2}) {
+    EXPECT_LT(expect_forces_of_all_pairs(threads, {}, false), all / 3) << threads << " threads";
+  }
+}
+
+TEST(Coprocessor, ForcesAreThoseOfAllPairsWhenMemoryIsShort) {
+  for (const int candidates : {0, 4, 20}) {
+    for (const int threads : {0, 2}) {
+      (void)expect_forces_of_all_pairs(threads, {.candidates = candidates}, true);
+    }
+  }
+}
+
 TEST(Coprocessor, AnswersForEveryPairByItsId) {
   for (const int threads : {0, 3}) {
     test::Boxes boxes(4, 50, {.range = 2.0}, seed);

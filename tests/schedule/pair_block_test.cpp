@@ -12,23 +12,25 @@ constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 constexpr auto no_deadline = Clock::time_point::max();
 constexpr unsigned seed = 4008;
 
-std::vector<Pose> part_poses(const World& world) {
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < world.parts().size(); ++i) {
-    poses.push_back(test::pose_of(world, {static_cast<std::int32_t>(i)}));
-  }
-  return poses;
-}
-
-/// One block that holds every pair of a small world.
+/// One block that holds every pair of a small world, all of them candidates.
 struct Block {
   explicit Block(const World& the_world)
-      : world(&the_world), block(the_world, 0, static_cast<int>(the_world.pairs().size())) {}
-  const PairForces& run(std::int64_t units = no_limit) {
-    block.run(world->motion(), part_poses(*world), units, no_deadline);
+      : world(&the_world), poses(the_world), block(the_world, {}, pairs()) {
+    for (std::int32_t i = 0; i < pairs(); ++i) {
+      (void)block.take({i}, 0, 0.0, world->motion(), poses);
+    }
+    block.end(0);
+  }
+  const PairForces& run(std::int64_t units = no_limit, Clock::time_point deadline = no_deadline) {
+    poses.begin();
+    block.begin(world->motion().tick);
+    block.run(world->motion(), poses, units, deadline);
     return block.forces();
   }
+  [[nodiscard]] int pairs() const { return static_cast<int>(world->pairs().size()); }
+
   const World* world;
+  detail::PartPoses poses;
   detail::PairBlock block;
 };
 
@@ -84,7 +86,7 @@ TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
       }
       ASSERT_EQ(forces.totals.near, forces.totals.evaluated);
       ASSERT_EQ(forces.totals.stale, 0);
-      skipped += block.block.count() - forces.totals.near;
+      skipped += block.pairs() - forces.totals.near;
       peak = std::max(peak, forces.totals.peak_force);
     }
   }
@@ -244,8 +246,8 @@ TEST(PairBlock, NoPairWaitsLongerThanTheBlockHasPairs) {
     boxes.move();
     oldest = std::max(oldest, block.run(1).totals.oldest_age);
   }
-  EXPECT_LE(oldest, detail::PairBlock::capacity) << "seed " << seed;
-  EXPECT_GE(oldest, detail::PairBlock::capacity - 1);
+  EXPECT_LE(oldest, block.pairs()) << "seed " << seed;
+  EXPECT_GE(oldest, block.pairs() - 1);
 }
 
 // A pair that is asked is asked to the end: half an answer could be wrong by any amount.
@@ -257,7 +259,7 @@ TEST(PairBlock, AnswersUnderABudgetAreWholeAndNeverPushLessThanTheTruth) {
     for (int tick = 0; tick < 200; ++tick) {
       boxes.move();
       const PairForces& forces = block.run(tick % 3);
-      ASSERT_NE(block.block.separation_of(0).end, QueryEnd::budget_spent);
+      ASSERT_NE(block.block.separation_of({0}).end, QueryEnd::budget_spent);
       const Pair& pair = boxes.world.pairs().front();
       const double truth = pair.law(test::separation_now(boxes.world, pair).distance, 0.0);
       ASSERT_GE(forces.on_body[boxes.tool.index].force.norm(), truth - 1e-9)
@@ -271,9 +273,7 @@ TEST(PairBlock, DeadlineThatHasPassedLeavesEverythingStale) {
   Block block(boxes.world);
   block.run();
   boxes.move();
-  block.block.run(boxes.world.motion(), part_poses(boxes.world), no_limit,
-                  Clock::time_point::min());
-  const PairForces& forces = block.block.forces();
+  const PairForces& forces = block.run(no_limit, Clock::time_point::min());
   EXPECT_EQ(forces.totals.evaluated, 0);
   EXPECT_EQ(forces.totals.near, 32);
   EXPECT_EQ(forces.totals.stale, 32);
@@ -281,18 +281,57 @@ TEST(PairBlock, DeadlineThatHasPassedLeavesEverythingStale) {
   EXPECT_TRUE(test::is_finite(forces));
 }
 
-TEST(PairTotals, SumKeepsTheNearestAndTheExtremes) {
-  PairTotals a{3, 2, 1, 5, 10, 0.2, {4}, 7.0};
-  const PairTotals b{1, 1, 0, 9, 3, 0.1, {8}, 6.0};
-  a.add(b);
-  EXPECT_EQ(a.near, 4);
-  EXPECT_EQ(a.evaluated, 3);
-  EXPECT_EQ(a.stale, 1);
-  EXPECT_EQ(a.oldest_age, 9);
-  EXPECT_EQ(a.iterations, 13);
-  EXPECT_EQ(a.nearest, 0.1);
-  EXPECT_EQ(a.nearest_pair, PairId{8});
-  EXPECT_EQ(a.peak_force, 7.0);
+// The pairs that find no slot push as all others do, and say so.
+TEST(PairBlock, PairsWithoutASlotAreEvaluatedAllTheSame) {
+  test::Boxes boxes(2, 4, {.range = 0.3}, seed);
+  detail::PartPoses poses(boxes.world);
+  detail::PairBlock block(boxes.world, {}, 3);
+  int pushed = 0;
+  for (int tick = 0; tick < 300; ++tick) {
+    boxes.move();
+    poses.begin();
+    block.begin(tick);
+    int taken = 0;
+    for (std::int32_t i = 0; i < 8; ++i) {
+      taken += block.take({i}, 0, 0.0, boxes.world.motion(), poses) ? 1 : 0;
+    }
+    block.end(0);
+    block.run(boxes.world.motion(), poses, no_limit, no_deadline);
+    ASSERT_EQ(taken, 3);
+    ASSERT_EQ(block.forces().totals.crowded, 5);
+    const auto direct = test::forces_now(boxes.world);
+    const Vec3 f = block.forces().on_body[boxes.tool.index].force;
+    ASSERT_LE((f - direct[boxes.tool.index].force).norm(), 1e-9) << "seed " << seed;
+    pushed += f.norm() > 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(pushed, 100);
+}
+
+TEST(PairBlock, PairWithoutAnAnswerIsAskedWhateverTheBudget) {
+  test::Boxes boxes(1, 4, {.range = 2.0, .damping = 0.0}, seed);
+  Block block(boxes.world);
+  const PairForces& forces = block.run(0);
+  EXPECT_EQ(forces.totals.evaluated, 4);
+  const Vec3 direct = test::forces_now(boxes.world)[boxes.tool.index].force;
+  EXPECT_LE((forces.on_body[boxes.tool.index].force - direct).norm(), 1e-9);
+  EXPECT_EQ(block.run(0).totals.stale, 4);
+}
+
+// A pair that leaves the list and comes back later goes on with what it has.
+TEST(PairBlock, PairOffTheListKeepsItsAnswer) {
+  test::Boxes boxes(1, 2, {.range = 2.0}, seed);
+  Block block(boxes.world);
+  block.run();
+  const double before = block.block.separation_of({1}).distance;
+  (void)block.block.take({0}, 0, 0.0, boxes.world.motion(), block.poses);
+  block.block.end(0);
+  boxes.move();
+  EXPECT_EQ(block.run().totals.near, 1);
+  EXPECT_EQ(block.block.separation_of({1}).distance, before);
+  (void)block.block.take({0}, 0, 0.0, boxes.world.motion(), block.poses);
+  (void)block.block.take({1}, 0, 0.0, boxes.world.motion(), block.poses);
+  block.block.end(0);
+  EXPECT_EQ(block.run(0).totals.oldest_age, 1);
 }
 
 }  // namespace

@@ -11,6 +11,10 @@ using namespace std::chrono_literals;
 constexpr unsigned seed = 1950;
 constexpr ForceLaw reaches_everything{.range = 2.0};
 
+detail::PairWorker alone(const World& world, const Budget& budget) {
+  return {world, std::make_shared<detail::PairIndex>(world), budget, 0, 1};
+}
+
 PairTotals totals_of(const detail::PairWorker& worker) {
   PairTotals totals;
   for (const auto& block : worker.blocks()) totals.add(block.forces().totals);
@@ -21,9 +25,9 @@ TEST(PairWorker, TakesEveryStrideThBlockAndAllPairsAreTakenOnce) {
   const test::Boxes boxes(4, 50, {}, seed);  // 200 pairs: three full blocks and one of 8
   std::vector<int> owners(200, 0);
   for (int index = 0; index < 3; ++index) {
-    const detail::PairWorker worker(boxes.world, {}, index, 3);
+    const detail::PairWorker worker = alone(boxes.world, {}, index, 3);
     for (const auto& block : worker.blocks()) {
-      EXPECT_EQ(block.first() / detail::PairBlock::capacity % 3, index);
+      EXPECT_EQ(block.first() / detail::PairShare::run % 3, index);
       for (int i = 0; i < block.count(); ++i) ++owners[block.first() + i];
     }
   }
@@ -33,7 +37,7 @@ TEST(PairWorker, TakesEveryStrideThBlockAndAllPairsAreTakenOnce) {
 TEST(PairWorker, WorldWithoutPairsIsNoTrouble) {
   World world;
   for (const std::int64_t units : {0, 100}) {
-    detail::PairWorker worker(world, {.work_units = units}, 0, 1);
+    detail::PairWorker worker = alone(world, {.work_units = units});
     worker.prime(world.motion());
     worker.run(world.motion());
     EXPECT_TRUE(worker.blocks().empty());
@@ -42,7 +46,7 @@ TEST(PairWorker, WorldWithoutPairsIsNoTrouble) {
 
 TEST(PairWorker, PrimingAsksEveryPairWhateverTheBudget) {
   const test::Boxes boxes(4, 50, reaches_everything, seed);
-  detail::PairWorker worker(boxes.world, {.work_units = 1, .wall = 1ns}, 0, 1);
+  detail::PairWorker worker = alone(boxes.world, {.work_units = 1, .wall = 1ns});
   worker.prime(boxes.world.motion());
   EXPECT_EQ(totals_of(worker).evaluated, 200);
   EXPECT_EQ(totals_of(worker).stale, 0);
@@ -51,7 +55,7 @@ TEST(PairWorker, PrimingAsksEveryPairWhateverTheBudget) {
 TEST(PairWorker, WorkUnitsAreSharedAmongTheBlocks) {
   test::Boxes boxes(4, 64, reaches_everything, seed);  // 256 pairs, 4 blocks
   constexpr std::int64_t units = 200;
-  detail::PairWorker worker(boxes.world, {.work_units = units}, 0, 1);
+  detail::PairWorker worker = alone(boxes.world, {.work_units = units});
   worker.prime(boxes.world.motion());
   std::int64_t dearest = 0;
   for (int tick = 0; tick < 100; ++tick) {
@@ -63,14 +67,14 @@ TEST(PairWorker, WorkUnitsAreSharedAmongTheBlocks) {
     const PairTotals totals = totals_of(worker);
     ASSERT_LT(totals.iterations, units + 4 * dearest) << "seed " << seed;
     ASSERT_EQ(totals.evaluated + totals.stale, totals.near);
-    ASSERT_LE(totals.oldest_age, detail::PairBlock::capacity);
+    ASSERT_LE(totals.oldest_age, detail::PairShare::run);
     for (const auto& block : worker.blocks()) ASSERT_GE(block.forces().totals.evaluated, 1);
   }
 }
 
 TEST(PairWorker, OneNanosecondIsSpentHonestly) {
   test::Boxes boxes(4, 50, {.range = 2.0, .damping = 0.0}, seed);
-  detail::PairWorker worker(boxes.world, {.wall = 1ns}, 0, 1);
+  detail::PairWorker worker = alone(boxes.world, {.wall = 1ns});
   worker.prime(boxes.world.motion());
   for (int tick = 0; tick < 50; ++tick) {
     boxes.move();
@@ -86,7 +90,7 @@ TEST(PairWorker, OneNanosecondIsSpentHonestly) {
 
 TEST(PairWorker, NoBlockStarvesOnAWallBudgetThatIsTooShortForOne) {
   test::Boxes boxes(4, 160, reaches_everything, seed);  // 640 pairs, 10 blocks
-  detail::PairWorker worker(boxes.world, {.wall = 5us}, 0, 1);
+  detail::PairWorker worker = alone(boxes.world, {.wall = 5us});
   worker.prime(boxes.world.motion());
   // Until every answer is younger than the run; how long that takes is the machine's affair.
   constexpr int most = 20000;
@@ -103,7 +107,7 @@ TEST(PairWorker, NoBlockStarvesOnAWallBudgetThatIsTooShortForOne) {
 
 TEST(PairWorker, TenThousandPairsInFiftyMicrosecondsAreReportedStaleAndStayFinite) {
   test::Boxes boxes(4, 2500, reaches_everything, seed);
-  detail::PairWorker worker(boxes.world, {.wall = 50us}, 0, 1);
+  detail::PairWorker worker = alone(boxes.world, {.wall = 50us});
   worker.prime(boxes.world.motion());
   int ticks_with_stale = 0;
   for (int tick = 0; tick < 200; ++tick) {

@@ -25,17 +25,20 @@ inline constexpr Status stale_pairs = 1U << 4;  ///< some near pairs kept an old
 inline constexpr Status late_result = 1U
                                       << 5;  ///< the coprocessor did not answer in time: its last
                                              ///< forces were used; raise the budget or lower rate
-inline constexpr Status torque_limit = 1U << 6;  ///< a joint torque was cut to its limit
+inline constexpr Status torque_limit = 1U << 6;   ///< a joint torque was cut to its limit
+inline constexpr Status crowded_pairs = 1U << 7;  ///< more pairs could come within range than
+                                                  ///< there is memory for: the rest was evaluated
+                                                  ///< from a cold start; raise Limits::candidates
 inline constexpr Status failsafe = bad_pose | bad_command | bad_joints | clock_fault;
 }  // namespace status
 
 /// The names of the bits that are set, comma by comma; "ok" when none is. Not for the tick.
 [[nodiscard]] inline std::string to_text(Status bits) {
-  static constexpr const char* names[] = {"bad_pose",    "bad_command", "bad_joints",
-                                          "clock_fault", "stale_pairs", "late_result",
-                                          "torque_limit"};
+  static constexpr const char* names[] = {"bad_pose",     "bad_command",  "bad_joints",
+                                          "clock_fault",  "stale_pairs",  "late_result",
+                                          "torque_limit", "crowded_pairs"};
   std::string text;
-  for (unsigned i = 0; i < 7; ++i) {
+  for (unsigned i = 0; i < 8; ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);
   }
   return text.empty() ? "ok" : text;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <repel/base/status.hpp>
-#include <repel/schedule/pair_block.hpp>
+#include <repel/schedule/pair_forces.hpp>
 
 namespace repel {
 

@@ -120,6 +120,7 @@ class Teleoperator {
     record_.pairs = forces.totals;
     if (coprocessor_.late()) record_.status |= status::late_result;
     if (forces.totals.stale > 0) record_.status |= status::stale_pairs;
+    if (forces.totals.crowded > 0) record_.status |= status::crowded_pairs;
     return forces.on_body[tool_.index];
   }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <repel/base/mailbox.hpp>
@@ -34,11 +35,12 @@ class Coprocessor {
       : world_(&world), options_(options) {
     checked("threads", options.threads, 0, world.limits().threads, "");
     const int workers = std::max(1, options.threads);
+    blocks_ = detail::PairWorker::blocks_of(world);
     total_.on_body.resize(world.body_count());
+    const auto pairs = std::make_shared<const detail::PairIndex>(world);
     for (int i = 0; i < workers; ++i) {
-      seats_.push_back(std::make_unique<Seat>(world, options.budget, i, workers));
+      seats_.push_back(std::make_unique<Seat>(world, pairs, options.budget, i, workers));
     }
-    for (const auto& seat : seats_) blocks_ += seat->worker.blocks().size();
     for (int i = 0; i < options.threads; ++i) {
       seats_[i]->thread =
           std::jthread([this, i, seat = seats_[i].get()](const std::stop_token& stop) {
@@ -85,14 +87,15 @@ class Coprocessor {
   [[nodiscard]] bool late() const noexcept { return late_; }
   [[nodiscard]] int threads() const noexcept { return options_.threads; }
 
-  /// The last answer for a pair. Only with 0 threads, or between ticks in lock step: the workers
-  /// write it.
-  [[nodiscard]] const Separation& separation_of(PairId id) const noexcept {
-    return block_of(id).separation_of(id.index % detail::PairBlock::capacity);
+  /// The last answer for a pair; the default one, which claims nothing, for a pair that had to give
+  /// its memory to another since (`Limits::candidates`). Only with 0 threads, or between ticks in
+  /// lock step: the workers write it.
+  [[nodiscard]] Separation separation_of(PairId id) const noexcept {
+    return block_of(id).separation_of(id);
   }
   /// How near a pair has come and how hard it has pushed. On the same condition.
   [[nodiscard]] const PairExtremes& extremes_of(PairId id) const noexcept {
-    return block_of(id).extremes_of(id.index % detail::PairBlock::capacity);
+    return block_of(id).extremes_of(id);
   }
 
   /// Ends the threads, waiting for each to finish its tick. Not for the tick; nothing is exchanged
@@ -106,8 +109,11 @@ class Coprocessor {
   using Answer = std::vector<PairForces>;  // by block of the worker
 
   struct Seat {
-    Seat(const World& world, const Budget& budget, int index, int stride)
-        : worker(world, budget, index, stride), inbox(world.motion()), outbox(primed(world)) {}
+    Seat(const World& world, std::shared_ptr<const detail::PairIndex> pairs, const Budget& budget,
+         int index, int stride)
+        : worker(world, std::move(pairs), budget, index, stride),
+          inbox(world.motion()),
+          outbox(primed(world)) {}
 
     Answer primed(const World& world) {
       worker.prime(world.motion());
@@ -130,7 +136,8 @@ class Coprocessor {
   };
 
   [[nodiscard]] const detail::PairBlock& block_of(PairId id) const noexcept {
-    const std::size_t block = static_cast<std::size_t>(id.index) / detail::PairBlock::capacity;
+    const auto block =
+        static_cast<std::size_t>(detail::PairShare::block_of(id, static_cast<int>(blocks_)));
     return seats_[block % seats_.size()]->worker.blocks()[block / seats_.size()];
   }
 
@@ -169,7 +176,7 @@ class Coprocessor {
     const std::size_t workers = seats_.size();
     for (std::size_t b = 0; b < blocks_; ++b) {
       const PairForces& block = forces_of(*seats_[b % workers], b / workers);
-      if (block.totals.near == 0) continue;
+      if (block.totals.near == 0 && block.totals.crowded == 0) continue;
       for (std::size_t i = 0; i < total_.on_body.size(); ++i) total_.on_body[i] += block.on_body[i];
       total_.totals.add(block.totals);
       const std::int64_t behind = total_.tick - block.tick;

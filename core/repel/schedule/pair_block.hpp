@@ -1,6 +1,6 @@
 /// @file
-/// Up to 64 pairs that are worked through together: which are due, what is still known of the
-/// others, and the forces of all of them.
+/// A share of the pairs that is worked through together: which are due, what is still known of
+/// the others, and the forces of all of them.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include <repel/force/passage.hpp>
-#include <repel/reduction/separation.hpp>
-#include <repel/world/world.hpp>
+#include <repel/schedule/pair_memory.hpp>
+#include <repel/schedule/part_poses.hpp>
 
 namespace repel {
 
@@ -22,113 +21,87 @@ struct Budget {
   std::chrono::nanoseconds wall{0};  ///< per tick and thread; 0 = no limit
 };
 
-/// What the pairs amount to in one tick, of a block or of the world.
-struct PairTotals {
-  int near = 0;                 ///< pairs that may be within range
-  int evaluated = 0;            ///< of these, asked anew
-  int stale = 0;                ///< of these, answered from an older tick, widened
-  std::int64_t oldest_age = 0;  ///< [ticks] of the oldest answer that was used
-  std::int64_t iterations = 0;  ///< support-map pairs spent
-  double nearest =
-      std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
-  PairId nearest_pair;
-  double peak_force = 0.0;  ///< [N] of one pair
-
-  void add(const PairTotals& other) noexcept {
-    near += other.near;
-    evaluated += other.evaluated;
-    stale += other.stale;
-    oldest_age = std::max(oldest_age, other.oldest_age);
-    iterations += other.iterations;
-    if (other.nearest < nearest) {
-      nearest = other.nearest;
-      nearest_pair = other.nearest_pair;
-    }
-    peak_force = std::max(peak_force, other.peak_force);
-  }
-};
-
-/// The forces of a set of pairs at one tick.
-struct PairForces {
-  std::int64_t tick = -1;       ///< of the motion they belong to
-  std::vector<Wrench> on_body;  ///< [N, N m] by BodyId, about each body's origin, world axes
-  PairTotals totals;
-
-  void clear() noexcept {
-    std::fill(on_body.begin(), on_body.end(), Wrench{});
-    totals = {};
-  }
-};
-
-/// The extremes of one pair since set-up.
-struct PairExtremes {
-  double nearest =
-      std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
-  double peak_force = 0.0;                      ///< [N]
-};
-
 namespace detail {
 
-/// What decides whether a pair is near: kept apart from the rest, so that thousands of far pairs
-/// fit into the cache.
-struct PairWatch {
-  BodyId body_a;
-  BodyId body_b;
-  double due_at = -std::numeric_limits<double>::infinity();  ///< [m] of travel of both bodies
-};
-
-/// What its force needs, also when it could not be evaluated again.
-struct PairAnswer {
-  double distance = -std::numeric_limits<double>::infinity();  ///< [m] signed, proven from below
-  bool parted = false;         ///< a plane across extraction_W parts the shapes at that distance
-  Vec3 extraction_W{0, 0, 0};  ///< unit
-  double slope = 1.0;          ///< of the distance along it; asked of passable pairs only
-  Vec3 p_AQ_W{0, 0, 0};        ///< [m] witness point on A, from the origin of body A
-  Vec3 p_BA_W{0, 0, 0};        ///< [m] origin of body A from that of body B when it was evaluated
-  double turn = 0.0;           ///< [m] both bodies' BodyState::turn then
-  std::int64_t tick = 0;       ///< when it was evaluated
-};
-
-/// What its next evaluation begins with, and what users may ask for.
-struct PairQuery {
-  WarmStart warm;
-  Separation last;
-  PairExtremes extremes;
-  Passage passage;
-};
-
-/// A slice of the world's pairs. All memory is taken at construction.
+/// A share of the world's pairs. Those that can soon come within range are its candidates; each has
+/// a slot of memory, which it keeps until another needs it. All memory is taken at construction.
 class PairBlock {
  public:
-  static constexpr int capacity = 64;
-
-  PairBlock(const World& world, int first, int count)
-      : world_(&world), first_(first), watches_(count), answers_(count), queries_(count) {
+  /// @param slots for at most so many pairs, at least 0
+  PairBlock(const World& world, PairShare share, int slots)
+      : world_(&world), memory_(world, share, slots) {
     forces_.on_body.resize(world.body_count());
-    for (int i = 0; i < count; ++i) {
-      watches_[i].body_a = world.part(pair(i).a).body;
-      watches_[i].body_b = world.part(pair(i).b).body;
-    }
+    candidates_.reserve(memory_.slots());
   }
 
-  /// Works through the pairs until `work_units` are spent or `deadline` is reached, beginning where
-  /// the last tick had to stop, so that no pair starves. The pair in hand is finished: half an
-  /// answer would cost most of a whole one and might say less than the old one.
-  /// @param X_WP pose of every part of the world, by PartId
-  void run(const Motion& motion, const std::vector<Pose>& X_WP, std::int64_t work_units,
+  /// Evaluates every pair once, so that none enters the first tick unknown, and forgets the forces.
+  void prime(const Motion& motion, PartPoses& poses) noexcept {
+    for (int place = 0; place < memory_.pairs(); ++place) {
+      evaluate(memory_.slot_for(memory_.share().pair_at(place)), motion, poses);
+    }
+    forces_.clear();
+  }
+
+  /// Begins a tick: no force yet.
+  void begin(std::int64_t tick) noexcept {
+    if (forces_.totals.near > 0 || forces_.totals.crowded > 0) forces_.clear();
+    forces_.tick = tick;
+  }
+
+  /// Makes a pair a candidate. False when there is no slot for it: then it is evaluated at once,
+  /// from a cold start, if it can be near.
+  /// @param distance [m] proven from below
+  bool take(PairId id, std::int32_t seeker, double distance, const Motion& motion,
+            PartPoses& poses) noexcept {
+    const int slot = memory_.slot_for(id);
+    watch_for(slot, motion, distance - pair(slot).law.range);
+    if (memory_.is_lent(slot)) {
+      ++forces_.totals.crowded;
+      if (is_near(slot, motion)) {
+        ++forces_.totals.near;
+        evaluate(slot, motion, poses);
+        push(slot, motion, memory_.answer(slot).distance);
+      }
+      return false;
+    }
+    memory_.watch(slot).taken = true;
+    if (memory_.enlist(slot, seeker)) {
+      candidates_.push_back(slot);
+      grown_ = true;
+    }
+    return true;
+  }
+
+  /// The list of that seeker is complete: those of its candidates that were not taken are none now.
+  void end(std::int32_t seeker) noexcept {
+    const auto is_left = [&](std::int32_t slot) {
+      PairWatch& watch = memory_.watch(slot);
+      const bool left = watch.seeker == seeker && !watch.taken;
+      if (left) memory_.strike(slot);
+      watch.taken = false;
+      return left;
+    };
+    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), is_left),
+                      candidates_.end());
+    // In the order of the slots the turn of each comes, whoever joins.
+    if (grown_) std::sort(candidates_.begin(), candidates_.end());
+    grown_ = false;
+  }
+
+  /// Works through the candidates until `work_units` are spent or `deadline` is reached, beginning
+  /// where the last tick had to stop, so that no pair starves. The pair in hand is finished: half
+  /// an answer would cost most of a whole one and might say less than the old one. And a pair
+  /// without any answer is asked in any case.
+  void run(const Motion& motion, PartPoses& poses, std::int64_t work_units,
            std::chrono::steady_clock::time_point deadline) noexcept {
-    if (forces_.totals.near > 0) forces_.clear();
-    forces_.tick = motion.tick;
-    const int count = this->count();
-    const int begin = cursor_;
+    const auto begin = std::lower_bound(candidates_.begin(), candidates_.end(), cursor_);
     bool spent = false;
-    for (int k = 0; k < count; ++k) {
-      const int i = begin + k < count ? begin + k : begin + k - count;
-      if (!is_near(i, motion)) continue;
+    const auto visit = [&](std::int32_t i) {
+      if (!is_near(i, motion)) return;
       const double least = widened(i, motion);
       if (least > pair(i).law.range) {
         watch_for(i, motion, least - pair(i).law.range);
-        continue;
+        return;
       }
       ++forces_.totals.near;
       const std::int64_t left = work_units - forces_.totals.iterations;
@@ -136,38 +109,44 @@ class PairBlock {
         spent = true;
         cursor_ = i;
       }
-      if (spent) {
-        count_stale(motion.tick - answers_[i].tick);
+      if (spent && memory_.answer(i).tick > PairAnswer::never) {
+        count_stale(motion.tick - memory_.answer(i).tick);
         push(i, motion, least);
       } else {
-        evaluate(i, motion, X_WP);
-        push(i, motion, answers_[i].distance);
+        evaluate(i, motion, poses);
+        push(i, motion, memory_.answer(i).distance);
       }
-    }
+    };
+    std::for_each(begin, candidates_.end(), visit);
+    std::for_each(candidates_.begin(), begin, visit);
   }
 
   /// Asks up to `most` pairs again that were near at the last tick, and forgets the answers.
   /// Returns how many.
-  int rehearse(const Motion& motion, const std::vector<Pose>& X_WP, int most) const noexcept {
+  int rehearse(const Motion& motion, const PartPoses& poses, int most) const noexcept {
     int asked = 0;
-    for (int i = 0; i < count() && asked < most; ++i) {
+    for (const std::int32_t i : candidates_) {
+      if (asked >= most) break;
       if (!is_near(i, motion)) continue;
-      WarmStart warm = queries_[i].warm;
+      WarmStart warm = memory_.query(i).warm;
       const Pair& p = pair(i);
-      (void)separation(world_->part(p.a).shape, X_WP[p.a.index], world_->part(p.b).shape,
-                       X_WP[p.b.index], {}, warm);
+      (void)separation(world_->part(p.a).shape, poses.last(p.a), world_->part(p.b).shape,
+                       poses.last(p.b), {}, warm);
       ++asked;
     }
     return asked;
   }
 
   [[nodiscard]] const PairForces& forces() const noexcept { return forces_; }
-  [[nodiscard]] const Separation& separation_of(int i) const noexcept { return queries_[i].last; }
-  [[nodiscard]] const PairExtremes& extremes_of(int i) const noexcept {
-    return queries_[i].extremes;
+  /// The last answer that is remembered; the default one, which claims nothing, where none is.
+  [[nodiscard]] Separation separation_of(PairId id) const noexcept {
+    const int slot = memory_.slot_of(id);
+    return slot == PairMemory::none ? Separation{} : memory_.query(slot).last;
   }
-  [[nodiscard]] int first() const noexcept { return first_; }
-  [[nodiscard]] int count() const noexcept { return static_cast<int>(watches_.size()); }
+  [[nodiscard]] const PairExtremes& extremes_of(PairId id) const noexcept {
+    return memory_.extremes(id);
+  }
+  [[nodiscard]] const PairMemory& memory() const noexcept { return memory_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -177,59 +156,67 @@ class PairBlock {
     return deadline != Clock::time_point::max() && Clock::now() >= deadline;
   }
 
-  [[nodiscard]] const Pair& pair(int i) const noexcept { return world_->pairs()[first_ + i]; }
+  [[nodiscard]] const Pair& pair(int i) const noexcept {
+    return world_->pair(memory_.watch(i).pair);
+  }
   [[nodiscard]] const BodyState& body_a(int i, const Motion& motion) const noexcept {
-    return motion.bodies[watches_[i].body_a.index];
+    return motion.bodies[memory_.watch(i).body_a.index];
   }
   [[nodiscard]] const BodyState& body_b(int i, const Motion& motion) const noexcept {
-    return motion.bodies[watches_[i].body_b.index];
+    return motion.bodies[memory_.watch(i).body_b.index];
+  }
+
+  [[nodiscard]] PairExtremes& extremes(int i) noexcept {
+    return memory_.extremes(memory_.watch(i).pair);
   }
 
   /// A pair whose bodies together have not travelled its clearance since it was evaluated cannot
   /// have come within range: it costs this comparison and nothing else. One that might by that
   /// count is looked at once more, along the direction that parts it (`widened`).
   [[nodiscard]] bool is_near(int i, const Motion& motion) const noexcept {
-    return body_a(i, motion).travel + body_b(i, motion).travel >= watches_[i].due_at;
+    return body_a(i, motion).travel + body_b(i, motion).travel >= memory_.watch(i).due_at;
   }
 
-  /// @param clearance [m] what the bodies may travel before the pair can be within range
+  /// @param clearance [m] what the bodies may travel before the pair can be within range. What was
+  /// proven before holds as well.
   void watch_for(int i, const Motion& motion, double clearance) noexcept {
-    watches_[i].due_at = clearance > 0.0
-                             ? body_a(i, motion).travel + body_b(i, motion).travel + clearance
-                             : -std::numeric_limits<double>::infinity();
+    if (!(clearance > 0.0)) return;
+    double& due_at = memory_.watch(i).due_at;
+    due_at = std::max(due_at, body_a(i, motion).travel + body_b(i, motion).travel + clearance);
   }
 
-  void evaluate(int i, const Motion& motion, const std::vector<Pose>& X_WP) noexcept {
+  void evaluate(int i, const Motion& motion, PartPoses& poses) noexcept {
     const Pair& p = pair(i);
     const BodyState& A = body_a(i, motion);
     const BodyState& B = body_b(i, motion);
     const Shape& shape_a = world_->part(p.a).shape;
     const Shape& shape_b = world_->part(p.b).shape;
-    const Pose& X_WPa = X_WP[p.a.index];
-    const Pose& X_WPb = X_WP[p.b.index];
-    Separation& s = queries_[i].last;
-    s = separation(shape_a, X_WPa, shape_b, X_WPb, {}, queries_[i].warm);
+    const Pose& X_WPa = poses.at(p.a, motion);
+    const Pose& X_WPb = poses.at(p.b, motion);
+    Separation& s = memory_.query(i).last;
+    s = separation(shape_a, X_WPa, shape_b, X_WPb, {}, memory_.query(i).warm);
     // A query that was cut short is answered by its proven bound, whose direction is not known.
     const bool cut_short = s.end == QueryEnd::budget_spent;
     const double slope = p.law.passable ? slope_of(s, shape_a, X_WPa, shape_b, X_WPb, {},
-                                                   queries_[i].warm, s.iterations)
+                                                   memory_.query(i).warm, s.iterations)
                                         : 1.0;
-    answers_[i] = {cut_short || s.lower > 0.0 ? s.lower : s.distance,
-                   s.lower > 0.0 && !cut_short,
-                   s.extraction_W,
-                   slope,
-                   s.p_WA - A.X_WB.translation(),
-                   A.X_WB.translation() - B.X_WB.translation(),
-                   A.turn + B.turn,
-                   motion.tick};
+    memory_.answer(i) = {cut_short || s.lower > 0.0 ? s.lower : s.distance,
+                         s.lower > 0.0 && !cut_short,
+                         s.extraction_W,
+                         slope,
+                         s.p_WA - A.X_WB.translation(),
+                         A.X_WB.translation() - B.X_WB.translation(),
+                         A.turn + B.turn,
+                         motion.tick};
     watch_for(i, motion, s.lower - p.law.range);
     PairTotals& totals = forces_.totals;
     ++totals.evaluated;
     totals.iterations += s.iterations;
-    queries_[i].extremes.nearest = std::min(queries_[i].extremes.nearest, s.distance);
+    double& nearest = extremes(i).nearest;
+    nearest = std::min(nearest, s.distance);
     if (s.distance < totals.nearest) {
       totals.nearest = s.distance;
-      totals.nearest_pair = {first_ + i};
+      totals.nearest_pair = memory_.watch(i).pair;
     }
   }
 
@@ -238,7 +225,7 @@ class PairBlock {
   /// the distance falls no faster than the bodies move. Rotation takes at most `turn` either way.
   /// And no answer is ever deeper than both shapes' last levels.
   [[nodiscard]] double widened(int i, const Motion& motion) const noexcept {
-    const PairAnswer& then = answers_[i];
+    const PairAnswer& then = memory_.answer(i);
     const BodyState& A = body_a(i, motion);
     const BodyState& B = body_b(i, motion);
     const Vec3 moved = A.X_WB.translation() - B.X_WB.translation() - then.p_BA_W;
@@ -261,8 +248,8 @@ class PairBlock {
     if (!(distance < law.range)) return;
     const BodyState& A = body_a(i, motion);
     const BodyState& B = body_b(i, motion);
-    const Vec3& n = answers_[i].extraction_W;
-    const Vec3& p_AQ_W = answers_[i].p_AQ_W;
+    const Vec3& n = memory_.answer(i).extraction_W;
+    const Vec3& p_AQ_W = memory_.answer(i).p_AQ_W;
     const Vec3 p_BQ_W = p_AQ_W + A.X_WB.translation() - B.X_WB.translation();
     const Vec3 v_A = moved_to(A.V_WB, p_AQ_W).linear;
     const Vec3 v_B = moved_to(B.V_WB, p_BQ_W).linear;
@@ -270,25 +257,25 @@ class PairBlock {
     double size = 0.0;
     Vec3 f;
     if (law.passable) {
-      f = queries_[i].passage.force(law, distance, answers_[i].slope * n, A.travel + B.travel,
-                                    v_BA);
+      f = memory_.query(i).passage.force(law, distance, memory_.answer(i).slope * n,
+                                         A.travel + B.travel, v_BA);
       size = f.norm();
     } else {
       size = law(distance, n.dot(v_BA));
       f = size * n;
     }
     forces_.totals.peak_force = std::max(forces_.totals.peak_force, size);
-    queries_[i].extremes.peak_force = std::max(queries_[i].extremes.peak_force, size);
-    forces_.on_body[watches_[i].body_a.index] += wrench_of_force(f, p_AQ_W);
-    forces_.on_body[watches_[i].body_b.index] += wrench_of_force(-f, p_BQ_W);
+    double& peak = extremes(i).peak_force;
+    peak = std::max(peak, size);
+    forces_.on_body[memory_.watch(i).body_a.index] += wrench_of_force(f, p_AQ_W);
+    forces_.on_body[memory_.watch(i).body_b.index] += wrench_of_force(-f, p_BQ_W);
   }
 
   const World* world_;
-  int first_ = 0;   ///< PairId of the first pair
-  int cursor_ = 0;  ///< where the next tick begins
-  std::vector<PairWatch> watches_;
-  std::vector<PairAnswer> answers_;
-  std::vector<PairQuery> queries_;
+  PairMemory memory_;
+  std::vector<std::int32_t> candidates_;  ///< slots, in their order between two searches
+  bool grown_ = false;                    ///< a candidate stands out of order
+  int cursor_ = 0;                        ///< the slot at which the next tick begins
   PairForces forces_;
 };
 

@@ -1,55 +1,73 @@
 /// @file
-/// One worker of the coprocessor: a share of the pair blocks and the poses they need.
+/// One worker of the coprocessor: a share of the pair blocks, and the search that tells them which
+/// pairs to watch.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <repel/schedule/pair_block.hpp>
+#include <repel/schedule/pair_search.hpp>
 
 namespace repel::detail {
 
 /// Owns every `stride`-th block of the world, beginning with `index`. A block's result depends on
-/// its own history alone, so that the forces of the world, summed block by block, are bitwise the
-/// same for any number of workers.
+/// the motions it has seen alone, so that the forces of the world, summed block by block, are
+/// bitwise the same for any number of workers that have seen the same.
 class PairWorker {
  public:
-  PairWorker(const World& world, const Budget& budget, int index, int stride)
-      : world_(&world), budget_(budget), X_WP_(world.parts().size()) {
-    const int pairs = static_cast<int>(world.pairs().size());
-    const int blocks = (pairs + PairBlock::capacity - 1) / PairBlock::capacity;
-    for (int b = index; b < blocks; b += stride) {
-      const int first = b * PairBlock::capacity;
-      blocks_.emplace_back(world, first, std::min(PairBlock::capacity, pairs - first));
+  /// Blocks of one world: enough to share among the threads of a large machine.
+  static constexpr int most_blocks = 16;
+
+  /// @param pairs the index of the world's pairs, shared by all workers
+  PairWorker(const World& world, std::shared_ptr<const PairIndex> pairs, const Budget& budget,
+             int index, int stride)
+      : budget_(budget),
+        blocks_in_all_(blocks_of(world)),
+        index_(index),
+        stride_(stride),
+        poses_(world),
+        search_(std::move(pairs)) {
+    const int blocks = std::max(1, blocks_in_all_);
+    const int slots = (world.limits().candidates + blocks - 1) / blocks;
+    for (int b = index; b < blocks_in_all_; b += stride) {
+      blocks_.emplace_back(world, PairShare{b, blocks_in_all_}, slots);
     }
     if (budget.work_units > 0) {
-      units_per_block_ = std::max<std::int64_t>(1, budget.work_units / std::max(1, blocks));
+      units_per_block_ = std::max<std::int64_t>(1, budget.work_units / blocks);
     }
-    for (std::size_t i = 0; i < X_WP_.size(); ++i) {
-      const Part& part = world.parts()[i];
-      X_WP_[i] = world.motion().bodies[part.body.index].X_WB * part.X_BP;
-      if (part.body != World::fixed) moving_.push_back(static_cast<int>(i));
-    }
+  }
+
+  /// How many blocks the pairs of a world make.
+  [[nodiscard]] static int blocks_of(const World& world) noexcept {
+    const int pairs = static_cast<int>(world.pairs().size());
+    return std::min(most_blocks, (pairs + PairShare::run - 1) / PairShare::run);
   }
 
   /// Every pair once, whatever it costs, so that no pair enters the first tick unknown.
   void prime(const Motion& motion) noexcept {
-    place_parts(motion);
-    for (PairBlock& block : blocks_) block.run(motion, X_WP_, no_limit, Clock::time_point::max());
+    poses_.begin();
+    for (PairBlock& block : blocks_) block.prime(motion, poses_);
+    find_candidates(motion);
+    for (PairBlock& block : blocks_) block.run(motion, poses_, no_limit, Clock::time_point::max());
   }
 
   /// One tick, beginning after the block at which the last one ran out of time: a block that takes
   /// the whole budget goes on where it stopped when its turn comes again.
   void run(const Motion& motion) noexcept {
-    place_parts(motion);
     const Clock::time_point deadline =
         budget_.wall.count() > 0 ? Clock::now() + budget_.wall : Clock::time_point::max();
+    poses_.begin();
+    find_candidates(motion);
     const std::size_t count = blocks_.size();
     const std::size_t begin = next_;
     bool late = false;
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t b = (begin + k) % count;
-      blocks_[b].run(motion, X_WP_, units_per_block_, deadline);
+      const std::size_t b = begin + k < count ? begin + k : begin + k - count;
+      blocks_[b].run(motion, poses_, units_per_block_, deadline);
       if (!late && deadline != Clock::time_point::max() && Clock::now() >= deadline) {
         late = true;
         next_ = (b + 1) % count;
@@ -60,7 +78,7 @@ class PairWorker {
   /// Does the work of a tick on the first few near pairs and forgets it.
   void rehearse(const Motion& motion) const noexcept {
     int pairs = rehearsed_pairs;
-    for (const PairBlock& block : blocks_) pairs -= block.rehearse(motion, X_WP_, pairs);
+    for (const PairBlock& block : blocks_) pairs -= block.rehearse(motion, poses_, pairs);
   }
 
   [[nodiscard]] const std::vector<PairBlock>& blocks() const noexcept { return blocks_; }
@@ -70,18 +88,33 @@ class PairWorker {
   static constexpr int rehearsed_pairs = 8;
   static constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 
-  void place_parts(const Motion& motion) noexcept {
-    for (const int i : moving_) {
-      const Part& part = world_->parts()[i];
-      X_WP_[i] = motion.bodies[part.body.index].X_WB * part.X_BP;
+  /// Hands what the search finds to the blocks of this worker.
+  struct Sink {
+    bool take(PairId id, std::int32_t seeker, double distance) noexcept {
+      const int block = PairShare::block_of(id, worker.blocks_in_all_);
+      if (block % worker.stride_ != worker.index_) return true;
+      return worker.blocks_[block / worker.stride_].take(id, seeker, distance, motion,
+                                                         worker.poses_);
     }
+    void end(std::int32_t seeker) noexcept {
+      for (PairBlock& block : worker.blocks_) block.end(seeker);
+    }
+    PairWorker& worker;
+    const Motion& motion;
+  };
+
+  void find_candidates(const Motion& motion) noexcept {
+    for (PairBlock& block : blocks_) block.begin(motion.tick);
+    search_.run(motion, Sink{*this, motion});
   }
 
-  const World* world_;
   Budget budget_;
+  int blocks_in_all_;
+  int index_;
+  int stride_;
   std::int64_t units_per_block_ = no_limit;
-  std::vector<Pose> X_WP_;  ///< [m] by PartId
-  std::vector<int> moving_;
+  PartPoses poses_;
+  PairSearch search_;
   std::vector<PairBlock> blocks_;
   std::size_t next_ = 0;
 };

@@ -1,0 +1,210 @@
+/// @file
+/// Which pairs can soon come within range: found among all of them by trees that are built once,
+/// and asked again only when the bodies have moved far enough.
+#pragma once
+
+#include <algorithm>
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <repel/geometry/box_tree.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel::detail {
+
+/// A part as a box around it in the frame of its body.
+[[nodiscard]] inline Box box_of(const Part& part) noexcept {
+  const Level& shape = part.shape.level(0);
+  Box box(part.X_BP.translation());
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec<double> d(Vec3(part.X_BP.linear().row(axis)));
+    box.max()[axis] += shape.core.support_value(d) + shape.depth;
+    box.min()[axis] -= shape.core.support_value(-d) + shape.depth;
+  }
+  return box;
+}
+
+/// The box around a box that is moved.
+[[nodiscard]] inline Box moved(const Box& box, const Pose& X) noexcept {
+  const Vec3 centre = X * box.center();
+  const Vec3 half = X.linear().cwiseAbs() * (0.5 * box.sizes());
+  return {centre - half, centre + half};
+}
+
+/// The pairs of a world, ordered for the search. Of two bodies the one with fewer parts in their
+/// pairs is the seeking one: each of its parts has its partners on the other body, which lie still
+/// in that body's frame. Seekers with the same partners share one tree.
+struct PairIndex {
+  /// A part and the pairs it forms with one other body.
+  struct Seeker {
+    Box box;             ///< [m] in the frame of its body
+    double range = 0.0;  ///< [m] greatest of its pairs
+    std::int32_t tree = 0;
+    std::int32_t first = 0;  ///< of its pairs in `pairs`, in the order of the tree's boxes
+  };
+  /// Two bodies and the seekers of the first.
+  struct Meeting {
+    BodyId a;
+    BodyId b;
+    std::int32_t first = 0;
+    std::int32_t end = 0;
+  };
+
+  /// Allocates: about 60 bytes for each box of a tree and 4 for each pair.
+  explicit PairIndex(const World& world) {
+    std::vector<Entry> entries = entries_of(world);
+    std::sort(entries.begin(), entries.end());
+    for (auto first = entries.begin(); first != entries.end();) {
+      const auto end = std::find_if(
+          first, entries.end(), [&](const Entry& e) { return e.a != first->a || e.b != first->b; });
+      turn_to_fewer(first, end);
+      add_meeting(world, first, end);
+      first = end;
+    }
+  }
+
+  std::vector<Meeting> meetings;
+  std::vector<Seeker> seekers;
+  std::vector<PairId> pairs;
+  std::vector<BoxTree> trees;
+
+ private:
+  struct Entry {
+    std::int32_t a, b, part_a, part_b, pair;
+    friend auto operator<=>(const Entry&, const Entry&) = default;
+    [[nodiscard]] Entry turned() const { return {b, a, part_b, part_a, pair}; }
+  };
+  using Place = std::vector<Entry>::iterator;
+
+  static std::vector<Entry> entries_of(const World& world) {
+    std::vector<Entry> entries;
+    entries.reserve(world.pairs().size());
+    for (const Pair& pair : world.pairs()) {
+      const auto i = static_cast<std::int32_t>(entries.size());
+      const Entry entry{world.part(pair.a).body.index, world.part(pair.b).body.index, pair.a.index,
+                        pair.b.index, i};
+      entries.push_back(entry.a < entry.b ? entry : entry.turned());
+    }
+    return entries;
+  }
+
+  /// Of sorted entries.
+  static std::ptrdiff_t parts_of_a(Place first, Place end) {
+    std::ptrdiff_t count = first == end ? 0 : 1;
+    for (; end - first > 1; ++first) count += first[0].part_a != first[1].part_a ? 1 : 0;
+    return count;
+  }
+
+  static void turn_to_fewer(Place first, Place end) {
+    const std::ptrdiff_t of_a = parts_of_a(first, end);
+    const auto turn = [&] {
+      std::transform(first, end, first, [](const Entry& e) { return e.turned(); });
+      std::sort(first, end);
+    };
+    turn();
+    if (parts_of_a(first, end) > of_a) turn();
+  }
+
+  void add_meeting(const World& world, Place first, Place end) {
+    Meeting meeting{{first->a}, {first->b}, static_cast<std::int32_t>(seekers.size()), 0};
+    std::map<std::vector<std::int32_t>, std::int32_t> tree_of;
+    while (first != end) {
+      const Part& part = world.parts()[first->part_a];
+      Seeker seeker{box_of(part), 0.0, 0, static_cast<std::int32_t>(pairs.size())};
+      std::vector<std::int32_t> partners;
+      for (const std::int32_t a = first->part_a; first != end && first->part_a == a; ++first) {
+        seeker.range = std::max(seeker.range, world.pair({first->pair}).law.range);
+        partners.push_back(first->part_b);
+        pairs.push_back({first->pair});
+      }
+      const auto [tree, is_new] =
+          tree_of.try_emplace(std::move(partners), static_cast<std::int32_t>(trees.size()));
+      if (is_new) trees.push_back(tree_around(world, tree->first));
+      seeker.tree = tree->second;
+      seekers.push_back(seeker);
+    }
+    meeting.end = static_cast<std::int32_t>(seekers.size());
+    meetings.push_back(meeting);
+  }
+
+  static BoxTree tree_around(const World& world, const std::vector<std::int32_t>& parts) {
+    std::vector<Box> boxes;
+    boxes.reserve(parts.size());
+    for (const std::int32_t i : parts) boxes.push_back(box_of(world.parts()[i]));
+    return BoxTree(boxes);
+  }
+};
+
+/// Asks the trees of a PairIndex for the pairs that can come within range before the bodies have
+/// moved by a margin, and again when they have.
+class PairSearch {
+ public:
+  /// [m] More of it makes for fewer questions and longer lists.
+  static constexpr double margin = 0.03;
+
+  explicit PairSearch(std::shared_ptr<const PairIndex> index)
+      : index_(std::move(index)),
+        ask_at_(index_->seekers.size(), never_asked),
+        next_(index_->meetings.size(), never_asked) {}
+
+  /// Renews the lists that are due. For each: `sink.take(pair, seeker, distance)` for every pair
+  /// on it, with a distance [m] no more than the true one, then `sink.end(seeker)`, after which
+  /// the pairs of that seeker that were not taken are out of reach. A pair that is not taken in,
+  /// by the answer false, is offered again at the next call.
+  /// Cost: one comparison for each two bodies in whose pairs nothing is due.
+  template <class Sink>
+  void run(const Motion& motion, Sink&& sink) noexcept {
+    for (std::size_t m = 0; m < next_.size(); ++m) {
+      const PairIndex::Meeting& meeting = index_->meetings[m];
+      const BodyState& A = motion.bodies[meeting.a.index];
+      const BodyState& B = motion.bodies[meeting.b.index];
+      if (A.travel + B.travel < next_[m]) continue;
+      next_[m] = std::numeric_limits<double>::infinity();
+      for (std::int32_t s = meeting.first; s < meeting.end; ++s) {
+        if (!(A.travel + B.travel < ask_at_[s])) ask(meeting, s, A, B, sink);
+        next_[m] = std::min(next_[m], ask_at_[s]);
+      }
+    }
+  }
+
+ private:
+  static constexpr double never_asked = -std::numeric_limits<double>::infinity();
+  static constexpr double again = std::numeric_limits<double>::lowest();
+
+  template <class Sink>
+  void ask(const PairIndex::Meeting& meeting, std::int32_t s, const BodyState& A,
+           const BodyState& B, Sink& sink) noexcept {
+    const PairIndex::Seeker& seeker = index_->seekers[s];
+    // The first margins differ, so that later not all seekers are due in one tick.
+    const double share =
+        ask_at_[s] > never_asked ? 1.0 : (s - meeting.first + 1.0) / (meeting.end - meeting.first);
+    const Mat3 R_WB = B.X_WB.linear();
+    const Pose X_BA = Pose(B.X_WB.inverse()) * A.X_WB;
+    Box box = moved(seeker.box, X_BA);
+    // What the frame of B is short of a rigid one, and rounding.
+    const double skew = (R_WB.transpose() * R_WB - Mat3::Identity()).norm() + 1e-14;
+    const double far = A.X_WB.translation().norm() + B.X_WB.translation().norm() +
+                       box.center().norm() + box.sizes().norm();
+    const Vec3 slack = Vec3::Constant(2.0 * skew * far);
+    box = Box(box.min() - slack, box.max() + slack);
+    bool all_taken = true;
+    const double others = index_->trees[seeker.tree].query(
+        box, seeker.range + share * margin, [&](std::int32_t i, double distance) {
+          const PairId pair = index_->pairs[seeker.first + i];
+          all_taken = sink.take(pair, s, (1.0 - skew) * distance) && all_taken;
+        });
+    sink.end(s);
+    ask_at_[s] = all_taken ? A.travel + B.travel + (1.0 - skew) * others - seeker.range : again;
+  }
+
+  std::shared_ptr<const PairIndex> index_;
+  std::vector<double> ask_at_;  ///< [m] of travel of both bodies, by seeker
+  std::vector<double> next_;    ///< [m] the least of them, by meeting
+};
+
+}  // namespace repel::detail

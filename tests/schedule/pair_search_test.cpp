@@ -1,0 +1,156 @@
+#include <repel/schedule/pair_search.hpp>
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "schedule/boxes.hpp"
+
+namespace repel::detail {
+namespace {
+
+constexpr unsigned seed = 905;
+
+TEST(BoxOf, HoldsThePartAndTouchesIt) {
+  families::Rng random(seed);
+  World world;
+  const BodyId body = world.add_body("body");
+  const std::vector<Vec3> corners{{0, 0, 0}, {0.3, 0, 0}, {0, 0.2, 0}, {0, 0, 0.1}};
+  for (const Shape& shape :
+       {Shape::box({0.1, 0.2, 0.3}), Shape::sphere(0.1), Shape::capsule(0.1, 0.2),
+        Shape::cylinder(0.1, 0.3), Shape::cone(0.2, 0.1), Shape::hull(corners)}) {
+    const PartId id = world.add_part(body, "part", shape, test::random_pose(random, 0.5));
+    const Part& part = world.part(id);
+    const Box box = box_of(part);
+    // A plane far along an axis is as far from the box as from the part.
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        Pose X = Pose::Identity();
+        X.translation() = box.center();
+        X.translation()[axis] = side * 1e4;
+        Vec3 half(1e5, 1e5, 1e5);
+        half[axis] = 0.0;
+        const double gap = separation(shape, part.X_BP, Shape::box(half), X).distance;
+        const double reach = side > 0 ? box.max()[axis] : -box.min()[axis];
+        EXPECT_NEAR(1e4 - gap, reach, 1e-6);
+      }
+    }
+  }
+}
+
+/// Keeps the lists as a block does.
+struct Lists {
+  bool take(PairId id, std::int32_t seeker, double distance) noexcept {
+    const Pair& pair = world->pair(id);
+    const double truth = test::separation_now(*world, pair).distance;
+    EXPECT_LE(distance, std::max(0.0, truth) + 1e-12) << "pair " << id.index;
+    ++taken;
+    coming[seeker].insert(id.index);
+    return accepts;
+  }
+  void end(std::int32_t seeker) noexcept {
+    lists[seeker] = coming[seeker];
+    coming[seeker].clear();
+    ++asked;
+  }
+  [[nodiscard]] bool holds(std::int32_t pair) const {
+    return std::any_of(lists.begin(), lists.end(),
+                       [&](const auto& list) { return list.second.contains(pair); });
+  }
+  explicit Lists(const World& a_world) : world(&a_world) {}
+  const World* world;
+  std::map<std::int32_t, std::set<std::int32_t>> coming, lists;
+  bool accepts = true;
+  int taken = 0;
+  int asked = 0;
+};
+
+TEST(PairSearch, EveryPairThatIsInRangeIsOnAList) {
+  std::int64_t listed = 0, in_range = 0, pairs = 0;
+  for (unsigned run = 0; run < 4; ++run) {
+    test::Crowd crowd(seed + run);
+    PairSearch search(std::make_shared<PairIndex>(crowd.world));
+    Lists lists(crowd.world);
+    for (int tick = 0; tick < 200; ++tick) {
+      crowd.move();
+      search.run(crowd.world.motion(), lists);
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(crowd.world.pairs().size()); ++i) {
+        const Pair& pair = crowd.world.pair({i});
+        const bool near = test::separation_now(crowd.world, pair).distance <= pair.law.range;
+        ASSERT_TRUE(!near || lists.holds(i))
+            << "pair " << i << ", tick " << tick << ", seed " << seed + run;
+        in_range += near ? 1 : 0;
+        listed += lists.holds(i) ? 1 : 0;
+        ++pairs;
+      }
+    }
+  }
+  // The sample means something: pairs were near, and most were left out.
+  EXPECT_GT(in_range, 1000);
+  EXPECT_LT(listed, pairs / 2);
+}
+
+TEST(PairSearch, IsNotAskedAgainWithinItsMargin) {
+  test::Boxes boxes(4, 100, {}, seed);
+  PairSearch search(std::make_shared<PairIndex>(boxes.world));
+  Lists lists(boxes.world);
+  search.run(boxes.world.motion(), lists);
+  EXPECT_EQ(lists.asked, 4);
+  search.run(boxes.world.motion(), lists);
+  EXPECT_EQ(lists.asked, 4);
+  // The seekers are first asked again one by one, and then each after a margin.
+  double last = 0.0;
+  for (int step = 1; step <= 400; ++step) {
+    Pose X = Pose::Identity();
+    X.translation().x() = 0.001 * step;
+    boxes.world.place(boxes.tool, X, {});
+    const int before = lists.asked;
+    search.run(boxes.world.motion(), lists);
+    EXPECT_LE(lists.asked - before, 2) << "step " << step << ", seed " << seed;
+    last = X.translation().x();
+  }
+  EXPECT_GT(lists.asked, 4);
+  EXPECT_LE(lists.asked, 8 + 4 * last / PairSearch::margin);
+}
+
+TEST(PairSearch, PairThatWasNotTakenIsOfferedAgain) {
+  test::Boxes boxes(1, 4, {.range = 2.0}, seed);
+  PairSearch search(std::make_shared<PairIndex>(boxes.world));
+  Lists lists(boxes.world);
+  lists.accepts = false;
+  for (int i = 1; i < 4; ++i) {
+    search.run(boxes.world.motion(), lists);
+    EXPECT_EQ(lists.taken, 4 * i);
+  }
+  lists.accepts = true;
+  search.run(boxes.world.motion(), lists);
+  search.run(boxes.world.motion(), lists);
+  EXPECT_EQ(lists.taken, 16);
+}
+
+TEST(PairIndex, SeekersWithTheSamePartnersShareATree) {
+  const test::Boxes boxes(4, 100, {}, seed);
+  const PairIndex index(boxes.world);
+  EXPECT_EQ(index.meetings.size(), 1U);
+  EXPECT_EQ(index.seekers.size(), 4U);
+  EXPECT_EQ(index.trees.size(), 1U);
+  EXPECT_EQ(index.pairs.size(), 400U);
+}
+
+TEST(PairIndex, TheBodyWithFewerPartsSeeksWhicheverIsNamedFirst) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
+  for (int i = 0; i < 5; ++i) {
+    const PartId wall = world.add_part(World::fixed, "wall", Shape::sphere(0.1));
+    world.add_pair(wall, part, {});
+  }
+  const PairIndex index(world);
+  ASSERT_EQ(index.meetings.size(), 1U);
+  EXPECT_EQ(index.meetings[0].a, tool);
+  EXPECT_EQ(index.seekers.size(), 1U);
+}
+
+}  // namespace
+}  // namespace repel::detail

@@ -1,0 +1,39 @@
+#include <repel/schedule/part_poses.hpp>
+
+#include <gtest/gtest.h>
+
+#include "schedule/boxes.hpp"
+
+namespace repel::detail {
+namespace {
+
+constexpr unsigned seed = 77;
+
+TEST(PartPoses, AreThoseOfTheMotionAskedFor) {
+  test::Boxes boxes(3, 2, {}, seed);
+  PartPoses poses(boxes.world);
+  for (int tick = 0; tick < 20; ++tick) {
+    boxes.move();
+    poses.begin();
+    for (std::int32_t i = 0; i < 5; ++i) {
+      const Pose expected = test::pose_of(boxes.world, {i});
+      for (int again = 0; again < 2; ++again) {
+        EXPECT_EQ(poses.at({i}, boxes.world.motion()).matrix(), expected.matrix())
+            << "seed " << seed;
+      }
+      EXPECT_EQ(poses.last({i}).matrix(), expected.matrix());
+    }
+  }
+}
+
+TEST(PartPoses, WhatIsNotAskedForStaysWhereItWas) {
+  test::Boxes boxes(1, 1, {}, seed);
+  PartPoses poses(boxes.world);
+  const Pose before = test::pose_of(boxes.world, {0});
+  boxes.move();
+  poses.begin();
+  EXPECT_EQ(poses.last({0}).matrix(), before.matrix());
+}
+
+}  // namespace
+}  // namespace repel::detail
