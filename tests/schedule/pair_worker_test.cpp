@@ -23,12 +23,16 @@ PairTotals totals_of(const detail::PairWorker& worker) {
 
 TEST(PairWorker, TakesEveryStrideThBlockAndAllPairsAreTakenOnce) {
   const test::Boxes boxes(4, 50, {}, seed);  // 200 pairs: three full blocks and one of 8
+  const auto pairs = std::make_shared<detail::PairIndex>(boxes.world);
   std::vector<int> owners(200, 0);
   for (int index = 0; index < 3; ++index) {
-    const detail::PairWorker worker = alone(boxes.world, {}, index, 3);
+    const detail::PairWorker worker(boxes.world, pairs, {}, index, 3);
     for (const auto& block : worker.blocks()) {
-      EXPECT_EQ(block.first() / detail::PairShare::run % 3, index);
-      for (int i = 0; i < block.count(); ++i) ++owners[block.first() + i];
+      const detail::PairMemory& memory = block.memory();
+      EXPECT_EQ(memory.share().index % 3, index);
+      for (int place = 0; place < memory.pairs(); ++place) {
+        ++owners[memory.share().pair_at(place).index];
+      }
     }
   }
   for (const int owner : owners) EXPECT_EQ(owner, 1);
