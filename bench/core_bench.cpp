@@ -109,23 +109,26 @@ void one_against_eight(benchmark::State& state) {
   const Shape& A = all.front().A;
   std::vector<Pose> X_WA{Pose::Identity(), Pose::Identity()};
   X_WA[1].translation() = Vec3(5e-4, 0, 0);
-  std::vector<Partner> partners;
+  std::vector<SeparationQuery> queries;
   std::vector<WarmStart> warm(count);
   std::vector<Separation> answers(count);
   for (std::size_t i = 0; i < count; ++i) {
     // Beyond the reach of A and of any case.
     all[i].X_WB[0].translation().normalize();
     all[i].X_WB[0].translation() *= 2.5;
-    partners.push_back({&all[i].B, &all[i].X_WB[0], &warm[i], &answers[i]});
+    queries.push_back({&A, nullptr, &all[i].B, &all[i].X_WB[0], &warm[i], &answers[i]});
   }
   const bool together = state.range(1) != 0;
   std::size_t tick = 0;
   for (auto _ : state) {
-    const Pose& X = X_WA[tick++ % 2];
+    for (SeparationQuery& q : queries) q.X_WA = &X_WA[tick % 2];
+    ++tick;
     if (together) {
-      separations(A, X, partners);
+      separations(queries);
     } else {
-      for (const Partner& p : partners) *p.answer = separation(A, X, *p.B, *p.X_WB, {}, *p.warm);
+      for (const SeparationQuery& q : queries) {
+        *q.answer = separation(A, *q.X_WA, *q.B, *q.X_WB, {}, *q.warm);
+      }
     }
     benchmark::DoNotOptimize(answers.data());
     benchmark::ClobberMemory();

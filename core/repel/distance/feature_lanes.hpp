@@ -11,10 +11,12 @@
 
 namespace repel::detail {
 
-/// A set at its pose with what the last query on it and another one has left.
-struct LaneSet {
-  const Convex* set;
-  const Pose* X_W;
+/// Two sets at their poses and what the last query on them has left.
+struct LanePair {
+  const Convex* A;
+  const Pose* X_WA;
+  const Convex* B;
+  const Pose* X_WB;
   const WarmStart* warm;
   double beyond;  ///< [m] a gap proven to be larger need not be known better
 };
@@ -23,26 +25,26 @@ struct LaneSet {
 struct LaneGap {
   Lanes distance, lower, upper;      ///< [m]
   LaneVec n_BA_W, p_AQa_W, p_AQb_W;  ///< [1], [m], [m]
+  LaneVec p_WA;                      ///< [m] origin of A
   unsigned proven = 0;               ///< bit k: lane k is the answer of its pair
   unsigned far = 0;                  ///< bit k: proven to be farther than asked, no better
 };
 
-/// `still_nearest` of one set with several others. It looks at faces, edges and vertices alike, as
-/// the lanes may have any of them, and has the same proof: what it accepts is true within the same
-/// bracket, to the last bits of which the order of its sums may differ.
+/// `still_nearest` of several pairs. It looks at faces, edges and vertices alike, as the lanes may
+/// have any of them, and has the same proof: what it accepts is true within the same bracket, to
+/// the last bits of which the order of its sums may differ. What a lane answers does not depend on
+/// the others.
 class FeatureLanes {
  public:
   /// Of boxes and polytopes.
-  FeatureLanes(const Convex& A, const LanePose& X_WA,
-               const std::array<LaneSet, lane_count>& B) noexcept
-      : A_(A),
-        B_(B),
-        X_WA_(X_WA),
-        X_WB_(LanePose::of([&](int k) -> const Pose& { return *at(k).X_W; })),
+  explicit FeatureLanes(const std::array<LanePair, lane_count>& pairs) noexcept
+      : pairs_(pairs),
+        X_WA_(LanePose::of([&](int k) -> const Pose& { return *at(k).X_WA; })),
+        X_WB_(LanePose::of([&](int k) -> const Pose& { return *at(k).X_WB; })),
         p_AB_(X_WB_.columns[3] - X_WA_.columns[3]) {
     for (std::size_t i = 0; i < 3; ++i) {
-      a_[i] = X_WA.rotate(LaneVec::of([&](int k) { return A.place(at(k).warm->a[i]); }));
-      const LaneVec b = LaneVec::of([&](int k) { return at(k).set->place(at(k).warm->b[i]); });
+      a_[i] = X_WA_.rotate(LaneVec::of([&](int k) { return at(k).A->place(at(k).warm->a[i]); }));
+      const LaneVec b = LaneVec::of([&](int k) { return at(k).B->place(at(k).warm->b[i]); });
       w_[i] = a_[i] - (X_WB_.rotate(b) + p_AB_);
     }
   }
@@ -51,8 +53,8 @@ class FeatureLanes {
     const Foot foot = foot_on_features();
     const Lanes vv = dot(foot.v, foot.v);
     const Lanes length = roots(vv);
-    const Lanes margin = 0x1p-49 * (sum(magnitudes(p_AB_)) + A_.reach() +
-                                    lanes_of([&](int k) { return at(k).set->reach(); }));
+    const Lanes reach = lanes_of([&](int k) { return at(k).A->reach() + at(k).B->reach(); });
+    const Lanes margin = 0x1p-49 * (sum(magnitudes(p_AB_)) + reach);
     const Lanes least_vw = least_products(foot.v);
     LaneGap gap;
     gap.lower = (least_vw / length - margin) * (1.0 - 0x1p-51);
@@ -71,6 +73,7 @@ class FeatureLanes {
     gap.n_BA_W = inverse * foot.v + LaneVec{};
     gap.p_AQa_W = mean(a_, foot);
     gap.p_AQb_W = gap.p_AQa_W - w;
+    gap.p_WA = X_WA_.columns[3];
     return gap;
   }
 
@@ -81,8 +84,9 @@ class FeatureLanes {
     Lanes p, q, r;
   };
 
-  [[nodiscard]] static std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
-  [[nodiscard]] const LaneSet& at(int k) const noexcept { return B_[index(k)]; }
+  [[nodiscard]] const LanePair& at(int k) const noexcept {
+    return pairs_[static_cast<std::size_t>(k)];
+  }
 
   // A feature of fewer than three corners has some others of its sets in their places, and no
   // weight on them.
@@ -116,14 +120,26 @@ class FeatureLanes {
 
   /// The least products of v with a point of A - B.
   [[nodiscard]] Lanes least_products(const LaneVec& v) const noexcept {
-    const std::array<Vec<double>, lane_count> d = X_WB_.rotate_transposed(v).each();
-    const Lanes of_b = lanes_of([&](int k) { return at(k).set->support_value(d[index(k)]); });
-    return -(A_.support_values(X_WA_.rotate_transposed(-v)) + of_b + dot(v, p_AB_));
+    const Lanes of_a = support_values(&LanePair::A, X_WA_.rotate_transposed(-v));
+    const Lanes of_b = support_values(&LanePair::B, X_WB_.rotate_transposed(v));
+    return -(of_a + of_b + dot(v, p_AB_));
   }
 
-  const Convex& A_;
-  const std::array<LaneSet, lane_count>& B_;
-  const LanePose& X_WA_;
+  /// Of one of the two sets of each pair along `d`, in its own frame.
+  [[nodiscard]] Lanes support_values(const Convex* LanePair::*set,
+                                     const LaneVec& d) const noexcept {
+    bool boxes = true;
+    for (const LanePair& pair : pairs_) boxes &= (pair.*set)->kind() == Convex::Kind::box;
+    if (boxes) {
+      return dot(LaneVec::of([&](int k) { return (at(k).*set)->half_extents(); }), magnitudes(d));
+    }
+    const std::array<Vec<double>, lane_count> each = d.each();
+    return lanes_of(
+        [&](int k) { return (at(k).*set)->support_value(each[static_cast<std::size_t>(k)]); });
+  }
+
+  const std::array<LanePair, lane_count>& pairs_;
+  LanePose X_WA_;
   LanePose X_WB_;
   LaneVec p_AB_;              ///< [m] world axes
   std::array<LaneVec, 3> a_;  ///< [m] points of A, from the origin of A, world axes

@@ -81,9 +81,6 @@ class Convex {
   /// Number of vertices; 0 for a set with a curved boundary.
   [[nodiscard]] int vertex_count() const noexcept;
 
-  /// `support_value` in each lane.
-  [[nodiscard]] detail::Lanes support_values(const detail::LaneVec& d) const noexcept;
-
   /// A polytope whose support map is a scan of all vertices: no more than `largest_scan`.
   [[nodiscard]] bool is_scanned() const noexcept {
     return kind_ == Kind::polytope && table_.empty();
@@ -281,16 +278,6 @@ inline int Convex::vertex_count() const noexcept {
     return size_.x() > 0.0 ? 0 : (end(true) > end(false) ? 2 : 1);
   }
   return (size_.x() > 0.0 ? 2 : 1) * (size_.y() > 0.0 ? 2 : 1) * (size_.z() > 0.0 ? 2 : 1);
-}
-
-inline detail::Lanes Convex::support_values(const detail::LaneVec& d) const noexcept {
-  if (kind_ == Kind::box) {
-    const detail::LaneVec size{detail::Lanes{} + size_.x(), detail::Lanes{} + size_.y(),
-                               detail::Lanes{} + size_.z()};
-    return dot(size, magnitudes(d));
-  }
-  if (is_scanned()) return vertices_.block().largest_products(d);
-  return detail::lanes_of([&](int k) { return support_value({d.x[k], d.y[k], d.z[k]}); });
 }
 
 }  // namespace repel

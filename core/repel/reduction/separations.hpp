@@ -1,8 +1,10 @@
 /// @file
-/// One shape against many: the pairs of a tick, several at a time.
+/// The pairs of a tick, several at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include <repel/distance/feature_lanes.hpp>
@@ -10,8 +12,10 @@
 
 namespace repel {
 
-/// One of the others: what a call of `separation` would take, and where its answer goes.
-struct Partner {
+/// What a call of `separation` would take, and where its answer goes. All are kept by the caller.
+struct SeparationQuery {
+  const Shape* A = nullptr;
+  const Pose* X_WA = nullptr;  ///< pose of A in the world [m]
   const Shape* B = nullptr;
   const Pose* X_WB = nullptr;
   WarmStart* warm = nullptr;
@@ -20,45 +24,51 @@ struct Partner {
 
 namespace detail {
 
-/// The partners whose last features are looked at together.
-class PartnerLanes {
+/// The queries whose last features are looked at together.
+class SeparationLanes {
  public:
-  PartnerLanes(const Shape& A, const Pose& X_WA, const QueryOptions& options) noexcept
-      : A_(A), X_WA_(X_WA), lanes_X_WA_(LanePose::all(X_WA)), options_(options) {}
+  explicit SeparationLanes(const QueryOptions& options) noexcept : options_(options) {}
 
-  void add(const Partner& partner) noexcept {
-    const Level& level = partner.B->level(0);
-    partners_[count_] = &partner;
-    sets_[count_] = {&level.core, partner.X_WB, partner.warm,
-                     options_.ignore_beyond + A_.level(0).depth + level.depth};
-    if (++count_ == sets_.size()) finish();
+  /// True for a query that has its place here, as long as `options` make sense.
+  [[nodiscard]] static bool takes(const SeparationQuery& query) noexcept {
+    return lane_count >= 4 && has_feature(*query.warm) &&
+           are_angular(query.A->level(0), query.B->level(0));
   }
+  [[nodiscard]] bool full() const noexcept { return count_ == pairs_.size(); }
+  /// To be answered at the next `finish`; not when it is full.
+  void add(const SeparationQuery& query) noexcept {
+    const Level& a = query.A->level(0);
+    const Level& b = query.B->level(0);
+    pairs_[count_] = {&a.core,    query.X_WA, &b.core,
+                      query.X_WB, query.warm, options_.ignore_beyond + a.depth + b.depth};
+    queries_[count_] = query;
+    ++count_;
+  }
+
   /// Answers what was added since.
   [[gnu::noinline, gnu::flatten]] void finish() noexcept {
     if (count_ == 0) return;
-    for (std::size_t k = count_; k < sets_.size(); ++k) sets_[k] = sets_[0];
-    const Level& a = A_.level(0);
-    const LaneGap gap = FeatureLanes(a.core, lanes_X_WA_, sets_).prove(options_);
-    const Lanes depth_b = lanes_of([&](int k) {
-      return partners_[std::min(static_cast<std::size_t>(k), count_ - 1)]->B->level(0).depth;
-    });
-    const Lanes depth = depth_b + a.depth;
+    std::fill(pairs_.begin() + static_cast<std::ptrdiff_t>(count_), pairs_.end(), pairs_[0]);
+    std::fill(queries_.begin() + static_cast<std::ptrdiff_t>(count_), queries_.end(), queries_[0]);
+    const LaneGap gap = FeatureLanes(pairs_).prove(options_);
+    const Lanes depth_a = lanes_of([&](int k) { return at(k).A->level(0).depth; });
+    const Lanes depth_b = lanes_of([&](int k) { return at(k).B->level(0).depth; });
+    const Lanes depth = depth_a + depth_b;
     const Lanes lower = gap.lower - depth;
     const Lanes upper = gap.upper - depth;
     const Lanes outward = Lanes{} + 0x1p-51;
     const Lanes distance = gap.distance - depth;
     const Lanes lower_widened = lower - outward * magnitudes(lower);
     const Lanes upper_widened = upper + outward * magnitudes(upper);
-    const LaneVec p_WA = lanes_X_WA_.columns[3];
-    const auto at_a = (p_WA + gap.p_AQa_W - (Lanes{} + a.depth) * gap.n_BA_W).each();
-    const auto at_b = (p_WA + gap.p_AQb_W + depth_b * gap.n_BA_W).each();
+    const auto at_a = (gap.p_WA + gap.p_AQa_W - depth_a * gap.n_BA_W).each();
+    const auto at_b = (gap.p_WA + gap.p_AQb_W + depth_b * gap.n_BA_W).each();
     const auto n_BA_W = gap.n_BA_W.each();
     for (std::size_t i = 0; i < count_; ++i) {
       const int k = static_cast<int>(i);
-      const Partner& partner = *partners_[i];
-      Separation& s = *partner.answer;
+      const SeparationQuery& query = queries_[i];
+      Separation& s = *query.answer;
       if ((gap.proven >> i & 1U) == 0U) {
-        s = searched(A_, X_WA_, *partner.B, *partner.X_WB, options_, *partner.warm);
+        s = searched(*query.A, *query.X_WA, *query.B, *query.X_WB, options_, *query.warm);
         continue;
       }
       s.distance = distance[k];
@@ -75,35 +85,35 @@ class PartnerLanes {
   }
 
  private:
-  const Shape& A_;
-  const Pose& X_WA_;
-  LanePose lanes_X_WA_;
+  [[nodiscard]] const SeparationQuery& at(int k) const noexcept {
+    return queries_[static_cast<std::size_t>(k)];
+  }
+
   const QueryOptions& options_;
   std::size_t count_ = 0;
-  std::array<LaneSet, lane_count> sets_;
-  std::array<const Partner*, lane_count> partners_;
+  std::array<LanePair, lane_count> pairs_;
+  std::array<SeparationQuery, lane_count> queries_;
 };
 
 }  // namespace detail
 
-/// The separations of A from each of the partners: the answers of `separation` to within their
-/// brackets, and the same proof. Where a register of the target holds four doubles or more, pairs
-/// of boxes and hulls whose nearest feature is still the one in their WarmStart are answered as
-/// many at a time; all others one by one.
+/// Answers each of the queries: as `separation` does to within the brackets, and with the same
+/// proof. Where a register of the target holds four doubles or more, pairs of boxes and hulls whose
+/// nearest feature is still the one in their WarmStart are answered as many at a time; all others
+/// one by one. An answer does not depend on what else is asked.
 ///
-/// @param X_WA pose of A in the world [m]
 /// Cost: a pair in lanes of four doubles about 0.7 of a warm call of `separation`. No heap, no
 /// lock, bounded by `options.iterations`.
-inline void separations(const Shape& A, const Pose& X_WA, std::span<const Partner> partners,
+inline void separations(std::span<const SeparationQuery> queries,
                         const QueryOptions& options = {}) noexcept {
-  const bool in_lanes =
-      A.level(0).core.is_polytope() && detail::are_usable(options) && detail::lane_count >= 4;
-  detail::PartnerLanes lanes(A, X_WA, options);
-  for (const Partner& partner : partners) {
-    if (in_lanes && detail::has_feature(*partner.warm) && partner.B->level(0).core.is_polytope()) {
-      lanes.add(partner);
+  const bool usable = detail::are_usable(options);
+  detail::SeparationLanes lanes(options);
+  for (const SeparationQuery& q : queries) {
+    if (usable && detail::SeparationLanes::takes(q)) {
+      lanes.add(q);
+      if (lanes.full()) lanes.finish();
     } else {
-      *partner.answer = separation(A, X_WA, *partner.B, *partner.X_WB, options, *partner.warm);
+      *q.answer = separation(*q.A, *q.X_WA, *q.B, *q.X_WB, options, *q.warm);
     }
   }
   lanes.finish();
