@@ -100,44 +100,6 @@ void pair_warm(benchmark::State& state) {
   }
 }
 
-/// One shape against eight others, warm: by one call of `separation` each, or by one of
-/// `separations`. Time per pair is in the counter.
-void one_against_eight(benchmark::State& state) {
-  constexpr std::size_t count = 8;
-  std::vector<Case> all = cases(state.range(0));
-  if (!answers_hold(all)) return state.SkipWithError("wrong answer");
-  const Shape& A = all.front().A;
-  std::vector<Pose> X_WA{Pose::Identity(), Pose::Identity()};
-  X_WA[1].translation() = Vec3(5e-4, 0, 0);
-  std::vector<SeparationQuery> queries;
-  std::vector<WarmStart> warm(count);
-  std::vector<Separation> answers(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    // Beyond the reach of A and of any case.
-    all[i].X_WB[0].translation().normalize();
-    all[i].X_WB[0].translation() *= 2.5;
-    queries.push_back({&A, nullptr, &all[i].B, &all[i].X_WB[0], &warm[i], &answers[i]});
-  }
-  const bool together = state.range(1) != 0;
-  std::size_t tick = 0;
-  for (auto _ : state) {
-    for (SeparationQuery& q : queries) q.X_WA = &X_WA[tick % 2];
-    ++tick;
-    if (together) {
-      separations(queries);
-    } else {
-      for (const SeparationQuery& q : queries) {
-        *q.answer = separation(A, *q.X_WA, *q.B, *q.X_WB, {}, *q.warm);
-      }
-    }
-    benchmark::DoNotOptimize(answers.data());
-    benchmark::ClobberMemory();
-  }
-  state.counters["per_pair"] =
-      benchmark::Counter(static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate |
-                                                         benchmark::Counter::kInvert);
-}
-
 /// 4 tool boxes and 8 obstacle boxes. `range` [m] decides how many of the 32 pairs are near.
 void tick_4x8(benchmark::State& state) {
   Rng rng(seed);
@@ -177,7 +139,6 @@ void tick_4x8(benchmark::State& state) {
 
 BENCHMARK(pair_cold)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
 BENCHMARK(pair_warm)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
-BENCHMARK(one_against_eight)->ArgNames({"vertices", "together"})->ArgsProduct({{0, 16}, {0, 1}});
 BENCHMARK(tick_4x8)->ArgName("range_mm")->Arg(20)->Arg(2000);
 
 int main(int argc, char** argv) {

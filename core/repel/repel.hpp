@@ -17,7 +17,6 @@
 #include <repel/network/coupling.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/reduction/separation.hpp>
-#include <repel/reduction/separations.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>

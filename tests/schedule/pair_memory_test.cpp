@@ -49,15 +49,15 @@ TEST(PairMemory, TakesSlotsOnlyFromPairsOnNoList) {
   const int kept = memory.slot_for({3});
   EXPECT_TRUE(memory.enlist(kept, 7));
   EXPECT_FALSE(memory.enlist(kept, 7));
-  memory.answer(kept).distance = 0.25;
+  memory.answer(kept).last.distance = 0.25;
   const int other = memory.slot_for({4});
-  memory.answer(other).distance = 0.5;
+  memory.answer(other).last.distance = 0.5;
   EXPECT_EQ(memory.slot_for({5}), other);
   EXPECT_EQ(memory.slot_of({4}), PairMemory::none);
-  EXPECT_EQ(memory.answer(other).distance, PairAnswer{}.distance);
+  EXPECT_EQ(memory.answer(other).last.distance, PairAnswer{}.last.distance);
   EXPECT_EQ(memory.watch(other).pair, PairId{5});
   EXPECT_EQ(memory.slot_of({3}), kept);
-  EXPECT_EQ(memory.answer(kept).distance, 0.25);
+  EXPECT_EQ(memory.answer(kept).last.distance, 0.25);
 
   EXPECT_TRUE(memory.enlist(other, 7));
   const int lent = memory.slot_for({6});

@@ -26,6 +26,10 @@ using Lanes = double __attribute__((vector_size(lane_bytes)));
 /// All bits of a lane are set, or none: what a comparison of Lanes gives.
 using LaneMask = std::int64_t __attribute__((vector_size(lane_bytes)));
 
+/// x in every lane.
+[[nodiscard]] inline Lanes all_of(double x) noexcept {
+  return x - Lanes{};
+}
 /// f(k) in lane k.
 template <class F>
 [[nodiscard]] Lanes lanes_of(const F& f) noexcept {
@@ -33,11 +37,20 @@ template <class F>
   for (int k = 0; k < lane_count; ++k) lanes[k] = f(k);
   return lanes;
 }
+/// b where one of the two is not a number.
 [[nodiscard]] inline Lanes larger(const Lanes& a, const Lanes& b) noexcept {
+#if defined(__AVX__) && !defined(__AVX512F__)
+  return __builtin_ia32_maxpd256(a, b);
+#else
   return a > b ? a : b;
+#endif
 }
 [[nodiscard]] inline Lanes smaller(const Lanes& a, const Lanes& b) noexcept {
+#if defined(__AVX__) && !defined(__AVX512F__)
+  return __builtin_ia32_minpd256(a, b);
+#else
   return a < b ? a : b;
+#endif
 }
 [[nodiscard]] inline Lanes magnitudes(const Lanes& a) noexcept {
   return (Lanes)((LaneMask)a & std::int64_t{0x7FFFFFFFFFFFFFFF});
@@ -76,11 +89,19 @@ struct LaneVec {
 
   /// The same vector in all.
   [[nodiscard]] static LaneVec all(const Vec<double>& v) noexcept {
-    return {Lanes{} + v.x(), Lanes{} + v.y(), Lanes{} + v.z()};
+    return {all_of(v.x()), all_of(v.y()), all_of(v.z())};
   }
   /// The vector v(k) in lane k.
   template <class F>
   [[nodiscard]] static LaneVec of(const F& v) noexcept;
+  /// Puts `v` into lane k.
+  void set(int k, const Vec<double>& v) noexcept {
+    x[k] = v.x();
+    y[k] = v.y();
+    z[k] = v.z();
+  }
+  /// The vector in lane k.
+  [[nodiscard]] Vec3 at(int k) const noexcept { return {x[k], y[k], z[k]}; }
   /// The vectors one by one.
   [[nodiscard]] std::array<Vec<double>, lane_count> each() const noexcept;
 
@@ -173,6 +194,10 @@ struct LanePose {
       return LaneVec::of([&](int k) { return column<double>(X(k), c); });
     };
     return {columns_of(0), columns_of(1), columns_of(2), columns_of(3)};
+  }
+  /// Puts `X` into lane k.
+  void set(int k, const Pose& X) noexcept {
+    for (int c = 0; c < 4; ++c) columns[c].set(k, column<double>(X, c));
   }
   [[nodiscard]] LaneVec rotate(const LaneVec& v) const noexcept {
     return v.x * columns[0] + v.y * columns[1] + v.z * columns[2];

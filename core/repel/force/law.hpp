@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <repel/base/setup_error.hpp>
@@ -45,6 +46,23 @@ struct ForceLaw {
     const double inward = 1.0 - distance / range;
     return distance > 0.0 ? surface_force * inward * inward
                           : surface_force * (1.0 - 2.0 * distance / range);
+  }
+
+  /// The work [J] it takes against the spring to bring the pair to this distance from beyond its
+  /// range: the spring is the slope of this, cut to `ceiling`. Of a pair that is not passable.
+  [[nodiscard]] double potential(double distance) const noexcept {
+    // Where the spring reaches the ceiling, and from where on it is straight.
+    const double share = ceiling / surface_force;
+    const double full = range * (share > 1.0 ? 0.5 - 0.5 * share : 1.0 - std::sqrt(share));
+    const double held = std::max(0.0, full - distance) * ceiling;
+    const double d = std::max(distance, full);
+    if (d >= range) return 0.0;
+    const double bent = std::max(0.0, d) / range;
+    const double inward = 1.0 - bent;
+    const double straight = std::max(0.0, -d);
+    return surface_force * (range / 3.0 * inward * inward * inward + straight +
+                            straight * straight / range) +
+           (held > 0.0 ? held : 0.0);
   }
 
   /// s(d) [N] of a passable body: 0 to `ceiling`, and nowhere steeper than `stiffness`.

@@ -22,7 +22,8 @@ struct CoprocessorOptions {
   std::chrono::nanoseconds period{2500000};   ///< between ticks, so that idle workers can sleep
   std::chrono::nanoseconds patience{500000};  ///< how long the caller waits for an answer
   void (*on_thread_start)(int index) noexcept = nullptr;  ///< called in each worker: priority etc.
-  bool lock_step = false;  ///< wait for every answer (up to a second) and never sleep: for replays
+  bool every_pair = false;  ///< evaluate also those that cannot be within range: to compare with
+  bool lock_step = false;   ///< wait for every answer (up to a second) and never sleep: for replays
 };
 
 /// Host and workers exchange motions and forces through wait-free mailboxes. A worker always takes
@@ -37,7 +38,8 @@ class Coprocessor {
     const int workers = std::max(1, options.threads);
     blocks_ = detail::PairWorker::blocks_of(world);
     total_.on_body.resize(world.body_count());
-    const auto pairs = std::make_shared<const detail::PairIndex>(world);
+    const auto pairs =
+        options.every_pair ? nullptr : std::make_shared<const detail::PairIndex>(world);
     for (int i = 0; i < workers; ++i) {
       seats_.push_back(std::make_unique<Seat>(world, pairs, options.budget, i, workers));
     }
@@ -79,7 +81,7 @@ class Coprocessor {
 
   /// Without threads: asks the near pairs of the last motion again and forgets the answers, which
   /// brings code and data of the next exchange into the caches. With threads: nothing.
-  void rehearse() const noexcept {
+  void rehearse() noexcept {
     if (options_.threads == 0) seats_.front()->worker.rehearse(world_->motion());
   }
 
@@ -94,7 +96,7 @@ class Coprocessor {
     return block_of(id).separation_of(id);
   }
   /// How near a pair has come and how hard it has pushed. On the same condition.
-  [[nodiscard]] const PairExtremes& extremes_of(PairId id) const noexcept {
+  [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
     return block_of(id).extremes_of(id);
   }
 

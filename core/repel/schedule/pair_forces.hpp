@@ -14,7 +14,7 @@ namespace repel {
 
 /// What the pairs amount to in one tick, of a block or of the world.
 struct PairTotals {
-  int near = 0;                 ///< pairs that may be within range
+  int near = 0;                 ///< pairs that may be within range; all when all are evaluated
   int evaluated = 0;            ///< of these, asked anew
   int stale = 0;                ///< of these, answered from an older tick, widened
   std::int64_t oldest_age = 0;  ///< [ticks] of the oldest answer that was used
@@ -24,6 +24,10 @@ struct PairTotals {
   PairId nearest_pair;
   double peak_force = 0.0;  ///< [N] of one pair
   int crowded = 0;          ///< pairs that found no room in the memory of `Limits::candidates`
+  int expired = 0;          ///< of the stale, older than `Budget::max_age`: their force fades
+  /// [J] by which springs of stale pairs were bent farther than those of the true distance when
+  /// they were answered again: what their widened forces can have given too much.
+  double refresh_energy = 0.0;
 
   void add(const PairTotals& other) noexcept {
     near += other.near;
@@ -37,6 +41,8 @@ struct PairTotals {
     }
     peak_force = std::max(peak_force, other.peak_force);
     crowded += other.crowded;
+    expired += other.expired;
+    refresh_energy += other.refresh_energy;
   }
 };
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <repel/force/passage.hpp>
-#include <repel/reduction/separation.hpp>
+#include <repel/schedule/pair_answer.hpp>
 #include <repel/schedule/pair_forces.hpp>
 #include <repel/world/world.hpp>
 
@@ -48,27 +48,13 @@ struct PairWatch {
   double due_at = -std::numeric_limits<double>::infinity();  ///< [m] of travel of both bodies
   PairId pair;
   std::int32_t seeker = -1;  ///< on whose list it is; -1: on none
+  std::int32_t seat = -1;    ///< among the contacts; -1: not one of them
   bool taken = false;        ///< again, while the list is renewed
 };
 
-/// What its force needs, also when it could not be evaluated again.
-struct PairAnswer {
-  double distance = -std::numeric_limits<double>::infinity();  ///< [m] signed, proven from below
-  bool parted = false;         ///< a plane across extraction_W parts the shapes at that distance
-  Vec3 extraction_W{0, 0, 0};  ///< unit
-  double slope = 1.0;          ///< of the distance along it; asked of passable pairs only
-  Vec3 p_AQ_W{0, 0, 0};        ///< [m] witness point on A, from the origin of body A
-  Vec3 p_BA_W{0, 0, 0};        ///< [m] origin of body A from that of body B when it was evaluated
-  double turn = 0.0;           ///< [m] both bodies' BodyState::turn then
-  std::int64_t tick = never;   ///< when it was evaluated
-
-  static constexpr std::int64_t never = INT64_MIN;
-};
-
-/// What its next evaluation begins with, and what users may ask for.
-struct PairQuery {
+/// What goes on from one tick to the next while a pair is within range.
+struct PairCourse {
   WarmStart warm;
-  Separation last;
   Passage passage;
 };
 
@@ -87,7 +73,7 @@ class PairMemory {
         slots_(std::min(slots, pairs())),
         watches_(slots_ + 1),
         answers_(slots_ + 1),
-        queries_(slots_ + 1) {}
+        courses_(slots_ + 1) {}
 
   [[nodiscard]] int pairs() const noexcept { return static_cast<int>(slot_of_.size()); }
   [[nodiscard]] int slots() const noexcept { return slots_; }
@@ -125,8 +111,8 @@ class PairMemory {
   [[nodiscard]] const PairWatch& watch(int slot) const noexcept { return watches_[slot]; }
   [[nodiscard]] PairAnswer& answer(int slot) noexcept { return answers_[slot]; }
   [[nodiscard]] const PairAnswer& answer(int slot) const noexcept { return answers_[slot]; }
-  [[nodiscard]] PairQuery& query(int slot) noexcept { return queries_[slot]; }
-  [[nodiscard]] const PairQuery& query(int slot) const noexcept { return queries_[slot]; }
+  [[nodiscard]] PairCourse& course(int slot) noexcept { return courses_[slot]; }
+  [[nodiscard]] const PairCourse& course(int slot) const noexcept { return courses_[slot]; }
   [[nodiscard]] PairExtremes& extremes(PairId id) noexcept {
     return extremes_[share_.place_of(id)];
   }
@@ -156,7 +142,7 @@ class PairMemory {
     watch.body_b = world_->part(pair.b).body;
     watch.pair = id;
     answers_[slot] = {};
-    queries_[slot] = {};
+    courses_[slot] = {};
   }
 
   const World* world_;
@@ -166,7 +152,7 @@ class PairMemory {
   int slots_;
   std::vector<PairWatch> watches_;  ///< by slot, as the next two
   std::vector<PairAnswer> answers_;
-  std::vector<PairQuery> queries_;
+  std::vector<PairCourse> courses_;
   int listed_ = 0;  ///< slots that are on a list
   int hand_ = 0;    ///< the slot that is tried next for a new pair
 };

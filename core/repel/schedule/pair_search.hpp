@@ -55,6 +55,8 @@ struct PairIndex {
     std::int32_t end = 0;
   };
 
+  /// Of no pairs.
+  PairIndex() = default;
   /// Allocates: about 60 bytes for each box of a tree and 4 for each pair.
   explicit PairIndex(const World& world) {
     std::vector<Entry> entries = entries_of(world);

@@ -22,7 +22,8 @@ class PairWorker {
   /// Blocks of one world: enough to share among the threads of a large machine.
   static constexpr int most_blocks = 16;
 
-  /// @param pairs the index of the world's pairs, shared by all workers
+  /// @param pairs the index of the world's pairs, shared by all workers; without one every pair is
+  /// evaluated at every tick
   PairWorker(const World& world, std::shared_ptr<const PairIndex> pairs, const Budget& budget,
              int index, int stride)
       : budget_(budget),
@@ -30,11 +31,13 @@ class PairWorker {
         index_(index),
         stride_(stride),
         poses_(world),
-        search_(std::move(pairs)) {
+        search_(pairs != nullptr ? pairs : std::make_shared<const PairIndex>()) {
     const int blocks = std::max(1, blocks_in_all_);
-    const int slots = (world.limits().candidates + blocks - 1) / blocks;
+    const int all = static_cast<int>(world.pairs().size());
+    const int slots = pairs == nullptr ? all : (world.limits().candidates + blocks - 1) / blocks;
     for (int b = index; b < blocks_in_all_; b += stride) {
-      blocks_.emplace_back(world, PairShare{b, blocks_in_all_}, slots);
+      blocks_.emplace_back(world, PairShare{b, blocks_in_all_}, slots, budget);
+      if (pairs == nullptr) blocks_.back().watch_all();
     }
     if (budget.work_units > 0) {
       units_per_block_ = std::max<std::int64_t>(1, budget.work_units / blocks);
@@ -76,16 +79,16 @@ class PairWorker {
   }
 
   /// Does the work of a tick on the first few near pairs and forgets it.
-  void rehearse(const Motion& motion) const noexcept {
+  void rehearse(const Motion& motion) noexcept {
     int pairs = rehearsed_pairs;
-    for (const PairBlock& block : blocks_) pairs -= block.rehearse(motion, poses_, pairs);
+    for (PairBlock& block : blocks_) pairs -= block.rehearse(motion, poses_, pairs);
   }
 
   [[nodiscard]] const std::vector<PairBlock>& blocks() const noexcept { return blocks_; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr int rehearsed_pairs = 8;
+  static constexpr int rehearsed_pairs = 32;
   static constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 
   /// Hands what the search finds to the blocks of this worker.
@@ -97,7 +100,7 @@ class PairWorker {
                                                          worker.poses_);
     }
     void end(std::int32_t seeker) noexcept {
-      for (PairBlock& block : worker.blocks_) block.end(seeker);
+      for (PairBlock& block : worker.blocks_) block.end(seeker, worker.poses_);
     }
     PairWorker& worker;
     const Motion& motion;

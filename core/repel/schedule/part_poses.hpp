@@ -12,12 +12,11 @@ namespace repel::detail {
 /// The poses of a world's parts in the world. All memory is taken at construction.
 class PartPoses {
  public:
-  explicit PartPoses(const World& world)
-      : world_(&world), X_WP_(world.parts().size()), placed_at_(X_WP_.size(), 0) {
-    for (std::size_t i = 0; i < X_WP_.size(); ++i) {
+  explicit PartPoses(const World& world) : world_(&world), placed_(world.parts().size()) {
+    for (std::size_t i = 0; i < placed_.size(); ++i) {
       const Part& part = world.parts()[i];
-      X_WP_[i] = world.motion().bodies[part.body.index].X_WB * part.X_BP;
-      if (part.body == World::fixed) placed_at_[i] = forever;
+      placed_[i].X_WP = world.motion().bodies[part.body.index].X_WB * part.X_BP;
+      if (part.body == World::fixed) placed_[i].at = forever;
     }
   }
 
@@ -26,24 +25,29 @@ class PartPoses {
 
   /// The pose of a part [m] at the motion of this instant. Cost: one product the first time.
   const Pose& at(PartId id, const Motion& motion) noexcept {
-    std::int64_t& placed_at = placed_at_[id.index];
-    if (placed_at < instant_) {
-      const Part& part = world_->part(id);
-      X_WP_[id.index] = motion.bodies[part.body.index].X_WB * part.X_BP;
-      placed_at = instant_;
-    }
-    return X_WP_[id.index];
+    Placed& part = placed_[id.index];
+    if (part.at < instant_) place(id, motion);
+    return part.X_WP;
   }
 
   /// The pose of a part [m] when it was last asked for.
-  [[nodiscard]] const Pose& last(PartId id) const noexcept { return X_WP_[id.index]; }
+  [[nodiscard]] const Pose& last(PartId id) const noexcept { return placed_[id.index].X_WP; }
 
  private:
   static constexpr std::int64_t forever = INT64_MAX;
+  struct alignas(32) Placed {
+    Pose X_WP = Pose::Identity();  ///< [m]
+    std::int64_t at = 0;           ///< the instant
+  };
+
+  [[gnu::noinline]] void place(PartId id, const Motion& motion) noexcept {
+    const Part& part = world_->part(id);
+    placed_[id.index].X_WP = motion.bodies[part.body.index].X_WB * part.X_BP;
+    placed_[id.index].at = instant_;
+  }
 
   const World* world_;
-  std::vector<Pose> X_WP_;               ///< [m] by PartId
-  std::vector<std::int64_t> placed_at_;  ///< the instant, by PartId
+  std::vector<Placed> placed_;  ///< by PartId
   std::int64_t instant_ = 0;
 };
 
