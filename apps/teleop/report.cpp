@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "times.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -17,24 +18,12 @@ double deepest(const RunResult& r) {
   return std::isfinite(r.totals.nearest) ? std::max(0.0, -r.totals.nearest) : 0.0;
 }
 
-ordered_json percentiles(const DurationHistogram& h) {
-  return {{"p50", h.percentile_us(0.5)},
-          {"p99", h.percentile_us(0.99)},
-          {"p99_9", h.percentile_us(0.999)},
-          {"max", h.max_us()}};
-}
-
 ordered_json status_counts(const RunResult& r) {
   ordered_json counts = ordered_json::object();
   for (unsigned bit = 0; bit < 32; ++bit) {
     if (r.totals.status_ticks[bit] > 0) counts[to_text(1U << bit)] = r.totals.status_ticks[bit];
   }
   return counts;
-}
-
-void print_times(const char* name, const DurationHistogram& h, std::FILE* out) {
-  std::fprintf(out, "  %-22s p50 %8.2f   p99 %8.2f   p99.9 %8.2f   max %9.2f us\n", name,
-               h.percentile_us(0.5), h.percentile_us(0.99), h.percentile_us(0.999), h.max_us());
 }
 
 /// The obstacles that pushed, hardest first.
@@ -74,9 +63,9 @@ void print_report(const RunResult& r, std::FILE* out) {
                static_cast<double>(t.ticks) / r.options.rate_hz, r.options.backend.c_str(),
                r.options.threads, r.options.fast ? ", not by the clock" : "",
                r.interrupted ? ", interrupted" : "");
-  print_times("compute of the tick", r.deadline.compute(), out);
-  if (!r.options.fast) print_times("wake-up lateness", r.deadline.wakeup(), out);
-  print_times("simulated arm", r.arm_step, out);
+  host::print_times("compute of the tick", r.deadline.compute(), out);
+  if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
+  host::print_times("simulated arm", r.arm_step, out);
   if (!r.options.fast) {
     std::fprintf(out, "  deadline misses        %lld, skipped ticks %lld\n",
                  static_cast<long long>(r.deadline.misses()),
@@ -111,9 +100,7 @@ void print_report(const RunResult& r, std::FILE* out) {
     std::fprintf(out, "  status %-15s in %lld ticks\n", to_text(1U << bit).c_str(),
                  static_cast<long long>(t.status_ticks[bit]));
   }
-  std::fprintf(out, "  machine                %s, %s\n                         %s, %s, commit %s\n",
-               r.machine.cpu.c_str(), r.machine.kernel.c_str(), r.machine.scheduler.c_str(),
-               r.machine.compiler.c_str(), r.machine.commit.c_str());
+  host::print_machine(r.machine, out);
 }
 
 void write_json(const RunResult& r, std::ostream& file) {
@@ -131,9 +118,9 @@ void write_json(const RunResult& r, std::ostream& file) {
       {"skipped_ticks", r.skipped_ticks},
       {"success_rate_last_100", r.deadline.success_rate()},
       {"success_rate_lowest", r.deadline.lowest_success_rate()},
-      {"compute_us", percentiles(r.deadline.compute())},
-      {"wakeup_us", percentiles(r.deadline.wakeup())},
-      {"simulated_arm_us", percentiles(r.arm_step)},
+      {"compute_us", host::percentiles(r.deadline.compute())},
+      {"wakeup_us", host::percentiles(r.deadline.wakeup())},
+      {"simulated_arm_us", host::percentiles(r.arm_step)},
       {"budget",
        {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
         {"work_units", r.scene.budget.work_units},
@@ -153,12 +140,7 @@ void write_json(const RunResult& r, std::ostream& file) {
       {"allocations_in_tick",
        r.allocations_in_tick < 0 ? ordered_json(nullptr) : ordered_json(r.allocations_in_tick)},
       {"status_ticks", status_counts(r)},
-      {"machine",
-       {{"cpu", r.machine.cpu},
-        {"kernel", r.machine.kernel},
-        {"scheduler", r.machine.scheduler},
-        {"compiler", r.machine.compiler},
-        {"commit", r.machine.commit}}}};
+      {"machine", host::to_json(r.machine)}};
   // A byte that is not UTF-8 in a name must not cost the report.
   file << report.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
 }
