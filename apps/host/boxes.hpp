@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <repel/loop/record.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/world/world.hpp>
 
@@ -19,18 +20,21 @@ class Boxes {
   Boxes& operator=(const Boxes&) = delete;
 
   /// Moves the tool to where it is at `time` [s] and evaluates every pair.
-  void tick(double time) noexcept {
+  const TickRecord& tick(double time) noexcept {
     Pose X = Pose::Identity();
     X.translation() = 0.05 * Vec3(std::sin(time), std::sin(1.3 * time), std::sin(1.7 * time));
-    ++world_.motion().tick;
+    record_.tick = ++world_.motion().tick;
+    record_.time = time;
     world_.place(tool_, X, {});
-    force_ += coprocessor_.exchange().on_body[static_cast<std::size_t>(tool_.index)].force;
+    const PairForces& forces = coprocessor_.exchange();
+    record_.virtual_force = forces.on_body[static_cast<std::size_t>(tool_.index)];
+    record_.pairs = forces.totals;
+    return record_;
   }
   /// Does the work of a tick without its effect.
   void rehearse() const noexcept { coprocessor_.rehearse(); }
 
-  /// Sum of the forces of all ticks [N].
-  [[nodiscard]] const Vec3& force() const noexcept { return force_; }
+  [[nodiscard]] int pairs() const noexcept { return static_cast<int>(world_.pairs().size()); }
 
  private:
   static const World& build(World& world, BodyId tool) {
@@ -55,7 +59,7 @@ class Boxes {
   World world_;
   BodyId tool_;
   Coprocessor coprocessor_;
-  Vec3 force_ = Vec3::Zero();
+  TickRecord record_;
 };
 
 }  // namespace repel::host

@@ -1,5 +1,6 @@
 #include "command_line.hpp"
 
+#include <charconv>
 #include <csignal>
 #include <repel/base/setup_error.hpp>
 
@@ -10,6 +11,14 @@ namespace {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<bool> interrupted{false};
 
+/// A round number as people write it, without an exponent.
+std::string in_full(double value) {
+  char digits[32];
+  const auto end =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr;
+  return {digits, end};
+}
+
 }  // namespace
 
 CLI::Validator between(double low, double high) {
@@ -17,9 +26,9 @@ CLI::Validator between(double low, double high) {
             double value = 0.0;
             const bool number = CLI::detail::lexical_cast(text, value);
             if (number && value >= low && value <= high) return std::string();
-            return text + " is not a number from " + to_text(low) + " to " + to_text(high);
+            return text + " is not a number from " + in_full(low) + " to " + in_full(high);
           },
-          to_text(low) + " to " + to_text(high), "between"};
+          in_full(low) + " to " + in_full(high), "between"};
 }
 
 const std::atomic<bool>& interruption() {

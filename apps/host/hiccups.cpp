@@ -5,47 +5,33 @@
 #include "machine.hpp"
 
 namespace repel::host {
-namespace {
 
-std::chrono::nanoseconds now() noexcept {
-  return std::chrono::steady_clock::now().time_since_epoch();
-}
-
-}  // namespace
-
-void Hiccups::record(nanoseconds gap) noexcept {
+void Hiccups::add(nanoseconds first, nanoseconds second, std::int64_t done,
+                  nanoseconds until) noexcept {
+  const bool is_hiccup = second - first > threshold;
+  second = std::min(second, until);
+  const nanoseconds gap = second - std::max(first, beat_.first);
+  if (gap <= nanoseconds(0)) return;
+  watched_ += gap;
+  if (!is_hiccup) return;
   std::size_t bin = edges_us.size() - 1;
   while (bin > 0 && gap < std::chrono::microseconds(edges_us[bin])) --bin;
-  ++bins[bin];
-  ++count;
-  total += gap;
-  longest = std::max(longest, gap);
+  ++bins_[bin];
+  ++count_;
+  total_ += gap;
+  longest_ = std::max(longest_, gap);
+  const std::int64_t due = beat_.due_before(second);
+  ticks_ += std::max<std::int64_t>(0, due - std::max(done, judged_));
+  judged_ = std::max(judged_, due);
 }
 
-nlohmann::ordered_json to_json(const Hiccups& hiccups) {
-  nlohmann::ordered_json histogram = nlohmann::ordered_json::array();
-  for (std::size_t bin = 0; bin < hiccups.bins.size(); ++bin) {
-    histogram.push_back({{"from_us", Hiccups::edges_us[bin]}, {"count", hiccups.bins[bin]}});
-  }
-  return {{"longer_than_us", 1e-3 * static_cast<double>(Hiccups::threshold.count())},
-          {"count", hiccups.count},
-          {"total_us", 1e-3 * static_cast<double>(hiccups.total.count())},
-          {"max_us", 1e-3 * static_cast<double>(hiccups.longest.count())},
-          {"histogram", histogram}};
-}
-
-HiccupWatch::HiccupWatch(const std::vector<int>& processors)
-    : thread_([this, processors](const std::stop_token& stop) {
+HiccupWatch::HiccupWatch(const std::vector<int>& processors, const Beat& beat)
+    : hiccups_(beat), thread_([this, processors](const std::stop_token& stop) {
         (void)run_on(processors);
+        priority_ = follow_real_time();
         watch(stop);
       }) {
-  while (last_reading_.load() == nanoseconds(0)) std::this_thread::yield();
-}
-
-bool HiccupWatch::met(nanoseconds since, nanoseconds now) const noexcept {
-  // In this order: once a reading is seen, so is the end of every hiccup before it.
-  if (now - last_reading_.load(std::memory_order_acquire) > Hiccups::threshold) return true;
-  return last_end_.load(std::memory_order_relaxed) >= since;
+  while (!reads_.load(std::memory_order_acquire)) std::this_thread::yield();
 }
 
 const Hiccups& HiccupWatch::stop() {
@@ -54,15 +40,24 @@ const Hiccups& HiccupWatch::stop() {
 }
 
 void HiccupWatch::watch(const std::stop_token& stop) noexcept {
-  nanoseconds last = now();
-  while (!stop.stop_requested()) {
-    const nanoseconds reading = now();
-    if (reading - last > Hiccups::threshold) {
-      hiccups_.record(reading - last);
-      last_end_.store(reading, std::memory_order_relaxed);
-    }
-    last_reading_.store(reading, std::memory_order_release);
+  constexpr std::chrono::milliseconds between_rests{9};
+  // Asked before the clock: a tick that ends in between has met what comes after the reading.
+  std::int64_t done = ended_.load(std::memory_order_acquire);
+  nanoseconds last = steady_now();
+  nanoseconds rest_at = last + between_rests;
+  reads_.store(true, std::memory_order_release);
+  for (bool last_round = false; !last_round;) {
+    last_round = stop.stop_requested();  // a hiccup may last until now
+    const std::int64_t next_done = ended_.load(std::memory_order_acquire);
+    const nanoseconds reading = steady_now();
+    hiccups_.add(last, reading, done, until_.load(std::memory_order_acquire));
+    done = next_done;
     last = reading;
+    if (priority_ == 0 || last < rest_at) continue;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    done = ended_.load(std::memory_order_acquire);
+    last = steady_now();
+    rest_at = last + between_rests;
   }
 }
 

@@ -60,8 +60,8 @@ Grant request_real_time() noexcept {
   return grant;
 }
 
-void follow_real_time() noexcept {
-  (void)make_fifo(priority - 1);
+int follow_real_time() noexcept {
+  return make_fifo(priority - 1) ? priority - 1 : 0;
 }
 
 std::vector<int> allowed_processors() {

@@ -26,9 +26,9 @@ struct Machine {
 /// processors for the program, each of which may be refused.
 [[nodiscard]] Grant request_real_time() noexcept;
 
-/// Gives the calling thread the real-time priority one below the caller of request_real_time, if
-/// the machine grants it. For threads that serve it.
-void follow_real_time() noexcept;
+/// Asks for the real-time priority one below the caller of request_real_time, for threads that
+/// serve it. Returns the priority; 0: refused.
+int follow_real_time() noexcept;
 
 /// The processors the calling thread may run on, at least one.
 [[nodiscard]] std::vector<int> allowed_processors();

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <nlohmann/json.hpp>
+#include <repel/loop/record.hpp>
 #include <repel/schedule/deadline.hpp>
 
 #include "hiccups.hpp"
@@ -22,11 +23,13 @@ struct TrialOptions {
   bool rehearse = true;     ///< wakes early and keeps the caches warm, as teleop; else sleeps only
 };
 
-/// Success over windows of 100 ticks, one after the other.
+/// Success rates over all windows of 100 ticks in a row, of which each tick from the 100th on ends
+/// one.
 struct Windows {
   static constexpr std::int64_t length = 100;
   static constexpr double sound = 0.95;  ///< a window below does not hold the rate
 
+  /// Takes the success rate of the last 100 ticks.
   void record(double success_rate) noexcept;
   [[nodiscard]] double mean() const noexcept;
 
@@ -43,10 +46,13 @@ struct Trial {
   std::optional<int> processor;  ///< the ticks were bound to; none where that was not granted
   DeadlineMonitor deadline{std::chrono::nanoseconds{0}};
   Windows windows;
-  std::optional<Hiccups> hiccups;    ///< none where the ticks have the only processor
-  std::int64_t ticks_in_hiccup = 0;  ///< from the time they were due to their end
-  std::int64_t skipped_ticks = 0;    ///< given up after a pause of more than a second
-  double stolen = 0.0;               ///< share of the processors' time a hypervisor took, 0 to 1
+  RunTotals totals;
+  int pairs = 0;
+  std::int64_t allocations_in_tick = -1;  ///< -1: could not be counted
+  std::optional<Hiccups> hiccups;         ///< none where the ticks have the only processor
+  int hiccup_priority = 0;                ///< of SCHED_FIFO, of who watched for them; 0: refused
+  double watched = 0.0;  ///< share of the time of the ticks that was watched, 0 to 1
+  double stolen = 0.0;   ///< share of the processors' time a hypervisor took, 0 to 1
   bool interrupted = false;
 };
 
@@ -57,8 +63,8 @@ struct TrialProgress {
   std::int64_t misses = 0;
 };
 
-/// Runs the tick of Boxes in a thread of its own, with a HiccupWatch beside it. `show` is called a
-/// few times a second. Ends early when `stop` becomes true.
+/// Runs the tick of Boxes in a thread of its own, with a HiccupWatch beside it. Every tick is run,
+/// however late. `show` is called a few times a second. Ends early when `stop` becomes true.
 [[nodiscard]] Trial run_trial(const TrialOptions& options, const std::atomic<bool>& stop,
                               const std::function<void(const TrialProgress&)>& show);
 
@@ -81,7 +87,7 @@ class TrialDisplay {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const Trial& trial);
 
-/// Prints everything there is to say, over several lines.
+/// Prints everything there is to say but the machine, over several lines.
 void print(const Trial& trial, std::FILE* out);
 
 }  // namespace repel::host

@@ -1,7 +1,6 @@
 #include "report.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <ostream>
 
 #include "times.hpp"
@@ -10,21 +9,6 @@ namespace repel::teleop {
 namespace {
 
 using nlohmann::ordered_json;
-
-double per_tick(const RunResult& r, std::int64_t sum) {
-  return r.totals.ticks > 0 ? static_cast<double>(sum) / static_cast<double>(r.totals.ticks) : 0.0;
-}
-double deepest(const RunResult& r) {
-  return std::isfinite(r.totals.nearest) ? std::max(0.0, -r.totals.nearest) : 0.0;
-}
-
-ordered_json status_counts(const RunResult& r) {
-  ordered_json counts = ordered_json::object();
-  for (unsigned bit = 0; bit < 32; ++bit) {
-    if (r.totals.status_ticks[bit] > 0) counts[to_text(1U << bit)] = r.totals.status_ticks[bit];
-  }
-  return counts;
-}
 
 /// The obstacles that pushed, hardest first.
 void print_obstacles(const RunResult& r, std::FILE* out) {
@@ -47,9 +31,7 @@ void print_obstacles(const RunResult& r, std::FILE* out) {
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
   for (const ObstacleResult& o : r.obstacles) {
-    const ordered_json nearest =
-        std::isfinite(o.nearest) ? ordered_json(o.nearest) : ordered_json(nullptr);
-    list.push_back({{"name", o.name}, {"nearest_m", nearest}, {"peak_force_n", o.peak_force}});
+    list.push_back({{"name", o.name}, {"nearest_m", o.nearest}, {"peak_force_n", o.peak_force}});
   }
   return list;
 }
@@ -74,8 +56,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                  r.deadline.success_rate(), r.deadline.lowest_success_rate(),
                  r.deadline.lowest_success_rate() < 0.95 ? "  (below 0.95: not a sound host)" : "");
   }
-  std::fprintf(out, "  pairs                  %d, near %.2f and evaluated %.2f per tick\n", r.pairs,
-               per_tick(r, t.near), per_tick(r, t.evaluated));
+  host::print_pairs(t, r.pairs, out);
   std::fprintf(out, "  stale pairs            most %d in a tick, oldest answer %lld ticks\n",
                t.most_stale, static_cast<long long>(t.oldest_age));
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
@@ -88,13 +69,11 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   if (!r.nearest_pair.empty()) {
     std::fprintf(out, "  nearest                %.3f mm (%s), deepest intrusion %.3f mm\n",
-                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * deepest(r));
+                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * host::deepest(t));
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
-  std::fprintf(out, "  allocations in tick    %s\n",
-               r.allocations_in_tick < 0 ? "not counted (another allocator is in place)"
-                                         : std::to_string(r.allocations_in_tick).c_str());
+  host::print_allocations(r.allocations_in_tick, out);
   for (unsigned bit = 0; bit < 32; ++bit) {
     if (t.status_ticks[bit] == 0) continue;
     std::fprintf(out, "  status %-15s in %lld ticks\n", to_text(1U << bit).c_str(),
@@ -104,45 +83,21 @@ void print_report(const RunResult& r, std::FILE* out) {
 }
 
 void write_json(const RunResult& r, std::ostream& file) {
-  const auto& t = r.totals;
-  ordered_json report = {
-      {"scene", r.scene.name},
-      {"scene_file", r.scene.file},
-      {"backend", r.options.backend},
-      {"rate_hz", r.options.rate_hz},
-      {"by_the_clock", !r.options.fast},
-      {"threads", r.options.threads},
-      {"ticks", t.ticks},
-      {"interrupted", r.interrupted},
-      {"deadline_misses", r.deadline.misses()},
-      {"skipped_ticks", r.skipped_ticks},
-      {"success_rate_last_100", r.deadline.success_rate()},
-      {"success_rate_lowest", r.deadline.lowest_success_rate()},
-      {"compute_us", host::percentiles(r.deadline.compute())},
-      {"wakeup_us", host::percentiles(r.deadline.wakeup())},
-      {"simulated_arm_us", host::percentiles(r.arm_step)},
-      {"budget",
-       {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
-        {"work_units", r.scene.budget.work_units},
-        {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}}},
-      {"pairs", r.pairs},
-      {"pairs_near_per_tick", per_tick(r, t.near)},
-      {"pairs_evaluated_per_tick", per_tick(r, t.evaluated)},
-      {"support_pairs_per_tick", per_tick(r, t.iterations)},
-      {"pairs_stale", t.most_stale},
-      {"pairs_stale_per_tick", per_tick(r, t.stale)},
-      {"oldest_age_ticks", t.oldest_age},
-      {"nearest_m", std::isfinite(t.nearest) ? ordered_json(t.nearest) : ordered_json(nullptr)},
-      {"nearest_pair", r.nearest_pair},
-      {"deepest_m", deepest(r)},
-      {"peak_force_n", t.peak_force},
-      {"obstacles", obstacle_list(r)},
-      {"allocations_in_tick",
-       r.allocations_in_tick < 0 ? ordered_json(nullptr) : ordered_json(r.allocations_in_tick)},
-      {"status_ticks", status_counts(r)},
-      {"machine", host::to_json(r.machine)}};
-  // A byte that is not UTF-8 in a name must not cost the report.
-  file << report.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  ordered_json report = {{"scene", r.scene.name},           {"scene_file", r.scene.file},
+                         {"backend", r.options.backend},    {"rate_hz", r.options.rate_hz},
+                         {"by_the_clock", !r.options.fast}, {"threads", r.options.threads},
+                         {"ticks", r.totals.ticks},         {"interrupted", r.interrupted}};
+  report.update(host::to_json(r.deadline, r.skipped_ticks));
+  report["simulated_arm_us"] = host::percentiles(r.arm_step);
+  report["budget"] = {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
+                      {"work_units", r.scene.budget.work_units},
+                      {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}};
+  report.update(host::to_json(r.totals, r.pairs));
+  report["nearest_pair"] = r.nearest_pair;
+  report["obstacles"] = obstacle_list(r);
+  report["allocations_in_tick"] = host::known(r.allocations_in_tick);
+  report["machine"] = host::to_json(r.machine);
+  host::write(report, file);
 }
 
 void write_csv(const RunResult& r, std::ostream& file) {

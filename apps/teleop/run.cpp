@@ -21,8 +21,8 @@ using std::chrono::steady_clock;
 
 /// For coprocessor threads, which do nothing but ticks.
 void begin_worker(int /*index*/) noexcept {
-  HeapGuard::watch_this_thread();
-  host::follow_real_time();
+  host::HeapGuard::watch_this_thread();
+  (void)host::follow_real_time();
 }
 
 CoprocessorOptions coprocessor_options(const scene::Scene& scene, const RunOptions& options,
@@ -125,7 +125,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     const auto begin = steady_clock::now();
     const TickRecord* record = nullptr;
     {
-      const HeapGuard guard;
+      const host::HeapGuard guard;
       record = &teleoperator.tick(options.fast ? k * period : begin.time_since_epoch());
     }
     const auto end = steady_clock::now();
@@ -143,7 +143,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   result.obstacles = obstacle_results(cell, coprocessor);
   find_nearest(cell.world, coprocessor, result);
   result.interrupted = stop;
-  result.allocations_in_tick = HeapGuard::allocations();
+  result.allocations_in_tick = host::HeapGuard::allocations();
   result.records = recorder.records();
   result.records_dropped = options.keep_records ? recorder.dropped() : 0;
 }

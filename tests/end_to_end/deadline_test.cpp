@@ -26,6 +26,19 @@ TEST(Deadline, SeveralRatesAreAListInTheirOrder) {
   expect_trial(reports[1], 400.0, 200);
 }
 
+TEST(Deadline, InterruptionEndsItWithWhatIsMeasured) {
+  const Folder folder;
+  const Ending ending =
+      run_program("timeout", "--preserve-status -s INT 3 " + quoted(REPEL_DEADLINE) +
+                                 " --rate 400 1000 --json " + quoted(folder / "d.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  const auto reports = report_of(folder / "d.json");
+  ASSERT_EQ(reports.size(), 1U) << "a list, as was asked for, of the one rate there was time for";
+  EXPECT_TRUE(reports[0].at("interrupted"));
+  EXPECT_GT(reports[0].at("ticks"), 0);
+  EXPECT_TRUE(ending.says("interrupted")) << ending;
+}
+
 TEST(Deadline, HelpNamesOptionsRatesAndExitStatus) {
   const Ending ending = deadline("--help");
   EXPECT_EQ(ending.status, 0) << ending;
@@ -43,8 +56,9 @@ TEST(Deadline, BadUsageEndsWithTwoAndSaysWhy) {
   }
 }
 
+// At once: the run that was asked for takes four minutes.
 TEST(Deadline, FileThatCannotBeWrittenEndsWithOneAndNamesThePath) {
-  const Ending ending = deadline("--rate 400 --seconds 0.1 --json /no/such/folder/file");
+  const Ending ending = deadline("--json /no/such/folder/file");
   EXPECT_EQ(ending.status, 1) << ending;
   EXPECT_TRUE(ending.says("/no/such/folder/file")) << ending;
 }
