@@ -19,7 +19,7 @@ struct Block {
     for (std::int32_t i = 0; i < pairs(); ++i) {
       (void)block.take({i}, 0, 0.0, world->motion(), poses);
     }
-    block.end(0, poses);
+    block.end(0);
   }
   const PairForces& run(std::int64_t units = no_limit, Clock::time_point deadline = no_deadline) {
     poses.begin();
@@ -296,7 +296,7 @@ TEST(PairBlock, PairsWithoutASlotAreEvaluatedAllTheSame) {
     for (std::int32_t i = 0; i < 8; ++i) {
       taken += block.take({i}, 0, 0.0, boxes.world.motion(), poses) ? 1 : 0;
     }
-    block.end(0, poses);
+    block.end(0);
     block.run(boxes.world.motion(), poses, no_limit, no_deadline);
     ASSERT_EQ(taken, 3);
     ASSERT_EQ(block.forces().totals.crowded, 5);
@@ -325,13 +325,13 @@ TEST(PairBlock, PairOffTheListKeepsItsAnswer) {
   block.run();
   const double before = block.block.separation_of({1}).distance;
   (void)block.block.take({0}, 0, 0.0, boxes.world.motion(), block.poses);
-  block.block.end(0, block.poses);
+  block.block.end(0);
   boxes.move();
   EXPECT_EQ(block.run().totals.near, 1);
   EXPECT_EQ(block.block.separation_of({1}).distance, before);
   (void)block.block.take({0}, 0, 0.0, boxes.world.motion(), block.poses);
   (void)block.block.take({1}, 0, 0.0, boxes.world.motion(), block.poses);
-  block.block.end(0, block.poses);
+  block.block.end(0);
   EXPECT_EQ(block.run(0).totals.oldest_age, 1);
 }
 

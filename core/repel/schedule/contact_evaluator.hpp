@@ -78,13 +78,6 @@ class ContactEvaluator {
     while (contacts_.count() > 0) unseat(contacts_.slot(contacts_.count() - 1), poses);
   }
 
-  /// The pair is on no list any more, being out of reach.
-  void drop(int slot, const PartPoses& poses) noexcept {
-    unseat(slot, poses);
-    memory().answer(slot).inside = false;
-    memory().strike(slot);
-  }
-
   /// A group of contacts asked anew.
   void evaluate_group(int g, const Motion& motion, PartPoses& poses) noexcept {
     ContactGroup& group = contacts_.group(g);

@@ -87,11 +87,12 @@ class PairBlock {
   }
 
   /// The list of that seeker is complete: those of its candidates that were not taken are none now.
-  void end(std::int32_t seeker, const PartPoses& poses) noexcept {
+  void end(std::int32_t seeker) noexcept {
     candidates_.remove_if([&](std::int32_t slot) {
       PairWatch& watch = pairs().memory().watch(slot);
-      const bool left = watch.seeker == seeker && !watch.taken;
-      if (left) contacts_.drop(slot, poses);
+      // A contact leaves when its evaluation says so, in whatever way the pairs are watched.
+      const bool left = watch.seeker == seeker && !watch.taken && watch.seat < 0;
+      if (left) pairs().drop(slot);
       watch.taken = false;
       return left;
     });

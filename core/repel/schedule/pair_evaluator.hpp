@@ -73,6 +73,12 @@ class PairEvaluator {
     return closing > 0.0 || distance < 0.0 ? distance / std::max(closing, 1e-3) : 1e9;
   }
 
+  /// The pair is on no list any more, being out of reach.
+  void drop(int slot) noexcept {
+    memory_.answer(slot).inside = false;
+    memory_.strike(slot);
+  }
+
   /// The pair was asked anew since `begin`.
   [[nodiscard]] bool is_fresh(int slot) const noexcept {
     return memory_.answer(slot).asked == now_;

@@ -100,7 +100,7 @@ class PairWorker {
                                                          worker.poses_);
     }
     void end(std::int32_t seeker) noexcept {
-      for (PairBlock& block : worker.blocks_) block.end(seeker, worker.poses_);
+      for (PairBlock& block : worker.blocks_) block.end(seeker);
     }
     PairWorker& worker;
     const Motion& motion;
