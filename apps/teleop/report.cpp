@@ -54,6 +54,23 @@ void print_obstacles(const RunResult& r, std::FILE* out) {
   if (touched.size() > most) std::fprintf(out, "    and %zu more\n", touched.size() - most);
 }
 
+/// What a tick must not do, and how often it was interrupted.
+void print_counts(const RunResult& r, std::FILE* out) {
+  const auto print = [out](const char* name, std::int64_t count, const char* instead) {
+    std::fprintf(out, "  %-22s %s\n", name, count < 0 ? instead : std::to_string(count).c_str());
+  };
+  print("allocations in tick", r.allocations_in_tick,
+        "not counted (another allocator is in place)");
+  print("system calls in tick", r.system_calls_in_tick, "not counted (no Syscall User Dispatch)");
+  print("page faults in tick", r.page_faults_in_tick, "not counted (memory is not locked)");
+  std::fprintf(out, "  switches in tick       %lld voluntary, %lld by the machine\n",
+               static_cast<long long>(r.voluntary_switches_in_tick),
+               static_cast<long long>(r.involuntary_switches_in_tick));
+}
+ordered_json count_or_null(std::int64_t count) {
+  return count < 0 ? ordered_json(nullptr) : ordered_json(count);
+}
+
 /// Every obstacle; its nearest is null while its pairs have never been asked.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -103,9 +120,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
-  std::fprintf(out, "  allocations in tick    %s\n",
-               r.allocations_in_tick < 0 ? "not counted (another allocator is in place)"
-                                         : std::to_string(r.allocations_in_tick).c_str());
+  print_counts(r, out);
   for (unsigned bit = 0; bit < 32; ++bit) {
     if (t.status_ticks[bit] == 0) continue;
     std::fprintf(out, "  status %-15s in %lld ticks\n", to_text(1U << bit).c_str(),
@@ -150,8 +165,11 @@ void write_json(const RunResult& r, std::ostream& file) {
       {"deepest_m", deepest(r)},
       {"peak_force_n", t.peak_force},
       {"obstacles", obstacle_list(r)},
-      {"allocations_in_tick",
-       r.allocations_in_tick < 0 ? ordered_json(nullptr) : ordered_json(r.allocations_in_tick)},
+      {"allocations_in_tick", count_or_null(r.allocations_in_tick)},
+      {"system_calls_in_tick", count_or_null(r.system_calls_in_tick)},
+      {"page_faults_in_tick", count_or_null(r.page_faults_in_tick)},
+      {"voluntary_context_switches_in_tick", count_or_null(r.voluntary_switches_in_tick)},
+      {"involuntary_context_switches_in_tick", count_or_null(r.involuntary_switches_in_tick)},
       {"status_ticks", status_counts(r)},
       {"machine",
        {{"cpu", r.machine.cpu},
