@@ -4,7 +4,7 @@
 
 namespace repel::teleop {
 
-TickUsage::TickUsage() noexcept : locked_(mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {}
+TickUsage::TickUsage() noexcept : locked_(mlockall(MCL_CURRENT) == 0) {}
 
 void TickUsage::begin() noexcept {
   getrusage(RUSAGE_THREAD, &before_);

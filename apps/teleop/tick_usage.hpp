@@ -12,7 +12,8 @@ namespace repel::teleop {
 /// Both are system calls: for just before and just after the time that is measured.
 class TickUsage {
  public:
-  /// Locks the memory of the program, without which the kernel may take any page away.
+  /// Locks what memory the program has by now, without which the kernel may take any page away.
+  /// Later memory stays as it is: where little may be locked, asking for it must not fail.
   TickUsage() noexcept;
 
   void begin() noexcept;

@@ -12,11 +12,10 @@ namespace {
 
 void fault() {
   constexpr std::size_t size = 4096;
-  static void* const page =
+  void* const page =
       mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  munlock(page, size);
-  madvise(page, size, MADV_DONTNEED);
   *static_cast<volatile char*>(page) = 1;
+  munmap(page, size);
 }
 
 void disturb() {

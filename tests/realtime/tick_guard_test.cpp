@@ -171,16 +171,12 @@ TEST(Usage, CountsAPageFault) {
   void* const page =
       mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(page, MAP_FAILED);
-  munlock(page, size);
-  for (const bool taken_away : {false, true}) {
-    if (taken_away) {
-      ASSERT_EQ(madvise(page, size, MADV_DONTNEED), 0);
-    }
+  for (const int faults : {1, 0}) {  // the first touch, and another
     const std::int64_t before = usage.page_faults();
     usage.begin();
     *static_cast<volatile char*>(page) = 1;
     usage.end();
-    EXPECT_EQ(usage.page_faults() - before, taken_away ? 1 : 0);
+    EXPECT_EQ(usage.page_faults() - before, faults);
   }
   munmap(page, size);
 }
