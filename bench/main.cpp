@@ -45,7 +45,7 @@ constexpr const char* compiler() {
 
 Build this_build() {
   return {processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads",
-          compiler(), REPEL_BENCH_FLAGS, simd(), teleop::commit};
+          compiler(), REPEL_BENCH_FLAGS, simd(), host::commit};
 }
 
 std::vector<std::string> initialize(int argc, char** argv) {

@@ -3,13 +3,10 @@
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <filesystem>
-#include <fstream>
 
+#include "command_line.hpp"
 #include "report.hpp"
 #include "run.hpp"
 
@@ -17,10 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace repel;
-
-// A signal handler has nothing else to write to.
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
-std::atomic<bool> interrupted{false};
 
 struct Arguments {
   std::string scene = "anderson_4x8";
@@ -65,48 +58,13 @@ std::string find_scene(const std::string& name) {
                    name.empty() ? "''" : name);
 }
 
-/// A number between two others. CLI::Range lets NaN pass.
-CLI::Validator between(double low, double high) {
-  return {[low, high](const std::string& text) {
-            double value = 0.0;
-            const bool number = CLI::detail::lexical_cast(text, value);
-            if (number && value >= low && value <= high) return std::string();
-            return text + " is not a number from " + to_text(low) + " to " + to_text(high);
-          },
-          to_text(low) + " to " + to_text(high), "between"};
-}
-
-/// A file for output, opened before the run so that a long one is not made in vain.
-class Output {
- public:
-  explicit Output(const std::string& path) : path_(path) {
-    if (path.empty()) return;
-    file_.open(path);
-    check();
-  }
-  [[nodiscard]] bool wanted() const { return !path_.empty(); }
-  [[nodiscard]] std::ostream& stream() { return file_; }
-  void close() {
-    file_.close();
-    check();
-  }
-
- private:
-  void check() const {
-    if (!file_) throw SetupError("cannot write the file", path_);
-  }
-
-  std::string path_;
-  std::ofstream file_;
-};
-
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds, "Scene time to run [s]")
       ->capture_default_str()
-      ->check(between(0.0, 1e6));
+      ->check(host::between(0.0, 1e6));
   app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
-      ->check(between(1.0, 1e5));
+      ->check(host::between(1.0, 1e5));
   app.add_flag(
       "--fast", a.run.fast,
       "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
@@ -139,17 +97,18 @@ void show(const scene::Scene& scene, const teleop::Progress& p, bool terminal) {
                terminal ? "\033[K" : "\n");
 }
 
-void run(const Arguments& arguments) {
+int run(const Arguments& arguments) {
   const scene::Scene scene = scene::load(find_scene(arguments.scene));
   teleop::RunOptions options = arguments.run;
   options.rate_hz = arguments.rate_hz > 0.0 ? arguments.rate_hz : scene.rate_hz;
   options.threads = arguments.threads >= 0 ? arguments.threads : scene.budget.threads;
   options.keep_records = !arguments.log.empty();
-  Output report(arguments.report);
-  Output log(arguments.log);
+  host::Output report(arguments.report);
+  host::Output log(arguments.log);
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const teleop::RunResult result = teleop::run(
-      scene, options, interrupted, [&](const teleop::Progress& p) { show(scene, p, terminal); });
+  const teleop::RunResult result =
+      teleop::run(scene, options, host::interruption(),
+                  [&](const teleop::Progress& p) { show(scene, p, terminal); });
   if (terminal) std::fputs("\r\033[K", stderr);
   teleop::print_report(result, stdout);
   if (report.wanted()) {
@@ -160,26 +119,12 @@ void run(const Arguments& arguments) {
     teleop::write_csv(result, log.stream());
     log.close();
   }
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    Arguments arguments;
-    CLI::App app("Drives a simulated arm through a world of virtual walls.", "teleop");
-    describe(app, arguments);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
-    std::signal(SIGINT, [](int) { interrupted = true; });
-    std::signal(SIGTERM, [](int) { interrupted = true; });
-    run(arguments);
-    return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "teleop: %s\n", error.what());
-    return 1;
-  }
+  return host::start(argc, argv, "teleop",
+                     "Drives a simulated arm through a world of virtual walls.", 1, describe, run);
 }

@@ -1,41 +1,14 @@
 #include "report.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "times.hpp"
 
 namespace repel::teleop {
 namespace {
 
 using nlohmann::ordered_json;
-
-double per_tick(const RunResult& r, std::int64_t sum) {
-  return r.totals.ticks > 0 ? static_cast<double>(sum) / static_cast<double>(r.totals.ticks) : 0.0;
-}
-double deepest(const RunResult& r) {
-  return std::isfinite(r.totals.nearest) ? std::max(0.0, -r.totals.nearest) : 0.0;
-}
-
-ordered_json percentiles(const DurationHistogram& h) {
-  return {{"p50", h.percentile_us(0.5)},
-          {"p99", h.percentile_us(0.99)},
-          {"p99_9", h.percentile_us(0.999)},
-          {"max", h.max_us()}};
-}
-
-ordered_json status_counts(const RunResult& r) {
-  ordered_json counts = ordered_json::object();
-  for (unsigned bit = 0; bit < 32; ++bit) {
-    if (r.totals.status_ticks[bit] > 0) counts[to_text(1U << bit)] = r.totals.status_ticks[bit];
-  }
-  return counts;
-}
-
-void print_times(const char* name, const DurationHistogram& h, std::FILE* out) {
-  std::fprintf(out, "  %-22s p50 %8.2f   p99 %8.2f   p99.9 %8.2f   max %9.2f us\n", name,
-               h.percentile_us(0.5), h.percentile_us(0.99), h.percentile_us(0.999), h.max_us());
-}
 
 /// The obstacles that pushed, hardest first.
 void print_obstacles(const RunResult& r, std::FILE* out) {
@@ -59,25 +32,19 @@ void print_counts(const RunResult& r, std::FILE* out) {
   const auto print = [out](const char* name, std::int64_t count, const char* instead) {
     std::fprintf(out, "  %-22s %s\n", name, count < 0 ? instead : std::to_string(count).c_str());
   };
-  print("allocations in tick", r.allocations_in_tick,
-        "not counted (another allocator is in place)");
+  host::print_allocations(r.allocations_in_tick, out);
   print("system calls in tick", r.system_calls_in_tick, "not counted (no Syscall User Dispatch)");
   print("page faults in tick", r.page_faults_in_tick, "not counted (memory is not locked)");
   std::fprintf(out, "  switches in tick       %lld voluntary, %lld by the machine\n",
                static_cast<long long>(r.voluntary_switches_in_tick),
                static_cast<long long>(r.involuntary_switches_in_tick));
 }
-ordered_json count_or_null(std::int64_t count) {
-  return count < 0 ? ordered_json(nullptr) : ordered_json(count);
-}
 
 /// Every obstacle; its nearest is null while its pairs have never been asked.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
   for (const ObstacleResult& o : r.obstacles) {
-    const ordered_json nearest =
-        std::isfinite(o.nearest) ? ordered_json(o.nearest) : ordered_json(nullptr);
-    list.push_back({{"name", o.name}, {"nearest_m", nearest}, {"peak_force_n", o.peak_force}});
+    list.push_back({{"name", o.name}, {"nearest_m", o.nearest}, {"peak_force_n", o.peak_force}});
   }
   return list;
 }
@@ -91,9 +58,9 @@ void print_report(const RunResult& r, std::FILE* out) {
                static_cast<double>(t.ticks) / r.options.rate_hz, r.options.backend.c_str(),
                r.options.threads, r.options.fast ? ", not by the clock" : "",
                r.interrupted ? ", interrupted" : "");
-  print_times("compute of the tick", r.deadline.compute(), out);
-  if (!r.options.fast) print_times("wake-up lateness", r.deadline.wakeup(), out);
-  print_times("simulated arm", r.arm_step, out);
+  host::print_times("compute of the tick", r.deadline.compute(), out);
+  if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
+  host::print_times("simulated arm", r.arm_step, out);
   if (!r.options.fast) {
     std::fprintf(out, "  deadline misses        %lld, skipped ticks %lld\n",
                  static_cast<long long>(r.deadline.misses()),
@@ -102,8 +69,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                  r.deadline.success_rate(), r.deadline.lowest_success_rate(),
                  r.deadline.lowest_success_rate() < 0.95 ? "  (below 0.95: not a sound host)" : "");
   }
-  std::fprintf(out, "  pairs                  %d, near %.2f and evaluated %.2f per tick\n", r.pairs,
-               per_tick(r, t.near), per_tick(r, t.evaluated));
+  host::print_pairs(t, r.pairs, out);
   std::fprintf(out, "  stale pairs            most %d in a tick, oldest answer %lld ticks\n",
                t.most_stale, static_cast<long long>(t.oldest_age));
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
@@ -116,7 +82,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   if (!r.nearest_pair.empty()) {
     std::fprintf(out, "  nearest                %.3f mm (%s), deepest intrusion %.3f mm\n",
-                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * deepest(r));
+                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * host::deepest(t));
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
@@ -126,59 +92,29 @@ void print_report(const RunResult& r, std::FILE* out) {
     std::fprintf(out, "  status %-15s in %lld ticks\n", to_text(1U << bit).c_str(),
                  static_cast<long long>(t.status_ticks[bit]));
   }
-  std::fprintf(out, "  machine                %s, %s\n                         %s, %s, commit %s\n",
-               r.machine.cpu.c_str(), r.machine.kernel.c_str(), r.machine.scheduler.c_str(),
-               r.machine.compiler.c_str(), r.machine.commit.c_str());
+  host::print_machine(r.machine, out);
 }
 
 void write_json(const RunResult& r, std::ostream& file) {
-  const auto& t = r.totals;
-  ordered_json report = {
-      {"scene", r.scene.name},
-      {"scene_file", r.scene.file},
-      {"backend", r.options.backend},
-      {"rate_hz", r.options.rate_hz},
-      {"by_the_clock", !r.options.fast},
-      {"threads", r.options.threads},
-      {"ticks", t.ticks},
-      {"interrupted", r.interrupted},
-      {"deadline_misses", r.deadline.misses()},
-      {"skipped_ticks", r.skipped_ticks},
-      {"success_rate_last_100", r.deadline.success_rate()},
-      {"success_rate_lowest", r.deadline.lowest_success_rate()},
-      {"compute_us", percentiles(r.deadline.compute())},
-      {"wakeup_us", percentiles(r.deadline.wakeup())},
-      {"simulated_arm_us", percentiles(r.arm_step)},
-      {"budget",
-       {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
-        {"work_units", r.scene.budget.work_units},
-        {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}}},
-      {"pairs", r.pairs},
-      {"pairs_near_per_tick", per_tick(r, t.near)},
-      {"pairs_evaluated_per_tick", per_tick(r, t.evaluated)},
-      {"support_pairs_per_tick", per_tick(r, t.iterations)},
-      {"pairs_stale", t.most_stale},
-      {"pairs_stale_per_tick", per_tick(r, t.stale)},
-      {"oldest_age_ticks", t.oldest_age},
-      {"nearest_m", std::isfinite(t.nearest) ? ordered_json(t.nearest) : ordered_json(nullptr)},
-      {"nearest_pair", r.nearest_pair},
-      {"deepest_m", deepest(r)},
-      {"peak_force_n", t.peak_force},
-      {"obstacles", obstacle_list(r)},
-      {"allocations_in_tick", count_or_null(r.allocations_in_tick)},
-      {"system_calls_in_tick", count_or_null(r.system_calls_in_tick)},
-      {"page_faults_in_tick", count_or_null(r.page_faults_in_tick)},
-      {"voluntary_context_switches_in_tick", count_or_null(r.voluntary_switches_in_tick)},
-      {"involuntary_context_switches_in_tick", count_or_null(r.involuntary_switches_in_tick)},
-      {"status_ticks", status_counts(r)},
-      {"machine",
-       {{"cpu", r.machine.cpu},
-        {"kernel", r.machine.kernel},
-        {"scheduler", r.machine.scheduler},
-        {"compiler", r.machine.compiler},
-        {"commit", r.machine.commit}}}};
-  // A byte that is not UTF-8 in a name must not cost the report.
-  file << report.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  ordered_json report = {{"scene", r.scene.name},           {"scene_file", r.scene.file},
+                         {"backend", r.options.backend},    {"rate_hz", r.options.rate_hz},
+                         {"by_the_clock", !r.options.fast}, {"threads", r.options.threads},
+                         {"ticks", r.totals.ticks},         {"interrupted", r.interrupted}};
+  report.update(host::to_json(r.deadline, r.skipped_ticks));
+  report["simulated_arm_us"] = host::percentiles(r.arm_step);
+  report["budget"] = {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
+                      {"work_units", r.scene.budget.work_units},
+                      {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}};
+  report.update(host::to_json(r.totals, r.pairs));
+  report["nearest_pair"] = r.nearest_pair;
+  report["obstacles"] = obstacle_list(r);
+  report["allocations_in_tick"] = host::known(r.allocations_in_tick);
+  report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);
+  report["page_faults_in_tick"] = host::known(r.page_faults_in_tick);
+  report["voluntary_context_switches_in_tick"] = host::known(r.voluntary_switches_in_tick);
+  report["involuntary_context_switches_in_tick"] = host::known(r.involuntary_switches_in_tick);
+  report["machine"] = host::to_json(r.machine);
+  host::write(report, file);
 }
 
 void write_csv(const RunResult& r, std::ostream& file) {

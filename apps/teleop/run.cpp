@@ -1,7 +1,5 @@
 #include "run.hpp"
 
-#include <time.h>
-
 #include <cmath>
 #include <thread>
 
@@ -13,6 +11,7 @@
 
 #include "cell.hpp"
 #include "heap_guard.hpp"
+#include "metronome.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
 
@@ -22,59 +21,15 @@ namespace {
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
-/// Wakes the loop at multiples of the period: sleeps, then spins the last stretch, because a sleep
-/// alone overshoots and a spin alone is throttled by the scheduler.
-class Metronome {
- public:
-  explicit Metronome(nanoseconds period)
-      : period_(period), spin_(std::min(longest_spin, period / 4)), due_(now() + period) {}
-
-  /// Returns once the next tick is due, and how late that is. While there is time after the sleep,
-  /// `rehearse` is called again and again: it keeps the processor as it should find the tick.
-  template <class Rehearse>
-  nanoseconds wait(Rehearse&& rehearse) {
-    const nanoseconds sleep_until = due_ - spin_;
-    if (sleep_until > now()) {
-      const timespec until{sleep_until.count() / 1000000000, sleep_until.count() % 1000000000};
-      clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-    }
-    while (due_ - now() > spin_ / 4) rehearse();
-    nanoseconds late = now() - due_;
-    while (late.count() < 0) late = now() - due_;
-    due_ += period_;
-    return late;
-  }
-
-  /// After a pause of more than a second, gives up the ticks that were missed; returns how many.
-  std::int64_t catch_up() {
-    if (now() - due_ < std::chrono::seconds(1)) return 0;
-    const std::int64_t lost = (now() - due_) / period_;
-    due_ += lost * period_;
-    return lost;
-  }
-
- private:
-  static constexpr nanoseconds longest_spin{150000};
-
-  static nanoseconds now() {
-    return std::chrono::duration_cast<nanoseconds>(steady_clock::now().time_since_epoch());
-  }
-
-  nanoseconds period_;
-  nanoseconds spin_;
-  nanoseconds due_;
-};
-
-/// What each thread of the coprocessor begins with.
-void begin_worker(int index) noexcept {
-  SystemCallGuard::arm(Pauses::naps);
-  follow_real_time(index);
-  SystemCallGuard::watch_this_thread();
-}
+/// For coprocessor threads, which do nothing but ticks.
 void begin_worker_in_lock_step(int /*index*/) noexcept {
   SystemCallGuard::arm(Pauses::naps);
-  HeapGuard::watch_this_thread();
+  host::HeapGuard::watch_this_thread();
   SystemCallGuard::watch_this_thread();
+}
+void begin_worker(int index) noexcept {
+  (void)host::follow_real_time();
+  begin_worker_in_lock_step(index);
 }
 
 CoprocessorOptions coprocessor_options(const scene::Scene& scene, const RunOptions& options,
@@ -163,7 +118,8 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
 
-  result.machine = describe_machine(options.fast ? "not by the clock" : request_real_time());
+  result.machine = host::describe_machine(options.fast ? "not by the clock"
+                                                       : host::to_text(host::request_real_time()));
   Coprocessor coprocessor(cell.world, coprocessor_options(result.scene, options, period));
   network::ScriptedOperator the_operator(result.scene.script, result.scene.spaceball,
                                          result.scene.torque_arm);
@@ -171,7 +127,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
                             the_operator, result.scene.coupling, period);
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   TickUsage usage;
-  Metronome metronome(period);
+  host::Metronome metronome(period);
   for (std::int64_t k = 1; k <= ticks && !stop; ++k) {
     const nanoseconds late =
         options.fast ? nanoseconds(0) : metronome.wait([&] { teleoperator.rehearse(); });
@@ -179,7 +135,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     const auto begin = steady_clock::now();
     const TickRecord* record = nullptr;
     {
-      const HeapGuard heap;
+      const host::HeapGuard heap;
       const SystemCallGuard system_calls;
       record = &teleoperator.tick(options.fast ? k * period : begin.time_since_epoch());
     }
@@ -200,7 +156,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   result.obstacles = obstacle_results(cell, coprocessor);
   find_nearest(cell.world, coprocessor, result);
   result.interrupted = stop;
-  result.allocations_in_tick = HeapGuard::allocations();
+  result.allocations_in_tick = host::HeapGuard::allocations();
   result.system_calls_in_tick = SystemCallGuard::calls();
   result.page_faults_in_tick = usage.page_faults();
   result.voluntary_switches_in_tick = usage.voluntary_switches();

@@ -53,7 +53,7 @@ struct RunResult {
   std::vector<TickRecord> records;
   std::int64_t records_dropped = 0;
   bool interrupted = false;
-  Machine machine;
+  host::Machine machine;
 };
 
 /// What a run shows of itself while it lasts.

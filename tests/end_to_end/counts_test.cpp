@@ -10,7 +10,7 @@
 namespace repel::test {
 namespace {
 
-using teleop::HeapGuard;
+using host::HeapGuard;
 using teleop::SystemCallGuard;
 
 /// The report of a run of that scene.

@@ -19,7 +19,7 @@ namespace repel {
 namespace {
 
 using namespace std::chrono_literals;
-using teleop::HeapGuard;
+using host::HeapGuard;
 using teleop::Pauses;
 using teleop::SystemCallGuard;
 using teleop::TickUsage;

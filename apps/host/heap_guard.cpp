@@ -11,7 +11,7 @@
 #define REPEL_COUNTS_HEAP 0
 #endif
 
-namespace repel::teleop {
+namespace repel::host {
 namespace {
 
 // What malloc does to them has no place to be passed through.
@@ -41,7 +41,7 @@ std::int64_t HeapGuard::allocations() noexcept {
   if (guarded > 0) counted.fetch_add(1, std::memory_order_relaxed);
 }
 
-}  // namespace repel::teleop
+}  // namespace repel::host
 
 #if REPEL_COUNTS_HEAP
 // The C library's own functions, under the names it keeps for replacements like these.
@@ -53,19 +53,19 @@ void* __libc_realloc(void* old, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 void* malloc(std::size_t size) {
-  repel::teleop::count();
+  repel::host::count();
   return __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) {
-  repel::teleop::count();
+  repel::host::count();
   return __libc_calloc(count, size);
 }
 void* realloc(void* old, std::size_t size) {
-  repel::teleop::count();
+  repel::host::count();
   return __libc_realloc(old, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) {
-  repel::teleop::count();
+  repel::host::count();
   return __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace repel::teleop {
+namespace repel::host {
 
 /// While one lives, every malloc, calloc, realloc and aligned allocation of its thread is counted.
 class HeapGuard {
@@ -21,4 +21,4 @@ class HeapGuard {
   [[nodiscard]] static std::int64_t allocations() noexcept;
 };
 
-}  // namespace repel::teleop
+}  // namespace repel::host

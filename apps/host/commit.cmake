@@ -10,7 +10,7 @@ file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[
 /// The commit this program was built from.
 #pragma once
 
-namespace repel::teleop {
+namespace repel::host {
 inline constexpr const char* commit = "@commit@";
-}  // namespace repel::teleop
+}  // namespace repel::host
 ]] @ONLY)

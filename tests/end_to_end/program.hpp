@@ -1,0 +1,86 @@
+/// @file
+/// Runs a program as a user would, and reads what it leaves behind.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace repel::test {
+
+namespace fs = std::filesystem;
+
+inline std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A folder of its own for one test, removed with it.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "repel_").string() + std::string(6, 'X');
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] std::string operator/(const std::string& name) const {
+    return (path_ / name).string();
+  }
+  /// Writes a file into the folder and returns its path.
+  [[nodiscard]] std::string with(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return *this / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// How a run of a program ended and what it said.
+struct Ending {
+  int status = -1;  ///< exit status; 128 + signal when it was killed
+  std::string out;
+  std::string err;
+  [[nodiscard]] bool says(const std::string& words) const {
+    return out.find(words) != std::string::npos || err.find(words) != std::string::npos;
+  }
+};
+
+inline std::ostream& operator<<(std::ostream& stream, const Ending& ending) {
+  return stream << "exit status " << ending.status << '\n' << ending.out << ending.err;
+}
+
+/// `word` as the shell takes it whole.
+inline std::string quoted(const std::string& word) {
+  return std::string(1, '\'').append(word).append(1, '\'');
+}
+
+/// Runs `program` with `arguments`, as a shell splits them.
+inline Ending run_program(const std::string& program, const std::string& arguments) {
+  const Folder folder;
+  const std::string command = quoted(program) + " " + arguments + " >" + quoted(folder / "out") +
+                              " 2>" + quoted(folder / "err") + " </dev/null";
+  const int raw = std::system(command.c_str());
+  const int status = WIFEXITED(raw) ? WEXITSTATUS(raw) : 128 + WTERMSIG(raw);
+  return {status, text_of(folder / "out"), text_of(folder / "err")};
+}
+
+inline nlohmann::json report_of(const std::string& path) {
+  return nlohmann::json::parse(text_of(path));
+}
+
+}  // namespace repel::test
