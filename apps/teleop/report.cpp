@@ -27,6 +27,19 @@ void print_obstacles(const RunResult& r, std::FILE* out) {
   if (touched.size() > most) std::fprintf(out, "    and %zu more\n", touched.size() - most);
 }
 
+/// What a tick must not do, and how often it was interrupted.
+void print_counts(const RunResult& r, std::FILE* out) {
+  const auto print = [out](const char* name, std::int64_t count, const char* instead) {
+    std::fprintf(out, "  %-22s %s\n", name, count < 0 ? instead : std::to_string(count).c_str());
+  };
+  host::print_allocations(r.allocations_in_tick, out);
+  print("system calls in tick", r.system_calls_in_tick, "not counted (no Syscall User Dispatch)");
+  print("page faults in tick", r.page_faults_in_tick, "not counted (memory is not locked)");
+  std::fprintf(out, "  switches in tick       %lld voluntary, %lld by the machine\n",
+               static_cast<long long>(r.voluntary_switches_in_tick),
+               static_cast<long long>(r.involuntary_switches_in_tick));
+}
+
 /// Every obstacle; its nearest is null while its pairs have never been asked.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -73,7 +86,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
-  host::print_allocations(r.allocations_in_tick, out);
+  print_counts(r, out);
   for (unsigned bit = 0; bit < 32; ++bit) {
     if (t.status_ticks[bit] == 0) continue;
     std::fprintf(out, "  status %-15s in %lld ticks\n", to_text(1U << bit).c_str(),
@@ -96,6 +109,10 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["nearest_pair"] = r.nearest_pair;
   report["obstacles"] = obstacle_list(r);
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
+  report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);
+  report["page_faults_in_tick"] = host::known(r.page_faults_in_tick);
+  report["voluntary_context_switches_in_tick"] = host::known(r.voluntary_switches_in_tick);
+  report["involuntary_context_switches_in_tick"] = host::known(r.involuntary_switches_in_tick);
   report["machine"] = host::to_json(r.machine);
   host::write(report, file);
 }

@@ -12,6 +12,8 @@
 #include "cell.hpp"
 #include "heap_guard.hpp"
 #include "metronome.hpp"
+#include "system_call_guard.hpp"
+#include "tick_usage.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -20,9 +22,14 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 /// For coprocessor threads, which do nothing but ticks.
-void begin_worker(int /*index*/) noexcept {
+void begin_worker_in_lock_step(int /*index*/) noexcept {
+  SystemCallGuard::arm(Pauses::naps);
   host::HeapGuard::watch_this_thread();
+  SystemCallGuard::watch_this_thread();
+}
+void begin_worker(int index) noexcept {
   (void)host::follow_real_time();
+  begin_worker_in_lock_step(index);
 }
 
 CoprocessorOptions coprocessor_options(const scene::Scene& scene, const RunOptions& options,
@@ -32,7 +39,7 @@ CoprocessorOptions coprocessor_options(const scene::Scene& scene, const RunOptio
   result.period = period;
   result.patience = period / 4;
   result.lock_step = options.fast;
-  result.on_thread_start = options.fast ? nullptr : &begin_worker;
+  result.on_thread_start = options.fast ? &begin_worker_in_lock_step : &begin_worker;
   result.budget.work_units = scene.budget.work_units;
   // A clock would make two runs differ: without one only the counted budget holds.
   if (!options.fast) {
@@ -118,19 +125,25 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
                                          result.scene.torque_arm);
   Teleoperator teleoperator(cell.model, arm, cell.kinematics, cell.world, cell.tool, coprocessor,
                             the_operator, result.scene.coupling, period);
+  SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
+  TickUsage usage;
   host::Metronome metronome(period);
   for (std::int64_t k = 1; k <= ticks && !stop; ++k) {
     const nanoseconds late =
         options.fast ? nanoseconds(0) : metronome.wait([&] { teleoperator.rehearse(); });
+    usage.begin();
     const auto begin = steady_clock::now();
     const TickRecord* record = nullptr;
     {
-      const host::HeapGuard guard;
+      const host::HeapGuard heap;
+      const SystemCallGuard system_calls;
       record = &teleoperator.tick(options.fast ? k * period : begin.time_since_epoch());
     }
     const auto end = steady_clock::now();
+    usage.end();
+    const auto arm_begin = steady_clock::now();
     arm.step(period_s);
-    result.arm_step.record(steady_clock::now() - end);
+    result.arm_step.record(steady_clock::now() - arm_begin);
     result.deadline.record(late, end - begin);
     result.totals.add(*record);
     result.over_budget += over_budget(result.scene.budget, end - begin) ? 1 : 0;
@@ -144,6 +157,10 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   find_nearest(cell.world, coprocessor, result);
   result.interrupted = stop;
   result.allocations_in_tick = host::HeapGuard::allocations();
+  result.system_calls_in_tick = SystemCallGuard::calls();
+  result.page_faults_in_tick = usage.page_faults();
+  result.voluntary_switches_in_tick = usage.voluntary_switches();
+  result.involuntary_switches_in_tick = usage.involuntary_switches();
   result.records = recorder.records();
   result.records_dropped = options.keep_records ? recorder.dropped() : 0;
 }

@@ -43,9 +43,13 @@ struct RunResult {
   DurationHistogram arm_step;      ///< time of the simulated arm, outside the tick
   std::int64_t over_budget = 0;    ///< ticks that computed longer than the scene's wall budget
   std::int64_t skipped_ticks = 0;  ///< given up after a pause of more than a second
-  std::int64_t allocations_in_tick = -1;  ///< -1: could not be counted
-  std::string nearest_pair;               ///< "part - obstacle"; empty without one
-  std::vector<ObstacleResult> obstacles;  ///< in the order of the scene
+  std::int64_t allocations_in_tick = -1;  ///< -1, here and below: could not be counted
+  std::int64_t system_calls_in_tick = -1;
+  std::int64_t page_faults_in_tick = -1;  ///< minor and major; of the thread of the tick, as below
+  std::int64_t voluntary_switches_in_tick = -1;
+  std::int64_t involuntary_switches_in_tick = -1;  ///< the machine's doing
+  std::string nearest_pair;                        ///< "part - obstacle"; empty without one
+  std::vector<ObstacleResult> obstacles;           ///< in the order of the scene
   std::vector<TickRecord> records;
   std::int64_t records_dropped = 0;
   bool interrupted = false;

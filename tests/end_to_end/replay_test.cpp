@@ -49,11 +49,26 @@ TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
       teleop("anderson_4x8 --seconds 1 --report " + quoted(folder / "report.json"));
   ASSERT_EQ(ending.status, 0) << ending;
   const auto report = report_of(folder / "report.json");
-  for (const char* key :
-       {"scene", "backend", "rate_hz", "ticks", "deadline_misses", "success_rate_last_100",
-        "compute_us", "wakeup_us", "pairs", "pairs_evaluated_per_tick", "pairs_stale",
-        "oldest_age_ticks", "nearest_m", "deepest_m", "peak_force_n", "allocations_in_tick",
-        "machine"}) {
+  for (const char* key : {"scene",
+                          "backend",
+                          "rate_hz",
+                          "ticks",
+                          "deadline_misses",
+                          "success_rate_last_100",
+                          "compute_us",
+                          "wakeup_us",
+                          "pairs",
+                          "pairs_evaluated_per_tick",
+                          "pairs_stale",
+                          "oldest_age_ticks",
+                          "nearest_m",
+                          "deepest_m",
+                          "peak_force_n",
+                          "allocations_in_tick",
+                          "system_calls_in_tick",
+                          "page_faults_in_tick",
+                          "voluntary_context_switches_in_tick",
+                          "machine"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   for (const char* times : {"compute_us", "wakeup_us"}) {

@@ -1,4 +1,7 @@
 // Does everything a tick must not do; symbols.sh must refuse this object for each of them.
+#include <unistd.h>
+
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <stdexcept>
@@ -13,6 +16,8 @@ double* forbidden(std::vector<double>& grows, double*& old, void*& raw) {
   grows.push_back(1.0);
   std::free(raw);
   raw = std::malloc(grows.size());
+  std::puts("ticking");
+  usleep(1);
   if (raw == nullptr) throw std::runtime_error("no memory");
   delete[] old;
   return new double[grows.size()];

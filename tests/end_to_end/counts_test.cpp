@@ -1,0 +1,103 @@
+// What the tick must not do, counted in every tick of every scene.
+#include <gtest/gtest.h>
+
+#include <repel/scene/scene.hpp>
+
+#include "end_to_end/teleop.hpp"
+#include "heap_guard.hpp"
+#include "realtime/clock.hpp"
+
+namespace repel::test {
+namespace {
+
+using host::HeapGuard;
+using teleop::SystemCallGuard;
+
+/// The report of a run of that scene.
+nlohmann::json counted(const std::string& arguments) {
+  const Folder folder;
+  const Ending ending = teleop(arguments + " --report " + quoted(folder / "report.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  return report_of(folder / "report.json");
+}
+
+/// What a tick causes it causes every time. The kernel may move a locked page or hold a thread up
+/// once, so these two get three runs in which to be nothing.
+bool is_at_rest(const nlohmann::json& report) {
+  for (const char* key : {"page_faults_in_tick", "voluntary_context_switches_in_tick"}) {
+    if (!report.at(key).is_null() && report.at(key) != 0) return false;
+  }
+  return true;
+}
+
+void expect_nothing_in_tick(const std::string& arguments) {
+  SCOPED_TRACE(arguments);
+  nlohmann::json report;
+  for (int run = 0; run < 3 && (run == 0 || !is_at_rest(report)); ++run) {
+    report = counted(arguments);
+    EXPECT_GT(report.at("ticks"), 0);
+    for (const char* key : {"allocations_in_tick", "system_calls_in_tick"}) {
+      EXPECT_TRUE(report.at(key).is_null() || report.at(key) == 0) << key << report.at(key);
+    }
+  }
+  EXPECT_TRUE(is_at_rest(report)) << "three times; page faults " << report.at("page_faults_in_tick")
+                                  << ", voluntary switches "
+                                  << report.at("voluntary_context_switches_in_tick");
+  std::printf("%s: interrupted by the machine in %s of %s ticks\n", arguments.c_str(),
+              report.at("involuntary_context_switches_in_tick").dump().c_str(),
+              report.at("ticks").dump().c_str());
+}
+
+/// What is counted, whether it can be here, and if not why.
+struct Count {
+  std::string key;
+  bool possible;
+  std::string reason;
+  std::string disturbance;  ///< of disturbance.cpp
+};
+std::vector<Count> counts() {
+  (void)clock_in_the_kernel();  // which tells whether system calls can be counted
+  const auto report = counted("empty --fast --seconds 0.1");
+  return {{"allocations_in_tick", HeapGuard::allocations() >= 0, "a sanitizer owns malloc",
+           "allocation"},
+          {"system_calls_in_tick", SystemCallGuard::calls() >= 0,
+           "it takes Linux 5.11 on x86-64 and no sanitizer", "system call"},
+          {"page_faults_in_tick", !report.at("page_faults_in_tick").is_null(),
+           "memory cannot be locked; to allow it: ulimit -l unlimited", "page fault"},
+          {"voluntary_context_switches_in_tick", true, "", "context switch"}};
+}
+
+TEST(Counts, AreNothingInEveryTickOfEveryScene) {
+  const std::string source = clock_in_the_kernel();
+  if (!source.empty()) GTEST_SKIP() << "asking the time is a system call here, clock " << source;
+  for (const Count& count : counts()) {
+    if (count.possible) continue;
+    std::printf("skipped: %s: %s\n", count.key.c_str(), count.reason.c_str());
+  }
+  for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    double seconds = 0.5;
+    for (const auto& phase : scene::load(entry.path().string()).script) seconds += phase.duration;
+    for (const std::string threads : {"0", "2"}) {
+      const std::string scene = entry.path().stem().string() + " --threads " + threads;
+      expect_nothing_in_tick(scene + " --fast --seconds " + std::to_string(seconds));
+      expect_nothing_in_tick(scene + " --seconds 1");
+    }
+    expect_nothing_in_tick(entry.path().stem().string() + " --fast --backend ideal");
+  }
+}
+
+TEST(Counts, SeeWhatIsDoneInATick) {
+  for (const Count& count : counts()) {
+    if (!count.possible) continue;
+    ASSERT_EQ(setenv("REPEL_DISTURBANCE", count.disturbance.c_str(), 1), 0);
+    ASSERT_EQ(setenv("LD_PRELOAD", REPEL_DISTURBANCE, 1), 0);
+    const auto report = counted("empty --fast --seconds 0.1");
+    unsetenv("LD_PRELOAD");
+    ASSERT_FALSE(report.at(count.key).is_null()) << "could be counted: " << count.key;
+    EXPECT_GE(report.at(count.key), report.at("ticks")) << count.disturbance;
+  }
+}
+
+}  // namespace
+}  // namespace repel::test
