@@ -127,6 +127,23 @@ TEST(ForceLaw, SpringGivesBackOnAClosedPathWhatItTook) {
   }
 }
 
+// The spring is the slope of the potential: between two distances they differ by the work.
+TEST(ForceLaw, PotentialIsTheWorkOfTheSpringUpToItsCeiling) {
+  for (const double ceiling : {40.0, 100.0, 250.0, std::numeric_limits<double>::infinity()}) {
+    const ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 0.0, .ceiling = ceiling};
+    EXPECT_EQ(law.potential(law.range), 0.0);
+    EXPECT_EQ(law.potential(1.0), 0.0);
+    constexpr double step = 1e-6;
+    double work = 0.0;
+    for (double d = law.range; d > -0.05; d -= step) {
+      work += step * law(d - 0.5 * step, 0.0);
+      ASSERT_NEAR(law.potential(d - step), work, 1e-7 + 1e-6 * work)
+          << "at " << d << " m, ceiling " << ceiling << " N";
+    }
+    EXPECT_GT(work, 1.0);
+  }
+}
+
 TEST(ForceLaw, DamperOnlyTakesEnergy) {
   ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 80.0};
   constexpr int steps = 20000;
