@@ -65,6 +65,12 @@ ordered_json obstacle_list(const RunResult& r) {
   return list;
 }
 
+void print_workers(const WorkerReport& w, std::FILE* out) {
+  std::fprintf(
+      out, "  workers stood in for   in %lld ticks, longest %lld in a row, %d at the end\n",
+      static_cast<long long>(w.ticks), static_cast<long long>(w.longest_silence), w.stood_in);
+}
+
 }  // namespace
 
 void print_report(const RunResult& r, std::FILE* out) {
@@ -89,6 +95,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                per_tick(r, t.near), per_tick(r, t.evaluated));
   std::fprintf(out, "  stale pairs            most %d in a tick, oldest answer %lld ticks\n",
                t.most_stale, static_cast<long long>(t.oldest_age));
+  if (r.options.threads > 0) print_workers(t.workers, out);
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
     std::fprintf(out, "  wall budget            %g us, exceeded by the whole tick %lld times\n",
                  r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
@@ -145,6 +152,10 @@ void write_json(const RunResult& r, std::ostream& file) {
       {"pairs_stale", t.most_stale},
       {"pairs_stale_per_tick", per_tick(r, t.stale)},
       {"oldest_age_ticks", t.oldest_age},
+      {"workers",
+       {{"ticks_stood_in_for", t.workers.ticks},
+        {"longest_silence_ticks", t.workers.longest_silence},
+        {"silent_at_end", t.workers.stood_in}}},
       {"nearest_m", std::isfinite(t.nearest) ? ordered_json(t.nearest) : ordered_json(nullptr)},
       {"nearest_pair", r.nearest_pair},
       {"deepest_m", deepest(r)},

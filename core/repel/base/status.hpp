@@ -23,8 +23,9 @@ inline constexpr Status clock_fault = 1U << 3;  ///< the clock stood still or ra
 inline constexpr Status stale_pairs = 1U << 4;  ///< some near pairs kept an old answer, widened by
                                                 ///< the motion since: raise the budget or threads
 inline constexpr Status late_result = 1U
-                                      << 5;  ///< the coprocessor did not answer in time: its last
-                                             ///< forces were used; raise the budget or lower rate
+                                      << 5;  ///< a worker of the coprocessor did not answer in
+                                             ///< time: the caller did its work; if it lasts, free
+                                             ///< a processor for each thread or lower the rate
 inline constexpr Status torque_limit = 1U << 6;   ///< a joint torque was cut to its limit
 inline constexpr Status crowded_pairs = 1U << 7;  ///< more pairs could come within range than
                                                   ///< there is memory for: the rest was evaluated

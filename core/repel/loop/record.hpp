@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <repel/base/status.hpp>
-#include <repel/schedule/pair_forces.hpp>
+#include <repel/schedule/coprocessor.hpp>
 
 namespace repel {
 
@@ -26,6 +26,7 @@ struct TickRecord {
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
   double gain = 1.0;          ///< of the fail-safe
   PairTotals pairs;
+  WorkerReport workers;
 };
 
 /// Keeps the ticks of a run in memory taken at set-up; those beyond it are counted and left out.
@@ -61,6 +62,7 @@ struct RunTotals {
   PairId nearest_pair;
   double peak_force = 0.0;                      ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
+  WorkerReport workers;                         ///< as of the last tick
 
   void add(const TickRecord& r) noexcept {
     ++ticks;
@@ -76,6 +78,7 @@ struct RunTotals {
     }
     peak_force = std::max(peak_force, r.virtual_force.force.norm());
     for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
+    workers = r.workers;
   }
 };
 
