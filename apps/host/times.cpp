@@ -52,6 +52,7 @@ ordered_json to_json(const RunTotals& t, int pairs) {
           {"pairs_stale", t.most_stale},
           {"pairs_stale_per_tick", per_tick(t, t.stale)},
           {"oldest_age_ticks", t.oldest_age},
+          {"refresh_energy_j", t.refresh_energy},
           {"nearest_m", t.nearest},
           {"deepest_m", deepest(t)},
           {"peak_force_n", t.peak_force},
@@ -67,8 +68,9 @@ void write(const ordered_json& report, std::ostream& file) {
 }
 
 void print_pairs(const RunTotals& t, int pairs, std::FILE* out) {
-  std::fprintf(out, "  pairs                  %d, near %.2f and evaluated %.2f per tick\n", pairs,
-               per_tick(t, t.near), per_tick(t, t.evaluated));
+  std::fprintf(out,
+               "  pairs                  %d, near %.2f and evaluated %.2f per tick; %.2f skipped\n",
+               pairs, per_tick(t, t.near), per_tick(t, t.evaluated), pairs - per_tick(t, t.near));
 }
 
 void print_allocations(std::int64_t count, std::FILE* out) {

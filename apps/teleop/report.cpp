@@ -49,6 +49,12 @@ ordered_json obstacle_list(const RunResult& r) {
   return list;
 }
 
+void print_workers(const WorkerReport& w, std::FILE* out) {
+  std::fprintf(
+      out, "  workers stood in for   in %lld ticks, longest %lld in a row, %d at the end\n",
+      static_cast<long long>(w.ticks), static_cast<long long>(w.longest_silence), w.stood_in);
+}
+
 }  // namespace
 
 void print_report(const RunResult& r, std::FILE* out) {
@@ -70,8 +76,12 @@ void print_report(const RunResult& r, std::FILE* out) {
                  r.deadline.lowest_success_rate() < 0.95 ? "  (below 0.95: not a sound host)" : "");
   }
   host::print_pairs(t, r.pairs, out);
-  std::fprintf(out, "  stale pairs            most %d in a tick, oldest answer %lld ticks\n",
-               t.most_stale, static_cast<long long>(t.oldest_age));
+  std::fprintf(
+      out,
+      "  stale pairs            most %d in a tick, oldest answer %lld ticks, given too much "
+      "%.3g J\n",
+      t.most_stale, static_cast<long long>(t.oldest_age), t.refresh_energy);
+  if (r.options.threads > 0) print_workers(t.workers, out);
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
     std::fprintf(out, "  wall budget            %g us, exceeded by the whole tick %lld times\n",
                  r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
@@ -106,6 +116,9 @@ void write_json(const RunResult& r, std::ostream& file) {
                       {"work_units", r.scene.budget.work_units},
                       {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}};
   report.update(host::to_json(r.totals, r.pairs));
+  report["workers"] = {{"ticks_stood_in_for", r.totals.workers.ticks},
+                       {"longest_silence_ticks", r.totals.workers.longest_silence},
+                       {"silent_at_end", r.totals.workers.stood_in}};
   report["nearest_pair"] = r.nearest_pair;
   report["obstacles"] = obstacle_list(r);
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);

@@ -92,5 +92,20 @@ TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
   EXPECT_TRUE(allocations.is_null() || allocations == 0) << allocations;
 }
 
+TEST(Replay, ReportSaysHowTheWorkersKeptUp) {
+  const Folder folder;
+  for (const int threads : {0, 2}) {
+    const Ending ending = teleop("anderson_4x8 --seconds 1 --threads " + std::to_string(threads) +
+                                 " --report " + quoted(folder / "report.json"));
+    ASSERT_EQ(ending.status, 0) << ending;
+    EXPECT_EQ(ending.says("workers stood in for"), threads > 0);
+    const auto report = report_of(folder / "report.json");
+    const auto& workers = report.at("workers");
+    EXPECT_EQ(workers.at("ticks_stood_in_for"), report.at("status_ticks").value("late_result", 0));
+    EXPECT_LE(workers.at("longest_silence_ticks"), workers.at("ticks_stood_in_for"));
+    EXPECT_LE(workers.at("silent_at_end"), threads);
+  }
+}
+
 }  // namespace
 }  // namespace repel::test

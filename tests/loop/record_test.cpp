@@ -17,6 +17,7 @@ TickRecord record_with(std::int64_t tick, Status status, double force, double ne
   record.pairs.stale = static_cast<int>(tick);
   record.pairs.oldest_age = 2 * tick;
   record.pairs.iterations = 10;
+  record.workers = {.stood_in = 1, .silence = tick, .ticks = tick, .longest_silence = tick};
   return record;
 }
 
@@ -56,6 +57,7 @@ TEST(RunTotals, AddUpAndKeepTheExtremes) {
   EXPECT_EQ(totals.status_ticks[0], 1);  // bad_pose
   EXPECT_EQ(totals.status_ticks[4], 2);  // stale_pairs
   EXPECT_EQ(totals.status_ticks[1], 0);
+  EXPECT_EQ(totals.workers.ticks, 3);  // they count since set-up themselves
 }
 
 }  // namespace

@@ -40,8 +40,9 @@ TEST(AnswerOrder, EveryNumberComesOnce) {
     const int count = static_cast<int>(random() % 200) + 1;
     const int urgent = static_cast<int>(random() % (static_cast<unsigned>(count) + 1));
     for (double& k : key) k = std::floor(static_cast<double>(random() % 20));  // many equals
-    const auto got = order.arrange(count, static_cast<int>(random() % static_cast<unsigned>(count)), urgent,
-                                   [&](std::int32_t i) { return key[static_cast<std::size_t>(i)]; });
+    const auto got =
+        order.arrange(count, static_cast<int>(random() % static_cast<unsigned>(count)), urgent,
+                      [&](std::int32_t i) { return key[static_cast<std::size_t>(i)]; });
     const std::set<int> all(got.begin(), got.end());
     ASSERT_EQ(all.size(), static_cast<std::size_t>(count)) << "run " << run;
     double worst = -1.0;

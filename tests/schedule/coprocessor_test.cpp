@@ -2,7 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <pthread.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <cstring>
+#include <utility>
 
 #include "schedule/boxes.hpp"
 
@@ -189,48 +197,268 @@ TEST(Coprocessor, CallsTheStartFunctionInEachWorker) {
   EXPECT_EQ(started, 7U);
 }
 
-TEST(Coprocessor, LateAnswerLeavesTheOlderForcesAndIsSaid) {
-  test::Boxes boxes(4, 2000, {.range = 2.0}, seed);
+/// The same pairs worked through by threads and in the caller, on one motion.
+struct Both {
+  explicit Both(const CoprocessorOptions& options, int obstacles = 40)
+      : boxes(4, obstacles, {.range = 0.2}, seed),
+        here(boxes.world, lock_step(0)),
+        there(boxes.world, options) {}
+
+  /// One tick; the forces must be those of its motion, whoever worked.
+  void tick() {
+    boxes.move();
+    const PairForces& expected = here.exchange();
+    const PairForces& forces = there.exchange();
+    EXPECT_EQ(forces.tick, boxes.world.motion().tick);
+    EXPECT_EQ(forces.totals.evaluated, forces.totals.near);
+    for (std::size_t body = 0; body < expected.on_body.size(); ++body) {
+      const Wrench& F = expected.on_body[body];
+      const Wrench& G = forces.on_body[body];
+      EXPECT_LE((F.force - G.force).norm(), 1e-9 * (1.0 + F.force.norm())) << "seed " << seed;
+      EXPECT_LE((F.torque - G.torque).norm(), 1e-9 * (1.0 + F.torque.norm())) << "seed " << seed;
+    }
+  }
+  test::Boxes boxes;
+  Coprocessor here;
+  Coprocessor there;
+};
+
+template <class Condition>
+bool comes_true(Condition&& condition) {
+  const auto until = std::chrono::steady_clock::now() + 60s;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+/// Ticks until no worker is late.
+template <class Cell>
+bool is_on_time(Cell& cell) {
+  return comes_true([&] {
+    cell.tick();
+    return !cell.there.late();
+  });
+}
+
+TEST(Coprocessor, WhoeverIsLateTheForcesAreThoseOfThisMotion) {
   CoprocessorOptions options;
   options.threads = 1;
-  options.period = 1ms;
   options.patience = 0ns;
-  Coprocessor coprocessor(boxes.world, options);
-  Coprocessor here(boxes.world, lock_step(0));
-  PairForces before = here.exchange();
+  Both both(options, 1000);
+  // No patience: four thousand pairs are not done between two statements.
+  int late = 0;
+  for (int tick = 0; tick < 20; ++tick) {
+    both.tick();
+    late += both.there.late() ? 1 : 0;
+    EXPECT_EQ(both.there.workers().stood_in, both.there.late() ? 1 : 0);
+    EXPECT_EQ(both.there.workers().ticks, late);
+  }
+  EXPECT_GT(late, 0);
+}
 
-  // No patience: eight thousand pairs are not done between two statements, unless this thread is
-  // held up just there; then once more.
-  bool late = false;
-  for (int i = 0; i < 100 && !late; ++i) {
-    boxes.move();
-    const PairForces got = coprocessor.exchange();
-    late = coprocessor.late();
-    const PairForces now = here.exchange();
-    if (late) {
-      EXPECT_EQ(got.tick, boxes.world.motion().tick);
-      EXPECT_EQ(got.totals.stale, got.totals.near);
-      EXPECT_GE(got.totals.oldest_age, 1);
-      // The two came to it on different ways, warm and cold: the same force, not the same bits.
-      const Vec3 older = before.on_body[boxes.tool.index].force;
-      const Vec3 force = got.on_body[boxes.tool.index].force;
-      EXPECT_LE((force - older).norm(), 1e-9 * (1.0 + older.norm()));
+TEST(Coprocessor, NoPatienceAndNoPeriodAreDefined) {
+  constexpr auto most = std::chrono::nanoseconds::max();
+  const std::pair<std::chrono::nanoseconds, std::chrono::nanoseconds> waits[] = {
+      {0ns, 0ns}, {-1s, -1s}, {-most, most}, {most, -most}};
+  for (const auto& [patience, period] : waits) {
+    CoprocessorOptions options;
+    options.threads = 2;
+    options.patience = patience;
+    options.period = period;
+    Both both(options);
+    for (int tick = 0; tick < 20; ++tick) both.tick();
+  }
+}
+
+/// Threads that report themselves, so that a signal can be sent to one.
+struct Threads {
+  static inline std::atomic<pthread_t> ids[2];
+  static inline std::atomic<int> started{0};
+  static inline std::atomic<int> caught{0};
+  static inline std::atomic<bool> held{false};
+
+  /// @param handler of SIGUSR1 while this object lives
+  explicit Threads(void (*handler)(int)) {
+    started = 0;
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigaction(SIGUSR1, &action, &before_);
+  }
+  ~Threads() { sigaction(SIGUSR1, &before_, nullptr); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  [[nodiscard]] static CoprocessorOptions options(int threads, const Budget& budget = {}) {
+    CoprocessorOptions options;
+    options.threads = threads;
+    options.budget = budget;
+    options.period = 1ms;
+    options.patience = 5ms;
+    options.on_thread_start = [](int index) noexcept {
+      ids[index] = pthread_self();
+      ++started;
+    };
+    return options;
+  }
+  /// Sends the signal to the last thread and waits until it is caught.
+  [[nodiscard]] static bool strike(int threads) {
+    if (!comes_true([&] { return started == threads; })) return false;
+    const int before = caught;
+    held = true;
+    return pthread_kill(ids[threads - 1], SIGUSR1) == 0 &&
+           comes_true([&] { return caught > before; });
+  }
+
+  static void hold(int /*signal*/) {
+    ++caught;
+    const timespec moment{0, 100000};
+    while (held) nanosleep(&moment, nullptr);
+  }
+  /// Ends this thread and nothing else, as if it had never been able to say so.
+  static void leave(int /*signal*/) {
+    ++caught;
+    syscall(SYS_exit, 0);
+  }
+
+ private:
+  struct sigaction before_ {};
+};
+
+/// Ticks during which the last worker cannot answer.
+void expect_stood_in_for(Both& both, int threads, int ticks) {
+  const std::int64_t before = both.there.workers().ticks;
+  for (int k = 1; k <= ticks; ++k) {
+    SCOPED_TRACE(families::of_seed(seed, "tick", k));
+    both.tick();
+    const WorkerReport& workers = both.there.workers();
+    ASSERT_TRUE(both.there.late());
+    ASSERT_GE(workers.stood_in, 1);
+    ASSERT_LE(workers.stood_in, threads);
+    ASSERT_EQ(workers.silence, k);
+    ASSERT_GE(workers.longest_silence, k);
+    ASSERT_EQ(workers.ticks, before + k);
+  }
+}
+
+// Wherever the signal strikes: in the middle of a pair, in a mailbox, asleep.
+TEST(Coprocessor, StalledWorkerIsStoodInForUntilItGoesOn) {
+  for (const int threads : {1, 2}) {
+    const Threads watched(&Threads::hold);
+    Both both(Threads::options(threads));
+    for (int round = 0; round < 5; ++round) {
+      ASSERT_TRUE(is_on_time(both)) << "round " << round;
+      EXPECT_EQ(both.there.workers().stood_in, 0);
+      EXPECT_EQ(both.there.workers().silence, 0);
+      ASSERT_TRUE(Threads::strike(threads));
+      expect_stood_in_for(both, threads, 10);
+      Threads::held = false;
     }
-    before = now;
+    EXPECT_TRUE(is_on_time(both));
+    EXPECT_GE(both.there.workers().longest_silence, 10);
   }
-  EXPECT_TRUE(late);
+}
 
-  // The same motion offered until its answer is there.
-  for (int i = 0; i < 5000 && late; ++i) {
-    std::this_thread::sleep_for(2ms);
-    (void)coprocessor.exchange();
-    late = coprocessor.late();
+TEST(Coprocessor, KilledWorkerIsStoodInForFromThenOn) {
+#ifdef REPEL_SANITIZED
+  GTEST_SKIP() << "a sanitizer waits for every thread to say that it ends";
+#endif
+  for (const int threads : {1, 2}) {
+    const Threads watched(&Threads::leave);
+    Both both(Threads::options(threads));
+    ASSERT_TRUE(is_on_time(both));
+    ASSERT_TRUE(Threads::strike(threads));
+    expect_stood_in_for(both, threads, 40);
+    // The others go on.
+    EXPECT_TRUE(comes_true([&] {
+      both.tick();
+      return both.there.workers().stood_in == 1;
+    }));
+    both.there.stop();
+    for (std::int32_t i = 0; i < 160; ++i) {
+      const double peak = both.here.extremes_of({i}).peak_force;
+      EXPECT_NEAR(both.there.extremes_of({i}).peak_force, peak, 1e-9 * (1.0 + peak));
+    }
   }
-  EXPECT_FALSE(late);
-  const PairForces& after = coprocessor.exchange();
-  EXPECT_EQ(after.totals.stale, 0);
-  EXPECT_LE((after.on_body[boxes.tool.index].force - before.on_body[boxes.tool.index].force).norm(),
-            1e-9 * (1.0 + before.on_body[boxes.tool.index].force.norm()));
+}
+
+/// Ten times the pairs that the budget pays for.
+struct Overload {
+  Overload(int threads, bool by_the_clock)
+      : boxes(4, 64, {.range = 2.0}, seed),
+        there(boxes.world,
+              by_the_clock ? Threads::options(threads, tenth()) : lock_step(threads, tenth())) {}
+
+  void tick() {
+    boxes.move();
+    totals = there.exchange().totals;
+    ASSERT_EQ(totals.near, 256);
+    ASSERT_EQ(totals.evaluated + totals.stale, totals.near);
+    ASSERT_GT(totals.evaluated, 0);
+  }
+  [[nodiscard]] Budget tenth() {
+    Coprocessor all(boxes.world, lock_step(0));
+    std::int64_t spent = 0;
+    for (int tick = 0; tick < 10; ++tick) {
+      boxes.move();
+      spent += all.exchange().totals.iterations;
+    }
+    return {.work_units = spent / 100};
+  }
+  test::Boxes boxes;
+  Coprocessor there;
+  PairTotals totals;
+};
+
+// A block of 64 pairs asks at least one of them in each tick.
+constexpr std::int64_t longest_wait = detail::PairShare::run;
+
+TEST(Coprocessor, OverloadIsAnsweredInTurnAndEnds) {
+  for (const int threads : {0, 2}) {
+    Overload overload(threads, false);
+    std::int64_t stale = 0;
+    for (int tick = 0; tick < 300; ++tick) {
+      overload.tick();
+      ASSERT_LE(overload.totals.oldest_age, longest_wait) << "tick " << tick << ", seed " << seed;
+      stale += overload.totals.stale;
+    }
+    EXPECT_GT(stale, 300 * 128);
+    Pose away = Pose::Identity();
+    away.translation().x() = 10.0;
+    World& world = overload.boxes.world;
+    for (int tick = 0; tick <= longest_wait; ++tick) {
+      ++world.motion().tick;
+      ASSERT_TRUE(world.place(overload.boxes.tool, away, {}));
+      overload.totals = overload.there.exchange().totals;
+    }
+    EXPECT_EQ(overload.totals.stale, 0);
+    EXPECT_EQ(overload.totals.near, 0);
+    EXPECT_EQ(overload.totals.peak_force, 0.0);
+  }
+}
+
+// Neither a deputy that takes over nor a worker that comes back begins with answers of long ago,
+// widened by all the motion since.
+TEST(Coprocessor, ChangingPlacesUnderOverloadBringsNoOldAnswers) {
+  constexpr int ticks = 200;
+  const Threads watched(&Threads::hold);
+  Overload overload(2, true);
+  std::int64_t oldest = 0;
+  const auto run = [&] {
+    for (int tick = 0; tick < ticks; ++tick) {
+      overload.tick();
+      oldest = std::max(oldest, overload.totals.oldest_age);
+    }
+  };
+  run();
+  ASSERT_TRUE(Threads::strike(2));
+  run();
+  EXPECT_EQ(overload.there.workers().silence, ticks);
+  Threads::held = false;
+  EXPECT_TRUE(is_on_time(overload));
+  run();
+  EXPECT_LE(oldest, 2 * longest_wait) << "seed " << seed;
 }
 
 // Two bodies that move as one keep their distance, however far they leap. A worker that saw one of

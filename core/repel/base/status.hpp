@@ -23,22 +23,27 @@ inline constexpr Status clock_fault = 1U << 3;  ///< the clock stood still or ra
 inline constexpr Status stale_pairs = 1U << 4;  ///< some near pairs kept an old answer, widened by
                                                 ///< the motion since: raise the budget or threads
 inline constexpr Status late_result = 1U
-                                      << 5;  ///< the coprocessor did not answer in time: its last
-                                             ///< forces were used; raise the budget or lower rate
+                                      << 5;  ///< a worker of the coprocessor did not answer in
+                                             ///< time: the caller did its work; if it lasts, free
+                                             ///< a processor for each thread or lower the rate
 inline constexpr Status torque_limit = 1U << 6;   ///< a joint torque was cut to its limit
 inline constexpr Status crowded_pairs = 1U << 7;  ///< more pairs could come within range than
                                                   ///< there is memory for: the rest was evaluated
                                                   ///< from a cold start; raise Limits::candidates
-inline constexpr Status failsafe = bad_pose | bad_command | bad_joints | clock_fault;
+inline constexpr Status expired_pairs = 1U << 8;  ///< some answer was older than Budget::max_age:
+                                                  ///< nothing is known of what is near, the force
+                                                  ///< ramps to zero; raise the budget or threads
+inline constexpr Status failsafe =
+    bad_pose | bad_command | bad_joints | clock_fault | expired_pairs;
 }  // namespace status
 
 /// The names of the bits that are set, comma by comma; "ok" when none is. Not for the tick.
 [[nodiscard]] inline std::string to_text(Status bits) {
-  static constexpr const char* names[] = {"bad_pose",     "bad_command",  "bad_joints",
-                                          "clock_fault",  "stale_pairs",  "late_result",
-                                          "torque_limit", "crowded_pairs"};
+  static constexpr const char* names[] = {"bad_pose",     "bad_command",   "bad_joints",
+                                          "clock_fault",  "stale_pairs",   "late_result",
+                                          "torque_limit", "crowded_pairs", "expired_pairs"};
   std::string text;
-  for (unsigned i = 0; i < 8; ++i) {
+  for (unsigned i = 0; i < 9; ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);
   }
   return text.empty() ? "ok" : text;

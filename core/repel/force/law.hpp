@@ -60,8 +60,8 @@ struct ForceLaw {
     const double bent = std::max(0.0, d) / range;
     const double inward = 1.0 - bent;
     const double straight = std::max(0.0, -d);
-    return surface_force * (range / 3.0 * inward * inward * inward + straight +
-                            straight * straight / range) +
+    return surface_force *
+               (range / 3.0 * inward * inward * inward + straight + straight * straight / range) +
            (held > 0.0 ? held : 0.0);
   }
 

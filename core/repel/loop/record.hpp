@@ -26,6 +26,7 @@ struct TickRecord {
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
   double gain = 1.0;          ///< of the fail-safe
   PairTotals pairs;
+  WorkerReport workers;
 };
 
 /// Keeps the ticks of a run in memory taken at set-up; those beyond it are counted and left out.
@@ -57,10 +58,12 @@ struct RunTotals {
   std::int64_t stale = 0;       ///< stale answers used, summed over ticks
   int most_stale = 0;           ///< in one tick
   std::int64_t oldest_age = 0;  ///< [ticks]
+  double refresh_energy = 0.0;  ///< [J] PairTotals::refresh_energy, summed over ticks
   double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
   PairId nearest_pair;
   double peak_force = 0.0;                      ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
+  WorkerReport workers;                         ///< as of the last tick
 
   void add(const TickRecord& r) noexcept {
     ++ticks;
@@ -70,12 +73,14 @@ struct RunTotals {
     stale += r.pairs.stale;
     most_stale = std::max(most_stale, r.pairs.stale);
     oldest_age = std::max(oldest_age, r.pairs.oldest_age);
+    refresh_energy += r.pairs.refresh_energy;
     if (r.pairs.nearest < nearest) {
       nearest = r.pairs.nearest;
       nearest_pair = r.pairs.nearest_pair;
     }
     peak_force = std::max(peak_force, r.virtual_force.force.norm());
     for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
+    workers = r.workers;
   }
 };
 

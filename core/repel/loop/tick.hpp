@@ -118,9 +118,11 @@ class Teleoperator {
   [[nodiscard]] Wrench push_away() noexcept {
     const PairForces& forces = coprocessor_.exchange();
     record_.pairs = forces.totals;
+    record_.workers = coprocessor_.workers();
     if (coprocessor_.late()) record_.status |= status::late_result;
     if (forces.totals.stale > 0) record_.status |= status::stale_pairs;
     if (forces.totals.crowded > 0) record_.status |= status::crowded_pairs;
+    if (forces.totals.expired > 0) record_.status |= status::expired_pairs;
     return forces.on_body[tool_.index];
   }
 

@@ -46,6 +46,14 @@ struct PairTotals {
   }
 };
 
+/// How the workers keep up; all zero without threads.
+struct WorkerReport {
+  int stood_in = 0;                  ///< workers that were stood in for in this tick
+  std::int64_t silence = 0;          ///< [ticks] in a row the worst of them has been stood in for
+  std::int64_t ticks = 0;            ///< since set-up, in which some worker was stood in for
+  std::int64_t longest_silence = 0;  ///< [ticks] in a row, since set-up
+};
+
 /// The forces of a set of pairs at one tick.
 struct PairForces {
   std::int64_t tick = -1;       ///< of the motion they belong to
