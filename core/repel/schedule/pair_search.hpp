@@ -36,9 +36,10 @@ namespace repel::detail {
   return {centre - half, centre + half};
 }
 
-/// The pairs of a world, ordered for the search. Of two bodies the one with fewer parts in their
+/// The pairs of a world, ordered for the search. Of two bodies the one with more parts in their
 /// pairs is the seeking one: each of its parts has its partners on the other body, which lie still
-/// in that body's frame. Seekers with the same partners share one tree.
+/// in that body's frame. Seekers with the same partners share one tree, and all seekers of two
+/// bodies stand in another, by which those near the other body are found.
 struct PairIndex {
   /// A part and the pairs it forms with one other body.
   struct Seeker {
@@ -53,6 +54,9 @@ struct PairIndex {
     BodyId b;
     std::int32_t first = 0;
     std::int32_t end = 0;
+    BoxTree tree;        ///< over the seekers, in the frame of a
+    Box partners;        ///< [m] around all of them, in the frame of b
+    double range = 0.0;  ///< [m] greatest of all pairs
   };
 
   /// Of no pairs.
@@ -64,7 +68,7 @@ struct PairIndex {
     for (auto first = entries.begin(); first != entries.end();) {
       const auto end = std::find_if(
           first, entries.end(), [&](const Entry& e) { return e.a != first->a || e.b != first->b; });
-      turn_to_fewer(first, end);
+      turn_to_more(first, end);
       add_meeting(world, first, end);
       first = end;
     }
@@ -102,18 +106,22 @@ struct PairIndex {
     return count;
   }
 
-  static void turn_to_fewer(Place first, Place end) {
+  static void turn_to_more(Place first, Place end) {
     const std::ptrdiff_t of_a = parts_of_a(first, end);
     const auto turn = [&] {
       std::transform(first, end, first, [](const Entry& e) { return e.turned(); });
       std::sort(first, end);
     };
     turn();
-    if (parts_of_a(first, end) > of_a) turn();
+    if (parts_of_a(first, end) < of_a) turn();
   }
 
   void add_meeting(const World& world, Place first, Place end) {
-    Meeting meeting{{first->a}, {first->b}, static_cast<std::int32_t>(seekers.size()), 0};
+    Meeting meeting;
+    meeting.a = {first->a};
+    meeting.b = {first->b};
+    meeting.first = static_cast<std::int32_t>(seekers.size());
+    std::vector<Box> boxes;
     std::map<std::vector<std::int32_t>, std::int32_t> tree_of;
     while (first != end) {
       const Part& part = world.parts()[first->part_a];
@@ -122,6 +130,7 @@ struct PairIndex {
       for (const std::int32_t a = first->part_a; first != end && first->part_a == a; ++first) {
         seeker.range = std::max(seeker.range, world.pair({first->pair}).law.range);
         partners.push_back(first->part_b);
+        meeting.partners.extend(box_of(world.parts()[first->part_b]));
         pairs.push_back({first->pair});
       }
       const auto [tree, is_new] =
@@ -129,9 +138,12 @@ struct PairIndex {
       if (is_new) trees.push_back(tree_around(world, tree->first));
       seeker.tree = tree->second;
       seekers.push_back(seeker);
+      boxes.push_back(seeker.box);
+      meeting.range = std::max(meeting.range, seeker.range);
     }
     meeting.end = static_cast<std::int32_t>(seekers.size());
-    meetings.push_back(meeting);
+    meeting.tree = BoxTree(boxes);
+    meetings.push_back(std::move(meeting));
   }
 
   static BoxTree tree_around(const World& world, const std::vector<std::int32_t>& parts) {
@@ -143,16 +155,19 @@ struct PairIndex {
 };
 
 /// Asks the trees of a PairIndex for the pairs that can come within range before the bodies have
-/// moved by a margin, and again when they have.
+/// moved by a margin, and again when they have. First which seekers can come near the other body:
+/// these are awake. Then each of them by itself, which of its partners.
 class PairSearch {
  public:
-  /// [m] More of it makes for fewer questions and longer lists.
+  /// [m] More of them makes for fewer questions and longer lists.
   static constexpr double margin = 0.03;
+  static constexpr double margin_of_bodies = 0.2;
 
   explicit PairSearch(std::shared_ptr<const PairIndex> index)
       : index_(std::move(index)),
-        ask_at_(index_->seekers.size(), never_asked),
-        next_(index_->meetings.size(), never_asked) {}
+        seekers_(index_->seekers.size()),
+        awake_(index_->seekers.size()),
+        meetings_(index_->meetings.size()) {}
 
   /// Renews the lists that are due. For each: `sink.take(pair, seeker, distance)` for every pair
   /// on it, with a distance [m] no more than the true one, then `sink.end(seeker)`, after which
@@ -161,16 +176,20 @@ class PairSearch {
   /// Cost: one comparison for each two bodies in whose pairs nothing is due.
   template <class Sink>
   void run(const Motion& motion, Sink&& sink) noexcept {
-    for (std::size_t m = 0; m < next_.size(); ++m) {
+    for (std::size_t m = 0; m < meetings_.size(); ++m) {
       const PairIndex::Meeting& meeting = index_->meetings[m];
       const BodyState& A = motion.bodies[meeting.a.index];
       const BodyState& B = motion.bodies[meeting.b.index];
-      if (A.travel + B.travel < next_[m]) continue;
-      next_[m] = std::numeric_limits<double>::infinity();
-      for (std::int32_t s = meeting.first; s < meeting.end; ++s) {
-        if (!(A.travel + B.travel < ask_at_[s])) ask(meeting, s, A, B, sink);
-        next_[m] = std::min(next_[m], ask_at_[s]);
+      const double travel = A.travel + B.travel;
+      if (travel < meetings_[m].next) continue;
+      if (!(travel < meetings_[m].wake_at)) wake(meeting, meetings_[m], A, B, sink);
+      double next = meetings_[m].wake_at;
+      for (std::int32_t i = 0; i < meetings_[m].awake; ++i) {
+        const std::int32_t s = awake_[meeting.first + i];
+        if (!(travel < seekers_[s].ask_at)) ask(meeting, s, A, B, sink);
+        next = std::min(next, seekers_[s].ask_at);
       }
+      meetings_[m].next = next;
     }
   }
 
@@ -178,35 +197,93 @@ class PairSearch {
   static constexpr double never_asked = -std::numeric_limits<double>::infinity();
   static constexpr double again = std::numeric_limits<double>::lowest();
 
+  struct SeekerState {
+    double ask_at = never_asked;  ///< [m] of travel of both bodies
+    std::int32_t listed = 0;      ///< pairs on its list
+    bool awake = false;
+    bool found = false;  ///< again, while the seekers are woken
+  };
+  struct MeetingState {
+    double next = never_asked;     ///< [m] of travel of both bodies when something is due
+    double wake_at = never_asked;  ///< [m] and when the seekers are woken again
+    std::int32_t awake = 0;        ///< so many, from `Meeting::first` on in `awake_`
+  };
+
+  /// A box of one body in the frame of another, grown by what that frame is short of a rigid one
+  /// and by rounding.
+  struct Seen {
+    Seen(const Box& in_a, const Pose& X_WA, const Pose& X_WB) noexcept {
+      const Mat3 R_WB = X_WB.linear();
+      skew = (R_WB.transpose() * R_WB - Mat3::Identity()).norm() + 1e-14;
+      box = moved(in_a, Pose(X_WB.inverse()) * X_WA);
+      const double far = X_WA.translation().norm() + X_WB.translation().norm() +
+                         box.center().norm() + box.sizes().norm();
+      const Vec3 slack = Vec3::Constant(2.0 * skew * far);
+      box = Box(box.min() - slack, box.max() + slack);
+    }
+    /// What a distance in that frame is at least.
+    [[nodiscard]] double sure(double distance) const noexcept { return (1.0 - skew) * distance; }
+
+    Box box;
+    double skew;
+  };
+
+  template <class Sink>
+  void wake(const PairIndex::Meeting& meeting, MeetingState& state, const BodyState& A,
+            const BodyState& B, Sink& sink) noexcept {
+    const Seen partners(meeting.partners, B.X_WB, A.X_WB);
+    const std::int32_t before = state.awake;
+    const double others = meeting.tree.query(
+        partners.box, meeting.range + margin_of_bodies, [&](std::int32_t i, double) {
+          SeekerState& seeker = seekers_[meeting.first + i];
+          seeker.found = true;
+          if (seeker.awake) return;
+          seeker.awake = true;
+          seeker.ask_at = never_asked;
+          awake_[meeting.first + state.awake++] = meeting.first + i;
+        });
+    std::int32_t kept = 0;
+    for (std::int32_t i = 0; i < state.awake; ++i) {
+      const std::int32_t s = awake_[meeting.first + i];
+      SeekerState& seeker = seekers_[s];
+      if (i < before && !seeker.found) {
+        seeker.awake = false;
+        if (seeker.listed > 0) sink.end(s);
+        seeker.listed = 0;
+      } else {
+        awake_[meeting.first + kept++] = s;
+      }
+      seeker.found = false;
+    }
+    state.awake = kept;
+    state.wake_at = A.travel + B.travel + partners.sure(others) - meeting.range;
+  }
+
   template <class Sink>
   void ask(const PairIndex::Meeting& meeting, std::int32_t s, const BodyState& A,
            const BodyState& B, Sink& sink) noexcept {
     const PairIndex::Seeker& seeker = index_->seekers[s];
+    SeekerState& state = seekers_[s];
     // The first margins differ, so that later not all seekers are due in one tick.
-    const double share =
-        ask_at_[s] > never_asked ? 1.0 : (s - meeting.first + 1.0) / (meeting.end - meeting.first);
-    const Mat3 R_WB = B.X_WB.linear();
-    const Pose X_BA = Pose(B.X_WB.inverse()) * A.X_WB;
-    Box box = moved(seeker.box, X_BA);
-    // What the frame of B is short of a rigid one, and rounding.
-    const double skew = (R_WB.transpose() * R_WB - Mat3::Identity()).norm() + 1e-14;
-    const double far = A.X_WB.translation().norm() + B.X_WB.translation().norm() +
-                       box.center().norm() + box.sizes().norm();
-    const Vec3 slack = Vec3::Constant(2.0 * skew * far);
-    box = Box(box.min() - slack, box.max() + slack);
+    const double share = state.ask_at > never_asked ? 1.0 : 0.125 * (s % 8 + 1);
+    const Seen seen(seeker.box, A.X_WB, B.X_WB);
+    const std::int32_t before = state.listed;
+    state.listed = 0;
     bool all_taken = true;
     const double others = index_->trees[seeker.tree].query(
-        box, seeker.range + share * margin, [&](std::int32_t i, double distance) {
+        seen.box, seeker.range + share * margin, [&](std::int32_t i, double distance) {
           const PairId pair = index_->pairs[seeker.first + i];
-          all_taken = sink.take(pair, s, (1.0 - skew) * distance) && all_taken;
+          ++state.listed;
+          all_taken = sink.take(pair, s, seen.sure(distance)) && all_taken;
         });
-    sink.end(s);
-    ask_at_[s] = all_taken ? A.travel + B.travel + (1.0 - skew) * others - seeker.range : again;
+    if (before + state.listed > 0) sink.end(s);
+    state.ask_at = all_taken ? A.travel + B.travel + seen.sure(others) - seeker.range : again;
   }
 
   std::shared_ptr<const PairIndex> index_;
-  std::vector<double> ask_at_;  ///< [m] of travel of both bodies, by seeker
-  std::vector<double> next_;    ///< [m] the least of them, by meeting
+  std::vector<SeekerState> seekers_;
+  std::vector<std::int32_t> awake_;  ///< seekers, by meeting
+  std::vector<MeetingState> meetings_;
 };
 
 }  // namespace repel::detail
