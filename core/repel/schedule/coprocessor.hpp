@@ -23,6 +23,7 @@ struct CoprocessorOptions {
   std::chrono::nanoseconds patience{500000};  ///< how long the caller waits for an answer
   void (*on_thread_start)(int index) noexcept = nullptr;  ///< called in each worker: priority etc.
   bool lock_step = false;  ///< wait for every answer (up to a second) and never sleep: for replays
+  bool every_pair = false;  ///< evaluate every pair at every tick
 };
 
 /// Host and workers exchange motions and forces through wait-free mailboxes. A worker always takes
