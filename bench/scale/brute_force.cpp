@@ -16,15 +16,15 @@ BruteForce::BruteForce(const Scene& scene)
     if (spheres_.empty() || spheres_.back().body != part.body.index ||
         spheres_.back().count == lane) {
       spheres_.emplace_back().body = part.body.index;
-      spheres_.back().radius.fill(-1e9);
+      spheres_.back().first = i;
     }
     Spheres& s = spheres_.back();
-    s.obstacle[s.count] = i;
-    s.x[s.count] = part.X_BP.translation().x();
-    s.y[s.count] = part.X_BP.translation().y();
-    s.z[s.count] = part.X_BP.translation().z();
-    // Rounded up, so that nothing hangs on the last digit.
-    s.radius[s.count] = part.shape.reach() + scene.law().range + 1e-9;
+    const Eigen::Vector3f centre = part.X_BP.translation().cast<float>();
+    s.x[s.count] = centre.x();
+    s.y[s.count] = centre.y();
+    s.z[s.count] = centre.z();
+    // Larger than what single precision rounds off within 20 m.
+    s.radius[s.count] = static_cast<float>(part.shape.reach() + scene.law().range + 2e-5);
     ++s.count;
   }
   // Forces are added up in the order of the coprocessor, so that sums can be equal to the last bit.
@@ -47,26 +47,18 @@ void BruteForce::look(Found&& found) {
   for (int i = 0; i < scene_.tool_parts(); ++i) {
     const Part& part = scene_.parts()[i];
     const Vec3 p_WP = X_WB_[part.body.index] * part.X_BP.translation();
-    const double reach = part.shape.reach();
+    const auto reach = static_cast<float>(part.shape.reach());
     std::int32_t body = -1;
-    Vec3 p = p_WP;
+    Eigen::Vector3f p = Eigen::Vector3f::Zero();
     for (const Spheres& s : spheres_) {
-      if (s.body != body) p = X_WB_[s.body].inverse() * p_WP;
+      if (s.body != body) p = (X_WB_[s.body].inverse() * p_WP).cast<float>();
       body = s.body;
-      std::array<double, lane> beyond;
-      std::int64_t hits = 0;
-      for (int k = 0; k < lane; ++k) {
-        const double x = s.x[k] - p.x();
-        const double y = s.y[k] - p.y();
-        const double z = s.z[k] - p.z();
-        const double radius = std::max(0.0, s.radius[k] + reach);
-        beyond[k] = x * x + y * y + z * z - radius * radius;
-        hits += beyond[k] > 0.0 ? 0 : 1;
-      }
-      if (hits == 0) continue;
+      const Lane beyond = (s.x - p.x()).square() + (s.y - p.y()).square() + (s.z - p.z()).square() -
+                          (s.radius + reach).square();
+      if (beyond.minCoeff() > 0.0F) continue;
       for (int k = 0; k < s.count; ++k) {
-        if (beyond[k] > 0.0) continue;
-        const std::int32_t pair = scene_.pair(i, s.obstacle[k]);
+        if (beyond[k] > 0.0F) continue;
+        const std::int32_t pair = scene_.pair(i, s.first + k);
         if (pair < scene_.setting().pairs && !found(pair)) return;
       }
     }

@@ -2,7 +2,6 @@
 /// The answer, found the plain way: every pair is looked at, at every tick.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -36,13 +35,15 @@ class BruteForce {
 
  private:
   static constexpr int lane = 64;
+  using Lane = Eigen::Array<float, lane, 1>;
 
-  /// The spheres of some obstacles of one body, in its frame; those beyond `count` are far away.
+  /// The spheres of some obstacles of one body, in its frame.
   struct Spheres {
     std::int32_t body = 0;
-    std::array<std::int32_t, lane> obstacle{};
+    std::int32_t first = 0;  ///< obstacle; the others follow
     int count = 0;
-    std::array<double, lane> x{}, y{}, z{}, radius{};
+    Lane x = Lane::Zero(), y = Lane::Zero(), z = Lane::Zero();
+    Lane radius = Lane::Zero();  ///< of the sphere, and the range
   };
 
   void place(std::span<const Placement> placements);

@@ -16,9 +16,9 @@ using families::Rng;
 constexpr int riders = 64;  // obstacles on a body that moves, at most
 const BodyId tool{1};
 
-/// [m] of a ball that holds so many parts side by side.
-double ball(int parts) {
-  return 0.035 * std::cbrt(parts);
+/// [m] radius of a tool of so many parts.
+double tool_radius(int parts) {
+  return 0.06 * std::cbrt(parts);
 }
 
 Vec3 in_ball(Rng& rng) {
@@ -87,26 +87,26 @@ Scene::Scene(const Setting& setting)
   Rng rng(setting.seed);
   for (int i = 0; i < tool_parts_; ++i) {
     parts_.push_back({"tool part", tool, draw_shape(rng, i % 2 == 0, 0.02),
-                      placed(rng, ball(tool_parts_) * in_ball(rng))});
+                      placed(rng, tool_radius(tool_parts_) * in_ball(rng))});
   }
   const int obstacles = (setting.pairs + tool_parts_ - 1) / tool_parts_;
-  const int riding = std::min(riders, obstacles / 8);
+  riding_ = std::min(riders, obstacles / 8);
   for (int i = 0; i < obstacles; ++i) {
-    const int other = riding > 0 ? 2 + i / riding : setting.bodies + 1;
+    const int other = riding_ > 0 ? 2 + i / riding_ : setting.bodies + 1;
     const BodyId body = other <= setting.bodies ? BodyId{other} : World::fixed;
     places_.push_back(in_ball(rng));
     parts_.push_back(
         {"obstacle", body, draw_shape(rng, i % 2 == 0, 0.03), placed(rng, Vec3::Zero())});
-    if (body != World::fixed) parts_.back().X_BP.translation() = ball(riding) * places_.back();
   }
   steer();
 }
 
-/// Fixed obstacles within `radius` [m]. In a small scene the bodies stray less.
+/// All obstacles within `radius` [m], had they one body. In a small scene the bodies stray less.
 void Scene::spread(double radius) {
   for (int i = 0; i < obstacles(); ++i) {
     Part& part = parts_[tool_parts_ + i];
-    if (part.body == World::fixed) part.X_BP.translation() = radius * places_[i];
+    const double share = part.body == World::fixed ? 1.0 : 1.0 * riding_ / obstacles();
+    part.X_BP.translation() = std::cbrt(share) * radius * places_[i];
   }
   const double region = std::clamp(0.4 * radius, 0.08, 0.4);
   Rng rng(setting_.seed);
@@ -119,7 +119,7 @@ void Scene::spread(double radius) {
 }
 
 void Scene::steer() {
-  constexpr int samples = 200;
+  constexpr int samples = 1000;
   const auto is_crowded = [&](double radius) {
     spread(radius);
     BruteForce brute(*this);

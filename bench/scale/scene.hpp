@@ -56,7 +56,8 @@ struct Speed {
 };
 
 /// Every part of the tool makes a pair with every obstacle, tool part by tool part, until there are
-/// as many as asked. Most obstacles are fixed; up to 64 ride on each other body that moves.
+/// as many as asked. Most obstacles are fixed; up to 64 ride on each other body that moves, as near
+/// to each other as the fixed ones are.
 class Scene {
  public:
   static constexpr double period = 0.0025;  ///< [s] of a tick
@@ -90,6 +91,7 @@ class Scene {
   Setting setting_;
   ForceLaw law_{.range = range};
   int tool_parts_;
+  int riding_ = 0;  ///< obstacles on each body that moves
   std::vector<Part> parts_;
   std::vector<Vec3> places_;  ///< of the obstacles, in a ball of radius 1
   std::vector<Path> paths_;   ///< by body, the fixed one left out
