@@ -1,0 +1,124 @@
+#include "brute_force.hpp"
+
+#include <algorithm>
+
+#include <repel/schedule/pair_worker.hpp>
+
+namespace repel::scale {
+
+BruteForce::BruteForce(const Scene& scene)
+    : scene_(scene),
+      X_WB_(scene.setting().bodies + 1, Pose::Identity()),
+      V_WB_(X_WB_.size()),
+      on_body_(X_WB_.size()) {
+  for (std::int32_t i = 0; i < scene.obstacles(); ++i) {
+    const Part& part = scene.parts()[scene.tool_parts() + i];
+    if (spheres_.empty() || spheres_.back().body != part.body.index ||
+        spheres_.back().count == lane) {
+      spheres_.emplace_back().body = part.body.index;
+      spheres_.back().first = i;
+    }
+    Spheres& s = spheres_.back();
+    const Eigen::Vector3f centre = part.X_BP.translation().cast<float>();
+    s.x[s.count] = centre.x();
+    s.y[s.count] = centre.y();
+    s.z[s.count] = centre.z();
+    // Larger than what single precision rounds off within 20 m.
+    s.radius[s.count] = static_cast<float>(part.shape.reach() + scene.law().range + 2e-5);
+    ++s.count;
+  }
+  // Forces are added up in the order of the coprocessor, so that sums can be equal to the last bit.
+  on_body_of_.resize(
+      std::min(detail::PairWorker::most_blocks,
+               (scene.setting().pairs + detail::PairShare::run - 1) / detail::PairShare::run),
+      on_body_);
+}
+
+void BruteForce::place(std::span<const Placement> placements) {
+  for (const Placement& p : placements) {
+    X_WB_[p.body.index] = p.X_WB;
+    V_WB_[p.body.index] = p.V_WB;
+  }
+}
+
+/// Calls `found(pair)` for those whose spheres are within range, until it says false.
+template <class Found>
+void BruteForce::look(Found&& found) {
+  for (int i = 0; i < scene_.tool_parts(); ++i) {
+    const Part& part = scene_.parts()[i];
+    const Vec3 p_WP = X_WB_[part.body.index] * part.X_BP.translation();
+    const auto reach = static_cast<float>(part.shape.reach());
+    std::int32_t body = -1;
+    Eigen::Vector3f p = Eigen::Vector3f::Zero();
+    for (const Spheres& s : spheres_) {
+      if (s.body != body) p = (X_WB_[s.body].inverse() * p_WP).cast<float>();
+      body = s.body;
+      const Lane beyond = (s.x - p.x()).square() + (s.y - p.y()).square() + (s.z - p.z()).square() -
+                          (s.radius + reach).square();
+      if (beyond.minCoeff() > 0.0F) continue;
+      for (int k = 0; k < s.count; ++k) {
+        if (beyond[k] > 0.0F) continue;
+        const std::int32_t pair = scene_.pair(i, s.first + k);
+        if (pair < scene_.setting().pairs && !found(pair)) return;
+      }
+    }
+  }
+}
+
+Separation BruteForce::ask(std::int32_t pair, WarmStart& warm) {
+  ++asked_;
+  const Part& a = scene_.parts()[pair / scene_.obstacles()];
+  const Part& b = scene_.parts()[scene_.tool_parts() + pair % scene_.obstacles()];
+  return separation(a.shape, X_WB_[a.body.index] * a.X_BP, b.shape, X_WB_[b.body.index] * b.X_BP,
+                    {}, warm);
+}
+
+void BruteForce::push(std::int32_t pair, const Separation& s) {
+  const std::size_t a = scene_.parts()[pair / scene_.obstacles()].body.index;
+  const std::size_t b = scene_.parts()[scene_.tool_parts() + pair % scene_.obstacles()].body.index;
+  const Vec3 p_AQ = s.p_WA - X_WB_[a].translation();
+  const Vec3 p_BQ = p_AQ + X_WB_[a].translation() - X_WB_[b].translation();
+  const Vec3 v = moved_to(V_WB_[a], p_AQ).linear - moved_to(V_WB_[b], p_BQ).linear;
+  const double distance = s.lower > 0.0 ? s.lower : s.distance;
+  const Vec3 f = scene_.law()(distance, s.extraction_W.dot(v)) * s.extraction_W;
+  std::vector<Wrench>& on_body =
+      on_body_of_[detail::PairShare::block_of({pair}, static_cast<int>(on_body_of_.size()))];
+  on_body[a] += wrench_of_force(f, p_AQ);
+  on_body[b] += wrench_of_force(-f, p_BQ);
+}
+
+void BruteForce::tick(std::span<const Placement> placements) {
+  place(placements);
+  found_.clear();
+  within_.clear();
+  look([&](std::int32_t pair) {
+    found_.push_back(pair);
+    return true;
+  });
+  std::sort(found_.begin(), found_.end());
+  for (auto& block : on_body_of_) std::fill(block.begin(), block.end(), Wrench{});
+  for (const std::int32_t pair : found_) {
+    const Separation s = ask(pair, warm_[pair]);
+    if (!(s.distance < scene_.law().range)) continue;
+    within_.push_back(pair);
+    overlapping_ += s.distance < 0.0 ? 1 : 0;
+    push(pair, s);
+  }
+  std::fill(on_body_.begin(), on_body_.end(), Wrench{});
+  for (const auto& block : on_body_of_) {
+    for (std::size_t i = 0; i < on_body_.size(); ++i) on_body_[i] += block[i];
+  }
+}
+
+int BruteForce::count_near(std::span<const Placement> placements, int most) {
+  place(placements);
+  int count = 0;
+  look([&](std::int32_t pair) {
+    WarmStart cold;
+    count += ask(pair, cold).distance < scene_.law().range ? 1 : 0;
+    return count < most;
+  });
+  return count;
+}
+
+}  // namespace repel::scale

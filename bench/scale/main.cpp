@@ -1,0 +1,200 @@
+/// @file
+/// What a tick of the world costs from 32 to 1 000 000 pairs, and that it finds what brute force
+/// finds.
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+
+#include "../distance/program.hpp"
+#include "report.hpp"
+
+namespace repel::scale {
+
+namespace {
+
+using bench::Arguments;
+using bench::is_chosen;
+
+constexpr const char* about =
+    "scale: what a tick of the world costs from 32 to 1 000 000 pairs: World::place of what moves\n"
+    "and Coprocessor::exchange. A tool of convex parts moves among obstacles as a hand moves it.\n"
+    "\n"
+    "  --pairs N     this many pairs, 1 to 1 000 000, ours alone; default: the sweep, 32 to\n"
+    "                1 000 000 pairs, beside every pair evaluated and the broad phases of other\n"
+    "                libraries, and the 4 x 8 scene beside their warm queries\n"
+    "  --near K      with --pairs: pairs within range, mean of the ticks; default 3\n"
+    "  --ticks T     default 10 000; in the sweep 2000\n"
+    "  --threads N   with --pairs: 0 to 16, 0 in the caller; default 0; the sweep has 0, 1 and 2\n"
+    "  --speed V     of the tool in mm/s, root mean square; default 280\n"
+    "  --bodies N    that move, the tool and bodies with obstacles; default 2\n"
+    "  --seed S      default 1\n"
+    "  --rival A,B   in the sweep, only these libraries beside ours\n"
+    "  --quick       a small sweep: a look, not a result\n"
+    "  --json FILE   writes the results as JSON\n"
+    "  --help        this text\n"
+    "\n"
+    "All ticks are timed first and checked after, over the same motion. At every tick the spheres\n"
+    "around both parts of every pair are compared one by one, the pairs whose spheres are within\n"
+    "range are asked, and their forces must be ours on every body to 1e-9; a\n"
+    "rival must find the same pairs within range. In the first ticks, as many as 300 million\n"
+    "evaluations allow (20 million in the sweep), ours must also be equal to itself with\n"
+    "CoprocessorOptions::every_pair; JSON says how many (every_pair_ticks).\n"
+    "Exit code 1 when an answer of ours is wrong, 2 for what is asked wrongly.\n";
+
+struct Options {
+  Setting setting;
+  bool sweep = true;
+  bool quick = false;
+  std::vector<std::string> rivals;
+  std::string json;
+};
+
+long number(Arguments& arguments, const std::string& flag, long otherwise, long low, long high) {
+  const std::string value = arguments.value(flag, std::to_string(otherwise));
+  std::size_t used = 0;
+  const long parsed = std::stol(value, &used);
+  if (used != value.size() || parsed < low || parsed > high) {
+    throw std::invalid_argument(flag + " takes " + std::to_string(low) + " to " +
+                                std::to_string(high));
+  }
+  return parsed;
+}
+
+/// Throws std::logic_error for what is not known.
+Options parse(Arguments arguments) {
+  Options options;
+  Setting& setting = options.setting;
+  options.quick = arguments.has("--quick");
+  setting.pairs = static_cast<int>(number(arguments, "--pairs", 0, 0, 1000000));
+  options.sweep = setting.pairs == 0;
+  const long ticks = !options.sweep ? 10000 : options.quick ? 50 : 2000;
+  setting.ticks = static_cast<int>(number(arguments, "--ticks", ticks, 1, 10000000));
+  if (!options.sweep) {
+    setting.near = static_cast<double>(number(arguments, "--near", 3, 1, 100));
+    setting.threads = static_cast<int>(number(arguments, "--threads", 0, 0, 16));
+  }
+  setting.speed = 1e-3 * static_cast<double>(number(arguments, "--speed", 280, 1, 10000));
+  setting.bodies = static_cast<int>(number(arguments, "--bodies", 2, 1, 60));
+  setting.seed = static_cast<std::uint64_t>(number(arguments, "--seed", 1, 0, 1L << 62));
+  options.rivals = bench::split(arguments.value("--rival", ""));
+  options.json = arguments.value("--json", "");
+  arguments.end();
+  return options;
+}
+
+Scenario measure_all(const Setting& setting, const std::vector<Way>& ways, double evaluations) {
+  const Scene scene(setting);
+  Scenario scenario{.setting = setting, .tool_parts = scene.tool_parts(), .speed = scene.speed()};
+  for (const Part& part : scene.parts()) {
+    scenario.shape_bytes += static_cast<double>(part.shape.bytes());
+  }
+  const Record* every_pair = nullptr;
+  for (const Way& way : ways) {
+    std::fprintf(stderr, "%d pairs, %.0f near: %s, %d threads\n", setting.pairs, setting.near,
+                 way.name.c_str(), way.threads);
+    const double affordable = std::max(10.0, evaluations / setting.pairs);
+    const int ticks =
+        way.every_pair && affordable < setting.ticks ? static_cast<int>(affordable) : setting.ticks;
+    scenario.runs.push_back(measure(way, scene, ticks));
+  }
+  const Truth truth = truth_of(scene, setting.ticks);
+  scenario.near = truth.near();
+  scenario.overlapping =
+      static_cast<double>(truth.overlapping) / static_cast<double>(setting.ticks);
+  scenario.asked = truth.asked;
+  const auto bodies = static_cast<std::size_t>(setting.bodies) + 1;
+  for (const Run& run : scenario.runs) {
+    // What it claims to have evaluated is believed only where it is every pair.
+    if (run.way.every_pair && run.evaluated == setting.pairs) every_pair = &run.record;
+  }
+  for (Run& run : scenario.runs) {
+    run.check = compare(run.record, truth.record, bodies);
+    if (run.way.ours && every_pair != nullptr) {
+      run.every_pair = compare(run.record, *every_pair, bodies);
+    }
+  }
+  for (Run& run : scenario.runs) run.record = {};
+  return scenario;
+}
+
+std::vector<Scenario> sweep(const Options& options) {
+  std::vector<Way> ways{ours(0), ours(1), ours(2), every_pair()};
+  for (const Way& rival : rivals()) {
+    if (is_chosen(options.rivals, rival.name)) ways.push_back(rival);
+  }
+  std::vector<Scenario> scenarios;
+  for (const int pairs : {32, 100, 1000, 10000, 100000, 1000000}) {
+    for (const int near : {1, 3, 10, 100}) {
+      const bool crowded = 3 * near > pairs;
+      const bool skipped = options.quick && (pairs > 1000 || near != 3);
+      if (crowded || skipped) continue;
+      Setting setting = options.setting;
+      setting.pairs = pairs;
+      setting.near = near;
+      scenarios.push_back(measure_all(setting, ways, 2e7));
+    }
+  }
+  return scenarios;
+}
+
+bool is_right(const std::vector<Scenario>& scenarios) {
+  bool right = true;
+  for (const Scenario& scenario : scenarios) {
+    for (const Run& run : scenario.runs) {
+      right = right && (!run.way.ours || (run.check.equal() && run.every_pair.equal()));
+    }
+  }
+  return right;
+}
+
+void write(const std::string& path, const std::string& words) {
+  if (path.empty()) return;
+  std::ofstream file(path);
+  file << words;
+  if (!file.flush()) throw std::invalid_argument("cannot write " + path);
+}
+
+int run(const Options& options) {
+  std::vector<Scenario> scenarios;
+  std::vector<SmallRun> small;
+  if (options.sweep) {
+    small = small_runs(options.quick ? 2 : 100, options.rivals);
+    scenarios = sweep(options);
+    write(options.json, to_json(scenarios, small));
+  } else {
+    scenarios.push_back(
+        measure_all(options.setting, {ours(options.setting.threads), every_pair()}, 3e8));
+    write(options.json, to_json(scenarios.front(), scenarios.front().runs.front()));
+  }
+  std::printf("%s\n\n%s", bench::build_line().c_str(), to_markdown(scenarios, small).c_str());
+  if (options.sweep) std::printf("\n%s", REPEL_ABSENT_RIVALS);
+  const bool right =
+      is_right(scenarios) && (small.empty() || (small[0].wrong == 0 && small[1].wrong == 0));
+  if (!right) std::fprintf(stderr, "ours is not equal to brute force\n");
+  return right ? 0 : 1;
+}
+
+int start(int argc, char** argv) {
+  const std::vector<std::string> words(argv, argv + argc);
+  Arguments arguments(words);
+  if (arguments.has("--help")) return std::printf("%s", about) < 0 ? 1 : 0;
+  try {
+    const int code = run(parse(arguments));
+    std::fflush(nullptr);
+    // FCL and Coal each bring their own octomap, and the destructors of the two collide.
+    std::quick_exit(code);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
+
+}  // namespace
+
+}  // namespace repel::scale
+
+int main(int argc, char** argv) {
+  return repel::scale::start(argc, argv);
+}

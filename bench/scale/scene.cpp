@@ -1,0 +1,181 @@
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <support/families.hpp>
+
+#include "brute_force.hpp"
+
+namespace repel::scale {
+
+namespace {
+
+using families::Rng;
+
+constexpr int riders = 64;  // obstacles on a body that moves, at most
+const BodyId tool{1};
+
+/// [m] radius of a tool of so many parts.
+double tool_radius(int parts) {
+  return 0.06 * std::cbrt(parts);
+}
+
+Vec3 in_ball(Rng& rng) {
+  return std::cbrt(families::uniform(rng, 0.0, 1.0)) * families::direction(rng);
+}
+
+/// A box, or the hull of 16 points on the ellipsoid within.
+Shape draw_shape(Rng& rng, bool box, double largest) {
+  Vec3 half;
+  for (double& h : half) h = families::log_uniform(rng, 0.005, largest);
+  if (box) return Shape::box(half);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 16; ++i) points.push_back(half.cwiseProduct(families::direction(rng)));
+  return Shape::hull(points);
+}
+
+Pose placed(Rng& rng, const Vec3& position) {
+  Pose X = Pose::Identity();
+  X.linear() = families::rotation(rng);
+  X.translation() = position;
+  return X;
+}
+
+int tool_parts_for(int pairs) {
+  return std::clamp(static_cast<int>(std::sqrt(0.5 * pairs)), 1, 100);
+}
+
+}  // namespace
+
+Path::Path(const Vec3& centre, double region, double speed, std::uint64_t seed) : centre_(centre) {
+  Rng rng(seed);
+  constexpr double turn = 0.5;  // [rad] at most about each axis
+  const double amplitude = region / waves;
+  // The root of the mean square over three axes of so many waves.
+  const double rate = speed / (amplitude * std::sqrt(1.5 * waves));
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < waves; ++i) {
+      const double pace = families::uniform(rng, 0.3, 1.5);
+      position_[axis][i] = {amplitude, rate * pace, families::uniform(rng, 0.0, 2.0 * M_PI)};
+      rotation_[axis][i] = {turn / waves, 10.0 * speed * families::uniform(rng, 0.5, 1.5),
+                            families::uniform(rng, 0.0, 2.0 * M_PI)};
+    }
+  }
+}
+
+Vec3 Path::sum(const Wave (&of)[3][waves], double seconds) {
+  Vec3 total = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const Wave& wave : of[axis]) {
+      total[axis] += wave.amplitude * std::sin(wave.rate * seconds + wave.phase);
+    }
+  }
+  return total;
+}
+
+Pose Path::at(double seconds) const {
+  const Vec3 turn = sum(rotation_, seconds);
+  Pose X = Pose::Identity();
+  X.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+  X.translation() = centre_ + sum(position_, seconds);
+  return X;
+}
+
+Scene::Scene(const Setting& setting)
+    : setting_(setting), tool_parts_(tool_parts_for(setting.pairs)) {
+  Rng rng(setting.seed);
+  for (int i = 0; i < tool_parts_; ++i) {
+    parts_.push_back({"tool part", tool, draw_shape(rng, i % 2 == 0, 0.02),
+                      placed(rng, tool_radius(tool_parts_) * in_ball(rng))});
+  }
+  const int obstacles = (setting.pairs + tool_parts_ - 1) / tool_parts_;
+  riding_ = std::min(riders, obstacles / 8);
+  for (int i = 0; i < obstacles; ++i) {
+    const int other = riding_ > 0 ? 2 + i / riding_ : setting.bodies + 1;
+    const BodyId body = other <= setting.bodies ? BodyId{other} : World::fixed;
+    places_.push_back(in_ball(rng));
+    parts_.push_back(
+        {"obstacle", body, draw_shape(rng, i % 2 == 0, 0.03), placed(rng, Vec3::Zero())});
+  }
+  steer();
+}
+
+/// All obstacles within `radius` [m], had they one body. In a small scene the bodies stray less.
+void Scene::spread(double radius) {
+  for (int i = 0; i < obstacles(); ++i) {
+    Part& part = parts_[tool_parts_ + i];
+    const double share = part.body == World::fixed ? 1.0 : 1.0 * riding_ / obstacles();
+    part.X_BP.translation() = std::cbrt(share) * radius * places_[i];
+  }
+  const double region = std::clamp(0.4 * radius, 0.08, 0.4);
+  Rng rng(setting_.seed);
+  paths_.clear();
+  paths_.emplace_back(Vec3::Zero(), region, setting_.speed, rng());
+  for (int i = 1; i < setting_.bodies; ++i) {
+    const Vec3 centre = std::min(radius, 0.4) * families::direction(rng);
+    paths_.emplace_back(centre, 0.5 * region, 0.4 * setting_.speed, rng());
+  }
+}
+
+void Scene::steer() {
+  constexpr int samples = 1000;
+  const auto is_crowded = [&](double radius) {
+    spread(radius);
+    BruteForce brute(*this);
+    const double most = setting_.near * samples;
+    double near = 0.0;
+    for (int i = 0; i < samples && near <= most; ++i) {
+      near += brute.count_near(placements(std::int64_t{setting_.ticks} * i / samples),
+                               static_cast<int>(most - near) + 1);
+    }
+    return near > most;
+  };
+  double low = 0.02;
+  double high = 20.0;
+  while (high > 1.01 * low) {
+    const double middle = std::sqrt(low * high);
+    (is_crowded(middle) ? low : high) = middle;
+  }
+  spread(high);
+}
+
+World Scene::world() const {
+  World world({.bodies = setting_.bodies + 1,
+               .parts = static_cast<int>(parts_.size()),
+               .pairs = setting_.pairs});
+  for (const Placement& p : placements(0)) world.add_body("body", p.X_WB);
+  for (const Part& part : parts_) world.add_part(part.body, part.name, part.shape, part.X_BP);
+  for (std::int32_t i = 0; i < setting_.pairs; ++i) {
+    world.add_pair({i / obstacles()}, {tool_parts_ + i % obstacles()}, law_);
+  }
+  return world;
+}
+
+std::span<const Placement> Scene::placements(std::int64_t tick) const {
+  placements_.resize(paths_.size());
+  const double now = period * static_cast<double>(tick);
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const Pose X = paths_[i].at(now);
+    const Pose before = paths_[i].at(now - period);
+    const Eigen::AngleAxisd turn(Mat3(X.linear() * before.linear().transpose()));
+    placements_[i] = {
+        {static_cast<std::int32_t>(i) + 1},
+        X,
+        {(X.translation() - before.translation()) / period, turn.angle() / period * turn.axis()}};
+  }
+  return placements_;
+}
+
+Speed Scene::speed() const {
+  Speed speed;
+  for (int tick = 0; tick < setting_.ticks; ++tick) {
+    const Twist V = placements(tick).front().V_WB;
+    speed.mean += V.linear.norm() / setting_.ticks;
+    speed.most = std::max(speed.most, V.linear.norm());
+    speed.most_turn = std::max(speed.most_turn, period * V.angular.norm());
+  }
+  return speed;
+}
+
+}  // namespace repel::scale

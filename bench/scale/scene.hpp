@@ -1,0 +1,101 @@
+/// @file
+/// A tool of many convex parts on its way among many obstacles: what a tick is measured on.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <repel/world/world.hpp>
+
+namespace repel::scale {
+
+/// What is measured.
+struct Setting {
+  int pairs = 32;
+  double near = 3.0;  ///< pairs within range, in the mean over the ticks: what is aimed at
+  int ticks = 10000;
+  int threads = 0;
+  int bodies = 2;       ///< that move: the tool, and bodies that carry obstacles
+  double speed = 0.28;  ///< [m/s] of the tool, root mean square
+  std::uint64_t seed = 1;
+};
+
+/// Where a body is put at a tick.
+struct Placement {
+  BodyId body;
+  Pose X_WB = Pose::Identity();
+  Twist V_WB;
+};
+
+/// A smooth way in a bounded region: a sum of sines in each coordinate of position and rotation.
+class Path {
+ public:
+  /// @param region [m] it strays no farther from `centre` along an axis
+  /// @param speed [m/s] root mean square
+  Path(const Vec3& centre, double region, double speed, std::uint64_t seed);
+  [[nodiscard]] Pose at(double seconds) const;
+
+ private:
+  static constexpr int waves = 3;
+  struct Wave {
+    double amplitude, rate, phase;
+  };
+  [[nodiscard]] static Vec3 sum(const Wave (&of)[3][waves], double seconds);
+
+  Vec3 centre_;
+  Wave position_[3][waves];  ///< [m] by axis
+  Wave rotation_[3][waves];  ///< [rad] by axis of the rotation vector
+};
+
+/// How fast the tool moves.
+struct Speed {
+  double mean = 0.0;       ///< [m/s]
+  double most = 0.0;       ///< [m/s]
+  double most_turn = 0.0;  ///< [rad] in a tick
+};
+
+/// Every part of the tool makes a pair with every obstacle, tool part by tool part, until there are
+/// as many as asked. Most obstacles are fixed; up to 64 ride on each other body that moves, as near
+/// to each other as the fixed ones are.
+class Scene {
+ public:
+  static constexpr double period = 0.0025;  ///< [s] of a tick
+  static constexpr double range = 0.03;     ///< [m] of the force
+
+  /// Draws the parts, then spreads the obstacles until the mean of the pairs within range is as
+  /// asked, as nearly as that goes.
+  explicit Scene(const Setting& setting);
+
+  [[nodiscard]] World world() const;
+  /// Of all bodies that move. Ticks count from 0.
+  [[nodiscard]] std::span<const Placement> placements(std::int64_t tick) const;
+  [[nodiscard]] Speed speed() const;
+
+  [[nodiscard]] const Setting& setting() const { return setting_; }
+  [[nodiscard]] int tool_parts() const { return tool_parts_; }
+  [[nodiscard]] int obstacles() const { return static_cast<int>(parts_.size()) - tool_parts_; }
+  /// Tool parts first, then obstacles.
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  [[nodiscard]] const ForceLaw& law() const { return law_; }
+  /// The pair of a tool part and an obstacle, both counted from 0; it exists when it is below
+  /// `setting().pairs`.
+  [[nodiscard]] std::int32_t pair(int tool_part, int obstacle) const {
+    return tool_part * obstacles() + obstacle;
+  }
+
+ private:
+  void spread(double radius);
+  void steer();
+
+  Setting setting_;
+  ForceLaw law_{.range = range};
+  int tool_parts_;
+  int riding_ = 0;  ///< obstacles on each body that moves
+  std::vector<Part> parts_;
+  std::vector<Vec3> places_;  ///< of the obstacles, in a ball of radius 1
+  std::vector<Path> paths_;   ///< by body, the fixed one left out
+  mutable std::vector<Placement> placements_;
+};
+
+}  // namespace repel::scale
