@@ -32,6 +32,18 @@ inline Shape random_box(families::Rng& random) {
                      families::uniform(random, 0.01, 0.08)});
 }
 
+/// A box, a hull, a rounded shape or one with a curved rim.
+inline Shape random_shape(families::Rng& random) {
+  const int kind = families::count_between(random, 0, 4);
+  const double radius = families::uniform(random, 0.01, 0.08);
+  const double half_length = families::uniform(random, 0.01, 0.08);
+  if (kind == 0) return Shape::sphere(radius);
+  if (kind == 1) return Shape::capsule(radius, half_length);
+  if (kind == 2) return Shape::cylinder(radius, half_length);
+  if (kind == 3) return Shape::hull(families::cloud(random, 12, radius).vertices);
+  return random_box(random);
+}
+
 /// A tool of `tool_parts` boxes among `obstacles` boxes within 0.4 m, and how it wanders.
 struct Boxes {
   World world;
@@ -77,13 +89,15 @@ struct Crowd {
   std::vector<BodyId> bodies{World::fixed};
   families::Rng random;
 
-  explicit Crowd(unsigned seed, const Limits& limits = {}) : world(limits), random(seed) {
+  explicit Crowd(unsigned seed, const Limits& limits = {},
+                 Shape (*draw)(families::Rng&) = random_box)
+      : world(limits), random(seed) {
     for (int i = 0; i < 3; ++i) bodies.push_back(world.add_body("body"));
     std::vector<PartId> parts;
     for (const BodyId body : bodies) {
       for (int i = 0; i < 8; ++i) {
-        parts.push_back(
-            world.add_part(body, "part", test::random_box(random), test::random_pose(random, 0.3)));
+        const Shape shape = draw(random);
+        parts.push_back(world.add_part(body, "part", shape, test::random_pose(random, 0.3)));
       }
     }
     for (int i = 0; i < 300; ++i) {

@@ -138,6 +138,61 @@ TEST(Coprocessor, SkippingPairsChangesNoForce) {
   }
 }
 
+/// What there was in ticks whose forces with and without skipping were compared.
+struct Compared {
+  std::int64_t evaluated = 0;
+  std::int64_t of = 0;      ///< pairs that were not skipped where none is
+  double deepest = 0.0;     ///< [m] least signed distance
+  std::int64_t pushed = 0;  ///< ticks with a force
+};
+
+/// Adds the ticks of a motion, worked through twice. @param make builds the same model each time
+template <class Make>
+void expect_same_bits_with_every_pair(const Make& make, int threads, int ticks, Compared& sum) {
+  auto model = make();
+  auto same = make();
+  CoprocessorOptions options = lock_step(threads);
+  Coprocessor skipping(model.world, options);
+  options.every_pair = true;
+  Coprocessor plain(same.world, options);
+  for (int tick = 0; tick < ticks; ++tick) {
+    SCOPED_TRACE("tick " + std::to_string(tick));
+    model.move();
+    same.move();
+    const PairForces& forces = skipping.exchange();
+    const PairForces& all = plain.exchange();
+    for (std::size_t body = 0; body < all.on_body.size(); ++body) {
+      ASSERT_TRUE(same_bits(forces.on_body[body].force, all.on_body[body].force));
+      ASSERT_TRUE(same_bits(forces.on_body[body].torque, all.on_body[body].torque));
+    }
+    ASSERT_EQ(forces.totals.peak_force, all.totals.peak_force);
+    sum.evaluated += forces.totals.evaluated;
+    sum.of += all.totals.evaluated;
+    sum.deepest = std::min(sum.deepest, forces.totals.nearest);
+    sum.pushed += forces.totals.peak_force > 0.0 ? 1 : 0;
+  }
+}
+
+// What a pair is asked while it is out of range leaves no trace in its force.
+TEST(Coprocessor, SkippingChangesNoBit) {
+  for (const int threads : {0, 2}) {
+    Compared boxes, crowd;
+    for (unsigned run = 0; run < 4; ++run) {
+      SCOPED_TRACE(families::of_seed(seed + run, "threads", threads));
+      expect_same_bits_with_every_pair(
+          [&] { return test::Boxes(4, 60, {.range = 0.03}, seed + run); }, threads, 300, boxes);
+      expect_same_bits_with_every_pair(
+          [&] { return test::Crowd(seed + run, {}, test::random_shape); }, threads, 300, crowd);
+      if (HasFailure()) return;
+    }
+    for (const Compared& sample : {boxes, crowd}) {
+      EXPECT_LT(sample.evaluated, sample.of / 3);
+      EXPECT_GT(sample.pushed, 4 * 300 / 2);
+      EXPECT_LT(sample.deepest, -0.01);
+    }
+  }
+}
+
 TEST(Coprocessor, ForcesAreThoseOfAllPairsWhenMemoryIsShort) {
   for (const int candidates : {0, 4, 20}) {
     for (const int threads : {0, 2}) {

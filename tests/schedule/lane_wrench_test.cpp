@@ -1,0 +1,104 @@
+#include <repel/schedule/lane_wrench.hpp>
+
+#include <gtest/gtest.h>
+
+#include "schedule/near_pairs.hpp"
+
+namespace repel::detail {
+namespace {
+
+constexpr unsigned seed = 5120;
+
+/// Groups of the same two bodies, of others and of many, in an order at random, and their sum.
+struct Groups {
+  test::NearPairs scene;
+  std::vector<ContactGroup> groups;
+  std::vector<Wrench> sum;
+
+  explicit Groups(unsigned run) : scene(3, run) {
+    constexpr int count = 6;
+    for (int g = 0; g < count; ++g) add_group(families::count_between(scene.random, 0, 2));
+    PartPoses poses(scene.world);
+    groups.resize(count);
+    for (int i = 0; i < count * lane_count; ++i) {
+      scene.set(groups[static_cast<std::size_t>(i / lane_count)], i % lane_count, {i}, poses);
+    }
+    scene.move(0.001, 0.002);
+    poses.begin();
+    LaneWrench lanes;
+    sum.resize(static_cast<std::size_t>(scene.world.body_count()));
+    for (ContactGroup& group : groups) {
+      group.evaluate(scene.world.motion(), poses);
+      lanes.add(group, scene.world.motion(), sum);
+    }
+    lanes.hand_over(scene.world.motion(), sum);
+  }
+  void add_group(int kind) {
+    for (int k = 0; k < lane_count; ++k) {
+      if (kind == 0) scene.add(scene.bodies[1], scene.bodies[2]);
+      if (kind == 1) scene.add(scene.bodies[3], World::fixed);
+      if (kind == 2) scene.add();
+    }
+  }
+  [[nodiscard]] Vec3 origin(BodyId id) const {
+    return scene.world.motion().bodies[id.index].X_WB.translation();
+  }
+};
+
+TEST(LaneWrench, IsTheSumOfThePairsOneByOne) {
+  int pushing = 0, mixed = 0, same = 0;
+  for (unsigned run = 0; run < 60; ++run) {
+    const Groups all(seed + run);
+    std::vector<Wrench> plain(all.sum.size());
+    BodyId last;
+    for (const ContactGroup& group : all.groups) {
+      mixed += group.is_one_meeting() ? 0 : 1;
+      same += group.is_one_meeting() && group.body_a(0) == last ? 1 : 0;
+      last = group.is_one_meeting() ? group.body_a(0) : BodyId{};
+      for (int k = 0; k < lane_count; ++k) {
+        if ((group.inside() >> k & 1U) == 0U) continue;
+        const Vec3 f = group.force_W().at(k);
+        const Vec3 p_WQ = group.answer(k).last.p_WA;
+        plain[group.body_a(k).index] += wrench_of_force(f, p_WQ - all.origin(group.body_a(k)));
+        plain[group.body_b(k).index] += wrench_of_force(-f, p_WQ - all.origin(group.body_b(k)));
+        pushing += f.norm() > 1.0 ? 1 : 0;
+      }
+    }
+    for (std::size_t body = 0; body < plain.size(); ++body) {
+      ASSERT_LE((all.sum[body].force - plain[body].force).norm(), 1e-9) << "seed " << seed + run;
+      ASSERT_LE((all.sum[body].torque - plain[body].torque).norm(), 1e-9) << "seed " << seed + run;
+    }
+  }
+  EXPECT_GT(pushing, 200);
+  EXPECT_GT(mixed, 50);
+  EXPECT_GT(same, 30);
+}
+
+TEST(LaneWrench, ActionAndReactionCancelAboutACommonPoint) {
+  for (unsigned run = 0; run < 60; ++run) {
+    const Groups all(seed + run);
+    Wrench sum;
+    for (const BodyId id : all.scene.bodies) {
+      sum += moved_to(all.sum[static_cast<std::size_t>(id.index)], -all.origin(id));
+    }
+    ASSERT_LE(sum.force.norm(), 1e-10) << "seed " << seed + run;
+    ASSERT_LE(sum.torque.norm(), 1e-10) << "seed " << seed + run;
+  }
+}
+
+TEST(LaneWrench, HandsOverOnceAndNothingWhenNothingWasAdded) {
+  const Groups all(seed);
+  LaneWrench lanes;
+  std::vector<Wrench> sum(all.sum.size());
+  lanes.hand_over(all.scene.world.motion(), sum);
+  for (const Wrench& F : sum) EXPECT_EQ(F.force, Vec3::Zero());
+  for (const ContactGroup& group : all.groups) lanes.add(group, all.scene.world.motion(), sum);
+  for (int time = 0; time < 2; ++time) lanes.hand_over(all.scene.world.motion(), sum);
+  for (std::size_t body = 0; body < sum.size(); ++body) {
+    EXPECT_EQ(sum[body].force, all.sum[body].force);
+    EXPECT_EQ(sum[body].torque, all.sum[body].torque);
+  }
+}
+
+}  // namespace
+}  // namespace repel::detail
