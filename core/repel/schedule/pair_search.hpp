@@ -184,9 +184,10 @@ class PairSearch {
       if (travel < meetings_[m].next) continue;
       if (!(travel < meetings_[m].wake_at)) wake(meeting, meetings_[m], A, B, sink);
       double next = meetings_[m].wake_at;
+      const View view(A.X_WB, B.X_WB);
       for (std::int32_t i = 0; i < meetings_[m].awake; ++i) {
         const std::int32_t s = awake_[meeting.first + i];
-        if (!(travel < seekers_[s].ask_at)) ask(meeting, s, A, B, sink);
+        if (!(travel < seekers_[s].ask_at)) ask(s, view, travel, sink);
         next = std::min(next, seekers_[s].ask_at);
       }
       meetings_[m].next = next;
@@ -209,32 +210,39 @@ class PairSearch {
     std::int32_t awake = 0;        ///< so many, from `Meeting::first` on in `awake_`
   };
 
-  /// A box of one body in the frame of another, grown by what that frame is short of a rigid one
-  /// and by rounding.
-  struct Seen {
-    Seen(const Box& in_a, const Pose& X_WA, const Pose& X_WB) noexcept {
-      const Mat3 R_WB = X_WB.linear();
-      skew = (R_WB.transpose() * R_WB - Mat3::Identity()).norm() + 1e-14;
-      box = moved(in_a, Pose(X_WB.inverse()) * X_WA);
-      const double far = X_WA.translation().norm() + X_WB.translation().norm() +
-                         box.center().norm() + box.sizes().norm();
-      const Vec3 slack = Vec3::Constant(2.0 * skew * far);
-      box = Box(box.min() - slack, box.max() + slack);
+  /// How boxes of one body look from the frame of another: grown by what that frame is short of a
+  /// rigid one, and by rounding.
+  class View {
+   public:
+    View(const Pose& X_WFrom, const Pose& X_WTo) noexcept : X_(Pose(X_WTo.inverse()) * X_WFrom) {
+      const Mat3 R = X_WTo.linear();
+      skew_ = (R.transpose() * R - Mat3::Identity()).norm() + 1e-14;
+      far_ = X_WFrom.translation().norm() + X_WTo.translation().norm();
+    }
+    [[nodiscard]] Box box(const Box& of) const noexcept {
+      Box box = moved(of, X_);
+      const double far = far_ + box.center().norm() + box.sizes().norm();
+      const Vec3 slack = Vec3::Constant(2.0 * skew_ * far);
+      box.min() -= slack;
+      box.max() += slack;
+      return box;
     }
     /// What a distance in that frame is at least.
-    [[nodiscard]] double sure(double distance) const noexcept { return (1.0 - skew) * distance; }
+    [[nodiscard]] double sure(double distance) const noexcept { return (1.0 - skew_) * distance; }
 
-    Box box;
-    double skew;
+   private:
+    Pose X_;
+    double skew_;
+    double far_;  ///< [m]
   };
 
   template <class Sink>
   void wake(const PairIndex::Meeting& meeting, MeetingState& state, const BodyState& A,
             const BodyState& B, Sink& sink) noexcept {
-    const Seen partners(meeting.partners, B.X_WB, A.X_WB);
+    const View view(B.X_WB, A.X_WB);
     const std::int32_t before = state.awake;
     const double others = meeting.tree.query(
-        partners.box, meeting.range + margin_of_bodies, [&](std::int32_t i, double) {
+        view.box(meeting.partners), meeting.range + margin_of_bodies, [&](std::int32_t i, double) {
           SeekerState& seeker = seekers_[meeting.first + i];
           seeker.found = true;
           if (seeker.awake) return;
@@ -256,28 +264,26 @@ class PairSearch {
       seeker.found = false;
     }
     state.awake = kept;
-    state.wake_at = A.travel + B.travel + partners.sure(others) - meeting.range;
+    state.wake_at = A.travel + B.travel + view.sure(others) - meeting.range;
   }
 
   template <class Sink>
-  void ask(const PairIndex::Meeting& meeting, std::int32_t s, const BodyState& A,
-           const BodyState& B, Sink& sink) noexcept {
+  void ask(std::int32_t s, const View& view, double travel, Sink& sink) noexcept {
     const PairIndex::Seeker& seeker = index_->seekers[s];
     SeekerState& state = seekers_[s];
     // The first margins differ, so that later not all seekers are due in one tick.
     const double share = state.ask_at > never_asked ? 1.0 : 0.125 * (s % 8 + 1);
-    const Seen seen(seeker.box, A.X_WB, B.X_WB);
     const std::int32_t before = state.listed;
     state.listed = 0;
     bool all_taken = true;
     const double others = index_->trees[seeker.tree].query(
-        seen.box, seeker.range + share * margin, [&](std::int32_t i, double distance) {
+        view.box(seeker.box), seeker.range + share * margin, [&](std::int32_t i, double distance) {
           const PairId pair = index_->pairs[seeker.first + i];
           ++state.listed;
-          all_taken = sink.take(pair, s, seen.sure(distance)) && all_taken;
+          all_taken = sink.take(pair, s, view.sure(distance)) && all_taken;
         });
     if (before + state.listed > 0) sink.end(s);
-    state.ask_at = all_taken ? A.travel + B.travel + seen.sure(others) - seeker.range : again;
+    state.ask_at = all_taken ? travel + view.sure(others) - seeker.range : again;
   }
 
   std::shared_ptr<const PairIndex> index_;
