@@ -32,7 +32,7 @@ class Boxes {
     return record_;
   }
   /// Does the work of a tick without its effect.
-  void rehearse() const noexcept { coprocessor_.rehearse(); }
+  void rehearse() noexcept { coprocessor_.rehearse(); }
 
   [[nodiscard]] int pairs() const noexcept { return static_cast<int>(world_.pairs().size()); }
 
