@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "budget.hpp"
 #include "command_line.hpp"
 #include "report.hpp"
 #include "run.hpp"
@@ -76,6 +77,12 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
       ->check(CLI::Range(0, 16));
+  app.add_option("--budget", a.run.budget,
+                 "In place of the scene's budget: support pairs per tick, none, or i860, the "
+                 "processor of 1993, on which 4 by 8 parts just fit at 400 Hz")
+      ->check(CLI::Validator(teleop::budget_complaint, "UNITS, i860 or none"));
+  app.add_flag("--every-pair", a.run.every_pair,
+               "Ask also the pairs that cannot be within range: to compare with");
   app.add_option("--report", a.report, "Write the report as JSON to FILE");
   app.add_option("--log", a.log, "Write every tick as CSV to FILE");
   app.footer("Scenes:" + scene_list() +

@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "times.hpp"
+#include "unused.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -49,6 +50,48 @@ ordered_json obstacle_list(const RunResult& r) {
   return list;
 }
 
+/// The counted budget, and how much of such work this machine does.
+void print_work(const RunResult& r, std::FILE* out) {
+  std::fprintf(out, "  support pairs          %.2f per tick, most %lld in one\n",
+               host::per_tick(r.totals, r.totals.iterations),
+               static_cast<long long>(r.most_support_pairs));
+  const auto units = static_cast<long long>(r.scene.budget.work_units);
+  if (units == 0) return;
+  std::fprintf(out, "  work budget            %lld support pairs per tick%s\n", units,
+               r.options.budget == "i860" ? ", that of the i860 at this rate" : "");
+  const double here = support_pairs_per_period(r);
+  if (here == 0.0) return;
+  std::fprintf(out,
+               "  this machine           %.3g support pairs in a period of %g ms, %.3g times the "
+               "budget;\n                         by the time of its ticks, all else in them "
+               "included\n",
+               here, 1e3 / r.options.rate_hz, here / static_cast<double>(units));
+}
+
+/// What the run did without, in one paragraph.
+void print_skipped(const RunResult& r, std::FILE* out) {
+  std::fprintf(out, "  skipped                %.2f of %d pairs per tick",
+               r.pairs - host::per_tick(r.totals, r.totals.near), r.pairs);
+  for (const std::string& part : unused_parts(r)) std::fprintf(out, ", %s", part.c_str());
+  std::fprintf(out, "\n");
+}
+
+/// The budget in force.
+ordered_json budget_list(const RunResult& r) {
+  const scene::Budget& budget = r.scene.budget;
+  const double here = support_pairs_per_period(r);
+  const bool comparable = budget.work_units > 0 && here > 0.0;
+  ordered_json times;
+  if (comparable) times = here / static_cast<double>(budget.work_units);
+  return {{"name", r.options.budget.empty() ? "scene" : r.options.budget},
+          {"wall_us", r.options.fast ? 0.0 : budget.wall_us},
+          {"work_units", budget.work_units},
+          {"max_age_ticks", budget.max_age},
+          {"ticks_over_wall", r.options.fast ? 0 : r.over_budget},
+          {"machine_units_per_period", here},
+          {"machine_times_budget", times}};
+}
+
 void print_workers(const WorkerReport& w, std::FILE* out) {
   std::fprintf(
       out, "  workers stood in for   in %lld ticks, longest %lld in a row, %d at the end\n",
@@ -62,7 +105,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "\n%s: %lld ticks at %g Hz (%.2f s), back end %s, coprocessor threads %d%s%s\n",
                r.scene.name.c_str(), static_cast<long long>(t.ticks), r.options.rate_hz,
                static_cast<double>(t.ticks) / r.options.rate_hz, r.options.backend.c_str(),
-               r.options.threads, r.options.fast ? ", not by the clock" : "",
+               r.threads, r.options.fast ? ", not by the clock" : "",
                r.interrupted ? ", interrupted" : "");
   host::print_times("compute of the tick", r.deadline.compute(), out);
   if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
@@ -81,15 +124,13 @@ void print_report(const RunResult& r, std::FILE* out) {
       "  stale pairs            most %d in a tick, oldest answer %lld ticks, given too much "
       "%.3g J\n",
       t.most_stale, static_cast<long long>(t.oldest_age), t.refresh_energy);
-  if (r.options.threads > 0) print_workers(t.workers, out);
+  if (r.threads > 0) print_workers(t.workers, out);
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
     std::fprintf(out, "  wall budget            %g us, exceeded by the whole tick %lld times\n",
                  r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
   }
-  if (r.scene.budget.work_units > 0) {
-    std::fprintf(out, "  work budget            %lld support pairs per tick\n",
-                 static_cast<long long>(r.scene.budget.work_units));
-  }
+  print_work(r, out);
+  print_skipped(r, out);
   if (!r.nearest_pair.empty()) {
     std::fprintf(out, "  nearest                %.3f mm (%s), deepest intrusion %.3f mm\n",
                  1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * host::deepest(t));
@@ -108,14 +149,16 @@ void print_report(const RunResult& r, std::FILE* out) {
 void write_json(const RunResult& r, std::ostream& file) {
   ordered_json report = {{"scene", r.scene.name},           {"scene_file", r.scene.file},
                          {"backend", r.options.backend},    {"rate_hz", r.options.rate_hz},
-                         {"by_the_clock", !r.options.fast}, {"threads", r.options.threads},
+                         {"by_the_clock", !r.options.fast}, {"threads", r.threads},
                          {"ticks", r.totals.ticks},         {"interrupted", r.interrupted}};
   report.update(host::to_json(r.deadline, r.skipped_ticks));
   report["simulated_arm_us"] = host::percentiles(r.arm_step);
-  report["budget"] = {{"wall_us", r.options.fast ? 0.0 : r.scene.budget.wall_us},
-                      {"work_units", r.scene.budget.work_units},
-                      {"ticks_over_wall", r.options.fast ? 0 : r.over_budget}};
+  report["every_pair"] = r.options.every_pair;
+  report["budget"] = budget_list(r);
   report.update(host::to_json(r.totals, r.pairs));
+  report["support_pairs_most"] = r.most_support_pairs;
+  report["pairs_skipped_per_tick"] = r.pairs - host::per_tick(r.totals, r.totals.near);
+  report["skipped"] = unused_parts(r);
   report["workers"] = {{"ticks_stood_in_for", r.totals.workers.ticks},
                        {"longest_silence_ticks", r.totals.workers.longest_silence},
                        {"silent_at_end", r.totals.workers.stood_in}};

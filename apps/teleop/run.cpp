@@ -1,6 +1,9 @@
 #include "run.hpp"
 
+#include <pthread.h>
+
 #include <cmath>
+#include <cstdio>
 #include <thread>
 
 #include <repel/ideal/arm.hpp>
@@ -9,6 +12,7 @@
 #include <repel/bullet/arm.hpp>
 #endif
 
+#include "budget.hpp"
 #include "cell.hpp"
 #include "heap_guard.hpp"
 #include "metronome.hpp"
@@ -21,8 +25,16 @@ namespace {
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
+/// As `ps -L` and /proc show it, up to 15 characters.
+void name_this_thread(const char* name) noexcept {
+  (void)pthread_setname_np(pthread_self(), name);
+}
+
 /// For coprocessor threads, which do nothing but ticks.
-void begin_worker_in_lock_step(int /*index*/) noexcept {
+void begin_worker_in_lock_step(int index) noexcept {
+  char name[16];
+  (void)std::snprintf(name, sizeof name, "repel pairs %d", index);
+  name_this_thread(name);
   SystemCallGuard::arm(Pauses::naps);
   host::HeapGuard::watch_this_thread();
   SystemCallGuard::watch_this_thread();
@@ -32,18 +44,21 @@ void begin_worker(int index) noexcept {
   begin_worker_in_lock_step(index);
 }
 
-CoprocessorOptions coprocessor_options(const scene::Scene& scene, const RunOptions& options,
-                                       nanoseconds period) {
+CoprocessorOptions coprocessor_options(const RunResult& run, nanoseconds period) {
+  const scene::Budget& budget = run.scene.budget;
+  const RunOptions& options = run.options;
   CoprocessorOptions result;
-  result.threads = options.threads;
+  result.threads = run.threads;
   result.period = period;
   result.patience = period / 4;
   result.lock_step = options.fast;
   result.on_thread_start = options.fast ? &begin_worker_in_lock_step : &begin_worker;
-  result.budget.work_units = scene.budget.work_units;
+  result.every_pair = options.every_pair;
+  result.budget.work_units = budget.work_units;
+  result.budget.max_age = budget.max_age;
   // A clock would make two runs differ: without one only the counted budget holds.
   if (!options.fast) {
-    result.budget.wall = nanoseconds(std::llround(1e3 * scene.budget.wall_us));
+    result.budget.wall = nanoseconds(std::llround(1e3 * budget.wall_us));
     if (result.budget.wall.count() > 0) result.patience = result.budget.wall + period / 20;
   }
   return result;
@@ -54,6 +69,7 @@ class ProgressThread {
  public:
   ProgressThread(Mailbox<Progress>& box, const std::function<void(const Progress&)>& show)
       : thread_([&box, &show](const std::stop_token& stop) {
+          name_this_thread("repel progress");
           while (!stop.stop_requested()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
             if (box.take()) show(box.newest());
@@ -120,7 +136,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
 
   result.machine = host::describe_machine(options.fast ? "not by the clock"
                                                        : host::to_text(host::request_real_time()));
-  Coprocessor coprocessor(cell.world, coprocessor_options(result.scene, options, period));
+  Coprocessor coprocessor(cell.world, coprocessor_options(result, period));
   network::ScriptedOperator the_operator(result.scene.script, result.scene.spaceball,
                                          result.scene.torque_arm);
   Teleoperator teleoperator(cell.model, arm, cell.kinematics, cell.world, cell.tool, coprocessor,
@@ -146,6 +162,8 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     result.arm_step.record(steady_clock::now() - arm_begin);
     result.deadline.record(late, end - begin);
     result.totals.add(*record);
+    result.most_support_pairs = std::max(result.most_support_pairs, record->pairs.iterations);
+    result.compute += end - begin;
     result.over_budget += over_budget(result.scene.budget, end - begin) ? 1 : 0;
     if (options.keep_records) recorder.add(*record);
     progress.draft() = progress_of(*record, result);
@@ -176,14 +194,22 @@ std::vector<IdealJoint> ideal_joints(const ArmModel& model) {
 
 }  // namespace
 
+double support_pairs_per_period(const RunResult& result) {
+  const double seconds = std::chrono::duration<double>(result.compute).count();
+  if (!(seconds > 0.0)) return 0.0;
+  return static_cast<double>(result.totals.iterations) / (seconds * result.options.rate_hz);
+}
+
 RunResult run(const scene::Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {
   RunResult result;
   result.options = options;
   result.scene = scene;
+  result.scene.budget = budget_of(scene, options.budget, options.rate_hz);
   const bool ideal = options.backend == "ideal";
   Cell cell(scene, !ideal);
   result.pairs = static_cast<int>(cell.world.pairs().size());
+  result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
   if (ideal) {
     IdealArm arm(ideal_joints(cell.model));
     arm.reset(cell.start);

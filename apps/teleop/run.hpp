@@ -23,6 +23,8 @@ struct RunOptions {
   bool fast = false;               ///< not by the clock: as fast as it goes, bitwise repeatable
   std::string backend = "bullet";  ///< "bullet" or "ideal"
   int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
+  std::string budget;              ///< name of the budget; empty: the scene's own
+  bool every_pair = false;         ///< ask also those that cannot be within range
   bool keep_records = false;       ///< for a log
 };
 
@@ -36,13 +38,16 @@ struct ObstacleResult {
 /// Everything there is to say about a run.
 struct RunResult {
   RunOptions options;
-  scene::Scene scene;
+  scene::Scene scene;  ///< with the budget that was in force
   int pairs = 0;
+  int threads = 0;  ///< of the coprocessor that there was work for
   RunTotals totals;
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
-  DurationHistogram arm_step;      ///< time of the simulated arm, outside the tick
-  std::int64_t over_budget = 0;    ///< ticks that computed longer than the scene's wall budget
-  std::int64_t skipped_ticks = 0;  ///< given up after a pause of more than a second
+  std::int64_t most_support_pairs = 0;  ///< in one tick
+  std::chrono::nanoseconds compute{0};  ///< of all ticks together
+  DurationHistogram arm_step;           ///< time of the simulated arm, outside the tick
+  std::int64_t over_budget = 0;         ///< ticks that computed longer than the scene's wall budget
+  std::int64_t skipped_ticks = 0;       ///< given up after a pause of more than a second
   std::int64_t allocations_in_tick = -1;  ///< -1, here and below: could not be counted
   std::int64_t system_calls_in_tick = -1;
   std::int64_t page_faults_in_tick = -1;  ///< minor and major; of the thread of the tick, as below
@@ -65,6 +70,10 @@ struct Progress {
   Status status = 0;
   std::int64_t misses = 0;
 };
+
+/// How many support pairs this machine makes in one period: those of the run, by the time of its
+/// ticks, with all else they did. 0 where there are none.
+[[nodiscard]] double support_pairs_per_period(const RunResult& result);
 
 /// Builds the scene and runs it. `show` is called from a thread of its own, a few times a second.
 /// Ends early when `stop` becomes true.

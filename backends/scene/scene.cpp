@@ -271,7 +271,7 @@ Budget budget_of(const Map& scene) {
   const Value* value = scene.find("budget");
   if (!value) return budget;
   const Map map(*value);
-  map.allow({"wall", "work", "threads"});
+  map.allow({"wall", "work", "threads", "max_age"});
   if (const Value* wall = map.find("wall")) {
     budget.wall_us = 1e6 * wall->number({unit::time, 0.0, 1.0});
   }
@@ -279,6 +279,7 @@ Budget budget_of(const Map& scene) {
   if (const Value* threads = map.find("threads")) {
     budget.threads = static_cast<int>(threads->integer(0, Limits{}.threads));
   }
+  if (const Value* age = map.find("max_age")) budget.max_age = age->integer(1, 1'000'000'000);
   return budget;
 }
 

@@ -6,18 +6,29 @@ namespace {
 TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   const Ending ending = teleop("--help");
   EXPECT_EQ(ending.status, 0) << ending;
-  for (const char* words : {"anderson_4x8", "bullet", "ideal", "spaceball", "torque_arm",
-                            "Exit status", "--fast", "--report", "--log", "--threads"}) {
+  for (const char* words :
+       {"anderson_4x8", "bullet", "ideal", "spaceball", "torque_arm", "Exit status", "--fast",
+        "--report", "--log", "--threads", "--budget", "i860", "--every-pair"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }
 
 TEST(CommandLine, BadUsageEndsWithTwoAndSaysWhy) {
-  for (const char* arguments : {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1",
-                                "--backend ode", "--threads 17", "--threads -1", "a b"}) {
+  for (const char* arguments :
+       {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1", "--backend ode",
+        "--threads 17", "--threads -1", "a b", "--budget", "--budget 0", "--budget -1",
+        "--budget 1.5", "--budget '10 us'", "--budget i386", "--budget 1000000001"}) {
     const Ending ending = teleop(arguments);
     EXPECT_EQ(ending.status, 2) << arguments << '\n' << ending;
     EXPECT_FALSE(ending.err.empty()) << arguments;
+  }
+}
+
+TEST(CommandLine, BudgetThatIsNoneSaysWhichThereAre) {
+  const Ending ending = teleop("--budget i386");
+  EXPECT_EQ(ending.status, 2) << ending;
+  for (const char* words : {"i386", "i860", "none", "support pairs", "1000000000"}) {
+    EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }
 

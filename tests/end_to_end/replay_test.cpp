@@ -1,3 +1,5 @@
+#include <set>
+
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
@@ -90,6 +92,41 @@ TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
   // null where a sanitizer's allocator is in place.
   const auto& allocations = report.at("allocations_in_tick");
   EXPECT_TRUE(allocations.is_null() || allocations == 0) << allocations;
+}
+
+TEST(Replay, ReportSaysWhatTheRunDidWithout) {
+  const Folder folder;
+  const auto skipped = [&](const std::string& arguments) {
+    const Ending ending = teleop(arguments + " --report " + quoted(folder / "report.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    const auto report = report_of(folder / "report.json");
+    const auto parts = report.at("skipped").get<std::vector<std::string>>();
+    for (const std::string& part : parts) EXPECT_TRUE(ending.says(part)) << part << ending;
+    return std::set<std::string>(parts.begin(), parts.end());
+  };
+  const auto plates = skipped("plates --fast --seconds 0.1");
+  for (const char* part : {"coprocessor threads", "passable bodies", "torque arm", "log",
+                           "counted budget", "wall-clock budget"}) {
+    EXPECT_TRUE(plates.contains(part)) << part;
+  }
+  const auto full =
+      skipped("--threads 1 --budget 9 --seconds 0.1 --log " + quoted(folder / "log.csv"));
+  for (const char* part : {"coprocessor threads", "passable bodies", "torque arm", "log",
+                           "space ball", "counted budget"}) {
+    EXPECT_FALSE(full.contains(part)) << part;
+  }
+  // There is no work for them.
+  EXPECT_TRUE(skipped("empty --threads 2 --fast --seconds 0.1").contains("coprocessor threads"));
+  EXPECT_TRUE(skipped("--threads 2 --fast --seconds 0.1").contains("1 of 2 coprocessor threads"));
+}
+
+TEST(Replay, ThreadsHaveNames) {
+  const std::string look = "for i in 1 2 3 4 5 6; do sleep 0.2; cat /proc/$!/task/*/comm; done; ";
+  const Ending ending = run_program(
+      REPEL_TELEOP, "--threads 1 --seconds 2 >/dev/null 2>&1 & { " + look + "wait $!; }");
+  for (const char* name : {"teleop\n", "repel pairs 0\n", "repel progress\n"}) {
+    EXPECT_TRUE(ending.says(name)) << name << ending;
+  }
 }
 
 TEST(Replay, ReportSaysHowTheWorkersKeptUp) {

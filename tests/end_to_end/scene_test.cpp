@@ -5,16 +5,6 @@
 namespace repel::test {
 namespace {
 
-constexpr const char* forces[] = {
-    "virtual_fx_n",  "virtual_fy_n",  "virtual_fz_n",  "virtual_tx_nm", "virtual_ty_nm",
-    "virtual_tz_nm", "coupling_fx_n", "coupling_fy_n", "coupling_fz_n", "lever_torque_nm"};
-
-void expect_finite_forces(const Columns& log) {
-  for (const char* column : forces) {
-    for (const double value : log.at(column)) ASSERT_TRUE(std::isfinite(value)) << column;
-  }
-}
-
 // The finger tips are 20 mm before the tool frame, which points down.
 constexpr double tip = 0.02;
 

@@ -42,6 +42,15 @@ inline Columns columns_of(const std::string& path) {
   return columns;
 }
 
+/// Every force and torque of a log.
+inline void expect_finite_forces(const Columns& log) {
+  for (const char* column :
+       {"virtual_fx_n", "virtual_fy_n", "virtual_fz_n", "virtual_tx_nm", "virtual_ty_nm",
+        "virtual_tz_nm", "coupling_fx_n", "coupling_fy_n", "coupling_fz_n", "lever_torque_nm"}) {
+    for (const double value : log.at(column)) ASSERT_TRUE(std::isfinite(value)) << column;
+  }
+}
+
 /// The start of every scene written by a test: the robot of the repository.
 inline std::string robot_text(const std::string& urdf = REPEL_SOURCE "/robots/puma560.urdf") {
   return "robot:\n  urdf: " + urdf +

@@ -142,6 +142,7 @@ TEST(SceneError, ValuesOutOfTheirRangeAreRefused) {
   expect_refused(base_scene + "laws: {a: {range: 0 m}}\n", 8, {"1e-06 to 1000 m"});
   expect_refused(base_scene + "budget: {threads: -1}\n", 8, {"0 to 16"});
   expect_refused(base_scene + "budget: {work: -1}\n", 8, {"0 to 1000000000"});
+  expect_refused(base_scene + "budget: {max_age: 0}\n", 8, {"1 to 1000000000"});
   expect_refused(base_scene + "budget: {work: 1.5}\n", 8, {"a whole number"});
   expect_refused(base_scene +
                      "script:\n"

@@ -47,12 +47,13 @@ TEST(SceneValue, StiffnessesAndDampingsMayBeInMultiples) {
 TEST(SceneValue, TimesRatesAndBudgetsHaveTheirUnits) {
   const Scene scene = parsed(base_scene +
                              "rate: 0.5 kHz\n"
-                             "budget: {wall: 0.5 ms, work: 20000, threads: 2}\n"
+                             "budget: {wall: 0.5 ms, work: 20000, threads: 2, max_age: 40}\n"
                              "spaceball: {time_constant: 40 ms, saturation: 30 cm/s}\n");
   EXPECT_EQ(scene.rate_hz, 500.0);
   EXPECT_DOUBLE_EQ(scene.budget.wall_us, 500.0);
   EXPECT_EQ(scene.budget.work_units, 20000);
   EXPECT_EQ(scene.budget.threads, 2);
+  EXPECT_EQ(scene.budget.max_age, 40);
   EXPECT_EQ(scene.spaceball.time_constant, 0.04);
   EXPECT_EQ(scene.spaceball.saturation, 0.3);
 }
@@ -110,6 +111,7 @@ TEST(SceneValue, ASceneThatSaysLittleHasTheStatedDefaults) {
   EXPECT_EQ(scene.budget.wall_us, 0.0);
   EXPECT_EQ(scene.budget.work_units, 0);
   EXPECT_EQ(scene.budget.threads, 0);
+  EXPECT_EQ(scene.budget.max_age, 100);
 }
 
 TEST(SceneValue, AnObstacleTakesTheLawItNamesOrTheDefault) {

@@ -15,6 +15,7 @@
 #include <repel/network/spaceball.hpp>
 #include <repel/network/torque_arm.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/schedule/pair_block.hpp>
 
 namespace repel::scene {
 
@@ -49,6 +50,7 @@ struct Budget {
   double wall_us = 0.0;         ///< [us] 0: no limit
   std::int64_t work_units = 0;  ///< support-map pairs; 0: no limit
   int threads = 0;              ///< of the coprocessor; 0: the tick's own thread does the work
+  std::int64_t max_age = repel::Budget{}.max_age;  ///< [ticks] beyond it an answer expires
 };
 
 struct Scene {
