@@ -148,7 +148,8 @@ TEST_F(SystemCallsOfTheTick, AreNoneWhenItWaitsForThreadsByTheClock) {
 TEST_F(SystemCallsOfTheTick, AreNoneInTheWorkOfACoprocessorThreadWhateverItsBudget) {
   for (const Budget& budget : {Budget{}, Budget{.work_units = 30}, Budget{.wall = 10us}}) {
     test::Boxes boxes(4, 60, {.range = 0.1}, 3);
-    detail::PairWorker worker(boxes.world, budget, 0, 1);
+    detail::PairWorker worker(boxes.world, std::make_shared<detail::PairIndex>(boxes.world), budget,
+                              0, 1);
     worker.prime(boxes.world.motion());
     const std::int64_t counted = calls_of([&] {
       for (int tick = 0; tick < 200; ++tick) {

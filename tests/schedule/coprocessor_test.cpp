@@ -509,7 +509,7 @@ TEST(Coprocessor, ChangingPlacesUnderOverloadBringsNoOldAnswers) {
   run();
   ASSERT_TRUE(Threads::strike(2));
   run();
-  EXPECT_EQ(overload.there.workers().silence, ticks);
+  EXPECT_GE(overload.there.workers().silence, ticks);
   Threads::held = false;
   EXPECT_TRUE(is_on_time(overload));
   run();

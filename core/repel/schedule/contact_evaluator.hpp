@@ -188,7 +188,7 @@ class ContactEvaluator {
     extremes.nearest = std::min(extremes.nearest, group.nearest(k));
     extremes.peak_force = std::max(extremes.peak_force, group.peak(k));
     if ((group.proven() >> k & 1U) == 0U) return;
-    memory().answer(slot) = group.answer(k);
+    pairs_.put(slot, group.answer(k));
     group.forget(k);
   }
 

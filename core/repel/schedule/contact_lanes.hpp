@@ -141,6 +141,7 @@ class ContactGroup {
     answer.p_BA_W = p_BA_W_.at(k);
     answer.turn = turn_[k];
     answer.tick = tick_;
+    answer.waits_since = tick_;
     answer.inside = (inside_ >> k & 1U) != 0U;
     return answer;
   }

@@ -13,15 +13,17 @@ namespace repel::detail {
 /// What the force of a pair needs, also when the pair could not be evaluated again.
 struct PairAnswer {
   Separation last;
-  double slope = 1.0;          ///< of the distance along the extraction; of passable pairs only
-  Vec3 p_AQ_W{0, 0, 0};        ///< [m] witness point on A, from the origin of body A
-  Vec3 p_BA_W{0, 0, 0};        ///< [m] origin of body A from that of body B when it was evaluated
-  double turn = 0.0;           ///< [m] both bodies' BodyState::turn then
-  std::int64_t tick = never;   ///< when it was evaluated
-  std::int64_t asked = never;  ///< the same in the count of its evaluator
-  bool inside = false;         ///< within range then
-  bool is_stale = false;       ///< a force was made of it at a later tick
-  double claimed = 0.0;        ///< [m] when it was stale: the distance it was taken for at last
+  double slope = 1.0;            ///< of the distance along the extraction; of passable pairs only
+  Vec3 p_AQ_W{0, 0, 0};          ///< [m] witness point on A, from the origin of body A
+  Vec3 p_BA_W{0, 0, 0};          ///< [m] origin of body A from that of body B when it was evaluated
+  double turn = 0.0;             ///< [m] both bodies' BodyState::turn then
+  std::int64_t tick = never;     ///< when it was evaluated
+  std::int64_t asked = never;    ///< the same in the count of its evaluator
+  std::int64_t pushed = never;   ///< the last force was made of it then, in the same count
+  std::int64_t waits_since = 0;  ///< [ticks] since when it is near without a newer answer
+  bool inside = false;           ///< within range then
+  bool is_stale = false;         ///< a force was made of it at a later tick
+  double claimed = 0.0;          ///< [m] when it was stale: the distance it was taken for at last
 
   static constexpr std::int64_t never = INT64_MIN;
 

@@ -79,6 +79,13 @@ class PairEvaluator {
     memory_.strike(slot);
   }
 
+  /// The last tick's answer of the pair is what `answer` has from now on, and a force was made of
+  /// it.
+  void put(int slot, const PairAnswer& answer) noexcept {
+    memory_.answer(slot) = answer;
+    memory_.answer(slot).pushed = now_ - 1;
+  }
+
   /// The pair was asked anew since `begin`.
   [[nodiscard]] bool is_fresh(int slot) const noexcept {
     return memory_.answer(slot).asked == now_;
@@ -107,8 +114,14 @@ class PairEvaluator {
   void push(int slot, const Motion& motion) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     answer.is_stale = answer.asked != now_;
-    if (!answer.is_stale) return push_at(answer.proven(), 1.0, slot, motion);
-    const std::int64_t age = motion.tick - answer.tick;
+    // While a pair was out of reach nobody waited for its answer.
+    if (answer.pushed != now_ - 1) answer.waits_since = motion.tick - 1;
+    answer.pushed = now_;
+    if (!answer.is_stale) {
+      answer.waits_since = motion.tick;
+      return push_at(answer.proven(), 1.0, slot, motion);
+    }
+    const std::int64_t age = motion.tick - answer.waits_since;
     PairTotals& totals = forces_.totals;
     ++totals.stale;
     totals.oldest_age = std::max(totals.oldest_age, age);

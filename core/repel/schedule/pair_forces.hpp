@@ -17,7 +17,7 @@ struct PairTotals {
   int near = 0;                 ///< pairs that may be within range; all when all are evaluated
   int evaluated = 0;            ///< of these, asked anew
   int stale = 0;                ///< of these, answered from an older tick, widened
-  std::int64_t oldest_age = 0;  ///< [ticks] of the oldest answer that was used
+  std::int64_t oldest_age = 0;  ///< [ticks] that the longest of them is near without an answer
   std::int64_t iterations = 0;  ///< support-map pairs spent
   double nearest =
       std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
