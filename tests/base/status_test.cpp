@@ -9,9 +9,9 @@
 namespace repel {
 namespace {
 
-constexpr Status every_bit[] = {status::bad_pose,     status::bad_command,  status::bad_joints,
-                                status::clock_fault,  status::stale_pairs,  status::late_result,
-                                status::torque_limit, status::crowded_pairs};
+constexpr Status every_bit[] = {status::bad_pose,     status::bad_command,   status::bad_joints,
+                                status::clock_fault,  status::stale_pairs,   status::late_result,
+                                status::torque_limit, status::crowded_pairs, status::expired_pairs};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");
@@ -41,9 +41,9 @@ TEST(Status, SeveralBitsAreListedCommaByComma) {
             "bad_pose, stale_pairs, late_result");
 }
 
-TEST(Status, FailsafeIsEveryFaultOfTheInputAndNothingElse) {
-  EXPECT_EQ(status::failsafe,
-            status::bad_pose | status::bad_command | status::bad_joints | status::clock_fault);
+TEST(Status, FailsafeIsEveryFaultThatLeavesTheWorldUnknownAndNothingElse) {
+  EXPECT_EQ(status::failsafe, status::bad_pose | status::bad_command | status::bad_joints |
+                                  status::clock_fault | status::expired_pairs);
 }
 
 }  // namespace

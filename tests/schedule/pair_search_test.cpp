@@ -95,23 +95,57 @@ TEST(PairSearch, IsNotAskedAgainWithinItsMargin) {
   test::Boxes boxes(4, 100, {}, seed);
   PairSearch search(std::make_shared<PairIndex>(boxes.world));
   Lists lists(boxes.world);
-  search.run(boxes.world.motion(), lists);
-  EXPECT_EQ(lists.asked, 4);
-  search.run(boxes.world.motion(), lists);
-  EXPECT_EQ(lists.asked, 4);
-  // The seekers are first asked again one by one, and then each after a margin.
-  double last = 0.0;
-  for (int step = 1; step <= 400; ++step) {
+  const auto taken = [&] {
+    lists.taken = 0;
+    search.run(boxes.world.motion(), lists);
+    return lists.taken;
+  };
+  const int first = taken();
+  EXPECT_GT(first, 20) << "seed " << seed;
+  EXPECT_EQ(taken(), 0);
+  // The seekers are asked again by and by, and each after a margin.
+  int later = 0, most = 0;
+  constexpr int steps = 300;
+  for (int step = 1; step <= steps; ++step) {
     Pose X = Pose::Identity();
     X.translation().x() = 0.001 * step;
     boxes.world.place(boxes.tool, X, {});
-    const int before = lists.asked;
-    search.run(boxes.world.motion(), lists);
-    EXPECT_LE(lists.asked - before, 2) << "step " << step << ", seed " << seed;
-    last = X.translation().x();
+    const int now = taken();
+    later += now;
+    most = std::max(most, now);
   }
-  EXPECT_GT(lists.asked, 4);
-  EXPECT_LE(lists.asked, 8 + 4 * last / PairSearch::margin);
+  EXPECT_GT(later, first) << "seed " << seed;
+  EXPECT_LT(later, first * (2 + 0.001 * steps / PairSearch::margin)) << "seed " << seed;
+  EXPECT_LT(most, first) << "seed " << seed;
+}
+
+// Parts that cannot come near the other body cost nothing until it has come a long way.
+TEST(PairSearch, PartsFarFromTheOtherBodyAreAsleep) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const PartId part = world.add_part(tool, "part", Shape::box({0.1, 0.1, 0.1}));
+  for (int i = 0; i < 50; ++i) {
+    Pose X = Pose::Identity();
+    X.translation().x() = 0.5 * i;
+    world.add_pair(part, world.add_part(World::fixed, "wall", Shape::sphere(0.1), X), {});
+  }
+  PairSearch search(std::make_shared<PairIndex>(world));
+  Lists lists(world);
+  std::set<std::int32_t> touched;
+  for (int step = 0; step <= 2450; ++step) {
+    Pose X = Pose::Identity();
+    X.translation().x() = 0.01 * step;
+    ASSERT_TRUE(world.place(tool, X, {}));
+    lists.asked = 0;
+    search.run(world.motion(), lists);
+    ASSERT_LE(lists.asked, 3) << "step " << step;
+    for (std::int32_t i = 0; i < 50; ++i) {
+      const bool near = std::abs(0.5 * i - 0.01 * step) < 0.2;
+      if (near) touched.insert(i);
+      ASSERT_TRUE(!near || lists.holds(i)) << "pair " << i << ", step " << step;
+    }
+  }
+  EXPECT_EQ(touched.size(), 50U);
 }
 
 TEST(PairSearch, PairThatWasNotTakenIsOfferedAgain) {
@@ -133,23 +167,27 @@ TEST(PairIndex, SeekersWithTheSamePartnersShareATree) {
   const test::Boxes boxes(4, 100, {}, seed);
   const PairIndex index(boxes.world);
   EXPECT_EQ(index.meetings.size(), 1U);
-  EXPECT_EQ(index.seekers.size(), 4U);
+  EXPECT_EQ(index.seekers.size(), 100U);
   EXPECT_EQ(index.trees.size(), 1U);
   EXPECT_EQ(index.pairs.size(), 400U);
 }
 
-TEST(PairIndex, TheBodyWithFewerPartsSeeksWhicheverIsNamedFirst) {
-  World world;
-  const BodyId tool = world.add_body("tool");
-  const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
-  for (int i = 0; i < 5; ++i) {
-    const PartId wall = world.add_part(World::fixed, "wall", Shape::sphere(0.1));
-    world.add_pair(wall, part, {});
+TEST(PairIndex, TheBodyWhosePartsAreSpreadWiderSeeksWhicheverIsNamedFirst) {
+  for (const bool wall_first : {false, true}) {
+    World world;
+    const BodyId tool = world.add_body("tool");
+    const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
+    for (int i = 0; i < 5; ++i) {
+      Pose X = Pose::Identity();
+      X.translation().y() = 0.3 * i;
+      const PartId wall = world.add_part(World::fixed, "wall", Shape::sphere(0.1), X);
+      world.add_pair(wall_first ? wall : part, wall_first ? part : wall, {});
+    }
+    const PairIndex index(world);
+    ASSERT_EQ(index.meetings.size(), 1U);
+    EXPECT_EQ(index.meetings[0].a, World::fixed);
+    EXPECT_EQ(index.seekers.size(), 5U);
   }
-  const PairIndex index(world);
-  ASSERT_EQ(index.meetings.size(), 1U);
-  EXPECT_EQ(index.meetings[0].a, tool);
-  EXPECT_EQ(index.seekers.size(), 1U);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ struct Limits {
   int parts = 20000;         ///< convex parts of all bodies
   int pairs = 1 << 20;       ///< pairs of parts
   int candidates = 1 << 14;  ///< pairs at a time that can soon come within range, shared out
-                             ///< evenly over up to 16 blocks; for each about 1.2 kB
+                             ///< evenly over up to 8 blocks; for each about 1.2 kB
   int threads = 16;          ///< worker threads of the coprocessor
 };
 

@@ -36,10 +36,11 @@ namespace repel::detail {
   return {centre - half, centre + half};
 }
 
-/// The pairs of a world, ordered for the search. Of two bodies the one with more parts in their
-/// pairs is the seeking one: each of its parts has its partners on the other body, which lie still
-/// in that body's frame. Seekers with the same partners share one tree, and all seekers of two
-/// bodies stand in another, by which those near the other body are found.
+/// The pairs of a world, ordered for the search. Of two bodies the one whose parts in their pairs
+/// are spread wider is the seeking one, since most of them are far from the other: each of its
+/// parts has its partners on the other body, which lie still in that body's frame. Seekers with the
+/// same partners share one tree, and all seekers of two bodies stand in another, by which those
+/// near the other body are found.
 struct PairIndex {
   /// A part and the pairs it forms with one other body.
   struct Seeker {
@@ -63,15 +64,17 @@ struct PairIndex {
   PairIndex() = default;
   /// Allocates: about 60 bytes for each box of a tree and 4 for each pair.
   explicit PairIndex(const World& world) {
+    for (const Part& part : world.parts()) boxes_.push_back(box_of(part));
     std::vector<Entry> entries = entries_of(world);
     std::sort(entries.begin(), entries.end());
     for (auto first = entries.begin(); first != entries.end();) {
       const auto end = std::find_if(
           first, entries.end(), [&](const Entry& e) { return e.a != first->a || e.b != first->b; });
-      turn_to_more(first, end);
+      turn_to_wider(first, end);
       add_meeting(world, first, end);
       first = end;
     }
+    boxes_ = {};
   }
 
   std::vector<Meeting> meetings;
@@ -99,21 +102,15 @@ struct PairIndex {
     return entries;
   }
 
-  /// Of sorted entries.
-  static std::ptrdiff_t parts_of_a(Place first, Place end) {
-    std::ptrdiff_t count = first == end ? 0 : 1;
-    for (; end - first > 1; ++first) count += first[0].part_a != first[1].part_a ? 1 : 0;
-    return count;
-  }
-
-  static void turn_to_more(Place first, Place end) {
-    const std::ptrdiff_t of_a = parts_of_a(first, end);
-    const auto turn = [&] {
-      std::transform(first, end, first, [](const Entry& e) { return e.turned(); });
-      std::sort(first, end);
-    };
-    turn();
-    if (parts_of_a(first, end) < of_a) turn();
+  void turn_to_wider(Place first, Place end) const {
+    Box of_a, of_b;
+    for (auto e = first; e != end; ++e) {
+      of_a.extend(boxes_[e->part_a]);
+      of_b.extend(boxes_[e->part_b]);
+    }
+    if (of_a.sizes().norm() >= of_b.sizes().norm()) return;
+    std::transform(first, end, first, [](const Entry& e) { return e.turned(); });
+    std::sort(first, end);
   }
 
   void add_meeting(const World& world, Place first, Place end) {
@@ -124,18 +121,17 @@ struct PairIndex {
     std::vector<Box> boxes;
     std::map<std::vector<std::int32_t>, std::int32_t> tree_of;
     while (first != end) {
-      const Part& part = world.parts()[first->part_a];
-      Seeker seeker{box_of(part), 0.0, 0, static_cast<std::int32_t>(pairs.size())};
+      Seeker seeker{boxes_[first->part_a], 0.0, 0, static_cast<std::int32_t>(pairs.size())};
       std::vector<std::int32_t> partners;
       for (const std::int32_t a = first->part_a; first != end && first->part_a == a; ++first) {
         seeker.range = std::max(seeker.range, world.pair({first->pair}).law.range);
         partners.push_back(first->part_b);
-        meeting.partners.extend(box_of(world.parts()[first->part_b]));
+        meeting.partners.extend(boxes_[first->part_b]);
         pairs.push_back({first->pair});
       }
       const auto [tree, is_new] =
           tree_of.try_emplace(std::move(partners), static_cast<std::int32_t>(trees.size()));
-      if (is_new) trees.push_back(tree_around(world, tree->first));
+      if (is_new) trees.push_back(tree_around(tree->first));
       seeker.tree = tree->second;
       seekers.push_back(seeker);
       boxes.push_back(seeker.box);
@@ -146,12 +142,14 @@ struct PairIndex {
     meetings.push_back(std::move(meeting));
   }
 
-  static BoxTree tree_around(const World& world, const std::vector<std::int32_t>& parts) {
+  [[nodiscard]] BoxTree tree_around(const std::vector<std::int32_t>& parts) const {
     std::vector<Box> boxes;
     boxes.reserve(parts.size());
-    for (const std::int32_t i : parts) boxes.push_back(box_of(world.parts()[i]));
+    for (const std::int32_t i : parts) boxes.push_back(boxes_[i]);
     return BoxTree(boxes);
   }
+
+  std::vector<Box> boxes_;  ///< [m] by PartId, while the index is built
 };
 
 /// Asks the trees of a PairIndex for the pairs that can come within range before the bodies have

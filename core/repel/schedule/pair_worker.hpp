@@ -20,7 +20,7 @@ namespace repel::detail {
 class PairWorker {
  public:
   /// Blocks of one world: enough to share among the threads of a large machine.
-  static constexpr int most_blocks = 16;
+  static constexpr int most_blocks = 8;
 
   /// @param pairs the index of the world's pairs, shared by all workers; without one every pair is
   /// evaluated at every tick
