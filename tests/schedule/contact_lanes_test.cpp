@@ -34,8 +34,8 @@ struct Sample {
       ++disputed;
     } else if (!holds) {
       ++refused;
-      EXPECT_EQ(group.force_W().at(k), Vec3::Zero());
-      EXPECT_EQ(group.torque_W().at(k), Vec3::Zero());
+      EXPECT_EQ(group.force().at(k), Vec3::Zero());
+      EXPECT_EQ(group.torque().at(k), Vec3::Zero());
     } else {
       expect_answer(one, group.answer(k).last);
       expect_force(world, pair, one, group, k);
@@ -58,12 +58,12 @@ struct Sample {
                    test::velocity_at(world, world.part(pair.b).body, one.p_WA);
     const Vec3 f = pair.law(one.distance, one.extraction_W.dot(v)) * one.extraction_W;
     const Vec3 arm = one.p_WA - world.motion().bodies[a.index].X_WB.translation();
-    EXPECT_LE((group.force_W().at(k) - f).norm(), 1e-9);
-    EXPECT_LE((group.torque_W().at(k) - arm.cross(f)).norm(), 1e-9);
+    EXPECT_LE((group.force().at(k) - f).norm(), 1e-9);
+    EXPECT_LE((group.torque().at(k) - arm.cross(f)).norm(), 1e-9);
     EXPECT_EQ(has(group.inside(), k), group.answer(k).proven() < pair.law.range);
     EXPECT_EQ(group.answer(k).inside, has(group.inside(), k));
     if (!has(group.inside(), k)) {
-      EXPECT_EQ(group.force_W().at(k), Vec3::Zero());
+      EXPECT_EQ(group.force().at(k), Vec3::Zero());
     }
     (has(group.inside(), k) ? inside : outside) += 1;
     pushed += f.norm() > 1.0 ? 1 : 0;
@@ -105,8 +105,8 @@ TEST(ContactGroup, GivesEachPairTheAnswerAndTheForceItHasAlone) {
 void expect_same_bits(const ContactGroup& group, int k, const ContactGroup& alone) {
   ASSERT_EQ(has(group.proven(), k), has(alone.proven(), 0));
   ASSERT_EQ(has(group.inside(), k), has(alone.inside(), 0));
-  ASSERT_EQ(group.force_W().at(k), alone.force_W().at(0));
-  ASSERT_EQ(group.torque_W().at(k), alone.torque_W().at(0));
+  ASSERT_EQ(group.force().at(k), alone.force().at(0));
+  ASSERT_EQ(group.torque().at(k), alone.torque().at(0));
   if (!has(group.proven(), k)) return;
   const PairAnswer a = group.answer(k);
   const PairAnswer b = alone.answer(0);
@@ -235,7 +235,7 @@ TEST(ContactGroup, FeatureThatNoLongerHoldsIsNotProvenUntilItIsRenewed) {
   cubes.group.renew(world, 0, world.pair({0}), cubes.scene.warm[0]);
   cubes.place(X);
   EXPECT_EQ(cubes.group.proven(), 1U);
-  EXPECT_GT(cubes.group.force_W().at(0).z(), 1.0);
+  EXPECT_GT(cubes.group.force().at(0).z(), 1.0);
 }
 
 TEST(ContactGroup, LaneWithoutAPairNeverPushes) {
@@ -249,9 +249,9 @@ TEST(ContactGroup, LaneWithoutAPairNeverPushes) {
   cubes.group.leave(1);
   cubes.place(Cubes::at(0.206));
   EXPECT_EQ(cubes.group.proven(), all_lanes & ~2U);
-  EXPECT_GT(cubes.group.force_W().at(0).norm(), 1.0);
-  EXPECT_EQ(cubes.group.force_W().at(1), Vec3::Zero());
-  EXPECT_EQ(cubes.group.torque_W().at(1), Vec3::Zero());
+  EXPECT_GT(cubes.group.force().at(0).norm(), 1.0);
+  EXPECT_EQ(cubes.group.force().at(1), Vec3::Zero());
+  EXPECT_EQ(cubes.group.torque().at(1), Vec3::Zero());
   EXPECT_EQ(cubes.group.peak(1), 0.0);
 }
 

@@ -57,7 +57,7 @@ TEST(LaneWrench, IsTheSumOfThePairsOneByOne) {
       last = group.is_one_meeting() ? group.body_a(0) : BodyId{};
       for (int k = 0; k < lane_count; ++k) {
         if ((group.inside() >> k & 1U) == 0U) continue;
-        const Vec3 f = group.force_W().at(k);
+        const Vec3 f = group.force().at(k);
         const Vec3 p_WQ = group.answer(k).last.p_WA;
         plain[group.body_a(k).index] += wrench_of_force(f, p_WQ - all.origin(group.body_a(k)));
         plain[group.body_b(k).index] += wrench_of_force(-f, p_WQ - all.origin(group.body_b(k)));

@@ -123,8 +123,8 @@ class ContactGroup {
   [[nodiscard]] BodyId body_a(int k) const noexcept { return of_a_.body(k); }
   [[nodiscard]] BodyId body_b(int k) const noexcept { return of_b_.body(k); }
   /// [N], [N m] What the pairs that are inside do to their bodies A, about the origin of each.
-  [[nodiscard]] const LaneVec& force_W() const noexcept { return force_W_; }
-  [[nodiscard]] const LaneVec& torque_W() const noexcept { return torque_W_; }
+  [[nodiscard]] const LaneVec& force() const noexcept { return force_W_; }
+  [[nodiscard]] const LaneVec& torque() const noexcept { return torque_W_; }
   /// [N] The largest force of one pair, and [m] the least distance.
   [[nodiscard]] double largest_force() const noexcept { return largest_of(size_); }
   [[nodiscard]] double least_distance() const noexcept { return least_of(seen_distance_); }

@@ -20,8 +20,8 @@ class LaneWrench {
       a_ = group.body_a(0);
       b_ = group.body_b(0);
     }
-    force_W_ = force_W_ + group.force_W();
-    torque_W_ = torque_W_ + group.torque_W();
+    force_W_ = force_W_ + group.force();
+    torque_W_ = torque_W_ + group.torque();
   }
 
   /// The rest of the sum.
@@ -37,7 +37,7 @@ class LaneWrench {
   static void add_each(const ContactGroup& group, const Motion& motion,
                        std::vector<Wrench>& on_body) noexcept {
     for (int k = 0; k < lane_count; ++k) {
-      act(group.body_a(k), group.body_b(k), {group.force_W().at(k), group.torque_W().at(k)}, motion,
+      act(group.body_a(k), group.body_b(k), {group.force().at(k), group.torque().at(k)}, motion,
           on_body);
     }
   }

@@ -42,8 +42,13 @@ class PartPoses {
 
   [[gnu::noinline]] void place(PartId id, const Motion& motion) noexcept {
     const Part& part = world_->part(id);
-    placed_[id.index].X_WP = motion.bodies[part.body.index].X_WB * part.X_BP;
-    placed_[id.index].at = instant_;
+    const Pose& X_WB = motion.bodies[part.body.index].X_WB;
+    Placed& placed = placed_[id.index];
+    // The product of the poses, coefficient by coefficient: Eigen's own takes copies of both.
+    placed.X_WP.linear() = X_WB.linear().lazyProduct(part.X_BP.linear());
+    placed.X_WP.translation() =
+        X_WB.linear().lazyProduct(part.X_BP.translation()) + X_WB.translation();
+    placed.at = instant_;
   }
 
   const World* world_;
