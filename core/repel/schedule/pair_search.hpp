@@ -4,11 +4,11 @@
 #pragma once
 
 #include <algorithm>
-#include <compare>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -85,7 +85,10 @@ struct PairIndex {
  private:
   struct Entry {
     std::int32_t a, b, part_a, part_b, pair;
-    friend auto operator<=>(const Entry&, const Entry&) = default;
+    friend bool operator<(const Entry& e, const Entry& f) {
+      return std::tie(e.a, e.b, e.part_a, e.part_b, e.pair) <
+             std::tie(f.a, f.b, f.part_a, f.part_b, f.pair);
+    }
     [[nodiscard]] Entry turned() const { return {b, a, part_b, part_a, pair}; }
   };
   using Place = std::vector<Entry>::iterator;

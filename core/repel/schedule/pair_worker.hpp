@@ -24,8 +24,8 @@ class PairWorker {
 
   /// @param pairs the index of the world's pairs, shared by all workers; without one every pair is
   /// evaluated at every tick
-  PairWorker(const World& world, std::shared_ptr<const PairIndex> pairs, const Budget& budget,
-             int index, int stride)
+  PairWorker(const World& world, const std::shared_ptr<const PairIndex>& pairs,
+             const Budget& budget, int index, int stride)
       : budget_(budget),
         blocks_in_all_(blocks_of(world)),
         index_(index),
