@@ -242,15 +242,19 @@ class PairSearch {
             const BodyState& B, Sink& sink) noexcept {
     const View view(B.X_WB, A.X_WB);
     const std::int32_t before = state.awake;
-    const double others = meeting.tree.query(
-        view.box(meeting.partners), meeting.range + margin_of_bodies, [&](std::int32_t i, double) {
-          SeekerState& seeker = seekers_[meeting.first + i];
-          seeker.found = true;
-          if (seeker.awake) return;
-          seeker.awake = true;
-          seeker.ask_at = never_asked;
-          awake_[meeting.first + state.awake++] = meeting.first + i;
-        });
+    const double travel = A.travel + B.travel;
+    const double others =
+        meeting.tree.query(view.box(meeting.partners), meeting.range + margin_of_bodies,
+                           [&](std::int32_t i, double distance) {
+                             SeekerState& seeker = seekers_[meeting.first + i];
+                             seeker.found = true;
+                             if (seeker.awake) return;
+                             seeker.awake = true;
+                             // It has no partner nearer than that.
+                             const double clearance = view.sure(distance) - meeting.range;
+                             seeker.ask_at = clearance > 0.0 ? travel + clearance : never_asked;
+                             awake_[meeting.first + state.awake++] = meeting.first + i;
+                           });
     std::int32_t kept = 0;
     for (std::int32_t i = 0; i < state.awake; ++i) {
       const std::int32_t s = awake_[meeting.first + i];
@@ -265,7 +269,7 @@ class PairSearch {
       seeker.found = false;
     }
     state.awake = kept;
-    state.wake_at = A.travel + B.travel + view.sure(others) - meeting.range;
+    state.wake_at = travel + view.sure(others) - meeting.range;
   }
 
   template <class Sink>
