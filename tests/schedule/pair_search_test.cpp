@@ -49,10 +49,11 @@ struct Lists {
     coming[seeker].insert(id.index);
     return accepts;
   }
-  void end(std::int32_t seeker) noexcept {
+  int end(std::int32_t seeker) noexcept {
     lists[seeker] = coming[seeker];
     coming[seeker].clear();
     ++asked;
+    return keeps;
   }
   [[nodiscard]] bool holds(std::int32_t pair) const {
     return std::any_of(lists.begin(), lists.end(),
@@ -62,6 +63,7 @@ struct Lists {
   const World* world;
   std::map<std::int32_t, std::set<std::int32_t>> coming, lists;
   bool accepts = true;
+  int keeps = 0;
   int taken = 0;
   int asked = 0;
 };
@@ -146,6 +148,38 @@ TEST(PairSearch, PartsFarFromTheOtherBodyAreAsleep) {
     }
   }
   EXPECT_EQ(touched.size(), 50U);
+}
+
+// A contact outlives the list of a seeker that leaps away. If the seeker went to sleep on it, the
+// pair would stand among the candidates for good.
+TEST(PairSearch, SeekerSleepsOnlyWhenNothingOfItIsKept) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
+  for (const double x : {0.0, -1.0, 60.0}) {
+    Pose X = Pose::Identity();
+    X.translation().x() = x;
+    world.add_pair(part, world.add_part(World::fixed, "wall", Shape::sphere(0.1), X), {});
+  }
+  PairSearch search(std::make_shared<PairIndex>(world));
+  Lists lists(world);
+  const auto ended_at = [&](double x) {
+    Pose X = Pose::Identity();
+    X.translation().x() = x;
+    EXPECT_TRUE(world.place(tool, X, {}));
+    lists.asked = 0;
+    search.run(world.motion(), lists);
+    return lists.asked;
+  };
+  EXPECT_EQ(ended_at(0.15), 1);
+  lists.keeps = 1;
+  int ended = 0;
+  for (int x = 1; x < 25; ++x) ended += ended_at(x);
+  EXPECT_GE(ended, 2);
+  lists.keeps = 0;
+  ended = 0;
+  for (int x = 25; x < 50; ++x) ended += ended_at(x);
+  EXPECT_EQ(ended, 1);
 }
 
 TEST(PairSearch, PairThatWasNotTakenIsOfferedAgain) {

@@ -22,8 +22,8 @@ struct Budget {
   std::int64_t work_units = 0;  ///< support-map pairs per tick, all blocks together; 0 = no limit.
                                 ///< Each block finishes the pair it is at
   std::chrono::nanoseconds wall{0};  ///< per tick and thread; 0 = no limit
-  /// [ticks] An answer that is older makes its pair expired: the force fades, and is gone when the
-  /// answer is twice as old.
+  /// [ticks] A pair that is near for longer without a new answer is expired: its force fades, and
+  /// is gone after twice that time.
   std::int64_t max_age = 100;
 };
 
@@ -86,17 +86,22 @@ class PairBlock {
     return true;
   }
 
-  /// The list of that seeker is complete: those of its candidates that were not taken are none now.
-  void end(std::int32_t seeker) noexcept {
+  /// The list of that seeker is complete: those of its candidates that were not taken are none now,
+  /// but for contacts, which leave when their evaluation says so, in whatever way the pairs are
+  /// watched. Returns how many of these there are.
+  int end(std::int32_t seeker) noexcept {
+    int contacts = 0;
     candidates_.remove_if([&](std::int32_t slot) {
       PairWatch& watch = pairs().memory().watch(slot);
-      // A contact leaves when its evaluation says so, in whatever way the pairs are watched.
-      const bool left = watch.seeker == seeker && !watch.taken && watch.seat < 0;
+      const bool missing = watch.seeker == seeker && !watch.taken;
+      const bool left = missing && watch.seat < 0;
+      contacts += missing && !left ? 1 : 0;
       if (left) pairs().drop(slot);
       watch.taken = false;
       return left;
     });
     candidates_.sort();
+    return contacts;
   }
 
   /// Works through the candidates until `work_units` are spent or `deadline` is reached. When the

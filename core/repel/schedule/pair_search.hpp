@@ -171,9 +171,9 @@ class PairSearch {
         meetings_(index_->meetings.size()) {}
 
   /// Renews the lists that are due. For each: `sink.take(pair, seeker, distance)` for every pair
-  /// on it, with a distance [m] no more than the true one, then `sink.end(seeker)`, after which
-  /// the pairs of that seeker that were not taken are out of reach. A pair that is not taken in,
-  /// by the answer false, is offered again at the next call.
+  /// on it, with a distance [m] no more than the true one, then `sink.end(seeker)`: the pairs of
+  /// that seeker that were not taken are out of reach. It answers how many of them it keeps for
+  /// the time being. A pair that is not taken in, by the answer false, is offered again.
   /// Cost: one comparison for each two bodies in whose pairs nothing is due.
   template <class Sink>
   void run(const Motion& motion, Sink&& sink) noexcept {
@@ -259,13 +259,10 @@ class PairSearch {
     for (std::int32_t i = 0; i < state.awake; ++i) {
       const std::int32_t s = awake_[meeting.first + i];
       SeekerState& seeker = seekers_[s];
-      if (i < before && !seeker.found) {
-        seeker.awake = false;
-        if (seeker.listed > 0) sink.end(s);
-        seeker.listed = 0;
-      } else {
-        awake_[meeting.first + kept++] = s;
-      }
+      const bool leaves = i < before && !seeker.found;
+      if (leaves && seeker.listed > 0) seeker.listed = sink.end(s);
+      seeker.awake = !leaves || seeker.listed > 0;
+      if (seeker.awake) awake_[meeting.first + kept++] = s;
       seeker.found = false;
     }
     state.awake = kept;
@@ -287,7 +284,7 @@ class PairSearch {
           ++state.listed;
           all_taken = sink.take(pair, s, view.sure(distance)) && all_taken;
         });
-    if (before + state.listed > 0) sink.end(s);
+    if (before + state.listed > 0) state.listed += sink.end(s);
     state.ask_at = all_taken ? travel + view.sure(others) - seeker.range : again;
   }
 

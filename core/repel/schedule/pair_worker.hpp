@@ -99,8 +99,10 @@ class PairWorker {
       return worker.blocks_[block / worker.stride_].take(id, seeker, distance, motion,
                                                          worker.poses_);
     }
-    void end(std::int32_t seeker) noexcept {
-      for (PairBlock& block : worker.blocks_) block.end(seeker);
+    int end(std::int32_t seeker) noexcept {
+      int kept = 0;
+      for (PairBlock& block : worker.blocks_) kept += block.end(seeker);
+      return kept;
     }
     PairWorker& worker;
     const Motion& motion;
