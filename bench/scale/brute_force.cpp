@@ -29,9 +29,7 @@ BruteForce::BruteForce(const Scene& scene)
   }
   // Forces are added up in the order of the coprocessor, so that sums can be equal to the last bit.
   on_body_of_.resize(
-      std::min(detail::PairWorker::most_blocks,
-               (scene.setting().pairs + detail::PairShare::run - 1) / detail::PairShare::run),
-      on_body_);
+      detail::PairWorker::blocks_of(scene.setting().pairs, scene.setting().most_threads), on_body_);
 }
 
 void BruteForce::place(std::span<const Placement> placements) {

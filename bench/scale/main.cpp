@@ -2,6 +2,7 @@
 /// What a tick of the world costs from 32 to 1 000 000 pairs, and that it finds what brute force
 /// finds.
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -74,6 +75,7 @@ Options parse(Arguments arguments) {
   if (!options.sweep) {
     setting.near = static_cast<double>(number(arguments, "--near", 3, 1, 100));
     setting.threads = static_cast<int>(number(arguments, "--threads", 0, 0, 16));
+    setting.most_threads = std::max(1, setting.threads);
   }
   setting.speed = 1e-3 * static_cast<double>(number(arguments, "--speed", 280, 1, 10000));
   setting.bodies = static_cast<int>(number(arguments, "--bodies", 2, 1, 60));

@@ -143,7 +143,8 @@ void Scene::steer() {
 World Scene::world() const {
   World world({.bodies = setting_.bodies + 1,
                .parts = static_cast<int>(parts_.size()),
-               .pairs = setting_.pairs});
+               .pairs = setting_.pairs,
+               .threads = setting_.most_threads});
   for (const Placement& p : placements(0)) world.add_body("body", p.X_WB);
   for (const Part& part : parts_) world.add_part(part.body, part.name, part.shape, part.X_BP);
   for (std::int32_t i = 0; i < setting_.pairs; ++i) {

@@ -16,8 +16,9 @@ struct Setting {
   double near = 3.0;  ///< pairs within range, in the mean over the ticks: what is aimed at
   int ticks = 10000;
   int threads = 0;
-  int bodies = 2;       ///< that move: the tool, and bodies that carry obstacles
-  double speed = 0.28;  ///< [m/s] of the tool, root mean square
+  int most_threads = 2;  ///< Limits::threads of the world; those of the sweep
+  int bodies = 2;        ///< that move: the tool, and bodies that carry obstacles
+  double speed = 0.28;   ///< [m/s] of the tool, root mean square
   std::uint64_t seed = 1;
 };
 

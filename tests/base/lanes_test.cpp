@@ -77,7 +77,13 @@ TEST(LanePose, TurnsIntoTheWorldAndBack) {
     X.translation() = Vec3(k, 2.0, 3.0);
     return X;
   };
-  const LanePose X = LanePose::of(pose);
+  std::array<Pose, lane_count> each;
+  std::array<const Pose*, lane_count> places;
+  for (std::size_t k = 0; k < each.size(); ++k) {
+    each[k] = pose(static_cast<int>(k));
+    places[k] = &each[k];
+  }
+  const LanePose X = LanePose::of(places);
   const auto turned = X.rotate(LaneVec::of(numbered)).each();
   const auto back = X.rotate_transposed(LaneVec::of(numbered)).each();
   for (int k = 0; k < lane_count; ++k) {

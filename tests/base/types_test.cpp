@@ -43,6 +43,18 @@ TEST(Types, APoseIsFiniteUnlessOneOfItsTwelveEntriesIsNot) {
   }
 }
 
+TEST(Types, APoseWithAnEntryThatIsNoNumberIsNotRigid) {
+  for (const double bad : not_finite) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        Pose X = Pose::Identity();
+        X.matrix()(row, column) = bad;
+        EXPECT_FALSE(is_rigid(X)) << row << ", " << column << " is " << bad;
+      }
+    }
+  }
+}
+
 TEST(Types, ARotationIsRigidUpToTheTolerance) {
   Pose X = Pose::Identity();
   X.linear() = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();

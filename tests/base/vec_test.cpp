@@ -37,6 +37,15 @@ TYPED_TEST(VecOf, AgreesWithEigen) {
   }
 }
 
+TEST(Vec, ColumnsOfAPoseAreSetAndItStaysOne) {
+  Pose X = Pose::Identity();
+  for (int k = 0; k < 4; ++k) set_column(X, k, Vec<double>(k, 10.0, 0.1 * k));
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(to_vec3(column<double>(X, k)), Vec3(k, 10.0, 0.1 * k));
+    EXPECT_EQ(X.matrix()(3, k), k == 3 ? 1.0 : 0.0);
+  }
+}
+
 TYPED_TEST(VecOf, StartsAsZero) {
   EXPECT_EQ(to_vec3(Vec<TypeParam>{}), Vec3(0, 0, 0));
 }

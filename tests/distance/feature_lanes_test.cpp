@@ -49,8 +49,12 @@ struct Group {
     for (std::size_t k = 0; k < B.size(); ++k) {
       lanes.set(static_cast<int>(k), A[k], B[k], warm[k]);
     }
-    lanes.A.X_W = LanePose::of([&](int k) { return X_WA[static_cast<std::size_t>(k)]; });
-    lanes.B.X_W = LanePose::of([&](int k) { return X_WB[static_cast<std::size_t>(k)]; });
+    for (std::size_t k = 0; k < B.size(); ++k) {
+      lanes.A.X_W.set(static_cast<int>(k), X_WA[k]);
+      lanes.B.X_W.set(static_cast<int>(k), X_WB[k]);
+    }
+    lanes.A.turn();
+    lanes.B.turn();
     return lanes.prove(options);
   }
 };

@@ -199,6 +199,11 @@ struct Cubes {
   void seat_all(bool used) {
     for (int k = 0; k < lane_count; ++k) scene.set(group, k, {0}, poses, used);
   }
+  [[nodiscard]] GroupExtremes extremes() const {
+    GroupExtremes extremes;
+    extremes.add(group);
+    return extremes;
+  }
 };
 
 constexpr unsigned all_lanes = (1U << lane_count) - 1U;
@@ -208,14 +213,14 @@ TEST(ContactGroup, PairOutOfRangeIsProvenAndDoesNotPush) {
   cubes.seat_all(true);
   cubes.place(Cubes::at(0.206));
   EXPECT_EQ(cubes.group.inside(), all_lanes);
-  const double peak = cubes.group.largest_force();
-  const double nearest = cubes.group.least_distance();
+  const double peak = cubes.extremes().peak_force();
+  const double nearest = cubes.extremes().nearest();
   EXPECT_GT(peak, 1.0);
   cubes.place(Cubes::at(0.3));
   EXPECT_EQ(cubes.group.proven(), all_lanes);
   EXPECT_EQ(cubes.group.inside(), 0U);
-  EXPECT_EQ(cubes.group.largest_force(), 0.0);
-  EXPECT_NEAR(cubes.group.least_distance(), nearest + 0.094, 1e-12);
+  EXPECT_EQ(cubes.extremes().peak_force(), 0.0);
+  EXPECT_NEAR(cubes.extremes().nearest(), nearest + 0.094, 1e-12);
   EXPECT_EQ(cubes.group.nearest(0), nearest);
   EXPECT_EQ(cubes.group.peak(0), peak);
 }
@@ -228,8 +233,8 @@ TEST(ContactGroup, FeatureThatNoLongerHoldsIsNotProvenUntilItIsRenewed) {
   cubes.place(X);
   EXPECT_EQ(cubes.group.used(), all_lanes);
   EXPECT_EQ(cubes.group.proven(), 0U);
-  EXPECT_EQ(cubes.group.largest_force(), 0.0);
-  EXPECT_EQ(cubes.group.least_distance(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(cubes.extremes().peak_force(), 0.0);
+  EXPECT_EQ(cubes.extremes().nearest(), std::numeric_limits<double>::infinity());
   cubes.ask();
   const World& world = cubes.scene.world;
   cubes.group.renew(world, 0, world.pair({0}), cubes.scene.warm[0]);
@@ -244,7 +249,7 @@ TEST(ContactGroup, LaneWithoutAPairNeverPushes) {
   cubes.place(Cubes::at(0.206));
   EXPECT_EQ(cubes.group.used(), 0U);
   EXPECT_EQ(cubes.group.proven(), 0U);
-  EXPECT_EQ(cubes.group.largest_force(), 0.0);
+  EXPECT_EQ(cubes.extremes().peak_force(), 0.0);
   cubes.seat_all(true);
   cubes.group.leave(1);
   cubes.place(Cubes::at(0.206));

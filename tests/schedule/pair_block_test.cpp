@@ -156,6 +156,32 @@ TEST(PairBlock, PairsThatCannotBeInRangeCostNothing) {
   EXPECT_GT(evaluated, 0);  // and it is asked in time
 }
 
+TEST(PairBlock, PairThatTurnsAboutWhereItIsNearestIsNotAsked) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  // The ball is at the origin of a body that reaches far: hardly anything of its turning moves it.
+  const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.1));
+  Pose out = Pose::Identity();
+  out.translation().x() = 1.0;
+  world.add_part(tool, "arm", Shape::sphere(0.1), out);
+  Pose below = Pose::Identity();
+  below.translation().z() = -0.225;  // 25 mm from the ball
+  const PartId wall = world.add_part(World::fixed, "wall", Shape::box({1.0, 1.0, 0.1}), below);
+  world.add_pair(ball, wall, {.range = 0.02});
+  Block block(world);
+  EXPECT_EQ(block.run().totals.evaluated, 1);
+  Pose X = Pose::Identity();
+  for (int i = 1; i <= 100; ++i) {
+    X.linear() = Eigen::AngleAxisd(0.02 * i, Vec3(1.0, 2.0, 0.0).normalized()).toRotationMatrix();
+    world.place(tool, X, {});
+    EXPECT_EQ(block.run().totals.evaluated, 0) << "after " << 0.02 * i << " rad";
+  }
+  X.translation().z() = -0.006;
+  world.place(tool, X, {});
+  EXPECT_EQ(block.run().totals.evaluated, 1);
+  EXPECT_GT(block.run().totals.peak_force, 0.0);
+}
+
 TEST(PairBlock, WrenchIsAboutTheOriginOfTheBody) {
   TwoBodies two;
   Pose X_WA = Pose::Identity();

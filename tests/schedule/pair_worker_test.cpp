@@ -38,6 +38,15 @@ TEST(PairWorker, TakesEveryStrideThBlockAndAllPairsAreTakenOnce) {
   for (const int owner : owners) EXPECT_EQ(owner, 1);
 }
 
+TEST(PairWorker, BlocksAreNoMoreThanThreadsMayShare) {
+  EXPECT_EQ(detail::PairWorker::blocks_of(0, 16), 0);
+  EXPECT_EQ(detail::PairWorker::blocks_of(64, 16), 1);
+  EXPECT_EQ(detail::PairWorker::blocks_of(65, 16), 2);
+  EXPECT_EQ(detail::PairWorker::blocks_of(1000000, 16), detail::PairWorker::most_blocks);
+  EXPECT_EQ(detail::PairWorker::blocks_of(1000000, 3), 3);
+  EXPECT_EQ(detail::PairWorker::blocks_of(1000000, 0), 1);
+}
+
 TEST(PairWorker, WorldWithoutPairsIsNoTrouble) {
   World world;
   for (const std::int64_t units : {0, 100}) {

@@ -87,6 +87,19 @@ template <class F>
 struct LaneVec {
   Lanes x, y, z;
 
+  LaneVec() = default;
+  LaneVec(const Lanes& all_x, const Lanes& all_y, const Lanes& all_z) noexcept
+      : x(all_x), y(all_y), z(all_z) {}
+  // Left to the compiler a copy is one of bytes, which goes through memory in pieces of its choice:
+  // a register written by pieces has to wait for all of them.
+  LaneVec(const LaneVec& v) noexcept : x(v.x), y(v.y), z(v.z) {}
+  LaneVec& operator=(const LaneVec& v) noexcept {
+    x = v.x;
+    y = v.y;
+    z = v.z;
+    return *this;
+  }
+
   /// The same vector in all.
   [[nodiscard]] static LaneVec all(const Vec<double>& v) noexcept {
     return {all_of(v.x()), all_of(v.y()), all_of(v.z())};
@@ -187,11 +200,10 @@ struct LanePose {
     return {LaneVec::all(column<double>(X, 0)), LaneVec::all(column<double>(X, 1)),
             LaneVec::all(column<double>(X, 2)), LaneVec::all(column<double>(X, 3))};
   }
-  /// The pose X(k) in lane k.
-  template <class F>
-  [[nodiscard]] static LanePose of(const F& X) noexcept {
+  /// The pose X[k] in lane k.
+  [[nodiscard]] static LanePose of(const std::array<const Pose*, lane_count>& X) noexcept {
     const auto columns_of = [&](int c) {
-      return LaneVec::of([&](int k) { return column<double>(X(k), c); });
+      return LaneVec::of([&](int k) { return column<double>(*X[static_cast<std::size_t>(k)], c); });
     };
     return {columns_of(0), columns_of(1), columns_of(2), columns_of(3)};
   }

@@ -5,6 +5,8 @@
 /// origin of W, `n_AB_W` a direction from A to B expressed in W.
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 
 namespace repel {
@@ -30,11 +32,22 @@ using Pose = Eigen::Isometry3d;
   return (v - v).sum() == 0.0;  // NOLINT(misc-redundant-expression)
 }
 
-/// True when the rotation of `X` is orthonormal and right-handed within `tolerance` per entry.
+/// True when the rotation of `X` is orthonormal and right-handed within `tolerance` per entry; not
+/// when an entry is no number. Cost: 24 multiplications.
 [[nodiscard]] inline bool is_rigid(const Pose& X, double tolerance = 1e-9) noexcept {
-  const Mat3 R = X.linear();
-  const Mat3 defect = R.transpose() * R - Mat3::Identity();
-  return defect.cwiseAbs().maxCoeff() <= tolerance && R.determinant() > 0.0;
+  const auto& M = X.matrix();
+  const auto product = [&](int i, int j) {
+    return M(0, i) * M(0, j) + M(1, i) * M(1, j) + M(2, i) * M(2, j);
+  };
+  const auto is_near = [&](double value, double ideal) {
+    return std::abs(value - ideal) <= tolerance;
+  };
+  const double volume = M(0, 2) * (M(1, 0) * M(2, 1) - M(2, 0) * M(1, 1)) +
+                        M(1, 2) * (M(2, 0) * M(0, 1) - M(0, 0) * M(2, 1)) +
+                        M(2, 2) * (M(0, 0) * M(1, 1) - M(1, 0) * M(0, 1));
+  return is_near(product(0, 0), 1.0) && is_near(product(1, 1), 1.0) &&
+         is_near(product(2, 2), 1.0) && is_near(product(0, 1), 0.0) &&
+         is_near(product(0, 2), 0.0) && is_near(product(1, 2), 0.0) && volume > 0.0;
 }
 
 }  // namespace repel

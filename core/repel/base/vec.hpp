@@ -174,6 +174,18 @@ template <class T>
   return from_four<T>(X.data() + std::ptrdiff_t{4} * k);
 }
 
+/// Makes `v` column `k` of the matrix of `X`, as one piece of memory: it may be read as one next.
+inline void set_column(Pose& X, int k, const Vec<double>& v) noexcept {
+  double* c = X.data() + std::ptrdiff_t{4} * k;
+  const double last = k == 3 ? 1.0 : 0.0;
+#ifdef __AVX__
+  const Vec<double>::Lanes four = v.lanes() + Vec<double>::Lanes{0.0, 0.0, 0.0, last};
+#else
+  const double four[4] = {v.x(), v.y(), v.z(), last};
+#endif
+  std::memcpy(c, &four, sizeof four);
+}
+
 /// The rotation of `X` applied to `v`, in the precision of T.
 template <class T>
 [[nodiscard]] Vec<T> rotate(const Pose& X, const Vec<T>& v) noexcept {

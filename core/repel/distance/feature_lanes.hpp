@@ -18,6 +18,7 @@ struct LaneSets {
   std::array<const Convex*, lane_count> sets{};
   LanePose X_W{};                    ///< [m]
   std::array<LaneVec, 3> corners{};  ///< [m] of the features, in the frames of the sets
+  std::array<LaneVec, 3> turned{};   ///< [m] the same from the origins of the sets, world axes
   LaneVec half_extents{};            ///< [m] of boxes
   bool boxes = false;                ///< all of them are
 
@@ -29,6 +30,12 @@ struct LaneSets {
     boxes = std::all_of(sets.begin(), sets.end(), [](const Convex* other) {
       return other == nullptr || other->kind() == Convex::Kind::box;
     });
+  }
+
+  /// After `X_W` or a lane was set, and before the next proof. Never a part of its callers, where
+  /// the compiler might round otherwise: sets that stand still are turned only once.
+  [[gnu::noinline]] void turn() noexcept {
+    for (std::size_t i = 0; i < 3; ++i) turned[i] = X_W.rotate(corners[i]);
   }
 
   /// `Convex::support_value` of each along `d`, in its own frame.
@@ -66,14 +73,11 @@ struct FeatureLanes {
     reach[k] = a.reach() + b.reach();
   }
 
-  /// Every lane must have been set, and `A.X_W` and `B.X_W`.
+  /// Every lane must have been set, and `A` and `B` turned.
   [[nodiscard]] LaneGap prove(const QueryOptions& options) const noexcept {
     const LaneVec p_AB = B.X_W.columns[3] - A.X_W.columns[3];
-    std::array<LaneVec, 3> a, w;  // [m] points of A, from the origin of A, world axes; and of A - B
-    for (std::size_t i = 0; i < 3; ++i) {
-      a[i] = A.X_W.rotate(A.corners[i]);
-      w[i] = a[i] - (B.X_W.rotate(B.corners[i]) + p_AB);
-    }
+    std::array<LaneVec, 3> w;  // [m] points of A - B, world axes
+    for (std::size_t i = 0; i < 3; ++i) w[i] = A.turned[i] - (B.turned[i] + p_AB);
     const Foot foot = foot_on(w);
     const Lanes vv = dot(foot.v, foot.v);
     const Lanes length = roots(vv);
@@ -93,7 +97,7 @@ struct FeatureLanes {
     gap.proven = inside & converged & (length <= 1e150);
     gap.distance = smaller(larger(length, gap.lower), gap.upper);
     gap.n_BA_W = inverse * foot.v + LaneVec{};
-    gap.p_AQa_W = mean(a, foot);
+    gap.p_AQa_W = mean(A.turned, foot);
     gap.p_AQb_W = gap.p_AQa_W - mean_w;
     return gap;
   }

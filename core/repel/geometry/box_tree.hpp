@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -135,9 +136,10 @@ class BoxTree {
     }
   };
 
+  /// Less than x by no more than some roundings.
   [[nodiscard]] static float below(double x) noexcept {
     const auto rounded = static_cast<float>(std::clamp<double>(x, -farthest, farthest));
-    return std::nextafter(rounded, -2.0F * farthest);
+    return rounded - (std::abs(rounded) * 0x1p-22F + std::numeric_limits<float>::min());
   }
 
   std::int32_t add_node() {

@@ -88,12 +88,6 @@ class ContactEvaluator {
     const int answered = std::popcount(group.proven());
     totals.evaluated += answered;
     totals.iterations += answered;
-    if (group.least_distance() < totals.nearest) {
-      totals.nearest = group.least_distance();
-      for_each(group.proven(), [&](int k) {
-        if (group.distance(k) == totals.nearest) totals.nearest_pair = watch_at(g, k).pair;
-      });
-    }
     const unsigned unproven = group.used() & ~group.proven();
     if ((stale | unproven) == 0U) return;
     for_each(stale & group.proven(), [&](int k) {
@@ -110,14 +104,14 @@ class ContactEvaluator {
 
   /// The forces of all contacts.
   void push_contacts(const Motion& motion) noexcept {
-    LaneWrench sum;
+    GroupExtremes extremes;
     const int groups = contacts_.groups();
+    all_stay_ = true;
     for (int g = 0; g < groups; ++g) {
       ContactGroup& group = contacts_.group(g);
       if (group.fresh()) {
-        sum.add(group, motion, pairs_.forces().on_body);
-        pairs_.forces().totals.peak_force =
-            std::max(pairs_.forces().totals.peak_force, group.largest_force());
+        extremes.add(group);
+        all_stay_ = all_stay_ && group.inside() == group.used();
         for_each(group.used() & ~group.proven(),
                  [&](int k) { pairs_.push(slot_at(g, k), motion); });
         continue;
@@ -128,11 +122,16 @@ class ContactEvaluator {
         pairs_.push(slot_at(g, k), motion);
       });
     }
-    sum.hand_over(motion, pairs_.forces().on_body);
+    LaneWrench(motion, pairs_.forces().on_body).add(contacts_.all());
+    PairTotals& totals = pairs_.forces().totals;
+    totals.peak_force = std::max(totals.peak_force, extremes.peak_force());
+    if (extremes.nearest() < totals.nearest) note_nearest(extremes.nearest());
   }
 
-  /// Unseats the contacts that have left their range, or whose nearest feature is no longer known.
+  /// Unseats the contacts that have left their range, or whose nearest feature is no longer known,
+  /// after `push_contacts`.
   void dismiss(const PartPoses& poses) noexcept {
+    if (all_stay_) return;
     for (int g = contacts_.groups() - 1; g >= 0; --g) {
       const ContactGroup& group = contacts_.group(g);
       const unsigned staying = group.fresh() ? group.inside() : group.used();
@@ -170,6 +169,19 @@ class ContactEvaluator {
     for (; bits != 0U; bits &= bits - 1U) f(std::countr_zero(bits));
   }
 
+  /// Some contact that was answered at this tick has that distance [m], the least of all.
+  void note_nearest(double distance) noexcept {
+    PairTotals& totals = pairs_.forces().totals;
+    totals.nearest = distance;
+    for (int g = 0; g < contacts_.groups(); ++g) {
+      const ContactGroup& group = contacts_.group(g);
+      if (!group.fresh()) continue;
+      for_each(group.proven(), [&](int k) {
+        if (group.distance(k) == distance) totals.nearest_pair = watch_at(g, k).pair;
+      });
+    }
+  }
+
   [[nodiscard]] bool is_contact(int slot) const noexcept {
     const PairMemory& memory = pairs_.memory();
     const Pair& p = pairs_.pair(slot);
@@ -197,6 +209,7 @@ class ContactEvaluator {
 
   PairEvaluator pairs_;
   Contacts contacts_;
+  bool all_stay_ = true;  ///< no contact has to be unseated after this tick
 };
 
 }  // namespace repel::detail

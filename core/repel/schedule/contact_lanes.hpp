@@ -32,7 +32,9 @@ class LaneBodies {
   /// All lanes have the fixed body.
   [[nodiscard]] bool stand_still() const noexcept { return is_one_ && bodies_[0] == World::fixed; }
   [[nodiscard]] LanePose poses(PartPoses& of, const Motion& motion) const noexcept {
-    return LanePose::of([&](int k) -> const Pose& { return of.at(parts_[index(k)], motion); });
+    std::array<const Pose*, lane_count> X_WP;
+    for (std::size_t k = 0; k < X_WP.size(); ++k) X_WP[k] = &of.at(parts_[k], motion);
+    return LanePose::of(X_WP);
   }
   [[nodiscard]] const BodyState& state(const Motion& motion, int k) const noexcept {
     return motion.bodies[bodies_[index(k)].index];
@@ -73,13 +75,15 @@ class ContactGroup {
   void renew(const World& world, int k, const Pair& pair, const WarmStart& warm) noexcept {
     features_.set(k, world.part(pair.a).shape.level(0).core, world.part(pair.b).shape.level(0).core,
                   warm);
+    is_turned_ = false;
     forget(k);
   }
 
   /// Answers all lanes and works out their forces.
   [[gnu::noinline, gnu::flatten]] void evaluate(const Motion& motion, PartPoses& poses) noexcept {
-    if (!of_a_.stand_still()) features_.A.X_W = of_a_.poses(poses, motion);
-    if (!of_b_.stand_still()) features_.B.X_W = of_b_.poses(poses, motion);
+    move(of_a_, features_.A, motion, poses);
+    move(of_b_, features_.B, motion, poses);
+    is_turned_ = true;
     const LaneGap gap = features_.prove(options);
     const LaneVec& n = gap.n_BA_W;
     const Lanes depth = depth_a_ + depth_b_;
@@ -125,9 +129,9 @@ class ContactGroup {
   /// [N], [N m] What the pairs that are inside do to their bodies A, about the origin of each.
   [[nodiscard]] const LaneVec& force() const noexcept { return force_W_; }
   [[nodiscard]] const LaneVec& torque() const noexcept { return torque_W_; }
-  /// [N] The largest force of one pair, and [m] the least distance.
-  [[nodiscard]] double largest_force() const noexcept { return largest_of(size_); }
-  [[nodiscard]] double least_distance() const noexcept { return least_of(seen_distance_); }
+  /// [N] The size of each force, and [m] the distances, infinite where nothing was proven.
+  [[nodiscard]] const Lanes& sizes() const noexcept { return size_; }
+  [[nodiscard]] const Lanes& distances() const noexcept { return seen_distance_; }
   [[nodiscard]] double distance(int k) const noexcept { return seen_distance_[k]; }
   /// [m], [N] The extremes of lane k since it was set.
   [[nodiscard]] double nearest(int k) const noexcept { return nearest_[k]; }
@@ -149,6 +153,12 @@ class ContactGroup {
  private:
   static constexpr QueryOptions options{};
 
+  void move(const LaneBodies& bodies, LaneSets& sets, const Motion& motion,
+            PartPoses& poses) const noexcept {
+    const bool stand_still = bodies.stand_still();
+    if (!stand_still) sets.X_W = bodies.poses(poses, motion);
+    if (!stand_still || !is_turned_) sets.turn();
+  }
   [[nodiscard]] static Lanes outward(const Lanes& bound, double side) noexcept {
     return bound + (side * 0x1p-51) * magnitudes(bound);
   }
@@ -212,6 +222,7 @@ class ContactGroup {
 
   LaneBodies of_a_, of_b_;
   FeatureLanes features_;
+  bool is_turned_ = false;  ///< the sets that stand still
   LawLanes law_;
   LaneMask used_{};
   Lanes depth_a_{}, depth_b_{};  ///< [m] by which the shapes are round
@@ -225,8 +236,24 @@ class ContactGroup {
   bool fresh_ = false;
   Lanes size_{};                    ///< [N] of the force
   LaneVec force_W_{}, torque_W_{};  ///< [N], [N m] on A, about the origin of its body
-  Lanes seen_distance_{};           ///< [m] infinite where nothing was proven
+  Lanes seen_distance_{};
   Lanes nearest_{}, peak_{};
+};
+
+/// The extremes of several groups.
+class GroupExtremes {
+ public:
+  void add(const ContactGroup& group) noexcept {
+    sizes_ = larger(sizes_, group.sizes());
+    distances_ = smaller(distances_, group.distances());
+  }
+  /// [N] The largest force of one pair, and [m] the least distance.
+  [[nodiscard]] double peak_force() const noexcept { return largest_of(sizes_); }
+  [[nodiscard]] double nearest() const noexcept { return least_of(distances_); }
+
+ private:
+  Lanes sizes_{};
+  Lanes distances_ = all_of(std::numeric_limits<double>::infinity());
 };
 
 }  // namespace repel::detail

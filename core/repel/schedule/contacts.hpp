@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <repel/schedule/contact_lanes.hpp>
@@ -26,6 +27,9 @@ class Contacts {
   [[nodiscard]] int groups() const noexcept { return (count_ + lane_count - 1) / lane_count; }
   [[nodiscard]] ContactGroup& group(int g) noexcept { return groups_[g]; }
   [[nodiscard]] const ContactGroup& group(int g) const noexcept { return groups_[g]; }
+  [[nodiscard]] std::span<const ContactGroup> all() const noexcept {
+    return {groups_.data(), static_cast<std::size_t>(groups())};
+  }
   /// How many seats of a group are taken.
   [[nodiscard]] int taken(int g) const noexcept {
     return std::min(lane_count, count_ - g * lane_count);

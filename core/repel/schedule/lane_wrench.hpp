@@ -2,63 +2,83 @@
 /// The sum of the forces of contacts.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <repel/schedule/contact_lanes.hpp>
 
 namespace repel::detail {
 
-/// Adds up lane by lane while the groups are of the same two bodies, and only then across the
+/// Adds up groups lane by lane while they are of the same two bodies, and only then across the
 /// lanes.
 class LaneWrench {
  public:
-  /// @param on_body [N, N m] by BodyId, about each body's origin: takes what is complete
-  void add(const ContactGroup& group, const Motion& motion, std::vector<Wrench>& on_body) noexcept {
-    if (!group.is_one_meeting()) return add_each(group, motion, on_body);
-    if (a_ != group.body_a(0) || b_ != group.body_b(0)) {
-      hand_over(motion, on_body);
-      a_ = group.body_a(0);
-      b_ = group.body_b(0);
-    }
-    force_W_ = force_W_ + group.force();
-    torque_W_ = torque_W_ + group.torque();
-  }
+  /// @param on_body [N, N m] by BodyId, about each body's origin
+  LaneWrench(const Motion& motion, std::vector<Wrench>& on_body) noexcept
+      : motion_(&motion), on_body_(&on_body) {}
 
-  /// The rest of the sum.
-  void hand_over(const Motion& motion, std::vector<Wrench>& on_body) noexcept {
-    if (!a_.valid()) return;
-    act(a_, b_, {sum_of(force_W_), sum_of(torque_W_)}, motion, on_body);
-    force_W_ = LaneVec{};
-    torque_W_ = LaneVec{};
-    a_ = {};
+  /// Adds the forces of those groups whose answers are of this tick to the bodies.
+  void add(std::span<const ContactGroup> groups) noexcept {
+    for (std::size_t g = 0; g < groups.size();) {
+      if (!groups[g].fresh()) {
+        ++g;
+      } else if (!groups[g].is_one_meeting()) {
+        add_each(groups[g++]);
+      } else {
+        g += add_run(groups.subspan(g));
+      }
+    }
   }
 
  private:
-  static void add_each(const ContactGroup& group, const Motion& motion,
-                       std::vector<Wrench>& on_body) noexcept {
-    for (int k = 0; k < lane_count; ++k) {
-      act(group.body_a(k), group.body_b(k), {group.force().at(k), group.torque().at(k)}, motion,
-          on_body);
+  /// The first groups, as many as are of the same two bodies and of this tick. Returns how many.
+  std::size_t add_run(std::span<const ContactGroup> groups) noexcept {
+    const BodyId a = groups[0].body_a(0);
+    const BodyId b = groups[0].body_b(0);
+    LaneVec force_W = groups[0].force();
+    LaneVec torque_W = groups[0].torque();
+    std::size_t g = 1;
+    for (; g < groups.size() && groups[g].fresh() && groups[g].is_one_meeting() &&
+           groups[g].body_a(0) == a && groups[g].body_b(0) == b;
+         ++g) {
+      force_W = force_W + groups[g].force();
+      torque_W = torque_W + groups[g].torque();
+    }
+    act(a, b, sum_of(force_W), sum_of(torque_W));
+    return g;
+  }
+
+  void add_each(const ContactGroup& group) noexcept {
+    const auto force_W = group.force().each();
+    const auto torque_W = group.torque().each();
+    for (std::size_t k = 0; k < force_W.size(); ++k) {
+      const auto lane = static_cast<int>(k);
+      act(group.body_a(lane), group.body_b(lane), force_W[k], torque_W[k]);
     }
   }
 
-  /// @param F_A_W on A about the origin of A; B feels the opposite
-  static void act(BodyId a, BodyId b, const Wrench& F_A_W, const Motion& motion,
-                  std::vector<Wrench>& on_body) noexcept {
-    const Vec3 p_AB_W =
-        motion.bodies[b.index].X_WB.translation() - motion.bodies[a.index].X_WB.translation();
-    on_body[a.index] += F_A_W;
-    on_body[b.index] += -1.0 * moved_to(F_A_W, p_AB_W);
+  /// @param f_A_W,m_A_W [N, N m] on A about the origin of A; B feels the opposite
+  void act(BodyId a, BodyId b, const Vec<double>& f_A_W, const Vec<double>& m_A_W) noexcept {
+    const Vec<double> p_BA_W = column<double>(motion_->bodies[a.index].X_WB, 3) -
+                               column<double>(motion_->bodies[b.index].X_WB, 3);
+    const Vec<double> m_B_W = m_A_W + cross(p_BA_W, f_A_W);
+    Wrench& on_a = (*on_body_)[a.index];
+    Wrench& on_b = (*on_body_)[b.index];
+    on_a.force += to_vec3(f_A_W);
+    on_a.torque += to_vec3(m_A_W);
+    on_b.force -= to_vec3(f_A_W);
+    on_b.torque -= to_vec3(m_B_W);
   }
 
-  [[nodiscard]] static Vec3 sum_of(const LaneVec& v) noexcept {
-    Vec3 sum = v.at(0);
-    for (int k = 1; k < lane_count; ++k) sum += v.at(k);
+  [[nodiscard]] static Vec<double> sum_of(const LaneVec& v) noexcept {
+    const auto each = v.each();
+    Vec<double> sum = each[0];
+    for (std::size_t k = 1; k < each.size(); ++k) sum = sum + each[k];
     return sum;
   }
 
-  BodyId a_, b_;
-  LaneVec force_W_{}, torque_W_{};  ///< [N, N m] on A about its origin
+  const Motion* motion_;
+  std::vector<Wrench>* on_body_;
 };
 
 }  // namespace repel::detail

@@ -114,7 +114,7 @@ class PairBlock {
     const bool counted = work_units < std::numeric_limits<std::int64_t>::max();
     // Contacts are answered several at a time: what that costs would be known too late.
     if (counted) contacts_.unseat_all(poses);
-    find_singles(motion);
+    find_singles(motion, poses);
     answer(motion, poses, work_units, deadline);
     // In an order that does not depend on which were asked first.
     contacts_.push_contacts(motion);
@@ -153,24 +153,37 @@ class PairBlock {
     return deadline != Clock::time_point::max() && Clock::now() >= deadline;
   }
 
-  void find_singles(const Motion& motion) noexcept {
+  void find_singles(const Motion& motion, PartPoses& poses) noexcept {
     single_count_ = 0;
-    for (const Candidate& candidate : candidates_.all()) {
-      const std::int32_t slot = candidate.slot;
-      if (memory().watch(slot).seat >= 0) continue;
-      if (all_near_ || comes_in_range(slot, motion)) singles_[single_count_++] = slot;
-    }
+    // Every contact is a candidate.
+    if (candidates_.all().size() > static_cast<std::size_t>(contacts_.count()))
+      look_for_singles(motion, poses);
     pairs().forces().totals.near += contacts_.count() + single_count_;
   }
 
+  void look_for_singles(const Motion& motion, PartPoses& poses) noexcept {
+    for (const Candidate& candidate : candidates_.all()) {
+      const std::int32_t slot = candidate.slot;
+      if (memory().watch(slot).seat >= 0) continue;
+      if (all_near_ || comes_in_range(slot, motion, poses)) singles_[single_count_++] = slot;
+    }
+  }
+
   /// What the travel of the bodies does not exclude is looked at once more, along the direction
-  /// that parts the pair.
-  [[nodiscard]] bool comes_in_range(int slot, const Motion& motion) noexcept {
+  /// that parted the pair: first by how far the bodies have moved, then, if it is their turning
+  /// that spoils the proof, by the shapes.
+  [[nodiscard]] bool comes_in_range(int slot, const Motion& motion, PartPoses& poses) noexcept {
     if (!pairs().is_due(slot, motion)) return false;
     if (memory().answer(slot).inside) return true;
-    const double clearance = pairs().widened(slot, motion) - pairs().pair(slot).law.range;
+    const double range = pairs().pair(slot).law.range;
+    double clearance = pairs().widened(slot, motion) - range;
+    if (!(clearance > 0.0) && clearance + pairs().turned(slot, motion) > 0.0) {
+      clearance = pairs().parted_by(slot, motion, poses) - range;
+    }
     pairs().watch_for(slot, motion, clearance);
-    return !(clearance > 0.0);
+    if (clearance > 0.0) return false;
+    pairs().forget_course(slot);
+    return true;
   }
 
   /// The contacts, which share the work, and the single pairs. When there is not time for all, they

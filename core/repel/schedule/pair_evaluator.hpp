@@ -66,6 +66,20 @@ class PairEvaluator {
     return memory_.answer(slot).widened(body_a(slot, motion), body_b(slot, motion), deepest);
   }
 
+  /// [m] How much of that bound the turning of the bodies has taken.
+  [[nodiscard]] double turned(int slot, const Motion& motion) const noexcept {
+    return body_a(slot, motion).turn + body_b(slot, motion).turn - memory_.answer(slot).turn;
+  }
+
+  /// The same by the shapes themselves as they stand now, along the extraction direction of that
+  /// answer. Cost: a support-map pair.
+  [[nodiscard]] double parted_by(int slot, const Motion& motion, PartPoses& poses) const noexcept {
+    const Pair& p = pair(slot);
+    return -overlap_along(memory_.answer(slot).last.extraction_W, world_->part(p.a).shape,
+                          poses.at(p.a, motion), world_->part(p.b).shape, poses.at(p.b, motion)) -
+           rounding;
+  }
+
   /// [s] until the pair touches if both bodies go on as they do; the less the more urgent.
   [[nodiscard]] double time_to_contact(int slot, const Motion& motion) const noexcept {
     const double closing = -memory_.answer(slot).last.extraction_W.dot(velocity(slot, motion));
@@ -91,13 +105,23 @@ class PairEvaluator {
     return memory_.answer(slot).asked == now_;
   }
 
+  /// What follows when a pair comes within range is to depend on its motion there alone, not on how
+  /// often it was asked before: the first question of a pair that has come there has no warm start.
+  void forget_course(int slot) noexcept { memory_.course(slot) = {}; }
+
   /// The pair of a slot asked anew.
   void evaluate(int slot, const Motion& motion, PartPoses& poses) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     keep_claim(slot, motion);
+    const bool is_warm = memory_.course(slot).warm.size > 0;
     answer.last = ask(slot, motion, poses, memory_.course(slot).warm);
     ++forces_.totals.evaluated;
     forces_.totals.iterations += answer.last.iterations;
+    if (is_warm && !answer.inside && answer.last.lower <= pair(slot).law.range + rounding) {
+      forget_course(slot);
+      answer.last = ask(slot, motion, poses, memory_.course(slot).warm);
+      forces_.totals.iterations += answer.last.iterations;
+    }
     settle(slot, motion, poses);
   }
 
@@ -160,13 +184,6 @@ class PairEvaluator {
     const Pair& p = pair(slot);
     PairAnswer& answer = memory_.answer(slot);
     PairTotals& totals = forces_.totals;
-    // What follows when a pair comes within range is to depend on its motion there alone, not on
-    // how often it was asked before: it begins cold.
-    if (!answer.inside && answer.last.lower <= p.law.range + rounding) {
-      memory_.course(slot) = {};
-      answer.last = ask(slot, motion, poses, memory_.course(slot).warm);
-      totals.iterations += answer.last.iterations;
-    }
     if (p.law.passable) {
       int iterations = 0;
       answer.slope = slope_of(answer.last, world_->part(p.a).shape, poses.at(p.a, motion),

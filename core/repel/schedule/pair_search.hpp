@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -185,10 +186,9 @@ class PairSearch {
       if (travel < meetings_[m].next) continue;
       if (!(travel < meetings_[m].wake_at)) wake(meeting, meetings_[m], A, B, sink);
       double next = meetings_[m].wake_at;
-      const View view(A.X_WB, B.X_WB);
       for (std::int32_t i = 0; i < meetings_[m].awake; ++i) {
         const std::int32_t s = awake_[meeting.first + i];
-        if (!(travel < seekers_[s].ask_at)) ask(s, view, travel, sink);
+        if (!(travel < seekers_[s].ask_at)) ask(s, A, B, sink);
         next = std::min(next, seekers_[s].ask_at);
       }
       meetings_[m].next = next;
@@ -215,9 +215,16 @@ class PairSearch {
   /// rigid one, and by rounding.
   class View {
    public:
-    View(const Pose& X_WFrom, const Pose& X_WTo) noexcept : X_(Pose(X_WTo.inverse()) * X_WFrom) {
-      const Mat3 R = X_WTo.linear();
-      skew_ = (R.transpose() * R - Mat3::Identity()).norm() + 1e-14;
+    View(const Pose& X_WFrom, const Pose& X_WTo) noexcept {
+      const auto seen = [&](const Vec<double>& v_W) { return rotate_transposed(X_WTo, v_W); };
+      double squares = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        set_column(X_, k, seen(column<double>(X_WFrom, k)));
+        const Vec<double> of_itself = seen(column<double>(X_WTo, k)) - Vec<double>(Vec3::Unit(k));
+        squares += dot(of_itself, of_itself);
+      }
+      set_column(X_, 3, seen(column<double>(X_WFrom, 3) - column<double>(X_WTo, 3)));
+      skew_ = std::sqrt(squares) + 1e-14;
       far_ = X_WFrom.translation().norm() + X_WTo.translation().norm();
     }
     [[nodiscard]] Box box(const Box& of) const noexcept {
@@ -232,7 +239,7 @@ class PairSearch {
     [[nodiscard]] double sure(double distance) const noexcept { return (1.0 - skew_) * distance; }
 
    private:
-    Pose X_;
+    Pose X_ = Pose::Identity();
     double skew_;
     double far_;  ///< [m]
   };
@@ -270,7 +277,9 @@ class PairSearch {
   }
 
   template <class Sink>
-  void ask(std::int32_t s, const View& view, double travel, Sink& sink) noexcept {
+  void ask(std::int32_t s, const BodyState& A, const BodyState& B, Sink& sink) noexcept {
+    const View view(A.X_WB, B.X_WB);
+    const double travel = A.travel + B.travel;
     const PairIndex::Seeker& seeker = index_->seekers[s];
     SeekerState& state = seekers_[s];
     // The first margins differ, so that later not all seekers are due in one tick.

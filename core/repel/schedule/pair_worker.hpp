@@ -19,7 +19,8 @@ namespace repel::detail {
 /// bitwise the same for any number of workers that have seen the same.
 class PairWorker {
  public:
-  /// Blocks of one world: enough to share among the threads of a large machine.
+  /// Blocks of one world: enough to share among the threads of a large machine. Each costs a tick a
+  /// little even if nothing in it is near.
   static constexpr int most_blocks = 8;
 
   /// @param pairs the index of the world's pairs, shared by all workers; without one every pair is
@@ -44,10 +45,13 @@ class PairWorker {
     }
   }
 
-  /// How many blocks the pairs of a world make.
+  /// How many blocks the pairs of a world make: no more than threads may ever share them.
   [[nodiscard]] static int blocks_of(const World& world) noexcept {
-    const int pairs = static_cast<int>(world.pairs().size());
-    return std::min(most_blocks, (pairs + PairShare::run - 1) / PairShare::run);
+    return blocks_of(static_cast<int>(world.pairs().size()), world.limits().threads);
+  }
+  [[nodiscard]] static int blocks_of(int pairs, int threads) noexcept {
+    const int runs = (pairs + PairShare::run - 1) / PairShare::run;
+    return std::min({most_blocks, std::max(1, threads), runs});
   }
 
   /// Every pair once, whatever it costs, so that no pair enters the first tick unknown.

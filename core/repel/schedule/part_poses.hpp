@@ -44,10 +44,11 @@ class PartPoses {
     const Part& part = world_->part(id);
     const Pose& X_WB = motion.bodies[part.body.index].X_WB;
     Placed& placed = placed_[id.index];
-    // The product of the poses, coefficient by coefficient: Eigen's own takes copies of both.
-    placed.X_WP.linear() = X_WB.linear().lazyProduct(part.X_BP.linear());
-    placed.X_WP.translation() =
-        X_WB.linear().lazyProduct(part.X_BP.translation()) + X_WB.translation();
+    for (int k = 0; k < 3; ++k) {
+      set_column(placed.X_WP, k, rotate(X_WB, column<double>(part.X_BP, k)));
+    }
+    set_column(placed.X_WP, 3,
+               rotate(X_WB, column<double>(part.X_BP, 3)) + column<double>(X_WB, 3));
     placed.at = instant_;
   }
 

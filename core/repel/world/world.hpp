@@ -10,6 +10,7 @@
 #include <repel/base/ids.hpp>
 #include <repel/base/limits.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/base/vec.hpp>
 #include <repel/force/law.hpp>
 #include <repel/reduction/shape.hpp>
 
@@ -93,11 +94,16 @@ class World {
   bool place(BodyId body, const Pose& X_WB, const Twist& V_WB) noexcept {
     if (!is_finite(X_WB) || !is_finite(V_WB) || !is_rigid(X_WB, 1e-6)) return false;
     BodyState& state = motion_.bodies[body.index];
+    const auto moved = [&](int k) {
+      const Vec<double> d = column<double>(X_WB, k) - column<double>(state.X_WB, k);
+      return dot(d, d);
+    };
     // |R - R'| (Frobenius) is 2 sqrt(2) sin(angle / 2), without the cancellation of an arc cosine.
-    const double chord = (X_WB.linear() - state.X_WB.linear()).norm() / std::sqrt(2.0);
-    const double turned = reach_[body.index] * chord;
-    const double rounding = 1e-14 * (X_WB.translation().norm() + reach_[body.index]);
-    state.travel += (X_WB.translation() - state.X_WB.translation()).norm() + turned + rounding;
+    const double chord = std::sqrt(0.5 * (moved(0) + moved(1) + moved(2)));
+    const double reach = reach_[body.index];
+    const double turned = reach * chord;
+    const double rounding = 1e-14 * (X_WB.translation().norm() + reach);
+    state.travel += std::sqrt(moved(3)) + turned + rounding;
     state.turn += turned + rounding;
     state.X_WB = X_WB;
     state.V_WB = V_WB;
