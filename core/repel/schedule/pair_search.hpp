@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -13,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <repel/geometry/box_tree.hpp>
+#include <repel/schedule/body_view.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {
@@ -28,13 +27,6 @@ namespace repel::detail {
     box.min()[axis] -= shape.core.support_value(-d) + shape.depth;
   }
   return box;
-}
-
-/// The box around a box that is moved.
-[[nodiscard]] inline Box moved(const Box& box, const Pose& X) noexcept {
-  const Vec3 centre = X * box.center();
-  const Vec3 half = X.linear().cwiseAbs() * (0.5 * box.sizes());
-  return {centre - half, centre + half};
 }
 
 /// The pairs of a world, ordered for the search. Of two bodies the one whose parts in their pairs
@@ -211,43 +203,10 @@ class PairSearch {
     std::int32_t awake = 0;        ///< so many, from `Meeting::first` on in `awake_`
   };
 
-  /// How boxes of one body look from the frame of another: grown by what that frame is short of a
-  /// rigid one, and by rounding.
-  class View {
-   public:
-    View(const Pose& X_WFrom, const Pose& X_WTo) noexcept {
-      const auto seen = [&](const Vec<double>& v_W) { return rotate_transposed(X_WTo, v_W); };
-      double squares = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        set_column(X_, k, seen(column<double>(X_WFrom, k)));
-        const Vec<double> of_itself = seen(column<double>(X_WTo, k)) - Vec<double>(Vec3::Unit(k));
-        squares += dot(of_itself, of_itself);
-      }
-      set_column(X_, 3, seen(column<double>(X_WFrom, 3) - column<double>(X_WTo, 3)));
-      skew_ = std::sqrt(squares) + 1e-14;
-      far_ = X_WFrom.translation().norm() + X_WTo.translation().norm();
-    }
-    [[nodiscard]] Box box(const Box& of) const noexcept {
-      Box box = moved(of, X_);
-      const double far = far_ + box.center().norm() + box.sizes().norm();
-      const Vec3 slack = Vec3::Constant(2.0 * skew_ * far);
-      box.min() -= slack;
-      box.max() += slack;
-      return box;
-    }
-    /// What a distance in that frame is at least.
-    [[nodiscard]] double sure(double distance) const noexcept { return (1.0 - skew_) * distance; }
-
-   private:
-    Pose X_ = Pose::Identity();
-    double skew_;
-    double far_;  ///< [m]
-  };
-
   template <class Sink>
   void wake(const PairIndex::Meeting& meeting, MeetingState& state, const BodyState& A,
             const BodyState& B, Sink& sink) noexcept {
-    const View view(B.X_WB, A.X_WB);
+    const BodyView view(B.X_WB, A.X_WB);
     const std::int32_t before = state.awake;
     const double travel = A.travel + B.travel;
     const double others =
@@ -278,7 +237,7 @@ class PairSearch {
 
   template <class Sink>
   void ask(std::int32_t s, const BodyState& A, const BodyState& B, Sink& sink) noexcept {
-    const View view(A.X_WB, B.X_WB);
+    const BodyView view(A.X_WB, B.X_WB);
     const double travel = A.travel + B.travel;
     const PairIndex::Seeker& seeker = index_->seekers[s];
     SeekerState& state = seekers_[s];
