@@ -107,6 +107,36 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   EXPECT_GT(overlapping, draws(1000));
 }
 
+// A pair that had just left an overlap was once proven apart in extended precision, at twenty times
+// the price of the search for the gap that followed.
+TEST(DeepestPoint, PairThatMayBeApartIsNotSolvedAtLength) {
+  Rng rng(seed);
+  int left = 0, at_length = 0;
+  for (int i = 0; i < draws(5000); ++i) {
+    SCOPED_TRACE(of_seed(seed, "pair", i));
+    Posed pair = random_pair(rng);
+    WarmStart warm;
+    const Separation s = pair.separate(warm);
+    if (warm.level_a != WarmStart::deepest_point) continue;
+    const detail::PosedPlanes a{pair.A.planes(), pair.X_WA, pair.A.level(0).core.reach()};
+    const detail::PosedPlanes b{pair.B.planes(), pair.X_WB, pair.B.level(0).core.reach()};
+    pair.X_WA.translation() += (0.01 - s.lower) * s.extraction_W;
+    WarmStart same = warm;
+    detail::DeepestPoint doubted(a, b);
+    EXPECT_FALSE(doubted.solve(warm, detail::DeepestPoint::most_pivots, true));
+    detail::DeepestPoint plain(a, b);
+    EXPECT_FALSE(plain.solve(same));
+    ++left;
+    at_length += plain.pivots() > doubted.pivots() ? 1 : 0;
+    EXPECT_LE(doubted.pivots(), plain.pivots());
+    EXPECT_LE(doubted.pivots(), 24);  // those of one attempt in double
+    const Separation apart = pair.separate(warm);
+    EXPECT_GT(apart.lower, 0.0);
+  }
+  EXPECT_GT(left, draws(1000));
+  EXPECT_GT(at_length, left / 2);
+}
+
 TEST(DeepestPoint, IsFoundWhereverBoxesOverlap) {
   Rng rng(seed);
   int overlapping = 0, concentric = 0;

@@ -37,8 +37,12 @@ class DeepestPoint {
 
   /// Begins with the basis in `warm` where it has one that still holds, and leaves the last one
   /// there. False when the polytopes have no common point deeper than rounding, or none was found.
-  [[nodiscard]] bool solve(WarmStart& warm, int allowed = most_pivots) noexcept {
+  /// @param doubted they may be apart: then what double precision holds for a proof of that is
+  /// taken for one, and left to a search for the gap to confirm
+  [[nodiscard]] bool solve(WarmStart& warm, int allowed = most_pivots,
+                           bool doubted = false) noexcept {
     pivots_ = 0;
+    doubted_ = doubted;
     const End end = solved_in_double(warm, allowed);
     return end == End::best ||
            (end == End::unclear && solved_at_length(warm, allowed) == End::best);
@@ -101,14 +105,15 @@ class DeepestPoint {
     while (true) {
       const auto entry = basis.most_violated(tolerance);
       if (!(entry.violation > tolerance) || basis.holds(entry)) return judged(basis, tolerance);
-      if (pivots_ >= most || !exchanged(basis, entry)) return End::unclear;
+      if (pivots_ >= most) return End::unclear;
+      if (!replaced(basis, entry)) return doubted_ ? End::none : End::unclear;
+      if (!basis.weigh()) return End::unclear;
     }
   }
   template <class T>
-  bool exchanged(PlaneBasis<T>& basis, const typename PlaneBasis<T>::Entry& entry) noexcept {
+  bool replaced(PlaneBasis<T>& basis, const typename PlaneBasis<T>::Entry& entry) noexcept {
     ++pivots_;
-    return basis.exchange(entry, Precision<T>::least_share, Precision<T>::of_multiplier) &&
-           basis.weigh();
+    return basis.exchange(entry, Precision<T>::least_share, Precision<T>::of_multiplier);
   }
 
   /// Whether the depths at the point are as large as they can be at most, and more than rounding.
@@ -140,7 +145,8 @@ class DeepestPoint {
     const auto hint = [&](unsigned side, std::uint32_t name) {
       if (!is_basis || pivots_ >= allowed || !basis.has_plane(side, name)) return;
       const auto entry = basis.entry(side, name);
-      if (entry.violation > T(0.0) && !basis.holds(entry)) is_basis = exchanged(basis, entry);
+      if (entry.violation > T(0.0) && !basis.holds(entry))
+        is_basis = replaced(basis, entry) && basis.weigh();
     };
     if (warm.level_a == WarmStart::deepest_point) {
       for (std::size_t k = 0; k < PlaneBasis<T>::rows; ++k) {
@@ -181,6 +187,7 @@ class DeepestPoint {
   PosedPlanes B_;
   double size_;  ///< [m]
   int pivots_ = 0;
+  bool doubted_ = false;
   std::array<double, 2> depth_{};
   Vec<double> point_{};
   Vec<double> gradient_{};

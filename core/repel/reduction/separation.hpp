@@ -61,15 +61,16 @@ namespace detail {
 
 /// The answer by the deepest common point of the cores; false when there is none or it takes more
 /// than `most_pivots`.
+/// @param doubted see DeepestPoint
 [[nodiscard]] inline bool at_deepest_point(const Shape& A, const Pose& X_WA, const Shape& B,
-                                           const Pose& X_WB, int most_pivots, WarmStart& warm,
-                                           Separation& s) noexcept {
+                                           const Pose& X_WB, int most_pivots, bool doubted,
+                                           WarmStart& warm, Separation& s) noexcept {
   const Level& a = A.level(0);
   const Level& b = B.level(0);
   const PosedPlanes planes_a{A.planes(), X_WA, a.core.reach()};
   const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
-  if (!deepest.solve(warm, most_pivots)) return false;
+  if (!deepest.solve(warm, most_pivots, doubted)) return false;
   // What a shape may lack of what its planes hold is no depth.
   const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
   const double sure = 1.0 - (A.planes().margin() + B.planes().margin()) / found;
@@ -135,12 +136,12 @@ namespace detail {
 
 /// The answer to an overlap of the cores by another measure than their levels; false when that is
 /// what is asked, or when the cores do not overlap after all.
-/// @param spent support-map pairs
+/// @param spent support-map pairs, 0 when no search has found the overlap yet
 [[nodiscard]] inline bool in_overlap(const Shape& A, const Pose& X_WA, const Shape& B,
                                      const Pose& X_WB, const QueryOptions& options, int spent,
                                      WarmStart& warm, Separation& s) noexcept {
   if (is_by_planes(A, B, options)) {
-    return at_deepest_point(A, X_WA, B, X_WB, options.iterations - spent, warm, s);
+    return at_deepest_point(A, X_WA, B, X_WB, options.iterations - spent, spent == 0, warm, s);
   }
   return options.measure == Measure::exact && at_exact_depth(A, X_WA, B, X_WB, warm, s) &&
          s.upper < -(A.level(0).depth + B.level(0).depth);
