@@ -92,6 +92,7 @@ struct LaneVec {
       : x(all_x), y(all_y), z(all_z) {}
   // Left to the compiler a copy is one of bytes, which goes through memory in pieces of its choice:
   // a register written by pieces has to wait for all of them.
+  // NOLINTBEGIN(modernize-use-equals-default)
   LaneVec(const LaneVec& v) noexcept : x(v.x), y(v.y), z(v.z) {}
   LaneVec& operator=(const LaneVec& v) noexcept {
     x = v.x;
@@ -99,6 +100,7 @@ struct LaneVec {
     z = v.z;
     return *this;
   }
+  // NOLINTEND(modernize-use-equals-default)
 
   /// The same vector in all.
   [[nodiscard]] static LaneVec all(const Vec<double>& v) noexcept {
@@ -193,7 +195,7 @@ inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
 
 /// A pose in each lane: the columns of the rotation and the translation [m].
 struct LanePose {
-  LaneVec columns[4];
+  std::array<LaneVec, 4> columns;
 
   /// The same pose in all.
   [[nodiscard]] static LanePose all(const Pose& X) noexcept {
