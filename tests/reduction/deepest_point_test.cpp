@@ -107,8 +107,8 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   EXPECT_GT(overlapping, draws(1000));
 }
 
-// A pair that had just left an overlap was once proven apart in extended precision, at twenty times
-// the price of the search for the gap that followed.
+// A pair that had just left an overlap was once proven apart in extended precision, and then by the
+// search for the gap again, which costs far less.
 TEST(DeepestPoint, PairThatMayBeApartIsNotSolvedAtLength) {
   Rng rng(seed);
   int left = 0, at_length = 0;

@@ -113,7 +113,8 @@ class PairEvaluator {
   void evaluate(int slot, const Motion& motion, PartPoses& poses) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     keep_claim(slot, motion);
-    const bool is_warm = memory_.course(slot).warm.size > 0;
+    const WarmStart& warm = memory_.course(slot).warm;
+    const bool is_warm = warm.size > 0 || warm.level_a > 0;
     answer.last = ask(slot, motion, poses, memory_.course(slot).warm);
     ++forces_.totals.evaluated;
     forces_.totals.iterations += answer.last.iterations;
