@@ -1,5 +1,7 @@
 #include "cell.hpp"
 
+#include <repel/loop/gain_check.hpp>
+
 namespace repel::teleop {
 namespace {
 
@@ -55,5 +57,12 @@ Cell::Cell(const scene::Scene& scene, bool with_gravity)
         kinematics.update(start);
         return build_world(scene, kinematics.X_WT(), tool);
       }()) {}
+
+double Cell::device_damping() {
+  kinematics.update(start);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> J(6, static_cast<Eigen::Index>(model.links.size()));
+  kinematics.tool_jacobian(J);
+  return repel::device_damping(model, J);
+}
 
 }  // namespace repel::teleop

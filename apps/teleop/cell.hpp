@@ -17,6 +17,9 @@ struct Cell {
   /// @throws SetupError for a scene or robot file that cannot be taken whole
   Cell(const scene::Scene& scene, bool with_gravity);
 
+  /// The least viscous damping of the arm at its tool, where it starts [N s/m].
+  [[nodiscard]] double device_damping();
+
   ArmModel model;
   std::vector<double> start;  ///< [rad]
   Kinematics kinematics;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "network_report.hpp"
 #include "times.hpp"
 #include "unused.hpp"
 
@@ -137,6 +138,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
+  print_network(r, out);
   print_counts(r, out);
   for (unsigned bit = 0; bit < 32; ++bit) {
     if (t.status_ticks[bit] == 0) continue;
@@ -162,6 +164,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["workers"] = {{"ticks_stood_in_for", r.totals.workers.ticks},
                        {"longest_silence_ticks", r.totals.workers.longest_silence},
                        {"silent_at_end", r.totals.workers.stood_in}};
+  report.update(network_to_json(r));
   report["nearest_pair"] = r.nearest_pair;
   report["obstacles"] = obstacle_list(r);
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
@@ -177,7 +180,9 @@ void write_csv(const RunResult& r, std::ostream& file) {
   file << "tick,time_s,phase,status,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,"
           "virtual_fx_n,virtual_fy_n,virtual_fz_n,virtual_tx_nm,virtual_ty_nm,virtual_tz_nm,"
           "coupling_fx_n,coupling_fy_n,coupling_fz_n,lever_torque_nm,gain,nearest_m,pairs_near,"
-          "pairs_evaluated,pairs_stale,oldest_age_ticks\n";
+          "pairs_evaluated,pairs_stale,oldest_age_ticks";
+  for (const ModuleResult& module : r.modules) file << ",energy_" << module.name << "_j";
+  file << '\n';
   for (const TickRecord& k : r.records) {
     file << k.tick << ',' << to_text(k.time) << ',' << k.phase << ',' << k.status;
     for (const Vec3& v :
@@ -186,7 +191,9 @@ void write_csv(const RunResult& r, std::ostream& file) {
     }
     file << ',' << to_text(k.lever_torque) << ',' << to_text(k.gain) << ','
          << to_text(k.pairs.nearest) << ',' << k.pairs.near << ',' << k.pairs.evaluated << ','
-         << k.pairs.stale << ',' << k.pairs.oldest_age << '\n';
+         << k.pairs.stale << ',' << k.pairs.oldest_age;
+    for (std::size_t i = 0; i < r.modules.size(); ++i) file << ',' << to_text(double{k.energy[i]});
+    file << '\n';
   }
 }
 

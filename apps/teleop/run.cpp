@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <repel/ideal/arm.hpp>
+#include <repel/loop/gain_check.hpp>
 #include <repel/loop/tick.hpp>
 #ifdef REPEL_TELEOP_BULLET
 #include <repel/bullet/arm.hpp>
@@ -121,6 +122,25 @@ std::vector<ObstacleResult> obstacle_results(const Cell& cell, const Coprocessor
   return results;
 }
 
+std::vector<ModuleResult> module_results(const network::Network& network) {
+  std::vector<ModuleResult> results;
+  for (const network::Node& node : network.nodes()) {
+    ModuleResult result;
+    result.name = node.name;
+    result.passive = node.traits.passive && !node.traits.measures_flow;
+    result.ledger = node.ledger;
+    if (const auto* walls = std::get_if<network::Obstacle>(&node.module)) {
+      result.passivity = walls->passivity();
+    } else if (const auto* limits = std::get_if<network::Limits>(&node.module)) {
+      result.passivity = limits->passivity();
+    } else if (const auto* joints = std::get_if<network::PumaJoints>(&node.module)) {
+      result.sampling_energy = joints->sampling_energy();
+    }
+    results.push_back(result);
+  }
+  return results;
+}
+
 template <TorqueDrivenArm Arm>
 void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {
@@ -129,6 +149,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   const nanoseconds period(std::llround(1e9 * period_s));
   result.deadline = DeadlineMonitor(period);
   const auto ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.rate_hz));
+  network::Network network = scene::build_network(result.scene, cell.model, options.rate_hz);
   const std::int64_t kept = options.keep_records ? std::min<std::int64_t>(ticks, 4000000) : 0;
   Recorder recorder(static_cast<std::size_t>(kept));
   Mailbox<Progress> progress({});
@@ -137,10 +158,9 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
   result.machine = host::describe_machine(options.fast ? "not by the clock"
                                                        : host::to_text(host::request_real_time()));
   Coprocessor coprocessor(cell.world, coprocessor_options(result, period));
-  network::ScriptedOperator the_operator(result.scene.script, result.scene.spaceball,
-                                         result.scene.torque_arm);
+  network::ScriptedOperator the_operator(result.scene.script);
   Teleoperator teleoperator(cell.model, arm, cell.kinematics, cell.world, cell.tool, coprocessor,
-                            the_operator, result.scene.coupling, period);
+                            the_operator, std::move(network), period);
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   TickUsage usage;
   host::Metronome metronome(period);
@@ -162,6 +182,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     result.arm_step.record(steady_clock::now() - arm_begin);
     result.deadline.record(late, end - begin);
     result.totals.add(*record);
+    result.network_time.record(record->network_time);
     result.most_support_pairs = std::max(result.most_support_pairs, record->pairs.iterations);
     result.compute += end - begin;
     result.over_budget += over_budget(result.scene.budget, end - begin) ? 1 : 0;
@@ -171,6 +192,7 @@ void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& 
     if (!options.fast) result.skipped_ticks += metronome.catch_up();
   }
   coprocessor.stop();
+  result.modules = module_results(teleoperator.network());
   result.obstacles = obstacle_results(cell, coprocessor);
   find_nearest(cell.world, coprocessor, result);
   result.interrupted = stop;
@@ -209,6 +231,15 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
   const bool ideal = options.backend == "ideal";
   Cell cell(scene, !ideal);
   result.pairs = static_cast<int>(cell.world.pairs().size());
+  result.device_damping = cell.device_damping();
+  try {
+    result.warnings = check_gains(cell.world, 1.0 / options.rate_hz, result.device_damping,
+                                  scene.network.gain_check);
+  } catch (const SetupError& error) {
+    throw SetupError(std::string("wall too stiff: ") + error.what() +
+                         " (to run all the same: 'gain_check: warning' at the obstacle module)",
+                     scene.file);
+  }
   result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
   if (ideal) {
     IdealArm arm(ideal_joints(cell.model));

@@ -35,6 +35,15 @@ struct ObstacleResult {
   double peak_force = 0.0;                                   ///< [N] of one pair with it
 };
 
+/// What one module of the network did in a run.
+struct ModuleResult {
+  std::string name;
+  bool passive = true;  ///< within the claim of passivity: its ledger never falls below zero
+  network::Ledger ledger;
+  network::PassivityReport passivity;  ///< of a controller inside
+  double sampling_energy = 0.0;  ///< [J] that holding the torques gave the arm; of puma_joints
+};
+
 /// Everything there is to say about a run.
 struct RunResult {
   RunOptions options;
@@ -42,6 +51,10 @@ struct RunResult {
   int pairs = 0;
   int threads = 0;  ///< of the coprocessor that there was work for
   RunTotals totals;
+  double device_damping = 0.0;        ///< [N s/m] least, of the arm at its tool where it starts
+  std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit
+  std::vector<ModuleResult> modules;  ///< of the network, in its order
+  DurationHistogram network_time;     ///< of the network alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
   std::int64_t most_support_pairs = 0;  ///< in one tick
   std::chrono::nanoseconds compute{0};  ///< of all ticks together

@@ -9,6 +9,7 @@
 #include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
 
+#include "network.hpp"
 #include "yaml.hpp"
 
 namespace repel::scene {
@@ -176,55 +177,6 @@ RobotChoice robot_of(const Value& value, const std::string& file) {
   return robot;
 }
 
-network::CouplingGains coupling_of(const Map& scene) {
-  network::CouplingGains gains;
-  const Value* value = scene.find("coupling");
-  if (!value) return gains;
-  const Map map(*value);
-  map.allow({"stiffness", "damping", "force_limit", "angular_stiffness", "angular_damping",
-             "torque_limit"});
-  map.read("stiffness", {unit::stiffness, 1e-3, 1e7}, gains.stiffness);
-  map.read("damping", {unit::damping, 0.0, 1e6}, gains.damping);
-  map.read("force_limit", {unit::force, 0.0, 1e6}, gains.force_limit);
-  map.read("angular_stiffness", {unit::angular_stiffness, 1e-3, 1e6}, gains.angular_stiffness);
-  map.read("angular_damping", {unit::angular_damping, 0.0, 1e6}, gains.angular_damping);
-  map.read("torque_limit", {unit::torque, 0.0, 1e6}, gains.torque_limit);
-  return gains;
-}
-
-network::SpaceballOptions spaceball_of(const Map& scene) {
-  network::SpaceballOptions options;
-  const Value* value = scene.find("spaceball");
-  if (!value) return options;
-  const Map map(*value);
-  map.allow(
-      {"dead_band", "saturation", "angular_dead_band", "angular_saturation", "time_constant"});
-  map.read("dead_band", {unit::speed, 0.0, 10.0}, options.dead_band);
-  map.read("saturation", {unit::speed, 0.0, 10.0}, options.saturation);
-  map.read("angular_dead_band", {unit::angular_speed, 0.0, 100.0}, options.angular_dead_band);
-  map.read("angular_saturation", {unit::angular_speed, 0.0, 100.0}, options.angular_saturation);
-  map.read("time_constant", {unit::time, 0.0, 100.0}, options.time_constant);
-  return options;
-}
-
-network::TorqueArmOptions torque_arm_of(const Map& scene) {
-  network::TorqueArmOptions options;
-  const Value* value = scene.find("torque_arm");
-  if (!value) return options;
-  const Map map(*value);
-  map.allow({"inertia", "friction", "hand_stiffness", "hand_damping", "torque_limit",
-             "velocity_scale", "force_scale"});
-  map.read("inertia", {unit::inertia, 1e-6, 1e3}, options.inertia);
-  map.read("friction", {unit::angular_damping, 0.0, 1e3}, options.friction);
-  map.read("hand_stiffness", {unit::angular_stiffness, 0.0, 1e5}, options.hand_stiffness);
-  map.read("hand_damping", {unit::angular_damping, 0.0, 1e4}, options.hand_damping);
-  map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
-  map.read("velocity_scale", {unit::length_per_angle, 0.0, 100.0}, options.velocity_scale);
-  options.force_scale = options.velocity_scale;  // lossless unless the file says otherwise
-  map.read("force_scale", {unit::length, 0.0, 100.0}, options.force_scale);
-  return options;
-}
-
 Vec3 direction_of(const Value& value) {
   const Vec3 direction = value.vector({unit::none, -1e3, 1e3});
   if (direction.norm() < 1e-6) value.fail_with_value("a direction, longer than 1e-6");
@@ -233,7 +185,8 @@ Vec3 direction_of(const Value& value) {
 
 network::Phase phase_of(const Value& value) {
   const Map map(value);
-  map.allow({"name", "device", "frame", "duration", "linear", "angular", "direction", "lever"});
+  map.allow(
+      {"name", "device", "frame", "duration", "linear", "angular", "direction", "lever", "silent"});
   network::Phase phase;
   phase.name = map.at("name").text();
   phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
@@ -241,12 +194,15 @@ network::Phase phase_of(const Value& value) {
     const bool is_tool = frame->word_of({"world", "tool"}) == "tool";
     phase.frame = is_tool ? network::PhaseFrame::tool : network::PhaseFrame::world;
   }
+  if (const Value* silent = map.find("silent")) {
+    phase.silent = silent->word_of({"yes", "no"}) == "yes";
+  }
   if (map.at("device").word_of({"spaceball", "torque_arm"}) == "spaceball") {
-    map.allow({"name", "device", "frame", "duration", "linear", "angular"});
+    map.allow({"name", "device", "frame", "duration", "linear", "angular", "silent"});
     map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
     map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
   } else {
-    map.allow({"name", "device", "frame", "duration", "direction", "lever"});
+    map.allow({"name", "device", "frame", "duration", "direction", "lever", "silent"});
     phase.master = network::Master::torque_arm;
     phase.direction = direction_of(map.at("direction"));
     phase.lever_rate = map.at("lever").number({unit::angular_speed, -100.0, 100.0, true});
@@ -288,8 +244,7 @@ Budget budget_of(const Map& scene) {
 Scene parse(std::string_view yaml, const std::string& file) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "coupling", "spaceball",
-             "torque_arm", "script", "budget"});
+  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "budget"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -298,9 +253,7 @@ Scene parse(std::string_view yaml, const std::string& file) {
   scene.robot = robot_of(map.at("robot"), file);
   scene.tool = tool_of(map.at("tool"));
   scene.obstacles = obstacles_of(map.at("obstacles"), laws_of(map));
-  scene.coupling = coupling_of(map);
-  scene.spaceball = spaceball_of(map);
-  scene.torque_arm = torque_arm_of(map);
+  scene.network = detail::network_of(map.find("network"));
   scene.script = script_of(map);
   scene.budget = budget_of(map);
   return scene;

@@ -35,7 +35,10 @@ inline constexpr Unit stiffness[] = {{"N/m"}, {"N/mm", 1000}, {"kN/m", 1000}};
 inline constexpr Unit damping[] = {{"N s/m"}, {"kN s/m", 1000}};
 inline constexpr Unit angular_stiffness[] = {{"N m/rad"}};
 inline constexpr Unit angular_damping[] = {{"N m s/rad"}};
+inline constexpr Unit mass[] = {{"kg"}, {"g", 1, 1000}};
 inline constexpr Unit inertia[] = {{"kg m^2"}};
+inline constexpr Unit energy[] = {{"J"}};
+inline constexpr Unit share[] = {{""}, {"%", 1, 100}};
 inline constexpr Unit length_per_angle[] = {{"m/rad"}, {"mm/rad", 1, 1000}};
 }  // namespace unit
 

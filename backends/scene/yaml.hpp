@@ -29,6 +29,8 @@ class Value {
   /// The only document of a text.
   [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
 
+  /// Of the file, from 1.
+  [[nodiscard]] int line() const noexcept { return mark_.line + 1; }
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail_with_value(const std::string& allowed) const;
 
@@ -41,6 +43,7 @@ class Value {
   [[nodiscard]] Vec3 vector(const Rule& rule) const;
   [[nodiscard]] std::vector<double> numbers(const Rule& rule, std::size_t least,
                                             std::size_t most) const;
+  [[nodiscard]] bool is_list() const { return node_.IsSequence(); }
   /// The entries of a list.
   [[nodiscard]] std::vector<Value> list() const;
 

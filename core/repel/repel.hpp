@@ -13,9 +13,11 @@
 #include <repel/force/law.hpp>
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
+#include <repel/loop/gain_check.hpp>
 #include <repel/loop/tick.hpp>
-#include <repel/network/coupling.hpp>
+#include <repel/network/clean_stiffness.hpp>
 #include <repel/network/operator.hpp>
+#include <repel/network/plan.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/schedule/coprocessor.hpp>

@@ -9,9 +9,11 @@
 namespace repel {
 namespace {
 
-constexpr Status every_bit[] = {status::bad_pose,     status::bad_command,   status::bad_joints,
-                                status::clock_fault,  status::stale_pairs,   status::late_result,
-                                status::torque_limit, status::crowded_pairs, status::expired_pairs};
+constexpr Status every_bit[] = {status::bad_pose,      status::bad_command,   status::bad_joints,
+                                status::clock_fault,   status::stale_pairs,   status::late_result,
+                                status::torque_limit,  status::crowded_pairs, status::expired_pairs,
+                                status::silent_device, status::saturated,     status::joint_limit,
+                                status::network_fault};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");
@@ -34,6 +36,7 @@ TEST(Status, TheNamesAreThoseOfTheBits) {
   EXPECT_EQ(to_text(status::bad_pose), "bad_pose");
   EXPECT_EQ(to_text(status::clock_fault), "clock_fault");
   EXPECT_EQ(to_text(status::torque_limit), "torque_limit");
+  EXPECT_EQ(to_text(status::network_fault), "network_fault");
 }
 
 TEST(Status, SeveralBitsAreListedCommaByComma) {
@@ -43,7 +46,8 @@ TEST(Status, SeveralBitsAreListedCommaByComma) {
 
 TEST(Status, FailsafeIsEveryFaultThatLeavesTheWorldUnknownAndNothingElse) {
   EXPECT_EQ(status::failsafe, status::bad_pose | status::bad_command | status::bad_joints |
-                                  status::clock_fault | status::expired_pairs);
+                                  status::clock_fault | status::expired_pairs |
+                                  status::silent_device | status::network_fault);
 }
 
 }  // namespace

@@ -59,9 +59,11 @@ inline std::string robot_text(const std::string& urdf = REPEL_SOURCE "/robots/pu
          "  - {name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}\n";
 }
 
-/// A table just below the tool, and a push against it.
+/// A table just below the tool, no stiffer than the arm can render at 400 Hz, and a push against
+/// it.
 inline std::string table_text() {
-  return "obstacles:\n"
+  return "laws:\n  default: {range: 20 mm, surface_force: 40 N, damping: 1 N s/m}\n"
+         "obstacles:\n"
          "  - {name: table, shape: box, size: 0.6 0.8 0.05 m, position: 0.6 -0.15 0.425 m}\n";
 }
 

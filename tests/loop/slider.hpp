@@ -69,6 +69,26 @@ inline ArmModel slider_model(double effort_limit) {
   return model;
 }
 
+/// The paper's Figure 9 on three rails; the ball acts at once.
+inline network::Network sliders_network(std::chrono::nanoseconds period,
+                                        const network::Kbb2Options& coupling = {},
+                                        double ball_time = 0.0) {
+  using namespace network;
+  const std::vector<JointRange> rails(3, {-10.0, 10.0});
+  return Plan()
+      .add("torque_arm", TorqueArm())
+      .add("multiplex", Multiplex())
+      .add("spaceball", Spaceball({.time_constant = ball_time}))
+      .add("relief", Relief())
+      .add("kbb2", Kbb2(coupling))
+      .add("obstacle", Obstacle())
+      .add("puma_kin", PumaKin())
+      .add("limits", network::Limits({}, rails))
+      .add("visual", Visual())
+      .add("puma_joints", PumaJoints(3))
+      .build(std::chrono::duration<double>(period).count());
+}
+
 /// A ball of 50 mm that the script pushes to +x, against a wall whose face is at x = 0.2 m.
 struct SliderCell {
   static constexpr std::chrono::nanoseconds period{2500000};
@@ -78,8 +98,9 @@ struct SliderCell {
       : model(slider_model(effort_limit)),
         tool(world.add_body("tool")),
         coprocessor(built(walls), options),
-        the_operator(script, network::SpaceballOptions{.time_constant = 0.0}, {}),
-        teleoperator(model, arm, kinematics, world, tool, coprocessor, the_operator, {}, period) {}
+        the_operator(script),
+        teleoperator(model, arm, kinematics, world, tool, coprocessor, the_operator,
+                     sliders_network(period), period) {}
 
   /// One tick by a clock that advances by `elapsed`, and one period of the arm.
   const TickRecord& tick(std::chrono::nanoseconds elapsed = period) {

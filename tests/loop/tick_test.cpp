@@ -19,6 +19,11 @@ bool is_finite_record(const TickRecord& record) {
          std::isfinite(record.lever_torque);
 }
 
+/// What is wrong; a coupling at its limit is not, where a wall holds the tool.
+Status faults(const TickRecord& record) {
+  return record.status & ~status::saturated;
+}
+
 /// [N] NaN when one of the forces is.
 double largest_force(const SliderCell& cell) {
   const auto& f = cell.arm.force;
@@ -39,7 +44,7 @@ TEST(Tick, WallHoldsTheToolAndTheForcesBalance) {
   TickRecord record;
   for (int tick = 0; tick < 8000; ++tick) {
     record = cell.tick();
-    ASSERT_EQ(record.status, 0U) << to_text(record.status);
+    ASSERT_EQ(faults(record), 0U) << to_text(record.status);
     ASSERT_EQ(record.gain, 1.0);
   }
   // The coupling pushes with its 60 N and 120 N s/m at 0.098 m/s: less than the wall at its
@@ -68,7 +73,7 @@ void expect_ramp(const char* name, Status bit, const std::function<void(SliderCe
                  std::chrono::nanoseconds elapsed = SliderCell::period) {
   SCOPED_TRACE(name);
   SliderCell cell(test::push(60.0, 0.1));
-  for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(cell.tick().status, 0U);
+  for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(faults(cell.tick()), 0U);
   ASSERT_GT(cell.teleoperator.tick(cell.now += SliderCell::period).virtual_force.force.norm(),
             30.0);
   const double before = 200.0;  // more than walls and coupling can give here
@@ -94,7 +99,7 @@ void expect_ramp(const char* name, Status bit, const std::function<void(SliderCe
   double last = 0.0;
   for (int tick = 0; tick < 300; ++tick) {
     const TickRecord& record = cell.tick();
-    ASSERT_EQ(record.status, 0U) << to_text(record.status);
+    ASSERT_EQ(faults(record), 0U) << to_text(record.status);
     ASSERT_GE(record.gain, last);
     last = record.gain;
   }
@@ -131,11 +136,11 @@ TEST(Tick, CommandThatIsNotANumberRampsTheForceDownAndItComesBack) {
   script.push_back(fault);
   script.push_back(test::push(10.0, 0.1).front());
   SliderCell cell(script);
-  for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(cell.tick().status, 0U);
+  for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(faults(cell.tick()), 0U);
   double gain = 1.0;
   for (int tick = 0; tick < 40; ++tick) {
     const TickRecord& record = cell.tick();
-    ASSERT_EQ(record.status, status::bad_command) << "tick " << tick;
+    ASSERT_EQ(faults(record), status::bad_command) << "tick " << tick;
     ASSERT_TRUE(is_finite_record(record));
     ASSERT_LE(record.gain, gain);
     gain = record.gain;
@@ -144,7 +149,7 @@ TEST(Tick, CommandThatIsNotANumberRampsTheForceDownAndItComesBack) {
   EXPECT_EQ(largest_force(cell), 0.0);
   for (int tick = 0; tick < 2000; ++tick) {
     const TickRecord& record = cell.tick();
-    ASSERT_EQ(record.status, 0U);
+    ASSERT_EQ(faults(record), 0U);
     gain = record.gain;
   }
   EXPECT_EQ(gain, 1.0);

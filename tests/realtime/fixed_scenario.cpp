@@ -100,10 +100,11 @@ int run() {
   CoprocessorOptions options;
   options.budget.wall = std::chrono::seconds(1);  // so that the clock is asked as by the clock
   Coprocessor coprocessor(world, options);
-  network::ScriptedOperator the_operator(way(), network::SpaceballOptions{}, {});
-  const network::CouplingGains gains{.stiffness = 3000.0, .damping = 300.0, .force_limit = 120.0};
-  Teleoperator teleoperator(model, arm, kinematics, world, tool, coprocessor, the_operator, gains,
-                            period);
+  network::ScriptedOperator the_operator(way());
+  Teleoperator teleoperator(
+      model, arm, kinematics, world, tool, coprocessor, the_operator,
+      sliders_network(period, {.stiffness = 3000.0, .damping = 300.0, .force_limit = 120.0}),
+      period);
   double peak = 0.0;
   std::int64_t evaluated = 0;
   Status status = 0;
@@ -121,7 +122,8 @@ int run() {
   CALLGRIND_STOP_INSTRUMENTATION;
   std::printf("%d ticks, %.2f pairs evaluated in each, peak force %.1f N\n", ticks,
               static_cast<double>(evaluated) / ticks, peak);
-  const bool as_ever = status == 0 && peak > 100.0 && peak < 300.0 && evaluated > 2 * ticks;
+  const Status faults = status & ~repel::status::saturated;
+  const bool as_ever = faults == 0 && peak > 100.0 && peak < 300.0 && evaluated > 2 * ticks;
   return as_ever ? 0 : 1;
 }
 

@@ -40,9 +40,12 @@ TEST(SceneError, AnUnknownKeyIsRefusedAndTheNearestNamed) {
   expect_refused(changed("radius", "raduis"), 5, {"'raduis'", "mean 'radius'"});
   expect_refused(changed("start", "strat"), 3, {"'strat'", "mean 'start'"});
   expect_refused(base_scene + "laws:\n  wall:\n    celing: 3 N\n", 10, {"mean 'ceiling'"});
-  expect_refused(base_scene + "spaceball: {deadband: 1 mm/s}\n", 8, {"mean 'dead_band'"});
-  expect_refused(base_scene + "coupling: {stifness: 1 N/m}\n", 8, {"mean 'stiffness'"});
-  expect_refused(base_scene + "torque_arm: {inertai: 1 kg m^2}\n", 8, {"mean 'inertia'"});
+  const auto module = [](const std::string& text) {
+    return base_scene + "network:\n  - {module: " + text + "}\n";
+  };
+  expect_refused(module("spaceball, deadband: 1 mm/s"), 9, {"mean 'dead_band'"});
+  expect_refused(module("kbb2, stifness: 1 N/m"), 9, {"mean 'stiffness'"});
+  expect_refused(module("torque_arm, inertai: 1 kg m^2"), 9, {"mean 'inertia'"});
   expect_refused(base_scene + "budget: {wal: 1 ms}\n", 8, {"mean 'wall'"});
 }
 
@@ -112,7 +115,8 @@ TEST(SceneError, AnythingNotFiniteIsRefusedWhereItIsNoTest) {
     expect_refused(changed("0 45 180", "0 " + bad + " 180"), 3, {"allowed"});
     expect_refused(base_scene + "rate: " + bad + " Hz\n", 8, {"allowed"});
     expect_refused(base_scene + "laws: {a: {ceiling: " + bad + " N}}\n", 8, {"allowed"});
-    expect_refused(base_scene + "coupling: {damping: " + bad + " N s/m}\n", 8, {"allowed"});
+    expect_refused(base_scene + "network: [{module: kbb2, damping: " + bad + " N s/m}]\n", 8,
+                   {"allowed"});
   }
 }
 
@@ -138,7 +142,8 @@ TEST(SceneError, AnInfiniteRateOfTheOperatorIsRefused) {
 
 TEST(SceneError, ValuesOutOfTheirRangeAreRefused) {
   expect_refused(base_scene + "rate: 0 Hz\n", 8, {"1 to 1e+05 Hz"});
-  expect_refused(base_scene + "coupling: {stiffness: 0 N/m}\n", 8, {"0.001 to 1e+07 N/m"});
+  expect_refused(base_scene + "network: [{module: kbb2, stiffness: 0 N/m}]\n", 8,
+                 {"0.001 to 1e+07 N/m"});
   expect_refused(base_scene + "laws: {a: {range: 0 m}}\n", 8, {"1e-06 to 1000 m"});
   expect_refused(base_scene + "budget: {threads: -1}\n", 8, {"0 to 16"});
   expect_refused(base_scene + "budget: {work: -1}\n", 8, {"0 to 1000000000"});

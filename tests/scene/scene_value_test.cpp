@@ -12,6 +12,7 @@ namespace {
 
 using testing::base_scene;
 using testing::changed;
+using testing::options;
 using testing::parsed;
 
 constexpr double pi = std::numbers::pi;
@@ -33,7 +34,8 @@ TEST(SceneValue, ForcesMayBeInNewtonOrKilonewton) {
 
 TEST(SceneValue, StiffnessesAndDampingsMayBeInMultiples) {
   const auto gains = [](const std::string& text) {
-    return parsed(base_scene + "coupling: {" + text + "}\n").coupling;
+    return options<network::Kbb2Options>(
+        parsed(base_scene + "network: [{module: kbb2, " + text + "}]\n"));
   };
   EXPECT_EQ(gains("stiffness: 3 N/mm").stiffness, 3000.0);
   EXPECT_EQ(gains("stiffness: 3 kN/m").stiffness, 3000.0);
@@ -48,14 +50,16 @@ TEST(SceneValue, TimesRatesAndBudgetsHaveTheirUnits) {
   const Scene scene = parsed(base_scene +
                              "rate: 0.5 kHz\n"
                              "budget: {wall: 0.5 ms, work: 20000, threads: 2, max_age: 40}\n"
-                             "spaceball: {time_constant: 40 ms, saturation: 30 cm/s}\n");
+                             "network: [{module: spaceball, time_constant: 40 ms, saturation: 30 "
+                             "cm/s}]\n");
+  const auto ball = options<network::SpaceballOptions>(scene);
   EXPECT_EQ(scene.rate_hz, 500.0);
   EXPECT_DOUBLE_EQ(scene.budget.wall_us, 500.0);
   EXPECT_EQ(scene.budget.work_units, 20000);
   EXPECT_EQ(scene.budget.threads, 2);
   EXPECT_EQ(scene.budget.max_age, 40);
-  EXPECT_EQ(scene.spaceball.time_constant, 0.04);
-  EXPECT_EQ(scene.spaceball.saturation, 0.3);
+  EXPECT_EQ(ball.time_constant, 0.04);
+  EXPECT_EQ(ball.saturation, 0.3);
 }
 
 TEST(SceneValue, AnglesMayBeInDegreesOrRadians) {
@@ -153,14 +157,6 @@ TEST(SceneValue, TheScriptIsReadPhaseByPhase) {
   EXPECT_EQ(scene.script[1].frame, network::PhaseFrame::tool);
   EXPECT_NEAR((scene.script[1].direction - Vec3(0.0, 0.6, 0.8)).norm(), 0.0, 1e-15);
   EXPECT_DOUBLE_EQ(scene.script[1].lever_rate, pi / 2);
-}
-
-TEST(SceneValue, TheLeverIsLosslessUnlessTheFileSaysOtherwise) {
-  const auto arm = [](const std::string& text) {
-    return parsed(base_scene + "torque_arm: {" + text + "}\n").torque_arm;
-  };
-  EXPECT_EQ(arm("velocity_scale: 0.3 m/rad").force_scale, 0.3);
-  EXPECT_EQ(arm("velocity_scale: 0.3 m/rad, force_scale: 50 mm").force_scale, 0.05);
 }
 
 TEST(SceneValue, ADeviceMayFailByRatesThatAreNotANumber) {

@@ -29,4 +29,10 @@ inline Scene parsed(const std::string& text) {
   return parse(text, "scenes/test.yaml");
 }
 
+/// What the first module of the network is given.
+template <class Options>
+Options options(const Scene& scene) {
+  return std::get<Options>(scene.network.modules.front().options);
+}
+
 }  // namespace repel::scene::testing

@@ -33,17 +33,27 @@ inline constexpr Status crowded_pairs = 1U << 7;  ///< more pairs could come wit
 inline constexpr Status expired_pairs = 1U << 8;  ///< some answer was older than Budget::max_age:
                                                   ///< nothing is known of what is near, the force
                                                   ///< ramps to zero; raise the budget or threads
-inline constexpr Status failsafe =
-    bad_pose | bad_command | bad_joints | clock_fault | expired_pairs;
+inline constexpr Status silent_device = 1U << 9;  ///< a master has not answered for too long: its
+                                                  ///< last sample stands, the force ramps to zero
+inline constexpr Status saturated = 1U << 10;     ///< a master, its motor or a coupling was at its
+                                               ///< limit: the operator asks for more than there is
+inline constexpr Status joint_limit = 1U << 11;  ///< a joint was pushed back from the end of its
+                                                 ///< range: lead the arm another way
+inline constexpr Status network_fault = 1U
+                                        << 12;  ///< the network could not be solved: the torques of
+                                                ///< the tick before stand, the force ramps to zero
+inline constexpr Status failsafe = bad_pose | bad_command | bad_joints | clock_fault |
+                                   expired_pairs | silent_device | network_fault;
 }  // namespace status
 
 /// The names of the bits that are set, comma by comma; "ok" when none is. Not for the tick.
 [[nodiscard]] inline std::string to_text(Status bits) {
-  static constexpr const char* names[] = {"bad_pose",     "bad_command",   "bad_joints",
-                                          "clock_fault",  "stale_pairs",   "late_result",
-                                          "torque_limit", "crowded_pairs", "expired_pairs"};
+  static constexpr const char* names[] = {
+      "bad_pose",    "bad_command",  "bad_joints",    "clock_fault",   "stale_pairs",
+      "late_result", "torque_limit", "crowded_pairs", "expired_pairs", "silent_device",
+      "saturated",   "joint_limit",  "network_fault"};
   std::string text;
-  for (unsigned i = 0; i < 9; ++i) {
+  for (unsigned i = 0; i < 13; ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);
   }
   return text.empty() ? "ok" : text;

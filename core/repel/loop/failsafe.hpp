@@ -37,6 +37,8 @@ class Failsafe {
     return gain_;
   }
 
+  /// That of the last tick.
+  [[nodiscard]] double gain() const noexcept { return gain_; }
   /// True from a fault until the force has begun to come back.
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
 #include <repel/base/status.hpp>
+#include <repel/network/plan.hpp>
 #include <repel/schedule/pair_forces.hpp>
 
 namespace repel {
@@ -25,6 +27,9 @@ struct TickRecord {
   Wrench coupling;            ///< [N, N m] from the operator's side on the tool
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
   double gain = 1.0;          ///< of the fail-safe
+  /// [J] ledger of each module of the network, in its order.
+  std::array<float, network::Plan::most_modules> energy{};
+  std::chrono::nanoseconds network_time{0};  ///< that the network took; not repeatable
   PairTotals pairs;
   WorkerReport workers;
 };

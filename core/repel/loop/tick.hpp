@@ -9,23 +9,28 @@
 
 #include <repel/loop/failsafe.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/network/coupling.hpp>
 #include <repel/network/friction.hpp>
-#include <repel/network/joint_limits.hpp>
 #include <repel/network/operator.hpp>
+#include <repel/network/plan.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
 
-/// A teleoperator: an operator, a coupling, a world model and an arm. It keeps references to what
-/// it is built from; all memory is taken at construction.
+/// A teleoperator: an operator, a network, a world model and an arm. It keeps references to what
+/// it is built from, but for the network, which becomes its own; all memory is taken at
+/// construction.
 template <TorqueDrivenArm Arm, ArmKinematics Kinematics>
 class Teleoperator {
  public:
+  /// A device that has not answered for this long is silent [s].
+  static constexpr double patience = 0.02;
+
+  /// @param network built for `period`
+  /// @throws SetupError when the network does not end in as many joints as the arm has
   Teleoperator(const ArmModel& model, Arm& arm, Kinematics& kinematics, World& world, BodyId tool,
                Coprocessor& coprocessor, network::ScriptedOperator& the_operator,
-               const network::CouplingGains& gains, std::chrono::nanoseconds period)
+               network::Network network, std::chrono::nanoseconds period)
       : model_(model),
         arm_(arm),
         kinematics_(kinematics),
@@ -33,7 +38,7 @@ class Teleoperator {
         tool_(tool),
         coprocessor_(coprocessor),
         operator_(the_operator),
-        coupling_(gains),
+        network_(std::move(network)),
         period_(std::chrono::duration<double>(period).count()),
         q_(model.links.size()),
         v_(model.links.size()),
@@ -41,27 +46,37 @@ class Teleoperator {
         new_v_(model.links.size()),
         torques_(model.links.size()),
         jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(model.links.size()))),
-        new_jacobian_(jacobian_) {
+        new_jacobian_(jacobian_),
+        flow_(static_cast<int>(model.links.size())) {
+    if (robot() == nullptr || robot()->size() != static_cast<int>(model.links.size())) {
+      throw SetupError("the network must end in a robot (puma_joints) of " +
+                       std::to_string(model.links.size()) + " joints");
+    }
+    const network::Node* at = network_.node_of<network::Obstacle>();
+    if (at == nullptr) at = network_.node_of<network::PumaKin>();
+    before_walls_ = at == nullptr ? -1 : at->left;
+    signals_.period = period_;
     begin_tick({});
     read_joints();
     place_tool();
-    coupling_.reset(X_WT_);
+    flow_.reset(joints_vec(q_));
   }
 
   /// One tick. @param now the time it is due [ns]; it must grow from tick to tick
   const TickRecord& tick(std::chrono::nanoseconds now) noexcept {
-    begin_tick(now);                                    // clock -> status
-    read_joints();                                      // arm -> q, v
-    place_tool();                                       // q, v -> X_WT, V_WT in the world
-    const Wrench walls = push_away();                   // world -> virtual force on the tool
-    const Twist wanted = ask_operator(coupled_.force);  // what is felt -> commanded twist
-    coupled_ = couple(wanted);                          // commanded twist -> coupling force
-    const double gain =
-        failsafe_.step(record_.status, period_);  // status -> share of force allowed
-    drive(gain * (walls + coupled_));             // force on the tool -> joint torques
-    finish_tick(walls, gain);                     // everything -> record
+    begin_tick(now);  // clock -> status
+    read_joints();    // arm -> q, v
+    place_tool();     // q, v -> X_WT, V_WT in the world
+    push_away();      // world -> virtual force on the tool
+    ask_operator();   // script -> what the hands do
+    run_network();    // hands, walls, joint rates -> torques
+    const double gain = failsafe_.step(record_.status, period_);  // status -> share allowed
+    drive(gain);                                                  // torques -> arm
+    finish_tick(gain);                                            // everything -> record
     return record_;
   }
+
+  [[nodiscard]] const network::Network& network() const noexcept { return network_; }
 
   /// Brings the code and the data of the next tick into the caches and changes nothing. For the
   /// moment before it is due: a tick that begins cold takes several times as long.
@@ -115,7 +130,7 @@ class Teleoperator {
     }
   }
 
-  [[nodiscard]] Wrench push_away() noexcept {
+  void push_away() noexcept {
     const PairForces& forces = coprocessor_.exchange();
     record_.pairs = forces.totals;
     record_.workers = coprocessor_.workers();
@@ -123,32 +138,59 @@ class Teleoperator {
     if (forces.totals.stale > 0) record_.status |= status::stale_pairs;
     if (forces.totals.crowded > 0) record_.status |= status::crowded_pairs;
     if (forces.totals.expired > 0) record_.status |= status::expired_pairs;
-    return forces.on_body[tool_.index];
+    signals_.walls = forces.on_body[tool_.index];
   }
 
-  // The master feels the coupling's force of the last period, turned round.
-  [[nodiscard]] Twist ask_operator(const Vec3& on_tool_W) noexcept {
-    const network::Command command = operator_.step(X_WT_.linear(), -on_tool_W, period_);
+  void ask_operator() noexcept {
+    const network::Command& command = operator_.step(X_WT_.linear(), period_);
     if (!command.sound) record_.status |= status::bad_command;
-    return command.twist;
+    if (command.silent_for > patience) record_.status |= status::silent_device;
+    signals_.hand = command.hand;
   }
 
-  [[nodiscard]] Wrench couple(const Twist& wanted) noexcept {
-    // After a fault the command begins where the tool is, not where it was left.
-    if (failsafe_.tripped()) coupling_.reset(X_WT_);
-    return coupling_.step(wanted, X_WT_, V_WT_, period_);
+  void run_network() noexcept {
+    const auto begin = std::chrono::steady_clock::now();
+    // With all force gone, springs and accounts begin anew from where the tool is.
+    signals_.at_rest = failsafe_.tripped() && failsafe_.gain() == 0.0;
+    signals_.joints = joints_vec(q_);
+    if (signals_.at_rest) {
+      flow_.reset(signals_.joints);
+    } else {
+      flow_.step(signals_.joints, joints_vec(v_), period_);
+    }
+    signals_.rates = flow_.flow();
+    signals_.mean_rates = flow_.mean();
+    signals_.jacobian = jacobian_;
+    signals_.X_WT = X_WT_;
+    if (!network_.run(signals_)) record_.status |= status::network_fault;
+    note_limits();
+    record_.network_time = std::chrono::steady_clock::now() - begin;
   }
 
-  // tau = g(q) + J'F + dry friction + joint limits, cut to what each joint can give.
-  void drive(const Wrench& on_tool) noexcept {
+  void note_limits() noexcept {
+    const auto* arm = network_.find<network::TorqueArm>();
+    const auto* ball = network_.find<network::Spaceball>();
+    const auto* coupling = network_.find<network::Kbb2>();
+    const auto* limits = network_.find<network::Limits>();
+    if ((arm != nullptr && arm->saturated()) || (ball != nullptr && ball->saturated()) ||
+        (coupling != nullptr && coupling->saturated())) {
+      record_.status |= status::saturated;
+    }
+    if (limits != nullptr && limits->active()) record_.status |= status::joint_limit;
+    record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
+  }
+
+  // tau = g(q) + those of the network + dry friction, cut to what each joint can give. The joint
+  // limits hold during a fault as well.
+  void drive(double gain) noexcept {
     kinematics_.gravity_torques(torques_);
+    const auto* limits = network_.find<network::Limits>();
+    network::Vec<network::any_size> wanted = gain * robot()->torques();
+    if (limits != nullptr) wanted += (1.0 - gain) * limits->torques();
     for (std::size_t i = 0; i < torques_.size(); ++i) {
       const ArmLink& link = model_.links[i];
-      const auto column = jacobian_.col(static_cast<Eigen::Index>(i));
-      const double asked = column.template head<3>().dot(on_tool.force) +
-                           column.template tail<3>().dot(on_tool.torque);
-      torques_[i] += asked + friction_(link.coulomb_friction, v_[i], asked) +
-                     limits_(q_[i], v_[i], link.lower, link.upper);
+      const double asked = wanted(static_cast<Eigen::Index>(i));
+      torques_[i] += asked + friction_(link.coulomb_friction, v_[i], asked);
       const double most = link.effort_limit > 0.0 ? link.effort_limit : 1e9;
       if (!(std::abs(torques_[i]) <= most)) {
         record_.status |= status::torque_limit;
@@ -158,16 +200,30 @@ class Teleoperator {
     arm_.set_torques(torques_);
   }
 
-  void finish_tick(const Wrench& walls, double gain) noexcept {
+  void finish_tick(double gain) noexcept {
     record_.tick = next_tick_++;
     record_.time = period_ * static_cast<double>(record_.tick);
     record_.phase = static_cast<std::int32_t>(operator_.phase());
     record_.p_WT = X_WT_.translation();
     record_.v_WT = V_WT_.linear;
-    record_.virtual_force = walls;
-    record_.coupling = coupled_;
-    record_.lever_torque = operator_.lever().felt();
+    record_.virtual_force = signals_.walls;
+    record_.coupling = before_walls_ < 0
+                           ? Wrench{}
+                           : network::to_wrench(network_.connection(before_walls_).effort());
     record_.gain = gain;
+    std::size_t module = 0;
+    for (const network::Node& node : network_.nodes()) {
+      record_.energy[module++] = static_cast<float>(node.ledger.energy);
+    }
+  }
+
+  [[nodiscard]] const network::PumaJoints* robot() const noexcept {
+    return network_.find<network::PumaJoints>();
+  }
+  [[nodiscard]] static network::Vec<network::any_size> joints_vec(
+      const std::vector<double>& values) noexcept {
+    return Eigen::Map<const network::Vec<network::any_size>>(
+        values.data(), static_cast<Eigen::Index>(values.size()));
   }
 
   const ArmModel& model_;
@@ -177,8 +233,7 @@ class Teleoperator {
   BodyId tool_;
   Coprocessor& coprocessor_;
   network::ScriptedOperator& operator_;
-  network::Coupling coupling_;
-  network::JointLimits limits_;
+  network::Network network_;
   network::FrictionCompensation friction_;
   Failsafe failsafe_;
   double period_;                              ///< [s]
@@ -187,7 +242,9 @@ class Teleoperator {
   Jacobian jacobian_, new_jacobian_;
   Pose X_WT_ = Pose::Identity();
   Twist V_WT_;
-  Wrench coupled_;
+  network::MeasuredFlow flow_;
+  network::Signals signals_;
+  int before_walls_ = -1;  // connection over which the operator's side acts on the tool
   TickRecord record_;
   std::int64_t next_tick_ = 0;
   std::chrono::nanoseconds last_now_ = std::chrono::nanoseconds::min();

@@ -2,25 +2,85 @@
 /// MULTIPLEX: couples a device of one degree of freedom to the six of the tool.
 #pragma once
 
-#include <repel/base/spatial.hpp>
+#include <cmath>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/network/one_ports.hpp>
+#include <repel/network/two_port.hpp>
 
 namespace repel::network {
 
-/// A transformer along one unit direction d: v6 = s_v d v1 and f1 = s_f d.f6. With s_f = s_v it
-/// passes all power on; otherwise the power factor s_f / s_v is what it declares.
-struct Multiplex {
-  Vec3 direction_W = Vec3::UnitX();  ///< unit, world axes
-  double velocity_scale = 1.0;       ///< s_v [m/rad]
-  double force_scale = 1.0;          ///< s_f [m]
+struct MultiplexOptions {
+  double velocity_scale = 0.1;  ///< s_v [m/rad] tool motion per lever motion
+  double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
+  double turning_time = 0.05;   ///< [s] in which the direction follows a new one
+};
 
-  /// Twist of the tool [m/s] for a lever rate [rad/s].
-  [[nodiscard]] Twist flow(double rate) const noexcept {
-    return {velocity_scale * rate * direction_W, Vec3::Zero()};
+/// A transformer along one direction d: v6 = s_v d v1 and f1 = s_f d.f6. The other five directions
+/// of the tool side are at rest, whatever the effort.
+///
+/// A new direction is approached as d += (new - d)(1 - exp(-T / turning_time)). Any d makes a
+/// lossless transformer, shorter ones too, so the change injects nothing and no effort jumps.
+///
+/// With s_f unlike s_v it passes on s_f / s_v of the power; that factor is declared and the ledger
+/// counts the power on the side of the lever as if it were s_v / s_f times as much.
+class Multiplex {
+ public:
+  static constexpr Traits traits{.left = Space::lever, .right = Space::tool};
+
+  /// @throws SetupError for a number out of range
+  explicit Multiplex(const MultiplexOptions& options = {}) : options_(options) {
+    checked("velocity scale", options.velocity_scale, 1e-6, 100.0, "m/rad");
+    checked("force scale", options.force_scale, 1e-6, 100.0, "m");
+    checked("turning time", options.turning_time, 0.0, 100.0, "s");
   }
-  /// Torque on the lever [N m] for a force on the tool [N].
-  [[nodiscard]] double effort(const Vec3& force_W) const noexcept {
-    return force_scale * direction_W.dot(force_W);
+
+  void prepare(double period) {
+    const double time = options_.turning_time;
+    share_ = time > 0.0 ? -std::expm1(-detail::checked_period(period) / time) : 1.0;
   }
+  void face(Side root) noexcept { root_ = root; }
+
+  void read(const Signals& signals) noexcept {
+    direction_ = begun_ ? Vec3(direction_ + share_ * (signals.hand.direction_W - direction_))
+                        : signals.hand.direction_W;
+    begun_ = true;
+    flow_map_.head<3>() = options_.velocity_scale * direction_;
+    effort_map_.head<3>() = options_.force_scale * direction_;
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    return root_ == Side::right ? transformer::shown_at_a(behind, flow_map_, effort_map_, shown)
+                                : transformer::shown_at_b(behind, flow_map_, effort_map_, shown);
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
+                PortState<any_size>& at_leaf) const noexcept {
+    if (root_ == Side::right) {
+      transformer::to_b(at_root, behind, effort_map_, at_leaf);
+    } else {
+      transformer::to_a(at_root, behind, flow_map_, at_leaf);
+    }
+  }
+
+  /// s_f / s_v, the part of the power that goes from the tool to the lever.
+  [[nodiscard]] double power_factor() const noexcept {
+    return options_.force_scale / options_.velocity_scale;
+  }
+  /// How much more the power of its left port counts in the ledger.
+  [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
+  /// d, world axes; shorter than one while it turns.
+  [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
+
+ private:
+  using Column = Eigen::Matrix<double, 6, 1>;
+  MultiplexOptions options_;
+  Side root_ = Side::right;
+  double share_ = 1.0;
+  bool begun_ = false;
+  Vec3 direction_ = Vec3::UnitX();
+  Column flow_map_ = Column::Zero();    // [m/rad]
+  Column effort_map_ = Column::Zero();  // [m]
 };
 
 }  // namespace repel::network

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
-#include <repel/base/spatial.hpp>
+#include <repel/network/one_ports.hpp>
+#include <repel/network/two_port.hpp>
 
 namespace repel::network {
 
@@ -17,35 +17,72 @@ struct SpaceballOptions {
   double time_constant = 0.05;      ///< [s] of the low pass; 0 for none
 };
 
-/// Dead band, saturation and a first-order low pass, each on the length of the vector, so that the
-/// direction is the operator's own. It takes no effort back: it is a source, outside any claim of
-/// passivity.
+/// Adds the rates of the ball to what comes from the left: v_right = v_left + v_ball under the same
+/// effort. Dead band, saturation and a first-order low pass act on the length of the vector, so
+/// that the direction is the operator's own.
+///
+/// It takes no effort back: it is a source, outside any claim of passivity. The ledger counts what
+/// it supplies, F.v_ball, apart.
 class Spaceball {
  public:
-  explicit Spaceball(const SpaceballOptions& options) noexcept : options_(options) {}
+  static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
 
-  void reset() noexcept { filtered_ = {}; }
-
-  /// The commanded twist for raw `rates`, one `period` [s] later.
-  [[nodiscard]] Twist step(const Twist& rates, double period) noexcept {
-    const double share = period / (period + options_.time_constant);
-    const Vec3 linear = shaped(rates.linear, options_.dead_band, options_.saturation);
-    const Vec3 angular =
-        shaped(rates.angular, options_.angular_dead_band, options_.angular_saturation);
-    filtered_.linear += share * (linear - filtered_.linear);
-    filtered_.angular += share * (angular - filtered_.angular);
-    return filtered_;
+  /// @throws SetupError for a number out of range
+  explicit Spaceball(const SpaceballOptions& options = {}) : options_(options) {
+    checked("dead band", options.dead_band, 0.0, 10.0, "m/s");
+    checked("saturation", options.saturation, 0.0, 10.0, "m/s");
+    checked("angular dead band", options.angular_dead_band, 0.0, 100.0, "rad/s");
+    checked("angular saturation", options.angular_saturation, 0.0, 100.0, "rad/s");
+    checked("time constant", options.time_constant, 0.0, 100.0, "s");
   }
 
+  void prepare(double period) { period_ = detail::checked_period(period); }
+  void face(Side root) noexcept { sign_ = root == Side::right ? 1.0 : -1.0; }
+
+  void read(const Signals& signals) noexcept {
+    const Twist& raw = signals.hand.ball;
+    const double share = period_ / (period_ + options_.time_constant);
+    saturated_ = false;
+    const Vec3 linear = shaped(raw.linear, options_.dead_band, options_.saturation);
+    const Vec3 angular =
+        shaped(raw.angular, options_.angular_dead_band, options_.angular_saturation);
+    twist_.linear += share * (linear - twist_.linear);
+    twist_.angular += share * (angular - twist_.angular);
+    if (signals.at_rest) twist_ = {};
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    shown = behind;
+    shown.add_flow(sign_ * to_vec(twist_));
+    return true;
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) noexcept {
+    const Vec<any_size> flow = sign_ * to_vec(twist_);
+    at_leaf.effort = at_root.effort;
+    at_leaf.flow = at_root.flow - flow;
+    supplied_ = -at_root.effort.dot(flow);
+  }
+
+  [[nodiscard]] const Twist& twist() const noexcept { return twist_; }  ///< [m/s, rad/s]
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the operator
+  [[nodiscard]] bool saturated() const noexcept { return saturated_; }
+
  private:
-  [[nodiscard]] static Vec3 shaped(const Vec3& v, double dead_band, double most) noexcept {
+  [[nodiscard]] Vec3 shaped(const Vec3& v, double dead_band, double most) noexcept {
     const double length = v.norm();
     if (!(length > dead_band)) return Vec3::Zero();
+    saturated_ = saturated_ || length - dead_band > most;
     return v * (std::min(length - dead_band, most) / length);
   }
 
   SpaceballOptions options_;
-  Twist filtered_;
+  double period_ = 1.0;  // [s]
+  double sign_ = 1.0;
+  Twist twist_;
+  double supplied_ = 0.0;
+  bool saturated_ = false;
 };
 
 }  // namespace repel::network

@@ -3,6 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+
+#include <repel/network/one_ports.hpp>
+#include <repel/network/two_port.hpp>
 
 namespace repel::network {
 
@@ -13,44 +17,80 @@ struct TorqueArmOptions {
   double hand_stiffness = 20.0;  ///< [N m/rad] how firmly the hand leads
   double hand_damping = 0.6;     ///< [N m s/rad]
   double torque_limit = 10.0;    ///< [N m] most the motor can reflect
-  double velocity_scale = 0.1;   ///< s_v [m/rad] tool motion per lever motion
-  double force_scale = 0.1;      ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
 };
 
-/// A one-port: torque in, rate out. The hand follows its own course through a spring and a damper,
-/// so a lever that is pushed back lags behind it, and the hand's torque says what is felt.
+/// A one-port: torque in, rate out. Inertia, bearing and a hand that follows its own course through
+/// a spring and a damper, by the bilinear rule:
+///
+///     R = 2 I / T + c + (k_h T / 2 + c_h)      b = b_I + b_k - (k_h T / 2 + c_h) v_hand
+///
+/// with b_I and b_k what inertia and spring reflect. The hand is a source of energy; what it gives
+/// is counted apart. The motor saturates in the waves: the lever takes a part a' of the wave a with
+/// |a'| <= |a| for which the torque stays within its limit, so that saturation dissipates.
 class TorqueArm {
  public:
-  explicit TorqueArm(const TorqueArmOptions& options) noexcept : options_(options) {}
+  static constexpr Traits traits{.right = Space::lever};
 
-  void reset() noexcept { angle_ = rate_ = hand_angle_ = felt_ = 0.0; }
-
-  /// One period with the hand leading at `hand_rate` [rad/s] against `torque` [N m] from the
-  /// motor. Returns the rate of the lever [rad/s]. Implicit Euler: spring and dampers act on the
-  /// new angle and rate, so that no gain makes them unstable.
-  double step(double hand_rate, double torque, double period) noexcept {
-    torque = std::clamp(torque, -options_.torque_limit, options_.torque_limit);
-    hand_angle_ += period * hand_rate;
-    const double spring = options_.hand_stiffness * (hand_angle_ - angle_);
-    const double push = spring + options_.hand_damping * hand_rate + torque;
-    const double drag =
-        options_.friction + options_.hand_damping + period * options_.hand_stiffness;
-    rate_ = (rate_ + period * push / options_.inertia) / (1.0 + period * drag / options_.inertia);
-    angle_ += period * rate_;
-    felt_ = torque;
-    return rate_;
+  /// @throws SetupError for a number out of range
+  explicit TorqueArm(const TorqueArmOptions& options = {}) : options_(options) {
+    checked("inertia", options.inertia, 1e-6, 1e3, "kg m^2");
+    checked("friction", options.friction, 0.0, 1e3, "N m s/rad");
+    checked("hand stiffness", options.hand_stiffness, 0.0, 1e5, "N m/rad");
+    checked("hand damping", options.hand_damping, 0.0, 1e4, "N m s/rad");
+    checked("torque limit", options.torque_limit, 0.0, 1e4, "N m");
   }
 
-  [[nodiscard]] double angle() const noexcept { return angle_; }  ///< [rad]
-  [[nodiscard]] double rate() const noexcept { return rate_; }    ///< [rad/s]
-  [[nodiscard]] double felt() const noexcept { return felt_; }    ///< [N m] reflected last period
+  void prepare(double period) {
+    period_ = detail::checked_period(period);
+    mass_resistance_ = 2.0 * options_.inertia / period_;
+    spring_resistance_ = 0.5 * options_.hand_stiffness * period_;
+    hand_resistance_ = spring_resistance_ + options_.hand_damping;
+    resistance_(0) = mass_resistance_ + options_.friction + hand_resistance_;
+  }
+
+  void read(const Signals& signals) noexcept {
+    hand_rate_ = signals.hand.lever_rate;
+    if (signals.at_rest) mass_wave_ = spring_wave_ = rate_ = 0.0;
+  }
+
+  [[nodiscard]] const Mat<1>& resistance() const noexcept { return resistance_; }
+  [[nodiscard]] Vec<1> reflected() const noexcept {
+    return Vec<1>(-mass_wave_ + spring_wave_ - hand_resistance_ * hand_rate_);
+  }
+  void incident(const Vec<1>& wave) noexcept {
+    const double b = reflected()(0);
+    double a = wave(0);
+    const double limit = options_.torque_limit;
+    saturated_ = std::abs(a + b) > 2.0 * limit;
+    if (saturated_) {
+      const double wanted = 2.0 * std::copysign(limit, a + b) - b;
+      a = std::clamp(wanted, -std::abs(a), std::abs(a));
+    }
+    const double rate = (a - b) / (2.0 * resistance_(0));
+    const double relative = rate - hand_rate_;
+    supplied_ = -(spring_wave_ + hand_resistance_ * relative) * hand_rate_;
+    mass_wave_ = -mass_wave_ + 2.0 * mass_resistance_ * rate;
+    spring_wave_ += 2.0 * spring_resistance_ * relative;
+    angle_ += 0.5 * period_ * (rate + rate_);
+    rate_ = rate;
+    felt_ = 0.5 * (a + b);
+  }
+
+  [[nodiscard]] double angle() const noexcept { return angle_; }        ///< [rad]
+  [[nodiscard]] double rate() const noexcept { return rate_; }          ///< [rad/s]
+  [[nodiscard]] double felt() const noexcept { return felt_; }          ///< [N m] of the motor
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the hand
+  [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 
  private:
   TorqueArmOptions options_;
-  double angle_ = 0.0;
-  double rate_ = 0.0;
-  double hand_angle_ = 0.0;
-  double felt_ = 0.0;
+  double period_ = 1.0;                                                             // [s]
+  double mass_resistance_ = 0.0, spring_resistance_ = 0.0, hand_resistance_ = 0.0;  // [N m s/rad]
+  Mat<1> resistance_ = Mat<1>::Zero();
+  double mass_wave_ = 0.0, spring_wave_ = 0.0;  // [N m]
+  double hand_rate_ = 0.0;                      // [rad/s]
+  double angle_ = 0.0, rate_ = 0.0, felt_ = 0.0, supplied_ = 0.0;
+  bool saturated_ = false;
 };
 
 }  // namespace repel::network

@@ -6,16 +6,17 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <repel/base/types.hpp>
 #include <repel/force/law.hpp>
-#include <repel/network/coupling.hpp>
+#include <repel/network/clean_stiffness.hpp>
 #include <repel/network/operator.hpp>
-#include <repel/network/spaceball.hpp>
-#include <repel/network/torque_arm.hpp>
+#include <repel/network/plan.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/schedule/pair_block.hpp>
+#include <repel/world/arm.hpp>
 
 namespace repel::scene {
 
@@ -53,6 +54,38 @@ struct Budget {
   std::int64_t max_age = repel::Budget{}.max_age;  ///< [ticks] beyond it an answer expires
 };
 
+/// A spring, damper or mass between a junction and the ground.
+struct Element {
+  enum class Kind { spring, damper, mass };
+  Kind kind = Kind::damper;
+  network::Space space = network::Space::tool;  ///< tool or lever
+  double linear = 0.0;                          ///< [N/m], [N s/m] or [kg]; of a tool
+  double angular = 0.0;                         ///< [N m/rad], [N m s/rad] or [kg m^2]
+};
+
+/// Modules that need nothing, or only what is known of the arm.
+struct Ground {};
+struct Kinematic {};
+struct Joints {};
+struct Tap {};
+
+/// One entry of the network.
+struct Module {
+  std::string name;
+  network::To to;  ///< what it says; the next one when it says nothing
+  std::variant<network::TorqueArmOptions, network::MultiplexOptions, network::SpaceballOptions,
+               network::ReliefOptions, network::Kbb2Options, network::ObstacleOptions, Ground,
+               Kinematic, network::JointLimits, Tap, Joints, network::Common, network::LineOptions,
+               Element>
+      options;
+  int line = 0;  ///< of the file
+};
+
+struct Network {
+  std::vector<Module> modules;                                ///< from the operator to the robot
+  network::GainCheck gain_check = network::GainCheck::error;  ///< of the obstacle module
+};
+
 struct Scene {
   std::string name;
   std::string file;
@@ -60,9 +93,7 @@ struct Scene {
   RobotChoice robot;
   std::vector<Part> tool;
   std::vector<Obstacle> obstacles;
-  network::CouplingGains coupling;
-  network::SpaceballOptions spaceball;
-  network::TorqueArmOptions torque_arm;
+  Network network;
   network::Script script;
   Budget budget;
 };
@@ -73,5 +104,10 @@ struct Scene {
 
 /// The same for text; `file` is the name that errors give and that paths are relative to.
 [[nodiscard]] Scene parse(std::string_view yaml, const std::string& file);
+
+/// The network of the scene for an arm, ready for a period of 1 / `rate_hz`.
+/// @throws SetupError naming the file and the modules when it cannot be built
+[[nodiscard]] network::Network build_network(const Scene& scene, const ArmModel& arm,
+                                             double rate_hz);
 
 }  // namespace repel::scene

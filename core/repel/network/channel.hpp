@@ -1,0 +1,119 @@
+/// @file
+/// A simulated channel: delay that varies, loss, packets that overtake each other.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+
+namespace repel::network {
+
+struct ChannelOptions {
+  double delay = 0.0;      ///< [s] of every packet, 0 to 10; never less than one tick
+  double jitter = 0.0;     ///< [s] up to which a packet takes longer, evenly spread
+  double loss = 0.0;       ///< part of the packets that never arrive, 0 to 1
+  std::uint64_t seed = 1;  ///< the same seed, the same channel
+};
+
+/// Carries one packet per tick. What has arrived can be asked for by the tick in which it was sent;
+/// `newest` is the youngest of it. Deterministic; all memory is taken by `prepare`.
+template <class Payload>
+class Channel {
+ public:
+  /// What happened so far.
+  struct Counts {
+    std::int64_t sent = 0;
+    std::int64_t lost = 0;
+    std::int64_t overtaken = 0;  ///< arrived with or after a newer one
+  };
+
+  /// @throws SetupError for a number out of range
+  explicit Channel(const ChannelOptions& options = {}) : options_(options), state_(options.seed) {
+    checked("delay", options.delay, 0.0, 10.0, "s");
+    checked("jitter", options.jitter, 0.0, 10.0, "s");
+    checked("loss", options.loss, 0.0, 1.0, "");
+  }
+
+  /// @param period [s]; `nothing` is what the receiver sees before the first packet; packets are
+  /// kept
+  ///        for `kept` ticks after the last can have arrived
+  void prepare(double period, const Payload& nothing, std::int64_t kept = 0) {
+    delay_ = std::max<std::int64_t>(1, std::llround(options_.delay / period));
+    jitter_ = std::llround(options_.jitter / period);
+    newest_ = {nothing, -1, 0};
+    packets_.assign(static_cast<std::size_t>(delay_ + jitter_ + kept) + 2, newest_);
+    tick_ = 0;
+  }
+
+  /// Sends the packet of this tick.
+  void send(const Payload& payload) noexcept {
+    ++counts_.sent;
+    const auto late = static_cast<std::int64_t>(uniform() * static_cast<double>(jitter_ + 1));
+    const bool lost = uniform() < options_.loss;
+    counts_.lost += lost ? 1 : 0;
+    packet(tick_) = {payload, lost ? -1 : tick_, tick_ + delay_ + std::min(late, jitter_)};
+  }
+
+  /// One tick on.
+  void advance() noexcept {
+    ++tick_;
+    // Those that can arrive in this tick, the youngest first.
+    const std::int64_t oldest = std::max<std::int64_t>(0, tick_ - delay_ - jitter_);
+    for (std::int64_t sent = tick_ - delay_; sent >= oldest; --sent) {
+      const Packet& arriving = packet(sent);
+      if (arriving.sent != sent || arriving.arrives != tick_) continue;
+      if (sent > newest_.sent) {
+        newest_ = arriving;
+      } else {
+        ++counts_.overtaken;
+      }
+    }
+  }
+
+  /// The packet that was sent in a tick; null when it has not arrived (yet) or is no longer kept.
+  [[nodiscard]] const Payload* sent_at(std::int64_t tick) const noexcept {
+    if (tick < 0) return nullptr;
+    const Packet& packet = packets_[static_cast<std::size_t>(tick) % packets_.size()];
+    return packet.sent == tick && packet.arrives <= tick_ ? &packet.payload : nullptr;
+  }
+  [[nodiscard]] const Payload& newest() const noexcept { return newest_.payload; }
+  /// Ticks since the beginning.
+  [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
+  /// How old `newest` is [ticks].
+  [[nodiscard]] std::int64_t age() const noexcept { return tick_ - newest_.sent; }
+  [[nodiscard]] std::int64_t delay() const noexcept { return delay_; }    ///< [ticks]
+  [[nodiscard]] std::int64_t jitter() const noexcept { return jitter_; }  ///< [ticks]
+  [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
+
+ private:
+  struct Packet {
+    Payload payload;
+    std::int64_t sent = -1;    // tick; -1: none, or lost
+    std::int64_t arrives = 0;  // tick
+  };
+
+  Packet& packet(std::int64_t tick) noexcept {
+    return packets_[static_cast<std::size_t>(tick) % packets_.size()];
+  }
+  // 0 to 1, without 1: SplitMix64 (Steele, Lea and Flood 2014).
+  double uniform() noexcept {
+    state_ += 0x9e3779b97f4a7c15U;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
+  }
+
+  ChannelOptions options_;
+  std::uint64_t state_;
+  std::int64_t delay_ = 1, jitter_ = 0;  // [ticks]
+  std::vector<Packet> packets_;          // by the tick in which they were sent
+  Packet newest_;
+  std::int64_t tick_ = 0;
+  Counts counts_;
+};
+
+}  // namespace repel::network

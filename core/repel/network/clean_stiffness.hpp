@@ -1,0 +1,58 @@
+/// @file
+/// How stiff a sampled wall may be.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include <repel/base/setup_error.hpp>
+
+namespace repel::network {
+
+/// What is done about a wall that is too stiff.
+enum class GainCheck {
+  error,    ///< SetupError
+  warning,  ///< a text for the report; the passivity controller has to make up for it
+};
+
+/// What decides how stiff a wall may be.
+struct CleanStiffness {
+  double period = 0.0025;       ///< T [s]
+  double device_damping = 0.0;  ///< b [N s/m] physical viscous damping of what moves
+  double wall_damping = 0.0;    ///< B [N s/m] of the wall itself
+  double delay = 0.0;           ///< t_d [s] between measuring and pushing, beyond the hold
+
+  /// Largest K [N/m] of a wall that gives back no more energy than it took, whoever holds the
+  /// device: b > K (T / 2 + t_d) + |B| (Colgate and Schenkel 1997; the delay adds to the half
+  /// period of the hold). 0 when the wall's own damping is already too much.
+  [[nodiscard]] double limit() const noexcept {
+    const double left = device_damping - (wall_damping < 0.0 ? -wall_damping : wall_damping);
+    return left > 0.0 ? left / (0.5 * period + delay) : 0.0;
+  }
+
+  /// The damping [N s/m] that a wall of `stiffness` [N/m] needs of the device.
+  [[nodiscard]] double needed_damping(double stiffness) const noexcept {
+    return stiffness * (0.5 * period + delay) + (wall_damping < 0.0 ? -wall_damping : wall_damping);
+  }
+};
+
+/// Empty when a wall of `stiffness` [N/m] is within the limit; else one sentence with all numbers.
+[[nodiscard]] inline std::string complaint(const CleanStiffness& at, double stiffness) {
+  using repel::to_text;  // not that of a space
+  if (stiffness <= at.limit()) return {};
+  return "wall stiffness is " + to_text(stiffness) + " N/m; the clean-stiffness limit is " +
+         to_text(at.limit()) + " N/m for a period of " + to_text(1e3 * at.period) +
+         " ms, a delay of " + to_text(1e3 * at.delay) + " ms, " + to_text(at.device_damping) +
+         " N s/m of damping in the device and " + to_text(at.wall_damping) +
+         " N s/m in the wall; this wall needs " + to_text(at.needed_damping(stiffness)) +
+         " N s/m in the device";
+}
+
+/// Throws SetupError when the wall is too stiff and `check` is `error`; else returns the complaint.
+inline std::string checked_gain(GainCheck check, const CleanStiffness& at, double stiffness) {
+  std::string text = complaint(at, stiffness);
+  if (check == GainCheck::error && !text.empty()) throw SetupError(text);
+  return text;
+}
+
+}  // namespace repel::network

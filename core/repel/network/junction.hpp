@@ -1,0 +1,58 @@
+/// @file
+/// JUNCTION: where more than two ports meet.
+#pragma once
+
+#include <repel/network/two_port.hpp>
+
+namespace repel::network {
+
+/// What all ports of a junction have in common.
+enum class Common {
+  flow,    ///< they move as one; into them, efforts sum to zero
+  effort,  ///< they carry the same effort; the flow towards the root is the sum of the others
+};
+
+/// A lossless junction of any number of ports of one space (the series and parallel adaptors of
+/// wave digital filters). The port towards the root is matched: its resistance is what the others
+/// make.
+class Junction {
+ public:
+  static constexpr Traits traits{};
+
+  explicit Junction(Common common = Common::flow) noexcept : common_(common) {}
+  [[nodiscard]] Common common() const noexcept { return common_; }
+
+  /// Begins `sum` with the first branch.
+  void begin(Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
+    (void)branch.take_form(common_ == Common::flow ? Form::impedance : Form::admittance);
+    sum = branch;
+  }
+  /// Adds one more branch to `sum`, which holds those before. False when both sides insist: two
+  /// that move it, or two that push it.
+  [[nodiscard]] bool add(Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
+    const bool by_flow = common_ == Common::flow;
+    const Form summed = by_flow ? Form::impedance : Form::admittance;
+    if (!branch.take_form(summed)) {
+      if (!sum.take_form(summed)) return false;
+      const Equivalent<any_size> others = sum;
+      sum = branch;
+      join(others, sum);
+    } else {
+      join(branch, sum);
+    }
+    return true;
+  }
+
+ private:
+  void join(const Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
+    if (common_ == Common::flow) {
+      sum.add_impedance(branch.matrix, branch.offset);
+    } else {
+      sum.add_admittance(branch.matrix, branch.offset);
+    }
+  }
+
+  Common common_;
+};
+
+}  // namespace repel::network

@@ -1,0 +1,294 @@
+/// @file
+/// A network of modules: solved once per tick, leaves to root and back.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <repel/network/ledger.hpp>
+#include <repel/network/module.hpp>
+
+namespace repel::network {
+
+/// A connection of two ports. `shown` and `state` are those of the side away from the root, effort
+/// into that side.
+struct Connection {
+  std::string left, right;  ///< names of the modules
+  Space space = Space::any;
+  int size = 0;
+  int left_node = -1, right_node = -1;
+  bool root_on_right = true;
+  Equivalent<any_size> shown;
+  PortState<any_size> state;
+
+  /// Effort that the left side exerts on the right [N], [N m].
+  [[nodiscard]] Vec<any_size> effort() const noexcept {
+    return root_on_right ? Vec<any_size>(-state.effort) : state.effort;
+  }
+  [[nodiscard]] const Vec<any_size>& flow() const noexcept { return state.flow; }
+  /// Power from left to right [W].
+  [[nodiscard]] double power() const noexcept {
+    return root_on_right ? -state.power() : state.power();
+  }
+};
+
+/// A module where it stands. Connections by index; -1: none.
+struct Node {
+  std::string name;
+  Module module;
+  Traits traits;
+  int toward_root = -1;       ///< -1 for the root
+  std::vector<int> branches;  ///< away from it; of a line both ends stand here
+  int left = -1;              ///< its left port, for two-ports and lines
+  Ledger ledger;
+};
+
+/// Built by a Plan (plan.hpp), run once per tick. It keeps the power balance of every tick exact:
+/// at every connection both sides have the same flow and opposite efforts, whatever the modules
+/// are.
+class Network {
+ public:
+  /// One tick. False when some part could not be solved, which set-up has ruled out but for signals
+  /// that take a direction away, as a direction of the lever of length zero does: then every module
+  /// has read its inputs and none has moved on. Cost: one visit to each module on the way to the
+  /// root and one back; one inversion of size 6 at a coupling.
+  bool run(const Signals& signals) noexcept {
+    for (Node& node : nodes_) {
+      detail::visit(
+          [&](auto& module) {
+            if constexpr (requires { module.read(signals); }) module.read(signals);
+          },
+          node.module);
+    }
+    for (const Step& step : upward_) {
+      if (!show(step)) return stuck(step);
+    }
+    for (const Step& root : roots_) {
+      if (!solve(root)) return stuck(root);
+    }
+    for (const Step& root : roots_) settle_root(root);
+    for (const Step& step : downward_) settle(step);
+    keep_accounts(signals.period);
+    return true;
+  }
+
+  [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
+  [[nodiscard]] std::span<const Connection> connections() const noexcept { return connections_; }
+
+  /// The first module of a type, and where it stands; null when there is none.
+  template <class M>
+  [[nodiscard]] const Node* node_of() const noexcept {
+    for (const Node& node : nodes_) {
+      if (std::holds_alternative<M>(node.module)) return &node;
+    }
+    return nullptr;
+  }
+  template <class M>
+  [[nodiscard]] const M* find() const noexcept {
+    const Node* node = node_of<M>();
+    return node == nullptr ? nullptr : std::get_if<M>(&node->module);
+  }
+  /// Where the module of a name stands; null when there is none.
+  [[nodiscard]] const Node* find(std::string_view name) const noexcept {
+    for (const Node& node : nodes_) {
+      if (node.name == name) return &node;
+    }
+    return nullptr;
+  }
+  /// The module at which the last `run` that failed could not go on.
+  [[nodiscard]] const std::string& stuck_at() const noexcept {
+    return nodes_[static_cast<std::size_t>(stuck_)].name;
+  }
+  [[nodiscard]] const Connection& connection(int index) const noexcept {
+    return connections_[static_cast<std::size_t>(index)];
+  }
+
+ private:
+  friend class Plan;
+  /// A module, or one end of a line.
+  struct Step {
+    int node = 0;
+    Side side = Side::left;  ///< of a line: which end
+  };
+
+  bool stuck(const Step& step) noexcept {
+    stuck_ = step.node;
+    return false;
+  }
+  [[nodiscard]] Connection& at(int index) noexcept {
+    return connections_[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] Node& node_at(const Step& step) noexcept {
+    return nodes_[static_cast<std::size_t>(step.node)];
+  }
+  /// The connection of a one-port or of an end of a line.
+  [[nodiscard]] int only_connection(const Step& step) noexcept {
+    const Node& node = node_at(step);
+    if (std::holds_alternative<Line>(node.module)) {
+      return node.branches[step.side == Side::left ? 0 : 1];
+    }
+    return node.toward_root >= 0 ? node.toward_root : node.branches.front();
+  }
+  void show_end(const Step& step, Equivalent<any_size>& shown) noexcept {
+    detail::visit(
+        [&](const auto& module) {
+          using M = std::decay_t<decltype(module)>;
+          if constexpr (detail::is_line<M>) {
+            module.equivalent(step.side, shown);
+          } else if constexpr (detail::is_one_port<M>) {
+            detail::show_one_port(module, shown);
+          }
+        },
+        node_at(step).module);
+  }
+  void settle_end(const Step& step, const PortState<any_size>& state) noexcept {
+    detail::visit(
+        [&](auto& module) {
+          using M = std::decay_t<decltype(module)>;
+          if constexpr (detail::is_line<M>) {
+            module.incident(step.side, state);
+          } else if constexpr (detail::is_one_port<M>) {
+            detail::settle_one_port(module, state);
+          }
+        },
+        node_at(step).module);
+  }
+
+  // Towards the root: what the module makes of what is behind it.
+  [[nodiscard]] bool show(const Step& step) noexcept {
+    Node& node = node_at(step);
+    bool shown = true;
+    detail::visit(
+        [&](auto& module) {
+          using M = std::decay_t<decltype(module)>;
+          if constexpr (detail::is_two_port<M>) {
+            shown = module.reflected(at(node.branches.front()).shown, at(node.toward_root).shown);
+          } else if constexpr (detail::is_junction<M>) {
+            Equivalent<any_size>& sum = at(node.toward_root).shown;
+            module.begin(at(node.branches.front()).shown, sum);
+            for (std::size_t i = 1; i < node.branches.size(); ++i) {
+              shown = shown && module.add(at(node.branches[i]).shown, sum);
+            }
+          } else {
+            show_end(step, at(only_connection(step)).shown);
+          }
+        },
+        node.module);
+    return shown;
+  }
+
+  // Away from the root.
+  void settle(const Step& step) noexcept {
+    Node& node = node_at(step);
+    detail::visit(
+        [&](auto& module) {
+          using M = std::decay_t<decltype(module)>;
+          if constexpr (detail::is_two_port<M>) {
+            Connection& leaf = at(node.branches.front());
+            module.incident(at(node.toward_root).state, leaf.shown, leaf.state);
+          } else if constexpr (detail::is_junction<M>) {
+            settle_junction(module, node);
+          } else {
+            settle_end(step, at(only_connection(step)).state);
+          }
+        },
+        node.module);
+  }
+
+  // One branch at most insists on its own flow where flow is common (on its own effort where effort
+  // is): it takes what the others leave.
+  void settle_junction(const Junction& junction, Node& node) noexcept {
+    const bool by_flow = junction.common() == Common::flow;
+    const PortState<any_size>& root = at(node.toward_root).state;
+    PortState<any_size> left_over = root;
+    Connection* insisting = nullptr;
+    for (const int index : node.branches) {
+      Connection& branch = at(index);
+      const Form wanted = by_flow ? Form::impedance : Form::admittance;
+      if (branch.shown.form != wanted) {
+        insisting = &branch;
+        continue;
+      }
+      if (by_flow) {
+        branch.shown.at_flow(root.flow, branch.state);
+        left_over.effort -= branch.state.effort;
+      } else {
+        branch.shown.at_effort(root.effort, branch.state);
+        left_over.flow -= branch.state.flow;
+      }
+    }
+    if (insisting != nullptr) insisting->state = left_over;
+  }
+
+  // The root and all that is behind it share one flow, and their efforts sum to zero.
+  [[nodiscard]] bool solve(const Step& root) noexcept {
+    Connection& connection = at(only_connection(root));
+    Equivalent<any_size> own;
+    show_end(root, own);
+    Vec<any_size> flow = own.offset;
+    if (own.form == Form::impedance) {
+      Equivalent<any_size> sum = connection.shown;
+      sum.add_impedance(own.matrix, own.offset);
+      const Equivalent<any_size> total = sum;
+      if (!sum.take_form(Form::admittance)) return false;
+      flow = sum.offset;
+      // What rounding left of the efforts, which must sum to zero.
+      if (total.form == Form::impedance) {
+        const Vec<any_size> rest = total.offset + total.matrix.lazyProduct(flow);
+        flow -= sum.matrix.lazyProduct(rest);
+      }
+      own.at_flow(flow, connection.state);
+    } else {
+      if (!connection.shown.take_form(Form::impedance)) return false;
+      connection.shown.at_flow(flow, connection.state);
+      connection.state.effort = -connection.state.effort;
+    }
+    connection.state.effort = -connection.state.effort;
+    return true;
+  }
+  void settle_root(const Step& root) noexcept {
+    PortState<any_size> own = at(only_connection(root)).state;
+    own.effort = -own.effort;
+    settle_end(root, own);
+  }
+
+  void keep_accounts(double period) noexcept {
+    for (Node& node : nodes_) {
+      double left_weight = 1.0;
+      double supplied = 0.0;
+      detail::visit(
+          [&](const auto& module) {
+            left_weight = detail::left_weight_of(module);
+            supplied = detail::supplied_by(module);
+          },
+          node.module);
+      double in = 0.0;
+      double moved = 0.0;
+      const auto count = [&](int index, double sign) {
+        const double power = (index == node.left ? left_weight : 1.0) * at(index).state.power();
+        in += sign * power;
+        moved += std::abs(power);
+      };
+      if (node.toward_root >= 0) count(node.toward_root, 1.0);
+      const bool line = std::holds_alternative<Line>(node.module);
+      for (const int index : node.branches) count(index, line ? sign_of_end(index, node) : -1.0);
+      node.ledger.add(period * in, period * moved, period * supplied);
+    }
+  }
+  // The end of a line is the root of its side or a leaf of it.
+  [[nodiscard]] double sign_of_end(int index, const Node& node) noexcept {
+    const Connection& end = at(index);
+    const bool line_on_left = index != node.left;
+    return line_on_left == end.root_on_right ? 1.0 : -1.0;
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<Connection> connections_;
+  std::vector<Step> upward_;    // leaves first, without the roots
+  std::vector<Step> downward_;  // the same, from the roots
+  std::vector<Step> roots_;     // one for each part between lines
+  int stuck_ = 0;
+};
+
+}  // namespace repel::network

@@ -1,0 +1,89 @@
+/// @file
+/// Passivity observer and controller for an element that is not passive by itself.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <repel/network/port.hpp>
+
+namespace repel::network {
+
+struct PassivityOptions {
+  double most_energy = 5.0;  ///< [J] the element may be owed at once; what it dissipated in a long
+                             ///< contact beyond that cannot be given back later
+  double most_damping = 300.0;  ///< [N s/m] injected against energy from sampling; the rest is
+                                ///< carried over
+  double lever = 0.1;           ///< [m] at which damping acts on a rotation
+};
+
+/// What a controller has done.
+struct PassivityReport {
+  double dissipated = 0.0;  ///< [J] withheld or damped away since the start
+  double owed = 0.0;        ///< [J] given too much by sampling and not yet taken back
+};
+
+/// Keeps two accounts of a nonlinear element whose flow is measured (Hannaford and Ryu 2002).
+///
+/// The account of the port, E += T f.v, never falls below zero: where the effort of a tick would
+/// give more than there is, it is damped along its flow just so far that the rest is spent. Because
+/// E was not negative before, what is missing is at most T |f.v|, and the correction never turns
+/// the effort round.
+///
+/// The account of the sampled motion pairs the effort held through a period with the motion of that
+/// period, E_s += T f(k-1).(mean flow), and knows of it a tick too late. There damping is limited,
+/// never resists the way out, and what it leaves is carried over.
+template <int N>
+class PassivityController {
+ public:
+  /// @param weight of each direction in the damping: ones, and lever^2 for rotations
+  explicit PassivityController(const PassivityOptions& options, const Vec<N>& weight)
+      : options_(options), weight_(weight), held_(Vec<N>::Zero(weight.size())) {}
+
+  /// Forgets what is stored, as for an element that begins anew; never what is owed.
+  void reset() noexcept {
+    energy_ = 0.0;
+    sampled_ = std::min(sampled_, 0.0);
+    held_.setZero();
+  }
+
+  /// The damping by which `effort` has to be corrected: add it times weight times `flow`.
+  /// @param effort into the element; `flow` of this tick; `mean_flow` of the period that ended with
+  ///        it; `period` [s]. All finite.
+  [[nodiscard]] double step(const Vec<N>& effort, const Vec<N>& flow, const Vec<N>& mean_flow,
+                            double period) noexcept {
+    sampled_ += period * held_.dot(mean_flow);
+    const double square = flow.cwiseProduct(weight_).dot(flow);
+    const double power = effort.dot(flow);
+    double damping = 0.0;
+    if (square > 1e-200) {
+      const double missing = -(energy_ / period + power) / square;
+      const double sampled = -(sampled_ / period + power) / square;
+      // On the way out the element may be kept from pushing and must not begin to pull; nor may it
+      // where it has let go.
+      const double most =
+          power > 0.0 ? options_.most_damping : std::min(options_.most_damping, -power / square);
+      damping = std::max({0.0, missing, std::min(sampled, most)});
+    }
+    report_.dissipated += period * damping * square;
+    energy_ = std::clamp(energy_ + period * (power + damping * square), 0.0, options_.most_energy);
+    sampled_ = std::min(sampled_, options_.most_energy);
+    held_ = effort + damping * weight_.cwiseProduct(flow);
+    if (held_.isZero(0.0)) reset();
+    report_.owed = std::max(0.0, -sampled_);
+    return damping;
+  }
+
+  [[nodiscard]] const Vec<N>& weight() const noexcept { return weight_; }
+  [[nodiscard]] const PassivityReport& report() const noexcept { return report_; }
+
+ private:
+  PassivityOptions options_;
+  Vec<N> weight_;
+  Vec<N> held_;           // effort of the last tick
+  double energy_ = 0.0;   // [J] of the port, never negative
+  double sampled_ = 0.0;  // [J] of the sampled motion
+  PassivityReport report_;
+};
+
+}  // namespace repel::network

@@ -1,0 +1,186 @@
+/// @file
+/// How a network is written down, and what is checked before it runs.
+#pragma once
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/network/network.hpp>
+#include <repel/network/planner.hpp>
+
+namespace repel::network {
+
+/// What the right port of a module is joined to: the next module of the plan unless it is said.
+/// Only a junction can be joined to more than one; to none, the module ends a branch.
+struct To {
+  To() = default;
+  // NOLINTBEGIN(google-explicit-constructor): a name stands for itself.
+  To(const char* name) : names{name}, next(false) {}
+  To(std::string name) : names{std::move(name)}, next(false) {}
+  To(std::initializer_list<std::string> list) : names(list), next(false) {}
+  To(std::vector<std::string> list) : names(std::move(list)), next(false) {}
+  // NOLINTEND(google-explicit-constructor)
+  std::vector<std::string> names;
+  bool next = true;
+};
+
+/// A list of modules from the operator to the robot. Each is joined to the next, or to the one it
+/// names:
+///
+///     Network network = Plan()
+///         .add("torque_arm", TorqueArm())
+///         .add("multiplex", Multiplex())
+///         .add("kbb2", Kbb2())
+///         .add("puma_kin", PumaKin())
+///         .add("puma_joints", PumaJoints(6))
+///         .build(0.0025);
+///
+/// Branches meet at a `Junction`: `.add("hand", Mass<any_size>(M), "junction")` ends there, and
+/// `.add("junction", Junction(), {"left_arm", "right_arm"})` goes on to both.
+class Plan {
+ public:
+  static constexpr std::size_t most_modules = 32;
+
+  /// @param name unique; `to` what is on the right of it
+  Plan& add(std::string name, Module module, To to = {}) & {
+    entries_.push_back({std::move(name), std::move(module), std::move(to)});
+    return *this;
+  }
+  Plan&& add(std::string name, Module module, To to = {}) && {
+    return std::move(add(std::move(name), std::move(module), std::move(to)));
+  }
+
+  /// Checks the arrangement and readies every module for `period` [s].
+  /// @throws SetupError, naming the modules, for: a name twice or unknown, a port too many or not
+  /// connected, spaces or sizes that do not fit, a delay-free loop, two modules that both decide
+  /// their flow, a nonlinear module whose flow is not measured, and a rigid or slack part that
+  /// leaves nothing to solve
+  [[nodiscard]] Network build(double period) const;
+
+ private:
+  struct Entry {
+    std::string name;
+    Module module;
+    To to;
+  };
+  [[nodiscard]] std::ptrdiff_t find(const std::string& name) const;
+  void lay_out(Network& network, detail::Planner& planner) const;
+  static void require_solvable(const Network& network, const Signals& rest);
+
+  std::vector<Entry> entries_;
+};
+
+namespace detail {
+
+/// Signals of an arm at rest that moves in all directions.
+inline Signals neutral_signals(int joints, double period) {
+  Signals signals;
+  signals.joints.setZero(joints);
+  signals.rates = signals.mean_rates = signals.joints;
+  signals.jacobian.setZero(6, joints);
+  for (int i = 0; i < std::min(6, joints); ++i) signals.jacobian(i, i) = 1.0;
+  signals.period = period;
+  return signals;
+}
+
+/// Brings a module to its place: space, size, period and the way to the root.
+inline void ready(Node& node, const Connection& first, Side root, double period) {
+  const auto ready_one = [&](auto& module) {
+    if constexpr (requires { module.fit(first.space, first.size); }) {
+      module.fit(first.space, first.size);
+    }
+    if constexpr (requires { module.size(); }) {
+      checked("size, where '" + first.left + "' is joined to '" + first.right + "',", module.size(),
+              first.size, first.size, "");
+    }
+    if constexpr (requires { module.face(root); }) module.face(root);
+    if constexpr (requires { module.prepare(period); }) module.prepare(period);
+  };
+  try {
+    std::visit(ready_one, node.module);
+  } catch (const SetupError& error) {
+    throw SetupError("module '" + node.name + "': " + error.what());
+  }
+}
+
+}  // namespace detail
+
+inline std::ptrdiff_t Plan::find(const std::string& name) const {
+  const auto same = [&](const Entry& entry) { return entry.name == name; };
+  return std::find_if(entries_.begin(), entries_.end(), same) - entries_.begin();
+}
+
+inline void Plan::lay_out(Network& network, detail::Planner& planner) const {
+  const auto count = static_cast<std::ptrdiff_t>(entries_.size());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const Entry& entry = entries_[i];
+    if (find(entry.name) != i) throw SetupError("two modules are called '" + entry.name + "'");
+    Node node{entry.name, entry.module, {}, -1, {}, -1, {}};
+    node.traits = std::visit([](const auto& m) { return detail::traits_of(m); }, entry.module);
+    network.nodes_.push_back(std::move(node));
+  }
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const To& to = entries_[i].to;
+    if (to.next && i + 1 < count) planner.connect(static_cast<int>(i), static_cast<int>(i) + 1);
+    for (const std::string& name : to.names) {
+      const std::ptrdiff_t target = find(name);
+      if (target == count || target == i) {
+        throw SetupError("module '" + entries_[i].name + "' is joined to '" + name +
+                         "'; allowed: the name of another module");
+      }
+      planner.connect(static_cast<int>(i), static_cast<int>(target));
+    }
+  }
+}
+
+inline Network Plan::build(double period) const {
+  checked("number of modules", static_cast<double>(entries_.size()), 1, most_modules, "");
+  Network network;
+  detail::Planner planner(network.nodes_, network.connections_);
+  lay_out(network, planner);
+  planner.check_ports();
+  planner.find_spaces();
+  planner.find_sizes();
+  for (const auto& vertex : planner.order()) {
+    auto& steps = vertex.toward_root < 0 ? network.roots_ : network.upward_;
+    steps.push_back({vertex.node, vertex.side});
+    Node& node = network.nodes_[vertex.node];
+    if (std::holds_alternative<Line>(node.module)) {
+      node.branches.resize(2);
+      node.branches[vertex.side == Side::left ? 0 : 1] = vertex.connections.front();
+      continue;
+    }
+    node.toward_root = vertex.toward_root;
+    for (const int c : vertex.connections) {
+      if (c != vertex.toward_root) node.branches.push_back(c);
+    }
+  }
+  network.downward_.assign(network.upward_.rbegin(), network.upward_.rend());
+  for (std::size_t c = 0; c < network.connections_.size(); ++c) {
+    network.nodes_[network.connections_[c].right_node].left = static_cast<int>(c);
+  }
+  for (int i = 0; i < static_cast<int>(network.nodes_.size()); ++i) {
+    Node& node = network.nodes_[i];
+    const int first = node.branches.empty() ? node.toward_root : node.branches.front();
+    const bool on_right =
+        node.toward_root >= 0 && network.connection(node.toward_root).left_node == i;
+    detail::ready(node, network.connection(first), on_right ? Side::right : Side::left, period);
+  }
+  require_solvable(network, detail::neutral_signals(planner.joints(), period));
+  return network;
+}
+
+inline void Plan::require_solvable(const Network& network, const Signals& rest) {
+  Network trial = network;
+  if (trial.run(rest)) return;
+  throw SetupError("the two sides of module '" + trial.stuck_at() +
+                   "' both insist: each decides its own flow in some direction, or both decide the "
+                   "effort; a compliance between them (kbb2, or relief in all directions) parts "
+                   "them");
+}
+
+}  // namespace repel::network

@@ -1,0 +1,276 @@
+/// @file
+/// Turns a list of modules into trees that can be solved, and says why it cannot.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/network/network.hpp>
+
+namespace repel::network::detail {
+
+/// Turns a list of modules into a tree for each part between lines. One use.
+class Planner {
+ public:
+  Planner(std::vector<Node>& nodes, std::vector<Connection>& connections)
+      : nodes_(nodes), connections_(connections) {}
+
+  /// A vertex is a module, or one end of a line.
+  struct Vertex {
+    int node = 0;
+    Side side = Side::left;
+    std::vector<int> connections;
+    int toward_root = -1;
+    bool reached = false;
+  };
+
+  void connect(int from, int to) {
+    Connection c;
+    c.left = nodes_[from].name;
+    c.right = nodes_[to].name;
+    c.left_node = from;
+    c.right_node = to;
+    connections_.push_back(c);
+  }
+  void check_ports() {
+    for (int i = 0; i < count(); ++i) {
+      const auto [in, out] = ports_of(i);
+      const Module& m = nodes_[i].module;
+      const bool junction = std::holds_alternative<Junction>(m);
+      if (junction && in + out < 2) fail(i, "joins fewer than two ports");
+      if (junction) continue;
+      if (is_one_port_at(i) && in + out != 1) {
+        fail(i,
+             "is a one-port and has " + std::to_string(in + out) + " connections; use a junction");
+      }
+      if (!is_one_port_at(i) && (in > 1 || out > 1)) {
+        fail(i, "has more than one module on its " + std::string(in > 1 ? "left" : "right") +
+                    " port; use a junction");
+      }
+      if (!is_one_port_at(i) && in + out != 2) {
+        fail(i, std::string("has nothing on its ") + (in == 0 ? "left" : "right") +
+                    " port; a chain ends with a one-port");
+      }
+    }
+  }
+
+  /// Gives every connection its space, from those modules that know theirs.
+  void find_spaces() {
+    for (std::size_t round = 0; round <= connections_.size(); ++round) {
+      for (Connection& c : connections_) {
+        settle_space(c, own_space(c.left_node, Side::right));
+        settle_space(c, own_space(c.right_node, Side::left));
+        settle_space(c, passed_on(c.left_node));
+        settle_space(c, passed_on(c.right_node));
+      }
+    }
+    for (const Connection& c : connections_) {
+      if (c.space == Space::any) {
+        throw SetupError("nothing says what passes between '" + c.left + "' and '" + c.right +
+                         "': no module there belongs to a lever, a tool or joints");
+      }
+    }
+  }
+  void find_sizes() {
+    int joints = 0;
+    for (const Node& node : nodes_) {
+      int own = 0;
+      if (const auto* m = std::get_if<PumaJoints>(&node.module)) own = m->size();
+      if (const auto* m = std::get_if<Limits>(&node.module)) own = m->size();
+      if (own > 0 && joints > 0 && own != joints) {
+        throw SetupError("'" + node.name + "' has " + std::to_string(own) +
+                         " joints, a module before it " + std::to_string(joints));
+      }
+      joints = std::max(joints, own);
+    }
+    joints_ = joints;
+    for (Connection& c : connections_) {
+      c.size = c.space == Space::lever ? 1 : c.space == Space::tool ? 6 : joints;
+      if (c.size == 0) {
+        throw SetupError("'" + c.left + "' is joined to '" + c.right +
+                         "' in joints, and no module says how many there are");
+      }
+    }
+  }
+  [[nodiscard]] int joints() const noexcept { return joints_; }
+
+  /// Splits at the lines, picks each root, and returns all vertices, each after those behind it.
+  [[nodiscard]] std::vector<Vertex> order() {
+    make_vertices();
+    std::vector<Vertex> ordered;
+    for (;;) {
+      const int root = next_root();
+      if (root < 0) break;
+      std::vector<int> tree{root};
+      vertices_[root].reached = true;
+      for (std::size_t i = 0; i < tree.size(); ++i) grow(tree, tree[i]);
+      check_part(tree);
+      std::reverse(tree.begin(), tree.end());
+      for (const int v : tree) ordered.push_back(vertices_[v]);
+    }
+    return ordered;
+  }
+
+ private:
+  [[nodiscard]] int count() const noexcept { return static_cast<int>(nodes_.size()); }
+  [[noreturn]] void fail(int node, const std::string& what) const {
+    throw SetupError("module '" + nodes_[node].name + "' " + what);
+  }
+  [[nodiscard]] bool is_one_port_at(int node) const {
+    return std::visit([](const auto& m) { return is_one_port<std::decay_t<decltype(m)>>; },
+                      nodes_[node].module);
+  }
+  [[nodiscard]] std::pair<int, int> ports_of(int node) const {
+    int in = 0;
+    int out = 0;
+    for (const Connection& c : connections_) {
+      in += c.right_node == node ? 1 : 0;
+      out += c.left_node == node ? 1 : 0;
+    }
+    return {in, out};
+  }
+  // That of a port; a one-port has only one, wherever it is joined.
+  [[nodiscard]] Space own_space(int node, Side side) const {
+    const Traits& traits = nodes_[node].traits;
+    const Space here = side == Side::left ? traits.left : traits.right;
+    const Space there = side == Side::left ? traits.right : traits.left;
+    return here == Space::any && is_one_port_at(node) ? there : here;
+  }
+  // The space that a module without one of its own carries from some connection to the others.
+  [[nodiscard]] Space passed_on(int node) const {
+    const Traits& traits = nodes_[node].traits;
+    if (traits.left != Space::any || traits.right != Space::any) return Space::any;
+    for (const Connection& c : connections_) {
+      if ((c.left_node == node || c.right_node == node) && c.space != Space::any) return c.space;
+    }
+    return Space::any;
+  }
+  static void settle_space(Connection& c, Space space) {
+    if (space == Space::any || c.space == space) return;
+    if (c.space != Space::any) {
+      throw SetupError("'" + c.left + "' cannot be joined to '" + c.right + "': one side is " +
+                       name_of(c.space) + ", the other " + name_of(space));
+    }
+    c.space = space;
+  }
+
+  void make_vertices() {
+    for (int i = 0; i < count(); ++i) {
+      if (!std::holds_alternative<Line>(nodes_[i].module)) {
+        vertices_.push_back({i, Side::left, {}, -1, false});
+        for (int c = 0; c < static_cast<int>(connections_.size()); ++c) {
+          const bool here = connections_[c].left_node == i || connections_[c].right_node == i;
+          if (here) vertices_.back().connections.push_back(c);
+        }
+        continue;
+      }
+      for (int c = 0; c < static_cast<int>(connections_.size()); ++c) {
+        if (connections_[c].right_node == i) vertices_.push_back({i, Side::left, {c}, -1, false});
+        if (connections_[c].left_node == i) vertices_.push_back({i, Side::right, {c}, -1, false});
+      }
+    }
+  }
+  [[nodiscard]] bool measures(int vertex) const {
+    return nodes_[vertices_[vertex].node].traits.measures_flow;
+  }
+  // Those that decide their flow first, then the ends of chains, the later ones first.
+  [[nodiscard]] int next_root() const {
+    const int n = static_cast<int>(vertices_.size());
+    for (int v = 0; v < n; ++v) {
+      if (!vertices_[v].reached && measures(v)) return v;
+    }
+    for (int v = n - 1; v >= 0; --v) {
+      if (!vertices_[v].reached && vertices_[v].connections.size() == 1) return v;
+    }
+    for (int v = 0; v < n; ++v) {
+      if (!vertices_[v].reached) fail_loop(v);
+    }
+    return -1;
+  }
+  // The other end of connection `c` seen from vertex `v`.
+  [[nodiscard]] int across(int c, int v) const {
+    for (int other = 0; other < static_cast<int>(vertices_.size()); ++other) {
+      if (other == v) continue;
+      const auto& list = vertices_[other].connections;
+      if (std::find(list.begin(), list.end(), c) != list.end()) return other;
+    }
+    return v;
+  }
+  void grow(std::vector<int>& tree, int v) {
+    for (const int c : vertices_[v].connections) {
+      if (c == vertices_[v].toward_root) continue;
+      const int next = across(c, v);
+      if (vertices_[next].reached) fail_loop(next);
+      vertices_[next].reached = true;
+      vertices_[next].toward_root = c;
+      const int left = connections_[c].left_node;
+      connections_[c].root_on_right = left != vertices_[v].node;
+      tree.push_back(next);
+    }
+  }
+  // Names the modules that have connections on at least two sides after all ends are cut off.
+  [[noreturn]] void fail_loop(int /*somewhere*/) const {
+    std::vector<int> degree;
+    for (const Vertex& v : vertices_) degree.push_back(static_cast<int>(v.connections.size()));
+    for (std::size_t round = 0; round < vertices_.size(); ++round) {
+      for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
+        if (degree[v] != 1) continue;
+        degree[v] = 0;
+        for (const int c : vertices_[v].connections) {
+          const int other = across(c, v);
+          if (degree[other] > 0) --degree[other];
+        }
+      }
+    }
+    std::string names;
+    for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
+      if (degree[v] > 1)
+        names += (names.empty() ? "'" : ", '") + nodes_[vertices_[v].node].name + "'";
+    }
+    throw SetupError("delay-free loop through " + names + "; a line with a delay would cut it");
+  }
+
+  void check_part(const std::vector<int>& tree) const {
+    const int root = tree.front();
+    for (const int v : tree) {
+      if (v != root && measures(v)) {
+        throw SetupError("'" + nodes_[vertices_[root].node].name + "' and '" +
+                         nodes_[vertices_[v].node].name +
+                         "' both decide their flow; a line between them would part them");
+      }
+    }
+    for (const int v : tree) {
+      if (nodes_[vertices_[v].node].traits.needs_flow) check_flow(v, root);
+    }
+  }
+  void check_flow(int v, int root) const {
+    const std::string& name = nodes_[vertices_[v].node].name;
+    if (!measures(root)) {
+      throw SetupError("'" + name +
+                       "' is nonlinear and needs a measured flow; join it to a robot (" +
+                       "puma_joints), not to '" + nodes_[vertices_[root].node].name + "'");
+    }
+    for (int at = across(vertices_[v].toward_root, v); at != root;
+         at = across(vertices_[at].toward_root, at)) {
+      const Node& between = nodes_[vertices_[at].node];
+      if (between.traits.keeps_flow) continue;
+      fail_second(name, nodes_[vertices_[root].node].name, between.name);
+    }
+  }
+  [[noreturn]] static void fail_second(const std::string& name, const std::string& root,
+                                       const std::string& between) {
+    throw SetupError("'" + name + "' is a second nonlinear element beside '" + root + "': '" +
+                     between + "' stands between them and gives way; put '" + between +
+                     "' on the other side of '" + name + "'");
+  }
+
+  std::vector<Node>& nodes_;
+  std::vector<Connection>& connections_;
+  std::vector<Vertex> vertices_;
+  int joints_ = 0;
+};
+
+}  // namespace repel::network::detail

@@ -1,0 +1,90 @@
+/// @file
+/// PUMA_JOINTS: the robot at the end of the network, of any arm.
+#pragma once
+
+#include <repel/network/one_ports.hpp>
+#include <repel/network/two_port.hpp>
+
+namespace repel::network {
+
+/// The flow of a motor joint as the network takes it: the measured rate, trimmed so that its
+/// integral by the trapezoidal rule stays at the measured position. Springs that integrate it do
+/// not drift away from the arm, whatever the quality of the rate.
+class MeasuredFlow {
+ public:
+  /// Part of the difference that is made good in a tick, and once more in the next.
+  static constexpr double trim = 0.1;
+
+  explicit MeasuredFlow(int joints)
+      : position_(Vec<any_size>::Zero(joints)),
+        mean_(position_),
+        integral_(position_),
+        flow_(position_) {}
+
+  /// Begins at rest at `q` [rad].
+  void reset(const Vec<any_size>& q) noexcept {
+    position_ = integral_ = q;
+    flow_.setZero();
+    mean_.setZero();
+  }
+  /// One `period` [s] later; `q` [rad], `rate` [rad/s] measured, finite.
+  void step(const Vec<any_size>& q, const Vec<any_size>& rate, double period) noexcept {
+    mean_ = (q - position_) / period;
+    position_ = q;
+    const Vec<any_size> error = q - integral_ - 0.5 * period * (flow_ + rate);
+    integral_ += 0.5 * period * flow_;
+    flow_ = rate + 2.0 * trim / period * error;
+    integral_ += 0.5 * period * flow_;
+  }
+  [[nodiscard]] const Vec<any_size>& flow() const noexcept { return flow_; }  ///< [rad/s]
+  /// Over the last period [rad/s].
+  [[nodiscard]] const Vec<any_size>& mean() const noexcept { return mean_; }
+
+ private:
+  Vec<any_size> position_, mean_, integral_, flow_;
+};
+
+/// A one-port that decides its flow: the joint rates are measured, the network answers with
+/// torques. It is the one unmatched element of its network and stands at the root. What holds the
+/// torque for a period while the arm moves on is not part of the network: the energy that this
+/// gives the arm,
+///
+///     sum T tau(k) . (mean flow of the period after k - flow at k)
+///
+/// is observed and reported as `sampling_energy`.
+class PumaJoints {
+ public:
+  /// The arm moves by itself, so that it may give more energy than it took.
+  static constexpr Traits traits{.left = Space::joints, .measures_flow = true, .passive = false};
+
+  /// @throws SetupError when there is no joint or there are too many
+  explicit PumaJoints(int joints)
+      : flow_(Vec<any_size>::Zero(
+            static_cast<int>(checked("number of joints", joints, 1, most_joints, "")))),
+        effort_(flow_) {}
+
+  void prepare(double period) { (void)detail::checked_period(period); }
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
+
+  void read(const Signals& signals) noexcept {
+    sampling_energy_ += signals.period * effort_.dot(signals.mean_rates - flow_);
+    flow_ = signals.rates;
+  }
+  void equivalent(Equivalent<any_size>& shown) const noexcept {
+    shown.form = Form::admittance;
+    shown.matrix.setZero(flow_.size(), flow_.size());
+    shown.offset = flow_;
+  }
+  void incident(const PortState<any_size>& state) noexcept { effort_ = state.effort; }
+
+  /// On the joints [N m].
+  [[nodiscard]] const Vec<any_size>& torques() const noexcept { return effort_; }
+  [[nodiscard]] double sampling_energy() const noexcept { return sampling_energy_; }  ///< [J]
+
+ private:
+  Vec<any_size> flow_;    // [rad/s]
+  Vec<any_size> effort_;  // [N m]
+  double sampling_energy_ = 0.0;
+};
+
+}  // namespace repel::network

@@ -1,0 +1,107 @@
+/// @file
+/// The two-port concept and the transformer.
+#pragma once
+
+#include <concepts>
+
+#include <repel/network/equivalent.hpp>
+#include <repel/network/signals.hpp>
+
+namespace repel::network {
+
+/// The two ports of a two-port. Networks are written from left, the operator, to right, the robot.
+enum class Side { left, right };
+
+/// What a module is to the network that it stands in.
+struct Traits {
+  Space left = Space::any;     ///< of its left port
+  Space right = Space::any;    ///< of its right port
+  bool measures_flow = false;  ///< decides its own flow: it must be the root, and the only one
+  bool needs_flow = false;     ///< nonlinear: needs a flow that the root has measured
+  bool keeps_flow = false;     ///< what is measured on one side is known on the other
+  bool passive = true;         ///< gives no more energy than it took and was supplied with
+};
+
+/// A two-port stands between what lies behind it, away from the root, and the root. Each tick it
+/// first shows the root side what it makes of what is behind it; then, the root being solved, it
+/// turns effort and flow of its root-side port into those of the other. Nothing here throws,
+/// allocates or waits, `prepare` excepted.
+template <class T>
+concept TwoPort = requires(T module, const Equivalent<any_size>& behind,
+                           Equivalent<any_size>& shown, const PortState<any_size>& at_root,
+                           PortState<any_size>& at_leaf, double period) {
+  { T::traits } -> std::convertible_to<const Traits&>;
+  module.prepare(period);    // [s]; may throw SetupError
+  module.face(Side::right);  // where the root is
+  { module.reflected(behind, shown) }
+  noexcept->std::same_as<bool>;  // false: cannot be shown
+  { module.incident(at_root, behind, at_leaf) }
+  noexcept;
+};
+
+/// A lossless connection of two spaces: v_A = V v_B and f_B = F' f_A, with V = F unless a power
+/// factor is declared. Of the two matrices the same values serve both ways in one tick.
+namespace transformer {
+
+/// Seen from the side of B. False when what is behind cannot take the impedance form.
+template <class V, class F>
+[[nodiscard]] bool shown_at_b(Equivalent<any_size> at_a, const V& flow_map, const F& effort_map,
+                              Equivalent<any_size>& shown) noexcept {
+  if (!at_a.take_form(Form::impedance)) return false;
+  shown.form = Form::impedance;
+  const Eigen::Matrix<double, any_size, any_size, Eigen::ColMajor, most_joints, most_joints> RV =
+      at_a.matrix.lazyProduct(flow_map);
+  shown.matrix = effort_map.transpose().lazyProduct(RV);
+  shown.offset = effort_map.transpose().lazyProduct(at_a.offset);
+  return true;
+}
+
+/// Seen from the side of A. False when what is behind cannot take the admittance form.
+template <class V, class F>
+[[nodiscard]] bool shown_at_a(Equivalent<any_size> at_b, const V& flow_map, const F& effort_map,
+                              Equivalent<any_size>& shown) noexcept {
+  if (!at_b.take_form(Form::admittance)) return false;
+  shown.form = Form::admittance;
+  const Eigen::Matrix<double, any_size, any_size, Eigen::ColMajor, most_joints, most_joints> GF =
+      at_b.matrix.lazyProduct(effort_map.transpose());
+  shown.matrix = flow_map.lazyProduct(GF);
+  shown.offset = flow_map.lazyProduct(at_b.offset);
+  return true;
+}
+
+/// State at A from that at B, what A shows being `at_a`.
+template <class V>
+void to_a(const PortState<any_size>& at_b, Equivalent<any_size> at_a, const V& flow_map,
+          PortState<any_size>& state) noexcept {
+  (void)at_a.take_form(Form::impedance);
+  at_a.at_flow(flow_map.lazyProduct(at_b.flow), state);
+}
+
+/// State at B from that at A, what B shows being `at_b`.
+template <class F>
+void to_b(const PortState<any_size>& at_a, Equivalent<any_size> at_b, const F& effort_map,
+          PortState<any_size>& state) noexcept {
+  (void)at_b.take_form(Form::admittance);
+  at_b.at_effort(effort_map.transpose().lazyProduct(at_a.effort), state);
+}
+
+}  // namespace transformer
+
+/// An effort in series on the flow of both ports: f_root = f_leaf + effort.
+namespace series {
+
+[[nodiscard]] inline bool shown(const Equivalent<any_size>& behind, const Vec<any_size>& effort,
+                                Equivalent<any_size>& shown) noexcept {
+  shown = behind;
+  shown.add_effort(effort);
+  return true;
+}
+inline void pass(const PortState<any_size>& at_root, const Vec<any_size>& effort,
+                 PortState<any_size>& at_leaf) noexcept {
+  at_leaf.flow = at_root.flow;
+  at_leaf.effort = at_root.effort - effort;
+}
+
+}  // namespace series
+
+}  // namespace repel::network

@@ -1,0 +1,141 @@
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace {
+
+using nlohmann::json;
+
+const json& module_of(const json& report, const std::string& name) {
+  for (const json& module : report.at("modules")) {
+    if (module.at("name") == name) return module;
+  }
+  throw std::runtime_error("no module " + name);
+}
+
+/// The lowest ledger of a passive module, as a part of what passed through it.
+double worst_deficit(const json& report) {
+  double worst = 0.0;
+  for (const json& module : report.at("modules")) {
+    if (module.at("passive").get<bool>()) {
+      worst = std::max(worst, module.at("deficit").get<double>());
+    }
+  }
+  return worst;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(NetworkOfAScene, TenModulesOfThePaperKeepTheirLedgersAtEveryRate) {
+  const Folder folder;
+  for (const std::string rate : {"400", "4000"}) {
+    const Ending ending = teleop("--fast --seconds 20 --rate " + rate + " --report " +
+                                 quoted(folder / "report.json"));
+    ASSERT_EQ(ending.status, 0) << ending;
+    const json report = report_of(folder / "report.json");
+    ASSERT_EQ(report.at("modules").size(), 10U);
+    EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+    EXPECT_GT(module_of(report, "obstacle").at("passed_j"), 1.0);
+    EXPECT_GT(module_of(report, "spaceball").at("supplied_j"), 1.0);
+    EXPECT_GT(module_of(report, "torque_arm").at("supplied_j"), 1.0);
+    EXPECT_FALSE(report.at("status_ticks").contains("network_fault"));
+    EXPECT_TRUE(report.at("network_us").at("p50").is_number());
+  }
+}
+
+TEST(NetworkOfAScene, LedgersOfEveryTickAreInTheLog) {
+  const Folder folder;
+  const Ending ending = teleop("--fast --seconds 3 --log " + quoted(folder / "log.csv"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const Columns log = columns_of(folder / "log.csv");
+  for (const char* name : {"torque_arm", "kbb2", "obstacle", "puma_joints"}) {
+    ASSERT_EQ(log.count(std::string("energy_") + name + "_j"), 1U) << name;
+  }
+  const auto& kbb2 = log.at("energy_kbb2_j");
+  EXPECT_GT(*std::max_element(kbb2.begin(), kbb2.end()), 0.01);
+  EXPECT_GE(*std::min_element(kbb2.begin(), kbb2.end()), 0.0);
+}
+
+TEST(NetworkOfAScene, WallThatIsTooStiffIsRefusedWithTheLimit) {
+  const Folder folder;
+  const std::string stiff =
+      robot_text() +
+      "laws:\n  default: {range: 1 mm, surface_force: 25 N, damping: 0 N s/m}\n"
+      "obstacles:\n"
+      "  - {name: slab, shape: box, size: 1 1 0.1 m, position: 0 0 -1 m}\n";
+  const Ending refused = teleop(quoted(folder.with("stiff.yaml", stiff)) + " --fast --seconds 0.1");
+  EXPECT_EQ(refused.status, 1) << refused;
+  for (const char* part : {"'slab'", "wall stiffness is 50000 N/m", "limit is", "2.5 ms",
+                           "N s/m of damping in the device", "needs 62.5 N s/m", "gain_check"}) {
+    EXPECT_TRUE(refused.says(part)) << part << '\n' << refused;
+  }
+  const std::string warned =
+      stiff +
+      "network: [{module: torque_arm}, {module: multiplex}, {module: kbb2}, {module: obstacle, "
+      "gain_check: warning}, {module: puma_kin}, {module: puma_joints}]\n";
+  const Ending said = teleop(quoted(folder.with("warned.yaml", warned)) + " --fast --seconds 0.1");
+  EXPECT_EQ(said.status, 0) << said;
+  EXPECT_TRUE(said.says("wall stiffness is 50000 N/m")) << said;
+}
+
+TEST(NetworkOfAScene, SilentDeviceRampsTheForceToZero) {
+  const Folder folder;
+  const std::string scene =
+      folder.with("silent.yaml",
+                  robot_text() + table_text() +
+                      "script:\n"
+                      "  - {name: push, device: spaceball, duration: 1 s, linear: 0 0 -50 mm/s}\n"
+                      "  - {name: lost, device: spaceball, duration: 500 ms, silent: yes}\n");
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 2 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_EQ(report.at("status_ticks").at("silent_device"), 192);  // 500 ms less 20 ms
+  const Columns log = columns_of(folder / "log.csv");
+  expect_finite_forces(log);
+  const auto& gain = log.at("gain");
+  EXPECT_EQ(gain[400], 1.0);
+  EXPECT_EQ(gain[440], 0.0);  // 20 ms of patience and 50 ms of ramp later
+}
+
+/// Largest virtual force in the last second of a minute of holding the tool on the table, over
+/// 100 ms and a channel that loses one packet in twenty; the report besides.
+std::pair<double, json> held_over_a_line(const Folder& folder, const std::string& kind) {
+  std::string text = text_of(REPEL_SOURCE "/scenes/delayed.yaml");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace("../robots", REPEL_SOURCE "/robots");
+  replace("module: line,", "module: line, kind: " + kind + ",");
+  replace("duration: 6 s", "duration: 60 s");
+  const Ending ending =
+      teleop(quoted(folder.with("held.yaml", text)) + " --fast --seconds 60 --log " +
+             quoted(folder / "log.csv") + " --report " + quoted(folder / "report.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  const Columns log = columns_of(folder / "log.csv");
+  const auto& force = log.at("virtual_fz_n");
+  double largest = 0.0;
+  for (std::size_t i = force.size() - 400; i < force.size(); ++i) {
+    largest = std::max(largest, std::abs(force[i]));
+  }
+  return {largest, report_of(folder / "report.json")};
+}
+
+TEST(NetworkOfAScene, WavesHoldAWallOverADelayWhereThePlainLineDoesNot) {
+  const Folder folder;
+  const auto [by_waves, waves] = held_over_a_line(folder, "waves");
+  EXPECT_GT(by_waves, 5.0) << "nothing was held";
+  EXPECT_LT(waves.at("peak_force_n"), 100.0);
+  EXPECT_LE(worst_deficit(waves), 1e-9) << waves.at("modules");
+  const auto [by_force, plain] = held_over_a_line(folder, "force_velocity");
+  EXPECT_GT(plain.at("peak_force_n"), 300.0);
+  EXPECT_LT(module_of(plain, "line").at("least_j"), -100.0);
+}
+
+}  // namespace
+}  // namespace repel::test

@@ -1,0 +1,70 @@
+#include <repel/loop/gain_check.hpp>
+
+#include <gtest/gtest.h>
+
+#include "loop/slider.hpp"
+
+namespace repel {
+namespace {
+
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// Rails along x, y and z with these frictions [N s/m].
+double damping_of(const std::array<double, 3>& friction, const Jacobian& J) {
+  ArmModel model = test::slider_model(1000.0);
+  for (std::size_t i = 0; i < 3; ++i) model.links[i].viscous_friction = friction[i];
+  return device_damping(model, J);
+}
+
+Jacobian rails() {
+  Jacobian J = Jacobian::Zero(6, 3);
+  J.topRows<3>().setIdentity();
+  return J;
+}
+
+TEST(GainCheck, DampingIsThatOfTheDirectionInWhichItIsLeast) {
+  EXPECT_DOUBLE_EQ(damping_of({5.0, 3.0, 9.0}, rails()), 3.0);
+  // Two joints that share one direction give way together, like springs one after the other.
+  Jacobian shared = rails();
+  shared(0, 1) = 1.0;
+  shared(1, 1) = 0.0;
+  EXPECT_DOUBLE_EQ(damping_of({6.0, 3.0, 9.0}, shared), 2.0);
+}
+
+TEST(GainCheck, JointThatTurnsFreelyLeavesNoDamping) {
+  EXPECT_EQ(damping_of({5.0, 0.0, 9.0}, rails()), 0.0);
+  Jacobian unmoved = rails();
+  unmoved.col(1).setZero();  // a joint that does not move the tool does not count
+  EXPECT_DOUBLE_EQ(damping_of({5.0, 0.0, 9.0}, unmoved), 5.0);
+}
+
+/// A ball and two walls, 4 and 10 kN/m, the damping of each 1 N s/m.
+World two_walls() {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.05));
+  for (const double force : {40.0, 100.0}) {
+    Pose X = Pose::Identity();
+    X.translation().x() = 1.0;
+    const PartId wall = world.add_part(World::fixed, "wall of " + to_text(force) + " N",
+                                       Shape::box({0.1, 1.0, 1.0}), X);
+    world.add_pair(ball, wall, {.range = 0.02, .surface_force = force, .damping = 1.0});
+  }
+  return world;
+}
+
+TEST(GainCheck, WallAboveTheLimitIsSaidWithTheNumbersAndTheOtherIsNot) {
+  const World world = two_walls();
+  // 7 - 1 N s/m over half a period of 2.5 ms: 4.8 kN/m.
+  const auto said = check_gains(world, 0.0025, 7.0, network::GainCheck::warning);
+  ASSERT_EQ(said.size(), 1U);
+  for (const char* part : {"'wall of 100 N'", "10000 N/m", "4800 N/m", "2.5 ms", "7 N s/m",
+                           "1 N s/m in the wall", "13.5 N s/m"}) {
+    EXPECT_NE(said[0].find(part), std::string::npos) << part << '\n' << said[0];
+  }
+  EXPECT_THROW(check_gains(world, 0.0025, 7.0, network::GainCheck::error), SetupError);
+  EXPECT_TRUE(check_gains(world, 0.001, 7.0, network::GainCheck::error).empty());
+}
+
+}  // namespace
+}  // namespace repel

@@ -1,0 +1,50 @@
+#include <repel/network/ledger.hpp>
+
+#include <gtest/gtest.h>
+
+#include "support/families.hpp"
+
+namespace repel::network {
+namespace {
+
+constexpr unsigned seed = 13;
+
+TEST(Ledger, AddsUpWhatWentInAndWhatWasSupplied) {
+  Ledger ledger;
+  ledger.add(3.0, 5.0, 0.0);
+  ledger.add(-1.0, 1.0, 0.5);
+  EXPECT_EQ(ledger.energy, 2.5);
+  EXPECT_EQ(ledger.supplied, 0.5);
+  EXPECT_EQ(ledger.passed, 6.0);
+  EXPECT_EQ(ledger.least, 0.0);
+  EXPECT_EQ(ledger.deficit(), 0.0);
+}
+
+// What comes back later does not make good that it was below zero.
+TEST(Ledger, DeficitIsTheLowestEverAsAPartOfWhatPassed) {
+  Ledger ledger;
+  ledger.add(-2.0, 2.0, 0.0);
+  ledger.add(10.0, 10.0, 0.0);
+  EXPECT_EQ(ledger.energy, 8.0);
+  EXPECT_EQ(ledger.least, -2.0);
+  EXPECT_DOUBLE_EQ(ledger.deficit(), 2.0 / 12.0);
+}
+
+TEST(Ledger, ModuleThroughWhichNothingPassedHasNoDeficit) {
+  EXPECT_EQ(Ledger{}.deficit(), 0.0);
+}
+
+TEST(Ledger, SourceThatGivesWhatItWasSuppliedWithIsAtZero) {
+  families::Rng rng(seed);
+  Ledger ledger;
+  for (int i = 0; i < 100000; ++i) {
+    const double given = families::uniform(rng, -1.0, 2.0);
+    ledger.add(-given, std::abs(given), given);
+  }
+  EXPECT_EQ(ledger.energy, 0.0) << "seed " << seed;
+  EXPECT_GT(ledger.supplied, 40000.0);
+  EXPECT_EQ(ledger.deficit(), 0.0);
+}
+
+}  // namespace
+}  // namespace repel::network

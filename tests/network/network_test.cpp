@@ -1,0 +1,226 @@
+#include <repel/network/network.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "network/drawn_network.hpp"
+// Counts every call to the heap in this program: it brings its own malloc.
+#include "support/heap_counter.hpp"
+
+namespace repel::network {
+namespace {
+
+using test::between;
+using test::DrawnPlan;
+using test::DrawnSignals;
+using test::Matrix;
+using test::period;
+using test::Rng;
+using test::Vector;
+
+/// How many modules of each kind a test met.
+using Met = std::array<int, std::variant_size_v<Module>>;
+
+/// The ledgers of all modules together, sources and robot too: what goes in somewhere came out
+/// somewhere else. A multiplex with a power factor declares what it does not pass on.
+void expect_tellegen(const Network& network) {
+  double sum = 0.0;
+  double passed = 0.0;
+  for (const Node& node : network.nodes()) {
+    const auto* multiplex = std::get_if<Multiplex>(&node.module);
+    if (multiplex != nullptr && multiplex->power_factor() != 1.0) return;
+    sum += node.ledger.energy - node.ledger.supplied;
+    passed += node.ledger.passed;
+  }
+  EXPECT_LE(std::abs(sum), 1e-9 * passed);
+}
+
+void run_drawn(Network& network, int joints, Rng& rng, int ticks) {
+  DrawnSignals drawn(rng, joints);
+  for (int tick = 0; tick < ticks; ++tick) {
+    ASSERT_TRUE(network.run(drawn.next())) << network.stuck_at() << " at tick " << tick;
+    if (tick % 16 == 0) {
+      ASSERT_EQ(test::Laws(network).breach(), "") << "at tick " << tick;
+    }
+  }
+  test::expect_passive(network);
+  expect_tellegen(network);
+}
+
+std::string written(const Network& network) {
+  std::string text;
+  for (const Connection& c : network.connections()) {
+    text += c.left + (c.root_on_right ? " -> " : " <- ") + c.right + ", ";
+  }
+  return text;
+}
+
+TEST(Network, RandomTreesKeepThePowerBalanceOfEveryModule) {
+  constexpr int ticks = 2000;
+  const int networks = families::draws(1000000) / ticks;
+  Met met{};
+  int built = 0;
+  int facing_left = 0;
+  for (std::uint64_t seed = 1; built < networks && seed < 4000; ++seed) {
+    Rng rng(seed);
+    const DrawnPlan drawn(rng);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    try {
+      Network network = drawn.plan.build(period);
+      SCOPED_TRACE(written(network));
+      run_drawn(network, drawn.joints, rng, ticks);
+      ++built;
+      for (const Node& node : network.nodes()) ++met[node.module.index()];
+      for (const Connection& c : network.connections()) facing_left += c.root_on_right ? 0 : 1;
+    } catch (const SetupError& error) {
+      const std::string text = error.what();
+      ASSERT_TRUE(text.find("insist") < text.size() || text.find("nothing says") < text.size())
+          << text;
+    }
+  }
+  EXPECT_EQ(built, networks);
+  for (std::size_t kind = 0; kind < met.size(); ++kind) {
+    EXPECT_GT(met[kind], networks / 20) << "kind " << kind;
+  }
+  EXPECT_GT(facing_left, networks / 2);
+}
+
+/// Every kind of module in one network, in two parts.
+Plan of_everything() {
+  const Matrix six = Matrix::Identity(6, 6);
+  LineOptions late;
+  late.channel = {.delay = 0.02, .jitter = 0.01, .loss = 0.1};
+  Plan plan;
+  plan.add("torque_arm", TorqueArm()).add("multiplex", Multiplex(), "near");
+  plan.add("weight", Mass<any_size>(six), "near").add("hold", Spring<any_size>(six), "near");
+  plan.add("push", EffortSource<any_size>(Vector::Ones(6)), "near");
+  plan.add("near", Junction()).add("line", Line(late));
+  plan.add("kbb2", Kbb2({.shunt = 20.0, .angular_shunt = 0.5}), "far");
+  plan.add("moved", FlowSource<any_size>(Vector::Ones(6))).add("soft", Kbb2(), "far");
+  plan.add("brake", Damper<any_size>(six), "far").add("far", Junction());
+  plan.add("spaceball", Spaceball());
+  plan.add("relief", Relief({.compliant = {true, true, true, true, true, true}}));
+  plan.add("obstacle", Obstacle()).add("visual", Visual()).add("puma_kin", PumaKin());
+  plan.add("limits", Limits({}, std::vector<JointRange>(6, {-0.2, 0.2})));
+  plan.add("puma_joints", PumaJoints(6));
+  return plan;
+}
+
+TEST(Network, TickTakesNothingFromTheHeap) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  Network network = of_everything().build(period);
+  Met met{};
+  for (const Node& node : network.nodes()) ++met[node.module.index()];
+  for (std::size_t kind = 0; kind < met.size(); ++kind) EXPECT_GT(met[kind], 0) << kind;
+  Rng rng(1);
+  DrawnSignals drawn(rng, 6);
+  for (int tick = 0; tick < 2000; ++tick) {
+    const Signals& signals = drawn.next();
+    repel::test::calls = 0;
+    repel::test::watched = true;
+    const bool solved = network.run(signals);
+    repel::test::watched = false;
+    ASSERT_TRUE(solved);
+    ASSERT_EQ(repel::test::calls, 0) << "tick " << tick;
+  }
+}
+
+TEST(Network, SameSignalsGiveTheSameBits) {
+  Network one = of_everything().build(period);
+  Network two = of_everything().build(period);
+  Rng rng(2);
+  DrawnSignals drawn(rng, 6);
+  Network copy = one;
+  for (int tick = 0; tick < 4000; ++tick) {
+    const Signals& signals = drawn.next();
+    ASSERT_TRUE(one.run(signals) && two.run(signals));
+    if (tick == 2000) copy = one;
+    if (tick > 2000) {
+      ASSERT_TRUE(copy.run(signals));
+    }
+    for (std::size_t i = 0; i < one.connections().size(); ++i) {
+      const auto& state = one.connections()[i].state;
+      ASSERT_EQ(state.effort, two.connections()[i].state.effort) << "tick " << tick;
+      ASSERT_EQ(state.flow, two.connections()[i].state.flow) << "tick " << tick;
+      if (tick > 2000) {
+        ASSERT_EQ(state.effort, copy.connections()[i].state.effort) << "tick " << tick;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < one.nodes().size(); ++i) {
+    EXPECT_EQ(one.nodes()[i].ledger.energy, two.nodes()[i].ledger.energy);
+  }
+}
+
+// The first branch has both forms and comes in the one in which the second insists.
+TEST(Network, JunctionSettlesEveryBranchWhicheverInsists) {
+  const FlowSource<any_size> moved(Vector::Constant(6, 0.1));
+  const std::array<bool, 6> all{true, true, true, true, true, true};
+  Network network = Plan()
+                        .add("a", moved)
+                        .add("yielding", Relief({.compliant = all}), "junction")
+                        .add("b", FlowSource<any_size>(Vector::Zero(6)), "junction")
+                        .add("junction", Junction())
+                        .add("ball", Spaceball())
+                        .add("mass", Mass<any_size>(Matrix::Identity(6, 6)))
+                        .build(period);
+  Rng rng(3);
+  DrawnSignals drawn(rng, 0);
+  for (int tick = 0; tick < 1000; ++tick) {
+    ASSERT_TRUE(network.run(drawn.next()));
+    ASSERT_EQ(repel::test::Laws(network).breach(), "") << "at tick " << tick;
+  }
+  repel::test::expect_passive(network);
+  EXPECT_GT(network.find("yielding")->ledger.passed, 1e-6);
+}
+
+// A direction of length zero leaves the lever nothing to push against. By then the other part, that
+// of 'end', is solved.
+TEST(Network, SaysWhereItCouldNotGoOnAndMovesNoModule) {
+  const Mass<any_size> mass(Matrix::Identity(6, 6));
+  Network network = Plan()
+                        .add("line", Line(), "end")
+                        .add("load", mass, "junction")
+                        .add("push", EffortSource<any_size>(Vector::Ones(1)))
+                        .add("multiplex", Multiplex({.turning_time = 0.0}), "junction")
+                        .add("junction", Junction(), "line")
+                        .add("end", mass)
+                        .build(period);
+  Signals signals = detail::neutral_signals(0, period);
+  const auto stored = [&](const char* name) {
+    return std::get<Mass<any_size>>(network.find(name)->module).stored();
+  };
+  for (int tick = 0; tick < 50; ++tick) ASSERT_TRUE(network.run(signals));
+  const double load = stored("load");
+  const double end = stored("end");
+  const double passed = network.find("end")->ledger.passed;
+  EXPECT_GT(load * end, 0.0);
+  signals.hand.direction_W.setZero();
+  ASSERT_FALSE(network.run(signals));
+  EXPECT_EQ(network.stuck_at(), "push");
+  EXPECT_EQ(stored("load"), load);
+  EXPECT_EQ(stored("end"), end);
+  EXPECT_EQ(network.find("end")->ledger.passed, passed);
+  signals.hand.direction_W = Vec3::UnitY();
+  EXPECT_TRUE(network.run(signals));
+}
+
+TEST(Network, PowerGoesFromLeftToRightOnEitherSideOfTheRoot) {
+  const Matrix I = Matrix::Identity(6, 6);
+  for (const Side root : {Side::left, Side::right}) {
+    Network network = between(FlowSource<any_size>(Vector::Constant(6, 0.5)), Spaceball(),
+                              Damper<any_size>(4.0 * I), root);
+    ASSERT_TRUE(network.run(detail::neutral_signals(0, period)));
+    const Node* ball = network.find("module");
+    const Connection& c = network.connection(ball->left);
+    EXPECT_EQ(c.left, "left");
+    EXPECT_EQ(c.root_on_right, root == Side::right);
+    EXPECT_NEAR(c.power(), 6.0 * 4.0 * 0.5 * 0.5, 1e-12);  // into the damper
+    EXPECT_LE((c.effort() - Vector::Constant(6, 2.0)).norm(), 1e-12);
+    EXPECT_LE((c.flow() - Vector::Constant(6, 0.5)).norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace repel::network

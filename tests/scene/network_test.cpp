@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "yaml_text.hpp"
+
+namespace repel::scene {
+namespace {
+
+using testing::base_scene;
+using testing::options;
+using testing::parsed;
+
+Scene with_module(const std::string& text) {
+  return parsed(base_scene + "network: [{module: " + text + "}]\n");
+}
+
+ArmModel two_joints() {
+  ArmModel arm;
+  for (const char* name : {"first", "second"}) {
+    ArmLink link;
+    link.name = link.joint_name = name;
+    link.lower = -1.0;
+    link.upper = 2.0;
+    arm.links.push_back(link);
+  }
+  return arm;
+}
+
+/// The message of what building the network of `modules` throws; empty when nothing is thrown.
+std::string refusal(const std::string& modules) {
+  try {
+    (void)build_network(parsed(base_scene + "network:\n" + modules), two_joints(), 400.0);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+const std::string slave =
+    "  - {module: kbb2}\n  - {module: obstacle}\n  - {module: puma_kin}\n"
+    "  - {module: limits}\n  - {module: puma_joints}\n";
+
+TEST(SceneNetwork, WithoutOneTheTenModulesOfThePaperStandInTheirOrder) {
+  const Scene scene = parsed(base_scene);
+  std::string names;
+  for (const Module& module : scene.network.modules) names += module.name + " ";
+  EXPECT_EQ(names,
+            "torque_arm multiplex spaceball relief kbb2 obstacle puma_kin limits visual "
+            "puma_joints ");
+  EXPECT_EQ(scene.network.gain_check, network::GainCheck::error);
+  const network::Network built = build_network(scene, two_joints(), 400.0);
+  EXPECT_EQ(built.nodes().size(), 10U);
+  EXPECT_EQ(built.connections().size(), 9U);
+  EXPECT_EQ(built.find<network::PumaJoints>()->size(), 2);
+}
+
+TEST(SceneNetwork, TheLeverIsLosslessUnlessTheFileSaysOtherwise) {
+  const auto scales = [](const std::string& text) {
+    return options<network::MultiplexOptions>(with_module("multiplex, " + text));
+  };
+  EXPECT_EQ(scales("velocity_scale: 0.3 m/rad").force_scale, 0.3);
+  EXPECT_EQ(scales("velocity_scale: 0.3 m/rad, force_scale: 50 mm").force_scale, 0.05);
+}
+
+TEST(SceneNetwork, EveryNumberOfAModuleArrives) {
+  const auto relief = options<network::ReliefOptions>(
+      with_module("relief, compliant: [x, rz], frame: world, stiffness: 2 N/mm, damping: 7 N s/m, "
+                  "angular_stiffness: 3 N m/rad, angular_damping: 4 N m s/rad"));
+  EXPECT_EQ(relief.compliant, (std::array<bool, 6>{true, false, false, false, false, true}));
+  EXPECT_EQ(relief.frame, network::ReliefFrame::world);
+  EXPECT_EQ(relief.stiffness, 2000.0);
+  EXPECT_EQ(relief.angular_damping, 4.0);
+
+  const auto line = options<network::LineOptions>(with_module(
+      "line, kind: force_velocity, impedance: 30 N s/m, angular_impedance: 2 N m s/rad, delay: "
+      "100 ms, jitter: 5 ms, loss: 5 %, seed: 7"));
+  EXPECT_EQ(line.kind, network::LineKind::force_velocity);
+  EXPECT_EQ(line.impedance, 30.0);
+  EXPECT_EQ(line.channel.delay, 0.1);
+  EXPECT_EQ(line.channel.loss, 0.05);
+  EXPECT_EQ(line.channel.seed, 7U);
+
+  const Scene obstacle = with_module("obstacle, gain_check: warning, most_energy: 2 J");
+  EXPECT_EQ(obstacle.network.gain_check, network::GainCheck::warning);
+  EXPECT_EQ(options<network::ObstacleOptions>(obstacle).passivity.most_energy, 2.0);
+
+  const auto mass = options<Element>(with_module("mass, mass: 200 g, inertia: 0.5 kg m^2"));
+  EXPECT_EQ(mass.kind, Element::Kind::mass);
+  EXPECT_EQ(mass.linear, 0.2);
+  EXPECT_EQ(mass.angular, 0.5);
+  EXPECT_EQ(options<network::Common>(with_module("junction, common: effort")),
+            network::Common::effort);
+}
+
+TEST(SceneNetwork, OtherArrangementsAreAsEasy) {
+  // The ball alone, over a line, with a mass at the far end.
+  EXPECT_EQ(
+      refusal("  - {module: ground}\n  - {module: spaceball}\n  - {module: kbb2, name: near}\n"
+              "  - {module: line, delay: 20 ms}\n  - {module: junction, to: kbb2}\n"
+              "  - {module: mass, mass: 1 kg, inertia: 0.01 kg m^2, to: junction}\n" +
+              slave),
+      "");
+  EXPECT_EQ(refusal("  - {module: torque_arm}\n  - {module: multiplex}\n" + slave), "");
+  // The same with a load that the lever moves as well.
+  EXPECT_EQ(refusal("  - {module: torque_arm}\n  - {module: multiplex}\n"
+                    "  - {module: junction, to: [load, kbb2]}\n"
+                    "  - {module: kbb2, name: load}\n"
+                    "  - {module: mass, mass: 1 kg, inertia: 1 kg m^2, to: []}\n" +
+                    slave),
+            "");
+}
+
+TEST(SceneNetwork, WhatCannotBeBuiltIsRefusedWithItsLine) {
+  const auto expect = [](const std::string& modules, const std::string& part) {
+    const std::string text = refusal(modules);
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+    EXPECT_NE(text.find("scenes/test.yaml:"), std::string::npos) << text;
+  };
+  expect("  - {module: multiplex}\n" + slave, "test.yaml:9: network: module 'multiplex' has");
+  expect("  - {module: torque_arm}\n  - {module: torque_arm}\n" + slave, "two modules");
+  expect("  - {module: torque_arm}\n  - {module: multiplex, to: nowhere}\n" + slave, "'nowhere'");
+  expect("  - {module: torque_arm}\n" + slave, "one side is tool, the other lever");
+  // The wall would be felt through a spring whose far end nobody measures.
+  expect(
+      "  - {module: torque_arm}\n  - {module: multiplex}\n  - {module: obstacle}\n"
+      "  - {module: kbb2}\n  - {module: puma_kin}\n  - {module: puma_joints}\n",
+      "'obstacle' is a second nonlinear element");
+  // Two spring paths side by side.
+  expect(
+      "  - {module: ground}\n  - {module: junction, name: fork, to: [upper, lower]}\n"
+      "  - {module: kbb2, name: upper, to: join}\n"
+      "  - {module: kbb2, name: lower, to: join}\n"
+      "  - {module: junction, name: join}\n" +
+          slave,
+      "delay-free loop");
+}
+
+TEST(SceneNetwork, ObstaclesNeedTheModuleThroughWhichTheyAct) {
+  EXPECT_NE(refusal("  - {module: torque_arm}\n  - {module: multiplex}\n  - {module: kbb2}\n"
+                    "  - {module: puma_kin}\n  - {module: puma_joints}\n")
+                .find("no module 'obstacle'"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace repel::scene
