@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include <repel/network/ledger.hpp>
 #include <repel/network/two_port.hpp>
 
@@ -35,17 +33,16 @@ inline Vector drawn_vector(Rng& rng, int size, double most) {
   for (double& x : v) x = families::uniform(rng, -most, most);
   return v;
 }
-/// Symmetric, turned anyhow, with eigenvalues from `low` to `high`; the first `zeros` of them are
-/// 0.
+/// Symmetric, turned anyhow by mirrors, with eigenvalues from `low` to `high`; the first `zeros` of
+/// them are 0.
 inline Matrix drawn_gain(Rng& rng, int size, double low, double high, int zeros = 0) {
-  Eigen::MatrixXd any(size, size);
-  for (double& x : any.reshaped()) x = families::uniform(rng, -1.0, 1.0);
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ();
-  Vector eigenvalues(size);
-  for (int i = 0; i < size; ++i) {
-    eigenvalues(i) = i < zeros ? 0.0 : families::log_uniform(rng, low, high);
+  Matrix gain = Matrix::Zero(size, size);
+  for (int i = zeros; i < size; ++i) gain(i, i) = families::log_uniform(rng, low, high);
+  for (int mirrors = 0; mirrors < size; ++mirrors) {
+    const Vector normal = drawn_vector(rng, size, 1.0).normalized();
+    const Matrix mirror = Matrix::Identity(size, size) - 2.0 * normal * normal.transpose();
+    gain = mirror.lazyProduct(gain.lazyProduct(mirror).eval()).eval();
   }
-  const Matrix gain = Q * eigenvalues.asDiagonal() * Q.transpose();
   return 0.5 * (gain + gain.transpose());
 }
 
@@ -54,7 +51,7 @@ inline Matrix drawn_singular(Rng& rng, int size) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::max(1, size - 1), size);
   if (size == 1) return rows;
   for (double& x : rows.reshaped()) x = families::count_between(rng, -3, 3);
-  return rows.transpose() * rows;
+  return rows.transpose().lazyProduct(rows);
 }
 
 /// What an arm, a world and two hands without mercy do: everything moves at random, directions and

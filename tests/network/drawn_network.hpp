@@ -199,8 +199,9 @@ class Laws {
   }
 
  private:
+  // What is below a hundredth of a newton is left over from larger terms elsewhere in the network.
   [[nodiscard]] static bool near(const Vector& a, const Vector& b, double scale) {
-    return (a - b).norm() <= 1e-8 * (1e-3 + scale + a.norm() + b.norm());
+    return (a - b).norm() <= 1e-8 * (1e-2 + scale + a.norm() + b.norm());
   }
   // Both sides have one state: it must lie on the line that the far side shows.
   [[nodiscard]] static bool holds_shown(const network::Connection& c) {

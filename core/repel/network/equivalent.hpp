@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <repel/network/dense.hpp>
 #include <repel/network/port.hpp>
 
 namespace repel::network {
@@ -46,7 +47,7 @@ struct Equivalent {
     if (form == Form::impedance) {
       offset += b;
     } else {
-      offset -= matrix.lazyProduct(b);
+      dense::add_product(matrix, b, offset, -1.0);
     }
   }
   /// A source of flow under the same effort: a common-effort junction with v = `w`.
@@ -54,7 +55,7 @@ struct Equivalent {
     if (form == Form::admittance) {
       offset += w;
     } else {
-      offset -= matrix.lazyProduct(w);
+      dense::add_product(matrix, w, offset, -1.0);
     }
   }
 
@@ -91,53 +92,87 @@ struct Equivalent {
   void at_flow(const Vec<N>& v, PortState<N>& state) const noexcept {
     state.flow = v;
     state.effort = offset;
-    state.effort += matrix.lazyProduct(v);
+    dense::add_product(matrix, v, state.effort);
   }
   /// Effort and flow where something else decides the effort (admittance form).
   void at_effort(const Vec<N>& f, PortState<N>& state) const noexcept {
     state.effort = f;
     state.flow = offset;
-    state.flow += matrix.lazyProduct(f);
+    dense::add_product(matrix, f, state.flow);
   }
 
  private:
   // By Cholesky's factor L and its inverse (Eigen's would bring in the heap for sizes that cannot
   // occur). Rounding leaves a rigid direction with a pivot that is tiny, not zero; more so where
   // the entry on the diagonal is itself a small part of the matrix. Each is measured by its own
-  // entry, so that units of different size make no difference. What is above the diagonal of L is
-  // not read.
+  // entry, so that units of different size make no difference. What is above the diagonal is not
+  // read.
   [[nodiscard]] bool invert() noexcept {
-    const Eigen::Index n = matrix.rows();
     Mat<N> L = matrix;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double pivot = L(k, k);
-      if (!(pivot > 1e-9 * matrix(k, k))) return false;
-      L.col(k).tail(n - k) /= std::sqrt(pivot);
-      for (Eigen::Index j = k + 1; j < n; ++j)
-        L.col(j).tail(n - j) -= L(j, k) * L.col(k).tail(n - j);
-    }
-    Mat<N> inverse = Mat<N>::Identity(n, n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      inverse.row(k).head(k + 1) /= L(k, k);
-      for (Eigen::Index i = k + 1; i < n; ++i) {
-        inverse.row(i).head(k + 1) -= L(i, k) * inverse.row(k).head(k + 1);
+    if (!factor(L)) return false;
+    invert_triangle(L);
+    const Eigen::Index n = matrix.rows();
+    const Vec<N> b = offset;
+    offset.setZero();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        double sum = 0.0;
+        for (Eigen::Index k = i; k < n; ++k) sum += L.coeff(k, i) * L.coeff(k, j);
+        matrix.coeffRef(i, j) = matrix.coeffRef(j, i) = sum;
       }
     }
-    matrix = inverse.transpose().lazyProduct(inverse);
-    const Vec<N> half = inverse.lazyProduct(offset);
-    offset = -inverse.transpose().lazyProduct(half);
+    dense::add_product(matrix, b, offset, -1.0);
     return true;
+  }
+  // L L' = what L comes with.
+  [[nodiscard]] bool factor(Mat<N>& L) const noexcept {
+    const Eigen::Index n = L.rows();
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double pivot = L.coeff(k, k);
+      if (!(pivot > 1e-9 * matrix.coeff(k, k))) return false;
+      const double scale = 1.0 / std::sqrt(pivot);
+      for (Eigen::Index i = k; i < n; ++i) L.coeffRef(i, k) *= scale;
+      for (Eigen::Index j = k + 1; j < n; ++j) {
+        const double share = L.coeff(j, k);
+        for (Eigen::Index i = j; i < n; ++i) L.coeffRef(i, j) -= share * L.coeff(i, k);
+      }
+    }
+    return true;
+  }
+  // In place, column by column.
+  static void invert_triangle(Mat<N>& L) noexcept {
+    const Eigen::Index n = L.rows();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      L.coeffRef(j, j) = 1.0 / L.coeff(j, j);
+      for (Eigen::Index i = j + 1; i < n; ++i) {
+        double sum = 0.0;
+        for (Eigen::Index k = j; k < i; ++k) sum += L.coeff(i, k) * L.coeff(k, j);
+        L.coeffRef(i, j) = -sum / L.coeff(i, i);
+      }
+    }
   }
 
   // f = b + R v with v = v' + w + G f, or the same with the roles exchanged:
   //     (I + R G) f = b - R w + R v'
   // R G has no negative eigenvalue, so that the left side can always be solved.
   void combine(const Mat<N>& other, const Vec<N>& other_offset) noexcept {
-    Mat<N> left = matrix.lazyProduct(other);
-    left.diagonal().array() += 1.0;
-    offset -= matrix.lazyProduct(other_offset);
+    const Eigen::Index n = matrix.rows();
+    Mat<N> left;
+    left.setIdentity(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const double share = other.coeff(k, j);
+        for (Eigen::Index i = 0; i < n; ++i) left.coeffRef(i, j) += matrix.coeff(i, k) * share;
+      }
+    }
+    dense::add_product(matrix, other_offset, offset, -1.0);
     eliminate(left);
-    matrix = 0.5 * (matrix + matrix.transpose()).eval();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = 0; i < j; ++i) {
+        const double mean = 0.5 * (matrix.coeff(i, j) + matrix.coeff(j, i));
+        matrix.coeffRef(i, j) = matrix.coeffRef(j, i) = mean;
+      }
+    }
   }
 
   // Turns matrix and offset into left^-1 of them, by rows, with the largest pivot of each column
@@ -147,23 +182,29 @@ struct Equivalent {
     for (Eigen::Index k = 0; k < n; ++k) {
       Eigen::Index pivot = k;
       for (Eigen::Index i = k + 1; i < n; ++i) {
-        if (std::abs(left(i, k)) > std::abs(left(pivot, k))) pivot = i;
+        if (std::abs(left.coeff(i, k)) > std::abs(left.coeff(pivot, k))) pivot = i;
       }
-      left.row(k).swap(left.row(pivot));
-      matrix.row(k).swap(matrix.row(pivot));
-      std::swap(offset(k), offset(pivot));
+      for (Eigen::Index j = 0; j < n; ++j) {
+        std::swap(left.coeffRef(k, j), left.coeffRef(pivot, j));
+        std::swap(matrix.coeffRef(k, j), matrix.coeffRef(pivot, j));
+      }
+      std::swap(offset.coeffRef(k), offset.coeffRef(pivot));
       for (Eigen::Index i = 0; i < n; ++i) {
-        if (i == k) continue;
-        const double share = left(i, k) / left(k, k);
-        left.row(i) -= share * left.row(k);
-        matrix.row(i) -= share * matrix.row(k);
-        offset(i) -= share * offset(k);
+        if (i != k) subtract_row(left, i, left.coeff(i, k) / left.coeff(k, k), k);
       }
     }
     for (Eigen::Index k = 0; k < n; ++k) {
-      matrix.row(k) /= left(k, k);
-      offset(k) /= left(k, k);
+      const double scale = 1.0 / left.coeff(k, k);
+      for (Eigen::Index j = 0; j < n; ++j) matrix.coeffRef(k, j) *= scale;
+      offset.coeffRef(k) *= scale;
     }
+  }
+  // Row i less `share` of row k; of `left`, what is before column k is done with.
+  void subtract_row(Mat<N>& left, Eigen::Index i, double share, Eigen::Index k) noexcept {
+    const Eigen::Index n = left.rows();
+    for (Eigen::Index j = k; j < n; ++j) left.coeffRef(i, j) -= share * left.coeff(k, j);
+    for (Eigen::Index j = 0; j < n; ++j) matrix.coeffRef(i, j) -= share * matrix.coeff(k, j);
+    offset.coeffRef(i) -= share * offset.coeff(k);
   }
 };
 

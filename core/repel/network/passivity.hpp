@@ -32,13 +32,19 @@ struct PassivityReport {
 ///
 /// The account of the sampled motion pairs the effort held through a period with the motion of that
 /// period, E_s += T f(k-1).(mean flow), and knows of it a tick too late. There damping is limited,
-/// never resists the way out, and what it leaves is carried over.
+/// never resists the way out, and what it leaves is carried over. Damping is held for a period as
+/// well: where it is too much for what moves, or that swings too fast, it drives instead. So where
+/// it gave energy its limit is halved, and where it took some the limit grows again.
 template <int N>
 class PassivityController {
  public:
   /// @param weight of each direction in the damping: ones, and lever^2 for rotations
   explicit PassivityController(const PassivityOptions& options, const Vec<N>& weight)
-      : options_(options), weight_(weight), held_(Vec<N>::Zero(weight.size())) {}
+      : options_(options),
+        weight_(weight),
+        held_(Vec<N>::Zero(weight.size())),
+        damped_(held_),
+        most_damping_(options.most_damping) {}
 
   /// Forgets what is stored, as for an element that begins anew; never what is owed.
   void reset() noexcept {
@@ -53,6 +59,7 @@ class PassivityController {
   [[nodiscard]] double step(const Vec<N>& effort, const Vec<N>& flow, const Vec<N>& mean_flow,
                             double period) noexcept {
     sampled_ += period * held_.dot(mean_flow);
+    limit_damping(damped_.dot(mean_flow));
     const double square = flow.cwiseProduct(weight_).dot(flow);
     const double power = effort.dot(flow);
     double damping = 0.0;
@@ -61,14 +68,14 @@ class PassivityController {
       const double sampled = -(sampled_ / period + power) / square;
       // On the way out the element may be kept from pushing and must not begin to pull; nor may it
       // where it has let go.
-      const double most =
-          power > 0.0 ? options_.most_damping : std::min(options_.most_damping, -power / square);
+      const double most = power > 0.0 ? most_damping_ : std::min(most_damping_, -power / square);
       damping = std::max({0.0, missing, std::min(sampled, most)});
     }
     report_.dissipated += period * damping * square;
     energy_ = std::clamp(energy_ + period * (power + damping * square), 0.0, options_.most_energy);
     sampled_ = std::min(sampled_, options_.most_energy);
-    held_ = effort + damping * weight_.cwiseProduct(flow);
+    damped_ = damping * weight_.cwiseProduct(flow);
+    held_ = effort + damped_;
     if (held_.isZero(0.0)) reset();
     report_.owed = std::max(0.0, -sampled_);
     return damping;
@@ -78,9 +85,17 @@ class PassivityController {
   [[nodiscard]] const PassivityReport& report() const noexcept { return report_; }
 
  private:
+  void limit_damping(double taken) noexcept {
+    const double floor = 1e-3 * options_.most_damping;
+    if (taken < 0.0) most_damping_ = std::max(floor, 0.5 * most_damping_);
+    if (taken > 0.0) most_damping_ = std::min(options_.most_damping, 1.05 * most_damping_);
+  }
+
   PassivityOptions options_;
   Vec<N> weight_;
-  Vec<N> held_;           // effort of the last tick
+  Vec<N> held_;    // effort of the last tick
+  Vec<N> damped_;  // part of it that is damping
+  double most_damping_;
   double energy_ = 0.0;   // [J] of the port, never negative
   double sampled_ = 0.0;  // [J] of the sampled motion
   PassivityReport report_;

@@ -12,8 +12,8 @@ namespace repel::network {
 /// not drift away from the arm, whatever the quality of the rate.
 class MeasuredFlow {
  public:
-  /// Part of the difference that is made good in a tick, and once more in the next.
-  static constexpr double trim = 0.1;
+  /// [s] in which a difference is made good, at any rate of ticks.
+  static constexpr double trim_time = 0.0225;
 
   explicit MeasuredFlow(int joints)
       : position_(Vec<any_size>::Zero(joints)),
@@ -33,7 +33,7 @@ class MeasuredFlow {
     position_ = q;
     const Vec<any_size> error = q - integral_ - 0.5 * period * (flow_ + rate);
     integral_ += 0.5 * period * flow_;
-    flow_ = rate + 2.0 * trim / period * error;
+    flow_ = rate + error * 2.0 / (trim_time + period);
     integral_ += 0.5 * period * flow_;
   }
   [[nodiscard]] const Vec<any_size>& flow() const noexcept { return flow_; }  ///< [rad/s]

@@ -49,10 +49,8 @@ template <class V, class F>
                               Equivalent<any_size>& shown) noexcept {
   if (!at_a.take_form(Form::impedance)) return false;
   shown.form = Form::impedance;
-  const Eigen::Matrix<double, any_size, any_size, Eigen::ColMajor, most_joints, most_joints> RV =
-      at_a.matrix.lazyProduct(flow_map);
-  shown.matrix = effort_map.transpose().lazyProduct(RV);
-  shown.offset = effort_map.transpose().lazyProduct(at_a.offset);
+  dense::sandwich(effort_map, at_a.matrix, flow_map, shown.matrix);
+  dense::transposed_product(effort_map, at_a.offset, shown.offset);
   return true;
 }
 
@@ -62,10 +60,8 @@ template <class V, class F>
                               Equivalent<any_size>& shown) noexcept {
   if (!at_b.take_form(Form::admittance)) return false;
   shown.form = Form::admittance;
-  const Eigen::Matrix<double, any_size, any_size, Eigen::ColMajor, most_joints, most_joints> GF =
-      at_b.matrix.lazyProduct(effort_map.transpose());
-  shown.matrix = flow_map.lazyProduct(GF);
-  shown.offset = flow_map.lazyProduct(at_b.offset);
+  dense::sandwich(flow_map.transpose(), at_b.matrix, effort_map.transpose(), shown.matrix);
+  dense::transposed_product(flow_map.transpose(), at_b.offset, shown.offset);
   return true;
 }
 
@@ -74,7 +70,9 @@ template <class V>
 void to_a(const PortState<any_size>& at_b, Equivalent<any_size> at_a, const V& flow_map,
           PortState<any_size>& state) noexcept {
   (void)at_a.take_form(Form::impedance);
-  at_a.at_flow(flow_map.lazyProduct(at_b.flow), state);
+  Vec<any_size> flow;
+  dense::transposed_product(flow_map.transpose(), at_b.flow, flow);
+  at_a.at_flow(flow, state);
 }
 
 /// State at B from that at A, what B shows being `at_b`.
@@ -82,7 +80,9 @@ template <class F>
 void to_b(const PortState<any_size>& at_a, Equivalent<any_size> at_b, const F& effort_map,
           PortState<any_size>& state) noexcept {
   (void)at_b.take_form(Form::admittance);
-  at_b.at_effort(effort_map.transpose().lazyProduct(at_a.effort), state);
+  Vec<any_size> effort;
+  dense::transposed_product(effort_map, at_a.effort, effort);
+  at_b.at_effort(effort, state);
 }
 
 }  // namespace transformer
