@@ -1,0 +1,133 @@
+// A hand drives a device into a sampled wall, and the wall is made stiffer until it no longer comes
+// to rest.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/passivity.hpp>
+
+#include "part.hpp"
+#include "rig.hpp"
+
+namespace repel::telepresence {
+
+namespace {
+
+constexpr SliderOptions device{
+    .mass = 1.0, .friction = 20.0, .hand_stiffness = 300.0, .hand_damping = 5.0};
+constexpr double approach = 0.03;    // [m] from which the hand comes
+constexpr double push = 15.0;        // [N] with which it ends in the wall
+constexpr double rest_limit = 1e-6;  // [m] of motion from peak to peak that counts as rest
+constexpr double stiffest = 1e7;     // [N/m] that is tried
+
+struct Setting {
+  double rate_hz = 1000.0;
+  double damping = 0.0;  // [N s/m] of the wall
+  bool controlled = false;
+};
+
+/// A device before a wall, with what samples it.
+class Hit {
+ public:
+  explicit Hit(const Setting& setting, double stiffness)
+      : period_(1.0 / setting.rate_hz),
+        controlled_(setting.controlled),
+        wall_(stiff_wall(stiffness, setting.damping)),
+        slider_(device, period_) {}
+
+  /// One tick, the hand going at `hand_speed` [m/s]. The position at its beginning [m].
+  double tick(double hand_speed) {
+    const double x = slider_.position();
+    const double v = slider_.speed();
+    double force = wall_(approach - x, -v);
+    if (controlled_) {
+      force += v * controller_.step(One(force), One(v), One((x - last_) / period_), period_);
+    }
+    last_ = x;
+    slider_.move(-force, hand_speed);
+    return x;
+  }
+
+ private:
+  using One = network::Vec<1>;
+  double period_;  // [s]
+  bool controlled_;
+  ForceLaw wall_;
+  Slider slider_;
+  double last_ = 0.0;  // [m]
+  network::PassivityController<1> controller_{{}, One::Ones()};
+};
+
+/// True when the device comes to rest after a hit at `speed` [m/s]: second by second its motion
+/// becomes less, until there is none. What becomes less by under 2 % in a second is a limit cycle.
+bool comes_to_rest(const Setting& s, double stiffness, double speed) {
+  Hit hit(s, stiffness);
+  const auto driven = std::llround((approach + push / device.hand_stiffness) / speed * s.rate_hz);
+  for (std::int64_t i = 0; i < driven; ++i) hit.tick(speed);
+  double before = std::numeric_limits<double>::infinity();
+  for (;;) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::int64_t i = 0; i < std::llround(s.rate_hz); ++i) {
+      const double x = hit.tick(0.0);
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    if (high - low < rest_limit) return true;
+    if (!(high - low < 0.98 * before)) return false;
+    before = high - low;
+  }
+}
+
+bool holds(const Setting& s, double stiffness) {
+  const auto rests = [&](double speed) { return comes_to_rest(s, stiffness, speed); };
+  return rests(0.05) && rests(0.2) && rests(0.5);
+}
+
+/// [N/m] below which every wall that was tried is held: steps of a tenth, then bisection to 0.1 %.
+double greatest(const Setting& s) {
+  double held = 1000.0;
+  if (!holds(s, held)) return 0.0;
+  double lost = 1.1 * held;
+  while (lost < stiffest && holds(s, lost)) {
+    held = lost;
+    lost *= 1.1;
+  }
+  if (lost >= stiffest) return stiffest;
+  while (lost / held > 1.001) {
+    const double middle = std::sqrt(held * lost);
+    (holds(s, middle) ? held : lost) = middle;
+  }
+  return held;
+}
+
+}  // namespace
+
+Result zwidth(const Options& options) {
+  Result result{.title = "Z-width: the stiffest wall without a limit cycle",
+                .columns = {"rate [Hz]", "wall damping [N s/m]", "measured [kN/m]",
+                            "with controller [kN/m]", "clean limit [kN/m]"},
+                .notes = {"A device of 1 kg and 20 N s/m in a hand of 300 N/m and 5 N s/m."}};
+  const std::vector<double> dampings = options.quick
+                                           ? std::vector<double>{0, 10, 40}
+                                           : std::vector<double>{0, 5, 10, 20, 40, 80, 160};
+  std::size_t done = 0;
+  for (const double rate_hz : {400.0, 1000.0, 4000.0}) {
+    for (const double damping : dampings) {
+      const double bare = greatest({rate_hz, damping, false});
+      const double controlled = greatest({rate_hz, damping, true});
+      const network::CleanStiffness clean{
+          .period = 1.0 / rate_hz, .device_damping = device.friction, .wall_damping = damping};
+      const std::string name = to_text(rate_hz) + " Hz, " + to_text(damping) + " N s/m";
+      if (bare < clean.limit()) result.fail(name, "a wall below the clean limit is not held");
+      result.rows.push_back(
+          {rate_hz, damping, 1e-3 * bare, 1e-3 * controlled, 1e-3 * clean.limit()});
+      progress("zwidth", ++done, 3 * dampings.size());
+    }
+  }
+  return result;
+}
+
+}  // namespace repel::telepresence
