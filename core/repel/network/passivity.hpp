@@ -51,6 +51,7 @@ class PassivityController {
     energy_ = 0.0;
     sampled_ = std::min(sampled_, 0.0);
     held_.setZero();
+    damped_.setZero();
   }
 
   /// The damping by which `effort` has to be corrected: add it times weight times `flow`.
