@@ -15,7 +15,7 @@ PALETTE = ("#c1121f", "#2a6f97", "#e09f3e", "#588157", "#7f7f7f")
 
 
 class Axes:
-    """One panel; each axis linear, or logarithmic where its ends are both powers of ten."""
+    """One panel; what is beyond an end of an axis is drawn at that end."""
 
     def __init__(self, left, across, up):
         self.left, self.right = left + LEFT, left + WIDTH - 15
@@ -68,11 +68,10 @@ def picture(panels, colours):
 
 
 def delay(part):
-    """Forces beyond the panel run along its edge."""
     colours = {"plain": PALETTE[1], "waves": PALETTE[0]}
     panels = []
     for quantity in ("wall force [N]", "force at the hand [N]"):
-        axes = Axes(WIDTH * len(panels), even(0, 10, 2), even(-50, 150, 50))
+        axes = Axes(WIDTH * len(panels), even(0, 10, 2), even(-150, 150, 50))
         panel = list(axes.lines(f"{quantity}, 100 ms, 5 % lost", "time [s]"))
         for way, colour in colours.items():
             run = part["series"][way]
@@ -86,7 +85,7 @@ def transparency(part):
     colours = dict(zip(ways, PALETTE))
     panels = []
     for contact in ("free", "wall"):
-        axes = Axes(WIDTH * len(panels), decades(0.2, 50, (1, 2, 5)), decades(1, 10000))
+        axes = Axes(WIDTH * len(panels), decades(0.2, 50, (1, 2, 5)), decades(1, 100000))
         panel = list(axes.lines(f"{contact}: impedance felt [N s/m], black: the truth",
                                 "frequency [Hz]"))
         for way in ways:

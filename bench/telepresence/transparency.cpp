@@ -97,7 +97,9 @@ Result transparency(const Options& options) {
                                                  "against the truth" + at + "[dB]"});
   }
   std::vector<double> all = shown;
-  for (int i = 0; i < (options.quick ? 0 : 25); ++i) all.push_back(0.2 * std::pow(10.0, 0.1 * i));
+  for (int i = 0; i < (options.quick ? 0 : 60); ++i) {
+    all.push_back(0.2 * std::pow(10.0, 0.04 * i));  // to 46 Hz
+  }
   std::size_t done = 0;
   for (const Setting& setting : settings()) {
     std::vector<Json> row{setting.name()};
