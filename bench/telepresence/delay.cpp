@@ -12,9 +12,9 @@ namespace repel::telepresence {
 namespace {
 
 constexpr double strokes_hz = 1.25;
-constexpr double reach = 0.10;       // [m] of the hand, 50 mm beyond the wall
-constexpr double hold_from = 2.8;    // [s] when the fourth stroke has come to its end
-constexpr double swing_limit = 5.0;  // [mm] of the lever in the last second of a stable run
+constexpr double reach = 0.10;        // [m] of the hand, 50 mm beyond the wall
+constexpr double hold_from = 2.8;     // [s] when the fourth stroke has come to its end
+constexpr double swing_limit = 10.0;  // [mm] of the lever in the last second of a stable run
 
 /// Speed [m/s] at which the hand leads.
 double hand_speed(double time) {
