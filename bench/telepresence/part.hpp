@@ -49,5 +49,11 @@ void progress(const char* part, std::size_t done, std::size_t of);
 [[nodiscard]] Result transparency(const Options& options);
 [[nodiscard]] Result zwidth(const Options& options);
 [[nodiscard]] Result hold(const Options& options);
+// On the simulated arm; only where it is built.
+[[nodiscard]] Result contact(const Options& options);
+[[nodiscard]] Result align(const Options& options);
+[[nodiscard]] Result relief(const Options& options);
+[[nodiscard]] Result joint_limits(const Options& options);
+[[nodiscard]] Result reflection(const Options& options);
 
 }  // namespace repel::telepresence

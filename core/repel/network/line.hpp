@@ -2,6 +2,7 @@
 /// LINE: joins two sides over a channel with delay, by wave variables.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -23,7 +24,8 @@ struct LineOptions {
   double angular_impedance = 0.5;  ///< [N m s/rad]; of a tool port
   ChannelOptions channel;          ///< of both directions; the seeds differ
   /// [s] that the receiver waits beyond the delay of the channel, so that late packets are in time
-  /// and lost ones can be bridged from the next; less than zero: the jitter and two ticks
+  /// and lost ones can be bridged from the next; less than zero: the jitter and as many ticks as
+  /// are lost in a row once in a million, two to fifty
   double buffer = -1.0;
 };
 
@@ -66,7 +68,10 @@ class Line {
     nothing.sum.setZero(impedance_.size());
     nothing.effort = nothing.flow = nothing.sum;
     const ChannelOptions& channel = options_.channel;
-    const double buffer = options_.buffer < 0.0 ? channel.jitter + 2.0 * period : options_.buffer;
+    const double bridged =
+        channel.loss > 0.0 ? std::clamp(std::log(1e-6) / std::log(channel.loss), 2.0, 50.0) : 2.0;
+    const double buffer =
+        options_.buffer < 0.0 ? channel.jitter + std::ceil(bridged) * period : options_.buffer;
     buffer_ = std::llround(buffer / period);
     for (End& end : ends_) {
       end.outgoing.prepare(period, nothing, buffer_);
@@ -160,7 +165,9 @@ class Line {
   void play(End& end, const Packet& packet, double count) const noexcept {
     end.wave = (packet.sum - end.played.sum) / (count * period_);
     const double wanted = period_ * end.wave.squaredNorm();
-    const double allowed = std::max(0.0, packet.energy - end.played.energy);
+    // Each may take its share and no more: else, with something still missing from an earlier loss,
+    // the first would leave nothing for the others.
+    const double allowed = std::max(0.0, packet.energy - end.played.energy) / count;
     if (wanted > allowed) end.wave *= std::sqrt(allowed / wanted);
     end.played.sum += period_ * end.wave;
     end.played.energy += std::min(wanted, allowed);

@@ -1,0 +1,110 @@
+// A tilted tool is pushed against a plate and into a corner: the walls alone turn it.
+
+#include <algorithm>
+#include <cmath>
+
+#include "arm_run.hpp"
+#include "part.hpp"
+
+namespace repel::telepresence {
+
+namespace {
+
+struct Case {
+  const char* name;
+  const char* obstacles;
+  const char* start;  // a tilted tool
+  const char* push;   // [mm/s]
+  int axes;           // that the plates determine: z, or all
+  bool relieved;      // RELIEF lets the tool turn
+};
+
+/// Greatest angle [deg] between an axis of the tool and the nearest axis of the plates.
+double tilt_of(const Pose& X_WT, int axes) {
+  double worst = 1.0;
+  for (int i = 3 - axes; i < 3; ++i)
+    worst = std::min(worst, X_WT.linear().col(i).cwiseAbs().maxCoeff());
+  return std::acos(std::min(1.0, worst)) * 180.0 / M_PI;
+}
+
+// The tool is a cube of 80 mm.
+constexpr const char* floor_plate =
+    "{name: floor, shape: box, size: 0.8 0.8 0.05 m, position: 0.6 -0.15 0.375 m, law: wall}";
+constexpr const char* edge_plates =
+    "{name: floor, shape: box, size: 0.8 0.8 0.05 m, position: 0.6 -0.15 0.375 m, law: wall}, "
+    "{name: side, shape: box, size: 0.6 0.05 0.3 m, position: 0.6 -0.04 0.5 m, law: wall}";
+constexpr const char* corner_plates =
+    "{name: floor, shape: box, size: 0.8 0.8 0.05 m, position: 0.6 -0.15 0.375 m, law: wall}, "
+    "{name: side, shape: box, size: 0.6 0.05 0.3 m, position: 0.6 -0.04 0.5 m, law: wall}, "
+    "{name: end, shape: box, size: 0.05 0.6 0.3 m, position: 0.715 -0.15 0.5 m, law: wall}";
+
+constexpr const char* leaning = "0 45 -180 4 -40 0 deg";
+constexpr const char* twisted = "0 45 -180 4 -40 4 deg";
+constexpr Case cases[] = {
+    {"plate", floor_plate, leaning, "0 0 -40", 1, false},
+    {"plate", floor_plate, leaning, "0 0 -40", 1, true},
+    {"edge", edge_plates, twisted, "0 30 -30", 3, false},
+    {"edge", edge_plates, twisted, "0 30 -30", 3, true},
+    {"corner", corner_plates, twisted, "30 30 -30", 3, false},
+    {"corner", corner_plates, twisted, "30 30 -30", 3, true},
+};
+
+std::string network_of(bool relieved) {
+  std::string text = ArmScene::free_coupling;
+  const std::string relief =
+      "{module: relief, compliant: [rx, ry, rz], angular_stiffness: 2 N m/rad, "
+      "angular_damping: 1 N m s/rad}, ";
+  if (relieved) text.insert(text.find("{module: kbb2"), relief);
+  return text;
+}
+
+}  // namespace
+
+Result align(const Options& options) {
+  Result result{
+      .title = "A tilted tool pushed flat",
+      .columns = {"into", "RELIEF in rotation", "rate [Hz]", "tilt before [deg]",
+                  "tilt after [deg]", "flat after [s]", "mean force [N]", "chatter above 30 Hz [N]",
+                  "swing of the tilt [mdeg]"},
+      .notes = {"A cube of 80 mm. Tilt is the greatest angle between its axes and those of the "
+                "plates; it is flat, for good, at a tenth of the tilt before. Less than four "
+                "fifths turned, or "
+                "chatter over 2 % of the mean force, fails."}};
+  std::size_t done = 0;
+  const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
+  for (const Case& each : cases) {
+    for (const double rate_hz : rates) {
+      ArmScene scene{.tool = "{name: cube, shape: box, size: 80 80 80 mm, position: 0 0 -10 mm}",
+                     .obstacles = each.obstacles,
+                     .network = network_of(each.relieved),
+                     .start = each.start,
+                     .rate_hz = rate_hz};
+      scene.script = std::string("{name: push, device: spaceball, duration: 6 s, linear: ") +
+                     each.push + " mm/s}";
+      Trace force{.rate_hz = rate_hz};
+      Trace tilt{.rate_hz = rate_hz};
+      const ArmEnd end = run_arm(scene, 6.0, [&](const ArmTick& tick) {
+        force.samples.push_back(tick.record.virtual_force.force.norm());
+        tilt.samples.push_back(tilt_of(tick.X_WT, each.axes));
+      });
+      const double before = tilt.samples.front();
+      const auto touched = std::find_if(force.samples.begin(), force.samples.end(),
+                                        [](double newton) { return newton > 1.0; });
+      const auto not_flat = std::find_if(tilt.samples.rbegin(), tilt.samples.rend(),
+                                         [&](double angle) { return angle > 0.1 * before; });
+      const double turning = static_cast<double>((tilt.samples.rend() - not_flat) -
+                                                 (touched - force.samples.begin())) /
+                             rate_hz;
+      const std::string row = std::string(each.name) + ", " + to_text(rate_hz) + " Hz";
+      result.fail(row, end.complaint);
+      if (!(tilt.mean() < 0.2 * before)) result.fail(row, "the tool is not turned flat");
+      if (!(force.chatter() < 0.02 * force.mean())) result.fail(row, "it chatters");
+      result.rows.push_back({each.name, each.relieved, rate_hz, before, tilt.mean(), turning,
+                             force.mean(), force.chatter(), 1e3 * tilt.swing()});
+      progress("align", ++done, std::size(cases) * rates.size());
+    }
+  }
+  return result;
+}
+
+}  // namespace repel::telepresence

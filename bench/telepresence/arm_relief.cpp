@@ -1,0 +1,100 @@
+// Compliance along chosen directions: how stiff the way to a wall is.
+
+#include <cmath>
+
+#include "arm_run.hpp"
+#include "part.hpp"
+
+namespace repel::telepresence {
+
+namespace {
+
+constexpr double speed = 0.005;      // [m/s] of the command
+constexpr double coupling = 3000.0;  // K of KBB2 [N/m]
+
+struct Case {
+  const char* compliant;
+  double stiffness;  // of RELIEF [N/m]
+  const char* into;
+  Vec3 direction;
+  bool gives_way;  // RELIEF does, in that direction
+};
+const Case cases[] = {
+    {"none", 500.0, "table", {0, 0, -1}, false}, {"z", 500.0, "table", {0, 0, -1}, true},
+    {"z", 2000.0, "table", {0, 0, -1}, true},    {"y", 500.0, "table", {0, 0, -1}, false},
+    {"none", 500.0, "side", {0, 1, 0}, false},   {"z", 500.0, "side", {0, 1, 0}, false},
+    {"y", 500.0, "side", {0, 1, 0}, true},
+};
+
+/// Spring of RELIEF and spring K of KBB2, one after the other [N/m].
+double expected(const Case& each) {
+  return 1.0 / (1.0 / coupling + (each.gives_way ? 1.0 / each.stiffness : 0.0));
+}
+
+/// Force on the tool from the operator's side, and how far the tool lags behind the command.
+struct Mark {
+  double force = NAN;  // [N]
+  double lag = NAN;    // [m]
+};
+
+/// Rise of that force with the lag, while the table's own rises from 10 to 40 N [N/m].
+double measured(const Case& each, double rate_hz, std::string& complaint) {
+  ArmScene scene{
+      .tool = "{name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}",
+      .obstacles =
+          "{name: table, shape: box, size: 0.8 0.8 0.05 m, position: 0.5 -0.15 0.40 m, "
+          "law: wall}, {name: side, shape: box, size: 0.8 0.05 0.4 m, position: 0.5 "
+          "-0.085 0.65 m, law: wall}",
+      .rate_hz = rate_hz};
+  const std::string relief = std::string("{module: relief, frame: world, compliant: [") +
+                             (each.compliant == std::string("none") ? "" : each.compliant) +
+                             "], stiffness: " + to_text(each.stiffness) +
+                             " N/m, damping: 50 N s/m}, ";
+  scene.network.insert(scene.network.find("{module: kbb2"), relief);
+  scene.network.insert(scene.network.find("spaceball") + 9, ", dead_band: 0 m/s");
+  scene.script = std::string("{name: press, device: spaceball, duration: 40 s, linear: 0 ") +
+                 to_text(speed * each.direction.y()) + " " + to_text(speed * each.direction.z()) +
+                 " m/s}";
+  Mark first;
+  Mark last;
+  const ArmEnd end = run_arm(scene, 40.0, [&](const ArmTick& tick) {
+    const double wall = tick.record.virtual_force.force.norm();
+    const Mark now{tick.record.coupling.force.dot(each.direction),
+                   speed * tick.record.time - tick.record.p_WT.dot(each.direction)};
+    if (std::isnan(first.force) && wall > 10.0) first = now;
+    if (std::isnan(last.force) && wall > 40.0) last = now;
+  });
+  complaint = end.complaint;
+  return (last.force - first.force) / (last.lag - first.lag);
+}
+
+}  // namespace
+
+Result relief(const Options& options) {
+  Result result{
+      .title = "Compliance through RELIEF",
+      .columns = {"compliant", "its stiffness [N/m]", "pressed into", "rate [Hz]", "measured [N/m]",
+                  "expected [N/m]", "off"},
+      .notes = {
+          "Rise of the operator's force on the tool with its lag behind the command, which goes "
+          "on at 5 mm/s, while the force of the wall rises from 10 to 40 N. Expected: RELIEF "
+          "and KBB2 as springs one after the other; more than a tenth off fails."}};
+  std::size_t done = 0;
+  const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
+  for (const Case& each : cases) {
+    for (const double rate_hz : rates) {
+      std::string complaint;
+      const double found = measured(each, rate_hz, complaint);
+      const double off = found / expected(each) - 1.0;
+      const std::string row = std::string(each.compliant) + " into " + each.into;
+      result.fail(row, complaint);
+      if (!(std::abs(off) < 0.1)) result.fail(row, to_text(found) + " N/m");
+      result.rows.push_back(
+          {each.compliant, each.stiffness, each.into, rate_hz, found, expected(each), off});
+      progress("relief", ++done, std::size(cases) * rates.size());
+    }
+  }
+  return result;
+}
+
+}  // namespace repel::telepresence
