@@ -101,6 +101,60 @@ TEST(NetworkOfAScene, SilentDeviceRampsTheForceToZero) {
   EXPECT_EQ(gain[440], 0.0);  // 20 ms of patience and 50 ms of ramp later
 }
 
+// The elbow is folded until it ends, and the hand goes on.
+TEST(NetworkOfAScene, JointAtItsLimitHoldsAgainstTheOperatorAndIsFelt) {
+  const Folder folder;
+  std::string robot = robot_text();
+  const std::string start = "0 45 -180 0 -45 0 deg";
+  robot.replace(robot.find(start), start.size(), "0 70 -218 0 -30 0 deg");
+  const std::string scene =
+      folder.with("limit.yaml", robot +
+                                    "obstacles: []\n"
+                                    "script:\n"
+                                    "  - {name: fold, device: torque_arm, duration: 5 s, "
+                                    "direction: -1 0 0, lever: 0.8 rad/s}\n"
+                                    "  - {name: back, device: torque_arm, duration: 3 s, "
+                                    "direction: -1 0 0, lever: -0.8 rad/s}\n");
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 8 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_GT(report.at("status_ticks").at("joint_limit").get<int>(), 1000);
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  const Columns log = columns_of(folder / "log.csv");
+  expect_finite_forces(log);
+  const auto& torque = log.at("lever_torque_nm");
+  const auto& x = log.at("x_m");
+  const auto& gain = log.at("gain");
+  EXPECT_LT(torque[1999], -2.0);  // against the way it leads
+  EXPECT_LT(std::abs(x[1999] - x[1799]), 0.2 * std::abs(x[200] - x[0])) << "the arm went on";
+  EXPECT_GT(x.back(), x[1999] + 0.05) << "the arm did not come back";
+  EXPECT_EQ(*std::min_element(gain.begin(), gain.end()), 1.0) << "a limit is no fault";
+}
+
+// A device that gives the most it can is followed as fast as the ball allows, and said to saturate.
+TEST(NetworkOfAScene, SaturatedInputIsCutAndReported) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "fast.yaml", robot_text() + table_text() +
+                       "script:\n"
+                       "  - {name: hit, device: spaceball, duration: 500 ms, linear: 0 0 -9 m/s}\n"
+                       "  - {name: pull, device: torque_arm, duration: 500 ms, direction: 0 0 1, "
+                       "lever: 90 rad/s}\n");
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 1.5 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_GT(report.at("status_ticks").at("saturated").get<int>(), 200);
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  const Columns log = columns_of(folder / "log.csv");
+  expect_finite_forces(log);
+  const auto& z = log.at("z_m");
+  for (std::size_t i = 1; i < 200; ++i) ASSERT_LT(std::abs(z[i] - z[i - 1]), 0.6 / 400.0) << i;
+}
+
 /// Largest virtual force in the last second of a minute of holding the tool on the table, over
 /// 100 ms and a channel that loses one packet in twenty; the report besides.
 std::pair<double, json> held_over_a_line(const Folder& folder, const std::string& kind) {

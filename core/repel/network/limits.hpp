@@ -14,9 +14,9 @@ namespace repel::network {
 
 /// A one-sided spring-damper at each end of a joint's range. It only ever pushes inward.
 struct JointLimits {
-  double range = 0.1;        ///< [rad] or [m] before the limit where it begins
+  double range = 0.1;         ///< [rad] or [m] before the limit where it begins
   double stiffness = 2000.0;  ///< [N m/rad] or [N/m]
-  double damping = 20.0;     ///< [N m s/rad] or [N s/m]
+  double damping = 20.0;      ///< [N m s/rad] or [N s/m]
 
   /// The torque [N m] at position `q` moving at `v`, for a joint between `lower` and `upper`.
   [[nodiscard]] double operator()(double q, double v, double lower, double upper) const noexcept {
