@@ -114,6 +114,7 @@ class ArmBuilder {
   }
 
   /// Adds `node`, fixed to arm link `link` at `X_LN`, and all beyond it.
+  // NOLINTNEXTLINE(misc-no-recursion): a file is a tree, read once at set-up
   void add(const urdf::Link& node, int link, const Pose& X_LN) {
     if (link >= 0 && node.inertial) add_body(*node.inertial, X_LN, robot_.arm.links.back());
     add_parts(node, link, X_LN);
@@ -126,6 +127,7 @@ class ArmBuilder {
     }
   }
 
+  // NOLINTNEXTLINE(misc-no-recursion): as add()
   void add_child(const urdf::Link& child, int link, const Pose& X_LN) {
     const urdf::Joint& joint = *child.parent_joint;
     const Pose X_LJ = X_LN * from_urdf(joint.parent_to_joint_origin_transform);

@@ -160,6 +160,7 @@ const Element* UrdfDocument::shape_of(const Element& collision, const std::strin
   return shape;
 }
 
+// NOLINTNEXTLINE(misc-no-recursion): a file is a tree, read once at set-up
 void UrdfDocument::check_numbers(const Element& element, const std::string& owner) const {
   const std::string_view name = element.Name();
   if (name == "visual") return;  // never read

@@ -9,7 +9,7 @@
 namespace repel::scene {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result(1, '\'');
   return result.append(text).append(1, '\'');
 }
@@ -67,11 +67,11 @@ void Value::fail(const std::string& what) const {
 }
 
 void Value::fail_with_value(const std::string& allowed) const {
-  const std::string found = node_.IsScalar()     ? quoted(node_.Scalar())
+  const std::string found = node_.IsScalar()     ? in_quotes(node_.Scalar())
                             : node_.IsMap()      ? "a map"
                             : node_.IsSequence() ? "a list"
                                                  : "empty";
-  fail(quoted(name_) + " is " + found + "; allowed: " + allowed);
+  fail(in_quotes(name_) + " is " + found + "; allowed: " + allowed);
 }
 
 std::string Value::text() const {
@@ -133,7 +133,7 @@ Map::Map(const Value& value) : self_(value) {
   for (const auto& entry : value.node_) {
     const Value key(entry.first, "key", value.file_);
     const std::string name = key.text();
-    if (find(name)) key.fail("a second key " + quoted(name) + "; allowed: one");
+    if (find(name)) key.fail("a second key " + in_quotes(name) + "; allowed: one");
     entries_.emplace_back(name, Value(entry.second, name, value.file_));
     if (entry.second.IsNull()) entries_.back().second.mark_ = key.mark_;
   }
@@ -149,15 +149,15 @@ void Map::allow(std::span<const std::string_view> keys) const {
     const std::string_view nearest = *std::min_element(keys.begin(), keys.end(), nearer);
     const bool near = edit_distance(found, nearest) <= 1 + nearest.size() / 3;
     Value(entry.first, found, self_.file_)
-        .fail("unknown key " + quoted(found) +
-              (near ? "; did you mean " + quoted(nearest) + "?" : ";") +
+        .fail("unknown key " + in_quotes(found) +
+              (near ? "; did you mean " + in_quotes(nearest) + "?" : ";") +
               " allowed: " + listed(keys));
   }
 }
 
 const Value& Map::at(std::string_view key) const {
   const Value* value = find(key);
-  if (!value) self_.fail("the key " + quoted(key) + " is missing in " + quoted(self_.name_));
+  if (!value) self_.fail("the key " + in_quotes(key) + " is missing in " + in_quotes(self_.name_));
   return *value;
 }
 

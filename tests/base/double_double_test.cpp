@@ -9,7 +9,7 @@
 #include <support/oracle.hpp>
 
 namespace repel {
-namespace {
+namespace double_double_test {
 
 using families::Rng;
 using oracle::magnitude;
@@ -129,5 +129,5 @@ TEST(DoubleDouble, KeepsWhatADoubleDrops) {
             1e-30);
 }
 
-}  // namespace
+}  // namespace double_double_test
 }  // namespace repel

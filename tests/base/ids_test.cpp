@@ -6,7 +6,7 @@
 #include <type_traits>
 
 namespace repel {
-namespace {
+namespace ids_test {
 
 TEST(Ids, ANewIdIsNotValid) {
   EXPECT_FALSE(BodyId{}.valid());
@@ -27,5 +27,5 @@ TEST(Ids, OfDifferentThingsCannotBeMixedUp) {
   static_assert(!std::equality_comparable_with<BodyId, PartId>);
 }
 
-}  // namespace
+}  // namespace ids_test
 }  // namespace repel

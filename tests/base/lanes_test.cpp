@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace repel::detail {
-namespace {
+namespace lanes_test {
 
 Vec<double> numbered(int k) {
   return {k + 0.25, -k - 0.5, 3.0 * k};
@@ -97,5 +97,5 @@ TEST(LanePose, TurnsIntoTheWorldAndBack) {
   EXPECT_EQ(LanePose::all(pose(1)).columns[1].z[0], pose(1)(2, 1));
 }
 
-}  // namespace
+}  // namespace lanes_test
 }  // namespace repel::detail

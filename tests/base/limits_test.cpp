@@ -5,7 +5,7 @@
 #include <type_traits>
 
 namespace repel {
-namespace {
+namespace limits_test {
 
 TEST(Limits, ArePlainNumbersThatCanBeNamedOneByOne) {
   static_assert(std::is_aggregate_v<Limits> && std::is_trivially_copyable_v<Limits>);
@@ -21,5 +21,5 @@ TEST(Limits, HoldATwentyThousandPartWorldByDefault) {
   EXPECT_GE(limits.threads, 1);
 }
 
-}  // namespace
+}  // namespace limits_test
 }  // namespace repel

@@ -10,7 +10,7 @@
 #include <thread>
 
 namespace repel {
-namespace {
+namespace mailbox_test {
 
 using Payload = std::array<long, 64>;
 
@@ -101,5 +101,5 @@ TEST(Mailbox, ValuesAreNeverTornAndNeverRunBackwards) {
   EXPECT_EQ(box.newest()[0], last_posted);
 }
 
-}  // namespace
+}  // namespace mailbox_test
 }  // namespace repel

@@ -9,7 +9,7 @@
 #include <string>
 
 namespace repel {
-namespace {
+namespace setup_error_test {
 
 std::string text_of_check(double value, double low, double high) {
   try {
@@ -81,5 +81,5 @@ TEST(ToText, IsTheSameInEveryLocale) {
   std::locale::global(before);
 }
 
-}  // namespace
+}  // namespace setup_error_test
 }  // namespace repel

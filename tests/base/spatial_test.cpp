@@ -9,7 +9,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace spatial_test {
 
 using families::Rng;
 using families::rotation;
@@ -122,5 +122,5 @@ TEST(Spatial, OneEntryThatIsNotFiniteSpoilsTheWhole) {
   EXPECT_FALSE(is_finite(Twist{Vec3::Zero(), Vec3(nan, 0, 0)}));
 }
 
-}  // namespace
+}  // namespace spatial_test
 }  // namespace repel

@@ -7,7 +7,7 @@
 #include <string>
 
 namespace repel {
-namespace {
+namespace status_test {
 
 constexpr Status every_bit[] = {status::bad_pose,      status::bad_command,   status::bad_joints,
                                 status::clock_fault,   status::stale_pairs,   status::late_result,
@@ -50,5 +50,5 @@ TEST(Status, FailsafeIsEveryFaultThatLeavesTheWorldUnknownAndNothingElse) {
                                   status::silent_device | status::network_fault);
 }
 
-}  // namespace
+}  // namespace status_test
 }  // namespace repel

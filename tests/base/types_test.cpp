@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace repel {
-namespace {
+namespace types_test {
 
 constexpr double not_finite[] = {std::numeric_limits<double>::quiet_NaN(),
                                  std::numeric_limits<double>::infinity(),
@@ -85,5 +85,5 @@ TEST(Types, APoseThatIsNotFiniteIsNotRigid) {
   }
 }
 
-}  // namespace
+}  // namespace types_test
 }  // namespace repel

@@ -5,7 +5,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace vec_test {
 
 constexpr unsigned seed = 5;
 
@@ -56,5 +56,5 @@ TEST(Vec, ExtendedPrecisionSeesACancellationThatDoubleDoesNot) {
   EXPECT_EQ(static_cast<double>(dot(u, ones)), 1e-20);
 }
 
-}  // namespace
+}  // namespace vec_test
 }  // namespace repel

@@ -16,7 +16,7 @@
 #ifndef REPEL_SANITIZED
 namespace {
 std::atomic<long> allocations{0};
-}  // namespace
+}
 
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) {
@@ -26,7 +26,7 @@ extern "C" void* malloc(std::size_t size) {
 #endif
 
 namespace repel::bullet::test {
-namespace {
+namespace arm_contract_test {
 
 static_assert(TorqueDrivenArm<Arm>);
 static_assert(noexcept(std::declval<Arm&>().step(0.0)));
@@ -188,5 +188,5 @@ TEST(BulletArm, SetUpRefusesOptionsAndStatesOutOfRange) {
   EXPECT_THROW(free.reset(std::vector{0.0}, std::vector{kInfinity}), SetupError);
 }
 
-}  // namespace
+}  // namespace arm_contract_test
 }  // namespace repel::bullet::test

@@ -8,7 +8,7 @@
 #include "arms.hpp"
 
 namespace repel::bullet::test {
-namespace {
+namespace arm_dynamics_test {
 
 /// The arm without friction and stops: what is left conserves energy.
 ArmModel without_losses(ArmModel model) {
@@ -235,5 +235,5 @@ TEST(BulletArmDynamics, SpeedIsNotClamped) {
   EXPECT_NEAR(velocities(arm)[0], 500.0, 1e-9);
 }
 
-}  // namespace
+}  // namespace arm_dynamics_test
 }  // namespace repel::bullet::test

@@ -4,7 +4,7 @@
 #include "arms.hpp"
 
 namespace repel::bullet::test {
-namespace {
+namespace arm_joint_test {
 
 TEST(BulletArmJoint, ViscousFrictionOpposesMotionInProportion) {
   ArmModel model = turntable(0.5);
@@ -109,5 +109,5 @@ TEST(BulletArmJoint, TheStopOfOneJointStandsWhileTheOthersSwing) {
   }
 }
 
-}  // namespace
+}  // namespace arm_joint_test
 }  // namespace repel::bullet::test

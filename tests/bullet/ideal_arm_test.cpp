@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace repel {
-namespace {
+namespace ideal_arm_test {
 
 static_assert(TorqueDrivenArm<IdealArm>);
 static_assert(noexcept(std::declval<IdealArm&>().step(0.0)));
@@ -64,5 +64,5 @@ TEST(IdealArm, SetUpRefusesWhatHasNoMotion) {
   EXPECT_THROW(arm.reset(std::vector{0.0}), SetupError);
 }
 
-}  // namespace
+}  // namespace ideal_arm_test
 }  // namespace repel

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace repel::detail {
-namespace {
+namespace box_depth_test {
 
 Pose moved(const Vec3& p) {
   Pose X = Pose::Identity();
@@ -58,5 +58,5 @@ TEST(BoxDepth, OfABoxThatIsAPointIsItsOwnDepth) {
   expect_point(depth.p_AQa_W, Vec3::Zero());
 }
 
-}  // namespace
+}  // namespace box_depth_test
 }  // namespace repel::detail

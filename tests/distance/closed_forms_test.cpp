@@ -12,7 +12,7 @@
 #include <support/gaps.hpp>
 
 namespace repel {
-namespace {
+namespace closed_forms_test {
 
 using families::Rng;
 
@@ -416,5 +416,5 @@ TEST(ClosedForms, ParallelCylindersAreRightFromTheWarmStartOfANearbyPose) {
   }
 }
 
-}  // namespace
+}  // namespace closed_forms_test
 }  // namespace repel

@@ -17,7 +17,7 @@
 #include <support/gaps.hpp>
 
 namespace repel {
-namespace {
+namespace complaints_test {
 
 using families::Rng;
 
@@ -601,5 +601,5 @@ TEST(Complaint, OpenGjk52NanIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace complaints_test
 }  // namespace repel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel::detail {
-namespace {
+namespace depth_test {
 
 TEST(Depth, ADefaultOneClaimsNothing) {
   const Depth depth;
@@ -12,5 +12,5 @@ TEST(Depth, ADefaultOneClaimsNothing) {
   EXPECT_FALSE(depth.closed);
 }
 
-}  // namespace
+}  // namespace depth_test
 }  // namespace repel::detail

@@ -9,7 +9,7 @@
 #include <support/families.hpp>
 
 namespace repel::detail {
-namespace {
+namespace expanding_polytope_test {
 
 using families::Rng;
 
@@ -69,5 +69,5 @@ TEST(ExpandingPolytope, CornersThatDoNotEncloseTheOriginClaimNothing) {
             std::numeric_limits<double>::infinity());
 }
 
-}  // namespace
+}  // namespace expanding_polytope_test
 }  // namespace repel::detail

@@ -9,7 +9,7 @@
 #include <support/gaps.hpp>
 
 namespace repel::detail {
-namespace {
+namespace feature_lanes_test {
 
 using families::Pair;
 using families::Rng;
@@ -115,5 +115,5 @@ TEST(FeatureLanes, AnyContentOfAWarmStartAndAnyPoseIsSafe) {
   }
 }
 
-}  // namespace
+}  // namespace feature_lanes_test
 }  // namespace repel::detail

@@ -7,7 +7,7 @@
 #include <support/gaps.hpp>
 
 namespace repel {
-namespace {
+namespace feature_search_test {
 
 using families::Pair;
 using families::Rng;
@@ -87,5 +87,5 @@ TEST(FeatureSearch, StopsWhereTheGapIsProvenLargeEnough) {
   EXPECT_GT(sooner, 250);
 }
 
-}  // namespace
+}  // namespace feature_search_test
 }  // namespace repel

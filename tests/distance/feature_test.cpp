@@ -11,7 +11,7 @@
 #include <support/quad.hpp>
 
 namespace repel {
-namespace {
+namespace feature_test {
 
 using families::Pair;
 using families::Rng;
@@ -146,5 +146,5 @@ TEST(Feature, FourCornersAroundTheOriginProveThatTheSetsMeet) {
   EXPECT_LT(missed, around / 100) << "of those that are not flat hardly one is left unproven";
 }
 
-}  // namespace
+}  // namespace feature_test
 }  // namespace repel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel {
-namespace {
+namespace gap_test {
 
 TEST(Gap, ADefaultOneClaimsNothing) {
   const Gap gap;
@@ -14,5 +14,5 @@ TEST(Gap, ADefaultOneClaimsNothing) {
   EXPECT_EQ(to_vec3(gap.n_BA_W), Vec3::Zero());
 }
 
-}  // namespace
+}  // namespace gap_test
 }  // namespace repel

@@ -12,7 +12,7 @@
 #include <support/gaps.hpp>
 
 namespace repel {
-namespace {
+namespace gjk_test {
 
 using families::apart_by;
 using families::convex;
@@ -279,5 +279,5 @@ TEST(Gjk, ANarrowRelativeWidthGivesTwelveDigitsDownToANanometre) {
   EXPECT_GT(extended, 500);
 }
 
-}  // namespace
+}  // namespace gjk_test
 }  // namespace repel

@@ -12,7 +12,7 @@
 #include <support/gaps.hpp>
 
 namespace repel {
-namespace {
+namespace oracle_test {
 
 using families::Pair;
 using families::Rng;
@@ -155,5 +155,5 @@ TEST(Oracle, RandomHullsAndPrismsAreClosed) {
   }
 }
 
-}  // namespace
+}  // namespace oracle_test
 }  // namespace repel

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 namespace repel {
-namespace {
+namespace query_test {
 
 TEST(Query, TheDefaultEndClaimsNothing) {
   EXPECT_EQ(QueryEnd{}, QueryEnd::bad_input);
@@ -25,5 +25,5 @@ TEST(Query, AWarmStartIsEmptyAtFirstAndSmallEnoughToKeepPerPair) {
   static_assert(sizeof(WarmStart) <= 72);
 }
 
-}  // namespace
+}  // namespace query_test
 }  // namespace repel

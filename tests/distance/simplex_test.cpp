@@ -10,7 +10,7 @@
 #include <support/oracle.hpp>
 
 namespace repel::detail {
-namespace {
+namespace simplex_test {
 
 using families::Rng;
 
@@ -116,5 +116,5 @@ TYPED_TEST(SimplexOf, AnOriginNearerToAFaceThanTheMarginIsNotEnclosed) {
   }
 }
 
-}  // namespace
+}  // namespace simplex_test
 }  // namespace repel::detail

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace repel {
-namespace {
+namespace touching_test {
 
 /// B touches A, and leaves it along the world's z axis.
 struct Contact {
@@ -268,5 +268,5 @@ TEST(Touching, ACylinderStandingOnABoxTouchesIt) {
   }
 }
 
-}  // namespace
+}  // namespace touching_test
 }  // namespace repel

@@ -8,7 +8,7 @@
 #include <accuracy/known_worst.hpp>
 
 namespace repel {
-namespace {
+namespace worst_case_test {
 
 using accuracy::Duel;
 using accuracy::known_worst;
@@ -72,5 +72,5 @@ TEST(WorstCases, AreStillHard) {
   EXPECT_GT(most, 10);
 }
 
-}  // namespace
+}  // namespace worst_case_test
 }  // namespace repel

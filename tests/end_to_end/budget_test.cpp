@@ -2,7 +2,7 @@
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
-namespace {
+namespace budget_test {
 
 /// What a run left behind.
 struct Outcome {
@@ -143,5 +143,5 @@ TEST(Budget, OfTheCommandLineTakesThePlaceOfTheScenes) {
   EXPECT_EQ(units_of(run_of(scene + "--budget none")), 0);
 }
 
-}  // namespace
+}  // namespace budget_test
 }  // namespace repel::test

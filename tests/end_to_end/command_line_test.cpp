@@ -1,7 +1,7 @@
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
-namespace {
+namespace command_line_test {
 
 TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   const Ending ending = teleop("--help");
@@ -110,5 +110,5 @@ TEST(CommandLine, NoSecondsIsARunWithoutTicks) {
   EXPECT_TRUE(report.at("nearest_m").is_null());
 }
 
-}  // namespace
+}  // namespace command_line_test
 }  // namespace repel::test

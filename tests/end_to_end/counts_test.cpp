@@ -8,7 +8,7 @@
 #include "realtime/clock.hpp"
 
 namespace repel::test {
-namespace {
+namespace counts_test {
 
 using host::HeapGuard;
 using teleop::SystemCallGuard;
@@ -99,5 +99,5 @@ TEST(Counts, SeeWhatIsDoneInATick) {
   }
 }
 
-}  // namespace
+}  // namespace counts_test
 }  // namespace repel::test

@@ -1,7 +1,7 @@
 #include "end_to_end/trial_report.hpp"
 
 namespace repel::test {
-namespace {
+namespace deadline_test {
 
 Ending deadline(const std::string& arguments) {
   return run_program(REPEL_DEADLINE, arguments);
@@ -63,5 +63,5 @@ TEST(Deadline, FileThatCannotBeWrittenEndsWithOneAndNamesThePath) {
   EXPECT_TRUE(ending.says("/no/such/folder/file")) << ending;
 }
 
-}  // namespace
+}  // namespace deadline_test
 }  // namespace repel::test

@@ -1,7 +1,7 @@
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
-namespace {
+namespace network_test {
 
 using nlohmann::json;
 
@@ -191,5 +191,5 @@ TEST(NetworkOfAScene, WavesHoldAWallOverADelayWhereThePlainLineDoesNot) {
   EXPECT_LT(module_of(plain, "line").at("least_j"), -100.0);
 }
 
-}  // namespace
+}  // namespace network_test
 }  // namespace repel::test

@@ -6,7 +6,7 @@
 #include "times.hpp"
 
 namespace repel::test {
-namespace {
+namespace qualify_test {
 
 Ending qualify(const std::string& arguments) {
   return run_program(REPEL_QUALIFY, arguments);
@@ -222,5 +222,5 @@ TEST(Advice, EachIsGivenOnlyWhereItAppliesWithItsCommand) {
   }
 }
 
-}  // namespace
+}  // namespace qualify_test
 }  // namespace repel::test

@@ -7,7 +7,7 @@
 #include <string>
 
 namespace repel {
-namespace {
+namespace readme_test {
 
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -29,5 +29,5 @@ TEST(Readme, FirstProgramIsTheFirstExampleByteForByte) {
   EXPECT_EQ(readme.substr(code, end - code), program);
 }
 
-}  // namespace
+}  // namespace readme_test
 }  // namespace repel

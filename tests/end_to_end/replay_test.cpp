@@ -3,7 +3,7 @@
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
-namespace {
+namespace replay_test {
 
 TEST(Replay, SameBitsEveryTimeAndWithAnyNumberOfThreads) {
   const Folder folder;
@@ -144,5 +144,5 @@ TEST(Replay, ReportSaysHowTheWorkersKeptUp) {
   }
 }
 
-}  // namespace
+}  // namespace replay_test
 }  // namespace repel::test

@@ -3,7 +3,7 @@
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
-namespace {
+namespace scene_test {
 
 // The finger tips are 20 mm before the tool frame, which points down.
 constexpr double tip = 0.02;
@@ -133,5 +133,5 @@ TEST(Scene, TenThousandPairsInFiftyMicrosecondsRunByTheClockAndAreReportedHonest
   expect_finite_forces(columns_of(folder / "log.csv"));
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace repel::test

@@ -5,7 +5,7 @@
 #include "support/families.hpp"
 
 namespace repel::detail {
-namespace {
+namespace law_lanes_test {
 
 // The two must agree to the last bit, or a pair's force would jump when it moves into a lane.
 TEST(LawLanes, AreTheLawsOneByOne) {
@@ -38,5 +38,5 @@ TEST(LawLanes, AreTheLawsOneByOne) {
   EXPECT_GT(capped, 100);
 }
 
-}  // namespace
+}  // namespace law_lanes_test
 }  // namespace repel::detail

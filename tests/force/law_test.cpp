@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace repel {
-namespace {
+namespace law_test {
 
 constexpr unsigned seed = 1993;
 
@@ -286,5 +286,5 @@ TEST(ForceLaw, CheckedAsksOfAPassableBodyACeilingOfUpToHalfTheSurfaceForce) {
   EXPECT_NO_THROW(checked(law));
 }
 
-}  // namespace
+}  // namespace law_test
 }  // namespace repel

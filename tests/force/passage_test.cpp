@@ -11,7 +11,7 @@
 #include "support/families.hpp"
 
 namespace repel {
-namespace {
+namespace passage_test {
 
 using families::Rng;
 using families::uniform;
@@ -272,5 +272,5 @@ TEST(Passage, SlopeIsThatOfTheDistance) {
   EXPECT_NEAR(slope_at(-0.01), std::sqrt(0.5), 1e-6);
 }
 
-}  // namespace
+}  // namespace passage_test
 }  // namespace repel

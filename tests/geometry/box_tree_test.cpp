@@ -7,7 +7,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace box_tree_test {
 
 constexpr unsigned seed = 2611;
 
@@ -86,5 +86,5 @@ TEST(BoxTree, OthersAreAsFarAsTheNearestOfThem) {
   EXPECT_NEAR(others, 2.5, 1e-5);
 }
 
-}  // namespace
+}  // namespace box_tree_test
 }  // namespace repel

@@ -10,7 +10,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace convex_test {
 
 using families::Rng;
 using families::uniform;
@@ -178,5 +178,5 @@ TEST(Convex, OnlyACurvedSetIsNoPolytope) {
   EXPECT_TRUE(Convex::cylinder(0, 2).is_polytope());
 }
 
-}  // namespace
+}  // namespace convex_test
 }  // namespace repel

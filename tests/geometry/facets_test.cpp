@@ -13,7 +13,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace facets_test {
 
 using families::Rng;
 
@@ -260,5 +260,5 @@ TEST(Facets, PointsWithoutAVolumeHaveNone) {
   EXPECT_TRUE(hull_facets({}).empty());
 }
 
-}  // namespace
+}  // namespace facets_test
 }  // namespace repel

@@ -8,7 +8,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace orientation_test {
 
 using families::Rng;
 
@@ -118,5 +118,5 @@ TEST(PlaneNormal, OfALineIsZero) {
   EXPECT_EQ(plane_normal({1, 2, 3}, {1, 2, 3}, {1, 2, 3}), Vec3(0, 0, 0));
 }
 
-}  // namespace
+}  // namespace orientation_test
 }  // namespace repel

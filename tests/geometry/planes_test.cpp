@@ -8,7 +8,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace planes_test {
 
 using families::Rng;
 
@@ -66,5 +66,5 @@ TEST(Planes, APointThatIsNotANumberHasSomePlane) {
   EXPECT_LT(planes.nearest(Vec<double>(none, none, none)).plane, planes.size());
 }
 
-}  // namespace
+}  // namespace planes_test
 }  // namespace repel

@@ -11,7 +11,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace quick_hull_test {
 
 using detail::QuickHull;
 using families::Rng;
@@ -118,5 +118,5 @@ TEST(QuickHull, NumbersOfVeryDifferentSizeDoNotBreakIt) {
   EXPECT_GT(hulls, families::draws(500));
 }
 
-}  // namespace
+}  // namespace quick_hull_test
 }  // namespace repel

@@ -10,7 +10,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace support_table_test {
 
 using families::Rng;
 using Points = std::vector<Vec3>;
@@ -193,5 +193,5 @@ TEST(SupportTable, ADefaultOneIsEmpty) {
   EXPECT_FALSE(SupportTable(Points{{1, 2, 3}}).empty());
 }
 
-}  // namespace
+}  // namespace support_table_test
 }  // namespace repel

@@ -7,7 +7,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace tangents_test {
 
 using families::Rng;
 
@@ -60,5 +60,5 @@ TEST(Tangents, APointOnTheAxisOrNotANumberHasSomeTangent) {
   EXPECT_EQ(Tangents().size(), 0U);
 }
 
-}  // namespace
+}  // namespace tangents_test
 }  // namespace repel

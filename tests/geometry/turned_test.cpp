@@ -8,7 +8,7 @@
 #include <support/families.hpp>
 
 namespace repel::detail {
-namespace {
+namespace turned_test {
 
 using families::Rng;
 
@@ -56,5 +56,5 @@ TEST(Turned, ADirectionThatIsNotANumberGivesAPointOfTheSet) {
   }
 }
 
-}  // namespace
+}  // namespace turned_test
 }  // namespace repel::detail

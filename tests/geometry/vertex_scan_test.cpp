@@ -9,7 +9,7 @@
 #include <support/oracle.hpp>
 
 namespace repel {
-namespace {
+namespace vertex_scan_test {
 
 using families::Rng;
 using oracle::Real;
@@ -155,5 +155,5 @@ TEST(VertexBlock, TurnsItsVertices) {
   }
 }
 
-}  // namespace
+}  // namespace vertex_scan_test
 }  // namespace repel

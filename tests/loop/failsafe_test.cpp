@@ -6,7 +6,7 @@
 #include <random>
 
 namespace repel {
-namespace {
+namespace failsafe_test {
 
 constexpr double period = 0.0025;
 constexpr unsigned seed = 112;
@@ -97,5 +97,5 @@ TEST(Failsafe, GainStaysBetweenZeroAndOneAndNeverJumps) {
   }
 }
 
-}  // namespace
+}  // namespace failsafe_test
 }  // namespace repel

@@ -5,7 +5,7 @@
 #include "loop/slider.hpp"
 
 namespace repel {
-namespace {
+namespace gain_check_test {
 
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
@@ -66,5 +66,5 @@ TEST(GainCheck, WallAboveTheLimitIsSaidWithTheNumbersAndTheOtherIsNot) {
   EXPECT_TRUE(check_gains(world, 0.001, 7.0, network::GainCheck::error).empty());
 }
 
-}  // namespace
+}  // namespace gain_check_test
 }  // namespace repel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel {
-namespace {
+namespace record_test {
 
 TickRecord record_with(std::int64_t tick, Status status, double force, double nearest) {
   TickRecord record;
@@ -60,5 +60,5 @@ TEST(RunTotals, AddUpAndKeepTheExtremes) {
   EXPECT_EQ(totals.workers.ticks, 3);  // they count since set-up themselves
 }
 
-}  // namespace
+}  // namespace record_test
 }  // namespace repel

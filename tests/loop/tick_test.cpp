@@ -8,7 +8,7 @@
 #include "loop/slider.hpp"
 
 namespace repel {
-namespace {
+namespace tick_test {
 
 using namespace std::chrono_literals;
 using test::SliderCell;
@@ -243,5 +243,5 @@ TEST(Tick, LateCoprocessorIsSaid) {
   EXPECT_GT(late, 0);
 }
 
-}  // namespace
+}  // namespace tick_test
 }  // namespace repel

@@ -8,7 +8,7 @@
 #include "support/draws.hpp"
 
 namespace repel::network {
-namespace {
+namespace channel_test {
 
 constexpr double period = 0.0025;
 
@@ -121,5 +121,5 @@ TEST(Channel, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Channel<int>({.loss = 1.1}), SetupError);
 }
 
-}  // namespace
+}  // namespace channel_test
 }  // namespace repel::network

@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace repel::network {
-namespace {
+namespace clean_stiffness_test {
 
 constexpr double T = 0.0025;
 constexpr int parts = 20;  // of a period
@@ -158,5 +158,5 @@ TEST(CleanStiffness, AnErrorThrowsAndAWarningSaysTheSame) {
   }
 }
 
-}  // namespace
+}  // namespace clean_stiffness_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace dense_test {
 
 constexpr unsigned seed = 29;
 
@@ -32,5 +32,5 @@ TEST(Dense, ProductsAreThoseOfEigen) {
   }
 }
 
-}  // namespace
+}  // namespace dense_test
 }  // namespace repel::network

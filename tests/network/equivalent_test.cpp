@@ -7,7 +7,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace equivalent_test {
 
 using test::Matrix;
 using test::Rng;
@@ -204,5 +204,5 @@ TEST(Equivalent, UnitsMakeNoDifferenceToWhatIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace equivalent_test
 }  // namespace repel::network

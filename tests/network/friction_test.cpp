@@ -5,7 +5,7 @@
 #include "support/families.hpp"
 
 namespace repel::network {
-namespace {
+namespace friction_test {
 
 constexpr unsigned seed = 6;
 
@@ -51,5 +51,5 @@ TEST(FrictionCompensation, JointWithoutFrictionIsLeftAlone) {
   EXPECT_EQ(compensation(std::nan(""), 1.0, 10.0), 0.0);
 }
 
-}  // namespace
+}  // namespace friction_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace junction_test {
 
 using test::Matrix;
 using test::Rng;
@@ -112,5 +112,5 @@ TEST(Junction, RefusesTwoThatInsist) {
   }
 }
 
-}  // namespace
+}  // namespace junction_test
 }  // namespace repel::network

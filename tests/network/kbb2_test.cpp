@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace kbb2_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -214,5 +214,5 @@ TEST(Kbb2, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Kbb2({.torque_limit = -1.0}), SetupError);
 }
 
-}  // namespace
+}  // namespace kbb2_test
 }  // namespace repel::network

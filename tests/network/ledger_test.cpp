@@ -5,7 +5,7 @@
 #include "support/families.hpp"
 
 namespace repel::network {
-namespace {
+namespace ledger_test {
 
 constexpr unsigned seed = 13;
 
@@ -46,5 +46,5 @@ TEST(Ledger, SourceThatGivesWhatItWasSuppliedWithIsAtZero) {
   EXPECT_EQ(ledger.deficit(), 0.0);
 }
 
-}  // namespace
+}  // namespace ledger_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace limits_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -132,5 +132,5 @@ TEST(Limits, RefuseARangeThatEndsBeforeItBegins) {
   EXPECT_THROW(Limits({}, {{-1.0, std::nan("")}}), SetupError);
 }
 
-}  // namespace
+}  // namespace limits_test
 }  // namespace repel::network

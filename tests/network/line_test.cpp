@@ -7,7 +7,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace line_test {
 
 using test::DrawnEnds;
 using test::Matrix;
@@ -302,5 +302,5 @@ TEST(Line, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Line({.channel = {.loss = 2.0}}), SetupError);
 }
 
-}  // namespace
+}  // namespace line_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace module_test {
 
 using test::Matrix;
 using test::period;
@@ -115,5 +115,5 @@ TEST(Module, OnlyAMultiplexWeighsAndOnlyHandsSupply) {
   EXPECT_NEAR(detail::supplied_by(arm), 1.0, 1e-6);
 }
 
-}  // namespace
+}  // namespace module_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace multiplex_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -126,5 +126,5 @@ TEST(Multiplex, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Multiplex({.turning_time = std::nan("")}), SetupError);
 }
 
-}  // namespace
+}  // namespace multiplex_test
 }  // namespace repel::network

@@ -9,7 +9,7 @@
 #include "support/heap_counter.hpp"
 
 namespace repel::network {
-namespace {
+namespace network_test {
 
 using test::between;
 using test::DrawnPlan;
@@ -222,5 +222,5 @@ TEST(Network, PowerGoesFromLeftToRightOnEitherSideOfTheRoot) {
   }
 }
 
-}  // namespace
+}  // namespace network_test
 }  // namespace repel::network

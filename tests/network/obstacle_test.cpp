@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace obstacle_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -146,5 +146,5 @@ TEST(Obstacle, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Obstacle({{.lever = 101.0}}), SetupError);
 }
 
-}  // namespace
+}  // namespace obstacle_test
 }  // namespace repel::network

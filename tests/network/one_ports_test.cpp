@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace one_ports_test {
 
 using test::period;
 using test::Rng;
@@ -201,5 +201,5 @@ TEST(OnePorts, RefuseAGainThatCouldGiveEnergy) {
   }
 }
 
-}  // namespace
+}  // namespace one_ports_test
 }  // namespace repel::network

@@ -7,7 +7,7 @@
 #include "support/families.hpp"
 
 namespace repel::network {
-namespace {
+namespace operator_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 Phase ball_phase(double duration, const Vec3& linear, PhaseFrame frame = PhaseFrame::world) {
@@ -148,5 +148,5 @@ TEST(ScriptedOperator, SilentDeviceKeepsItsLastSampleAndSaysItsAge) {
   EXPECT_EQ(the_operator.step(Mat3::Identity(), 0.0025).silent_for, 0.0);
 }
 
-}  // namespace
+}  // namespace operator_test
 }  // namespace repel::network

@@ -6,7 +6,7 @@
 #include "support/families.hpp"
 
 namespace repel::network {
-namespace {
+namespace passivity_test {
 
 using families::Rng;
 
@@ -195,5 +195,5 @@ TEST(Passivity, ResetForgetsWhatIsStoredAndNotWhatIsOwed) {
   EXPECT_EQ(owing.report().owed, owed);
 }
 
-}  // namespace
+}  // namespace passivity_test
 }  // namespace repel::network

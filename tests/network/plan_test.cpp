@@ -5,7 +5,7 @@
 #include "network/drawn_network.hpp"
 
 namespace repel::network {
-namespace {
+namespace plan_test {
 
 using test::Matrix;
 using test::period;
@@ -178,5 +178,5 @@ TEST(Plan, IsBuiltAsOftenAsOneLikes) {
   EXPECT_EQ(one.find<PumaJoints>()->torques(), two.find<PumaJoints>()->torques());
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace repel::network

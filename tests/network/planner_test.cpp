@@ -5,7 +5,7 @@
 #include <repel/network/plan.hpp>
 
 namespace repel::network {
-namespace {
+namespace planner_test {
 
 constexpr double period = 0.0025;
 
@@ -205,5 +205,5 @@ TEST(Planner, RootIsTheMeasuredArmWhereverItStands) {
   EXPECT_FALSE(network.connection(0).root_on_right);
 }
 
-}  // namespace
+}  // namespace planner_test
 }  // namespace repel::network

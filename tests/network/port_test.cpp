@@ -8,7 +8,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace port_test {
 
 using test::Rng;
 
@@ -65,5 +65,5 @@ TEST(Port, SpacesHaveNamesOfTheirOwn) {
   EXPECT_EQ(names, (std::set<std::string>{"any", "lever", "tool", "joints"}));
 }
 
-}  // namespace
+}  // namespace port_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace puma_joints_test {
 
 using test::period;
 using test::Rng;
@@ -128,5 +128,5 @@ TEST(PumaJoints, RefuseNoJointsAndTooMany) {
   EXPECT_NO_THROW(PumaJoints{most_joints});
 }
 
-}  // namespace
+}  // namespace puma_joints_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace puma_kin_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -119,5 +119,5 @@ TEST(PumaKin, RefusesWhatIsRigidBehindIt) {
   }
 }
 
-}  // namespace
+}  // namespace puma_kin_test
 }  // namespace repel::network

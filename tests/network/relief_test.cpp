@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace relief_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -159,5 +159,5 @@ TEST(Relief, RefusesADirectionThatHoldsNothing) {
   EXPECT_THROW(Relief({.angular_damping = std::nan("")}), SetupError);
 }
 
-}  // namespace
+}  // namespace relief_test
 }  // namespace repel::network

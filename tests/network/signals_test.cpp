@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace signals_test {
 
 constexpr unsigned seed = 43;
 
@@ -33,5 +33,5 @@ TEST(Signals, BeginAtRestWithNothingInTheHand) {
   EXPECT_EQ(signals.joints.size(), 0);
 }
 
-}  // namespace
+}  // namespace signals_test
 }  // namespace repel::network

@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace spaceball_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -146,5 +146,5 @@ TEST(Spaceball, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Spaceball({.time_constant = 101.0}), SetupError);
 }
 
-}  // namespace
+}  // namespace spaceball_test
 }  // namespace repel::network

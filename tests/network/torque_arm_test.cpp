@@ -6,7 +6,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace torque_arm_test {
 
 using test::period;
 using test::Rng;
@@ -159,5 +159,5 @@ TEST(TorqueArm, RefusesNumbersOutOfRange) {
   EXPECT_THROW(TorqueArm().prepare(0.0), SetupError);
 }
 
-}  // namespace
+}  // namespace torque_arm_test
 }  // namespace repel::network

@@ -8,7 +8,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace two_port_test {
 
 using test::Rng;
 using test::Vector;
@@ -110,5 +110,5 @@ TEST(Transformer, CannotShowWhatHasNotTheForm) {
   EXPECT_FALSE(transformer::shown_at_a(drawn(rng, 3, Form::impedance, 1), V, V, shown));
 }
 
-}  // namespace
+}  // namespace two_port_test
 }  // namespace repel::network

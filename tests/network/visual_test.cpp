@@ -5,7 +5,7 @@
 #include "network/drawn.hpp"
 
 namespace repel::network {
-namespace {
+namespace visual_test {
 
 using test::Cell;
 using test::DrawnEnds;
@@ -70,5 +70,5 @@ TEST(Visual, CopyHasAMailboxOfItsOwn) {
   EXPECT_EQ(&moved.pictures(), before);
 }
 
-}  // namespace
+}  // namespace visual_test
 }  // namespace repel::network

@@ -9,7 +9,7 @@
 #include "support/heap_counter.hpp"
 
 namespace repel {
-namespace {
+namespace heap_test {
 
 using test::calls;
 using test::watched;
@@ -84,5 +84,5 @@ TEST(Heap, CoprocessorTakesNothingFromItWhateverItsBudget) {
   }
 }
 
-}  // namespace
+}  // namespace heap_test
 }  // namespace repel

@@ -16,7 +16,7 @@
 #include "tick_usage.hpp"
 
 namespace repel {
-namespace {
+namespace tick_guard_test {
 
 using namespace std::chrono_literals;
 using host::HeapGuard;
@@ -216,5 +216,5 @@ TEST(Heap, GuardCountsAnAllocation) {
   EXPECT_EQ(HeapGuard::allocations() - before, 1);
 }
 
-}  // namespace
+}  // namespace tick_guard_test
 }  // namespace repel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel {
-namespace {
+namespace answer_test {
 
 TEST(Answer, ADefaultOneClaimsNothing) {
   const Separation s;
@@ -31,5 +31,5 @@ TEST(Answer, CoresApartGiveTheGapLessTheirDepths) {
   EXPECT_EQ(s.end, QueryEnd::converged);
 }
 
-}  // namespace
+}  // namespace answer_test
 }  // namespace repel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel::detail {
-namespace {
+namespace basis_roles_test {
 
 // Whichever rows are of B, each row eliminates a depth of its own side or is an equation of it.
 TEST(BasisRoles, EveryRowHasOneRoleOnItsOwnSide) {
@@ -35,5 +35,5 @@ TEST(BasisRoles, RowsOfOneSideOnlyHaveNone) {
   EXPECT_EQ(all[31].base[0], all[31].base[1]);
 }
 
-}  // namespace
+}  // namespace basis_roles_test
 }  // namespace repel::detail

@@ -16,7 +16,7 @@
 #include "reduction/posed_shapes.hpp"
 
 namespace repel {
-namespace {
+namespace deepest_point_test {
 
 using families::draws;
 using families::of_seed;
@@ -375,5 +375,5 @@ TEST(DeepestPoint, InTheTipOfASliverIsNoDeeperThanTheWayOut) {
   EXPECT_GE(s.upper, -depth);
 }
 
-}  // namespace
+}  // namespace deepest_point_test
 }  // namespace repel

@@ -10,7 +10,7 @@
 #include "reduction/posed_boxes.hpp"
 
 namespace repel {
-namespace {
+namespace exact_depth_test {
 
 using families::draws;
 using families::of_seed;
@@ -133,5 +133,5 @@ TEST(ExactDepth, CurvedShapesAreAnsweredByReduction) {
       separation(cylinder, Pose::Identity(), box, X_WB, {.measure = Measure::reduction}).distance);
 }
 
-}  // namespace
+}  // namespace exact_depth_test
 }  // namespace repel

@@ -12,7 +12,7 @@
 #include "../../docs/figures/settled.hpp"
 
 namespace repel::figures {
-namespace {
+namespace figures_test {
 
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr int steps = 7700;  // one of them falls on contact, in every motion
@@ -170,5 +170,5 @@ TEST(Figure8, WhatIsAboveTheCutoffIsCountedAndWhatIsBelowIsNot) {
   EXPECT_NEAR(rms_above(5.0, values, 1000.0), std::sqrt(6.5), 1e-9);
 }
 
-}  // namespace
+}  // namespace figures_test
 }  // namespace repel::figures

@@ -13,7 +13,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace finger_test {
 
 using Named = std::pair<std::string, Shape>;
 
@@ -116,5 +116,5 @@ TEST(Finger, ThatIsAConeIsFeltAllTheWayByTheDeepestPointAndLateByLevels) {
   EXPECT_NEAR(separation(cone, X_WA, block, Pose::Identity(), by_levels).distance, -0.0012, 5e-5);
 }
 
-}  // namespace
+}  // namespace finger_test
 }  // namespace repel

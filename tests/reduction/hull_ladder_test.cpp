@@ -12,7 +12,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace hull_ladder_test {
 
 using families::Rng;
 using Points = std::vector<Vec3>;
@@ -352,5 +352,5 @@ TEST(HullLadder, TheDeepPointIsInsideEveryPlane) {
   }
 }
 
-}  // namespace
+}  // namespace hull_ladder_test
 }  // namespace repel

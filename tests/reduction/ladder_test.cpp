@@ -9,7 +9,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace ladder_test {
 
 using families::Rng;
 
@@ -215,5 +215,5 @@ TEST(Ladder, ACapsuleIsASegmentWithADepthAndThenAPointWithTheSame) {
   EXPECT_EQ(detail::capsule_ladder(0.1, 0.0).size(), 1U) << "a sphere";
 }
 
-}  // namespace
+}  // namespace ladder_test
 }  // namespace repel

@@ -13,7 +13,7 @@
 #include "reduction/posed_boxes.hpp"
 
 namespace repel {
-namespace {
+namespace ladder_walk_test {
 
 using families::draws;
 using families::of_seed;
@@ -375,5 +375,5 @@ TEST(SeparationInOverlap, CylindersLieInsideTheirBracket) {
   EXPECT_GT(overlaps, 100);
 }
 
-}  // namespace
+}  // namespace ladder_walk_test
 }  // namespace repel

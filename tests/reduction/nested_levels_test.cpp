@@ -16,7 +16,7 @@
 #include <support/polytope.hpp>
 
 namespace repel {
-namespace {
+namespace nested_levels_test {
 
 using families::Rng;
 using oracle::exact;
@@ -265,5 +265,5 @@ TEST(NestedLevels, OfEveryShapeOfTheFigureEndInAPoint) {
   }
 }
 
-}  // namespace
+}  // namespace nested_levels_test
 }  // namespace repel

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel::detail {
-namespace {
+namespace plane_basis_test {
 
 /// A cube of half a metre and a smaller one that stands out of its upper face.
 template <class T>
@@ -69,5 +69,5 @@ TEST(PlaneBasis, EquationsWithoutASolutionAreRefused) {
   EXPECT_FALSE(basis.weigh());
 }
 
-}  // namespace
+}  // namespace plane_basis_test
 }  // namespace repel::detail

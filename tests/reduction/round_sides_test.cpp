@@ -13,7 +13,7 @@
 #include "reduction/posed_shapes.hpp"
 
 namespace repel {
-namespace {
+namespace round_sides_test {
 
 using families::draws;
 using families::of_seed;
@@ -331,5 +331,5 @@ TEST(RoundSides, DegenerateOnesAreAnswered) {
   }
 }
 
-}  // namespace
+}  // namespace round_sides_test
 }  // namespace repel

@@ -8,7 +8,7 @@
 #include "support/heap_counter.hpp"
 
 namespace repel {
-namespace {
+namespace separation_heap_test {
 
 using test::calls;
 using test::watched;
@@ -125,5 +125,5 @@ TEST(ShapeHeap, AHullHoldsWhatWasAnnouncedAtMost) {
   }
 }
 
-}  // namespace
+}  // namespace separation_heap_test
 }  // namespace repel

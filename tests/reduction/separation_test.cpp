@@ -11,7 +11,7 @@
 #include "reduction/posed_boxes.hpp"
 
 namespace repel {
-namespace {
+namespace separation_test {
 
 using families::of_seed;
 using families::Rng;
@@ -245,5 +245,5 @@ TEST(Separation, FarFromTheOriginTheAnswerIsTheSame) {
   }
 }
 
-}  // namespace
+}  // namespace separation_test
 }  // namespace repel

@@ -10,7 +10,7 @@
 #include <support/families.hpp>
 
 namespace repel {
-namespace {
+namespace shape_test {
 
 using families::of_seed;
 using families::random_pose;
@@ -352,5 +352,5 @@ TEST(Shape, ACylinderATenthOfAMicrometreFromAPointHasANarrowBracket) {
   }
 }
 
-}  // namespace
+}  // namespace shape_test
 }  // namespace repel

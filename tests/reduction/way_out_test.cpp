@@ -7,7 +7,7 @@
 #include "reduction/posed_boxes.hpp"
 
 namespace repel {
-namespace {
+namespace way_out_test {
 
 using families::Rng;
 
@@ -44,5 +44,5 @@ TEST(WayOut, APoseThatIsNotANumberStillNamesAnAxis) {
   EXPECT_EQ(detail::shortest_axis(box, X, box, Pose::Identity()).norm(), 1.0);
 }
 
-}  // namespace
+}  // namespace way_out_test
 }  // namespace repel

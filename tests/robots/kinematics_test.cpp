@@ -6,7 +6,7 @@
 #include "arms.hpp"
 
 namespace repel {
-namespace {
+namespace kinematics_test {
 
 constexpr unsigned seed = 20240501;
 constexpr double step = 1e-6;
@@ -140,5 +140,5 @@ TEST(Kinematics, ArmsWithoutLinksOrWithBrokenNumbersAreRefused) {
   EXPECT_THROW(Kinematics{arm}, SetupError);
 }
 
-}  // namespace
+}  // namespace kinematics_test
 }  // namespace repel

@@ -37,7 +37,7 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 #endif
 
 namespace repel {
-namespace {
+namespace no_heap_test {
 
 TEST(NoHeap, UpdateJacobianAndGravityDoNotAllocate) {
 #ifdef REPEL_SANITIZED
@@ -72,5 +72,5 @@ TEST(NoHeap, TheCounterSeesAnAllocation) {
   EXPECT_GT(allocations - before, 0) << v.sum();
 }
 
-}  // namespace
+}  // namespace no_heap_test
 }  // namespace repel

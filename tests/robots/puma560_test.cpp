@@ -12,7 +12,7 @@
 #include "arms.hpp"
 
 namespace repel {
-namespace {
+namespace puma560_test {
 
 using std::numbers::pi;
 using Joints = std::array<double, 6>;
@@ -272,5 +272,5 @@ TEST(Puma560Sets, ArmstrongSetReproducesThePublishedGravityTerms) {
   }
 }
 
-}  // namespace
+}  // namespace puma560_test
 }  // namespace repel

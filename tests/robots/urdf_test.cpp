@@ -11,7 +11,7 @@
 #include "arms.hpp"
 
 namespace repel {
-namespace {
+namespace urdf_test {
 
 constexpr const char* sphere =
     R"(<collision><geometry><sphere radius="0.1"/></geometry></collision>)";
@@ -226,5 +226,5 @@ TEST(Urdf, NumbersDoNotDependOnTheCLocale) {
   EXPECT_TRUE(same_numbers(before, after));
 }
 
-}  // namespace
+}  // namespace urdf_test
 }  // namespace repel

@@ -5,7 +5,7 @@
 #include "yaml_text.hpp"
 
 namespace repel::scene {
-namespace {
+namespace network_test {
 
 using testing::base_scene;
 using testing::options;
@@ -143,5 +143,5 @@ TEST(SceneNetwork, ObstaclesNeedTheModuleThroughWhichTheyAct) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace network_test
 }  // namespace repel::scene

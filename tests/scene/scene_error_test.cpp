@@ -9,7 +9,7 @@
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {
-namespace {
+namespace scene_error_test {
 
 using testing::base_scene;
 using testing::changed;
@@ -293,5 +293,5 @@ TEST(SceneError, AFileThatCannotBeReadIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace scene_error_test
 }  // namespace repel::scene

@@ -10,7 +10,7 @@
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {
-namespace {
+namespace scene_files_test {
 
 std::string text_of(const std::string& path) {
   std::ifstream file(path);
@@ -103,5 +103,5 @@ TEST(SceneFiles, AnErrorAmongThousandsNamesItsLine) {
   }
 }
 
-}  // namespace
+}  // namespace scene_files_test
 }  // namespace repel::scene

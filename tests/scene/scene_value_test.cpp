@@ -8,7 +8,7 @@
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {
-namespace {
+namespace scene_value_test {
 
 using testing::base_scene;
 using testing::changed;
@@ -186,5 +186,5 @@ TEST(SceneValue, NumbersAreReadAlikeInEveryLocale) {
   std::setlocale(LC_ALL, before.c_str());
 }
 
-}  // namespace
+}  // namespace scene_value_test
 }  // namespace repel::scene

@@ -7,7 +7,7 @@
 #include <set>
 
 namespace repel::detail {
-namespace {
+namespace answer_order_test {
 
 std::vector<int> listed(std::span<const std::int32_t> order) {
   return {order.begin(), order.end()};
@@ -51,5 +51,5 @@ TEST(AnswerOrder, EveryNumberComesOnce) {
   }
 }
 
-}  // namespace
+}  // namespace answer_order_test
 }  // namespace repel::detail

@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace body_view_test {
 
 constexpr unsigned seed = 6120;
 
@@ -44,5 +44,5 @@ TEST(BodyView, SureDistanceIsNoMoreThanTheOneInTheWorld) {
   }
 }
 
-}  // namespace
+}  // namespace body_view_test
 }  // namespace repel::detail

@@ -6,7 +6,7 @@
 #include <random>
 
 namespace repel::detail {
-namespace {
+namespace candidates_test {
 
 TEST(Candidates, StayInTheOrderOfThePairsWhateverComesAndGoes) {
   constexpr unsigned seed = 12;
@@ -48,5 +48,5 @@ TEST(Candidates, EachIsAskedOnceWhetherItStays) {
   EXPECT_TRUE(candidates.all().empty());
 }
 
-}  // namespace
+}  // namespace candidates_test
 }  // namespace repel::detail

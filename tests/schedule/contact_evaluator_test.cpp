@@ -5,7 +5,7 @@
 #include "schedule/near_pairs.hpp"
 
 namespace repel::detail {
-namespace {
+namespace contact_evaluator_test {
 
 constexpr unsigned seed = 1504;
 
@@ -241,5 +241,5 @@ TEST(ContactEvaluator, RehearsingChangesNothing) {
   EXPECT_EQ(lanes.contacts.pairs().forces().totals.nearest, totals.nearest);
 }
 
-}  // namespace
+}  // namespace contact_evaluator_test
 }  // namespace repel::detail

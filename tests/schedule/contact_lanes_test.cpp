@@ -7,7 +7,7 @@
 #include "schedule/near_pairs.hpp"
 
 namespace repel::detail {
-namespace {
+namespace contact_lanes_test {
 
 constexpr unsigned seed = 2207;
 
@@ -276,5 +276,5 @@ TEST(ContactGroup, EvaluationEndsWhatWasStale) {
   EXPECT_EQ(cubes.group.proven(), all_lanes);
 }
 
-}  // namespace
+}  // namespace contact_lanes_test
 }  // namespace repel::detail

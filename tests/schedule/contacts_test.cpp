@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace contacts_test {
 
 constexpr unsigned seed = 6011;
 constexpr int most = 19;
@@ -89,5 +89,5 @@ TEST(Contacts, GrowOldAltogether) {
   for (int g = 0; g < contacts.groups(); ++g) EXPECT_FALSE(contacts.group(g).fresh());
 }
 
-}  // namespace
+}  // namespace contacts_test
 }  // namespace repel::detail

@@ -15,7 +15,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel {
-namespace {
+namespace coprocessor_test {
 
 using namespace std::chrono_literals;
 constexpr unsigned seed = 560;
@@ -547,5 +547,5 @@ TEST(Coprocessor, WorkersNeverSeeAMixOfTwoTicks) {
   EXPECT_GT(answered, 0);
 }
 
-}  // namespace
+}  // namespace coprocessor_test
 }  // namespace repel

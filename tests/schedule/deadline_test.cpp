@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace repel {
-namespace {
+namespace deadline_test {
 
 using namespace std::chrono_literals;
 using std::chrono::nanoseconds;
@@ -101,5 +101,5 @@ TEST(DeadlineMonitor, SuccessRateLooksBackOneHundredTicks) {
   EXPECT_EQ(monitor.misses(), std::count(missed.begin(), missed.end(), true));
 }
 
-}  // namespace
+}  // namespace deadline_test
 }  // namespace repel

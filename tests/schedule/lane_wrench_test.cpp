@@ -8,7 +8,7 @@
 #include "schedule/near_pairs.hpp"
 
 namespace repel::detail {
-namespace {
+namespace lane_wrench_test {
 
 constexpr unsigned seed = 5120;
 
@@ -106,5 +106,5 @@ TEST(LaneWrench, GroupsThatWereNotAnsweredAtThisTickAddNothing) {
   EXPECT_GT(most, 1.0);
 }
 
-}  // namespace
+}  // namespace lane_wrench_test
 }  // namespace repel::detail

@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace pair_answer_test {
 
 constexpr unsigned seed = 733;
 
@@ -113,5 +113,5 @@ TEST(PairAnswer, NeverClaimsMoreDistanceThanThereIs) {
   EXPECT_GT(deepest, 40);
 }
 
-}  // namespace
+}  // namespace pair_answer_test
 }  // namespace repel::detail

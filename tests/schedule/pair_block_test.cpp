@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel {
-namespace {
+namespace pair_block_test {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
@@ -362,5 +362,5 @@ TEST(PairBlock, PairOffTheListKeepsItsAnswer) {
   EXPECT_EQ(block.block.separation_of({1}).distance, before);
 }
 
-}  // namespace
+}  // namespace pair_block_test
 }  // namespace repel

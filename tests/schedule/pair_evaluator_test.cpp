@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace pair_evaluator_test {
 
 constexpr unsigned seed = 919;
 constexpr std::int64_t max_age = 10;
@@ -179,5 +179,5 @@ TEST(PairEvaluator, IsDueWhenTheClearanceHasBeenTravelled) {
   EXPECT_FALSE(evaluator.pairs.is_fresh(0));
 }
 
-}  // namespace
+}  // namespace pair_evaluator_test
 }  // namespace repel::detail

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel {
-namespace {
+namespace pair_forces_test {
 
 TEST(PairTotals, SumKeepsTheNearestAndTheExtremes) {
   PairTotals a{3, 2, 1, 5, 10, 0.2, {4}, 7.0, 1};
@@ -32,5 +32,5 @@ TEST(PairForces, ClearLeavesNoForceAndNoCount) {
   EXPECT_EQ(forces.totals.nearest, PairTotals{}.nearest);
 }
 
-}  // namespace
+}  // namespace pair_forces_test
 }  // namespace repel

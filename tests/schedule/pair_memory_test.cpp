@@ -7,7 +7,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace pair_memory_test {
 
 constexpr unsigned seed = 31;
 
@@ -76,5 +76,5 @@ TEST(PairMemory, ExtremesOutliveTheSlot) {
   EXPECT_EQ(memory.extremes({3}).peak_force, 4.0);
 }
 
-}  // namespace
+}  // namespace pair_memory_test
 }  // namespace repel::detail

@@ -8,7 +8,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace pair_search_test {
 
 constexpr unsigned seed = 905;
 
@@ -224,5 +224,5 @@ TEST(PairIndex, TheBodyWhosePartsAreSpreadWiderSeeksWhicheverIsNamedFirst) {
   }
 }
 
-}  // namespace
+}  // namespace pair_search_test
 }  // namespace repel::detail

@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel {
-namespace {
+namespace pair_worker_test {
 
 using namespace std::chrono_literals;
 constexpr unsigned seed = 1950;
@@ -135,5 +135,5 @@ TEST(PairWorker, TenThousandPairsInFiftyMicrosecondsAreReportedStaleAndStayFinit
   EXPECT_GT(ticks_with_stale, 100);
 }
 
-}  // namespace
+}  // namespace pair_worker_test
 }  // namespace repel

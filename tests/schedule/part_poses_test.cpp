@@ -5,7 +5,7 @@
 #include "schedule/boxes.hpp"
 
 namespace repel::detail {
-namespace {
+namespace part_poses_test {
 
 constexpr unsigned seed = 77;
 
@@ -35,5 +35,5 @@ TEST(PartPoses, WhatIsNotAskedForStaysWhereItWas) {
   EXPECT_EQ(poses.last({0}).matrix(), before.matrix());
 }
 
-}  // namespace
+}  // namespace part_poses_test
 }  // namespace repel::detail

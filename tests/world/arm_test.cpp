@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace repel {
-namespace {
+namespace arm_test {
 
 struct Arm {
   void set_torques(std::span<const double>) noexcept {}
@@ -56,5 +56,5 @@ TEST(ArmModel, IsEmptyAndAtTheOriginUnlessSaidOtherwise) {
   EXPECT_EQ(model.gravity_W, Vec3(0, 0, -9.81));
 }
 
-}  // namespace
+}  // namespace arm_test
 }  // namespace repel

@@ -9,7 +9,7 @@
 #include "support/families.hpp"
 
 namespace repel {
-namespace {
+namespace world_test {
 
 constexpr unsigned seed = 42;
 
@@ -205,5 +205,5 @@ TEST(World, OdometersStandStillWithTheBodyButForRounding) {
   EXPECT_LT(world.motion().bodies[body.index].travel - before, 1e-9);
 }
 
-}  // namespace
+}  // namespace world_test
 }  // namespace repel
