@@ -34,7 +34,8 @@ struct PassivityReport {
 /// period, E_s += T f(k-1).(mean flow), and knows of it a tick too late. There damping is limited,
 /// never resists the way out, and what it leaves is carried over. Damping is held for a period as
 /// well: where it is too much for what moves, or that swings too fast, it drives instead. So where
-/// it gave energy its limit is halved, and where it took some the limit grows again.
+/// it gave more than it took in the last ten ticks its limit is halved, and where it took some the
+/// limit grows again.
 template <int N>
 class PassivityController {
  public:
@@ -87,9 +88,11 @@ class PassivityController {
 
  private:
   void limit_damping(double taken) noexcept {
-    const double floor = 1e-3 * options_.most_damping;
-    if (taken < 0.0) most_damping_ = std::max(floor, 0.5 * most_damping_);
+    taken_ = 0.9 * taken_ + taken;
     if (taken > 0.0) most_damping_ = std::min(options_.most_damping, 1.05 * most_damping_);
+    if (taken_ >= 0.0) return;
+    most_damping_ = std::max(1e-3 * options_.most_damping, 0.5 * most_damping_);
+    taken_ = 0.0;
   }
 
   PassivityOptions options_;
@@ -97,6 +100,7 @@ class PassivityController {
   Vec<N> held_;    // effort of the last tick
   Vec<N> damped_;  // part of it that is damping
   double most_damping_;
+  double taken_ = 0.0;    // [W] by damping, of the last ten ticks
   double energy_ = 0.0;   // [J] of the port, never negative
   double sampled_ = 0.0;  // [J] of the sampled motion
   PassivityReport report_;
