@@ -18,7 +18,11 @@ macro(repel_find_robots)
   repel_pkg_config(TINYXML2 tinyxml2)
   find_package(orocos_kdl QUIET)
   find_package(urdfdom QUIET)
-  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND)
+  find_package(assimp QUIET)  # only for meshes; where they were built in, they are needed
+  if(REPEL_ROBOTS_READ_MESHES)
+    set(repel_assimp_or_none assimp_FOUND)
+  endif()
+  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_assimp_or_none})
 endmacro()
 
 macro(repel_find_bullet)

@@ -7,9 +7,11 @@
 #include <set>
 
 #include <urdf_parser/urdf_parser.h>
+#include <Eigen/Eigenvalues>
 
 #include <repel/base/setup_error.hpp>
 
+#include "mesh.hpp"
 #include "urdf_document.hpp"
 
 namespace repel {
@@ -49,7 +51,8 @@ void add_body(const urdf::Inertial& body, const Pose& X_LN, ArmLink& link) {
   link.mass = total;
 }
 
-RobotPart part_of(const urdf::Geometry& geometry, bool is_capsule) {
+/// A part of every kind but a mesh.
+RobotPart simple_part(const urdf::Geometry& geometry, bool is_capsule) {
   RobotPart part;
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
     part.kind = PartKind::box;
@@ -69,13 +72,17 @@ RobotPart part_of(const urdf::Geometry& geometry, bool is_capsule) {
 class ArmBuilder {
  public:
   ArmBuilder(const detail::UrdfDocument& document, const urdf::ModelInterface& model,
-             const UrdfOptions& options)
-      : document_(document), options_(options) {
+             const UrdfOptions& options, const std::string& file)
+      : document_(document), options_(options), folders_{file, options.package_paths} {
     robot_.arm.name = model.getName();
     require_known(model);
     find_chain(model);
     add(*model.getRoot(), -1, Pose::Identity());
-    finish(model);
+    if (robot_.arm.links.empty()) {
+      document_.fail_at_link(model.getRoot()->name, "carries no moving joint; allowed: 1 or more");
+    }
+    require_possible_inertias();
+    choose_tool();
   }
 
   Robot take() { return std::move(robot_); }
@@ -97,28 +104,30 @@ class ArmBuilder {
     }
   }
 
-  /// The links from the root to the tip.
+  int joints_above(urdf::LinkConstSharedPtr link) const {
+    int count = 0;
+    for (; link->parent_joint; link = link->getParent()) count += moves(*link->parent_joint);
+    return count;
+  }
+
+  /// The links from the root to the chosen tip, or else to one with the most moving joints above.
   void find_chain(const urdf::ModelInterface& model) {
-    urdf::LinkConstSharedPtr tip = model.getRoot();
-    while (options_.tip.empty() && !tip->child_links.empty()) {
-      if (tip->child_links.size() > 1) {
-        document_.fail_at_link(tip->name, "branches into '" + tip->child_links[0]->name +
-                                              "' and '" + tip->child_links[1]->name +
-                                              "'; allowed: one chain, or a chosen tip");
-      }
-      tip = tip->child_links.front();
+    urdf::LinkConstSharedPtr end = model.getRoot();
+    for (const auto& [name, link] : model.links_) {
+      if (joints_above(link) > joints_above(end)) end = link;
     }
-    if (!options_.tip.empty()) tip = model.getLink(options_.tip);
-    tip_ = tip->name;
-    for (; tip; tip = tip->getParent()) chain_.insert(tip->name);
+    if (!options_.tip.empty()) end = model.getLink(options_.tip);
+    end_ = end->name;
+    for (; end; end = end->getParent()) chain_.insert(end->name);
   }
 
   /// Adds `node`, fixed to arm link `link` at `X_LN`, and all beyond it.
   // NOLINTNEXTLINE(misc-no-recursion): a file is a tree, read once at set-up
   void add(const urdf::Link& node, int link, const Pose& X_LN) {
     if (link >= 0 && node.inertial) add_body(*node.inertial, X_LN, robot_.arm.links.back());
+    robot_.links.push_back({node.name, node.inertial ? node.inertial->mass : 0.0, link, X_LN});
+    if (link >= 0 && node.child_links.empty()) robot_.tips.push_back(node.name);
     add_parts(node, link, X_LN);
-    if (node.name == tip_) robot_.arm.X_LT = X_LN;
     // The rest of the chain comes last, so that `links.back()` is still this link for its branches.
     for (const bool in_chain : {false, true}) {
       for (const auto& child : node.child_links) {
@@ -127,13 +136,12 @@ class ArmBuilder {
     }
   }
 
-  // NOLINTNEXTLINE(misc-no-recursion): as add()
   void add_child(const urdf::Link& child, int link, const Pose& X_LN) {
     const urdf::Joint& joint = *child.parent_joint;
     const Pose X_LJ = X_LN * from_urdf(joint.parent_to_joint_origin_transform);
     if (!moves(joint)) return add(child, link, X_LJ);
     if (!chain_.contains(child.name)) {
-      document_.fail_at_joint(joint.name, "moves beside the chain to '" + tip_ +
+      document_.fail_at_joint(joint.name, "moves beside the chain to '" + end_ +
                                               "'; allowed: a joint of the chain, or one to hold");
     }
     robot_.arm.links.push_back(moving_link(child, joint, X_LJ));
@@ -155,8 +163,9 @@ class ArmBuilder {
     const bool endless = joint.type == urdf::Joint::CONTINUOUS;
     link.lower = endless ? -std::numeric_limits<double>::infinity() : joint.limits->lower;
     link.upper = endless ? std::numeric_limits<double>::infinity() : joint.limits->upper;
-    link.velocity_limit = joint.limits->velocity;
-    link.effort_limit = joint.limits->effort;
+    const double unlimited = std::numeric_limits<double>::infinity();  // where none is asked for
+    link.velocity_limit = joint.limits ? joint.limits->velocity : unlimited;
+    link.effort_limit = joint.limits ? joint.limits->effort : unlimited;
     link.viscous_friction = joint.dynamics ? joint.dynamics->damping : 0.0;
     link.coulomb_friction = joint.dynamics ? joint.dynamics->friction : 0.0;
     link.rotor_inertia = document_.rotor_inertia(joint.name);
@@ -166,31 +175,58 @@ class ArmBuilder {
   void add_parts(const urdf::Link& node, int link, const Pose& X_LN) {
     for (std::size_t i = 0; i < node.collision_array.size(); ++i) {
       const urdf::Collision& collision = *node.collision_array[i];
-      RobotPart part = part_of(*collision.geometry, document_.is_capsule(node.name, i));
+      RobotPart part = part_of(node.name, i, *collision.geometry);
       part.name = collision.name.empty() ? node.name + "_" + std::to_string(i) : collision.name;
+      part.in_link = node.name;
       part.link = link;
       part.X_LP = X_LN * from_urdf(collision.origin);
       robot_.parts.push_back(std::move(part));
     }
   }
 
-  void finish(const urdf::ModelInterface& model) const {
-    if (robot_.arm.links.empty()) {
-      document_.fail_at_link(model.getRoot()->name, "carries no moving joint; allowed: 1 or more");
+  RobotPart part_of(const std::string& link, std::size_t index, const urdf::Geometry& shape) const {
+    const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
+    if (!mesh) return simple_part(shape, document_.is_capsule(link, index));
+    try {
+      RobotPart part;
+      part.kind = PartKind::hull;
+      part.points =
+          detail::hull_of_mesh(detail::find_mesh(mesh->filename, folders_), from_urdf(mesh->scale));
+      return part;
+    } catch (const SetupError& error) {
+      document_.fail_at_collision(link, index, error.what());
     }
+  }
+
+  void require_possible_inertias() const {
     for (const ArmLink& link : robot_.arm.links) {
-      const bool positive = link.I_C_L.llt().info() == Eigen::Success;
-      if (link.mass > 0.0 && positive) continue;
-      document_.fail_at_link(link.name,
-                             "moves with a mass of " + to_text(link.mass) + " kg" +
-                                 (positive ? "" : " and an inertia that is not positive") +
-                                 "; allowed: an <inertial> with mass and inertia above 0");
+      const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(link.I_C_L).eigenvalues();
+      if (moments.minCoeff() >= -1e-9 * moments.maxCoeff()) continue;
+      document_.fail_at_link(link.name, "has an inertia with a principal moment of " +
+                                            to_text(moments.minCoeff()) +
+                                            " kg m^2; allowed: 0 or more");
     }
+  }
+
+  /// The tool frame: of the chosen tip, of the only one on the last moving link, or of that link.
+  void choose_tool() {
+    const int last = static_cast<int>(robot_.arm.links.size()) - 1;
+    const RobotLink* only = nullptr;
+    int tips = 0;
+    for (const RobotLink& link : robot_.links) {
+      const bool chosen = link.name == options_.tip;
+      const bool is_tip = std::count(robot_.tips.begin(), robot_.tips.end(), link.name) != 0;
+      if (!(options_.tip.empty() ? is_tip && link.link == last : chosen)) continue;
+      only = &link;
+      ++tips;
+    }
+    if (tips == 1) robot_.arm.X_LT = only->X_LN;
   }
 
   const detail::UrdfDocument& document_;
   const UrdfOptions& options_;
-  std::string tip_;
+  detail::MeshFolders folders_;
+  std::string end_;
   std::set<std::string> chain_;
   Robot robot_;
 };
@@ -198,11 +234,11 @@ class ArmBuilder {
 }  // namespace
 
 Robot parse_arm(std::string_view urdf, const UrdfOptions& options, const std::string& file) {
-  detail::UrdfDocument document(urdf, file);
+  detail::UrdfDocument document(urdf, file, options.hold);
   const auto model = urdf::parseURDF(document.text_for_urdfdom());
   if (!model) throw SetupError("urdfdom cannot read this file; it has said why on stderr", file);
   document.require_all_collisions(*model);
-  return ArmBuilder(document, *model, options).take();
+  return ArmBuilder(document, *model, options, file).take();
 }
 
 Robot load_arm(const std::string& path, const UrdfOptions& options) {

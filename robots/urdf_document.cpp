@@ -29,18 +29,19 @@ constexpr NumberRule number_rules[] = {
     {"cylinder", "length", 1, 1e-6, 1e4, true, "m"},
     {"capsule", "radius", 1, 1e-6, 1e4, true, "m"},
     {"capsule", "length", 1, 1e-6, 1e4, true, "m"},
+    {"mesh", "scale", 3, -1e6, 1e6, false, ""},
     {"mass", "value", 1, 0.0, 1e6, true, "kg"},
-    {"inertia", "ixx", 1, 0.0, 1e9, true, "kg m^2"},
-    {"inertia", "iyy", 1, 0.0, 1e9, true, "kg m^2"},
-    {"inertia", "izz", 1, 0.0, 1e9, true, "kg m^2"},
+    {"inertia", "ixx", 1, -1e9, 1e9, true, "kg m^2"},
+    {"inertia", "iyy", 1, -1e9, 1e9, true, "kg m^2"},
+    {"inertia", "izz", 1, -1e9, 1e9, true, "kg m^2"},
     {"inertia", "ixy", 1, -1e9, 1e9, true, "kg m^2"},
     {"inertia", "ixz", 1, -1e9, 1e9, true, "kg m^2"},
     {"inertia", "iyz", 1, -1e9, 1e9, true, "kg m^2"},
     {"axis", "xyz", 3, -1e3, 1e3, true, ""},
-    {"limit", "lower", 1, -1e4, 1e4, false, "rad or m"},
-    {"limit", "upper", 1, -1e4, 1e4, false, "rad or m"},
-    {"limit", "velocity", 1, 1e-6, 1e6, true, "rad/s or m/s"},
-    {"limit", "effort", 1, 1e-6, 1e9, true, "N m or N"},
+    {"limit", "lower", 1, -1e18, 1e18, false, "rad or m"},
+    {"limit", "upper", 1, -1e18, 1e18, false, "rad or m"},
+    {"limit", "velocity", 1, 0.0, 1e6, true, "rad/s or m/s"},
+    {"limit", "effort", 1, 0.0, 1e9, true, "N m or N"},
     {"dynamics", "damping", 1, 0.0, 1e9, false, "N m s/rad or N s/m"},
     {"dynamics", "friction", 1, 0.0, 1e9, false, "N m or N"},
     {"drake:rotor_inertia", "value", 1, 0.0, 1e6, true, "kg m^2"},
@@ -114,13 +115,16 @@ double number_of(const Element* element, double otherwise) {
 
 }  // namespace
 
-UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std::move(file)) {
+UrdfDocument::UrdfDocument(std::string_view text, std::string file,
+                           const std::vector<std::string>& held)
+    : file_(std::move(file)) {
   if (xml_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw SetupError(std::string("not well-formed XML: ") + xml_.ErrorStr(), file_,
                      xml_.ErrorLineNum());
   }
   robot_ = xml_.FirstChildElement("robot");
   if (!robot_) throw SetupError("no <robot> element; allowed: one", file_, 1);
+  require_plain_urdf();
   index_names();
   for (const auto* child = robot_->FirstChildElement(); child;
        child = child->NextSiblingElement()) {
@@ -128,7 +132,53 @@ UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std:
     if (name == "link" || name == "joint" || name == "transmission") {
       check_numbers(*child, label(*child));
     }
-    if (name == "joint") check_joint(*child);
+    const bool is_held = std::find(held.begin(), held.end(), text_of(child, "name")) != held.end();
+    if (name == "joint" && !is_held) check_joint(*child);
+  }
+  require_tree();
+}
+
+void UrdfDocument::require_plain_urdf() const {
+  if (text_of(robot_, "name").empty()) fail(robot_, "the <robot> has no name; allowed: one");
+  for (const auto* e = robot_->FirstChildElement(); e; e = e->NextSiblingElement()) {
+    const std::string_view name = e->Name();
+    if (name.substr(0, 6) != "xacro:") continue;
+    fail(e, "a <" + std::string(name) + "> has not been expanded; allowed: plain URDF, as " +
+                "`xacro FILE` prints it");
+  }
+}
+
+void UrdfDocument::require_tree() const {
+  std::map<std::string, const Element*> joint_above;
+  std::map<std::string, std::string> parent;
+  for (const auto& [name, joint] : joints_) {
+    const std::string above = text_of(joint->FirstChildElement("parent"), "link");
+    const std::string below = text_of(joint->FirstChildElement("child"), "link");
+    for (const std::string& link : {above, below}) {
+      if (links_.count(link) == 0) {
+        fail(joint, label(*joint) + ": link '" + link + "' is not in the file; allowed: a link");
+      }
+    }
+    if (!joint_above.emplace(below, joint).second) {
+      fail(joint, "link '" + below + "' hangs on two joints; allowed: one");
+    }
+    parent[below] = above;
+  }
+  const Element* root = nullptr;
+  for (const auto& [name, link] : links_) {
+    if (joint_above.count(name) != 0) continue;
+    if (root) {
+      fail(link, "links '" + text_of(root, "name") + "' and '" + name +
+                     "' both hang on no joint; allowed: one root");
+    }
+    root = link;
+  }
+  for (const auto& [name, link] : links_) {
+    std::string at = name;
+    for (std::size_t steps = 0; link != root && at != text_of(root, "name"); ++steps) {
+      if (steps > links_.size()) fail(link, "link '" + name + "' hangs in a loop of joints");
+      at = parent.at(at);
+    }
   }
 }
 
@@ -155,7 +205,7 @@ const Element* UrdfDocument::shape_of(const Element& collision, const std::strin
   const Element* shape = geometry ? geometry->FirstChildElement() : nullptr;
   if (!shape || shape->NextSiblingElement() || geometry->NextSiblingElement("geometry")) {
     fail(&collision, owner + ": a <collision> holds no shape or more than one; allowed: one of " +
-                         "box, sphere, cylinder, capsule");
+                         "box, sphere, cylinder, capsule, mesh");
   }
   return shape;
 }
@@ -190,11 +240,12 @@ void UrdfDocument::check_joint(const Element& joint) const {
   }
   if (const auto* mimic = joint.FirstChildElement("mimic")) {
     fail(mimic, label(joint) + " mimics '" + text_of(mimic, "joint") +
-                    "'; allowed: joints that move by themselves");
+                    "', which is not supported; allowed: joints that move by themselves, or "
+                    "that are held");
   }
+  if (type == "continuous") return;
   const auto* limit = joint.FirstChildElement("limit");
   if (!limit) fail(&joint, label(joint) + ": <limit> is missing; allowed: one");
-  if (type == "continuous") return;
   const auto lower = numbers_in(text_of(limit, "lower"));
   const auto upper = numbers_in(text_of(limit, "upper"));
   if (lower->empty() || upper->empty() || !(lower->front() < upper->front())) {
@@ -228,11 +279,10 @@ void UrdfDocument::require_all_collisions(const urdf::ModelInterface& model) con
       const Element* shape = shapes[i];
       const std::string_view in_file = is_capsule(name, i) ? "cylinder" : shape->Name();
       const bool kept = i < parsed && kind_in_urdf(*link->collision_array[i]->geometry) == in_file;
-      if (kept && in_file != "mesh") continue;
+      if (kept) continue;
       fail(shape, "link '" + name + "': collision " + std::to_string(i + 1) + " of " +
                       std::to_string(shapes.size()) + " is a <" + shape->Name() +
-                      ">, which would be lost; allowed: box, sphere, cylinder, capsule" +
-                      (in_file == "mesh" ? " (a mesh is not convex by itself)" : ""));
+                      ">, which would be lost; allowed: box, sphere, cylinder, capsule, mesh");
     }
   }
 }
@@ -258,6 +308,11 @@ void UrdfDocument::fail_at_link(const std::string& name, const std::string& what
 
 void UrdfDocument::fail_at_joint(const std::string& name, const std::string& what) const {
   fail(joints_.at(name), "joint '" + name + "' " + what);
+}
+
+void UrdfDocument::fail_at_collision(const std::string& link, std::size_t index,
+                                     const std::string& what) const {
+  fail(shapes_.at(link)[index], "link '" + link + "': " + what);
 }
 
 void UrdfDocument::fail(const Element* at, const std::string& what) const {

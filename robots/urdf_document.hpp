@@ -20,12 +20,13 @@ class UrdfDocument {
 
   /// Throws SetupError when the text is not XML, a number is malformed, not finite or out of range,
   /// a joint lacks a limit or cannot be one of a serial arm, or two links or joints share a name.
-  UrdfDocument(std::string_view text, std::string file);
+  /// What the joints in `held` do is of no concern.
+  UrdfDocument(std::string_view text, std::string file, const std::vector<std::string>& held = {});
 
   /// The text for urdfdom, which knows no capsule: each stands there as the cylinder inside it.
   [[nodiscard]] std::string text_for_urdfdom() const;
 
-  /// Throws SetupError naming the first collision element that is not in `model`, or is a mesh.
+  /// Throws SetupError naming the first collision element that is not in `model`.
   void require_all_collisions(const urdf::ModelInterface& model) const;
 
   /// True when the collision element `index` of `link` is a capsule in the file.
@@ -35,13 +36,17 @@ class UrdfDocument {
   /// elements rotor_inertia * gear_ratio^2; 0 when there is none.
   [[nodiscard]] double rotor_inertia(const std::string& joint) const;
 
-  /// Throws SetupError at the line of the link or joint called `name`.
+  /// Throws SetupError at the line of the link or joint called `name`, or of its collision `index`.
   [[noreturn]] void fail_at_link(const std::string& name, const std::string& what) const;
   [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const;
+  [[noreturn]] void fail_at_collision(const std::string& link, std::size_t index,
+                                      const std::string& what) const;
 
  private:
   [[noreturn]] void fail(const Element* at, const std::string& what) const;
   void index_names();
+  void require_plain_urdf() const;
+  void require_tree() const;
   void check_numbers(const Element& element, const std::string& owner) const;
   void check_joint(const Element& joint) const;
   [[nodiscard]] const Element* shape_of(const Element& collision, const std::string& owner) const;

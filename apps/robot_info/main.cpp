@@ -1,0 +1,187 @@
+/// @file
+/// Shows what a robot description holds once it is read: joints, links, convex parts and tips.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include <repel/robots/kinematics.hpp>
+#include <repel/robots/urdf.hpp>
+
+#include "command_line.hpp"
+
+namespace {
+
+using namespace repel;
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string urdf, srdf, json;
+  UrdfOptions options;
+};
+
+void describe(CLI::App& app, Arguments& a) {
+  app.add_option("urdf", a.urdf, "Robot description, plain URDF")->required()->type_name("FILE");
+  app.add_option("--srdf", a.srdf, "Its semantic description: link pairs that may touch")
+      ->type_name("FILE");
+  app.add_option("--package-path", a.options.package_paths,
+                 "Where package:// leads: a package, or a folder with packages; may be repeated")
+      ->type_name("DIR")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--tip", a.options.tip, "Link whose frame is the tool, at a branch")
+      ->type_name("LINK");
+  app.add_option("--hold", a.options.hold, "Joints to hold at zero, fingers for example")
+      ->type_name("JOINT,JOINT")
+      ->delimiter(',');
+  app.add_option("--json", a.json, "Write what is shown, and more, as JSON to FILE")
+      ->type_name("FILE");
+  app.footer(std::string("Collision meshes become their convex hulls") +
+             (reads_meshes() ? "" : "; not here: built without assimp (libassimp-dev)") +
+             ".\nExit status: 0 the file was taken whole, 1 it was refused, 2 bad usage.");
+}
+
+const char* kind_of(const RobotPart& part) {
+  switch (part.kind) {
+    case PartKind::box:
+      return "box";
+    case PartKind::sphere:
+      return "sphere";
+    case PartKind::capsule:
+      return "capsule";
+    case PartKind::cylinder:
+      return "cylinder";
+    case PartKind::hull:
+      return "hull";
+  }
+  return "";
+}
+
+/// Corners of what has some; round parts have none.
+std::size_t vertices_of(const RobotPart& part) {
+  return part.kind == PartKind::box ? 8 : part.points.size();
+}
+
+const char* type_of(const ArmLink& joint) {
+  if (joint.type == JointType::prismatic) return "prismatic";
+  return std::isinf(joint.upper) ? "continuous" : "revolute";
+}
+
+struct Tip {
+  std::string name;
+  Pose X_WT;  ///< [m] with every joint at zero
+};
+
+std::vector<Tip> tips_at_zero(const Robot& robot) {
+  Kinematics kinematics(robot.arm);
+  kinematics.update(std::vector<double>(robot.arm.links.size(), 0.0));
+  std::vector<Tip> tips;
+  for (const RobotLink& link : robot.links) {
+    if (std::count(robot.tips.begin(), robot.tips.end(), link.name) == 0) continue;
+    tips.push_back({link.name, kinematics.X_WL(link.link) * link.X_LN});
+  }
+  return tips;
+}
+
+void print(const Robot& robot, const std::vector<Tip>& tips) {
+  std::printf("%s: %zu degrees of freedom, %zu links, %zu collision parts\n\n",
+              robot.arm.name.c_str(), robot.arm.links.size(), robot.links.size(),
+              robot.parts.size());
+  std::printf("%-32s %-10s %10s %10s %10s %12s\n", "joint", "type", "lower", "upper", "speed",
+              "effort");
+  for (const ArmLink& joint : robot.arm.links) {
+    const bool slides = joint.type == JointType::prismatic;
+    const double unit = slides ? 1000.0 : 180.0 / std::numbers::pi;
+    std::printf("%-32s %-10s %10.4g %10.4g %10.4g %12.4g  %s\n", joint.joint_name.c_str(),
+                type_of(joint), unit * joint.lower, unit * joint.upper, unit * joint.velocity_limit,
+                joint.effort_limit, slides ? "mm, mm/s, N" : "deg, deg/s, N m");
+  }
+  std::printf("\n%-32s %10s  %s\n", "link", "mass [kg]", "collision parts (corners)");
+  for (const RobotLink& link : robot.links) {
+    std::printf("%-32s %10.4g ", link.name.c_str(), link.mass);
+    for (const RobotPart& part : robot.parts) {
+      if (part.in_link != link.name) continue;
+      std::printf(" %s", kind_of(part));
+      if (const auto corners = vertices_of(part)) std::printf(" (%zu)", corners);
+    }
+    std::puts("");
+  }
+  std::printf("\n%-32s %10s %10s %10s   with every joint at zero\n", "tip", "x [mm]", "y [mm]",
+              "z [mm]");
+  for (const Tip& tip : tips) {
+    const Vec3 p = 1000.0 * tip.X_WT.translation();
+    std::printf("%-32s %10.3f %10.3f %10.3f\n", tip.name.c_str(), p.x(), p.y(), p.z());
+  }
+}
+
+/// Numbers of a matrix row by row; null for what is not finite, which JSON cannot say.
+template <class Matrix>
+Json numbers(const Matrix& m) {
+  Json list = Json::array();
+  for (Eigen::Index row = 0; row < m.rows(); ++row) {
+    for (Eigen::Index column = 0; column < m.cols(); ++column) list.push_back(m(row, column));
+  }
+  return list;
+}
+
+Json report_of(const Robot& robot, const std::vector<Tip>& tips,
+               const std::vector<DisabledCollision>& disabled) {
+  Json report{{"name", robot.arm.name}, {"dof", robot.arm.links.size()}};
+  for (const char* list : {"joints", "links", "tips", "disabled_collisions"}) {
+    report[list] = Json::array();
+  }
+  for (const ArmLink& joint : robot.arm.links) {
+    report["joints"].push_back({{"name", joint.joint_name},
+                                {"type", type_of(joint)},
+                                {"lower", joint.lower},
+                                {"upper", joint.upper},
+                                {"velocity", joint.velocity_limit},
+                                {"effort", joint.effort_limit},
+                                {"link", joint.name}});
+  }
+  for (const RobotLink& link : robot.links) {
+    Json parts = Json::array();
+    for (const RobotPart& part : robot.parts) {
+      if (part.in_link != link.name) continue;
+      parts.push_back(
+          {{"name", part.name}, {"kind", kind_of(part)}, {"vertices", vertices_of(part)}});
+    }
+    report["links"].push_back({{"name", link.name}, {"mass", link.mass}, {"parts", parts}});
+  }
+  for (const Tip& tip : tips) {
+    report["tips"].push_back({{"name", tip.name},
+                              {"position", numbers(tip.X_WT.translation())},
+                              {"rotation", numbers(tip.X_WT.linear())}});
+  }
+  for (const DisabledCollision& pair : disabled) {
+    report["disabled_collisions"].push_back(
+        {{"link1", pair.first}, {"link2", pair.second}, {"reason", pair.reason}});
+  }
+  return report;
+}
+
+int run(const Arguments& arguments) {
+  host::Output json(arguments.json);
+  const Robot robot = load_arm(arguments.urdf, arguments.options);
+  const std::vector<DisabledCollision> disabled =
+      arguments.srdf.empty() ? std::vector<DisabledCollision>{}
+                             : load_disabled_collisions(arguments.srdf, robot);
+  const std::vector<Tip> tips = tips_at_zero(robot);
+  print(robot, tips);
+  if (!arguments.srdf.empty()) std::printf("\n%zu link pairs may touch\n", disabled.size());
+  if (json.wanted()) {
+    json.stream() << report_of(robot, tips, disabled).dump(2) << '\n';
+    json.close();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return repel::host::start(argc, argv, "robot_info",
+                            "Shows what a URDF file holds, or why it cannot be taken whole.", 1,
+                            describe, run);
+}

@@ -1,0 +1,186 @@
+#include "mesh.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include <tinyxml2.h>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/geometry/facets.hpp>
+#include <repel/robots/urdf.hpp>
+
+#ifdef REPEL_HAS_ASSIMP
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+#endif
+
+namespace repel {
+
+bool reads_meshes() noexcept {
+#ifdef REPEL_HAS_ASSIMP
+  return true;
+#else
+  return false;
+#endif
+}
+
+namespace detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int deepest_package = 4;          // folders below a package path
+constexpr std::size_t most_points = 10000;  // that a hull may have
+
+/// True when `folder` is called `package`, or its package.xml is.
+bool is_package(const fs::path& folder, const std::string& package) {
+  if (folder.filename() == package) return true;
+  tinyxml2::XMLDocument manifest;
+  if (!fs::is_regular_file(folder / "package.xml") ||
+      manifest.LoadFile((folder / "package.xml").c_str()) != tinyxml2::XML_SUCCESS) {
+    return false;
+  }
+  const auto* root = manifest.FirstChildElement("package");
+  const auto* name = root ? root->FirstChildElement("name") : nullptr;
+  return name && name->GetText() && name->GetText() == package;
+}
+
+/// The file in the package at `folder`, if that is the package and has it.
+std::optional<fs::path> in_package(const fs::path& folder, const std::string& package,
+                                   const fs::path& rest) {
+  std::error_code error;
+  if (is_package(folder, package) && fs::is_regular_file(folder / rest, error)) {
+    return folder / rest;
+  }
+  return std::nullopt;
+}
+
+std::optional<fs::path> below(const fs::path& top, const std::string& package,
+                              const fs::path& rest) {
+  if (auto found = in_package(top, package, rest)) return found;
+  std::error_code error;
+  fs::recursive_directory_iterator folder(top, fs::directory_options::skip_permission_denied,
+                                          error);
+  for (; !error && folder != fs::recursive_directory_iterator(); folder.increment(error)) {
+    if (folder.depth() + 1 >= deepest_package) folder.disable_recursion_pending();
+    if (!folder->is_directory(error)) continue;
+    if (auto found = in_package(folder->path(), package, rest)) return found;
+  }
+  return std::nullopt;
+}
+
+/// In the folders above the description, and beside them.
+std::optional<fs::path> above(const fs::path& file, const std::string& package,
+                              const fs::path& rest) {
+  std::error_code error;
+  const fs::path start = fs::absolute(file, error).lexically_normal().parent_path();
+  for (fs::path folder = start;; folder = folder.parent_path()) {
+    if (auto found = in_package(folder, package, rest)) return found;
+    if (auto found = in_package(folder / package, package, rest)) return found;
+    if (folder == folder.parent_path()) return std::nullopt;
+  }
+}
+
+[[noreturn]] void fail_to_find(const std::string& uri, const MeshFolders& folders) {
+  std::string where;
+  for (const std::string& path : folders.package_paths) where += "'" + path + "', ";
+  throw SetupError("mesh '" + uri + "' is not found in " + where + "or the folders above '" +
+                   folders.file.string() +
+                   "'; allowed: an existing file (a package path says where packages are)");
+}
+
+}  // namespace
+
+fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
+  const auto colon = uri.find("://");
+  const std::string scheme = colon == std::string::npos ? "" : uri.substr(0, colon);
+  const std::string rest = colon == std::string::npos ? uri : uri.substr(colon + 3);
+  std::error_code error;
+  if (scheme.empty() || scheme == "file") {
+    const fs::path path = scheme.empty() ? folders.file.parent_path() / rest : fs::path(rest);
+    if (fs::is_regular_file(path, error)) return path;
+    throw SetupError("mesh '" + uri + "' is not a file; looked at '" + path.string() +
+                     "'; allowed: an existing file");
+  }
+  const auto slash = rest.find('/');
+  if ((scheme != "package" && scheme != "model") || slash == std::string::npos) {
+    throw SetupError("mesh '" + uri +
+                     "' cannot be followed; allowed: package://NAME/PATH, model://NAME/PATH, "
+                     "file://PATH or a path");
+  }
+  const std::string package = rest.substr(0, slash);
+  const fs::path path = rest.substr(slash + 1);
+  for (const std::string& top : folders.package_paths) {
+    if (auto found = below(fs::absolute(top, error).lexically_normal(), package, path)) {
+      return *found;
+    }
+  }
+  if (auto found = above(folders.file, package, path)) return *found;
+  for (const std::string& top : folders.package_paths) {  // a package in a folder of another name
+    if (fs::is_regular_file(top / path, error)) return top / path;
+  }
+  fail_to_find(uri, folders);
+}
+
+#ifdef REPEL_HAS_ASSIMP
+namespace {
+
+/// Every vertex of a scene, where the nodes above put it.
+void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
+            std::vector<aiVector3D>& out) {
+  const aiMatrix4x4 X = above * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    std::transform(mesh.mVertices, mesh.mVertices + mesh.mNumVertices, std::back_inserter(out),
+                   [&](const aiVector3D& v) { return X * v; });
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    gather(scene, *node.mChildren[i], X, out);
+  }
+}
+
+}  // namespace
+
+std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_JoinIdenticalVertices);
+  if (!scene || !scene->mRootNode) {
+    throw SetupError("mesh '" + path.string() + "' cannot be read: " + importer.GetErrorString());
+  }
+  std::vector<aiVector3D> vertices;
+  gather(*scene, *scene->mRootNode, aiMatrix4x4(), vertices);
+  std::vector<Vec3> points;
+  points.reserve(vertices.size());
+  for (const aiVector3D& v : vertices) {
+    points.push_back(scale.cwiseProduct(Vec3(v.x, v.y, v.z)));
+    if (!is_finite(points.back())) {
+      throw SetupError("mesh '" + path.string() + "' has a corner that is not finite");
+    }
+  }
+  if (points.empty()) throw SetupError("mesh '" + path.string() + "' holds no corner");
+  // What lies in one plane has no facets: all of its points stay.
+  const std::vector<Facet> facets = hull_facets(points);
+  if (!facets.empty()) points = hull_corners(points, facets);
+  if (points.size() > most_points) {
+    throw SetupError("the hull of mesh '" + path.string() + "' has " +
+                     std::to_string(points.size()) + " corners; allowed: 1 to " +
+                     std::to_string(most_points));
+  }
+  return points;
+}
+#else
+std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3&) {
+  throw SetupError(
+      "mesh '" + path.string() +
+      "' cannot be read, repel is built without assimp; to have it: apt-get install "
+      "libassimp-dev, and build again; allowed without: box, sphere, cylinder, capsule");
+}
+#endif
+
+}  // namespace detail
+}  // namespace repel
