@@ -71,9 +71,10 @@ void describe(CLI::App& app, Arguments& a) {
       "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
       "scene do not apply, counted ones do");
   app.add_option("--backend", a.run.backend,
-                 "Simulated arm: bullet (dynamics, gravity, friction) or ideal (free joints)")
+                 "Simulated arm: bullet (dynamics, gravity, friction, stops), reference (the same "
+                 "by a higher order, slow, without stops) or ideal (free joints)")
       ->capture_default_str()
-      ->check(CLI::IsMember({"bullet", "ideal"}));
+      ->check(CLI::IsMember({"bullet", "reference", "ideal"}));
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
       ->check(CLI::Range(0, 16));
@@ -86,7 +87,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--report", a.report, "Write the report as JSON to FILE");
   app.add_option("--log", a.log, "Write every tick as CSV to FILE");
   app.footer("Scenes:" + scene_list() +
-             "\n\nBack ends:\n  bullet, ideal\n\nDevices (chosen phase by phase in the scene):\n"
+             "\n\nBack ends:\n  bullet, reference, ideal\n\nDevices (chosen phase by phase in the "
+             "scene):\n"
              "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n\n"
              "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage.");
 }

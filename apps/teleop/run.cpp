@@ -9,6 +9,7 @@
 #include <repel/ideal/arm.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/loop/tick.hpp>
+#include <repel/robots/dynamics.hpp>
 #ifdef REPEL_TELEOP_BULLET
 #include <repel/bullet/arm.hpp>
 #endif
@@ -243,6 +244,10 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
   result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
   if (ideal) {
     IdealArm arm(ideal_joints(cell.model));
+    arm.reset(cell.start);
+    run_with(arm, cell, result, stop, show);
+  } else if (options.backend == "reference") {
+    ReferenceArm arm(cell.model);
     arm.reset(cell.start);
     run_with(arm, cell, result, stop, show);
   } else {

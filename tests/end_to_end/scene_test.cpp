@@ -43,7 +43,7 @@ TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
   const Folder folder;
   for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    for (const std::string backend : {"bullet", "ideal"}) {
+    for (const std::string backend : {"bullet", "reference", "ideal"}) {
       const Ending ending =
           teleop(quoted(entry.path().string()) + " --fast --seconds 1 --backend " + backend +
                  " --report " + quoted(folder / "report.json"));
@@ -54,6 +54,29 @@ TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
       }
     }
   }
+}
+
+// Two engines that share nothing but the model: what differs is the order of the step and how dry
+// friction holds.
+TEST(Scene, BulletAndTheReferenceArmFeelTheSameWalls) {
+  const Folder folder;
+  Columns logs[2];
+  for (int i = 0; i < 2; ++i) {
+    const Ending ending =
+        teleop(std::string("--fast --seconds 20 --log ") + quoted(folder / "log.csv") +
+               " --backend " + (i == 0 ? "bullet" : "reference"));
+    if (ending.says("backend bullet is not built in")) GTEST_SKIP() << ending;
+    ASSERT_EQ(ending.status, 0) << ending;
+    logs[i] = columns_of(folder / "log.csv");
+  }
+  for (const char* column : {"x_m", "y_m", "z_m"}) {
+    const auto& a = logs[0].at(column);
+    const auto& b = logs[1].at(column);
+    ASSERT_EQ(a.size(), 8000U);
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 0.005) << column << i;
+  }
+  const auto& force = logs[0].at("virtual_fz_n");
+  EXPECT_GT(*std::max_element(force.begin(), force.end()), 50.0);
 }
 
 TEST(Scene, NoObstaclesMeansNoForce) {
