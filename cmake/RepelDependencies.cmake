@@ -30,6 +30,11 @@ macro(repel_find_bullet)
   repel_all_found(BULLET BULLET_FOUND)
 endmacro()
 
+macro(repel_find_ode)
+  repel_pkg_config(ODE ode)
+  repel_all_found(ODE ODE_FOUND)
+endmacro()
+
 macro(repel_find_scene)
   find_package(yaml-cpp QUIET)
   repel_all_found(SCENE yaml-cpp_FOUND)

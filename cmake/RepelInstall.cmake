@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/repel)
 set(REPEL_PACKAGES "")  # a line of the package file for each part: the Debian packages it needs
-foreach(part core ideal robots bullet scene)
+foreach(part core ideal robots bullet ode scene)
   repel_debian_packages(${part} packages)
   if(part STREQUAL robots AND REPEL_HAS_MESHES)
     repel_debian_packages(meshes meshes)

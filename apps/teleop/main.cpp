@@ -70,11 +70,12 @@ void describe(CLI::App& app, Arguments& a) {
       "--fast", a.run.fast,
       "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
       "scene do not apply, counted ones do");
-  app.add_option("--backend", a.run.backend,
-                 "Simulated arm: bullet (dynamics, gravity, friction, stops), reference (the same "
-                 "by a higher order, slow, without stops) or ideal (free joints)")
+  app.add_option(
+         "--backend", a.run.backend,
+         "Simulated arm: bullet or ode (dynamics, gravity, friction, stops), reference (the "
+         "same without stops, by a higher order, slow) or ideal (free joints)")
       ->capture_default_str()
-      ->check(CLI::IsMember({"bullet", "reference", "ideal"}));
+      ->check(CLI::IsMember({"bullet", "ode", "reference", "ideal"}));
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
       ->check(CLI::Range(0, 16));
@@ -86,11 +87,12 @@ void describe(CLI::App& app, Arguments& a) {
                "Ask also the pairs that cannot be within range: to compare with");
   app.add_option("--report", a.report, "Write the report as JSON to FILE");
   app.add_option("--log", a.log, "Write every tick as CSV to FILE");
-  app.footer("Scenes:" + scene_list() +
-             "\n\nBack ends:\n  bullet, reference, ideal\n\nDevices (chosen phase by phase in the "
-             "scene):\n"
-             "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n\n"
-             "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage.");
+  app.footer(
+      "Scenes:" + scene_list() +
+      "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
+      "scene):\n"
+      "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n\n"
+      "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage.");
 }
 
 /// One line that is written over on a terminal, and a line every five seconds elsewhere.

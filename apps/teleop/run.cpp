@@ -13,6 +13,9 @@
 #ifdef REPEL_TELEOP_BULLET
 #include <repel/bullet/arm.hpp>
 #endif
+#ifdef REPEL_TELEOP_ODE
+#include <repel/ode/arm.hpp>
+#endif
 
 #include "budget.hpp"
 #include "cell.hpp"
@@ -242,19 +245,23 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
                      scene.file);
   }
   result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
+  const auto with = [&](auto arm) {
+    arm.reset(cell.start);
+    run_with(arm, cell, result, stop, show);
+  };
   if (ideal) {
-    IdealArm arm(ideal_joints(cell.model));
-    arm.reset(cell.start);
-    run_with(arm, cell, result, stop, show);
+    with(IdealArm(ideal_joints(cell.model)));
   } else if (options.backend == "reference") {
-    ReferenceArm arm(cell.model);
-    arm.reset(cell.start);
-    run_with(arm, cell, result, stop, show);
+    with(ReferenceArm(cell.model));
+  } else if (options.backend == "ode") {
+#ifdef REPEL_TELEOP_ODE
+    with(ode::Arm(cell.model));
+#else
+    throw SetupError("backend ode is not built in; to have it: apt-get install libode-dev");
+#endif
   } else {
 #ifdef REPEL_TELEOP_BULLET
-    bullet::Arm arm(cell.model);
-    arm.reset(cell.start);
-    run_with(arm, cell, result, stop, show);
+    with(bullet::Arm(cell.model));
 #else
     throw SetupError("backend bullet is not built in; to have it: apt-get install libbullet-dev");
 #endif

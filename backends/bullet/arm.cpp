@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/world/arm_check.hpp>
 
 #include "implicit_joints.hpp"
 #include "multibody.hpp"
@@ -16,7 +17,7 @@ namespace {
 ArmModel validated(const ArmModel& model, const ArmOptions& options) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   detail::require_double_precision();
-  detail::require_valid(model);
+  require_simulable(model);
   checked("ArmOptions::substeps", options.substeps, 1, 1000, "");
   checked("ArmOptions::stop_stiffness", options.stop_stiffness, 0.0, kLargest, "N m/rad");
   checked("ArmOptions::stop_damping", options.stop_damping, 0.0, kLargest, "N m s/rad");

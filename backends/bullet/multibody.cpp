@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 
 #include <repel/base/setup_error.hpp>
 
@@ -31,32 +30,6 @@ btQuaternion to_bullet(const Mat3& R) {
   return {q.x(), q.y(), q.z(), q.w()};
 }
 
-void require(bool fact, const ArmLink& link, const std::string& otherwise) {
-  if (!fact) throw SetupError("joint '" + link.joint_name + "': " + otherwise);
-}
-
-void require_valid(const ArmLink& link) {
-  const auto not_negative = [&](const char* what, double value, const char* unit) {
-    checked("joint '" + link.joint_name + "': " + what, value, 0.0,
-            std::numeric_limits<double>::max(), unit);
-  };
-  not_negative("mass", link.mass, "kg");
-  not_negative("viscous friction", link.viscous_friction, "N m s/rad");
-  not_negative("Coulomb friction", link.coulomb_friction, "N m");
-  not_negative("rotor inertia", link.rotor_inertia, "kg m^2");
-  require(is_finite(link.X_PJ) && is_rigid(link.X_PJ), link, "X_PJ is not a rigid pose");
-  require(std::abs(link.axis_J.norm() - 1.0) <= 1e-9, link, "axis_J is not of unit length");
-  require(is_finite(link.p_LC), link, "the centre of mass is not finite");
-  require(link.I_C_L.allFinite() && link.I_C_L.isApprox(link.I_C_L.transpose(), 1e-9), link,
-          "the inertia is not a finite symmetric matrix");
-  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(link.I_C_L).eigenvalues();
-  require(moments.minCoeff() >= -1e-9 * moments.maxCoeff(), link,
-          "the inertia has a negative principal moment");
-  require(link.lower < link.upper, link,
-          "the limits are " + to_text(link.lower) + " to " + to_text(link.upper) +
-              "; the lower must be below the upper (-inf and inf: no stop)");
-}
-
 }  // namespace
 
 btTransform to_bullet(const Pose& X) {
@@ -74,17 +47,6 @@ void require_double_precision() {
   if (body.getJointPos(0) != value || body.getRVector(0).z() != value) {
     throw SetupError("the Bullet library in use is not built in double precision");
   }
-}
-
-void require_valid(const ArmModel& model) {
-  if (model.links.empty()) throw SetupError("arm '" + model.name + "' has no links");
-  if (!is_finite(model.X_WB) || !is_rigid(model.X_WB)) {
-    throw SetupError("arm '" + model.name + "': X_WB is not a rigid pose");
-  }
-  if (!is_finite(model.gravity_W)) {
-    throw SetupError("arm '" + model.name + "': gravity is not finite");
-  }
-  for (const ArmLink& link : model.links) require_valid(link);
 }
 
 std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model) {

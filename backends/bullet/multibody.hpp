@@ -21,9 +21,6 @@ namespace repel::bullet::detail {
 /// Throws SetupError unless the Bullet library that was loaded computes in double precision.
 void require_double_precision();
 
-/// Throws SetupError naming the joint and the number of `model` that is out of range.
-void require_valid(const ArmModel& model);
-
 /// The articulated body of `model`, at zero, without Bullet's own damping.
 [[nodiscard]] std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model);
 

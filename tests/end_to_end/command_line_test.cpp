@@ -6,16 +6,16 @@ namespace command_line_test {
 TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   const Ending ending = teleop("--help");
   EXPECT_EQ(ending.status, 0) << ending;
-  for (const char* words :
-       {"anderson_4x8", "bullet", "ideal", "spaceball", "torque_arm", "Exit status", "--fast",
-        "--report", "--log", "--threads", "--budget", "i860", "--every-pair"}) {
+  for (const char* words : {"anderson_4x8", "bullet", "ode", "reference", "ideal", "spaceball",
+                            "torque_arm", "Exit status", "--fast", "--report", "--log", "--threads",
+                            "--budget", "i860", "--every-pair"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }
 
 TEST(CommandLine, BadUsageEndsWithTwoAndSaysWhy) {
   for (const char* arguments :
-       {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1", "--backend ode",
+       {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1", "--backend clay",
         "--threads 17", "--threads -1", "a b", "--budget", "--budget 0", "--budget -1",
         "--budget 1.5", "--budget '10 us'", "--budget i386", "--budget 1000000001"}) {
     const Ending ending = teleop(arguments);

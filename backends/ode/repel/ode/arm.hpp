@@ -1,0 +1,73 @@
+/// @file
+/// A simulated arm: an ArmModel as rigid bodies and joints in the Open Dynamics Engine, in double
+/// precision.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include <repel/world/arm.hpp>
+
+namespace repel::ode {
+
+/// How the simulation steps, and how stiff the joint stops are.
+struct ArmOptions {
+  int substeps = 4;             ///< equal parts of one `step`; 1 to 1000
+  double stop_stiffness = 1e5;  ///< [N m/rad] or [N/m] of a joint stop; >= 0
+  double stop_damping = 1e3;    ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
+};
+
+/// What was refused since construction or `clear_faults`.
+struct ArmFaults {
+  bool torque = false;  ///< an entry was missing, not finite or beyond 1e9 and counted as zero
+  bool period = false;  ///< a period was not finite or not positive: the arm did not move
+  bool state = false;   ///< the motion left the range of numbers: the arm was stopped where it was;
+                        ///< lower the torques or raise ArmOptions::substeps
+};
+
+/// Satisfies TorqueDrivenArm. Each link is a free body that its joint holds: links part by what a
+/// sub-step leaves, less the shorter it is. Same calls, bitwise the same motion. One thread at a
+/// time.
+class Arm {
+ public:
+  /// Starts at rest at zero, or at the limit nearest to it.
+  /// @throws SetupError when a number of `model` or `options` is out of range, or a link has no
+  /// mass or an inertia that is not positive: here every link moves by itself
+  explicit Arm(const ArmModel& model, const ArmOptions& options = {});
+  ~Arm();
+  Arm(Arm&&) noexcept;
+  Arm& operator=(Arm&&) noexcept;
+
+  /// Number of links, which is the number of joints.
+  [[nodiscard]] int links() const noexcept;
+
+  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
+  /// with zero torque. Faults stay.
+  /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
+  void reset(std::span<const double> q, std::span<const double> v = {});
+
+  /// Joint torques [N m] or forces [N], held until the next call.
+  void set_torques(std::span<const double> torques) noexcept;
+
+  /// Moves the arm by `period` [s]. Cost grows with substeps x links^3; ODE allocates.
+  void step(double period) noexcept;
+
+  /// Joint positions [rad] or [m]; fills as many as `out` holds.
+  void read_positions(std::span<double> out) const noexcept;
+
+  /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
+  void read_velocities(std::span<double> out) const noexcept;
+
+  /// How far the joints have come apart [m]: the greatest distance between a link and where its
+  /// parent and its joint position put it.
+  [[nodiscard]] double parted() const noexcept;
+
+  [[nodiscard]] ArmFaults faults() const noexcept;
+  void clear_faults() noexcept;
+
+ private:
+  struct Simulation;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+}  // namespace repel::ode

@@ -1,0 +1,160 @@
+// The ODE arm: its mechanics, its joints and what it promises beside them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/ode/arm.hpp>
+
+#include "simulated/arms.hpp"
+
+namespace repel::ode {
+namespace arm_test {
+
+using namespace simulated;
+
+static_assert(TorqueDrivenArm<Arm>);
+
+constexpr double period = 1.0 / 400;
+
+ArmModel puma() {
+  ArmModel model = puma560();
+  model.links[0].mass = 10.0;
+  model.links[0].I_C_L = Vec3(0.35, 0.35, 0.35).asDiagonal();
+  return model;
+}
+
+double energy(const ArmModel& model, const Arm& arm) {
+  return potential_energy(model, positions(arm)) +
+         kinetic_energy(model, positions(arm), velocities(arm));
+}
+
+TEST(OdeArm, PendulumSwingsWithThePeriodOfTheEllipticIntegralAndKeepsItsEnergy) {
+  const ArmModel model = pendulum();
+  double larger = 1.0;
+  double smaller = std::cos(0.5);
+  for (int i = 0; i < 6; ++i) {
+    const double mean = (larger + smaller) / 2;
+    smaller = std::sqrt(larger * smaller);
+    larger = mean;
+  }
+  const double swing = 2 * kPi / (std::sqrt(2.0 * 9.81 * 0.5 / 0.53) * larger);
+  Arm arm(model, {.substeps = 16});
+  arm.reset(std::vector{1.0});
+  const double before = energy(model, arm);
+  for (int tick = 0; tick < 8000; ++tick) arm.step(20 * swing / 8000);
+  EXPECT_NEAR(positions(arm)[0], 1.0, 1e-3);
+  EXPECT_NEAR(energy(model, arm), before, 1e-2);
+  EXPECT_LT(arm.parted(), 1e-6);
+}
+
+TEST(OdeArm, AnswersTorquesAsBothMassesAndRotorsSay) {
+  ArmModel model = turntable(0.5);
+  model.links[0].rotor_inertia = 1.5;
+  Arm arm(model);
+  EXPECT_NEAR(accelerations(arm, {0.0}, {0.0}, {4.0})[0], 2.0, 1e-6);
+}
+
+TEST(OdeArm, TorquesThatBalanceGravityHoldTheArmStill) {
+  const ArmModel model = puma();
+  const std::vector q{0.3, 0.8, -0.5, 0.4, 0.9, -0.2};
+  Arm arm(model);
+  arm.reset(q);
+  arm.set_torques(holding_torques(model, q));
+  for (int tick = 0; tick < 400; ++tick) arm.step(period);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(positions(arm)[i], q[i], 1e-6) << i;
+}
+
+TEST(OdeArm, TurnsAsFarAsItsJointsAllow) {
+  ArmModel model = turntable(0.5);
+  Arm arm(model);
+  arm.reset(std::vector{0.0}, std::vector{2.0});
+  for (int tick = 0; tick < 4000; ++tick) arm.step(period);
+  EXPECT_NEAR(positions(arm)[0], 20.0, 1e-9) << "three turns are not none";
+  arm.reset(std::vector{-9.0});
+  arm.step(period);
+  EXPECT_NEAR(positions(arm)[0], -9.0, 1e-9);
+}
+
+TEST(OdeArm, APrismaticJointFallsFreely) {
+  ArmModel model = turntable(0.5);
+  model.links[0].type = JointType::prismatic;
+  Arm arm(model);
+  for (int tick = 0; tick < 400; ++tick) arm.step(period);
+  EXPECT_NEAR(velocities(arm)[0], -9.81, 1e-6);
+  EXPECT_NEAR(positions(arm)[0], -0.5 * 9.81, 0.01);
+}
+
+TEST(OdeArm, FrictionHoldsBelowItsLimitAndOpposesBeyondIt) {
+  ArmModel model = turntable(0.5);
+  model.links[0].coulomb_friction = 3.0;
+  model.links[0].viscous_friction = 2.0;
+  Arm arm(model);
+  arm.set_torques(std::vector{2.9});
+  for (int tick = 0; tick < 400; ++tick) arm.step(period);
+  EXPECT_NEAR(positions(arm)[0], 0.0, 1e-9);
+  arm.set_torques(std::vector{4.0});
+  for (int tick = 0; tick < 2000; ++tick) arm.step(period);
+  EXPECT_NEAR(velocities(arm)[0], (4.0 - 3.0) / 2.0, 1e-6);
+}
+
+TEST(OdeArm, AStopHoldsAgainstALoadWithinLoadOverStiffness) {
+  ArmModel model = turntable(0.5);
+  model.links[0].upper = 0.5;
+  Arm arm(model);
+  arm.set_torques(std::vector{20.0});
+  for (int tick = 0; tick < 2000; ++tick) arm.step(period);
+  EXPECT_NEAR(positions(arm)[0], 0.5 + 20.0 / 1e5, 1e-6);
+  arm.set_torques(std::vector{-20.0});
+  for (int tick = 0; tick < 40; ++tick) arm.step(period);
+  EXPECT_LT(positions(arm)[0], 0.45) << "a stop lets go";
+}
+
+std::vector<double> state_after_a_second(Arm& arm, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> effort(-20.0, 20.0);
+  for (int tick = 0; tick < 400; ++tick) {
+    std::vector<double> torques(6);
+    for (double& torque : torques) torque = effort(generator);
+    arm.set_torques(torques);
+    arm.step(period);
+  }
+  return positions(arm);
+}
+
+TEST(OdeArm, TheSameInputsGiveTheSameBits) {
+  Arm one(puma());
+  Arm two(puma());
+  EXPECT_EQ(state_after_a_second(one, 3), state_after_a_second(two, 3));
+  EXPECT_LT(one.parted(), 1e-3);
+}
+
+TEST(OdeArm, LivesThroughBadInputAndRemembersIt) {
+  Arm arm(puma());
+  arm.set_torques(std::vector{std::nan(""), 0.0, 0.0, 0.0, 0.0});
+  EXPECT_TRUE(arm.faults().torque);
+  arm.step(std::nan(""));
+  arm.step(-1.0);
+  EXPECT_TRUE(arm.faults().period);
+  arm.clear_faults();
+  arm.set_torques(std::vector(6, 1e9));
+  for (int tick = 0; tick < 100; ++tick) arm.step(0.1);
+  for (const double q : positions(arm)) EXPECT_TRUE(std::isfinite(q));
+  arm.reset(std::vector(6, 0.0));
+  arm.step(period);
+  EXPECT_LT(std::abs(positions(arm)[5]), 0.1);
+}
+
+TEST(OdeArm, SetUpRefusesWhatItCannotMove) {
+  ArmModel model = puma();
+  model.links[3].mass = 0.0;
+  EXPECT_THROW(Arm{model}, SetupError);
+  EXPECT_THROW((Arm{puma(), {.substeps = 0}}), SetupError);
+  Arm arm(puma());
+  EXPECT_THROW(arm.reset(std::vector(5, 0.0)), SetupError);
+  EXPECT_THROW(arm.reset(std::vector(6, 100.0)), SetupError);
+}
+
+}  // namespace arm_test
+}  // namespace repel::ode
