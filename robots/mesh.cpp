@@ -101,7 +101,7 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
   const std::string rest = colon == std::string::npos ? uri : uri.substr(colon + 3);
   std::error_code error;
   if (scheme.empty() || scheme == "file") {
-    const fs::path path = scheme.empty() ? folders.file.parent_path() / rest : fs::path(rest);
+    fs::path path = scheme.empty() ? folders.file.parent_path() / rest : fs::path(rest);
     if (fs::is_regular_file(path, error)) return path;
     throw SetupError("mesh '" + uri + "' is not a file; looked at '" + path.string() +
                      "'; allowed: an existing file");
@@ -130,6 +130,7 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
 namespace {
 
 /// Every vertex of a scene, where the nodes above put it.
+// NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
 void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
             std::vector<aiVector3D>& out) {
   const aiMatrix4x4 X = above * node.mTransformation;
@@ -157,7 +158,7 @@ std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
   std::vector<Vec3> points;
   points.reserve(vertices.size());
   for (const aiVector3D& v : vertices) {
-    points.push_back(scale.cwiseProduct(Vec3(v.x, v.y, v.z)));
+    points.emplace_back(scale.cwiseProduct(Vec3(v.x, v.y, v.z)));
     if (!is_finite(points.back())) {
       throw SetupError("mesh '" + path.string() + "' has a corner that is not finite");
     }

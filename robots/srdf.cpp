@@ -17,7 +17,7 @@ std::vector<DisabledCollision> load_disabled_collisions(const std::string& path,
   if (!root) throw SetupError("no <robot> element; allowed: one", path, 1);
   const auto link_of = [&](const tinyxml2::XMLElement& element, const char* attribute) {
     const char* text = element.Attribute(attribute);
-    const std::string name = text ? text : "";
+    std::string name = text ? text : "";
     const bool known = std::any_of(robot.links.begin(), robot.links.end(),
                                    [&](const RobotLink& link) { return link.name == name; });
     if (known) return name;

@@ -136,6 +136,7 @@ class ArmBuilder {
     }
   }
 
+  // NOLINTNEXTLINE(misc-no-recursion): as add()
   void add_child(const urdf::Link& child, int link, const Pose& X_LN) {
     const urdf::Joint& joint = *child.parent_joint;
     const Pose X_LJ = X_LN * from_urdf(joint.parent_to_joint_origin_transform);

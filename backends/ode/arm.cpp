@@ -109,7 +109,7 @@ void Arm::Simulation::build() {
     dBodySetMass(body[i], &mass);
     dBodySetFiniteRotationMode(body[i], 1);
     place();
-    dBodyID const parent = i == 0 ? nullptr : body[i - 1];
+    dxBody* const parent = i == 0 ? nullptr : body[i - 1];
     const Vec3 axis_W = X_WL.linear() * link.axis_J;
     const Vec3 p_WJ = X_WL.translation();
     joint[i] = (turns(i) ? dJointCreateHinge : dJointCreateSlider)(world.get(), nullptr);
