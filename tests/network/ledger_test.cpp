@@ -34,6 +34,14 @@ TEST(Ledger, ModuleThroughWhichNothingPassedHasNoDeficit) {
   EXPECT_EQ(Ledger{}.deficit(), 0.0);
 }
 
+// A junction of a source and a rigid end once had a deficit of all that passed: 4.6e-15 J.
+TEST(Ledger, RoundingWhereNextToNothingPassesIsNoDeficit) {
+  Ledger ledger;
+  ledger.add(-4.6e-15, 4.6e-15, 0.0);
+  EXPECT_LT(ledger.deficit(), 1e-11);
+  EXPECT_GT(ledger.deficit(), 0.0);
+}
+
 TEST(Ledger, SourceThatGivesWhatItWasSuppliedWithIsAtZero) {
   families::Rng rng(seed);
   Ledger ledger;

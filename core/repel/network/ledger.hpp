@@ -24,9 +24,11 @@ struct Ledger {
     passed += moved;
   }
 
-  /// The lowest ledger as a part of what passed; 0 for a module that never was below zero.
+  /// The lowest ledger as a part of what passed; 0 for a module that never was below zero. Where
+  /// next to nothing passes, as against a rigid end, it is all rounding: a millijoule counts at
+  /// least.
   [[nodiscard]] double deficit() const noexcept {
-    return passed > 0.0 && least < 0.0 ? -least / passed : 0.0;
+    return std::max(0.0, -least) / std::max(passed, 1e-3);
   }
 };
 
