@@ -37,13 +37,15 @@ Mat3 point_inertia(double mass, const Vec3& p) {
 /// Adds a body with its own mass, centre and inertia to those of the link it is fixed to.
 void add_body(const urdf::Inertial& body, const Pose& X_LN, ArmLink& link) {
   const double total = link.mass + body.mass;
-  if (!(total > 0.0)) return;
   const Pose X_LC = X_LN * from_urdf(body.origin);
   Mat3 I;
   I << body.ixx, body.ixy, body.ixz,  //
       body.ixy, body.iyy, body.iyz,   //
       body.ixz, body.iyz, body.izz;
-  const Vec3 centre = (link.mass * link.p_LC + body.mass * X_LC.translation()) / total;
+  // Without any mass the centre has no meaning, and the inertia counts all the same.
+  const Vec3 centre = total > 0.0
+                          ? Vec3((link.mass * link.p_LC + body.mass * X_LC.translation()) / total)
+                          : X_LC.translation();
   link.I_C_L += point_inertia(link.mass, link.p_LC - centre) +
                 X_LC.linear() * I * X_LC.linear().transpose() +
                 point_inertia(body.mass, X_LC.translation() - centre);

@@ -140,6 +140,15 @@ TEST(Urdf, AMovingLinkMayBeWithoutInertia) {
   EXPECT_EQ(light.links[1].mass, 0.0);
 }
 
+// It was once dropped where the mass is zero.
+TEST(Urdf, InertiaCountsWithoutMass) {
+  const Robot read = parse_arm(one_joint(
+      "<inertial><origin xyz='1 0 0'/><mass value='0'/><inertia ixx='1' ixy='0' ixz='0' iyy='2' "
+      "iyz='0' izz='2'/></inertial>"));
+  EXPECT_EQ(read.arm.links[0].mass, 0.0);
+  EXPECT_EQ(read.arm.links[0].I_C_L, Mat3(Vec3(1, 2, 2).asDiagonal()));
+}
+
 TEST(Urdf, RefusesTextThatIsNoRobot) {
   expect_refused("<robot name='a'>\n<link></robot>", 2, {"XML"});
   expect_refused("<sdf/>", 1, {"<robot>"});
