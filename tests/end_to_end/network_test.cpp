@@ -101,6 +101,19 @@ TEST(NetworkOfAScene, SilentDeviceRampsTheForceToZero) {
   EXPECT_EQ(gain[440], 0.0);  // 20 ms of patience and 50 ms of ramp later
 }
 
+/// What a scene that must run leaves behind: its ledgers are kept and its forces finite.
+std::pair<json, Columns> ran(const Folder& folder, const std::string& scene, double seconds) {
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds " + std::to_string(seconds) + " --log " +
+             quoted(folder / "log.csv") + " --report " + quoted(folder / "report.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  Columns log = columns_of(folder / "log.csv");
+  expect_finite_forces(log);
+  return {report, std::move(log)};
+}
+
 // The elbow is folded until it ends, and the hand goes on.
 TEST(NetworkOfAScene, JointAtItsLimitHoldsAgainstTheOperatorAndIsFelt) {
   const Folder folder;
@@ -115,15 +128,8 @@ TEST(NetworkOfAScene, JointAtItsLimitHoldsAgainstTheOperatorAndIsFelt) {
                                     "direction: -1 0 0, lever: 0.8 rad/s}\n"
                                     "  - {name: back, device: torque_arm, duration: 3 s, "
                                     "direction: -1 0 0, lever: -0.8 rad/s}\n");
-  const Ending ending =
-      teleop(quoted(scene) + " --fast --seconds 8 --log " + quoted(folder / "log.csv") +
-             " --report " + quoted(folder / "report.json"));
-  ASSERT_EQ(ending.status, 0) << ending;
-  const json report = report_of(folder / "report.json");
+  const auto [report, log] = ran(folder, scene, 8);
   EXPECT_GT(report.at("status_ticks").at("joint_limit").get<int>(), 1000);
-  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
-  const Columns log = columns_of(folder / "log.csv");
-  expect_finite_forces(log);
   const auto& torque = log.at("lever_torque_nm");
   const auto& x = log.at("x_m");
   const auto& gain = log.at("gain");
@@ -142,15 +148,8 @@ TEST(NetworkOfAScene, SaturatedInputIsCutAndReported) {
                        "  - {name: hit, device: spaceball, duration: 500 ms, linear: 0 0 -9 m/s}\n"
                        "  - {name: pull, device: torque_arm, duration: 500 ms, direction: 0 0 1, "
                        "lever: 90 rad/s}\n");
-  const Ending ending =
-      teleop(quoted(scene) + " --fast --seconds 1.5 --log " + quoted(folder / "log.csv") +
-             " --report " + quoted(folder / "report.json"));
-  ASSERT_EQ(ending.status, 0) << ending;
-  const json report = report_of(folder / "report.json");
+  const auto [report, log] = ran(folder, scene, 1.5);
   EXPECT_GT(report.at("status_ticks").at("saturated").get<int>(), 200);
-  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
-  const Columns log = columns_of(folder / "log.csv");
-  expect_finite_forces(log);
   const auto& z = log.at("z_m");
   for (std::size_t i = 1; i < 200; ++i) ASSERT_LT(std::abs(z[i] - z[i - 1]), 0.6 / 400.0) << i;
 }
