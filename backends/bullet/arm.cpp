@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/world/arm_check.hpp>
 
 #include "implicit_joints.hpp"
 #include "multibody.hpp"
@@ -15,12 +14,9 @@ namespace repel::bullet {
 namespace {
 
 ArmModel validated(const ArmModel& model, const ArmOptions& options) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
   detail::require_double_precision();
   require_simulable(model);
-  checked("ArmOptions::substeps", options.substeps, 1, 1000, "");
-  checked("ArmOptions::stop_stiffness", options.stop_stiffness, 0.0, kLargest, "N m/rad");
-  checked("ArmOptions::stop_damping", options.stop_damping, 0.0, kLargest, "N m s/rad");
+  require_valid(options);
   return model;
 }
 
@@ -73,17 +69,7 @@ Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options)
 }
 
 void Arm::Simulation::reset(std::span<const double> at, std::span<const double> moving) {
-  if (at.size() != model.links.size() || (!moving.empty() && moving.size() != at.size())) {
-    throw SetupError("arm '" + model.name + "': reset needs " + std::to_string(links) +
-                     " positions, and as many velocities or none");
-  }
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const ArmLink& link = model.links[i];
-    checked("joint '" + link.joint_name + "': position", at[i], link.lower, link.upper, "rad or m");
-    if (!std::isfinite(at[i]) || (!moving.empty() && !std::isfinite(moving[i]))) {
-      throw SetupError("joint '" + link.joint_name + "': position or velocity is not finite");
-    }
-  }
+  require_state(model, at, moving);
   torque.setZero();
   body->clearForcesAndTorques();
   body->clearVelocities();

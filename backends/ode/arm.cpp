@@ -11,7 +11,6 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
-#include <repel/world/arm_check.hpp>
 
 namespace repel::ode {
 namespace {
@@ -24,7 +23,6 @@ constexpr double most_torque = 1e9;  // [N m] or [N]
 constexpr double error_reduction = 0.8;
 
 ArmModel validated(const ArmModel& model, const ArmOptions& options) {
-  constexpr double largest = std::numeric_limits<double>::max();
   require_simulable(model);
   for (const ArmLink& link : model.links) {
     if (link.mass > 0.0 && link.I_C_L.llt().info() == Eigen::Success) continue;
@@ -32,9 +30,7 @@ ArmModel validated(const ArmModel& model, const ArmOptions& options) {
                      " kg and its inertia " + (link.mass > 0.0 ? "not positive" : "of no use") +
                      "; allowed: both above 0, for in ODE every link moves by itself");
   }
-  checked("ArmOptions::substeps", options.substeps, 1, 1000, "");
-  checked("ArmOptions::stop_stiffness", options.stop_stiffness, 0.0, largest, "N m/rad");
-  checked("ArmOptions::stop_damping", options.stop_damping, 0.0, largest, "N m s/rad");
+  require_valid(options);
   return model;
 }
 
@@ -158,17 +154,7 @@ void Arm::Simulation::place() noexcept {
 }
 
 void Arm::Simulation::reset(std::span<const double> at, std::span<const double> moving) {
-  if (at.size() != body.size() || (!moving.empty() && moving.size() != at.size())) {
-    throw SetupError("arm '" + model.name + "': reset needs " + std::to_string(body.size()) +
-                     " positions, and as many velocities or none");
-  }
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const ArmLink& link = model.links[i];
-    checked("joint '" + link.joint_name + "': position", at[i], link.lower, link.upper, "rad or m");
-    if (!std::isfinite(at[i]) || (!moving.empty() && !std::isfinite(moving[i]))) {
-      throw SetupError("joint '" + link.joint_name + "': position or velocity is not finite");
-    }
-  }
+  require_state(model, at, moving);
   std::fill(torque.begin(), torque.end(), 0.0);
   std::copy(at.begin(), at.end(), q.begin());
   std::fill(v.begin(), v.end(), 0.0);

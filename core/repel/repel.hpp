@@ -23,5 +23,5 @@
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/arm_check.hpp>
+#include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>

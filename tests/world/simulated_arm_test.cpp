@@ -3,10 +3,10 @@
 
 #include <limits>
 
-#include <repel/world/arm_check.hpp>
+#include <repel/world/simulated_arm.hpp>
 
 namespace repel {
-namespace arm_check_test {
+namespace simulated_arm_test {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,7 +35,7 @@ std::string complaint(Spoil spoil) {
   return "accepted";
 }
 
-TEST(ArmCheck, NamesTheJointAndTheNumber) {
+TEST(SimulatedArm, NamesTheJointAndTheNumber) {
   EXPECT_EQ(complaint([](ArmModel&, ArmLink&) {}), "accepted");
   const auto expect = [](const std::string& words, auto spoil) {
     const std::string text = complaint(spoil);
@@ -56,5 +56,24 @@ TEST(ArmCheck, NamesTheJointAndTheNumber) {
   expect("gravity", [](ArmModel& m, ArmLink&) { m.gravity_W.x() = not_a_number; });
 }
 
-}  // namespace arm_check_test
+TEST(SimulatedArm, OptionsAndStatesOutOfRangeAreRefused) {
+  EXPECT_NO_THROW(require_valid(SimulationOptions{}));
+  EXPECT_THROW(require_valid({.substeps = 0}), SetupError);
+  EXPECT_THROW(require_valid({.stop_stiffness = -1.0}), SetupError);
+  EXPECT_THROW(require_valid({.stop_damping = not_a_number}), SetupError);
+  const ArmModel model = sound();
+  const double inside[] = {0.5};
+  const double outside[] = {1.5};
+  const double none[] = {not_a_number};
+  const double two[] = {0.5, 0.5};
+  EXPECT_NO_THROW(require_state(model, inside, {}));
+  EXPECT_NO_THROW(require_state(model, inside, outside)) << "a speed has no limit";
+  EXPECT_THROW(require_state(model, outside, {}), SetupError);
+  EXPECT_THROW(require_state(model, none, {}), SetupError);
+  EXPECT_THROW(require_state(model, inside, none), SetupError);
+  EXPECT_THROW(require_state(model, two, {}), SetupError);
+  EXPECT_THROW(require_state(model, inside, two), SetupError);
+}
+
+}  // namespace simulated_arm_test
 }  // namespace repel

@@ -29,8 +29,8 @@ struct ArmLink {
   Mat3 I_C_L = Mat3::Zero();             ///< [kg m^2] about the centre of mass, axes of the link
   double lower = 0.0;                    ///< [rad] or [m]
   double upper = 0.0;                    ///< [rad] or [m]
-  double velocity_limit = 0.0;           ///< [rad/s] or [m/s]
-  double effort_limit = 0.0;             ///< [N m] or [N]
+  double velocity_limit = 0.0;           ///< [rad/s] or [m/s]; 0: none is known
+  double effort_limit = 0.0;             ///< [N m] or [N]; 0: none is known, and none is kept
   double viscous_friction = 0.0;         ///< [N m s/rad] or [N s/m], at the joint
   double coulomb_friction = 0.0;         ///< [N m] or [N], at the joint
   double rotor_inertia = 0.0;            ///< [kg m^2] or [kg], motor and gears seen at the joint

@@ -1,16 +1,32 @@
 /// @file
-/// What a description of an arm must hold before an engine can move it. Set-up only.
+/// What simulated arms have in common, whatever engine moves them.
 #pragma once
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
+
+/// How an engine steps, and how stiff the joint stops are.
+struct SimulationOptions {
+  int substeps = 4;             ///< equal parts of one `step`; 1 to 1000
+  double stop_stiffness = 1e5;  ///< [N m/rad] or [N/m] of a joint stop; >= 0
+  double stop_damping = 1e3;    ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
+};
+
+/// What a simulated arm has refused since construction or since its faults were cleared.
+struct SimulationFaults {
+  bool torque = false;  ///< an entry was missing or not usable and counted as zero
+  bool period = false;  ///< a period was not finite or not positive: the arm did not move
+  bool state = false;   ///< the motion left the range of numbers: the arm was stopped where it was;
+                        ///< lower the torques or raise SimulationOptions::substeps
+};
 
 namespace detail {
 
@@ -44,7 +60,7 @@ inline void require_simulable(const ArmLink& link) {
 
 /// Throws SetupError that names the joint and the number of `model` no engine can move: a pose that
 /// is not rigid, an axis that is not of unit length, a mass, friction or inertia below zero or not
-/// finite, limits out of order.
+/// finite, limits out of order. Set-up only, as all below.
 inline void require_simulable(const ArmModel& model) {
   if (model.links.empty()) throw SetupError("arm '" + model.name + "' has no links");
   if (!is_finite(model.X_WB) || !is_rigid(model.X_WB)) {
@@ -54,6 +70,31 @@ inline void require_simulable(const ArmModel& model) {
     throw SetupError("arm '" + model.name + "': gravity is not finite");
   }
   for (const ArmLink& link : model.links) detail::require_simulable(link);
+}
+
+/// Throws SetupError that names the option that is out of its range.
+inline void require_valid(const SimulationOptions& options) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  checked("SimulationOptions::substeps", options.substeps, 1, 1000, "");
+  checked("SimulationOptions::stop_stiffness", options.stop_stiffness, 0.0, largest, "N m/rad");
+  checked("SimulationOptions::stop_damping", options.stop_damping, 0.0, largest, "N m s/rad");
+}
+
+/// Throws SetupError unless `q` [rad] or [m] and `v` [rad/s] or [m/s], which may be empty, are
+/// finite, one for each link, and `q` within the limits.
+inline void require_state(const ArmModel& model, std::span<const double> q,
+                          std::span<const double> v) {
+  if (q.size() != model.links.size() || (!v.empty() && v.size() != q.size())) {
+    throw SetupError("arm '" + model.name + "': reset needs " + std::to_string(model.links.size()) +
+                     " positions, and as many velocities or none");
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const ArmLink& link = model.links[i];
+    checked("joint '" + link.joint_name + "': position", q[i], link.lower, link.upper, "rad or m");
+    if (!std::isfinite(q[i]) || (!v.empty() && !std::isfinite(v[i]))) {
+      throw SetupError("joint '" + link.joint_name + "': position or velocity is not finite");
+    }
+  }
 }
 
 }  // namespace repel

@@ -5,24 +5,12 @@
 #include <memory>
 #include <span>
 
-#include <repel/world/arm.hpp>
+#include <repel/world/simulated_arm.hpp>
 
 namespace repel::bullet {
 
-/// How the simulation steps, and how stiff the joint stops are.
-struct ArmOptions {
-  int substeps = 4;             ///< equal parts of one `step`; 1 to 1000
-  double stop_stiffness = 1e5;  ///< [N m/rad] or [N/m] of a joint stop; >= 0
-  double stop_damping = 1e3;    ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
-};
-
-/// What was refused since construction or `clear_faults`.
-struct ArmFaults {
-  bool torque = false;  ///< an entry was not finite or missing and counted as zero
-  bool period = false;  ///< a period was not finite or not positive: the arm did not move
-  bool state = false;   ///< the motion left the range of numbers: the arm was stopped where it was;
-                        ///< lower the torques or raise ArmOptions::substeps
-};
+using ArmOptions = SimulationOptions;
+using ArmFaults = SimulationFaults;
 
 /// Satisfies TorqueDrivenArm. Same calls, bitwise the same motion. One thread at a time.
 class Arm {

@@ -6,24 +6,12 @@
 #include <memory>
 #include <span>
 
-#include <repel/world/arm.hpp>
+#include <repel/world/simulated_arm.hpp>
 
 namespace repel::ode {
 
-/// How the simulation steps, and how stiff the joint stops are.
-struct ArmOptions {
-  int substeps = 4;             ///< equal parts of one `step`; 1 to 1000
-  double stop_stiffness = 1e5;  ///< [N m/rad] or [N/m] of a joint stop; >= 0
-  double stop_damping = 1e3;    ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
-};
-
-/// What was refused since construction or `clear_faults`.
-struct ArmFaults {
-  bool torque = false;  ///< an entry was missing, not finite or beyond 1e9 and counted as zero
-  bool period = false;  ///< a period was not finite or not positive: the arm did not move
-  bool state = false;   ///< the motion left the range of numbers: the arm was stopped where it was;
-                        ///< lower the torques or raise ArmOptions::substeps
-};
+using ArmOptions = SimulationOptions;
+using ArmFaults = SimulationFaults;
 
 /// Satisfies TorqueDrivenArm. Each link is a free body that its joint holds: links part by what a
 /// sub-step leaves, less the shorter it is. Same calls, bitwise the same motion. One thread at a
@@ -46,7 +34,7 @@ class Arm {
   /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
-  /// Joint torques [N m] or forces [N], held until the next call.
+  /// Joint torques [N m] or forces [N], held until the next call. Beyond 1e9 none is usable.
   void set_torques(std::span<const double> torques) noexcept;
 
   /// Moves the arm by `period` [s]. Cost grows with substeps x links^3; ODE allocates.
