@@ -33,8 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int deepest_package = 4;          // folders below a package path
-constexpr std::size_t most_points = 10000;  // that a hull may have
+constexpr int deepest_package = 4;  // folders below a package path
 
 /// True when `folder` is called `package`, or its package.xml is.
 bool is_package(const fs::path& folder, const std::string& package) {
@@ -128,6 +127,8 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
 
 #ifdef REPEL_HAS_ASSIMP
 namespace {
+
+constexpr std::size_t most_points = 10000;  // that a hull may have
 
 /// Every vertex of a scene, where the nodes above put it.
 // NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
