@@ -36,15 +36,15 @@ double per_tick(const RunTotals& totals, std::int64_t sum) {
   return totals.ticks > 0 ? static_cast<double>(sum) / static_cast<double>(totals.ticks) : 0.0;
 }
 
-double deepest(const RunTotals& totals) {
-  return std::isfinite(totals.nearest) ? std::max(0.0, -totals.nearest) : 0.0;
-}
-
-ordered_json to_json(const RunTotals& t, int pairs) {
+ordered_json status_ticks(const RunTotals& t) {
   ordered_json status = ordered_json::object();
   for (unsigned bit = 0; bit < 32; ++bit) {
     if (t.status_ticks[bit] > 0) status[repel::to_text(1U << bit)] = t.status_ticks[bit];
   }
+  return status;
+}
+
+ordered_json to_json(const RunTotals& t, int pairs) {
   return {{"pairs", pairs},
           {"pairs_near_per_tick", per_tick(t, t.near)},
           {"pairs_evaluated_per_tick", per_tick(t, t.evaluated)},
@@ -54,9 +54,9 @@ ordered_json to_json(const RunTotals& t, int pairs) {
           {"oldest_age_ticks", t.oldest_age},
           {"refresh_energy_j", t.refresh_energy},
           {"nearest_m", t.nearest},
-          {"deepest_m", deepest(t)},
+          {"deepest_m", t.deepest},
           {"peak_force_n", t.peak_force},
-          {"status_ticks", status}};
+          {"status_ticks", status_ticks(t)}};
 }
 
 ordered_json known(std::int64_t count) {

@@ -20,14 +20,14 @@ namespace repel::host {
 [[nodiscard]] nlohmann::ordered_json to_json(const DeadlineMonitor& deadline,
                                              std::int64_t skipped_ticks);
 
+/// The status bits that were set, with the ticks in which they were.
+[[nodiscard]] nlohmann::ordered_json status_ticks(const RunTotals& totals);
+
 /// What the pairs of a world did. @param pairs how many there are
 [[nodiscard]] nlohmann::ordered_json to_json(const RunTotals& totals, int pairs);
 
 /// The mean of a sum over ticks; 0 without any.
 [[nodiscard]] double per_tick(const RunTotals& totals, std::int64_t sum);
-
-/// How far the tool has been inside an obstacle [m]; 0: never.
-[[nodiscard]] double deepest(const RunTotals& totals);
 
 /// A count that some machines cannot take: null where it is negative.
 [[nodiscard]] nlohmann::ordered_json known(std::int64_t count);

@@ -8,6 +8,7 @@
 
 #include "budget.hpp"
 #include "command_line.hpp"
+#include "log.hpp"
 #include "report.hpp"
 #include "run.hpp"
 

@@ -10,18 +10,15 @@ const char* outside_of_claim(const ModuleResult& m) {
   return m.passive ? "" : "   (the robot: takes and gives)";
 }
 
-}  // namespace
-
-void print_network(const RunResult& r, std::FILE* out) {
-  host::print_times("network alone", r.network_time, out);
-  std::fprintf(
-      out, "  energy of the network  into each module [J], the lowest it has been, what passed\n");
-  for (const ModuleResult& m : r.modules) {
+void print_modules(const ArmResult& arm, std::FILE* out) {
+  std::fprintf(out,
+               "  energy of the network  %sinto each module [J], the lowest it has been, what "
+               "passed\n",
+               arm.name.empty() ? "" : (arm.name + ": ").c_str());
+  for (const ModuleResult& m : arm.modules) {
     std::fprintf(out, "    %-20s %10.4f   lowest %10.3g   passed %10.4f", m.name.c_str(),
                  m.ledger.energy, m.ledger.least, m.ledger.passed);
-    if (m.ledger.supplied != 0.0) {
-      std::fprintf(out, "   supplied by the operator %.4f", m.ledger.supplied);
-    }
+    if (m.ledger.supplied != 0.0) std::fprintf(out, "   supplied %.4f", m.ledger.supplied);
     if (m.passivity.dissipated > 0.0) {
       std::fprintf(out, "   controller took %.4g", m.passivity.dissipated);
     }
@@ -29,29 +26,33 @@ void print_network(const RunResult& r, std::FILE* out) {
     if (m.sampling_energy != 0.0) std::fprintf(out, "   by sampling %+.4g", m.sampling_energy);
     std::fprintf(out, "%s\n", outside_of_claim(m));
   }
+}
+
+}  // namespace
+
+void print_network(const RunResult& r, std::FILE* out) {
+  host::print_times("network alone", r.network_time, out);
+  for (const ArmResult& arm : r.arms) print_modules(arm, out);
   for (const std::string& warning : r.warnings) {
     std::fprintf(out, "  warning                %s\n", warning.c_str());
   }
 }
 
-ordered_json network_to_json(const RunResult& r) {
-  ordered_json modules = ordered_json::array();
-  for (const ModuleResult& m : r.modules) {
-    modules.push_back({{"name", m.name},
-                       {"passive", m.passive},
-                       {"energy_j", m.ledger.energy},
-                       {"least_j", m.ledger.least},
-                       {"passed_j", m.ledger.passed},
-                       {"deficit", m.ledger.deficit()},
-                       {"supplied_j", m.ledger.supplied},
-                       {"dissipated_by_controller_j", m.passivity.dissipated},
-                       {"owed_j", m.passivity.owed},
-                       {"sampling_energy_j", m.sampling_energy}});
+ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
+  ordered_json list = ordered_json::array();
+  for (const ModuleResult& m : modules) {
+    list.push_back({{"name", m.name},
+                    {"passive", m.passive},
+                    {"energy_j", m.ledger.energy},
+                    {"least_j", m.ledger.least},
+                    {"passed_j", m.ledger.passed},
+                    {"deficit", m.ledger.deficit()},
+                    {"supplied_j", m.ledger.supplied},
+                    {"dissipated_by_controller_j", m.passivity.dissipated},
+                    {"owed_j", m.passivity.owed},
+                    {"sampling_energy_j", m.sampling_energy}});
   }
-  return {{"network_us", host::percentiles(r.network_time)},
-          {"device_damping_n_s_per_m", r.device_damping},
-          {"warnings", r.warnings},
-          {"modules", modules}};
+  return list;
 }
 
 }  // namespace repel::teleop

@@ -9,10 +9,11 @@
 
 namespace repel::teleop {
 
-/// Prints one line for each module, the cost of the network and what the gain check had to say.
+/// Prints one line for each module of each arm, the cost of the networks and what the gain check
+/// had to say.
 void print_network(const RunResult& result, std::FILE* out);
 
-/// The same as JSON: `network_us`, `device_damping_n_s_per_m`, `warnings`, `modules`.
-[[nodiscard]] nlohmann::ordered_json network_to_json(const RunResult& result);
+/// The modules of one network as JSON.
+[[nodiscard]] nlohmann::ordered_json modules_to_json(const std::vector<ModuleResult>& modules);
 
 }  // namespace repel::teleop

@@ -17,14 +17,16 @@ void print_obstacles(const RunResult& r, std::FILE* out) {
   constexpr std::size_t most = 10;
   std::vector<ObstacleResult> touched;
   for (const ObstacleResult& o : r.obstacles) {
-    if (o.peak_force > 0.0) touched.push_back(o);
+    if (o.extremes.peak_force > 0.0) touched.push_back(o);
   }
   std::sort(touched.begin(), touched.end(), [](const ObstacleResult& a, const ObstacleResult& b) {
-    return a.peak_force > b.peak_force;
+    return a.extremes.peak_force > b.extremes.peak_force;
   });
   for (std::size_t i = 0; i < std::min(most, touched.size()); ++i) {
-    std::fprintf(out, "    %-20s peak %8.2f N   nearest %9.3f mm\n", touched[i].name.c_str(),
-                 touched[i].peak_force, 1e3 * touched[i].nearest);
+    std::fprintf(out, "    %-20s peak %8.2f N   nearest %9.3f mm   hardest on %s (%s)\n",
+                 touched[i].name.c_str(), touched[i].extremes.peak_force,
+                 1e3 * touched[i].extremes.nearest, touched[i].part.c_str(),
+                 touched[i].body.c_str());
   }
   if (touched.size() > most) std::fprintf(out, "    and %zu more\n", touched.size() - most);
 }
@@ -42,11 +44,40 @@ void print_counts(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.involuntary_switches_in_tick));
 }
 
+/// Partners with what their arms did; the arm of the scene itself has the report's own keys.
+ordered_json partner_list(const RunResult& r) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 1; i < r.arms.size(); ++i) {
+    const ArmResult& arm = r.arms[i];
+    list.push_back({{"name", arm.name},
+                    {"peak_force_n", arm.totals.peak_force},
+                    {"status_ticks", host::status_ticks(arm.totals)},
+                    {"modules", modules_to_json(arm.modules)}});
+  }
+  return list;
+}
+
+/// The status bits that were set for an arm, and for how long.
+void print_status(const ArmResult& arm, std::FILE* out) {
+  const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
+  for (unsigned bit = 0; bit < 32; ++bit) {
+    const std::int64_t ticks = arm.totals.status_ticks[bit];
+    if (ticks == 0) continue;
+    std::fprintf(out, "  status %-15s in %lld ticks%s\n", to_text(1U << bit).c_str(),
+                 static_cast<long long>(ticks), whose.c_str());
+  }
+}
+
 /// Every obstacle; its nearest is null while its pairs have never been asked.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
   for (const ObstacleResult& o : r.obstacles) {
-    list.push_back({{"name", o.name}, {"nearest_m", o.nearest}, {"peak_force_n", o.peak_force}});
+    list.push_back({{"name", o.name},
+                    {"nearest_m", o.extremes.nearest},
+                    {"deepest_m", o.extremes.deepest},
+                    {"peak_force_n", o.extremes.peak_force},
+                    {"part", o.part},
+                    {"body", o.body}});
   }
   return list;
 }
@@ -54,7 +85,7 @@ ordered_json obstacle_list(const RunResult& r) {
 /// The counted budget, and how much of such work this machine does.
 void print_work(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  support pairs          %.2f per tick, most %lld in one\n",
-               host::per_tick(r.totals, r.totals.iterations),
+               host::per_tick(r.totals(), r.totals().iterations),
                static_cast<long long>(r.most_support_pairs));
   const auto units = static_cast<long long>(r.scene.budget.work_units);
   if (units == 0) return;
@@ -72,7 +103,7 @@ void print_work(const RunResult& r, std::FILE* out) {
 /// What the run did without, in one paragraph.
 void print_skipped(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  skipped                %.2f of %d pairs per tick",
-               r.pairs - host::per_tick(r.totals, r.totals.near), r.pairs);
+               r.pairs - host::per_tick(r.totals(), r.totals().near), r.pairs);
   for (const std::string& part : unused_parts(r)) std::fprintf(out, ", %s", part.c_str());
   std::fprintf(out, "\n");
 }
@@ -102,7 +133,7 @@ void print_workers(const WorkerReport& w, std::FILE* out) {
 }  // namespace
 
 void print_report(const RunResult& r, std::FILE* out) {
-  const auto& t = r.totals;
+  const auto& t = r.totals();
   std::fprintf(out, "\n%s: %lld ticks at %g Hz (%.2f s), back end %s, coprocessor threads %d%s%s\n",
                r.scene.name.c_str(), static_cast<long long>(t.ticks), r.options.rate_hz,
                static_cast<double>(t.ticks) / r.options.rate_hz, r.options.backend.c_str(),
@@ -134,17 +165,13 @@ void print_report(const RunResult& r, std::FILE* out) {
   print_skipped(r, out);
   if (!r.nearest_pair.empty()) {
     std::fprintf(out, "  nearest                %.3f mm (%s), deepest intrusion %.3f mm\n",
-                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * host::deepest(t));
+                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * t.deepest);
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
   print_network(r, out);
   print_counts(r, out);
-  for (unsigned bit = 0; bit < 32; ++bit) {
-    if (t.status_ticks[bit] == 0) continue;
-    std::fprintf(out, "  status %-15s in %lld ticks\n", to_text(1U << bit).c_str(),
-                 static_cast<long long>(t.status_ticks[bit]));
-  }
+  for (const ArmResult& arm : r.arms) print_status(arm, out);
   host::print_machine(r.machine, out);
 }
 
@@ -152,19 +179,23 @@ void write_json(const RunResult& r, std::ostream& file) {
   ordered_json report = {{"scene", r.scene.name},           {"scene_file", r.scene.file},
                          {"backend", r.options.backend},    {"rate_hz", r.options.rate_hz},
                          {"by_the_clock", !r.options.fast}, {"threads", r.threads},
-                         {"ticks", r.totals.ticks},         {"interrupted", r.interrupted}};
+                         {"ticks", r.totals().ticks},       {"interrupted", r.interrupted}};
   report.update(host::to_json(r.deadline, r.skipped_ticks));
   report["simulated_arm_us"] = host::percentiles(r.arm_step);
   report["every_pair"] = r.options.every_pair;
   report["budget"] = budget_list(r);
-  report.update(host::to_json(r.totals, r.pairs));
+  report.update(host::to_json(r.totals(), r.pairs));
   report["support_pairs_most"] = r.most_support_pairs;
-  report["pairs_skipped_per_tick"] = r.pairs - host::per_tick(r.totals, r.totals.near);
+  report["pairs_skipped_per_tick"] = r.pairs - host::per_tick(r.totals(), r.totals().near);
   report["skipped"] = unused_parts(r);
-  report["workers"] = {{"ticks_stood_in_for", r.totals.workers.ticks},
-                       {"longest_silence_ticks", r.totals.workers.longest_silence},
-                       {"silent_at_end", r.totals.workers.stood_in}};
-  report.update(network_to_json(r));
+  report["workers"] = {{"ticks_stood_in_for", r.totals().workers.ticks},
+                       {"longest_silence_ticks", r.totals().workers.longest_silence},
+                       {"silent_at_end", r.totals().workers.stood_in}};
+  report["network_us"] = host::percentiles(r.network_time);
+  report["device_damping_n_s_per_m"] = r.device_damping;
+  report["warnings"] = r.warnings;
+  report["modules"] = modules_to_json(r.arms.front().modules);
+  report["partners"] = partner_list(r);
   report["nearest_pair"] = r.nearest_pair;
   report["obstacles"] = obstacle_list(r);
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
@@ -174,27 +205,6 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["involuntary_context_switches_in_tick"] = host::known(r.involuntary_switches_in_tick);
   report["machine"] = host::to_json(r.machine);
   host::write(report, file);
-}
-
-void write_csv(const RunResult& r, std::ostream& file) {
-  file << "tick,time_s,phase,status,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,"
-          "virtual_fx_n,virtual_fy_n,virtual_fz_n,virtual_tx_nm,virtual_ty_nm,virtual_tz_nm,"
-          "coupling_fx_n,coupling_fy_n,coupling_fz_n,lever_torque_nm,gain,nearest_m,pairs_near,"
-          "pairs_evaluated,pairs_stale,oldest_age_ticks";
-  for (const ModuleResult& module : r.modules) file << ",energy_" << module.name << "_j";
-  file << '\n';
-  for (const TickRecord& k : r.records) {
-    file << k.tick << ',' << to_text(k.time) << ',' << k.phase << ',' << k.status;
-    for (const Vec3& v :
-         {k.p_WT, k.v_WT, k.virtual_force.force, k.virtual_force.torque, k.coupling.force}) {
-      for (int axis = 0; axis < 3; ++axis) file << ',' << to_text(v[axis]);
-    }
-    file << ',' << to_text(k.lever_torque) << ',' << to_text(k.gain) << ','
-         << to_text(k.pairs.nearest) << ',' << k.pairs.near << ',' << k.pairs.evaluated << ','
-         << k.pairs.stale << ',' << k.pairs.oldest_age;
-    for (std::size_t i = 0; i < r.modules.size(); ++i) file << ',' << to_text(double{k.energy[i]});
-    file << '\n';
-  }
 }
 
 }  // namespace repel::teleop

@@ -15,7 +15,4 @@ void print_report(const RunResult& result, std::FILE* out);
 /// Writes the report as JSON.
 void write_json(const RunResult& result, std::ostream& out);
 
-/// Writes one line per tick.
-void write_csv(const RunResult& result, std::ostream& out);
-
 }  // namespace repel::teleop

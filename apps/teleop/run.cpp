@@ -19,8 +19,10 @@
 
 #include "budget.hpp"
 #include "cell.hpp"
+#include "crew.hpp"
 #include "heap_guard.hpp"
 #include "metronome.hpp"
+#include "results.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
 
@@ -95,118 +97,83 @@ bool over_budget(const scene::Budget& budget, nanoseconds compute) {
   return budget.wall_us > 0.0 && 1e-3 * static_cast<double>(compute.count()) > budget.wall_us;
 }
 
-std::string name_of(const World& world, PairId id) {
-  const Pair& pair = world.pair(id);
-  return world.part(pair.a).name + " - " + world.part(pair.b).name;
+// Each by itself: a copy of an empty recorder has no room.
+std::vector<Recorder> recorders_for(const RunOptions& options, std::size_t arms,
+                                    std::int64_t ticks) {
+  const std::int64_t kept = options.keep_records ? std::min<std::int64_t>(ticks, 4000000) : 0;
+  std::vector<Recorder> recorders;
+  for (std::size_t i = 0; i < arms; ++i) recorders.emplace_back(static_cast<std::size_t>(kept));
+  return recorders;
 }
 
-/// The nearest of all evaluations, those before the first tick included.
-void find_nearest(const World& world, const Coprocessor& coprocessor, RunResult& result) {
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
-    const double nearest = coprocessor.extremes_of({i}).nearest;
-    if (nearest > result.totals.nearest) continue;
-    result.totals.nearest = nearest;
-    result.nearest_pair = name_of(world, {i});
+/// What is kept of a tick, outside of it.
+void note_tick(std::span<const TickRecord* const> records, RunResult& result,
+               std::vector<Recorder>& recorders) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    result.arms[i].totals.add(*records[i]);
+    result.network_time.record(records[i]->network_time);
+    if (result.options.keep_records) recorders[i].add(*records[i]);
   }
-}
-
-/// Pairs are laid out obstacle by obstacle, with every part of the tool in turn.
-std::vector<ObstacleResult> obstacle_results(const Cell& cell, const Coprocessor& coprocessor) {
-  std::vector<ObstacleResult> results;
-  PartId last;
-  const World& world = cell.world;
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
-    const PartId obstacle = world.pair({i}).b;
-    if (obstacle != last) results.push_back({.name = world.part(obstacle).name});
-    last = obstacle;
-    const PairExtremes& extremes = coprocessor.extremes_of({i});
-    results.back().nearest = std::min(results.back().nearest, extremes.nearest);
-    results.back().peak_force = std::max(results.back().peak_force, extremes.peak_force);
-  }
-  return results;
-}
-
-std::vector<ModuleResult> module_results(const network::Network& network) {
-  std::vector<ModuleResult> results;
-  for (const network::Node& node : network.nodes()) {
-    ModuleResult result;
-    result.name = node.name;
-    result.passive = node.traits.passive && !node.traits.measures_flow;
-    result.ledger = node.ledger;
-    if (const auto* walls = std::get_if<network::Obstacle>(&node.module)) {
-      result.passivity = walls->passivity();
-    } else if (const auto* limits = std::get_if<network::Limits>(&node.module)) {
-      result.passivity = limits->passivity();
-    } else if (const auto* joints = std::get_if<network::PumaJoints>(&node.module)) {
-      result.sampling_energy = joints->sampling_energy();
-    }
-    results.push_back(result);
-  }
-  return results;
+  result.most_support_pairs =
+      std::max(result.most_support_pairs, records.front()->pairs.iterations);
 }
 
 template <TorqueDrivenArm Arm>
-void run_with(Arm& arm, Cell& cell, RunResult& result, const std::atomic<bool>& stop,
+void run_with(std::span<Arm> arms, Cell& cell, RunResult& result, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {
   const RunOptions& options = result.options;
   const double period_s = 1.0 / options.rate_hz;
   const nanoseconds period(std::llround(1e9 * period_s));
   result.deadline = DeadlineMonitor(period);
   const auto ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.rate_hz));
-  network::Network network = scene::build_network(result.scene, cell.model, options.rate_hz);
-  const std::int64_t kept = options.keep_records ? std::min<std::int64_t>(ticks, 4000000) : 0;
-  Recorder recorder(static_cast<std::size_t>(kept));
+  std::vector<Recorder> recorders = recorders_for(options, arms.size(), ticks);
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
 
   result.machine = host::describe_machine(options.fast ? "not by the clock"
                                                        : host::to_text(host::request_real_time()));
   Coprocessor coprocessor(cell.world, coprocessor_options(result, period));
-  network::ScriptedOperator the_operator(result.scene.script);
-  Teleoperator teleoperator(cell.model, arm, cell.kinematics, cell.world, cell.tool, coprocessor,
-                            the_operator, std::move(network), period);
+  Crew<Arm> crew(result.scene, cell, arms, coprocessor, options.rate_hz);
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   TickUsage usage;
   host::Metronome metronome(period);
   for (std::int64_t k = 1; k <= ticks && !stop; ++k) {
     const nanoseconds late =
-        options.fast ? nanoseconds(0) : metronome.wait([&] { teleoperator.rehearse(); });
+        options.fast ? nanoseconds(0) : metronome.wait([&] { crew.rehearse(); });
     usage.begin();
     const auto begin = steady_clock::now();
-    const TickRecord* record = nullptr;
+    std::span<const TickRecord* const> records;
     {
       const host::HeapGuard heap;
       const SystemCallGuard system_calls;
-      record = &teleoperator.tick(options.fast ? k * period : begin.time_since_epoch());
+      records = crew.tick(options.fast ? k * period : begin.time_since_epoch());
     }
     const auto end = steady_clock::now();
     usage.end();
     const auto arm_begin = steady_clock::now();
-    arm.step(period_s);
+    for (Arm& arm : arms) arm.step(period_s);
     result.arm_step.record(steady_clock::now() - arm_begin);
     result.deadline.record(late, end - begin);
-    result.totals.add(*record);
-    result.network_time.record(record->network_time);
-    result.most_support_pairs = std::max(result.most_support_pairs, record->pairs.iterations);
     result.compute += end - begin;
     result.over_budget += over_budget(result.scene.budget, end - begin) ? 1 : 0;
-    if (options.keep_records) recorder.add(*record);
-    progress.draft() = progress_of(*record, result);
+    note_tick(records, result, recorders);
+    progress.draft() = progress_of(*records.front(), result);
     progress.post();
     if (!options.fast) result.skipped_ticks += metronome.catch_up();
   }
   coprocessor.stop();
-  result.modules = module_results(teleoperator.network());
-  result.obstacles = obstacle_results(cell, coprocessor);
-  find_nearest(cell.world, coprocessor, result);
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    result.arms[i].modules = module_results(crew.members()[i].network());
+    result.arms[i].records = recorders[i].records();
+    result.records_dropped = options.keep_records ? recorders[i].dropped() : 0;  // alike in all
+  }
+  note_pairs(cell.world, coprocessor, result);
   result.interrupted = stop;
   result.allocations_in_tick = host::HeapGuard::allocations();
   result.system_calls_in_tick = SystemCallGuard::calls();
   result.page_faults_in_tick = usage.page_faults();
   result.voluntary_switches_in_tick = usage.voluntary_switches();
   result.involuntary_switches_in_tick = usage.involuntary_switches();
-  result.records = recorder.records();
-  result.records_dropped = options.keep_records ? recorder.dropped() : 0;
 }
 
 /// Joints of an arm without dynamics of its own: what the motors and the heaviest pose would weigh.
@@ -223,7 +190,7 @@ std::vector<IdealJoint> ideal_joints(const ArmModel& model) {
 double support_pairs_per_period(const RunResult& result) {
   const double seconds = std::chrono::duration<double>(result.compute).count();
   if (!(seconds > 0.0)) return 0.0;
-  return static_cast<double>(result.totals.iterations) / (seconds * result.options.rate_hz);
+  return static_cast<double>(result.totals().iterations) / (seconds * result.options.rate_hz);
 }
 
 RunResult run(const scene::Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
@@ -245,23 +212,33 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
                      scene.file);
   }
   result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
-  const auto with = [&](auto arm) {
-    arm.reset(cell.start);
-    run_with(arm, cell, result, stop, show);
+  for (const Manipulator& arm : cell.arms) {
+    const std::size_t before = result.arms.size();
+    ArmResult& added = result.arms.emplace_back();
+    if (before > 0) added.name = scene.partners[before - 1].name;
+    for (const ArmLink& link : arm.robot.arm.links) added.joints.push_back(link.type);
+  }
+  const auto with = [&](auto make) {
+    std::vector<decltype(make(cell.arm().robot.arm))> arms;
+    for (const Manipulator& each : cell.arms) {
+      arms.push_back(make(each.robot.arm));
+      arms.back().reset(each.start);
+    }
+    run_with(std::span(arms), cell, result, stop, show);
   };
   if (ideal) {
-    with(IdealArm(ideal_joints(cell.model)));
+    with([](const ArmModel& model) { return IdealArm(ideal_joints(model)); });
   } else if (options.backend == "reference") {
-    with(ReferenceArm(cell.model));
+    with([](const ArmModel& model) { return ReferenceArm(model); });
   } else if (options.backend == "ode") {
 #ifdef REPEL_TELEOP_ODE
-    with(ode::Arm(cell.model));
+    with([](const ArmModel& model) { return ode::Arm(model); });
 #else
     throw SetupError("backend ode is not built in; to have it: apt-get install libode-dev");
 #endif
   } else {
 #ifdef REPEL_TELEOP_BULLET
-    with(bullet::Arm(cell.model));
+    with([](const ArmModel& model) { return bullet::Arm(model); });
 #else
     throw SetupError("backend bullet is not built in; to have it: apt-get install libbullet-dev");
 #endif

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -31,8 +30,9 @@ struct RunOptions {
 /// What one obstacle did in a run.
 struct ObstacleResult {
   std::string name;
-  double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
-  double peak_force = 0.0;                                   ///< [N] of one pair with it
+  PairExtremes extremes{};  ///< of all pairs with it
+  std::string part{};       ///< of the tool or arm, in the pair that pushed hardest
+  std::string body{};       ///< the tool or link it is of
 };
 
 /// What one module of the network did in a run.
@@ -44,17 +44,25 @@ struct ModuleResult {
   double sampling_energy = 0.0;  ///< [J] that holding the torques gave the arm; of puma_joints
 };
 
+/// What one arm did in a run.
+struct ArmResult {
+  std::string name;  ///< of the partner; empty for the arm of the scene itself
+  std::vector<JointType> joints;
+  RunTotals totals;                   ///< its own; what they say of pairs is of the whole world
+  std::vector<ModuleResult> modules;  ///< of its network, in its order
+  std::vector<TickRecord> records;
+};
+
 /// Everything there is to say about a run.
 struct RunResult {
   RunOptions options;
   scene::Scene scene;  ///< with the budget that was in force
   int pairs = 0;
-  int threads = 0;  ///< of the coprocessor that there was work for
-  RunTotals totals;
-  double device_damping = 0.0;        ///< [N s/m] least, of the arm at its tool where it starts
+  int threads = 0;                    ///< of the coprocessor that there was work for
+  std::vector<ArmResult> arms;        ///< that of the scene itself, then its partners
+  double device_damping = 0.0;        ///< [N s/m] least, of the arms at their tools at the start
   std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit
-  std::vector<ModuleResult> modules;  ///< of the network, in its order
-  DurationHistogram network_time;     ///< of the network alone, within the tick
+  DurationHistogram network_time;     ///< of the networks alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
   std::int64_t most_support_pairs = 0;  ///< in one tick
   std::chrono::nanoseconds compute{0};  ///< of all ticks together
@@ -68,10 +76,13 @@ struct RunResult {
   std::int64_t involuntary_switches_in_tick = -1;  ///< the machine's doing
   std::string nearest_pair;                        ///< "part - obstacle"; empty without one
   std::vector<ObstacleResult> obstacles;           ///< in the order of the scene
-  std::vector<TickRecord> records;
+  std::vector<std::string> pair_names;  ///< "part - obstacle" by PairId, where there is a log
   std::int64_t records_dropped = 0;
   bool interrupted = false;
   host::Machine machine;
+
+  /// Of the arm of the scene itself.
+  [[nodiscard]] const RunTotals& totals() const noexcept { return arms.front().totals; }
 };
 
 /// What a run shows of itself while it lasts.

@@ -1,13 +1,22 @@
 #include "unused.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace repel::teleop {
 namespace {
 
-bool has_master(const network::Script& script, network::Master master) {
-  return std::any_of(script.begin(), script.end(),
-                     [&](const network::Phase& phase) { return phase.master == master; });
+/// True when `holds` is true of the scene's own station or of a partner's.
+bool any_station(const scene::Scene& scene,
+                 const std::function<bool(const scene::Station&)>& holds) {
+  return holds(scene) || std::any_of(scene.partners.begin(), scene.partners.end(), holds);
+}
+
+bool has_master(const scene::Scene& scene, network::Master master) {
+  return any_station(scene, [master](const scene::Station& station) {
+    return std::any_of(station.script.begin(), station.script.end(),
+                       [&](const network::Phase& phase) { return phase.master == master; });
+  });
 }
 
 /// Threads that would find no block of pairs to work on are not begun.
@@ -29,10 +38,14 @@ std::vector<std::string> unused_parts(const RunResult& r) {
   std::vector<std::string> parts = {
       unused_threads(r),
       r.pairs > 0 ? "" : "distance queries",
-      r.totals.nearest > 0.0 ? "reduction levels" : "",
+      r.totals().nearest > 0.0 ? "reduction levels" : "",
       passable ? "" : "passable bodies",
-      has_master(r.scene.script, network::Master::torque_arm) ? "" : "torque arm",
-      has_master(r.scene.script, network::Master::spaceball) ? "" : "space ball",
+      any_station(r.scene, scene::feels_links) ? "" : "links of the arm",
+      any_station(r.scene, [](const auto& s) { return s.robot.self_law.has_value(); })
+          ? ""
+          : "pairs within an arm",
+      has_master(r.scene, network::Master::torque_arm) ? "" : "torque arm",
+      has_master(r.scene, network::Master::spaceball) ? "" : "space ball",
       r.scene.budget.work_units > 0 ? "" : "counted budget",
       by_wall ? "" : "wall-clock budget",
       r.options.fast ? "metronome and rehearsals" : "",

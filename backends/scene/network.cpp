@@ -88,6 +88,14 @@ Options kbb2_of(const Map& map) {
   return options;
 }
 
+Options arm_obstacle_of(const Map& map) {
+  allow(map, {"most_energy", "most_damping"});
+  network::ArmObstacleOptions options;
+  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.most_energy);
+  map.read("most_damping", {unit::angular_damping, 0.0, 1e6}, options.most_damping);
+  return options;
+}
+
 Options obstacle_of(const Map& map, Network& network) {
   allow(map, {"gain_check", "most_energy", "most_damping"});
   network::ObstacleOptions options;
@@ -173,6 +181,7 @@ Options options_of(const std::string& word, const Map& map, Network& network) {
   if (word == "relief") return relief_of(map);
   if (word == "kbb2") return kbb2_of(map);
   if (word == "obstacle") return obstacle_of(map, network);
+  if (word == "arm_obstacle") return arm_obstacle_of(map);
   if (word == "puma_kin") return plain_of(map, Kinematic{});
   if (word == "limits") return limits_of(map);
   if (word == "visual") return plain_of(map, Tap{});
@@ -188,9 +197,10 @@ Options options_of(const std::string& word, const Map& map, Network& network) {
 Module module_of(const Value& value, Network& network) {
   const Map map(value);
   const Value& kind = map.at("module");
-  const std::string word = kind.word_of({"torque_arm", "multiplex", "spaceball", "relief", "kbb2",
-                                         "obstacle", "puma_kin", "limits", "visual", "puma_joints",
-                                         "ground", "line", "junction", "spring", "damper", "mass"});
+  const std::string word =
+      kind.word_of({"torque_arm", "multiplex", "spaceball", "relief", "kbb2", "obstacle",
+                    "puma_kin", "arm_obstacle", "limits", "visual", "puma_joints", "ground", "line",
+                    "junction", "spring", "damper", "mass"});
   Module module{word, {}, options_of(word, map, network), value.line()};
   map.read("name", module.name);
   if (const Value* to = map.find("to")) {
@@ -221,6 +231,9 @@ struct Maker {
   network::Module operator()(const network::Kbb2Options& o) const { return network::Kbb2(o); }
   network::Module operator()(const network::ObstacleOptions& o) const {
     return network::Obstacle(o);
+  }
+  network::Module operator()(const network::ArmObstacleOptions& o) const {
+    return network::ArmObstacle(o);
   }
   network::Module operator()(const Kinematic& /*none*/) const { return network::PumaKin(); }
   network::Module operator()(const network::JointLimits& law) const {
@@ -273,6 +286,7 @@ Network detail::network_of(const Value* value) {
                        {"kbb2", {}, network::Kbb2Options{}},
                        {"obstacle", {}, network::ObstacleOptions{}},
                        {"puma_kin", {}, Kinematic{}},
+                       {"arm_obstacle", {}, network::ArmObstacleOptions{}},
                        {"limits", {}, network::JointLimits{}},
                        {"visual", {}, Tap{}},
                        {"puma_joints", {}, Joints{}}};
@@ -283,24 +297,39 @@ Network detail::network_of(const Value* value) {
   return network;
 }
 
-network::Network build_network(const Scene& scene, const ArmModel& arm, double rate_hz) {
-  const auto& modules = scene.network.modules;
+bool feels_links(const Station& station) {
+  const auto& modules = station.network.modules;
+  return std::any_of(modules.begin(), modules.end(), [](const Module& m) {
+    return std::holds_alternative<network::ArmObstacleOptions>(m.options);
+  });
+}
+
+network::Network build_network(const Scene& scene, const Station& station, const ArmModel& arm,
+                               double rate_hz) {
+  const auto& modules = station.network.modules;
   const bool felt = std::any_of(modules.begin(), modules.end(), [](const Module& m) {
     return std::holds_alternative<network::ObstacleOptions>(m.options);
   });
-  if (!scene.obstacles.empty() && !felt) {
+  if (!(scene.obstacles.empty() && scene.partners.empty()) && !felt) {
     throw SetupError("network: there are obstacles and no module 'obstacle' through which they act",
                      scene.file);
   }
+  const auto& links = station.robot.links;
+  if (links && !links->empty() && !feels_links(station)) {
+    throw SetupError(
+        "robot: there are links to keep off the obstacles and no module 'arm_obstacle' in the "
+        "network through which they feel them",
+        scene.file);
+  }
   network::Plan plan;
   try {
-    for (const Module& module : scene.network.modules) {
+    for (const Module& module : modules) {
       plan.add(module.name, std::visit(Maker{arm}, module.options), module.to);
     }
     return plan.build(1.0 / rate_hz);
   } catch (const SetupError& error) {
     const std::string what = std::string("network: ") + error.what();
-    throw SetupError(what, scene.file, line_of_named(scene.network.modules, what));
+    throw SetupError(what, scene.file, line_of_named(modules, what));
   }
 }
 

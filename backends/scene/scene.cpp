@@ -136,8 +136,8 @@ Laws laws_of(const Map& scene) {
   return laws;
 }
 
-const ForceLaw& law_called(const Laws& laws, const Map& map) {
-  const Value* name = map.find("law");
+const ForceLaw& law_called(const Laws& laws, const Map& map, std::string_view key = "law") {
+  const Value* name = map.find(key);
   const auto found = laws.find(name ? name->text() : "default");
   if (found != laws.end()) return found->second;
   std::string defined;
@@ -145,8 +145,17 @@ const ForceLaw& law_called(const Laws& laws, const Map& map) {
   name->fail_with_value("a law under 'laws': " + defined);
 }
 
+std::optional<ObstacleMotion> motion_of(const Map& obstacle) {
+  const Value* value = obstacle.find("motion");
+  if (!value) return {};
+  const Map map(*value);
+  map.allow({"along", "duration"});
+  return ObstacleMotion{map.at("along").vector(position),
+                        map.at("duration").number({unit::time, 1e-3, 86400.0})};
+}
+
 std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws) {
-  constexpr std::string_view keys[] = {"law"};
+  constexpr std::string_view keys[] = {"law", "motion"};
   std::vector<Obstacle> obstacles;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
@@ -154,26 +163,54 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws) {
     Part part = part_of(entry, map, keys);
     require_new(names, map);
     obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
-                         part.X_BP, law_called(laws, map)});
+                         part.X_BP, law_called(laws, map), motion_of(map)});
   }
   return obstacles;
 }
 
-RobotChoice robot_of(const Value& value, const std::string& file) {
-  const Map map(value);
-  map.allow({"urdf", "tip_link", "start", "base", "tool_frame"});
-  RobotChoice robot;
-  const Value& urdf = map.at("urdf");
-  const auto path = std::filesystem::path(file).parent_path() / urdf.text();
+/// The path of a file that is there; the scene's `file` is what it is relative to.
+std::string path_of(const Value& value, const std::string& file) {
+  const auto path = std::filesystem::path(file).parent_path() / value.text();
   std::error_code unused;
   if (!std::filesystem::is_regular_file(path, unused)) {
-    urdf.fail_with_value("a file; there is none at " + path.lexically_normal().string());
+    value.fail_with_value("a file; there is none at " + path.lexically_normal().string());
   }
-  robot.urdf = path.lexically_normal().string();
+  return path.lexically_normal().string();
+}
+
+/// Angles, or a list of angles and of lengths for joints that slide.
+void read_start(const Value& value, RobotChoice& robot) {
+  const auto add = [&](const Value& entry, const Rule& rule, JointType type) {
+    for (const double q : entry.numbers(rule, 1, 64)) {
+      robot.start.push_back(q);
+      robot.start_types.push_back(type);
+    }
+  };
+  if (!value.is_list()) return add(value, angles, JointType::revolute);
+  for (const Value& entry : value.list()) {
+    if (quantity(entry.text(), unit::length)) {
+      add(entry, position, JointType::prismatic);
+    } else {
+      add(entry, angles, JointType::revolute);
+    }
+  }
+}
+
+RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
+  const Map map(value);
+  map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf"});
+  RobotChoice robot;
+  robot.urdf = path_of(map.at("urdf"), file);
+  if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
+  if (map.find("self_law")) robot.self_law = law_called(laws, map, "self_law");
   map.read("tip_link", robot.tip_link);
-  robot.start = map.at("start").numbers(angles, 1, 64);
+  read_start(map.at("start"), robot);
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");
+  if (const Value* links = map.find("links")) {
+    robot.links.emplace();
+    for (const Value& link : links->list()) robot.links->push_back(link.text());
+  }
   return robot;
 }
 
@@ -222,6 +259,30 @@ network::Script script_of(const Map& scene) {
   return script;
 }
 
+void read_station(const Map& map, const Laws& laws, const std::string& file, Station& station) {
+  station.robot = robot_of(map.at("robot"), laws, file);
+  station.tool = tool_of(map.at("tool"));
+  station.network = detail::network_of(map.find("network"));
+  station.script = script_of(map);
+}
+
+std::vector<Partner> partners_of(const Map& scene, const Laws& laws, const std::string& file) {
+  std::vector<Partner> partners;
+  const Value* value = scene.find("partners");
+  if (!value) return partners;
+  std::set<std::string> names;
+  for (const Value& entry : value->list()) {
+    const Map map(entry);
+    map.allow({"name", "law", "robot", "tool", "network", "script"});
+    Partner& partner = partners.emplace_back();
+    partner.name = map.at("name").text();
+    require_new(names, map);
+    partner.law = law_called(laws, map);
+    read_station(map, laws, file, partner);
+  }
+  return partners;
+}
+
 Budget budget_of(const Map& scene) {
   Budget budget;
   const Value* value = scene.find("budget");
@@ -244,17 +305,17 @@ Budget budget_of(const Map& scene) {
 Scene parse(std::string_view yaml, const std::string& file) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "budget"});
+  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "partners",
+             "budget"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
   map.read("name", scene.name);
   map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
-  scene.robot = robot_of(map.at("robot"), file);
-  scene.tool = tool_of(map.at("tool"));
-  scene.obstacles = obstacles_of(map.at("obstacles"), laws_of(map));
-  scene.network = detail::network_of(map.find("network"));
-  scene.script = script_of(map);
+  const Laws laws = laws_of(map);
+  read_station(map, laws, file, scene);
+  scene.obstacles = obstacles_of(map.at("obstacles"), laws);
+  scene.partners = partners_of(map, laws, file);
   scene.budget = budget_of(map);
   return scene;
 }

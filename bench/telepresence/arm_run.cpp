@@ -44,25 +44,27 @@ ArmEnd run_arm(const ArmScene& scene, double seconds,
                const std::function<void(const ArmTick&)>& each) {
   const scene::Scene parsed = scene::parse(text_of(scene), "scene");
   teleop::Cell cell(parsed, true);
-  bullet::Arm arm(cell.model);
-  arm.reset(cell.start);
+  const ArmModel& model = cell.arm().robot.arm;
+  bullet::Arm arm(model);
+  arm.reset(cell.arm().start);
   const std::chrono::nanoseconds period(std::llround(1e9 / scene.rate_hz));
   CoprocessorOptions in_lock_step;
   in_lock_step.period = period;
   in_lock_step.lock_step = true;
   Coprocessor coprocessor(cell.world, in_lock_step);
   network::ScriptedOperator the_operator(parsed.script);
-  Teleoperator teleoperator(cell.model, arm, cell.kinematics, cell.world, cell.tool, coprocessor,
-                            the_operator, scene::build_network(parsed, cell.model, scene.rate_hz),
-                            period);
-  std::vector<double> q(cell.start.size());
+  Kinematics& kinematics = cell.arm().kinematics;
+  Teleoperator teleoperator(model, arm, kinematics, cell.world, cell.arm().tool, coprocessor,
+                            the_operator,
+                            scene::build_network(parsed, parsed, model, scene.rate_hz), period);
+  std::vector<double> q(model.links.size());
   RunTotals totals;
   bool finite = true;
   const auto ticks = std::llround(seconds * scene.rate_hz);
   for (std::int64_t k = 1; k <= ticks; ++k) {
     const TickRecord& record = teleoperator.tick(k * period);
     arm.read_positions(q);
-    each({record, cell.kinematics.X_WT(), q, teleoperator.network()});
+    each({record, kinematics.X_WT(), q, teleoperator.network()});
     arm.step(1.0 / scene.rate_hz);
     totals.add(record);
     finite = finite && std::isfinite(record.coupling.force.norm() + record.lever_torque);
@@ -70,7 +72,7 @@ ArmEnd run_arm(const ArmScene& scene, double seconds,
   coprocessor.stop();
   ArmEnd end{.complaint = complaint_of(teleoperator.network(), finite),
              .status_ticks = totals.status_ticks};
-  for (const ArmLink& link : cell.model.links) end.ranges.push_back({link.lower, link.upper});
+  for (const ArmLink& link : model.links) end.ranges.push_back({link.lower, link.upper});
   return end;
 }
 

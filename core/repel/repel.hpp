@@ -14,6 +14,7 @@
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
 #include <repel/loop/gain_check.hpp>
+#include <repel/loop/shuttle.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/clean_stiffness.hpp>
 #include <repel/network/operator.hpp>

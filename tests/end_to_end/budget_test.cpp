@@ -9,6 +9,7 @@ struct Outcome {
   Ending ending;
   nlohmann::json report;
   std::string log;
+  double most_near = 0.0;  ///< pairs in one tick
 };
 
 Outcome run_of(const std::string& arguments) {
@@ -20,7 +21,10 @@ Outcome run_of(const std::string& arguments) {
   if (run.ending.status != 0) return run;
   run.report = report_of(folder / "report.json");
   run.log = text_of(folder / "log.csv");
-  expect_finite_forces(columns_of(folder / "log.csv"));
+  const Columns columns = columns_of(folder / "log.csv");
+  expect_finite_forces(columns);
+  run.most_near =
+      *std::max_element(columns.at("pairs_near").begin(), columns.at("pairs_near").end());
   return run;
 }
 
@@ -104,7 +108,7 @@ TEST(Budget, OneSupportPairIsEnoughToRunEveryScene) {
     for (const char* fault : {"bad_pose", "bad_command", "bad_joints", "clock_fault"}) {
       EXPECT_FALSE(has_status(run, fault)) << fault;
     }
-    const bool few = run.report.at("pairs") < 2;
+    const bool few = run.most_near < 2.0;
     EXPECT_EQ(has_status(run, "stale_pairs"), !few);
     EXPECT_EQ(run.report.at("oldest_age_ticks") > 0, !few);
   }

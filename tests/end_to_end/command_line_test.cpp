@@ -47,12 +47,12 @@ TEST(CommandLine, BadSceneEndsWithOneAndNamesFileAndLine) {
     const char* place;
   } scenes[] = {
       {"not YAML", robot_text() + "obstacles: [\n", "bad.yaml:"},
-      {"unknown key", robot_text() + "obstacles: []\nobstacle: 1\n", "bad.yaml:8: "},
+      {"unknown key", robot_text() + "obstacles: []\nobstacle: 1\n", "bad.yaml:9: "},
       {"negative radius",
        robot_text() + "obstacles:\n  - {name: ball, shape: sphere, radius: -10 mm}\n",
-       "bad.yaml:8: "},
+       "bad.yaml:9: "},
       {"no unit", robot_text() + "obstacles:\n  - {name: ball, shape: sphere, radius: 0.1}\n",
-       "bad.yaml:8: "},
+       "bad.yaml:9: "},
       {"empty", "", "bad.yaml"}};
   for (const auto& scene : scenes) {
     const Ending ending = teleop(quoted(folder.with("bad.yaml", scene.text)) + " --fast");

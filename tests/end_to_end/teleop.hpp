@@ -51,10 +51,12 @@ inline void expect_finite_forces(const Columns& log) {
   }
 }
 
-/// The start of every scene written by a test: the robot of the repository.
-inline std::string robot_text(const std::string& urdf = REPEL_SOURCE "/robots/puma560.urdf") {
+/// The start of every scene written by a test: the robot of the repository. `links` are those that
+/// feel the walls, in the words of a scene; unless a test is of them, the tool alone.
+inline std::string robot_text(const std::string& urdf = REPEL_SOURCE "/robots/puma560.urdf",
+                              const std::string& links = "  links: []\n") {
   return "robot:\n  urdf: " + urdf +
-         "\n  start: 0 45 -180 0 -45 0 deg\n  tool_frame: {position: 0 0 100 mm}\n"
+         "\n  start: 0 45 -180 0 -45 0 deg\n  tool_frame: {position: 0 0 100 mm}\n" + links +
          "tool:\n"
          "  - {name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}\n";
 }

@@ -2,6 +2,7 @@
 /// The smallest cell there is: an arm of three sliding joints, a ball for a tool, walls of boxes.
 #pragma once
 
+#include <repel/loop/shuttle.hpp>
 #include <repel/loop/tick.hpp>
 
 #include <array>
@@ -48,6 +49,17 @@ struct SliderKinematics {
     J.setZero();
     J.topLeftCorner<3, 3>().setIdentity();
   }
+  /// Link i is carried by the rails 0 to i.
+  [[nodiscard]] Pose X_WL(int link) const noexcept {
+    Pose X = Pose::Identity();
+    X.translation().head(link + 1) = pose.translation().head(link + 1);
+    return X;
+  }
+  void jacobian(int link, const Vec3& /*p_WQ*/,
+                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+    J.setZero();
+    for (int i = 0; i <= link; ++i) J(i, i) = 1.0;
+  }
   void gravity_torques(std::span<double> out) noexcept { std::fill(out.begin(), out.end(), 0.0); }
 
   Pose pose = Pose::Identity();
@@ -89,15 +101,16 @@ inline network::Network sliders_network(std::chrono::nanoseconds period,
       .build(std::chrono::duration<double>(period).count());
 }
 
-/// A ball of 50 mm that the script pushes to +x, against a wall whose face is at x = 0.2 m.
+/// A ball of 50 mm that the script pushes to +x, against a wall whose face is at x = 0.2 m. Where
+/// there is a door, it stands 30 mm behind the ball and is the test's to move.
 struct SliderCell {
   static constexpr std::chrono::nanoseconds period{2500000};
 
   explicit SliderCell(const network::Script& script, const CoprocessorOptions& options = {},
-                      double effort_limit = 1000.0, int walls = 1)
+                      double effort_limit = 1000.0, int walls = 1, bool with_door = false)
       : model(slider_model(effort_limit)),
         tool(world.add_body("tool")),
-        coprocessor(built(walls), options),
+        coprocessor(built(walls, with_door), options),
         the_operator(script),
         teleoperator(model, arm, kinematics, world, tool, coprocessor, the_operator,
                      sliders_network(period), period) {}
@@ -110,7 +123,7 @@ struct SliderCell {
     return record;
   }
 
-  World& built(int walls) {
+  World& built(int walls, bool with_door) {
     const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.05));
     for (int i = 0; i < walls; ++i) {
       Pose X = Pose::Identity();
@@ -118,6 +131,12 @@ struct SliderCell {
       const PartId wall =
           world.add_part(World::fixed, "wall " + std::to_string(i), Shape::box({0.1, 1.0, 1.0}), X);
       world.add_pair(ball, wall, {.range = 0.02, .surface_force = 100.0, .damping = 50.0});
+    }
+    if (with_door) {
+      door.X_WB.translation().x() = -0.13;
+      door.body = world.add_body("door", door.X_WB);
+      const PartId panel = world.add_part(door.body, "panel", Shape::box({0.05, 0.2, 0.2}));
+      world.add_pair(ball, panel, {.range = 0.02, .surface_force = 100.0, .damping = 50.0});
     }
     return world;
   }
@@ -127,6 +146,7 @@ struct SliderCell {
   SliderKinematics kinematics;
   World world;
   BodyId tool;
+  Shuttle door;
   Coprocessor coprocessor;
   network::ScriptedOperator the_operator;
   Teleoperator<SliderArm, SliderKinematics> teleoperator;

@@ -59,11 +59,14 @@ TEST(Tick, WallHoldsTheToolAndTheForcesBalance) {
 TEST(Tick, RecordSaysWhichTickItIs) {
   SliderCell cell(test::push(0.5, 0.1));
   for (int tick = 0; tick < 300; ++tick) {
+    const auto q = cell.arm.q;
     const TickRecord& record = cell.tick();
     ASSERT_EQ(record.tick, tick);
+    ASSERT_TRUE(std::equal(q.begin(), q.end(), record.q.begin()));
     ASSERT_NEAR(record.time, 0.0025 * tick, 1e-12);
     ASSERT_EQ(record.phase, tick < 200 ? 0 : 1);
     ASSERT_EQ(record.pairs.nearest_pair.valid(), record.pairs.evaluated > 0);
+    ASSERT_EQ(record.pairs.hardest_pair.valid(), record.pairs.peak_force > 0.0);
   }
 }
 

@@ -60,7 +60,7 @@ class DrawnSignals {
  public:
   DrawnSignals(Rng& rng, int joints) : rng_(rng) {
     signals.joints.setZero(joints);
-    signals.rates = signals.mean_rates = signals.joints;
+    signals.rates = signals.mean_rates = signals.arm_torques = signals.joints;
     signals.jacobian.setZero(6, joints);
     signals.period = period;
   }
@@ -77,6 +77,7 @@ class DrawnSignals {
     if (tick_ % 8 == 0) {
       const double most = tick_ % 400 < 200 ? 60.0 : 0.0;
       signals.walls = {drawn_vector(rng_, 3, most), drawn_vector(rng_, 3, 0.1 * most)};
+      signals.arm_torques = drawn_vector(rng_, n, most);
     }
     signals.at_rest = tick_ % 5000 > 4980;
     return signals;

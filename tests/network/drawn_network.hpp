@@ -83,12 +83,15 @@ class DrawnPlan {
       plan.add("obstacle", network::Obstacle(), "visual").add("visual", network::Visual());
     }
     const bool braked = first != "obstacle" && chance(0.5);
-    plan.add("puma_kin", network::PumaKin(), braked ? "elbow" : "limits");
+    const bool whole = chance(0.5);
+    const std::string next = whole ? "arm_obstacle" : "limits";
+    plan.add("puma_kin", network::PumaKin(), braked ? "elbow" : next);
     if (braked) {
       plan.add("brake", network::Damper<any_size>(gain(network::Space::joints, 0.1, 10.0)),
                "elbow");
-      plan.add("elbow", network::Junction());
+      plan.add("elbow", network::Junction(), next);
     }
+    if (whole) plan.add("arm_obstacle", network::ArmObstacle(), "limits");
     const std::vector<network::JointRange> ranges(static_cast<std::size_t>(joints), {-0.2, 0.2});
     plan.add("limits", network::Limits({}, ranges), "puma_joints");
     grow(first, network::Space::tool, 4);

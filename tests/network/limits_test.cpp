@@ -130,6 +130,21 @@ TEST(Limits, RefuseARangeThatEndsBeforeItBegins) {
   EXPECT_THROW(Limits({.stiffness = -1.0}, {{-1.0, 1.0}}), SetupError);
   EXPECT_THROW(Limits({.damping = std::nan("")}, {{-1.0, 1.0}}), SetupError);
   EXPECT_THROW(Limits({}, {{-1.0, std::nan("")}}), SetupError);
+  EXPECT_THROW(Limits({}, {{std::nan(""), 1.0}}), SetupError);
+}
+
+TEST(Limits, LeaveAJointAloneThatTurnsWithoutEnd) {
+  const double never = std::numeric_limits<double>::infinity();
+  Limits limits({}, {{-never, never}, {-1.0, never}});
+  Signals signals;
+  signals.rates = signals.mean_rates = Vector::Zero(2);
+  signals.joints = Vector::Constant(2, 1000.0);
+  limits.read(signals);
+  EXPECT_EQ(limits.torques(), Vector::Zero(2));
+  signals.joints(1) = -1.0;
+  limits.read(signals);
+  EXPECT_EQ(limits.torques()(0), 0.0);
+  EXPECT_GT(limits.torques()(1), 0.0);
 }
 
 }  // namespace limits_test

@@ -102,6 +102,7 @@ Plan of_everything() {
   plan.add("spaceball", Spaceball());
   plan.add("relief", Relief({.compliant = {true, true, true, true, true, true}}));
   plan.add("obstacle", Obstacle()).add("visual", Visual()).add("puma_kin", PumaKin());
+  plan.add("arm_obstacle", ArmObstacle());
   plan.add("limits", Limits({}, std::vector<JointRange>(6, {-0.2, 0.2})));
   plan.add("puma_joints", PumaJoints(6));
   return plan;

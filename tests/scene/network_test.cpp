@@ -30,7 +30,8 @@ ArmModel two_joints() {
 /// The message of what building the network of `modules` throws; empty when nothing is thrown.
 std::string refusal(const std::string& modules) {
   try {
-    (void)build_network(parsed(base_scene + "network:\n" + modules), two_joints(), 400.0);
+    const Scene scene = parsed(base_scene + "network:\n" + modules);
+    (void)build_network(scene, scene, two_joints(), 400.0);
   } catch (const SetupError& error) {
     return error.what();
   }
@@ -41,17 +42,17 @@ const std::string slave =
     "  - {module: kbb2}\n  - {module: obstacle}\n  - {module: puma_kin}\n"
     "  - {module: limits}\n  - {module: puma_joints}\n";
 
-TEST(SceneNetwork, WithoutOneTheTenModulesOfThePaperStandInTheirOrder) {
+TEST(SceneNetwork, WithoutOneThoseOfThePaperAndTheWholeArmStandInTheirOrder) {
   const Scene scene = parsed(base_scene);
   std::string names;
   for (const Module& module : scene.network.modules) names += module.name + " ";
   EXPECT_EQ(names,
-            "torque_arm multiplex spaceball relief kbb2 obstacle puma_kin limits visual "
-            "puma_joints ");
+            "torque_arm multiplex spaceball relief kbb2 obstacle puma_kin arm_obstacle limits "
+            "visual puma_joints ");
   EXPECT_EQ(scene.network.gain_check, network::GainCheck::error);
-  const network::Network built = build_network(scene, two_joints(), 400.0);
-  EXPECT_EQ(built.nodes().size(), 10U);
-  EXPECT_EQ(built.connections().size(), 9U);
+  const network::Network built = build_network(scene, scene, two_joints(), 400.0);
+  EXPECT_EQ(built.nodes().size(), 11U);
+  EXPECT_EQ(built.connections().size(), 10U);
   EXPECT_EQ(built.find<network::PumaJoints>()->size(), 2);
 }
 

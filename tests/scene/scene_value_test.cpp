@@ -70,6 +70,42 @@ TEST(SceneValue, AnglesMayBeInDegreesOrRadians) {
   EXPECT_EQ(parsed(changed("0 45 180 0 45 0 deg", "0 1.5 rad")).robot.start[1], 1.5);
 }
 
+TEST(SceneValue, StartsOfJointsThatSlideAreLengths) {
+  const auto robot = parsed(changed("0 45 180 0 45 0 deg", "[50 mm, 0 90 deg, 1 rad]")).robot;
+  ASSERT_EQ(robot.start.size(), 4U);
+  EXPECT_EQ(robot.start[0], 0.05);
+  EXPECT_DOUBLE_EQ(robot.start[2], pi / 2);
+  EXPECT_EQ(robot.start_types[0], JointType::prismatic);
+  EXPECT_EQ(robot.start_types[3], JointType::revolute);
+  EXPECT_THROW((void)parsed(changed("0 45 180 0 45 0 deg", "[50 kg]")), SetupError);
+}
+
+TEST(SceneValue, AnObstacleMayMove) {
+  EXPECT_FALSE(parsed(base_scene).obstacles[0].motion.has_value());
+  const Scene scene =
+      parsed(changed("size: 1 2 3 m", "size: 1 2 3 m, motion: {along: 0 20 0 cm, duration: 8 s}"));
+  ASSERT_TRUE(scene.obstacles[0].motion.has_value());
+  EXPECT_EQ(scene.obstacles[0].motion->along_W.y(), 0.2);
+  EXPECT_EQ(scene.obstacles[0].motion->duration, 8.0);
+  EXPECT_THROW((void)parsed(changed("size: 1 2 3 m", "size: 1 2 3 m, motion: {duration: 8 s}")),
+               SetupError);
+}
+
+TEST(SceneValue, APartnerIsAStationOfItsOwn) {
+  const Scene scene = parsed(
+      base_scene +
+      "partners:\n  - name: other\n    law: default\n    robot: {urdf: ../robots/puma560.urdf, "
+      "start: 0 0 deg, self_law: default}\n    tool: [{name: ball, shape: sphere, radius: 10 "
+      "mm}]\n");
+  ASSERT_EQ(scene.partners.size(), 1U);
+  EXPECT_EQ(scene.partners[0].name, "other");
+  EXPECT_EQ(scene.partners[0].robot.start.size(), 2U);
+  EXPECT_TRUE(scene.partners[0].robot.self_law.has_value());
+  EXPECT_FALSE(scene.robot.self_law.has_value());
+  EXPECT_TRUE(scene.partners[0].script.empty());
+  EXPECT_TRUE(feels_links(scene.partners[0]));
+}
+
 TEST(SceneValue, RollPitchYawTurnAboutFixedAxesInThatOrder) {
   const Scene scene = parsed(changed("size: 1 2 3 m", "size: 1 2 3 m, rpy: 90 0 90 deg"));
   // Roll takes y to z; yaw, about the fixed z, leaves it there. Roll leaves x, yaw takes it to y.

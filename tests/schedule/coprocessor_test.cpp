@@ -48,6 +48,7 @@ void expect_same_bits(const PairForces& a, const PairForces& b, const std::strin
   ASSERT_EQ(a.totals.nearest, b.totals.nearest);
   ASSERT_EQ(a.totals.nearest_pair, b.totals.nearest_pair);
   ASSERT_EQ(a.totals.peak_force, b.totals.peak_force);
+  ASSERT_EQ(a.totals.hardest_pair, b.totals.hardest_pair);
 }
 
 /// The forces of every tick of one motion of 4 x 80 boxes.

@@ -16,7 +16,8 @@ constexpr unsigned seed = 5120;
 struct Groups {
   test::NearPairs scene;
   std::vector<ContactGroup> groups;
-  std::vector<Wrench> sum;
+  PairForces forces;
+  std::vector<Wrench>& sum = forces.on_body;
 
   explicit Groups(unsigned run) : scene(3, run) {
     constexpr int count = 6;
@@ -28,9 +29,9 @@ struct Groups {
     }
     scene.move(0.001, 0.002);
     poses.begin();
-    sum.resize(static_cast<std::size_t>(scene.world.body_count()));
+    forces = PairForces(scene.world.body_count());
     for (ContactGroup& group : groups) group.evaluate(scene.world.motion(), poses);
-    LaneWrench(scene.world.motion(), sum).add(groups);
+    LaneWrench(scene.world.motion(), forces).add(groups);
   }
   void add_group(int kind) {
     for (int k = 0; k < lane_count; ++k) {
@@ -89,14 +90,16 @@ TEST(LaneWrench, GroupsThatWereNotAnsweredAtThisTickAddNothing) {
   double most = 0.0;
   for (unsigned run = 0; run < 20; ++run) {
     Groups all(seed + run);
-    std::vector<Wrench> sum(all.sum.size());
-    std::vector<Wrench> without(all.sum.size());
+    PairForces some(all.scene.world.body_count());
+    PairForces others(all.scene.world.body_count());
+    const auto& sum = some.on_body;
+    const auto& without = others.on_body;
     const auto count = all.groups.size();
     const auto old = run % count;
-    LaneWrench(all.scene.world.motion(), without).add(std::span(all.groups).first(old));
-    LaneWrench(all.scene.world.motion(), without).add(std::span(all.groups).subspan(old + 1));
+    LaneWrench(all.scene.world.motion(), others).add(std::span(all.groups).first(old));
+    LaneWrench(all.scene.world.motion(), others).add(std::span(all.groups).subspan(old + 1));
     all.groups[old].grow_old();
-    LaneWrench(all.scene.world.motion(), sum).add(all.groups);
+    LaneWrench(all.scene.world.motion(), some).add(all.groups);
     for (std::size_t body = 0; body < sum.size(); ++body) {
       ASSERT_LE((sum[body].force - without[body].force).norm(), 1e-9) << "seed " << seed + run;
       ASSERT_LE((sum[body].torque - without[body].torque).norm(), 1e-9) << "seed " << seed + run;

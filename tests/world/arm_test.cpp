@@ -16,6 +16,9 @@ struct Kinematics {
   void update(std::span<const double>) noexcept {}
   [[nodiscard]] Pose X_WT() const noexcept { return Pose::Identity(); }
   void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
+  [[nodiscard]] Pose X_WL(int) const noexcept { return Pose::Identity(); }
+  void jacobian(int, const Vec3&,
+                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
   void gravity_torques(std::span<double>) noexcept {}
 };
 
@@ -38,6 +41,16 @@ struct KinematicsWithoutGravity {
   void update(std::span<const double>) noexcept {}
   [[nodiscard]] Pose X_WT() const noexcept { return Pose::Identity(); }
   void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
+  [[nodiscard]] Pose X_WL(int) const noexcept { return Pose::Identity(); }
+  void jacobian(int, const Vec3&,
+                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
+};
+
+struct KinematicsOfTheToolAlone {
+  void update(std::span<const double>) noexcept {}
+  [[nodiscard]] Pose X_WT() const noexcept { return Pose::Identity(); }
+  void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>>) const noexcept {}
+  void gravity_torques(std::span<double>) noexcept {}
 };
 
 static_assert(TorqueDrivenArm<Arm>);
@@ -46,6 +59,7 @@ static_assert(!TorqueDrivenArm<ArmThatReportsFailure>);
 static_assert(!TorqueDrivenArm<ArmThatChangesWhenRead>);
 static_assert(ArmKinematics<Kinematics>);
 static_assert(!ArmKinematics<KinematicsWithoutGravity>);
+static_assert(!ArmKinematics<KinematicsOfTheToolAlone>);
 static_assert(!ArmKinematics<Arm>);
 
 TEST(ArmModel, IsEmptyAndAtTheOriginUnlessSaidOtherwise) {

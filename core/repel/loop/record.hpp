@@ -21,12 +21,13 @@ struct TickRecord {
   double time = 0.0;       ///< [s] since the first tick
   std::int32_t phase = 0;  ///< of the operator's script
   Status status = 0;
-  Vec3 p_WT{0, 0, 0};         ///< [m] tool
-  Vec3 v_WT{0, 0, 0};         ///< [m/s]
-  Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
-  Wrench coupling;            ///< [N, N m] from the operator's side on the tool
-  double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
-  double gain = 1.0;          ///< of the fail-safe
+  std::array<double, network::most_joints> q{};  ///< [rad] or [m] joints, as they were read
+  Vec3 p_WT{0, 0, 0};                            ///< [m] tool
+  Vec3 v_WT{0, 0, 0};                            ///< [m/s]
+  Wrench virtual_force;                          ///< [N, N m] on the tool, about its origin
+  Wrench coupling;                               ///< [N, N m] from the operator's side on the tool
+  double lever_torque = 0.0;                     ///< [N m] reflected to the torque arm
+  double gain = 1.0;                             ///< of the fail-safe
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_modules> energy{};
   std::chrono::nanoseconds network_time{0};  ///< that the network took; not repeatable
@@ -66,6 +67,7 @@ struct RunTotals {
   double refresh_energy = 0.0;  ///< [J] PairTotals::refresh_energy, summed over ticks
   double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
   PairId nearest_pair;
+  double deepest = 0.0;                         ///< [m] proven: no pair was deeper when asked
   double peak_force = 0.0;                      ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
   WorkerReport workers;                         ///< as of the last tick
@@ -83,6 +85,7 @@ struct RunTotals {
       nearest = r.pairs.nearest;
       nearest_pair = r.pairs.nearest_pair;
     }
+    deepest = std::max(deepest, r.pairs.deepest);
     peak_force = std::max(peak_force, r.virtual_force.force.norm());
     for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
     workers = r.workers;

@@ -2,11 +2,13 @@
 /// The straight line: everything that happens in one tick, in the order it happens.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/failsafe.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/network/friction.hpp>
@@ -27,15 +29,18 @@ class Teleoperator {
   static constexpr double patience = 0.02;
 
   /// @param network built for `period`
+  /// @param links bodies whose forces act on the arm through the module ARM_OBSTACLE
   /// @throws SetupError when the network does not end in as many joints as the arm has
   Teleoperator(const ArmModel& model, Arm& arm, Kinematics& kinematics, World& world, BodyId tool,
                Coprocessor& coprocessor, network::ScriptedOperator& the_operator,
-               network::Network network, std::chrono::nanoseconds period)
+               network::Network network, std::chrono::nanoseconds period,
+               std::vector<LinkBody> links = {})
       : model_(model),
         arm_(arm),
         kinematics_(kinematics),
         world_(world),
         tool_(tool),
+        links_(std::move(links), static_cast<int>(model.links.size())),
         coprocessor_(coprocessor),
         operator_(the_operator),
         network_(std::move(network)),
@@ -58,18 +63,29 @@ class Teleoperator {
     signals_.period = period_;
     begin_tick({});
     read_joints();
-    place_tool();
+    place_bodies();
     flow_.reset(joints_vec(q_));
   }
 
   /// One tick. @param now the time it is due [ns]; it must grow from tick to tick
   const TickRecord& tick(std::chrono::nanoseconds now) noexcept {
+    sense(now);
+    return act(coprocessor_.exchange());
+  }
+
+  /// The first half of a tick. Arms that share a world all sense, then one exchange of the
+  /// coprocessor tells each how to act.
+  void sense(std::chrono::nanoseconds now) noexcept {
     begin_tick(now);  // clock -> status
     read_joints();    // arm -> q, v
-    place_tool();     // q, v -> X_WT, V_WT in the world
-    push_away();      // world -> virtual force on the tool
-    ask_operator();   // script -> what the hands do
-    run_network();    // hands, walls, joint rates -> torques
+    place_bodies();   // q, v -> poses and twists of tool and links in the world
+  }
+
+  /// The second half. @param forces of the world in which all arms have been placed
+  const TickRecord& act(const PairForces& forces) noexcept {
+    push_away(forces);  // world -> virtual forces on tool and links
+    ask_operator();     // script -> what the hands do
+    run_network();      // hands, walls, joint rates -> torques
     const double gain = failsafe_.step(record_.status, period_);  // status -> share allowed
     drive(gain);                                                  // torques -> arm
     finish_tick(gain);                                            // everything -> record
@@ -88,8 +104,6 @@ class Teleoperator {
   }
 
  private:
-  using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
   void begin_tick(std::chrono::nanoseconds now) noexcept {
     record_.status = now > last_now_ ? 0U : status::clock_fault;
     last_now_ = now;
@@ -110,16 +124,11 @@ class Teleoperator {
     }
   }
 
-  void place_tool() noexcept {
+  void place_bodies() noexcept {
     kinematics_.update(q_);
     kinematics_.tool_jacobian(new_jacobian_);
     const Pose X_WT = kinematics_.X_WT();
-    Twist V_WT;
-    for (std::size_t i = 0; i < v_.size(); ++i) {
-      const auto column = new_jacobian_.col(static_cast<Eigen::Index>(i));
-      V_WT.linear += v_[i] * column.template head<3>();
-      V_WT.angular += v_[i] * column.template tail<3>();
-    }
+    const Twist V_WT = twist_through(new_jacobian_, v_);
     world_.motion().tick = next_tick_;
     if (world_.place(tool_, X_WT, V_WT)) {
       X_WT_ = X_WT;
@@ -128,10 +137,10 @@ class Teleoperator {
     } else {
       record_.status |= status::bad_pose;
     }
+    if (!links_.place(world_, kinematics_, v_)) record_.status |= status::bad_pose;
   }
 
-  void push_away() noexcept {
-    const PairForces& forces = coprocessor_.exchange();
+  void push_away(const PairForces& forces) noexcept {
     record_.pairs = forces.totals;
     record_.workers = coprocessor_.workers();
     if (coprocessor_.late()) record_.status |= status::late_result;
@@ -139,6 +148,9 @@ class Teleoperator {
     if (forces.totals.crowded > 0) record_.status |= status::crowded_pairs;
     if (forces.totals.expired > 0) record_.status |= status::expired_pairs;
     signals_.walls = forces.on_body[tool_.index];
+    links_.gather(forces, signals_.arm_torques);
+    signals_.walls_power = forces.carried[tool_.index];
+    signals_.arm_power = links_.carried(forces);
   }
 
   void ask_operator() noexcept {
@@ -204,6 +216,7 @@ class Teleoperator {
     record_.tick = next_tick_++;
     record_.time = period_ * static_cast<double>(record_.tick);
     record_.phase = static_cast<std::int32_t>(operator_.phase());
+    std::copy(q_.begin(), q_.end(), record_.q.begin());
     record_.p_WT = X_WT_.translation();
     record_.v_WT = V_WT_.linear;
     record_.virtual_force = signals_.walls;
@@ -231,6 +244,7 @@ class Teleoperator {
   Kinematics& kinematics_;
   World& world_;
   BodyId tool_;
+  ArmBodies links_;
   Coprocessor& coprocessor_;
   network::ScriptedOperator& operator_;
   network::Network network_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct JointLimits {
   }
 };
 
-/// Range of one joint [rad] or [m].
+/// Range of one joint [rad] or [m]; infinite where it turns without end.
 struct JointRange {
   double lower = 0.0;
   double upper = 0.0;
@@ -49,7 +50,8 @@ class Limits {
     checked("damping", law.damping, 0.0, 1e6, "N m s/rad");
     checked("number of joints", static_cast<double>(ranges.size()), 1, most_joints, "");
     for (const JointRange& range : ranges) {
-      checked("upper limit", range.upper, range.lower, 1e6, "rad");
+      if (!std::isinf(range.lower)) checked("lower limit", range.lower, -1e6, 1e6, "rad");
+      if (!std::isinf(range.upper)) checked("upper limit", range.upper, range.lower, 1e6, "rad");
       joints_.push_back({range, PassivityController<1>({.lever = 1.0}, Vec<1>::Ones())});
     }
     effort_.setZero(static_cast<Eigen::Index>(ranges.size()));

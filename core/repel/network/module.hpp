@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include <repel/network/arm_obstacle.hpp>
 #include <repel/network/junction.hpp>
 #include <repel/network/kbb2.hpp>
 #include <repel/network/limits.hpp>
@@ -27,9 +28,9 @@ namespace repel::network {
 /// One of them. What a network does with each is settled when it is compiled: there is no base
 /// class. A module of your own goes into this list.
 using Module =
-    std::variant<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaKin, Limits, Visual,
-                 PumaJoints, Junction, Line, Spring<any_size>, Mass<any_size>, Damper<any_size>,
-                 EffortSource<any_size>, FlowSource<any_size>>;
+    std::variant<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaKin, ArmObstacle,
+                 Limits, Visual, PumaJoints, Junction, Line, Spring<any_size>, Mass<any_size>,
+                 Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
 
 namespace detail {
 

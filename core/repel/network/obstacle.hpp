@@ -22,7 +22,8 @@ struct ObstacleOptions {
 /// is answered later, the fail-safe fades forces in: all that could give more energy than went in.
 /// A passivity controller (passivity.hpp) keeps the account of the port from falling below zero and
 /// counters the energy of sampling. What is stored where the run begins does not count: a tool that
-/// starts inside a wall is held and not thrown out.
+/// starts inside a wall is held and not thrown out. A wall that moves by itself gives what it does
+/// by its motion: that is supplied, and may be passed on.
 class Obstacle {
  public:
   static constexpr Traits traits{
@@ -45,10 +46,12 @@ class Obstacle {
     if (signals.at_rest) {
       controller_.reset();
       effort_.setZero(6);
+      supplied_ = 0.0;
       return;
     }
     const Six mean = signals.mean_tool_flow();
-    const double damping = controller_.step(effort_, flow, mean, signals.period);
+    supplied_ = signals.walls_power;
+    const double damping = controller_.step(effort_, flow, mean, signals.period, supplied_);
     if (damping > 0.0) effort_ += damping * controller_.weight().cwiseProduct(flow);
   }
 
@@ -64,6 +67,7 @@ class Obstacle {
   /// What the walls do to the tool after the controller [N, N m].
   [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by what moves
 
  private:
   using Six = Eigen::Matrix<double, 6, 1>;
@@ -76,6 +80,7 @@ class Obstacle {
 
   PassivityController<6> controller_;
   Vec<any_size> effort_ = Vec<any_size>::Zero(6);  // into the module
+  double supplied_ = 0.0;
 };
 
 }  // namespace repel::network

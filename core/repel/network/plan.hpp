@@ -80,7 +80,7 @@ namespace detail {
 inline Signals neutral_signals(int joints, double period) {
   Signals signals;
   signals.joints.setZero(joints);
-  signals.rates = signals.mean_rates = signals.joints;
+  signals.rates = signals.mean_rates = signals.arm_torques = signals.joints;
   signals.jacobian.setZero(6, joints);
   for (int i = 0; i < std::min(6, joints); ++i) signals.jacobian(i, i) = 1.0;
   signals.period = period;

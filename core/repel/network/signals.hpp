@@ -22,7 +22,10 @@ struct Signals {
   Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints>
       jacobian;                  ///< tool, world axes
   Pose X_WT = Pose::Identity();  ///< [m]
-  Wrench walls;  ///< [N, N m] of the world model on the tool, about its origin, in W
+  Wrench walls;               ///< [N, N m] of the world model on the tool, about its origin, in W
+  Vec<any_size> arm_torques;  ///< [N m], [N] of the world model on the links, sum of J^T F
+  double walls_power = 0.0;   ///< [W] given to the tool by what moves in the world model
+  double arm_power = 0.0;     ///< [W] and to the links
   HandInput hand;
   double period = 0.0025;  ///< [s]
   bool at_rest = false;    ///< the fail-safe holds the forces at zero: memories let go

@@ -122,9 +122,9 @@ class ContactEvaluator {
         pairs_.push(slot_at(g, k), motion);
       });
     }
-    LaneWrench(motion, pairs_.forces().on_body).add(contacts_.all());
+    LaneWrench(motion, pairs_.forces()).add(contacts_.all());
     PairTotals& totals = pairs_.forces().totals;
-    totals.peak_force = std::max(totals.peak_force, extremes.peak_force());
+    if (extremes.peak_force() > totals.peak_force) note_hardest(extremes.peak_force());
     if (extremes.nearest() < totals.nearest) note_nearest(extremes.nearest());
   }
 
@@ -182,6 +182,17 @@ class ContactEvaluator {
     }
   }
 
+  /// Some contact that was answered at this tick pushes with that force [N], the largest of all.
+  void note_hardest(double force) noexcept {
+    for (int g = 0; g < contacts_.groups(); ++g) {
+      const ContactGroup& group = contacts_.group(g);
+      if (!group.fresh()) continue;
+      for_each(group.used(), [&](int k) {
+        if (group.force(k) == force) pairs_.forces().totals.note_force(force, watch_at(g, k).pair);
+      });
+    }
+  }
+
   [[nodiscard]] bool is_contact(int slot) const noexcept {
     const PairMemory& memory = pairs_.memory();
     const Pair& p = pairs_.pair(slot);
@@ -197,8 +208,7 @@ class ContactEvaluator {
     ContactGroup& group = contacts_.group(Contacts::group_of(seat));
     const int k = Contacts::lane_of(seat);
     PairExtremes& extremes = memory().extremes(memory().watch(slot).pair);
-    extremes.nearest = std::min(extremes.nearest, group.nearest(k));
-    extremes.peak_force = std::max(extremes.peak_force, group.peak(k));
+    extremes.add({.nearest = group.nearest(k), .peak_force = group.peak(k)});
     if ((group.proven() >> k & 1U) == 0U) return;
     pairs_.put(slot, group.answer(k));
     group.forget(k);

@@ -133,6 +133,7 @@ class ContactGroup {
   [[nodiscard]] const Lanes& sizes() const noexcept { return size_; }
   [[nodiscard]] const Lanes& distances() const noexcept { return seen_distance_; }
   [[nodiscard]] double distance(int k) const noexcept { return seen_distance_[k]; }
+  [[nodiscard]] double force(int k) const noexcept { return size_[k]; }
   /// [m], [N] The extremes of lane k since it was set.
   [[nodiscard]] double nearest(int k) const noexcept { return nearest_[k]; }
   [[nodiscard]] double peak(int k) const noexcept { return peak_[k]; }

@@ -51,7 +51,7 @@ class Coprocessor {
         options.lock_step ? longest_wait : std::clamp(options.patience, none, longest_wait);
     const int seats = std::max(1, options.threads);
     blocks_ = detail::PairWorker::blocks_of(world);
-    total_.on_body.resize(world.body_count());
+    total_ = PairForces(world.body_count());
     const auto pairs =
         options.every_pair ? nullptr : std::make_shared<const detail::PairIndex>(world);
     for (int i = 0; i < seats; ++i) {
@@ -108,9 +108,9 @@ class Coprocessor {
     const auto [seat, block] = place_of(id);
     const PairExtremes here = seat.deputy.blocks()[block].extremes_of(id);
     if (seat.worker == nullptr) return here;
-    const PairExtremes there = seat.worker->share.blocks()[block].extremes_of(id);
-    if (!seat.has_stood_in) return there;
-    return {std::min(here.nearest, there.nearest), std::max(here.peak_force, there.peak_force)};
+    PairExtremes there = seat.worker->share.blocks()[block].extremes_of(id);
+    if (seat.has_stood_in) there.add(here);
+    return there;
   }
 
   /// Ends the threads, as the destructor does. Waits for each to finish its tick, for ever for one
@@ -256,8 +256,7 @@ class Coprocessor {
     for (std::size_t b = 0; b < blocks_; ++b) {
       const PairForces& block = seats_[b % seats_.size()]->forces(b / seats_.size());
       if (block.totals.near == 0 && block.totals.crowded == 0) continue;
-      for (std::size_t i = 0; i < total_.on_body.size(); ++i) total_.on_body[i] += block.on_body[i];
-      total_.totals.add(block.totals);
+      total_.add(block);
     }
   }
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include <repel/schedule/contact_lanes.hpp>
+#include <repel/schedule/pair_forces.hpp>
 
 namespace repel::detail {
 
@@ -13,9 +13,8 @@ namespace repel::detail {
 /// lanes.
 class LaneWrench {
  public:
-  /// @param on_body [N, N m] by BodyId, about each body's origin
-  LaneWrench(const Motion& motion, std::vector<Wrench>& on_body) noexcept
-      : motion_(&motion), on_body_(&on_body) {}
+  LaneWrench(const Motion& motion, PairForces& forces) noexcept
+      : motion_(&motion), forces_(&forces) {}
 
   /// Adds the forces of those groups whose answers are of this tick to the bodies.
   void add(std::span<const ContactGroup> groups) noexcept {
@@ -62,12 +61,8 @@ class LaneWrench {
     const Vec<double> p_BA_W = column<double>(motion_->bodies[a.index].X_WB, 3) -
                                column<double>(motion_->bodies[b.index].X_WB, 3);
     const Vec<double> m_B_W = m_A_W + cross(p_BA_W, f_A_W);
-    Wrench& on_a = (*on_body_)[a.index];
-    Wrench& on_b = (*on_body_)[b.index];
-    on_a.force += to_vec3(f_A_W);
-    on_a.torque += to_vec3(m_A_W);
-    on_b.force -= to_vec3(f_A_W);
-    on_b.torque -= to_vec3(m_B_W);
+    const Vec3 f = to_vec3(f_A_W);
+    forces_->push(a, b, {f, to_vec3(m_A_W)}, {-f, -to_vec3(m_B_W)}, *motion_);
   }
 
   [[nodiscard]] static Vec<double> sum_of(const LaneVec& v) noexcept {
@@ -78,7 +73,7 @@ class LaneWrench {
   }
 
   const Motion* motion_;
-  std::vector<Wrench>* on_body_;
+  PairForces* forces_;
 };
 
 }  // namespace repel::detail

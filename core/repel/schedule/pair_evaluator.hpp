@@ -18,7 +18,7 @@ class PairEvaluator {
   /// @param max_age [ticks] `Budget::max_age`
   PairEvaluator(const World& world, PairShare share, int slots, std::int64_t max_age)
       : world_(&world), max_age_(max_age), memory_(world, share, slots) {
-    forces_.on_body.resize(world.body_count());
+    forces_ = PairForces(world.body_count());
   }
 
   /// Begins a tick: no force yet, and no answer is of it.
@@ -204,8 +204,9 @@ class PairEvaluator {
     answer.inside = answer.proven() < p.law.range;
     watch_for(slot, motion, answer.last.lower - p.law.range);
     const PairId id = memory_.watch(slot).pair;
-    double& nearest = memory_.extremes(id).nearest;
-    nearest = std::min(nearest, answer.last.distance);
+    const double deepest = std::max(0.0, -answer.last.lower);
+    totals.deepest = std::max(totals.deepest, deepest);
+    memory_.extremes(id).add({.nearest = answer.last.distance, .deepest = deepest});
     if (answer.last.distance < totals.nearest) {
       totals.nearest = answer.last.distance;
       totals.nearest_pair = id;
@@ -240,12 +241,14 @@ class PairEvaluator {
       size = share * law(distance, n.dot(v_BA));
       f = size * n;
     }
-    forces_.totals.peak_force = std::max(forces_.totals.peak_force, size);
-    double& peak = memory_.extremes(memory_.watch(slot).pair).peak_force;
+    const PairId id = memory_.watch(slot).pair;
+    forces_.totals.note_force(size, id);
+    double& peak = memory_.extremes(id).peak_force;
     peak = std::max(peak, size);
     const Vec3 p_BQ_W = answer.p_AQ_W + A.X_WB.translation() - B.X_WB.translation();
-    forces_.on_body[memory_.watch(slot).body_a.index] += wrench_of_force(f, answer.p_AQ_W);
-    forces_.on_body[memory_.watch(slot).body_b.index] += wrench_of_force(-f, p_BQ_W);
+    const PairWatch& watch = memory_.watch(slot);
+    forces_.push(watch.body_a, watch.body_b, wrench_of_force(f, answer.p_AQ_W),
+                 wrench_of_force(-f, p_BQ_W), motion);
   }
 
   const World* world_;

@@ -57,15 +57,18 @@ concept TorqueDrivenArm = requires(T arm, const T& const_arm, std::span<const do
 };
 
 /// Kinematics of an arm. After `update` everything answers for those joints; nothing throws or
-/// allocates. The Jacobian has six rows, linear then angular, world axes, and a column per link.
+/// allocates. Jacobians have six rows, linear then angular, world axes, and a column per link.
 template <class T>
 concept ArmKinematics = requires(T kinematics, const T& const_kinematics,
-                                 std::span<const double> joints, std::span<double> out,
+                                 std::span<const double> joints, std::span<double> out, int link,
+                                 const Vec3& p_WQ,
                                  Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian) {
   { kinematics.update(joints) } -> std::same_as<void>;                 // [rad]
   { const_kinematics.X_WT() } -> std::convertible_to<Pose>;            // tool frame
   { const_kinematics.tool_jacobian(jacobian) } -> std::same_as<void>;  // of the tool's origin
-  { kinematics.gravity_torques(out) } -> std::same_as<void>;           // [N m] that hold it still
+  { const_kinematics.X_WL(link) } -> std::convertible_to<Pose>;        // a link
+  { const_kinematics.jacobian(link, p_WQ, jacobian) } -> std::same_as<void>;  // of a point on it
+  { kinematics.gravity_torques(out) } -> std::same_as<void>;  // [N m] that hold it still
 };
 
 }  // namespace repel

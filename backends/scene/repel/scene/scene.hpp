@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -28,22 +29,36 @@ struct Part {
   Pose X_BP = Pose::Identity();  ///< [m] in the tool frame
 };
 
+/// To and fro along a line, by itself.
+struct ObstacleMotion {
+  Vec3 along_W{0, 0, 0};  ///< [m] from where it stands to the far end
+  double duration = 1.0;  ///< [s] there and back
+};
+
 /// One convex part P of the world.
 struct Obstacle {
   std::string name;
   Shape shape;
   std::string kind;              ///< box, sphere, capsule, cylinder or hull
-  Pose X_WP = Pose::Identity();  ///< [m]
+  Pose X_WP = Pose::Identity();  ///< [m] where it starts, if it moves
   ForceLaw law;
+  std::optional<ObstacleMotion> motion;  ///< none: it stands
 };
 
 /// Which robot, where it stands and how it starts.
 struct RobotChoice {
-  std::string urdf;              ///< path; one that the scene file gives is relative to that file
-  std::string tip_link;          ///< empty: the end of the chain
-  std::vector<double> start;     ///< [rad] one for each moving joint, base outward
-  Pose X_WB = Pose::Identity();  ///< [m] base in the world
-  Pose X_LT = Pose::Identity();  ///< [m] tool frame in the tip link
+  std::string urdf;           ///< path; one that the scene file gives is relative to that file
+  std::string tip_link;       ///< empty: the end of the chain
+  std::vector<double> start;  ///< [rad] or [m] one for each moving joint, base outward
+  std::vector<JointType> start_types;  ///< which of the two the file gives
+  Pose X_WB = Pose::Identity();        ///< [m] base in the world
+  Pose X_LT = Pose::Identity();        ///< [m] tool frame in the tip link
+  /// Links of the URDF file that are kept off the obstacles, where the network has the module
+  /// arm_obstacle; without a list all that move.
+  std::optional<std::vector<std::string>> links;
+  /// Between parts of the arm that no joint connects; without it they are not kept apart.
+  std::optional<ForceLaw> self_law;
+  std::string srdf;  ///< path of a file with the pairs of links to leave out; empty: none
 };
 
 /// What the distance queries of one tick may cost.
@@ -74,9 +89,9 @@ struct Module {
   std::string name;
   network::To to;  ///< what it says; the next one when it says nothing
   std::variant<network::TorqueArmOptions, network::MultiplexOptions, network::SpaceballOptions,
-               network::ReliefOptions, network::Kbb2Options, network::ObstacleOptions, Ground,
-               Kinematic, network::JointLimits, Tap, Joints, network::Common, network::LineOptions,
-               Element>
+               network::ReliefOptions, network::Kbb2Options, network::ObstacleOptions,
+               network::ArmObstacleOptions, Ground, Kinematic, network::JointLimits, Tap, Joints,
+               network::Common, network::LineOptions, Element>
       options;
   int line = 0;  ///< of the file
 };
@@ -86,17 +101,31 @@ struct Network {
   network::GainCheck gain_check = network::GainCheck::error;  ///< of the obstacle module
 };
 
-struct Scene {
+/// An arm with its tool, the operator who drives it and what stands between the two.
+struct Station {
+  RobotChoice robot;
+  std::vector<Part> tool;
+  Network network;
+  network::Script script;
+};
+
+/// One more arm in the cell. It meets the obstacles by their own laws.
+struct Partner : Station {
+  std::string name;
+  ForceLaw law;  ///< between its parts and those of every arm before it
+};
+
+struct Scene : Station {
   std::string name;
   std::string file;
   double rate_hz = 400.0;  ///< [Hz] of the tick
-  RobotChoice robot;
-  std::vector<Part> tool;
   std::vector<Obstacle> obstacles;
-  Network network;
-  network::Script script;
+  std::vector<Partner> partners;
   Budget budget;
 };
+
+/// True when the network has the module through which the links of the arm feel the obstacles.
+[[nodiscard]] bool feels_links(const Station& station);
 
 /// Reads the scene file at `path`. Throws SetupError, naming file, line, value and what is allowed,
 /// for anything that is not exactly as scenes/README.md states it.
@@ -105,9 +134,9 @@ struct Scene {
 /// The same for text; `file` is the name that errors give and that paths are relative to.
 [[nodiscard]] Scene parse(std::string_view yaml, const std::string& file);
 
-/// The network of the scene for an arm, ready for a period of 1 / `rate_hz`.
+/// The network of a station of the scene for its arm, ready for a period of 1 / `rate_hz`.
 /// @throws SetupError naming the file and the modules when it cannot be built
-[[nodiscard]] network::Network build_network(const Scene& scene, const ArmModel& arm,
-                                             double rate_hz);
+[[nodiscard]] network::Network build_network(const Scene& scene, const Station& station,
+                                             const ArmModel& arm, double rate_hz);
 
 }  // namespace repel::scene

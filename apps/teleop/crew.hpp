@@ -1,0 +1,67 @@
+/// @file
+/// The operators of a cell at work: one tick of everything.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include <repel/loop/tick.hpp>
+#include <repel/schedule/coprocessor.hpp>
+
+#include "cell.hpp"
+
+namespace repel::teleop {
+
+/// Drives all arms of a cell, which share its world. All memory is taken at construction.
+template <TorqueDrivenArm Arm>
+class Crew {
+ public:
+  using Member = Teleoperator<Arm, Kinematics>;
+
+  /// @param arms one for each of the cell, in the same order; kept by reference, as is the cell
+  Crew(const scene::Scene& scene, Cell& cell, std::span<Arm> arms, Coprocessor& coprocessor,
+       double rate_hz)
+      : cell_(cell), coprocessor_(coprocessor), period_(std::llround(1e9 / rate_hz)) {
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+      const scene::Station& station =
+          i == 0 ? static_cast<const scene::Station&>(scene) : scene.partners[i - 1];
+      Manipulator& arm = cell.arms[i];
+      operators_.emplace_back(station.script);
+      members_.emplace_back(arm.robot.arm, arms[i], arm.kinematics, cell.world, arm.tool,
+                            coprocessor, operators_.back(),
+                            scene::build_network(scene, station, arm.robot.arm, rate_hz), period_,
+                            arm.links);
+      records_.push_back(nullptr);
+    }
+  }
+
+  /// One tick of the world, due at `now` [ns]: what each arm did, in their order.
+  std::span<const TickRecord* const> tick(std::chrono::nanoseconds now) noexcept {
+    const double time = 1e-9 * static_cast<double>(period_.count()) * static_cast<double>(ticks_++);
+    for (const Shuttle& shuttle : cell_.shuttles) (void)shuttle.place(cell_.world, time);
+    for (Member& member : members_) member.sense(now);
+    const PairForces& forces = coprocessor_.exchange();
+    for (std::size_t i = 0; i < members_.size(); ++i) records_[i] = &members_[i].act(forces);
+    return records_;
+  }
+
+  /// See Teleoperator::rehearse.
+  void rehearse() noexcept {
+    for (Member& member : members_) member.rehearse();
+  }
+
+  [[nodiscard]] const std::deque<Member>& members() const noexcept { return members_; }
+
+ private:
+  Cell& cell_;
+  Coprocessor& coprocessor_;
+  std::chrono::nanoseconds period_;
+  std::deque<network::ScriptedOperator> operators_;
+  std::deque<Member> members_;
+  std::vector<const TickRecord*> records_;
+  std::int64_t ticks_ = 0;
+};
+
+}  // namespace repel::teleop

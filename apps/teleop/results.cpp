@@ -1,0 +1,60 @@
+#include "results.hpp"
+
+#include <algorithm>
+
+namespace repel::teleop {
+namespace {
+
+std::string name_of(const World& world, PairId id) {
+  const Pair& pair = world.pair(id);
+  return world.part(pair.a).name + " - " + world.part(pair.b).name;
+}
+
+}  // namespace
+
+// Pairs are laid out obstacle by obstacle, with every part of tools and arms in turn.
+void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result) {
+  RunTotals& totals = result.arms.front().totals;
+  PartId last;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
+    const Pair& pair = world.pair({i});
+    if (pair.b != last) result.obstacles.push_back({.name = world.part(pair.b).name});
+    last = pair.b;
+    if (result.options.keep_records) result.pair_names.push_back(name_of(world, {i}));
+    const PairExtremes extremes = coprocessor.extremes_of({i});
+    totals.deepest = std::max(totals.deepest, extremes.deepest);
+    if (extremes.nearest <= totals.nearest) {  // also of evaluations before the first tick
+      totals.nearest = extremes.nearest;
+      result.nearest_pair = name_of(world, {i});
+    }
+    ObstacleResult& obstacle = result.obstacles.back();
+    const bool hardest = extremes.peak_force > obstacle.extremes.peak_force;
+    obstacle.extremes.add(extremes);
+    if (!hardest) continue;
+    obstacle.part = world.part(pair.a).name;
+    obstacle.body = world.body_name(world.part(pair.a).body);
+  }
+}
+
+std::vector<ModuleResult> module_results(const network::Network& network) {
+  std::vector<ModuleResult> results;
+  for (const network::Node& node : network.nodes()) {
+    ModuleResult result;
+    result.name = node.name;
+    result.passive = node.traits.passive && !node.traits.measures_flow;
+    result.ledger = node.ledger;
+    if (const auto* walls = std::get_if<network::Obstacle>(&node.module)) {
+      result.passivity = walls->passivity();
+    } else if (const auto* on_arm = std::get_if<network::ArmObstacle>(&node.module)) {
+      result.passivity = on_arm->passivity();
+    } else if (const auto* limits = std::get_if<network::Limits>(&node.module)) {
+      result.passivity = limits->passivity();
+    } else if (const auto* joints = std::get_if<network::PumaJoints>(&node.module)) {
+      result.sampling_energy = joints->sampling_energy();
+    }
+    results.push_back(result);
+  }
+  return results;
+}
+
+}  // namespace repel::teleop

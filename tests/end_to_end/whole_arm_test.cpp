@@ -1,0 +1,168 @@
+// The links of the arm feel the walls as the tool does.
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace whole_arm_test {
+
+using nlohmann::json;
+
+/// A post beside the forearm, and a tool that is led past it with 100 mm/s.
+std::string scene_with(const std::string& network, const std::string& links = "") {
+  return robot_text(REPEL_SOURCE "/robots/puma560.urdf", links) +
+         "laws:\n  default: {range: 40 mm, surface_force: 40 N, damping: 1 N s/m}\n"
+         "obstacles:\n"
+         "  - {name: post, shape: capsule, radius: 20 mm, length: 0.6 m, position: 0.3 0.04 0.9 "
+         "m}\n" +
+         network +
+         "script:\n"
+         "  - {name: swing, device: spaceball, duration: 3 s, linear: 0 100 0 mm/s}\n";
+}
+
+TEST(WholeArm, StopsWhereItsForearmMeetsAPostAndTheOperatorFeelsIt) {
+  const Folder folder;
+  const std::string scene = folder.with("post.yaml", scene_with(""));
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 5 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "r.json");
+  const json& post = report.at("obstacles").at(0);
+  EXPECT_EQ(post.at("body"), "link_3") << report.at("obstacles");
+  EXPECT_GT(post.at("peak_force_n"), 20.0);
+  EXPECT_GT(post.at("nearest_m"), -0.01);
+  EXPECT_TRUE(ending.says("(link_3)")) << ending;
+  for (const json& module : report.at("modules")) {
+    if (!module.at("passive").get<bool>()) continue;
+    EXPECT_LE(module.at("deficit"), 1e-9) << module;
+  }
+  const Columns log = columns_of(folder / "log.csv");
+  expect_finite_forces(log);
+  const auto& y = log.at("y_m");
+  EXPECT_LT(std::abs(y.back() - y[1600]), 0.001) << "it must have stopped";
+  EXPECT_GT(std::abs(log.at("coupling_fy_n").back()), 10.0) << "the hand pushes against it";
+  EXPECT_EQ(log.at("virtual_fy_n").back(), 0.0) << "nothing is near the tool";
+}
+
+TEST(WholeArm, WithoutTheModuleTheToolAloneFeelsTheWallsAndTheReportSaysSo) {
+  const Folder folder;
+  const std::string network =
+      "network: [{module: torque_arm}, {module: multiplex}, {module: spaceball}, {module: kbb2}, "
+      "{module: obstacle}, {module: puma_kin}, "
+      "{module: puma_joints}]\n";
+  const std::string scene = folder.with("post.yaml", scene_with(network));
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 4 --report " + quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_EQ(report_of(folder / "r.json").at("pairs"), 1);
+  EXPECT_TRUE(ending.says("links of the arm")) << ending;
+}
+
+TEST(WholeArm, LinksThatAreNoneAreRefused) {
+  const Folder folder;
+  const std::string text = scene_with("", "  links: [link_3, tail]\n");
+  const Ending ending = teleop(quoted(folder.with("post.yaml", text)) + " --fast --seconds 1");
+  EXPECT_EQ(ending.status, 1) << ending;
+  EXPECT_TRUE(ending.says("'tail' is no moving link")) << ending;
+}
+
+/// An arm with a joint to spare, its elbow out to the side, a bar that comes 150 mm towards the
+/// elbow and goes back, and an operator who does nothing.
+std::string elbow_scene(const std::string& links) {
+  return "robot:\n  urdf: " REPEL_SOURCE
+         "/robots/long_reach.urdf\n"
+         "  base: {position: 0 0 4 m}\n"
+         "  start: [1 m, 0 0.6 -1.2 0 0.6 0 rad]\n  tool_frame: {position: 0 0 100 mm}\n" +
+         links +
+         "tool: [{name: rod, shape: capsule, radius: 15 mm, length: 60 mm}]\n"
+         "laws:\n  default: {range: 50 mm, surface_force: 200 N, damping: 100 N s/m}\n"
+         "obstacles:\n"
+         "  - {name: bar, shape: box, size: 0.1 1 0.1 m, position: 1.05 0 1.56 m, "
+         "motion: {along: -0.15 0 0 m, duration: 8 s}}\n"
+         "network:\n  - {module: ground}\n  - {module: spaceball}\n"
+         "  - {module: kbb2, stiffness: 10 N/mm, damping: 1 kN s/m, force_limit: 600 N, "
+         "angular_stiffness: 400 N m/rad, angular_damping: 20 N m s/rad, torque_limit: 40 N m}\n"
+         "  - {module: obstacle, gain_check: warning}\n  - {module: puma_kin}\n"
+         "  - {module: arm_obstacle}\n  - {module: limits}\n  - {module: puma_joints}\n";
+}
+
+// Seven joints and a tool with six freedoms: what pushes the elbow folds the arm, and the coupling
+// keeps the tool where it was.
+TEST(WholeArm, GivesWayAtItsElbowWhileTheToolStaysWhereTheArmHasAJointToSpare) {
+  const Folder folder;
+  const std::string scene = folder.with("elbow.yaml", elbow_scene(""));
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 6 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "r.json");
+  EXPECT_GT(report.at("nearest_m"), 0.0) << "the bar must not reach the arm";
+  const Columns log = columns_of(folder / "log.csv");
+  const auto& elbow = log.at("q4_rad");
+  EXPECT_GT(*std::max_element(elbow.begin(), elbow.end()) - elbow.front(), 0.1)
+      << "the elbow must have moved";
+  const auto moved = [&](std::size_t tick) {
+    return std::hypot(log.at("x_m")[tick] - log.at("x_m")[0],
+                      log.at("y_m")[tick] - log.at("y_m")[0],
+                      log.at("z_m")[tick] - log.at("z_m")[0]);
+  };
+  for (std::size_t tick = 0; tick < elbow.size(); ++tick) ASSERT_LT(moved(tick), 0.01) << tick;
+  EXPECT_LT(moved(elbow.size() - 1), 0.002) << "with the bar at rest";
+}
+
+// The obstacle that the partner's rod is, seen from the other arm, and the other way round.
+TEST(WholeArm, TwoArmsInOneCellKeepOffEachOther) {
+  const Folder folder;
+  const std::string tool =
+      "tool: [{name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}]\n";
+  const std::string urdf = REPEL_SOURCE "/robots/puma560.urdf";
+  const std::string pose = "start: 0 45 -180 0 -45 0 deg, tool_frame: {position: 0 0 100 mm}";
+  std::string text = "robot: {urdf: " + urdf + ", " + pose + "}\n" + tool +
+                     "laws:\n  default: {range: 40 mm, surface_force: 40 N, damping: 1 N s/m}\n"
+                     "obstacles: []\n"
+                     "script: [{name: in, device: spaceball, duration: 3 s, linear: 90 0 0 mm/s}]\n"
+                     "partners:\n  - name: right\n    robot: {urdf: " +
+                     urdf + ", " + pose +
+                     ", base: {position: 1.4 -0.3 0 m, rpy: 0 0 180 deg}}\n    " + tool +
+                     "    script: [{name: in, device: spaceball, duration: 3 s, linear: -90 0 0 "
+                     "mm/s}]\n";
+  const Ending ending =
+      teleop(quoted(folder.with("two.yaml", text)) + " --fast --seconds 4 --log " +
+             quoted(folder / "log.csv") + " --report " + quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "r.json");
+  EXPECT_GT(report.at("nearest_m"), 0.0);
+  const Columns log = columns_of(folder / "log.csv");
+  const double left = log.at("virtual_fx_n").back();
+  EXPECT_LT(left, -5.0);
+  EXPECT_NEAR(log.at("right/virtual_fx_n").back(), -left, 1e-6) << "action and reaction";
+  EXPECT_GT(log.at("right/coupling_fx_n").front() + 1.0, 0.0);
+  ASSERT_EQ(report.at("partners").size(), 1U);
+  for (const json& modules : {report.at("modules"), report.at("partners")[0].at("modules")}) {
+    for (const json& module : modules) {
+      if (!module.at("passive").get<bool>()) continue;
+      EXPECT_LE(module.at("deficit"), 1e-9) << module;
+    }
+  }
+}
+
+TEST(WholeArm, PartsOfOneArmAreKeptApartWhereTheSceneSaysSo) {
+  const Folder folder;
+  const std::string script =
+      "script:\n  - {name: fold, device: spaceball, duration: 4 s, linear: -120 0 0 mm/s}\n";
+  const auto nearest = [&](const std::string& law) {
+    const std::string text =
+        robot_text(REPEL_SOURCE "/robots/puma560.urdf", law) +
+        "laws:\n  default: {range: 40 mm, surface_force: 60 N, damping: 1 N s/m}\nobstacles: []\n" +
+        script;
+    const Ending ending = teleop(quoted(folder.with("self.yaml", text)) +
+                                 " --fast --seconds 5 --report " + quoted(folder / "r.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    return report_of(folder / "r.json");
+  };
+  const json kept = nearest("  self_law: default\n");
+  EXPECT_GT(kept.at("pairs"), 5);
+  EXPECT_EQ(nearest("").at("pairs"), 0);
+}
+
+}  // namespace whole_arm_test
+}  // namespace repel::test
