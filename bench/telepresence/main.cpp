@@ -1,108 +1,35 @@
 /// @file
 /// What an operator feels through the network, and how stiff and how far away a wall may be.
 
-#include <algorithm>
-
-#include "../distance/markdown.hpp"
-#include "command_line.hpp"
 #include "part.hpp"
-#include "times.hpp"
 
 namespace {
 
 using namespace repel;
-using telepresence::Json;
-using telepresence::Part;
-using telepresence::Result;
 
-struct Arguments {
-  std::vector<std::string> only;
-  telepresence::Options options;
-  std::string json;
-};
+const bench::Program program{
+    .name = "telepresence",
+    .about =
+        "What an operator feels through the network, and how stiff and how far away a wall "
+        "may be.",
+    .all = telepresence::parts(),
+    .seeded = "Of the channels of the lines",
+    .footer =
+        "Everything is simulated: nothing waits for the clock, and a seed gives the same\n"
+        "results again. Lengths are in m, forces in N and times in s unless a column says\n"
+        "otherwise. docs/benchmarks.md says how to read the tables.",
+    .scheduler = "simulated time"};
 
-void describe(CLI::App& app, Arguments& a) {
-  std::vector<std::string> names;
-  std::string list;
-  for (const Part& part : telepresence::parts()) {
-    names.emplace_back(part.name);
-    list += bench::text("  %-14s %s\n", part.name, part.about);
-  }
-  app.add_option("--only", a.only, "Only these parts, with commas between them; default: all")
-      ->type_name("PART,PART")
-      ->delimiter(',')
-      ->check(CLI::IsMember(names));
-  app.add_flag("--quick", a.options.quick, "Fewer and shorter runs: a look, not a result");
-  app.add_option("--seed", a.options.seed, "Of the channels of the lines, 0 to 1e9")
-      ->capture_default_str()
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1000000000}));
-  app.add_option("--json", a.json, "Write the results as JSON to FILE")->type_name("FILE");
-  app.footer("Parts:\n" + list +
-             "\nEverything is simulated: nothing waits for the clock, and a seed gives the same\n"
-             "results again. Lengths are in m, forces in N and times in s unless a column says\n"
-             "otherwise. docs/benchmarks.md says how to read the tables.\n\n"
-             "Exit status: 0 it ran, 1 a result is wrong (its row is named) or bad file, 2 bad\n"
-             "usage.");
+void describe(CLI::App& app, bench::PartArguments& arguments) {
+  bench::describe(app, arguments, program);
 }
 
-std::string shown(const Json& cell) {
-  if (cell.is_string()) return cell.get<std::string>();
-  if (cell.is_boolean()) return cell.get<bool>() ? "yes" : "no";
-  return bench::text("%.4g", cell.get<double>());
-}
-
-void print(const Result& result) {
-  std::printf("## %s\n\n%s", result.title.c_str(), bench::heading(result.columns).c_str());
-  for (const std::vector<Json>& row : result.rows) {
-    for (const Json& cell : row) std::printf("| %s ", shown(cell).c_str());
-    std::puts("|");
-  }
-  for (const std::string& note : result.notes) std::printf("\n%s\n", note.c_str());
-  std::putchar('\n');
-}
-
-Json to_json(const Result& result) {
-  Json rows = Json::array();
-  for (const std::vector<Json>& row : result.rows) {
-    Json& object = rows.emplace_back();
-    for (std::size_t i = 0; i < row.size(); ++i) object[result.columns[i]] = row[i];
-  }
-  return {
-      {"title", result.title}, {"rows", rows}, {"notes", result.notes}, {"series", result.series}};
-}
-
-int run(const Arguments& arguments) {
-  host::Output json(arguments.json);
-  const host::Machine machine = host::describe_machine("simulated time");
-  Json report{{"machine", host::to_json(machine)},
-              {"seed", arguments.options.seed},
-              {"quick", arguments.options.quick},
-              {"parts", Json::object()}};
-  std::printf("%s; %s; commit %s; seed %s\n\n", machine.cpu.c_str(), machine.compiler.c_str(),
-              machine.commit.c_str(), std::to_string(arguments.options.seed).c_str());
-  int status = 0;
-  for (const Part& part : telepresence::parts()) {
-    const auto& only = arguments.only;
-    if (!only.empty() && std::find(only.begin(), only.end(), part.name) == only.end()) continue;
-    const Result result = part.run(arguments.options);
-    print(result);
-    report["parts"][part.name] = to_json(result);
-    if (result.failure.empty()) continue;
-    std::fprintf(stderr, "telepresence: %s, %s\n", part.name, result.failure.c_str());
-    status = 1;
-  }
-  if (json.wanted()) {
-    host::write(report, json.stream());
-    json.close();
-  }
-  return status;
+int run(const bench::PartArguments& arguments) {
+  return bench::run(arguments, program);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return host::start(argc, argv, "telepresence",
-                     "What an operator feels through the network, and how stiff and how far away a "
-                     "wall may be.",
-                     1, describe, run);
+  return host::start(argc, argv, program.name, program.about, 1, describe, run);
 }

@@ -1,9 +1,6 @@
 #include "part.hpp"
 
-#include <unistd.h>
-
 #include <array>
-#include <cstdio>
 
 namespace repel::telepresence {
 
@@ -23,11 +20,6 @@ std::span<const Part> parts() {
 #endif
   };
   return all;
-}
-
-void progress(const char* part, std::size_t done, std::size_t of) {
-  if (isatty(STDERR_FILENO) == 0 && done < of) return;
-  std::fprintf(stderr, "\r%s: %zu of %zu%s", part, done, of, done < of ? "" : "\n");
 }
 
 }  // namespace repel::telepresence
