@@ -13,7 +13,7 @@ constexpr Status every_bit[] = {status::bad_pose,      status::bad_command,   st
                                 status::clock_fault,   status::stale_pairs,   status::late_result,
                                 status::torque_limit,  status::crowded_pairs, status::expired_pairs,
                                 status::silent_device, status::saturated,     status::joint_limit,
-                                status::network_fault};
+                                status::network_fault, status::speed_limit};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");

@@ -62,6 +62,67 @@ TEST(Dynamics, StandardPumaHasTheInertiaOfTheToolbox) {
   EXPECT_LT((M - published).cwiseAbs().maxCoeff(), 1e-4) << M;
 }
 
+// B. Armstrong, O. Khatib and J. Burdick 1986: inertial constants of the explicit model [kg m^2]
+// and what they multiply. Two of the constants, and the sum of two more, follow from the published
+// masses and inertias only with other numbers for links 1 to 3 (docs/robots.md) and are not here.
+TEST(Dynamics, ArmstrongPumaHasThePublishedInertialConstants) {
+  ArmModel arm = load_arm("robots/puma560_armstrong.urdf").arm;
+  for (ArmLink& link : arm.links) link.rotor_inertia = 0.0;  // published by themselves
+  Dynamics dynamics(arm);
+  Eigen::MatrixXd M(6, 6);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> any(-pi, pi);
+  for (int sample = 0; sample < 200; ++sample) {
+    std::vector<double> q(6);
+    for (double& x : q) x = any(random);
+    dynamics.inertia(q, M);
+    const double s2 = std::sin(q[1]), c2 = std::cos(q[1]);
+    const double s3 = std::sin(q[2]), c3 = std::cos(q[2]);
+    const double s23 = std::sin(q[1] + q[2]), c23 = std::cos(q[1] + q[2]);
+    const double s4 = std::sin(q[3]), c4 = std::cos(q[3]);
+    const double s5 = std::sin(q[4]), c5 = std::cos(q[4]);
+    const double m13 = -0.134 * c23 - 0.00379 * s23 - 0.00125 * c23 * s4 * s5 +
+                       0.000431 * (s23 * c4 * s5 - c23 * c5) + 0.0003 * s23 * s4 * c4;
+    const double m12 = m13 + 0.690 * s2 + 0.0238 * c2 + 0.00124 * s2 * s4 * s5;
+    const double lever = s3 * c5 + c3 * c4 * s5;
+    const double m22_less_m33 = 1.75 + 2.0 * (0.372 * s3 - 0.0110 * c3 + 0.00124 * lever);
+    ASSERT_NEAR(M(0, 1), m12, 1e-3) << "seed " << seed;
+    ASSERT_NEAR(M(0, 2), m13, 5e-4) << "seed " << seed;
+    ASSERT_NEAR(M(1, 1) - M(2, 2), m22_less_m33, 5e-3) << "seed " << seed;
+    ASSERT_NEAR(M(1, 2) - M(2, 2), 0.372 * s3 - 0.0110 * c3 + 0.00124 * lever, 1e-3);
+    ASSERT_NEAR(M(3, 3), 0.00164 + 0.000202 * s5 * s5, 1e-5);
+    ASSERT_NEAR(M(4, 4), 0.000642, 1e-5);
+    ASSERT_NEAR(M(5, 5), 0.00004, 1e-5);
+  }
+}
+
+// The same, of what turns about the vertical: the lever of the forearm squared and its products.
+TEST(Dynamics, ArmstrongPumaTurnsAboutTheVerticalWithThePublishedConstants) {
+  ArmModel arm = load_arm("robots/puma560_armstrong.urdf").arm;
+  Dynamics dynamics(arm);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> any(-pi, pi);
+  constexpr int samples = 200;
+  Eigen::MatrixXd M(6, 6), factors(samples, 7);
+  Eigen::VectorXd m11(samples);
+  for (int sample = 0; sample < samples; ++sample) {
+    const double q2 = any(random), q23 = any(random);
+    dynamics.inertia(std::vector<double>{0, q2, q23 - q2, 0, pi / 2, 0}, M);
+    m11(sample) = M(0, 0);
+    factors.row(sample) << 1.0, std::pow(std::cos(q2), 2), std::pow(std::sin(q23), 2),
+        std::sin(q23) * std::cos(q23), std::sin(q2) * std::cos(q2),
+        2.0 * std::cos(q2) * std::sin(q23), 2.0 * std::cos(q2) * std::cos(q23);
+  }
+  const Eigen::VectorXd constants = factors.colPivHouseholderQr().solve(m11);
+  EXPECT_LT((factors * constants - m11).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_NEAR(constants(2), 0.298, 0.002);
+  // The wrist, bent by a right angle, adds I15 and I16.
+  EXPECT_NEAR(constants(3), -0.0213 + 2.0 * 0.00125, 0.001);
+  EXPECT_NEAR(constants(4), -0.0142, 0.001);
+  EXPECT_NEAR(constants(5), 0.372, 0.002);
+  EXPECT_NEAR(constants(6), -0.0110 + 0.00124, 0.001);
+}
+
 /// One link that turns about the horizontal axis y and hangs down at zero.
 ArmModel pendulum() {
   ArmModel arm;

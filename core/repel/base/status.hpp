@@ -42,6 +42,9 @@ inline constexpr Status joint_limit = 1U << 11;  ///< a joint was pushed back fr
 inline constexpr Status network_fault = 1U
                                         << 12;  ///< the network could not be solved: the torques of
                                                 ///< the tick before stand, the force ramps to zero
+inline constexpr Status speed_limit = 1U << 13;  ///< a joint was as fast as it may be and was not
+                                                 ///< driven on: lead the arm more slowly, or away
+                                                 ///< from a singularity
 inline constexpr Status failsafe = bad_pose | bad_command | bad_joints | clock_fault |
                                    expired_pairs | silent_device | network_fault;
 }  // namespace status
@@ -51,9 +54,9 @@ inline constexpr Status failsafe = bad_pose | bad_command | bad_joints | clock_f
   static constexpr const char* names[] = {
       "bad_pose",    "bad_command",  "bad_joints",    "clock_fault",   "stale_pairs",
       "late_result", "torque_limit", "crowded_pairs", "expired_pairs", "silent_device",
-      "saturated",   "joint_limit",  "network_fault"};
+      "saturated",   "joint_limit",  "network_fault", "speed_limit"};
   std::string text;
-  for (unsigned i = 0; i < 13; ++i) {
+  for (unsigned i = 0; i < 14; ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);
   }
   return text.empty() ? "ok" : text;

@@ -10,6 +10,7 @@
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/failsafe.hpp>
+#include <repel/loop/joint_speed.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/network/friction.hpp>
 #include <repel/network/operator.hpp>
@@ -192,8 +193,8 @@ class Teleoperator {
     record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
   }
 
-  // tau = g(q) + those of the network + dry friction, cut to what each joint can give. The joint
-  // limits hold during a fault as well.
+  // tau = g(q) + those of the network + dry friction, within the speed of each joint and cut to
+  // what it can give. The joint limits hold during a fault as well.
   void drive(double gain) noexcept {
     kinematics_.gravity_torques(torques_);
     const auto* limits = network_.find<network::Limits>();
@@ -201,7 +202,9 @@ class Teleoperator {
     if (limits != nullptr) wanted += (1.0 - gain) * limits->torques();
     for (std::size_t i = 0; i < torques_.size(); ++i) {
       const ArmLink& link = model_.links[i];
-      const double asked = wanted(static_cast<Eigen::Index>(i));
+      const double wish = wanted(static_cast<Eigen::Index>(i));
+      const double asked = within_speed(wish, v_[i], link.velocity_limit);
+      if (asked != wish) record_.status |= status::speed_limit;
       torques_[i] += asked + friction_(link.coulomb_friction, v_[i], asked);
       const double most = link.effort_limit > 0.0 ? link.effort_limit : 1e9;
       if (!(std::abs(torques_[i]) <= most)) {
