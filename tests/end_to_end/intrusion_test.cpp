@@ -1,0 +1,171 @@
+// No part of an arm goes deeper into an obstacle than the report says: every scene again, from the
+// joints in its log, by Wolfe's algorithm with 113 bits in place of the library's own distance.
+#include <cell.hpp>
+#include <support/wolfe.hpp>
+
+#include "end_to_end/teleop.hpp"
+#include "support/families.hpp"
+
+namespace repel::test {
+namespace intrusion_test {
+
+using nlohmann::json;
+using oracle::Point;
+using oracle::Real;
+
+/// A part where it is.
+struct PlacedPart {
+  const Shape& shape;
+  Pose X_WP;
+
+  [[nodiscard]] Vec3 farthest(const Vec3& d_W) const {
+    const Vec3 d = X_WP.linear().transpose() * d_W;
+    return X_WP * to_vec3(shape.level(0).core.support(Vec<double>(d)).p);
+  }
+  /// By which the shape is rounder than its core [m].
+  [[nodiscard]] double rounding() const { return shape.level(0).depth; }
+};
+
+/// The distance of two parts, never more than the truth [m]; 0 when their cores meet.
+double distance_below(const PlacedPart& a, const PlacedPart& b) {
+  const auto support = [&](const Point& x) {
+    const oracle::Rough d = oracle::rough(x);
+    const Vec3 n(d.x[0], d.x[1], d.x[2]);
+    const Vec3 p = a.farthest(-n) - b.farthest(n);
+    return Point{{p.x(), p.y(), p.z()}};
+  };
+  const Real size = a.shape.reach() + b.shape.reach();
+  const oracle::Bracket bracket = oracle::minimum_norm(support, support(Point{{1, 0, 0}}), size);
+  return static_cast<double>(bracket.lower) - a.rounding() - b.rounding();
+}
+
+/// How far one of them must be moved at most for the two to part [m].
+double depth_above(const PlacedPart& a, const PlacedPart& b, families::Rng& rng) {
+  double least = 1e9;
+  const auto try_along = [&](const Vec3& n) {
+    const double overlap = n.dot(b.farthest(n) - a.farthest(-n)) + a.rounding() + b.rounding();
+    least = std::min(least, overlap);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      try_along(side * a.X_WP.linear().col(axis));
+      try_along(side * b.X_WP.linear().col(axis));
+    }
+  }
+  for (int i = 0; i < 300; ++i) try_along(families::direction(rng));
+  return least;
+}
+
+/// A scene with the bodies where the log says they were.
+class Replay {
+ public:
+  explicit Replay(const scene::Scene& scene, const Columns& log)
+      : scene_(scene), log_(log), cell_(scene, true) {}
+
+  [[nodiscard]] const World& world() const { return cell_.world; }
+  [[nodiscard]] PlacedPart placed(PartId id) const {
+    const Part& part = cell_.world.part(id);
+    const BodyState& body = cell_.world.motion().bodies[static_cast<std::size_t>(part.body.index)];
+    return {part.shape, body.X_WB * part.X_BP};
+  }
+
+  void go_to(std::size_t row) {
+    for (const Shuttle& shuttle : cell_.shuttles) {
+      ASSERT_TRUE(shuttle.place(cell_.world, log_.at("time_s")[row]));
+    }
+    for (std::size_t i = 0; i < cell_.arms.size(); ++i) {
+      const std::string prefix = i == 0 ? "" : scene_.partners[i - 1].name + "/";
+      place(cell_.arms[i], prefix, row);
+    }
+  }
+
+ private:
+  void place(teleop::Manipulator& arm, const std::string& prefix, std::size_t row) {
+    std::vector<double> q;
+    for (std::size_t joint = 0; joint < arm.start.size(); ++joint) {
+      const bool turns = arm.robot.arm.links[joint].type == JointType::revolute;
+      const std::string name = prefix + "q" + std::to_string(joint + 1) + (turns ? "_rad" : "_m");
+      q.push_back(log_.at(name)[row]);
+    }
+    arm.kinematics.update(q);
+    ASSERT_TRUE(cell_.world.place(arm.tool, arm.kinematics.X_WT(), {}));
+    for (const LinkBody& link : arm.links) {
+      ASSERT_TRUE(cell_.world.place(link.body, arm.kinematics.X_WL(link.link), {}));
+    }
+  }
+
+  const scene::Scene& scene_;
+  const Columns& log_;
+  teleop::Cell cell_;
+};
+
+/// What the report says of the intrusion into each obstacle [m].
+std::map<std::string, double> deepest_of(const json& report) {
+  std::map<std::string, double> deepest;
+  for (const json& obstacle : report.at("obstacles")) {
+    deepest[obstacle.at("name")] = obstacle.at("deepest_m");
+  }
+  return deepest;
+}
+
+struct Found {
+  double nearest = 1e9;  ///< [m] of the pairs within range
+  int met = 0;           ///< pairs that touch or overlap
+};
+
+/// Checks every pair that can be within its range.
+void check_row(const Replay& replay, const std::map<std::string, double>& deepest,
+               families::Rng& rng, Found& found) {
+  for (const Pair& pair : replay.world().pairs()) {
+    const PlacedPart a = replay.placed(pair.a);
+    const PlacedPart b = replay.placed(pair.b);
+    const double apart = (a.X_WP.translation() - b.X_WP.translation()).norm();
+    if (apart > a.shape.reach() + b.shape.reach() + pair.law.range) continue;
+    const double distance = distance_below(a, b);
+    if (distance < pair.law.range) found.nearest = std::min(found.nearest, distance);
+    if (distance > 0.0) continue;
+    ++found.met;
+    const std::string& name = replay.world().part(pair.b).name;
+    ASSERT_LE(depth_above(a, b, rng), deepest.at(name) + 1e-9) << name;
+  }
+}
+
+TEST(Intrusion, IsNeverDeeperThanTheReportSaysInAnyScene) {
+  constexpr unsigned seed = 90;
+  families::Rng rng(seed);
+  int scenes = 0;
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    SCOPED_TRACE(entry.path().stem().string() + ", seed " + std::to_string(seed));
+    const Folder folder;
+    const Ending ending =
+        teleop(quoted(entry.path().string()) + " --fast --seconds 20 --log " +
+               quoted(folder / "log.csv") + " --report " + quoted(folder / "r.json"));
+    ASSERT_EQ(ending.status, 0) << ending;
+    const json report = report_of(folder / "r.json");
+    const Columns log = columns_of(folder / "log.csv");
+    const scene::Scene scene = scene::load(entry.path().string());
+    Replay replay(scene, log);
+    const auto deepest = deepest_of(report);
+    const auto& nearest = log.at("nearest_m");
+    const auto closest = static_cast<std::size_t>(std::min_element(nearest.begin(), nearest.end()) -
+                                                  nearest.begin());
+    std::vector<std::size_t> rows{closest};
+    for (std::size_t row = 0; row < nearest.size(); row += 80) rows.push_back(row);
+    for (const std::size_t row : rows) {
+      replay.go_to(row);
+      Found found;
+      check_row(replay, deepest, rng, found);
+      if (found.met > 0 || found.nearest > 1e8) continue;
+      ASSERT_NEAR(found.nearest, nearest[row], 1e-6) << "row " << row;
+      ++compared;
+    }
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 4);
+  EXPECT_GT(compared, 100);
+}
+
+}  // namespace intrusion_test
+}  // namespace repel::test
