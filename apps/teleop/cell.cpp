@@ -67,6 +67,10 @@ void require_links(const std::string& file, const scene::RobotChoice& choice, co
   }
 }
 
+Pose pose_of(const World& world, const Part& part) {
+  return world.motion().bodies[static_cast<std::size_t>(part.body.index)].X_WB * part.X_BP;
+}
+
 /// How many joints stand between the bodies of two parts of one arm; the tool is on the last link.
 int joints_between(const Manipulator& arm, const World& world, PartId a, PartId b) {
   const auto link_of = [&](PartId id) {
@@ -91,9 +95,6 @@ void add_own_pairs(World& world, const scene::Scene& scene, const scene::RobotCh
              (pair.first == arm.part_links[k] && pair.second == arm.part_links[i]);
     });
   };
-  const auto pose = [&](const Part& part) {
-    return world.motion().bodies[static_cast<std::size_t>(part.body.index)].X_WB * part.X_BP;
-  };
   for (std::size_t k = 0; k < arm.parts.size(); ++k) {
     for (std::size_t i = 0; i < k; ++i) {
       const PartId a = arm.parts[i];
@@ -101,7 +102,8 @@ void add_own_pairs(World& world, const scene::Scene& scene, const scene::RobotCh
       if (joints_between(arm, world, a, b) < 2 || is_disabled(i, k)) continue;
       const Part& first = world.part(a);
       const Part& second = world.part(b);
-      if (separation(first.shape, pose(first), second.shape, pose(second)).lower <= 0.0) {
+      if (separation(first.shape, pose_of(world, first), second.shape, pose_of(world, second))
+              .lower <= 0.0) {
         throw SetupError("robot: '" + first.name + "' and '" + second.name +
                              "' meet where the arm starts; allowed: another start, or links that "
                              "the srdf file disables",
@@ -180,6 +182,21 @@ Cell::Cell(const scene::Scene& scene, bool with_gravity) {
   for (std::size_t i = 1; i < arms.size(); ++i) {
     add_own_pairs(world, scene, scene.partners[i - 1].robot, arms[i]);
   }
+}
+
+std::vector<std::string> Cell::overlaps() const {
+  std::vector<std::string> sentences;
+  for (const Pair& pair : world.pairs()) {
+    if (pair.law.passable) continue;
+    const Part& a = world.part(pair.a);
+    const Part& b = world.part(pair.b);
+    const Separation s =
+        separation(a.shape, pose_of(world, a), b.shape, pose_of(world, b), {.ignore_beyond = 0.0});
+    if (!(s.upper < 0.0)) continue;
+    sentences.push_back("'" + a.name + "' starts inside '" + b.name + "', " +
+                        to_text(-1e3 * s.upper, 3) + " mm deep or more");
+  }
+  return sentences;
 }
 
 double Cell::device_damping() {

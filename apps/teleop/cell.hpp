@@ -44,6 +44,9 @@ struct Cell {
   /// The least viscous damping of any arm at its tool, where it starts [N s/m].
   [[nodiscard]] double device_damping();
 
+  /// A sentence for each solid pair whose parts overlap where the arms start.
+  [[nodiscard]] std::vector<std::string> overlaps() const;
+
   /// The arm of the scene itself; its partners follow it in `arms`.
   [[nodiscard]] Manipulator& arm() noexcept { return arms.front(); }
 

@@ -86,6 +86,8 @@ void describe(CLI::App& app, Arguments& a) {
       ->check(CLI::Validator(teleop::budget_complaint, "UNITS, i860 or none"));
   app.add_flag("--every-pair", a.run.every_pair,
                "Ask also the pairs that cannot be within range: to compare with");
+  app.add_flag("--tool-alone", a.run.tool_alone,
+               "Keep only the tools off the obstacles, not the links of the arms: the paper's way");
   app.add_option("--report", a.report, "Write the report as JSON to FILE");
   app.add_option("--log", a.log, "Write every tick as CSV to FILE");
   app.footer(

@@ -199,8 +199,12 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
   result.options = options;
   result.scene = scene;
   result.scene.budget = budget_of(scene, options.budget, options.rate_hz);
+  if (options.tool_alone) {
+    result.scene.robot.links.emplace();
+    for (scene::Partner& partner : result.scene.partners) partner.robot.links.emplace();
+  }
   const bool ideal = options.backend == "ideal";
-  Cell cell(scene, !ideal);
+  Cell cell(result.scene, !ideal);
   result.pairs = static_cast<int>(cell.world.pairs().size());
   result.device_damping = cell.device_damping();
   try {
@@ -211,6 +215,7 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
                          " (to run all the same: 'gain_check: warning' at the obstacle module)",
                      scene.file);
   }
+  for (const std::string& overlap : cell.overlaps()) result.warnings.push_back(overlap);
   result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
   for (const Manipulator& arm : cell.arms) {
     const std::size_t before = result.arms.size();

@@ -24,6 +24,7 @@ struct RunOptions {
   int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
   std::string budget;              ///< name of the budget; empty: the scene's own
   bool every_pair = false;         ///< ask also those that cannot be within range
+  bool tool_alone = false;         ///< no link feels the obstacles, whatever the scene says
   bool keep_records = false;       ///< for a log
 };
 
@@ -61,8 +62,9 @@ struct RunResult {
   int threads = 0;                    ///< of the coprocessor that there was work for
   std::vector<ArmResult> arms;        ///< that of the scene itself, then its partners
   double device_damping = 0.0;        ///< [N s/m] least, of the arms at their tools at the start
-  std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit
-  DurationHistogram network_time;     ///< of the networks alone, within the tick
+  std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts that start
+                                      ///< in an obstacle
+  DurationHistogram network_time;  ///< of the networks alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
   std::int64_t most_support_pairs = 0;  ///< in one tick
   std::chrono::nanoseconds compute{0};  ///< of all ticks together

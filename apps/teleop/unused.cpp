@@ -12,6 +12,11 @@ bool any_station(const scene::Scene& scene,
   return holds(scene) || std::any_of(scene.partners.begin(), scene.partners.end(), holds);
 }
 
+/// True when some link of the arm is kept off the obstacles.
+bool has_links(const scene::Station& station) {
+  return scene::feels_links(station) && (!station.robot.links || !station.robot.links->empty());
+}
+
 bool has_master(const scene::Scene& scene, network::Master master) {
   return any_station(scene, [master](const scene::Station& station) {
     return std::any_of(station.script.begin(), station.script.end(),
@@ -40,7 +45,7 @@ std::vector<std::string> unused_parts(const RunResult& r) {
       r.pairs > 0 ? "" : "distance queries",
       r.totals().nearest > 0.0 ? "reduction levels" : "",
       passable ? "" : "passable bodies",
-      any_station(r.scene, scene::feels_links) ? "" : "links of the arm",
+      any_station(r.scene, has_links) ? "" : "links of the arm",
       any_station(r.scene, [](const auto& s) { return s.robot.self_law.has_value(); })
           ? ""
           : "pairs within an arm",

@@ -116,7 +116,7 @@ TEST(Budget, OneSupportPairIsEnoughToRunEveryScene) {
 
 // 24 s are the whole script.
 TEST(Budget, EveryPairOfTheDefaultSceneJustFitsThatOfTheI860) {
-  const std::string scene = "anderson_4x8 --every-pair --seconds 24 --budget ";
+  const std::string scene = "anderson_4x8 --tool-alone --every-pair --seconds 24 --budget ";
   const Outcome fits = run_of(scene + "i860");
   EXPECT_EQ(fits.report.at("budget").at("name"), "i860");
   EXPECT_EQ(fits.report.at("pairs_evaluated_per_tick"), 32.0);

@@ -57,12 +57,35 @@ TEST(WholeArm, WithoutTheModuleTheToolAloneFeelsTheWallsAndTheReportSaysSo) {
   EXPECT_TRUE(ending.says("links of the arm")) << ending;
 }
 
+TEST(WholeArm, OfTheDefaultSceneIsLeftOutOnRequest) {
+  const Folder folder;
+  for (const auto& [option, pairs] : {std::pair{"", 120}, {"--tool-alone ", 32}}) {
+    const Ending ending = teleop(std::string("anderson_4x8 --fast --seconds 1 ") + option +
+                                 "--report " + quoted(folder / "r.json"));
+    ASSERT_EQ(ending.status, 0) << ending;
+    EXPECT_EQ(report_of(folder / "r.json").at("pairs"), pairs);
+    EXPECT_EQ(ending.says("links of the arm"), pairs == 32) << ending;
+  }
+}
+
 TEST(WholeArm, LinksThatAreNoneAreRefused) {
   const Folder folder;
   const std::string text = scene_with("", "  links: [link_3, tail]\n");
   const Ending ending = teleop(quoted(folder.with("post.yaml", text)) + " --fast --seconds 1");
   EXPECT_EQ(ending.status, 1) << ending;
   EXPECT_TRUE(ending.says("'tail' is no moving link")) << ending;
+}
+
+TEST(WholeArm, LinkThatStartsInsideAnObstacleIsNamed) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "inside.yaml", robot_text(REPEL_SOURCE "/robots/puma560.urdf", "") +
+                         "laws: {default: {range: 40 mm, surface_force: 40 N, damping: 1 N s/m}}\n"
+                         "obstacles: [{name: post, shape: capsule, radius: 20 mm, length: 0.6 m, "
+                         "position: 0.3 -0.15 0.9 m}]\n");
+  const Ending ending = teleop(quoted(scene) + " --fast --seconds 0.1");
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("starts inside 'post'")) << ending;
 }
 
 /// An arm with a joint to spare, its elbow out to the side, a bar that comes 150 mm towards the

@@ -40,6 +40,14 @@ class SetupError : public std::runtime_error {
   return {digits, end};
 }
 
+/// `value` to so many significant digits, for people.
+[[nodiscard]] inline std::string to_text(double value, int digits) {
+  char text[32];
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr;
+  return {text, end};
+}
+
 /// Returns `value` when `low <= value <= high`; throws SetupError naming it, its unit and the
 /// range.
 inline double checked(std::string_view name, double value, double low, double high,

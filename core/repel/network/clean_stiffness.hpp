@@ -36,15 +36,16 @@ struct CleanStiffness {
   }
 };
 
-/// Empty when a wall of `stiffness` [N/m] is within the limit; else one sentence with all numbers.
+/// Empty when a wall of `stiffness` [N/m] is within the limit; else one sentence with all numbers,
+/// to four digits.
 [[nodiscard]] inline std::string complaint(const CleanStiffness& at, double stiffness) {
-  using repel::to_text;  // not that of a space
+  const auto text = [](double value) { return repel::to_text(value, 4); };
   if (stiffness <= at.limit()) return {};
-  return "wall stiffness is " + to_text(stiffness) + " N/m; the clean-stiffness limit is " +
-         to_text(at.limit()) + " N/m for a period of " + to_text(1e3 * at.period) +
-         " ms, a delay of " + to_text(1e3 * at.delay) + " ms, " + to_text(at.device_damping) +
-         " N s/m of damping in the device and " + to_text(at.wall_damping) +
-         " N s/m in the wall; this wall needs " + to_text(at.needed_damping(stiffness)) +
+  return "wall stiffness is " + text(stiffness) + " N/m; the clean-stiffness limit is " +
+         text(at.limit()) + " N/m for a period of " + text(1e3 * at.period) + " ms, a delay of " +
+         text(1e3 * at.delay) + " ms, " + text(at.device_damping) +
+         " N s/m of damping in the device and " + text(at.wall_damping) +
+         " N s/m in the wall; this wall needs " + text(at.needed_damping(stiffness)) +
          " N s/m in the device";
 }
 
