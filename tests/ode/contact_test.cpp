@@ -29,6 +29,10 @@ TEST(OdeContact, APumaThatFallsComesToRestOnATable) {
   expect_to_rest_on_a_table<Arm>(puma());
 }
 
+TEST(OdeContact, TheSameFallGivesTheSameBits) {
+  expect_the_same_again<Arm>(puma());
+}
+
 TEST(OdeContact, WhatIsNotTouchedChangesNoBit) {
   expect_untouched_the_same<Arm>(puma());
 }

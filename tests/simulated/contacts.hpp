@@ -73,14 +73,36 @@ void expect_it_stops_a_capsule(ContactPart part) {
   expect_stop<Arm>({rod, part}, 0.38, part.name);
 }
 
-/// An arm that falls, with a capsule along its third link, onto a table that its tip reaches.
+/// Forearm and hand of a PUMA, and a table that they fall on from `above_the_table`.
+inline std::vector<ContactPart> forearm_hand_and_table() {
+  return {{"forearm", 2, Shape::capsule(0.05, 0.2), Pose::Identity()},
+          {"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
+          {"table", -1, Shape::box({2.0, 2.0, 0.1}), at(0, 0, -0.4)}};
+}
+inline std::vector<double> above_the_table() {
+  return {0.0, 0.6, -0.6, 0.2, 0.3, 0.0};
+}
+
+/// Two arms that fall on the table move alike, to the last bit.
+template <class Arm>
+void expect_the_same_again(const ArmModel& model) {
+  Arm one(model, {}, forearm_hand_and_table());
+  Arm two(model, {}, forearm_hand_and_table());
+  for (Arm* arm : {&one, &two}) {
+    arm->reset(above_the_table());
+    for (int tick = 0; tick < 800; ++tick) arm->step(1.0 / 400);
+  }
+  EXPECT_GT(one.contact().steps, 0);
+  EXPECT_EQ(positions(one), positions(two));
+  EXPECT_EQ(velocities(one), velocities(two));
+  EXPECT_EQ(one.contact().deepest, two.contact().deepest);
+}
+
+/// An arm that falls on the table comes to rest.
 template <class Arm>
 void expect_to_rest_on_a_table(const ArmModel& model) {
-  const std::vector<ContactPart> parts{{"forearm", 2, Shape::capsule(0.05, 0.2), Pose::Identity()},
-                                       {"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
-                                       {"table", -1, Shape::box({2.0, 2.0, 0.1}), at(0, 0, -0.4)}};
-  Arm arm(model, {}, parts);
-  arm.reset(std::vector{0.0, 0.6, -0.6, 0.2, 0.3, 0.0});
+  Arm arm(model, {}, forearm_hand_and_table());
+  arm.reset(above_the_table());
   std::vector<double> before(6);
   for (int tick = 0; tick < 4000; ++tick) {
     if (tick == 3600) before = positions(arm);
