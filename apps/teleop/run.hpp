@@ -11,6 +11,7 @@
 #include <repel/loop/record.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/schedule/deadline.hpp>
+#include <repel/world/contact.hpp>
 
 #include "machine.hpp"
 
@@ -24,6 +25,7 @@ struct RunOptions {
   int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
   std::string budget;              ///< name of the budget; empty: the scene's own
   bool every_pair = false;         ///< ask also those that cannot be within range
+  bool contact = false;            ///< of "bullet" and "ode": arms cannot pass solid obstacles
   bool keep_records = false;       ///< for a log
 };
 
@@ -51,6 +53,7 @@ struct ArmResult {
   RunTotals totals;                   ///< its own; what they say of pairs is of the whole world
   std::vector<ModuleResult> modules;  ///< of its network, in its order
   std::vector<TickRecord> records;
+  ContactReport contact;  ///< what it touched physically, where the options have contact
 };
 
 /// Everything there is to say about a run.
