@@ -178,9 +178,8 @@ Cell::Cell(const scene::Scene& scene, bool with_gravity) {
       }
     }
   }
-  add_own_pairs(world, scene, scene.robot, arms[0]);
-  for (std::size_t i = 1; i < arms.size(); ++i) {
-    add_own_pairs(world, scene, scene.partners[i - 1].robot, arms[i]);
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    add_own_pairs(world, scene, scene.station(i).robot, arms[i]);
   }
 }
 

@@ -25,8 +25,7 @@ class Crew {
        double rate_hz)
       : cell_(cell), coprocessor_(coprocessor), period_(std::llround(1e9 / rate_hz)) {
     for (std::size_t i = 0; i < arms.size(); ++i) {
-      const scene::Station& station =
-          i == 0 ? static_cast<const scene::Station&>(scene) : scene.partners[i - 1];
+      const scene::Station& station = scene.station(i);
       Manipulator& arm = cell.arms[i];
       operators_.emplace_back(station.script);
       members_.emplace_back(arm.robot.arm, arms[i], arm.kinematics, cell.world, arm.tool,

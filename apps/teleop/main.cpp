@@ -77,6 +77,14 @@ void describe(CLI::App& app, Arguments& a) {
          "same without stops, by a higher order, slow) or ideal (free joints)")
       ->capture_default_str()
       ->check(CLI::IsMember({"bullet", "ode", "reference", "ideal"}));
+  app.add_flag("--contact", a.run.contact,
+               "Of bullet and ode: obstacles that are not passable stop the arm by themselves, "
+               "too, where no virtual force does it first");
+  app.final_callback([&a] {
+    if (!a.run.contact || a.run.backend == "bullet" || a.run.backend == "ode") return;
+    throw CLI::ValidationError(
+        "--contact", "backend " + a.run.backend + " knows no contact; allowed: bullet, ode");
+  });
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
       ->check(CLI::Range(0, 16));

@@ -44,6 +44,27 @@ void print_counts(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.involuntary_switches_in_tick));
 }
 
+/// What an arm touched, where it can touch anything.
+ordered_json contact_to_json(const RunResult& r, const ArmResult& arm) {
+  if (!r.options.contact) return nullptr;
+  return {{"steps", arm.contact.steps}, {"deepest_m", arm.contact.deepest}};
+}
+
+void print_contact(const RunResult& r, std::FILE* out) {
+  if (!r.options.contact) return;
+  for (const ArmResult& arm : r.arms) {
+    const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
+    std::fprintf(out, "  physical contact       ");
+    if (arm.contact.steps == 0) {
+      std::fprintf(out, "none%s\n", whose.c_str());
+    } else {
+      std::fprintf(out, "in %lld steps%s, deepest %.3f mm\n",
+                   static_cast<long long>(arm.contact.steps), whose.c_str(),
+                   1e3 * arm.contact.deepest);
+    }
+  }
+}
+
 /// Partners with what their arms did; the arm of the scene itself has the report's own keys.
 ordered_json partner_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -52,6 +73,7 @@ ordered_json partner_list(const RunResult& r) {
     list.push_back({{"name", arm.name},
                     {"peak_force_n", arm.totals.peak_force},
                     {"status_ticks", host::status_ticks(arm.totals)},
+                    {"physical_contact", contact_to_json(r, arm)},
                     {"modules", modules_to_json(arm.modules)}});
   }
   return list;
@@ -169,6 +191,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
   print_obstacles(r, out);
+  print_contact(r, out);
   print_network(r, out);
   print_counts(r, out);
   for (const ArmResult& arm : r.arms) print_status(arm, out);
@@ -198,6 +221,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["partners"] = partner_list(r);
   report["nearest_pair"] = r.nearest_pair;
   report["obstacles"] = obstacle_list(r);
+  report["physical_contact"] = contact_to_json(r, r.arms.front());
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
   report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);
   report["page_faults_in_tick"] = host::known(r.page_faults_in_tick);

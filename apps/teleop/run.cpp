@@ -19,6 +19,7 @@
 
 #include "budget.hpp"
 #include "cell.hpp"
+#include "contact.hpp"
 #include "crew.hpp"
 #include "heap_guard.hpp"
 #include "metronome.hpp"
@@ -165,6 +166,7 @@ void run_with(std::span<Arm> arms, Cell& cell, RunResult& result, const std::ato
   for (std::size_t i = 0; i < arms.size(); ++i) {
     result.arms[i].modules = module_results(crew.members()[i].network());
     result.arms[i].records = recorders[i].records();
+    if constexpr (requires { arms[i].contact(); }) result.arms[i].contact = arms[i].contact();
     result.records_dropped = options.keep_records ? recorders[i].dropped() : 0;  // alike in all
   }
   note_pairs(cell.world, coprocessor, result);
@@ -224,26 +226,29 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
     for (const ArmLink& link : arm.robot.arm.links) added.joints.push_back(link.type);
   }
   const auto with = [&](auto make) {
-    std::vector<decltype(make(cell.arm().robot.arm))> arms;
-    for (const Manipulator& each : cell.arms) {
-      arms.push_back(make(each.robot.arm));
+    std::vector<decltype(make(cell.arm().robot.arm, std::vector<ContactPart>{}))> arms;
+    for (std::size_t i = 0; i < cell.arms.size(); ++i) {
+      const Manipulator& each = cell.arms[i];
+      std::vector<ContactPart> parts;
+      if (options.contact) parts = contact_parts(scene, scene.station(i), each.robot);
+      arms.push_back(make(each.robot.arm, parts));
       arms.back().reset(each.start);
     }
     run_with(std::span(arms), cell, result, stop, show);
   };
   if (ideal) {
-    with([](const ArmModel& model) { return IdealArm(ideal_joints(model)); });
+    with([](const ArmModel& model, const auto&) { return IdealArm(ideal_joints(model)); });
   } else if (options.backend == "reference") {
-    with([](const ArmModel& model) { return ReferenceArm(model); });
+    with([](const ArmModel& model, const auto&) { return ReferenceArm(model); });
   } else if (options.backend == "ode") {
 #ifdef REPEL_TELEOP_ODE
-    with([](const ArmModel& model) { return ode::Arm(model); });
+    with([](const ArmModel& model, const auto& parts) { return ode::Arm(model, {}, parts); });
 #else
     throw SetupError("backend ode is not built in; to have it: apt-get install libode-dev");
 #endif
   } else {
 #ifdef REPEL_TELEOP_BULLET
-    with([](const ArmModel& model) { return bullet::Arm(model); });
+    with([](const ArmModel& model, const auto& parts) { return bullet::Arm(model, {}, parts); });
 #else
     throw SetupError("backend bullet is not built in; to have it: apt-get install libbullet-dev");
 #endif

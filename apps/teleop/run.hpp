@@ -11,6 +11,7 @@
 #include <repel/loop/record.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/schedule/deadline.hpp>
+#include <repel/world/contact.hpp>
 
 #include "machine.hpp"
 
@@ -25,6 +26,7 @@ struct RunOptions {
   std::string budget;              ///< name of the budget; empty: the scene's own
   bool every_pair = false;         ///< ask also those that cannot be within range
   bool tool_alone = false;         ///< no link feels the obstacles, whatever the scene says
+  bool contact = false;            ///< of "bullet" and "ode": arms cannot pass solid obstacles
   bool keep_records = false;       ///< for a log
 };
 
@@ -52,6 +54,7 @@ struct ArmResult {
   RunTotals totals;                   ///< its own; what they say of pairs is of the whole world
   std::vector<ModuleResult> modules;  ///< of its network, in its order
   std::vector<TickRecord> records;
+  ContactReport contact;  ///< what it touched physically, where the options have contact
 };
 
 /// Everything there is to say about a run.
@@ -64,7 +67,7 @@ struct RunResult {
   double device_damping = 0.0;        ///< [N s/m] least, of the arms at their tools at the start
   std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts that start
                                       ///< in an obstacle
-  DurationHistogram network_time;  ///< of the networks alone, within the tick
+  DurationHistogram network_time;     ///< of the networks alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
   std::int64_t most_support_pairs = 0;  ///< in one tick
   std::chrono::nanoseconds compute{0};  ///< of all ticks together

@@ -7,6 +7,7 @@
 
 #include <repel/base/setup_error.hpp>
 
+#include "contacts.hpp"
 #include "implicit_joints.hpp"
 #include "multibody.hpp"
 
@@ -23,7 +24,7 @@ ArmModel validated(const ArmModel& model, const ArmOptions& options) {
 }  // namespace
 
 struct Arm::Simulation {
-  Simulation(const ArmModel& given, const ArmOptions& options);
+  Simulation(const ArmModel& given, const ArmOptions& options, std::span<const ContactPart> parts);
 
   void reset(std::span<const double> q, std::span<const double> v);
   void sub_step(double h) noexcept;
@@ -37,6 +38,7 @@ struct Arm::Simulation {
   int links;
   detail::ImplicitJoints joints;
   std::unique_ptr<btMultiBody> body;
+  std::unique_ptr<detail::Contacts> contacts;  // none without parts
   ArmFaults faults;
   Eigen::VectorXd torque, q, v, a;  // as set; state; acceleration
   Eigen::MatrixXd M_inverse;
@@ -47,12 +49,14 @@ struct Arm::Simulation {
   std::vector<btScalar> unit_force, response;
 };
 
-Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options)
+Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options,
+                            std::span<const ContactPart> parts)
     : model(validated(given, options)),
       substeps(options.substeps),
       links(static_cast<int>(model.links.size())),
       joints(model, options),
       body(detail::make_multibody(model)),
+      contacts(parts.empty() ? nullptr : std::make_unique<detail::Contacts>(model, options, parts)),
       torque(Eigen::VectorXd::Zero(links)),
       q(torque),
       v(torque),
@@ -79,6 +83,7 @@ void Arm::Simulation::reset(std::span<const double> at, std::span<const double> 
     body->setJointPos(i, at[joint]);
     body->setJointVel(i, moving.empty() ? 0.0 : moving[joint]);
   }
+  if (contacts) contacts->forget();
   read_state();
 }
 
@@ -127,7 +132,8 @@ void Arm::Simulation::require_inertia_at_every_joint() {
 void Arm::Simulation::sub_step(double h) noexcept {
   load(joints.linearize(q, v, torque, h));  // weight and joint torque
   find_free_acceleration();                 // -> a, M^-1
-  joints.solve(M_inverse, a, v, h);         // -> a with rotors, stops and friction
+  if (contacts) contacts->find(q);
+  joints.solve(M_inverse, a, v, h, contacts.get());  // -> a with rotors, stops and friction
   v += h * a;
   if (!v.allFinite() || !(q + h * v).allFinite()) {
     faults.state = true;
@@ -138,8 +144,8 @@ void Arm::Simulation::sub_step(double h) noexcept {
   read_state();
 }
 
-Arm::Arm(const ArmModel& model, const ArmOptions& options)
-    : simulation_(std::make_unique<Simulation>(model, options)) {}
+Arm::Arm(const ArmModel& model, const ArmOptions& options, std::span<const ContactPart> parts)
+    : simulation_(std::make_unique<Simulation>(model, options, parts)) {}
 Arm::~Arm() = default;
 Arm::Arm(Arm&&) noexcept = default;
 Arm& Arm::operator=(Arm&&) noexcept = default;
@@ -167,6 +173,7 @@ void Arm::step(double period) noexcept {
   }
   const double h = period / simulation_->substeps;
   for (int part = 0; part < simulation_->substeps; ++part) simulation_->sub_step(h);
+  if (simulation_->contacts) simulation_->contacts->end_step();
 }
 
 void Arm::read_positions(std::span<double> out) const noexcept {
@@ -177,6 +184,10 @@ void Arm::read_positions(std::span<double> out) const noexcept {
 void Arm::read_velocities(std::span<double> out) const noexcept {
   const auto count = std::min(out.size(), simulation_->model.links.size());
   std::copy_n(simulation_->v.begin(), count, out.begin());
+}
+
+ContactReport Arm::contact() const noexcept {
+  return simulation_->contacts ? simulation_->contacts->report() : ContactReport{};
 }
 
 ArmFaults Arm::faults() const noexcept {

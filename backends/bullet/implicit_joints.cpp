@@ -46,9 +46,10 @@ const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const
 }
 
 void ImplicitJoints::solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v,
-                           double h) noexcept {
+                           double h, Contacts* contacts) noexcept {
   add_diagonal(M_inverse, a);
-  find_friction(M_inverse, a, v, h);
+  if (contacts != nullptr) contacts->begin(M_inverse, v, h);
+  find_friction(M_inverse, a, v, h, contacts);
 }
 
 // W = M^-1 and a = M^-1 b become (M + D)^-1 and (M + D)^-1 b, one entry of D after the other
@@ -65,9 +66,11 @@ void ImplicitJoints::add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexce
 
 // The friction torques f are those within +-F that leave the least kinetic energy at the end of
 // the sub-step. One joint at a time (projected Gauss-Seidel): with W = (M + D)^-1 the torque that
-// brings v' = v + h a to rest changes f_i by -v'_i / (h W_ii); it is cut to the bounds.
+// brings v' = v + h a to rest changes f_i by -v'_i / (h W_ii); it is cut to the bounds. Forces of
+// contact take their turn in the same sweeps.
 void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
-                                   const Eigen::VectorXd& v, double h) noexcept {
+                                   const Eigen::VectorXd& v, double h,
+                                   Contacts* contacts) noexcept {
   friction_.setZero();
   for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
     double largest_change = 0.0;
@@ -78,6 +81,7 @@ void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
       a += change * W.col(i);
       largest_change = std::max(largest_change, h * std::abs(change) * W(i, i));
     }
+    if (contacts != nullptr) largest_change = std::max(largest_change, contacts->sweep(a));
     if (largest_change <= kSettled) return;
   }
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "contacts.hpp"
 #include "repel/bullet/arm.hpp"
 
 namespace repel::bullet::detail {
@@ -32,13 +33,14 @@ class ImplicitJoints {
                                    const Eigen::VectorXd& torque, double h) noexcept;
 
   /// Turns `a`, the free acceleration, into the acceleration, and `M_inverse` into (M + D)^-1.
-  void solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v,
-             double h) noexcept;
+  /// @param contacts what is found to touch; null for an arm that touches nothing
+  void solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v, double h,
+             Contacts* contacts) noexcept;
 
  private:
   void add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexcept;
   void find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const Eigen::VectorXd& v,
-                     double h) noexcept;
+                     double h, Contacts* contacts) noexcept;
 
   Eigen::VectorXd lower_, upper_;                      // [rad]
   Eigen::VectorXd rotor_inertia_, viscous_, coulomb_;  // [kg m^2], [N m s/rad], [N m]

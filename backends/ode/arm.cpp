@@ -7,10 +7,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
+
+#include "contacts.hpp"
 
 namespace repel::ode {
 namespace {
@@ -43,7 +46,7 @@ void begin_ode() {
 }  // namespace
 
 struct Arm::Simulation {
-  Simulation(const ArmModel& given, const ArmOptions& chosen)
+  Simulation(const ArmModel& given, const ArmOptions& chosen, std::span<const ContactPart> parts)
       : model(validated(given, chosen)),
         options(chosen),
         torque(model.links.size()),
@@ -59,6 +62,7 @@ struct Arm::Simulation {
     dWorldSetERP(world.get(), error_reduction);
     dWorldSetCFM(world.get(), 0.0);
     build();
+    if (!parts.empty()) contacts.emplace(world.get(), model, options, body, parts);
     std::vector<double> start;
     for (const ArmLink& link : model.links)
       start.push_back(std::clamp(0.0, link.lower, link.upper));
@@ -89,6 +93,7 @@ struct Arm::Simulation {
   std::vector<dBodyID> body;  // at the centre of mass, with the axes of the link
   std::vector<dJointID> joint;
   std::vector<dJointID> friction;  // a motor that brings its joint to rest with limited force
+  std::optional<detail::Contacts> contacts;
   ArmFaults faults;
 };
 
@@ -160,6 +165,7 @@ void Arm::Simulation::reset(std::span<const double> at, std::span<const double> 
   std::fill(v.begin(), v.end(), 0.0);
   std::copy(moving.begin(), moving.end(), v.begin());
   place();
+  if (contacts) contacts->forget();
 }
 
 // What opposes a joint is linear in its next speed v' and so one motor with a soft constraint:
@@ -190,6 +196,7 @@ void Arm::Simulation::sub_step(double h) noexcept {
     (turns(i) ? dJointAddHingeTorque : dJointAddSliderForce)(joint[i], torque[i]);
   }
   last_q = q;
+  if (contacts) contacts->find(h);
   (void)dWorldStep(world.get(), h);
   read_state();
   double sum = 0.0;
@@ -234,8 +241,8 @@ double Arm::Simulation::parted() const noexcept {
   return most;
 }
 
-Arm::Arm(const ArmModel& model, const ArmOptions& options)
-    : simulation_(std::make_unique<Simulation>(model, options)) {}
+Arm::Arm(const ArmModel& model, const ArmOptions& options, std::span<const ContactPart> parts)
+    : simulation_(std::make_unique<Simulation>(model, options, parts)) {}
 Arm::~Arm() = default;
 Arm::Arm(Arm&&) noexcept = default;
 Arm& Arm::operator=(Arm&&) noexcept = default;
@@ -263,6 +270,7 @@ void Arm::step(double period) noexcept {
   }
   const double h = period / simulation_->options.substeps;
   for (int part = 0; part < simulation_->options.substeps; ++part) simulation_->sub_step(h);
+  if (simulation_->contacts) simulation_->contacts->end_step();
 }
 
 void Arm::read_positions(std::span<double> out) const noexcept {
@@ -275,6 +283,10 @@ void Arm::read_velocities(std::span<double> out) const noexcept {
 
 double Arm::parted() const noexcept {
   return simulation_->parted();
+}
+
+ContactReport Arm::contact() const noexcept {
+  return simulation_->contacts ? simulation_->contacts->report() : ContactReport{};
 }
 
 ArmFaults Arm::faults() const noexcept {

@@ -24,5 +24,6 @@
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
+#include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>

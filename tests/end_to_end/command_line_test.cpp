@@ -8,7 +8,7 @@ TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   EXPECT_EQ(ending.status, 0) << ending;
   for (const char* words : {"anderson_4x8", "--tool-alone", "bullet", "ode", "reference", "ideal",
                             "spaceball", "torque_arm", "Exit status", "--fast", "--report", "--log",
-                            "--threads", "--budget", "i860", "--every-pair"}) {
+                            "--threads", "--budget", "i860", "--every-pair", "--contact"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }
@@ -29,6 +29,16 @@ TEST(CommandLine, BudgetThatIsNoneSaysWhichThereAre) {
   EXPECT_EQ(ending.status, 2) << ending;
   for (const char* words : {"i386", "i860", "none", "support pairs", "1000000000"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
+  }
+}
+
+TEST(CommandLine, ContactOfABackEndThatHasNoneSaysWhichHaveIt) {
+  for (const std::string backend : {"ideal", "reference"}) {
+    const Ending ending = teleop("--contact --backend " + backend);
+    EXPECT_EQ(ending.status, 2) << ending;
+    for (const std::string words : {"--contact", backend.c_str(), "bullet, ode"}) {
+      EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
+    }
   }
 }
 

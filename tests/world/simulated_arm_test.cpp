@@ -61,6 +61,9 @@ TEST(SimulatedArm, OptionsAndStatesOutOfRangeAreRefused) {
   EXPECT_THROW(require_valid({.substeps = 0}), SetupError);
   EXPECT_THROW(require_valid({.stop_stiffness = -1.0}), SetupError);
   EXPECT_THROW(require_valid({.stop_damping = not_a_number}), SetupError);
+  EXPECT_THROW(require_valid({.contact_stiffness = -1.0}), SetupError);
+  EXPECT_THROW(require_valid({.contact_damping = 0.0}), SetupError);
+  EXPECT_THROW(require_valid({.contact_friction = not_a_number}), SetupError);
   const ArmModel model = sound();
   const double inside[] = {0.5};
   const double outside[] = {1.5};

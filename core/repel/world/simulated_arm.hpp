@@ -13,11 +13,14 @@
 
 namespace repel {
 
-/// How an engine steps, and how stiff the joint stops are.
+/// How an engine steps, and how stiff the joint stops and physical contacts are.
 struct SimulationOptions {
-  int substeps = 4;             ///< equal parts of one `step`; 1 to 1000
-  double stop_stiffness = 1e5;  ///< [N m/rad] or [N/m] of a joint stop; >= 0
-  double stop_damping = 1e3;    ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
+  int substeps = 4;                ///< equal parts of one `step`; 1 to 1000
+  double stop_stiffness = 1e5;     ///< [N m/rad] or [N/m] of a joint stop; >= 0
+  double stop_damping = 1e3;       ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
+  double contact_stiffness = 1e6;  ///< [N/m] of a point of contact; 0 to 1e12
+  double contact_damping = 1e4;    ///< [N s/m] of the same, which never pulls; 1e-3 to 1e12
+  double contact_friction = 0.5;   ///< share of the normal force; 0 to 1e3
 };
 
 /// What a simulated arm has refused since construction or since its faults were cleared.
@@ -78,6 +81,9 @@ inline void require_valid(const SimulationOptions& options) {
   checked("SimulationOptions::substeps", options.substeps, 1, 1000, "");
   checked("SimulationOptions::stop_stiffness", options.stop_stiffness, 0.0, largest, "N m/rad");
   checked("SimulationOptions::stop_damping", options.stop_damping, 0.0, largest, "N m s/rad");
+  checked("SimulationOptions::contact_stiffness", options.contact_stiffness, 0.0, 1e12, "N/m");
+  checked("SimulationOptions::contact_damping", options.contact_damping, 1e-3, 1e12, "N s/m");
+  checked("SimulationOptions::contact_friction", options.contact_friction, 0.0, 1e3, "");
 }
 
 /// Throws SetupError unless `q` [rad] or [m] and `v` [rad/s] or [m/s], which may be empty, are

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 
 namespace repel::bullet {
@@ -16,9 +17,12 @@ using ArmFaults = SimulationFaults;
 class Arm {
  public:
   /// Starts at rest at zero, or at the limit nearest to it.
-  /// @throws SetupError when a number of `model` or `options` is out of range, or when the Bullet
-  /// library in use is not the double-precision one
-  explicit Arm(const ArmModel& model, const ArmOptions& options = {});
+  /// @param parts what touches: those on links and obstacles, each of the former with each of the
+  /// latter; copied. Without parts the arm passes through everything
+  /// @throws SetupError when a number of `model` or `options` is out of range, when a part has no
+  /// thickness, or when the Bullet library in use is not the double-precision one
+  explicit Arm(const ArmModel& model, const ArmOptions& options = {},
+               std::span<const ContactPart> parts = {});
   ~Arm();
   Arm(Arm&&) noexcept;
   Arm& operator=(Arm&&) noexcept;
@@ -27,7 +31,7 @@ class Arm {
   [[nodiscard]] int links() const noexcept;
 
   /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
-  /// with zero torque. Faults stay.
+  /// with zero torque and nothing touched. Faults stay.
   /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
@@ -35,6 +39,7 @@ class Arm {
   void set_torques(std::span<const double> torques) noexcept;
 
   /// Moves the arm by `period` [s]. No allocation, no lock; cost grows with substeps x links^3.
+  /// With parts each sub-step has to find what they touch, and Bullet may allocate for it.
   void step(double period) noexcept;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
@@ -42,6 +47,9 @@ class Arm {
 
   /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
   void read_velocities(std::span<double> out) const noexcept;
+
+  /// What the parts touched since the last reset.
+  [[nodiscard]] ContactReport contact() const noexcept;
 
   [[nodiscard]] ArmFaults faults() const noexcept;
   void clear_faults() noexcept;

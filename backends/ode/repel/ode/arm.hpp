@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 
 namespace repel::ode {
@@ -19,9 +20,13 @@ using ArmFaults = SimulationFaults;
 class Arm {
  public:
   /// Starts at rest at zero, or at the limit nearest to it.
+  /// @param parts what touches: those on links and obstacles, each of the former with each of the
+  /// latter; copied. Without parts the arm passes through everything
   /// @throws SetupError when a number of `model` or `options` is out of range, or a link has no
-  /// mass or an inertia that is not positive: here every link moves by itself
-  explicit Arm(const ArmModel& model, const ArmOptions& options = {});
+  /// mass or an inertia that is not positive: here every link moves by itself; or when a part is
+  /// a cone, a hull or without thickness
+  explicit Arm(const ArmModel& model, const ArmOptions& options = {},
+               std::span<const ContactPart> parts = {});
   ~Arm();
   Arm(Arm&&) noexcept;
   Arm& operator=(Arm&&) noexcept;
@@ -30,7 +35,7 @@ class Arm {
   [[nodiscard]] int links() const noexcept;
 
   /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
-  /// with zero torque. Faults stay.
+  /// with zero torque and nothing touched. Faults stay.
   /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
@@ -49,6 +54,9 @@ class Arm {
   /// How far the joints have come apart [m]: the greatest distance between a link and where its
   /// parent and its joint position put it.
   [[nodiscard]] double parted() const noexcept;
+
+  /// What the parts touched since the last reset.
+  [[nodiscard]] ContactReport contact() const noexcept;
 
   [[nodiscard]] ArmFaults faults() const noexcept;
   void clear_faults() noexcept;

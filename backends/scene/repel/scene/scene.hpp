@@ -122,6 +122,11 @@ struct Scene : Station {
   std::vector<Obstacle> obstacles;
   std::vector<Partner> partners;
   Budget budget;
+
+  /// Its own for 0, then those of the partners.
+  [[nodiscard]] const Station& station(std::size_t i) const {
+    return i == 0 ? static_cast<const Station&>(*this) : partners[i - 1];
+  }
 };
 
 /// True when the network has the module through which the links of the arm feel the obstacles.

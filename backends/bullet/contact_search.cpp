@@ -1,0 +1,108 @@
+#include "contact_search.hpp"
+
+#include "multibody.hpp"
+
+namespace repel::bullet::detail {
+namespace {
+
+/// [m] By which Bullet rounds the edges of boxes and cylinders, within their faces.
+constexpr double rounding = 1e-4;
+
+std::unique_ptr<btCollisionShape> hull_of(const Convex& polytope) {
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (int i = 0; i < polytope.vertex_count(); ++i) {
+    const Vec<double> p = polytope.place(static_cast<std::uint32_t>(i));
+    hull->addPoint({p.x(), p.y(), p.z()}, false);
+  }
+  hull->recalcLocalAabb();
+  hull->setMargin(0.0);
+  return hull;
+}
+
+template <class BulletShape, class... Sizes>
+std::unique_ptr<btCollisionShape> with_margin(double margin, const Sizes&... sizes) {
+  auto shape = std::make_unique<BulletShape>(sizes...);
+  shape->setMargin(margin);
+  return shape;
+}
+
+std::unique_ptr<btCollisionShape> bullet_shape(const ContactPart& part) {
+  const Level& level = part.shape.level(0);
+  const Vec3 size = core_extents(part.shape);
+  const Convex::Kind kind = level.core.kind();
+  if (kind == Convex::Kind::polytope) return hull_of(level.core);
+  if (kind == Convex::Kind::box && level.depth > 0.0) {
+    if (size.z() > 0.0) return std::make_unique<btCapsuleShapeZ>(level.depth, 2.0 * size.z());
+    return std::make_unique<btSphereShape>(level.depth);
+  }
+  if (!(size.minCoeff() > 2.0 * rounding)) {
+    throw SetupError("part '" + part.name + "' cannot be touched in Bullet; allowed: sizes above " +
+                     to_text(2.0 * rounding) + " m");
+  }
+  if (kind == Convex::Kind::box) return with_margin<btBoxShape>(rounding, to_bullet(size));
+  if (kind == Convex::Kind::cone) return with_margin<btConeShapeZ>(0.0, size.x(), 2.0 * size.z());
+  return with_margin<btCylinderShapeZ>(rounding, to_bullet(size));
+}
+
+btDefaultCollisionConstructionInfo small_pools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 16;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 16;
+  return info;
+}
+
+/// Notes what Bullet finds between one link and one obstacle.
+struct Notes : btCollisionWorld::ContactResultCallback {
+  Notes(int on, std::vector<Touch>& to) : link(on), touches(to) {}
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    const double depth = -point.getDistance();
+    if (depth > 0.0 && touches.size() < ContactSearch::most_touches) {
+      const btVector3& p = point.getPositionWorldOnB();
+      const btVector3& n = point.m_normalWorldOnB;  // from the obstacle to the link
+      touches.push_back({link, {p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, depth});
+    }
+    return 0.0;
+  }
+  int link;
+  std::vector<Touch>& touches;
+};
+
+}  // namespace
+
+void ContactSearch::Solid::place(const Pose& X_WP) {
+  object->setWorldTransform(to_bullet(X_WP));
+  shape->getAabb(object->getWorldTransform(), low, high);
+}
+
+ContactSearch::ContactSearch(const ArmModel& model, std::span<const ContactPart> parts)
+    : configuration_(small_pools()),
+      dispatcher_(&configuration_),
+      world_(&dispatcher_, nullptr, &configuration_) {
+  require_touchable(parts, model);
+  for (const ContactPart& part : parts) {
+    Solid& solid = (part.link < 0 ? obstacles_ : links_).emplace_back();
+    solid.link = part.link;
+    solid.X_LP = part.X_LP;
+    solid.shape = bullet_shape(part);
+    solid.object = std::make_unique<btCollisionObject>();
+    solid.object->setCollisionShape(solid.shape.get());
+    solid.place(part.X_LP);
+  }
+  touches_.reserve(most_touches);
+}
+
+std::span<const Touch> ContactSearch::find(std::span<const Pose> X_WL) noexcept {
+  touches_.clear();
+  for (Solid& part : links_) {
+    part.place(X_WL[static_cast<std::size_t>(part.link)] * part.X_LP);
+    Notes notes(part.link, touches_);
+    for (const Solid& obstacle : obstacles_) {
+      if (!TestAabbAgainstAabb2(part.low, part.high, obstacle.low, obstacle.high)) continue;
+      world_.contactPairTest(part.object.get(), obstacle.object.get(), notes);
+    }
+  }
+  return touches_;
+}
+
+}  // namespace repel::bullet::detail

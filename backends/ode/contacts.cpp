@@ -1,0 +1,118 @@
+#include "contacts.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace repel::ode::detail {
+namespace {
+
+constexpr int most_points = 8;  // of a pair
+
+dxGeom* geometry_of(const ContactPart& part) {
+  const Level& level = part.shape.level(0);
+  const Vec3 size = core_extents(part.shape);
+  const bool round = level.depth > 0.0;
+  if (level.core.kind() == Convex::Kind::box && round) {
+    return size.z() > 0.0 ? dCreateCapsule(nullptr, level.depth, 2.0 * size.z())
+                          : dCreateSphere(nullptr, level.depth);
+  }
+  if (size.minCoeff() > 0.0) {
+    if (level.core.kind() == Convex::Kind::box) {
+      return dCreateBox(nullptr, 2.0 * size.x(), 2.0 * size.y(), 2.0 * size.z());
+    }
+    if (level.core.kind() == Convex::Kind::cylinder) {
+      return dCreateCylinder(nullptr, size.x(), 2.0 * size.z());
+    }
+  }
+  throw SetupError("part '" + part.name +
+                   "' cannot be touched in ODE; allowed: boxes, spheres, capsules and cylinders "
+                   "that have a thickness");
+}
+
+void place(dxGeom* geometry, const Pose& X_WP) {
+  const Eigen::Quaterniond R(X_WP.linear());
+  const dQuaternion rotation = {R.w(), R.x(), R.y(), R.z()};
+  dGeomSetPosition(geometry, X_WP.translation().x(), X_WP.translation().y(),
+                   X_WP.translation().z());
+  dGeomSetQuaternion(geometry, rotation);
+}
+
+void place_on(dxBody* body, dxGeom* geometry, const Pose& X_CP) {
+  const Eigen::Quaterniond R(X_CP.linear());
+  const dQuaternion rotation = {R.w(), R.x(), R.y(), R.z()};
+  dGeomSetBody(geometry, body);
+  dGeomSetOffsetPosition(geometry, X_CP.translation().x(), X_CP.translation().y(),
+                         X_CP.translation().z());
+  dGeomSetOffsetQuaternion(geometry, rotation);
+}
+
+}  // namespace
+
+Contacts::Contacts(dWorldID world, const ArmModel& model, const SimulationOptions& options,
+                   std::span<const dBodyID> body, std::span<const ContactPart> parts)
+    : world_(world),
+      options_(options),
+      links_(dSimpleSpaceCreate(nullptr)),
+      obstacles_(dSimpleSpaceCreate(nullptr)),
+      joints_(dJointGroupCreate(0)) {
+  require_touchable(parts, model);
+  for (const ContactPart& part : parts) {
+    dxGeom* const geometry = geometry_of(part);
+    dSpaceAdd((part.link < 0 ? obstacles_ : links_).get(), geometry);
+    if (part.link < 0) {
+      place(geometry, part.X_LP);
+      continue;
+    }
+    const auto link = static_cast<std::size_t>(part.link);
+    place_on(body[link], geometry, Eigen::Translation3d(-model.links[link].p_LC) * part.X_LP);
+  }
+  surface_.mode =
+      dContactSoftERP | dContactSoftCFM | dContactSlip1 | dContactSlip2 | dContactApprox1;
+  surface_.mu = options.contact_friction;
+  // Faces that lie on each other touch in more points than they can slide in ways: without the
+  // damper their friction would have no single answer.
+  surface_.slip1 = surface_.slip2 = 1.0 / options.contact_damping;
+}
+
+// A spring K and damper C at the depth x, which grows by -h v' in the sub-step, with v' the speed
+// at which the bodies part: force = K (x - h v') - C v'. In ODE's words v' + CFM force = ERP x / h.
+void Contacts::find(double h) noexcept {
+  // Each thread that collides needs memory of its own, and a step may be on any.
+  (void)dAllocateODEDataForThread(dAllocateFlagCollisionData);
+  const double damping = options_.contact_damping + h * options_.contact_stiffness;
+  surface_.soft_cfm = 1.0 / damping;
+  surface_.soft_erp = h * options_.contact_stiffness / damping;
+  dJointGroupEmpty(joints_.get());
+  dSpaceCollide2(reinterpret_cast<dxGeom*>(links_.get()),
+                 reinterpret_cast<dxGeom*>(obstacles_.get()), this,
+                 [](void* contacts, dxGeom* first, dxGeom* second) {
+                   static_cast<Contacts*>(contacts)->touch(first, second);
+                 });
+}
+
+void Contacts::touch(dGeomID first, dGeomID second) noexcept {
+  dContactGeom points[most_points];
+  const int count = dCollide(first, second, most_points, points, sizeof points[0]);
+  for (int i = 0; i < count; ++i) {
+    dContact contact{};
+    contact.surface = surface_;
+    contact.geom = points[i];
+    dxJoint* const joint = dJointCreateContact(world_, joints_.get(), &contact);
+    dJointAttach(joint, dGeomGetBody(points[i].g1), dGeomGetBody(points[i].g2));
+    report_.deepest = std::max(report_.deepest, points[i].depth);
+    touching_ = true;
+  }
+}
+
+void Contacts::end_step() noexcept {
+  report_.steps += touching_ ? 1 : 0;
+  touching_ = false;
+}
+
+void Contacts::forget() noexcept {
+  dJointGroupEmpty(joints_.get());
+  report_ = {};
+  touching_ = false;
+}
+
+}  // namespace repel::ode::detail

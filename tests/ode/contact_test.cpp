@@ -1,0 +1,54 @@
+// Physical contact in the ODE arm: what stands in its way stops it.
+#include <gtest/gtest.h>
+
+#include <repel/ode/arm.hpp>
+
+#include "simulated/contacts.hpp"
+
+namespace repel::ode {
+namespace contact_test {
+
+using namespace simulated;
+
+ArmModel puma() {
+  ArmModel model = puma560();
+  model.links[0].mass = 10.0;
+  model.links[0].I_C_L = Vec3(0.35, 0.35, 0.35).asDiagonal();
+  return model;
+}
+
+TEST(OdeContact, ABoxHoldsEveryShapeThatIsPushedIntoIt) {
+  for (const ContactPart& part : probes()) expect_a_box_stops<Arm>(part);
+}
+
+TEST(OdeContact, EveryShapeHoldsACapsule) {
+  for (const ContactPart& part : probes()) expect_it_stops_a_capsule<Arm>(part);
+}
+
+TEST(OdeContact, APumaThatFallsComesToRestOnATable) {
+  expect_to_rest_on_a_table<Arm>(puma());
+}
+
+TEST(OdeContact, TheSameFallGivesTheSameBits) {
+  expect_the_same_again<Arm>(puma());
+}
+
+TEST(OdeContact, WhatIsNotTouchedChangesNoBit) {
+  expect_untouched_the_same<Arm>(puma());
+}
+
+TEST(OdeContact, SetUpNamesThePartThatCannotBeTouched) {
+  for (const Shape& shape : {Shape::cone(0.1, 0.1), Shape::box({0.1, 0.1, 0.0}),
+                             Shape::hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}})}) {
+    const std::vector<ContactPart> parts{{"spike", -1, shape, Pose::Identity()}};
+    try {
+      const Arm arm(puma(), {}, parts);
+      FAIL() << "nothing was thrown";
+    } catch (const SetupError& error) {
+      EXPECT_NE(std::string(error.what()).find("'spike'"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace contact_test
+}  // namespace repel::ode

@@ -1,0 +1,138 @@
+/// @file
+/// What every engine with physical contact must do, whatever it computes with.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <repel/world/contact.hpp>
+
+#include "simulated/arms.hpp"
+
+namespace repel::simulated {
+
+inline Pose at(double x, double y, double z) {
+  return Pose(Eigen::Translation3d(x, y, z));
+}
+
+/// A sledge of 2 kg on a rail along x, without weight or friction.
+inline ArmModel sledge() {
+  ArmModel model;
+  model.name = "sledge";
+  model.links.push_back(link_with(2.0, Vec3::Zero(), {0.01, 0.01, 0.01}));
+  model.links[0].type = JointType::prismatic;
+  model.links[0].axis_J = Vec3::UnitX();
+  return model;
+}
+
+/// Parts of a link that reach 0.1 m along x from its origin.
+inline std::vector<ContactPart> probes() {
+  return {{"box", 0, Shape::box({0.1, 0.05, 0.03}), Pose::Identity()},
+          {"sphere", 0, Shape::sphere(0.1), Pose::Identity()},
+          {"capsule", 0, Shape::capsule(0.1, 0.2), Pose::Identity()},
+          {"cylinder", 0, Shape::cylinder(0.1, 0.2), Pose::Identity()}};
+}
+
+/// Pushes the sledge with 50 N, from 0.3 m/s, for two seconds, at what stops it at `stop` [m].
+template <class Arm>
+void expect_stop(const std::vector<ContactPart>& parts, double stop, const std::string& which) {
+  Arm arm(sledge(), {}, parts);
+  arm.reset(std::vector{0.0}, std::vector{0.3});
+  arm.set_torques(std::vector{50.0});
+  for (int tick = 0; tick < 800; ++tick) {
+    arm.step(1.0 / 400);
+    ASSERT_LT(positions(arm)[0], stop + 0.002) << which << ", tick " << tick;
+  }
+  EXPECT_NEAR(positions(arm)[0], stop, 2e-4) << which;
+  EXPECT_LT(std::abs(velocities(arm)[0]), 1e-4) << which;
+  EXPECT_GT(arm.contact().steps, 600) << which;
+  EXPECT_LT(arm.contact().deepest, 0.002) << which;
+  EXPECT_GT(arm.contact().deepest, 1e-6) << which;
+  arm.reset(std::vector{0.0});
+  EXPECT_EQ(arm.contact().steps, 0) << which;
+  EXPECT_EQ(arm.contact().deepest, 0.0) << which;
+}
+
+/// A box in the way of a sledge with `part`.
+template <class Arm>
+void expect_a_box_stops(const ContactPart& part) {
+  const ContactPart wall{"wall", -1, Shape::box({0.2, 0.5, 0.5}), at(0.5, 0, 0)};
+  expect_stop<Arm>({part, wall}, 0.2, part.name);
+}
+
+/// The shape of `part` as an obstacle in the way of a capsule across it.
+template <class Arm>
+void expect_it_stops_a_capsule(ContactPart part) {
+  part.link = -1;
+  part.X_LP = at(0.5, 0, 0);
+  ContactPart rod{"rod", 0, Shape::capsule(0.02, 0.2), Pose::Identity()};
+  rod.X_LP.linear() = Eigen::AngleAxisd(kPi / 2, Vec3::UnitX()).toRotationMatrix();
+  expect_stop<Arm>({rod, part}, 0.38, part.name);
+}
+
+/// Forearm and hand of a PUMA, and a table that they fall on from `above_the_table`.
+inline std::vector<ContactPart> forearm_hand_and_table() {
+  return {{"forearm", 2, Shape::capsule(0.05, 0.2), Pose::Identity()},
+          {"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
+          {"table", -1, Shape::box({2.0, 2.0, 0.1}), at(0, 0, -0.4)}};
+}
+inline std::vector<double> above_the_table() {
+  return {0.0, 0.6, -0.6, 0.2, 0.3, 0.0};
+}
+
+/// Two arms that fall on the table move alike, to the last bit.
+template <class Arm>
+void expect_the_same_again(const ArmModel& model) {
+  Arm one(model, {}, forearm_hand_and_table());
+  Arm two(model, {}, forearm_hand_and_table());
+  for (Arm* arm : {&one, &two}) {
+    arm->reset(above_the_table());
+    for (int tick = 0; tick < 800; ++tick) arm->step(1.0 / 400);
+  }
+  EXPECT_GT(one.contact().steps, 0);
+  EXPECT_EQ(positions(one), positions(two));
+  EXPECT_EQ(velocities(one), velocities(two));
+  EXPECT_EQ(one.contact().deepest, two.contact().deepest);
+}
+
+/// An arm that falls on the table comes to rest.
+template <class Arm>
+void expect_to_rest_on_a_table(const ArmModel& model) {
+  Arm arm(model, {}, forearm_hand_and_table());
+  arm.reset(above_the_table());
+  std::vector<double> before(6);
+  for (int tick = 0; tick < 4000; ++tick) {
+    if (tick == 3600) before = positions(arm);
+    arm.step(1.0 / 400);
+    for (const double q : positions(arm)) ASSERT_TRUE(std::isfinite(q)) << tick;
+  }
+  const std::vector<double> after = positions(arm);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(after[i], before[i], 0.02) << i;
+  EXPECT_GT(arm.contact().steps, 1000);
+  EXPECT_LT(arm.contact().deepest, 0.02);
+  EXPECT_FALSE(arm.faults().state);
+}
+
+/// Parts out of reach leave the motion as it is without them, to the last bit.
+template <class Arm>
+void expect_untouched_the_same(const ArmModel& model) {
+  const std::vector<ContactPart> parts{{"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
+                                       {"far", -1, Shape::box({0.1, 0.1, 0.1}), at(5, 0, 0)}};
+  Arm plain(model);
+  Arm touching(model, {}, parts);
+  for (int tick = 0; tick < 400; ++tick) {
+    const std::vector<double> torques(6, 5.0 * std::sin(0.05 * tick));
+    for (Arm* arm : {&plain, &touching}) {
+      arm->set_torques(torques);
+      arm->step(1.0 / 400);
+    }
+  }
+  EXPECT_EQ(positions(plain), positions(touching));
+  EXPECT_EQ(velocities(plain), velocities(touching));
+  EXPECT_EQ(touching.contact().steps, 0);
+}
+
+}  // namespace repel::simulated
