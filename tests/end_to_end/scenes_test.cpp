@@ -2,6 +2,8 @@
 #include "end_to_end/teleop.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <set>
 
@@ -84,6 +86,22 @@ TEST(Scenes, HaveAReportAPictureAndAPageThatTheListLeadsTo) {
     const std::string page = text_of(scenes + name + ".md");
     EXPECT_NE(page.find("](pictures/" + name + ".svg)"), std::string::npos) << name;
     EXPECT_NE(page.find("./run " + name), std::string::npos) << name;
+  }
+}
+
+TEST(Scenes, HaveTheFiguresOfTheirReportOnTheirPage) {
+  for (const std::string& name : names()) {
+    const std::string page = text_of(scenes + name + ".md");
+    const json reference = report_of(scenes + "reports/" + name + ".json");
+    for (const json& obstacle : reference.at("obstacles")) {
+      const double force = obstacle.at("peak_force_n");
+      if (force < 1.0) continue;
+      std::array<char, 100> row{};
+      std::snprintf(row.data(), row.size(), "| `%s` | %.0f | %.1f |",
+                    obstacle.at("name").get<std::string>().c_str(), force,
+                    1e3 * obstacle.at("nearest_m").get<double>());
+      EXPECT_NE(page.find(row.data()), std::string::npos) << name << ": " << row.data();
+    }
   }
 }
 
