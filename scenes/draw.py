@@ -252,7 +252,8 @@ def obstacles_of(scene):
 
 
 def names_of(panel, scene):
-    """The name of each obstacle at its top, of each numbered row once; below those it would hide."""
+    """The name of each obstacle at its top or a little below, of each numbered row once; none where
+    others leave no room for it."""
     taken = {}
     for part, shape, _ in obstacles_of(scene):
         name = re.sub(r"_\d+$", "", part["name"]) if part else None
@@ -261,12 +262,13 @@ def names_of(panel, scene):
         seen = outline(*shape, *panel.axes)
         x = (min(p[0] for p in seen) + max(p[0] for p in seen)) / 2
         px, py = panel.at(x, max(p[1] for p in seen))
-        py += 9
-        while any(abs(px - qx) < 2.6 * (len(name) + len(other)) and abs(py - qy) < 9
-                  for other, (qx, qy) in taken.items()):
-            py += 3
-        taken[name] = px, py
-        yield words(px, py, name.replace("_", " "), "fill='#1d3557' text-anchor='middle'")
+        for y in (py + 9, py + 18, py + 27):
+            if all(abs(px - qx) >= 2.6 * (len(name) + len(other)) or abs(y - qy) >= 9
+                   for other, (qx, qy) in taken.items()):
+                taken[name] = px, y
+                break
+    for name, (x, y) in taken.items():
+        yield words(x, y, name.replace("_", " "), "fill='#1d3557' text-anchor='middle'")
 
 
 def way_of(arm, panel, log, colour):
