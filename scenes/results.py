@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""results.py SCENE.yaml LOG.csv REPORT.json RESULT.json PAGE.md: of the report of a run, RESULT
+keeps what is the same in every run, and PAGE gets it as tables, between its two marks."""
+
+import json
+import re
+import sys
+
+from draw import phases_of, read_run
+
+KEPT = ("scene", "backend", "rate_hz", "ticks", "pairs", "nearest_m", "nearest_pair", "deepest_m",
+        "peak_force_n", "status_ticks")
+MARKS = "<!-- Written by scenes/publish, from here -->\n", "<!-- to here -->\n"
+FELT = 1.0  # [N]
+
+
+def deficits(modules):
+    return [{"name": m["name"], "passive": m["passive"], "deficit": m["deficit"]} for m in modules]
+
+
+def result_of(report):
+    result = {key: report[key] for key in KEPT}
+    result["obstacles"] = report["obstacles"]
+    result["modules"] = deficits(report["modules"])
+    result["partners"] = [{**partner, "modules": deficits(partner["modules"])}
+                          for partner in report["partners"]]
+    result["machine"] = {key: report["machine"][key] for key in ("cpu", "compiler", "commit")}
+    return result
+
+
+def mm(metres):
+    return f"{1e3 * metres:.1f}"
+
+
+def summary(result):
+    """One line for the whole run."""
+    if result["pairs"] == 0:
+        yield f"{result['ticks']} ticks at {result['rate_hz']:g} Hz, no pairs, no virtual force."
+        return
+    said = sorted({bit for arm in [result, *result["partners"]] for bit in arm["status_ticks"]})
+    peak = max(arm["peak_force_n"] for arm in [result, *result["partners"]])
+    deepest = result["deepest_m"]
+    yield (f"{result['ticks']} ticks at {result['rate_hz']:g} Hz, {result['pairs']} pairs. "
+           f"Nearest {mm(result['nearest_m'])} mm ({result['nearest_pair']}), deepest intrusion "
+           f"{mm(deepest) if deepest else 0} mm.\nPeak virtual force on a tool {peak:.0f} N. "
+           f"Said: {', '.join(f'`{bit}`' for bit in said) or 'nothing'}.")
+
+
+def obstacle_table(result):
+    felt = [o for o in result["obstacles"] if o["peak_force_n"] >= FELT]
+    if not felt:
+        return
+    yield "| obstacle | peak [N] | nearest [mm] | deepest [mm] | hardest on |"
+    yield "|---|---|---|---|---|"
+    for o in sorted(felt, key=lambda o: -o["peak_force_n"]):
+        deepest = mm(o["deepest_m"]) if o["deepest_m"] else 0
+        of_link = o["body"].split("/")[-1] != "tool"
+        yield (f"| `{o['name']}` | {o['peak_force_n']:.0f} | {mm(o['nearest_m'])} | {deepest} | "
+               f"`{o['part']}`{', a link' if of_link else ''} |")
+    unfelt = len(result["obstacles"]) - len(felt)
+    if unfelt:
+        yield f"\nThe other {unfelt} push less than {FELT:g} N."
+
+
+def concerns(arm, partners, pair):
+    """Whether an arm is one of the two that a pair is of."""
+    first, second = pair.split(" - ") if pair else ("", "")
+    if arm.prefix:
+        return first.startswith(arm.prefix) or second.startswith(arm.prefix)
+    return not any(first.startswith(partner["name"] + "/") for partner in partners)
+
+
+def phase_table(arm, partners):
+    """What the operator of an arm does, and the hardest push in that time, where the arm is one of
+    the pair that is pushed hardest in the whole cell."""
+    if arm.prefix or partners:
+        yield f"The operator of `{arm.prefix[:-1]}`:\n" if arm.prefix else "The first operator:\n"
+    yield "| | until [s] | what the operator does | device | hardest push |"
+    yield "|---|---|---|---|---|"
+    for number, phase, ticks in phases_of(arm.entry, arm.log):
+        row = max(ticks, key=lambda row: (concerns(arm, partners, row["hardest_pair"]),
+                                          float(row["hardest_n"] or 0)))
+        force = float(row["hardest_n"] or 0)
+        felt = force >= FELT and concerns(arm, partners, row["hardest_pair"])
+        push = f"{force:.0f} N, `{row['hardest_pair']}`" if felt else ""
+        device = phase["device"].replace("_", " ")
+        yield (f"| {number} | {float(ticks[-1]['time_s']):.1f} | {phase['name']} | {device} | "
+               f"{push} |")
+
+
+def tables(result, arms):
+    yield from summary(result)
+    yield ""
+    yield from obstacle_table(result)
+    for arm in arms:
+        yield ""
+        yield from phase_table(arm, result["partners"])
+
+
+def main():
+    if len(sys.argv) != 6 or "--help" in sys.argv:
+        print(__doc__)
+        sys.exit(0 if "--help" in sys.argv else 2)
+    scene_path, log_path, report_path, result_path, page_path = sys.argv[1:]
+    with open(report_path, encoding="utf-8") as file:
+        result = result_of(json.load(file))
+    with open(result_path, "w", encoding="utf-8") as file:
+        file.write(json.dumps(result, indent=2) + "\n")
+    _, arms, log = read_run(scene_path, log_path)
+    for arm in arms:
+        arm.log = log
+    with open(page_path, encoding="utf-8") as file:
+        page = file.read()
+    written = MARKS[0] + "\n" + "\n".join(tables(result, arms)) + "\n\n" + MARKS[1]
+    between = re.escape(MARKS[0]) + ".*" + re.escape(MARKS[1])
+    page, count = re.subn(between, lambda _: written, page, flags=re.DOTALL)
+    if count != 1:
+        sys.exit(f"{page_path}: the two marks of the tables are not there")
+    with open(page_path, "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+if __name__ == "__main__":
+    main()
