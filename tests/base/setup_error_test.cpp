@@ -75,7 +75,8 @@ TEST(ToText, IsTheSameInEveryLocale) {
   std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // has no effect where it is not installed
   EXPECT_EQ(to_text(1234.5), "1234.5");
   EXPECT_EQ(to_text(6.4425033420486075, 4), "6.443");
-  EXPECT_EQ(to_text(123456.0, 4), "1.235e+05");
+  EXPECT_EQ(to_text(123456.0, 4), "123500");
+  EXPECT_EQ(to_text(50000.0, 4), "50000");
   EXPECT_EQ(text_of_check(2.5, 0.0, 2000.0) + text_of_check(2500.5, 0.0, 2000.0),
             "nothing was thrownradius is 2500.5 m; allowed: 0 to 2000 m");
   EXPECT_STREQ(SetupError("no body", "cell.yaml", 1200).what(), "cell.yaml:1200: no body");

@@ -28,14 +28,14 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST(NetworkOfAScene, TenModulesOfThePaperKeepTheirLedgersAtEveryRate) {
+TEST(NetworkOfAScene, ThoseOfThePaperAndOfTheArmKeepTheirLedgersAtEveryRate) {
   const Folder folder;
   for (const std::string rate : {"400", "4000"}) {
     const Ending ending = teleop("--fast --seconds 20 --rate " + rate + " --report " +
                                  quoted(folder / "report.json"));
     ASSERT_EQ(ending.status, 0) << ending;
     const json report = report_of(folder / "report.json");
-    ASSERT_EQ(report.at("modules").size(), 10U);
+    ASSERT_EQ(report.at("modules").size(), 11U);
     EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
     EXPECT_GT(module_of(report, "obstacle").at("passed_j"), 1.0);
     EXPECT_GT(module_of(report, "spaceball").at("supplied_j"), 1.0);

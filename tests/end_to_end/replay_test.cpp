@@ -117,7 +117,8 @@ TEST(Replay, ReportSaysWhatTheRunDidWithout) {
   }
   // There is no work for them.
   EXPECT_TRUE(skipped("empty --threads 2 --fast --seconds 0.1").contains("coprocessor threads"));
-  EXPECT_TRUE(skipped("--threads 2 --fast --seconds 0.1").contains("1 of 2 coprocessor threads"));
+  EXPECT_TRUE(skipped("--tool-alone --threads 2 --fast --seconds 0.1")
+                  .contains("1 of 2 coprocessor threads"));
 }
 
 TEST(Replay, ThreadsHaveNames) {

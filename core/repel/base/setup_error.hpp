@@ -40,12 +40,14 @@ class SetupError : public std::runtime_error {
   return {digits, end};
 }
 
-/// `value` to so many significant digits, for people.
+/// `value` rounded to so many significant digits, for people.
 [[nodiscard]] inline std::string to_text(double value, int digits) {
   char text[32];
   const auto end =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr;
-  return {text, end};
+      std::to_chars(text, text + sizeof text, value, std::chars_format::scientific, digits - 1).ptr;
+  double rounded = value;
+  std::from_chars(text, end, rounded);
+  return to_text(rounded);
 }
 
 /// Returns `value` when `low <= value <= high`; throws SetupError naming it, its unit and the
