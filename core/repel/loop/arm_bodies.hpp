@@ -53,7 +53,7 @@ class ArmBodies {
                            std::span<const double> v) noexcept {
     bool sound = true;
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const Pose X_WL = kinematics.X_WL(links_[i].link);
+      const Pose& X_WL = kinematics.X_WL(links_[i].link);
       kinematics.jacobian(links_[i].link, X_WL.translation(), drawn_);
       if (world.place(links_[i].body, X_WL, twist_through(drawn_, v))) {
         jacobians_[i].swap(drawn_);
