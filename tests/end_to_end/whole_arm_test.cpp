@@ -90,12 +90,11 @@ TEST(WholeArm, LinkThatStartsInsideAnObstacleIsNamed) {
 
 /// An arm with a joint to spare, its elbow out to the side, a bar that comes 150 mm towards the
 /// elbow and goes back, and an operator who does nothing.
-std::string elbow_scene(const std::string& links) {
+std::string elbow_scene() {
   return "robot:\n  urdf: " REPEL_SOURCE
          "/robots/long_reach.urdf\n"
          "  base: {position: 0 0 4 m}\n"
-         "  start: [1 m, 0 0.6 -1.2 0 0.6 0 rad]\n  tool_frame: {position: 0 0 100 mm}\n" +
-         links +
+         "  start: [1 m, 0 0.6 -1.2 0 0.6 0 rad]\n  tool_frame: {position: 0 0 100 mm}\n"
          "tool: [{name: rod, shape: capsule, radius: 15 mm, length: 60 mm}]\n"
          "laws:\n  default: {range: 50 mm, surface_force: 200 N, damping: 100 N s/m}\n"
          "obstacles:\n"
@@ -112,7 +111,7 @@ std::string elbow_scene(const std::string& links) {
 // keeps the tool where it was.
 TEST(WholeArm, GivesWayAtItsElbowWhileTheToolStaysWhereTheArmHasAJointToSpare) {
   const Folder folder;
-  const std::string scene = folder.with("elbow.yaml", elbow_scene(""));
+  const std::string scene = folder.with("elbow.yaml", elbow_scene());
   const Ending ending =
       teleop(quoted(scene) + " --fast --seconds 6 --log " + quoted(folder / "log.csv") +
              " --report " + quoted(folder / "r.json"));
