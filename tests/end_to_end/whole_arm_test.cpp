@@ -170,8 +170,8 @@ TEST(WholeArm, TwoArmsInOneCellKeepOffEachOther) {
 TEST(WholeArm, PartsOfOneArmAreKeptApartWhereTheSceneSaysSo) {
   const Folder folder;
   const std::string script =
-      "script:\n  - {name: fold, device: spaceball, duration: 4 s, linear: -120 0 0 mm/s}\n";
-  const auto nearest = [&](const std::string& law) {
+      "script:\n  - {name: fold, device: spaceball, duration: 4 s, linear: -120 0 100 mm/s}\n";
+  const auto report_with = [&](const std::string& law) {
     const std::string text =
         robot_text(REPEL_SOURCE "/robots/puma560.urdf", law) +
         "laws:\n  default: {range: 40 mm, surface_force: 60 N, damping: 1 N s/m}\nobstacles: []\n" +
@@ -181,9 +181,14 @@ TEST(WholeArm, PartsOfOneArmAreKeptApartWhereTheSceneSaysSo) {
     EXPECT_EQ(ending.status, 0) << ending;
     return report_of(folder / "r.json");
   };
-  const json kept = nearest("  self_law: default\n");
-  EXPECT_GT(kept.at("pairs"), 5);
-  EXPECT_EQ(nearest("").at("pairs"), 0);
+  const json kept = report_with("  self_law: default\n");
+  EXPECT_GT(kept.at("nearest_m"), 0.0);
+  double peak = 0.0;
+  for (const json& part : kept.at("obstacles")) {
+    peak = std::max(peak, part.at("peak_force_n").get<double>());
+  }
+  EXPECT_GT(peak, 20.0) << "the wrist must have been folded towards the forearm";
+  EXPECT_EQ(report_with("").at("pairs"), 0);
 }
 
 }  // namespace whole_arm_test
