@@ -5,6 +5,7 @@
 #include <repel/base/ids.hpp>
 #include <repel/base/limits.hpp>
 #include <repel/base/mailbox.hpp>
+#include <repel/base/ring.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
 #include <repel/base/status.hpp>
@@ -15,6 +16,7 @@
 #include <repel/geometry/box_tree.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/loop/shuttle.hpp>
+#include <repel/loop/tap.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/clean_stiffness.hpp>
 #include <repel/network/operator.hpp>

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <repel/base/status.hpp>
+#include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/schedule/pair_forces.hpp>
 
@@ -22,12 +23,15 @@ struct TickRecord {
   std::int32_t phase = 0;  ///< of the operator's script
   Status status = 0;
   std::array<double, network::most_joints> q{};  ///< [rad] or [m] joints, as they were read
+  std::array<double, network::most_joints> v{};  ///< [rad/s] or [m/s] and their rates
+  network::Command command;                      ///< of the operator
   Vec3 p_WT{0, 0, 0};                            ///< [m] tool
   Vec3 v_WT{0, 0, 0};                            ///< [m/s]
   Wrench virtual_force;                          ///< [N, N m] on the tool, about its origin
   Wrench coupling;                               ///< [N, N m] from the operator's side on the tool
   double lever_torque = 0.0;                     ///< [N m] reflected to the torque arm
   double gain = 1.0;                             ///< of the fail-safe
+  std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_modules> energy{};
   std::chrono::nanoseconds network_time{0};  ///< that the network took; not repeatable

@@ -23,7 +23,8 @@ namespace repel {
 /// A teleoperator: an operator, a network, a world model and an arm. It keeps references to what
 /// it is built from, but for the network, which becomes its own; all memory is taken at
 /// construction.
-template <TorqueDrivenArm Arm, ArmKinematics Kinematics>
+template <TorqueDrivenArm Arm, ArmKinematics Kinematics,
+          network::Operator Operator = network::ScriptedOperator>
 class Teleoperator {
  public:
   /// A device that has not answered for this long is silent [s].
@@ -33,9 +34,8 @@ class Teleoperator {
   /// @param links bodies whose forces act on the arm through the module ARM_OBSTACLE
   /// @throws SetupError when the network does not end in as many joints as the arm has
   Teleoperator(const ArmModel& model, Arm& arm, Kinematics& kinematics, World& world, BodyId tool,
-               Coprocessor& coprocessor, network::ScriptedOperator& the_operator,
-               network::Network network, std::chrono::nanoseconds period,
-               std::vector<LinkBody> links = {})
+               Coprocessor& coprocessor, Operator& the_operator, network::Network network,
+               std::chrono::nanoseconds period, std::vector<LinkBody> links = {})
       : model_(model),
         arm_(arm),
         kinematics_(kinematics),
@@ -159,6 +159,7 @@ class Teleoperator {
     if (!command.sound) record_.status |= status::bad_command;
     if (command.silent_for > patience) record_.status |= status::silent_device;
     signals_.hand = command.hand;
+    record_.command = command;
   }
 
   void run_network() noexcept {
@@ -220,6 +221,8 @@ class Teleoperator {
     record_.time = period_ * static_cast<double>(record_.tick);
     record_.phase = static_cast<std::int32_t>(operator_.phase());
     std::copy(q_.begin(), q_.end(), record_.q.begin());
+    std::copy(v_.begin(), v_.end(), record_.v.begin());
+    std::copy(torques_.begin(), torques_.end(), record_.torques.begin());
     record_.p_WT = X_WT_.translation();
     record_.v_WT = V_WT_.linear;
     record_.virtual_force = signals_.walls;
@@ -249,7 +252,7 @@ class Teleoperator {
   BodyId tool_;
   ArmBodies links_;
   Coprocessor& coprocessor_;
-  network::ScriptedOperator& operator_;
+  Operator& operator_;
   network::Network network_;
   network::FrictionCompensation friction_;
   Failsafe failsafe_;

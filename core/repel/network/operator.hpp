@@ -2,6 +2,7 @@
 /// A scripted operator: what a person at the master does, written down so that it can be repeated.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -38,6 +39,13 @@ struct Command {
   HandInput hand;           ///< finite
   bool sound = true;        ///< false: the input was not finite and was taken as rest
   double silent_for = 0.0;  ///< [s] age of the sample
+};
+
+/// Whoever moves the master: a script, a person at a device, a recording. Nothing throws.
+template <class T>
+concept Operator = requires(T hands, const T& const_hands, const Mat3& R_WT, double period) {
+  { hands.step(R_WT, period) } -> std::convertible_to<const Command&>;  // once a tick; [s]
+  { const_hands.phase() } -> std::convertible_to<std::size_t>;          // of a script
 };
 
 /// Plays a script, phase after phase, and rests when it is over. The hand that does not lead the

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <optional>
 
 #include <repel/schedule/contacts.hpp>
 #include <repel/schedule/lane_wrench.hpp>
@@ -52,6 +53,16 @@ class ContactEvaluator {
     extremes.peak_force = std::max(extremes.peak_force, group.peak(Contacts::lane_of(seat)));
     return extremes;
   }
+  /// The pair as the tick of `motion` has seen it, if it was near then. After `dismiss`.
+  [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
+    const int seat = memory().watch(slot).seat;
+    if (seat < 0) return pairs_.near_pair(slot, motion);
+    const ContactGroup& group = contacts_.group(Contacts::group_of(seat));
+    const int k = Contacts::lane_of(seat);
+    if ((group.proven() >> k & 1U) == 0U) return pairs_.near_pair(slot, motion);
+    return NearPair{memory().watch(slot).pair, group.answer(k).last, group.force(k), false, 0};
+  }
+
   /// Seats the pair among the contacts if it was answered at this tick and is one: within range,
   /// its nearest feature known.
   void seat(int slot, const PartPoses& poses) noexcept {

@@ -148,6 +148,7 @@ class ContactGroup {
     answer.tick = tick_;
     answer.waits_since = tick_;
     answer.inside = (inside_ >> k & 1U) != 0U;
+    answer.force = size_[k];
     return answer;
   }
 

@@ -84,8 +84,8 @@ class Coprocessor {
     return total_;
   }
 
-  /// Without threads: asks the near pairs of the last motion again and forgets the answers, which
-  /// brings code and data of the next exchange into the caches. With threads: nothing.
+  /// Without threads: asks the near pairs of the last motion again and forgets the answers, so that
+  /// the caches have code and data of the next exchange. With threads: nothing.
   void rehearse() noexcept {
     if (options_.threads == 0) seats_.front()->deputy.rehearse(world_->motion());
   }
@@ -96,12 +96,18 @@ class Coprocessor {
   [[nodiscard]] const WorkerReport& workers() const noexcept { return report_; }
   [[nodiscard]] int threads() const noexcept { return options_.threads; }
 
-  /// The last answer for a pair; the default one, which claims nothing, for a pair that had to give
-  /// its memory to another since (`Limits::candidates`). Only with 0 threads, or between ticks in
-  /// lock step, or after `stop`: the workers write it.
+  /// see(NearPair) for each pair that was near at the last exchange, in any order. Between
+  /// exchanges, by the thread that makes them: whose answers were used rests until the next.
+  template <class See>
+  void for_each_near(const See& see) const noexcept {
+    for (const auto& seat : seats_) seat->used().for_each_near(world_->motion(), see);
+  }
+
+  /// The last answer for a pair; one that claims nothing if it had to give its memory to another
+  /// since (`Limits::candidates`). On the same condition, or after `stop`.
   [[nodiscard]] Separation separation_of(PairId id) const noexcept {
     const auto [seat, block] = place_of(id);
-    return (seat.in_time ? seat.worker->share : seat.deputy).blocks()[block].separation_of(id);
+    return seat.used().blocks()[block].separation_of(id);
   }
   /// How near a pair has come and how hard it has pushed. On the same condition.
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
@@ -135,7 +141,6 @@ class Coprocessor {
     std::int64_t exchange = 0;
     std::vector<PairForces> blocks;  // of the worker
   };
-
   /// What a thread works with.
   struct Worker {
     Worker(const World& world, const Pairs& pairs, const Budget& budget, int index, int stride)
@@ -163,7 +168,6 @@ class Coprocessor {
     Mailbox<Answer> outbox;
     std::jthread thread;
   };
-
   /// A share of the pairs, and who works on it: the host alone without threads, else the worker.
   struct Seat {
     Seat(const World& world, const Pairs& pairs, const Budget& budget, int index, int stride)
@@ -172,6 +176,9 @@ class Coprocessor {
     }
     [[nodiscard]] const PairForces& forces(std::size_t block) const noexcept {
       return in_time ? worker->outbox.newest().blocks[block] : deputy.blocks()[block].forces();
+    }
+    [[nodiscard]] const detail::PairWorker& used() const noexcept {
+      return in_time ? worker->share : deputy;
     }
     [[nodiscard]] bool is_silent() const noexcept { return silence >= patient_ticks; }
     /// A worker that comes back on a budget that binds has old answers: until none is older than

@@ -24,6 +24,7 @@ struct PairAnswer {
   bool inside = false;           ///< within range then
   bool is_stale = false;         ///< a force was made of it at a later tick
   double claimed = 0.0;          ///< [m] when it was stale: the distance it was taken for at last
+  double force = 0.0;            ///< [N] that was made of it at last
 
   static constexpr std::int64_t never = INT64_MIN;
 

@@ -142,6 +142,14 @@ class PairBlock {
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
     return contacts_.extremes_of(id);
   }
+  /// see(NearPair) for each pair that was near at `run` with the same motion.
+  template <class See>
+  void for_each_near(const Motion& motion, const See& see) const noexcept {
+    for (const Candidate& candidate : candidates_.all()) {
+      const auto near = contacts_.near_pair(candidate.slot, motion);
+      if (near) see(*near);
+    }
+  }
   [[nodiscard]] const PairMemory& memory() const noexcept { return contacts_.pairs().memory(); }
 
  private:

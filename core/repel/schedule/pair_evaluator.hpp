@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include <repel/reduction/separation.hpp>
+#include <repel/schedule/near_pair.hpp>
 #include <repel/schedule/pair_memory.hpp>
 #include <repel/schedule/part_poses.hpp>
 
@@ -155,6 +157,16 @@ class PairEvaluator {
     push_at(widened(slot, motion), 1.0 - std::clamp(fade, 0.0, 1.0), slot, motion);
   }
 
+  /// What a display gets of the pair, by its memory: nothing if it was neither asked nor used at
+  /// the tick of `motion`.
+  [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
+    const PairAnswer& answer = memory_.answer(slot);
+    const bool stale = answer.tick != motion.tick;
+    if (stale && answer.pushed != now_) return std::nullopt;
+    return NearPair{memory_.watch(slot).pair, answer.last, answer.force, stale,
+                    stale ? motion.tick - answer.waits_since : 0};
+  }
+
   /// Before a pair is asked anew whose force was widened: notes what it would be taken for now if
   /// it were not asked.
   void keep_claim(int slot, const Motion& motion) noexcept {
@@ -225,6 +237,7 @@ class PairEvaluator {
   /// The force of the pair at that distance, times `share`.
   void push_at(double distance, double share, int slot, const Motion& motion) noexcept {
     const ForceLaw& law = pair(slot).law;
+    memory_.answer(slot).force = 0.0;
     if (!(distance < law.range)) return;
     const BodyState& A = body_a(slot, motion);
     const BodyState& B = body_b(slot, motion);
@@ -241,6 +254,7 @@ class PairEvaluator {
       size = share * law(distance, n.dot(v_BA));
       f = size * n;
     }
+    memory_.answer(slot).force = size;
     const PairId id = memory_.watch(slot).pair;
     forces_.totals.note_force(size, id);
     double& peak = memory_.extremes(id).peak_force;

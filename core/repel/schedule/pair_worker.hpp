@@ -90,6 +90,12 @@ class PairWorker {
 
   [[nodiscard]] const std::vector<PairBlock>& blocks() const noexcept { return blocks_; }
 
+  /// see(NearPair) for each pair that is near since `run` at the same motion.
+  template <class See>
+  void for_each_near(const Motion& motion, const See& see) const noexcept {
+    for (const PairBlock& block : blocks_) block.for_each_near(motion, see);
+  }
+
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr int rehearsed_pairs = 32;

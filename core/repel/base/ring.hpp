@@ -1,0 +1,77 @@
+/// @file
+/// A wait-free queue from one writer thread to one reader thread: every value, in order, or a count
+/// of those that found no room.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+
+namespace repel {
+
+/// Slots that are filled in place, so that a value with memory of its own is never copied whole.
+/// The writer never waits: when the reader is behind by the capacity, the value is dropped and
+/// counted. Memory: `capacity` + 1 copies of a prototype, taken at construction.
+template <class T>
+class Ring {
+ public:
+  /// @param capacity 1 to 2^30 values. @throws SetupError for another number
+  Ring(std::size_t capacity, const T& prototype)
+      : slots_(static_cast<std::size_t>(
+                   checked("ring capacity", static_cast<double>(capacity), 1.0, 0x1p30, "")) +
+                   1,
+               prototype) {}
+
+  /// Writer: the value to fill in. Its content is that of some earlier post.
+  [[nodiscard]] T& draft() noexcept { return slots_[writing_]; }
+  /// Writer: hands the draft over; false, and `dropped` is one more, when there is no room.
+  bool post() noexcept {
+    const std::size_t next = after(writing_);
+    if (next == tail_.load(std::memory_order_acquire)) {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      return false;
+    }
+    writing_ = next;
+    head_.store(next, std::memory_order_release);
+    return true;
+  }
+
+  /// Writer: a post would find no room now.
+  [[nodiscard]] bool full() const noexcept {
+    return after(writing_) == tail_.load(std::memory_order_acquire);
+  }
+
+  /// Reader: the oldest value that was not popped; null when there is none.
+  [[nodiscard]] const T* front() const noexcept {
+    if (reading_ == head_.load(std::memory_order_acquire)) return nullptr;
+    return &slots_[reading_];
+  }
+  /// Reader: gives the slot of `front` back. There must be one.
+  void pop() noexcept {
+    reading_ = after(reading_);
+    tail_.store(reading_, std::memory_order_release);
+  }
+
+  /// Anyone: how many values found no room.
+  [[nodiscard]] std::int64_t dropped() const noexcept {
+    return dropped_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  [[nodiscard]] std::size_t after(std::size_t slot) const noexcept {
+    return slot + 1 < slots_.size() ? slot + 1 : 0;
+  }
+
+  // The slot between the newest value and the oldest is the writer's draft.
+  std::vector<T> slots_;
+  alignas(64) std::atomic<std::size_t> head_{0};  ///< next slot to be posted
+  alignas(64) std::atomic<std::size_t> tail_{0};  ///< next slot to be popped
+  alignas(64) std::size_t writing_ = 0;
+  std::atomic<std::int64_t> dropped_{0};
+  alignas(64) std::size_t reading_ = 0;
+};
+
+}  // namespace repel

@@ -1,0 +1,146 @@
+/// @file
+/// The tap: what displays and logs get of every tick, without a hold on it.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <repel/base/mailbox.hpp>
+#include <repel/base/ring.hpp>
+#include <repel/loop/record.hpp>
+#include <repel/schedule/coprocessor.hpp>
+
+namespace repel {
+
+/// How long a tick took, and how late it began.
+struct TickTimes {
+  std::chrono::nanoseconds late{0};  ///< after it was due
+  std::chrono::nanoseconds compute{0};
+};
+
+/// Everything of one tick. Its vectors have their size from set-up on.
+struct Snapshot {
+  std::vector<TickRecord> arms;  ///< of each arm that shares the world, in their order
+  std::vector<Pose> X_WB;        ///< [m] by BodyId
+  std::vector<NearPair> pairs;   ///< room; the first `pair_count` count, the nearest first
+  int pair_count = 0;
+  int pairs_omitted = 0;  ///< near as well, but farther than all of these
+  TickTimes times;
+
+  [[nodiscard]] std::span<const NearPair> near() const noexcept {
+    return {pairs.data(), static_cast<std::size_t>(pair_count)};
+  }
+};
+
+/// A few numbers of one tick.
+struct TickSample {
+  std::int64_t tick = 0;
+  double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
+  double force = 0.0;                                        ///< [N] on the tool of the first arm
+  TickTimes times;
+};
+
+struct TapOptions {
+  int arms = 1;
+  int pairs = 64;  ///< of a snapshot, at most
+  /// Between two pictures.
+  std::chrono::nanoseconds picture_period{1000000000 / 60};
+  std::size_t samples = 1024;  ///< that wait to be read at most
+  std::size_t log = 0;         ///< snapshots that wait to be read at most; 0: no log is kept
+};
+
+/// Three outlets, each for one thread that reads it when it likes: `pictures` has the newest
+/// snapshot, `samples` a few numbers of every tick, `log` every tick whole. The loop writes them
+/// after a tick and never waits: pictures that nobody took are overwritten, what finds no room in a
+/// ring is dropped and counted there. All memory is taken at construction.
+class Tap {
+ public:
+  /// @throws SetupError for a number out of range
+  explicit Tap(const World& world, const TapOptions& options = {})
+      : world_(&world),
+        period_(options.picture_period),
+        pictures_(room_for(world, options)),
+        samples_(options.samples, {}),
+        has_log_(options.log > 0),
+        log_(std::max<std::size_t>(1, options.log), room_for(world, options)) {}
+
+  /// Another world with the same bodies and pairs goes on in place of the first.
+  void watch(const World& world) noexcept { world_ = &world; }
+
+  /// After a tick, by the thread of the loop. Cost: a sample; for a picture or a log a copy of the
+  /// poses, records and near pairs as well.
+  void note(const Coprocessor& coprocessor, std::span<const TickRecord* const> arms,
+            const TickTimes& times) noexcept {
+    samples_.draft() = {arms.front()->tick, arms.front()->pairs.nearest,
+                        arms.front()->virtual_force.force.norm(), times};
+    (void)samples_.post();
+    if (has_log_) {
+      fill(log_.draft(), coprocessor, arms, times);
+      (void)log_.post();
+    }
+    if (std::chrono::steady_clock::now() >= next_picture_) show(coprocessor, arms, times);
+  }
+
+  /// Makes a picture of the last tick, however short a time after the last: before a pause.
+  void show(const Coprocessor& coprocessor, std::span<const TickRecord* const> arms,
+            const TickTimes& times) noexcept {
+    next_picture_ = std::chrono::steady_clock::now() + period_;
+    fill(pictures_.draft(), coprocessor, arms, times);
+    pictures_.post();
+  }
+
+  [[nodiscard]] Mailbox<Snapshot>& pictures() noexcept { return pictures_; }
+  [[nodiscard]] Ring<TickSample>& samples() noexcept { return samples_; }
+  [[nodiscard]] Ring<Snapshot>& log() noexcept { return log_; }
+  [[nodiscard]] bool has_log() const noexcept { return has_log_; }
+
+ private:
+  [[nodiscard]] static Snapshot room_for(const World& world, const TapOptions& options) {
+    Snapshot room;
+    room.arms.resize(static_cast<std::size_t>(checked("arms", options.arms, 1, 64, "")));
+    room.pairs.resize(static_cast<std::size_t>(checked("pairs", options.pairs, 1, 100000, "")));
+    room.X_WB.resize(static_cast<std::size_t>(world.body_count()), Pose::Identity());
+    return room;
+  }
+
+  [[nodiscard]] static bool is_nearer(const NearPair& a, const NearPair& b) noexcept {
+    return a.separation.distance < b.separation.distance;
+  }
+
+  void fill(Snapshot& s, const Coprocessor& coprocessor, std::span<const TickRecord* const> arms,
+            const TickTimes& times) const noexcept {
+    for (std::size_t i = 0; i < s.arms.size() && i < arms.size(); ++i) s.arms[i] = *arms[i];
+    const Motion& motion = world_->motion();
+    for (std::size_t i = 0; i < s.X_WB.size(); ++i) s.X_WB[i] = motion.bodies[i].X_WB;
+    s.times = times;
+    s.pair_count = s.pairs_omitted = 0;
+    // A heap with the farthest on top, which makes room for a nearer one.
+    const auto begin = s.pairs.begin();
+    coprocessor.for_each_near([&](const NearPair& near) {
+      if (s.pair_count < static_cast<int>(s.pairs.size())) {
+        s.pairs[static_cast<std::size_t>(s.pair_count++)] = near;
+      } else {
+        ++s.pairs_omitted;
+        if (!is_nearer(near, s.pairs.front())) return;
+        std::pop_heap(begin, begin + s.pair_count, is_nearer);
+        s.pairs[static_cast<std::size_t>(s.pair_count - 1)] = near;
+      }
+      std::push_heap(begin, begin + s.pair_count, is_nearer);
+    });
+    std::sort_heap(begin, begin + s.pair_count, is_nearer);
+  }
+
+  const World* world_;
+  std::chrono::nanoseconds period_;
+  std::chrono::steady_clock::time_point next_picture_;
+  Mailbox<Snapshot> pictures_;
+  Ring<TickSample> samples_;
+  bool has_log_;
+  Ring<Snapshot> log_;
+};
+
+}  // namespace repel
