@@ -14,6 +14,18 @@ macro(repel_find_ideal)
   repel_all_found(IDEAL)
 endmacro()
 
+macro(repel_find_record)
+  repel_all_found(RECORD)
+endmacro()
+
+macro(repel_find_devices)
+  include(CheckIncludeFileCXX)
+  set(CMAKE_REQUIRED_QUIET ON)
+  check_include_file_cxx(linux/input.h REPEL_FOUND_LINUX_INPUT)
+  unset(CMAKE_REQUIRED_QUIET)
+  repel_all_found(DEVICES REPEL_FOUND_LINUX_INPUT)
+endmacro()
+
 macro(repel_find_robots)
   repel_pkg_config(TINYXML2 tinyxml2)
   find_package(orocos_kdl QUIET)
@@ -38,6 +50,12 @@ endmacro()
 macro(repel_find_scene)
   find_package(yaml-cpp QUIET)
   repel_all_found(SCENE yaml-cpp_FOUND)
+endmacro()
+
+macro(repel_find_visual)
+  find_package(Boost 1.74 QUIET)
+  find_package(nlohmann_json QUIET)
+  repel_all_found(VISUAL Boost_FOUND nlohmann_json_FOUND)
 endmacro()
 
 # Sets PREFIX_FOUND and the target PkgConfig::PREFIX.

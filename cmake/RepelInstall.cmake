@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/repel)
 set(REPEL_PACKAGES "")  # a line of the package file for each part: the Debian packages it needs
-foreach(part core ideal robots bullet ode scene)
+foreach(part core ideal devices record robots bullet ode scene visual)
   repel_debian_packages(${part} packages)
   if(part STREQUAL robots AND REPEL_HAS_MESHES)
     repel_debian_packages(meshes meshes)
@@ -26,6 +26,8 @@ foreach(data scenes robots)
   install(DIRECTORY ${data} DESTINATION ${CMAKE_INSTALL_DATADIR}/repel
           FILES_MATCHING PATTERN *.yaml PATTERN *.urdf PATTERN *.stl PATTERN *.obj)
 endforeach()
+install(DIRECTORY backends/visual/page/ DESTINATION ${CMAKE_INSTALL_DATADIR}/repel/page
+        PATTERN bundle EXCLUDE)
 install(FILES LICENSE TYPE DOC)
 
 configure_package_config_file(cmake/repel-config.cmake.in repel-config.cmake

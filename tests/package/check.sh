@@ -57,7 +57,7 @@ step "install, then move" install_and_move
 package=$(dirname "$(find "$prefix" -name repel-config.cmake)")
 
 parts=core
-for part in ideal robots bullet ode scene; do
+for part in ideal devices record robots bullet ode scene visual; do
   [ ! -e "$package/repel-$part.cmake" ] || parts="$parts;$part"
 done
 

@@ -1,0 +1,38 @@
+/// @file
+/// When the motion of a device counts.
+#pragma once
+
+namespace repel::devices {
+
+/// What the button of the clutch does.
+enum class ClutchPolicy {
+  always,  ///< engaged without a button
+  hold,    ///< engaged while the button is down
+  toggle,  ///< engaged by one press, released by the next
+};
+
+/// The clutch between hand and tool. It starts released, unless the policy is `always`.
+class Clutch {
+ public:
+  explicit Clutch(ClutchPolicy policy = ClutchPolicy::always) noexcept : policy_(policy) {}
+
+  /// The button is down or up from now on. Saying the same twice changes nothing.
+  void set(bool down) noexcept {
+    if (down && !down_) toggled_ = !toggled_;
+    down_ = down;
+  }
+  /// As at first: after a fault nobody knows what the button did meanwhile.
+  void reset() noexcept { down_ = toggled_ = false; }
+
+  [[nodiscard]] bool engaged() const noexcept {
+    if (policy_ == ClutchPolicy::hold) return down_;
+    return policy_ == ClutchPolicy::always || toggled_;
+  }
+
+ private:
+  ClutchPolicy policy_;
+  bool down_ = false;
+  bool toggled_ = false;
+};
+
+}  // namespace repel::devices

@@ -1,0 +1,65 @@
+/// @file
+/// The events of a Linux input device out of the bytes of /dev/input/eventN. No input or output
+/// here.
+#pragma once
+
+#include <linux/input.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include <repel/devices/records.hpp>
+
+namespace repel::devices {
+
+/// One event of the kernel, as linux/input.h numbers them.
+struct EvdevEvent {
+  std::chrono::nanoseconds time{0};  ///< by the clock the device was told to stamp with
+  std::uint16_t type = 0;
+  std::uint16_t code = 0;
+  std::int32_t value = 0;
+};
+
+/// Cuts the bytes into whole `input_event`s. A time that no clock shows breaks it until `reset`.
+class EvdevParser {
+ public:
+  static constexpr std::size_t event_size = sizeof(input_event);
+
+  /// Hands every event that is now whole to `use(const EvdevEvent&)`; a half one is kept.
+  /// @return false when the stream is broken
+  template <class Use>
+  bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
+    if (broken_) return false;
+    broken_ = !records_.feed(bytes, [&](const auto& record) {
+      input_event raw{};
+      std::memcpy(&raw, record.data(), record.size());
+      const auto seconds = static_cast<std::int64_t>(raw.input_event_sec);
+      const auto microseconds = static_cast<std::int64_t>(raw.input_event_usec);
+      if (seconds < 0 || seconds > most_seconds) return false;
+      if (microseconds < 0 || microseconds >= 1000000) return false;
+      const auto time = std::chrono::seconds(seconds) + std::chrono::microseconds(microseconds);
+      use(EvdevEvent{time, raw.type, raw.code, raw.value});
+      return true;
+    });
+    return !broken_;
+  }
+
+  [[nodiscard]] bool broken() const noexcept { return broken_; }
+  /// Bytes of an event that is not whole yet.
+  [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
+  void reset() noexcept {
+    records_.clear();
+    broken_ = false;
+  }
+
+ private:
+  static constexpr std::int64_t most_seconds = 1LL << 32;  // nanoseconds still fit
+
+  detail::Records<event_size> records_;
+  bool broken_ = false;
+};
+
+}  // namespace repel::devices

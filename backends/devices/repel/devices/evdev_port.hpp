@@ -1,0 +1,38 @@
+/// @file
+/// The only place where an input device is touched; a test puts its own in.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace repel::devices {
+
+/// The system calls on one open /dev/input/eventN. Each returns what the call returns, or -errno.
+class EvdevPort {
+ public:
+  EvdevPort() = default;
+  EvdevPort(const EvdevPort&) = delete;
+  EvdevPort& operator=(const EvdevPort&) = delete;
+  EvdevPort(EvdevPort&&) = delete;
+  EvdevPort& operator=(EvdevPort&&) = delete;
+  virtual ~EvdevPort() = default;
+
+  /// ioctl with a pointer: EVIOCGBIT, EVIOCGABS, EVIOCSFF, ...
+  virtual int control(unsigned long request, void* argument) noexcept = 0;
+  /// ioctl with a number: EVIOCRMFF.
+  virtual int control_number(unsigned long request, long argument) noexcept = 0;
+  /// Does not wait; -EAGAIN when there is nothing.
+  virtual long read(std::span<std::byte> bytes) noexcept = 0;
+  virtual long write(std::span<const std::byte> bytes) noexcept = 0;
+  /// Returns once there is something to read, or after `wait`, or soon when the device is gone.
+  virtual void wait(std::chrono::milliseconds wait) noexcept = 0;
+};
+
+/// Opens the device to read and write, without waiting.
+/// @throws SetupError when it cannot, with what to do
+[[nodiscard]] std::unique_ptr<EvdevPort> open_evdev(const std::string& path);
+
+}  // namespace repel::devices

@@ -1,0 +1,94 @@
+/// @file
+/// From the deflection of a six-axis device to the rates it commands.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/base/spatial.hpp>
+
+namespace repel::devices {
+
+/// Which axis of the device drives an axis of the twist, and which way.
+struct AxisSource {
+  int axis = 0;       ///< of the device: x, y, z, rx, ry, rz from 0
+  double sign = 1.0;  ///< 1 or -1
+};
+
+/// Names and default values of what stands between deflection and rate.
+struct ShapingOptions {
+  double full_travel = 350.0;  ///< [counts] of an axis at its stop
+  double dead_band = 0.05;     ///< share of full travel that is rest
+  double exponent = 1.0;       ///< 1: straight; above, finer near rest
+  double linear_scale = 0.25;  ///< [m/s] at full travel
+  double angular_scale = 1.0;  ///< [rad/s] at full travel
+  /// For the linear and the angular parts of the twist: x forward, y left, z up of the operator,
+  /// from spacenavd's x right, y up, z forward. The same choice as that of ROS's spacenav_node.
+  std::array<AxisSource, 6> axes{{{2, 1.0}, {0, -1.0}, {1, 1.0}, {5, 1.0}, {3, -1.0}, {4, 1.0}}};
+};
+
+/// Maps each axis by itself with f(x) = sign(x) ((|x| - d) / (1 - d))^e for |x| in [d, 1], 0 below
+/// and 1 above: odd, monotone and without a step at the edge of the dead band d.
+class Shaping {
+ public:
+  /// @throws SetupError for a number out of range
+  explicit Shaping(const ShapingOptions& options = {}) : options_(options) {
+    checked("full travel", options.full_travel, 1.0, 10000.0, "counts");
+    checked("dead band", options.dead_band, 0.0, 0.9, "of full travel");
+    checked("exponent", options.exponent, 1.0, 5.0, "of the deflection");
+    checked("linear scale", options.linear_scale, 0.0, 10.0, "m/s");
+    checked("angular scale", options.angular_scale, 0.0, 100.0, "rad/s");
+    for (const AxisSource& source : options.axes) check(source);
+  }
+
+  /// f of a share of full travel, -1 to 1; 0 for what is not finite.
+  [[nodiscard]] double share(double deflection) const noexcept {
+    if (!std::isfinite(deflection)) return 0.0;
+    const double size = std::min(1.0, std::abs(deflection));
+    if (size <= options_.dead_band) return 0.0;
+    const double inside = (size - options_.dead_band) / (1.0 - options_.dead_band);
+    return std::copysign(std::pow(inside, options_.exponent), deflection);
+  }
+
+  /// [m/s, rad/s] for the six axes of the device in counts; always finite.
+  [[nodiscard]] Twist twist(std::span<const double, 6> counts) const noexcept {
+    Twist result;
+    for (int i = 0; i < 3; ++i) {
+      result.linear(i) = options_.linear_scale * driven(i, counts);
+      result.angular(i) = options_.angular_scale * driven(i + 3, counts);
+    }
+    return result;
+  }
+
+  [[nodiscard]] const ShapingOptions& options() const noexcept { return options_; }
+
+ private:
+  [[nodiscard]] double driven(int i, std::span<const double, 6> counts) const noexcept {
+    const AxisSource& source = options_.axes[static_cast<std::size_t>(i)];
+    return source.sign *
+           share(counts[static_cast<std::size_t>(source.axis)] / options_.full_travel);
+  }
+
+  static void check(const AxisSource& source) {
+    if (source.axis < 0 || source.axis > 5) {
+      std::string text = "the axis of a device is ";
+      text += std::to_string(source.axis);
+      text += "; allowed: 0 to 5 for x, y, z, rx, ry, rz";
+      throw SetupError(text);
+    }
+    if (source.sign != 1.0 && source.sign != -1.0) {
+      std::string text = "the sign of an axis is ";
+      text += repel::to_text(source.sign);
+      text += "; allowed: 1 and -1";
+      throw SetupError(text);
+    }
+  }
+
+  ShapingOptions options_;
+};
+
+}  // namespace repel::devices

@@ -1,0 +1,101 @@
+/// @file
+/// The events of spacenavd out of the bytes of its socket. No input or output here.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include <repel/devices/records.hpp>
+
+namespace repel::devices {
+
+/// What the daemon says about the device.
+struct SpacenavEvent {
+  enum class Kind {
+    motion,   ///< `axes` hold from now on; all zero is rest
+    press,    ///< of `button`
+    release,  ///< of `button`
+    other,    ///< whole and known, but no input
+  };
+  Kind kind = Kind::other;
+  std::array<std::int32_t, 6> axes{};  ///< [counts] x, y, z, rx, ry, rz
+  std::int32_t button = 0;             ///< from 0
+};
+
+/// Protocol version 0, which every spacenavd speaks to a client that says nothing (spacenavd
+/// src/client.c: `proto = 0`, events of motion and buttons). Each event is 8 int32 of the machine's
+/// own byte order (src/proto_unix.c, send_uevent):
+///
+///     0, x, y, z, rx, ry, rz, milliseconds since the last
+///     1, button                                    pressed
+///     2, button                                    released
+///
+/// The handshake of version 1, 0x7faa5501, is not sent on purpose: it would bring nothing but news
+/// of devices and settings, and a daemon that does not know it takes it for a sensitivity that is
+/// not a number (libspnav src/spnav.c, spnav_open, repairs that after 0.3 s of waiting). Types 3 to
+/// 6 are those of later versions: devices, settings, raw axes, raw buttons (src/proto.h).
+///
+/// A number that no sound daemon sends breaks the parser: it says no more until `reset`, because
+/// what follows may be out of step by some bytes and look like motion.
+class SpacenavParser {
+ public:
+  static constexpr std::size_t event_size = 8 * sizeof(std::int32_t);
+  static constexpr std::int32_t most_counts = 100000;  ///< of a sound axis
+  static constexpr std::int32_t most_buttons = 256;
+
+  /// Hands every event that is now whole to `use(const SpacenavEvent&)`; a half one is kept.
+  /// @return false when the stream is broken
+  template <class Use>
+  bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
+    if (broken_) return false;
+    broken_ = !records_.feed(bytes, [&](const Record& record) {
+      SpacenavEvent event;
+      if (!parse(record, event)) return false;
+      use(static_cast<const SpacenavEvent&>(event));
+      return true;
+    });
+    return !broken_;
+  }
+
+  [[nodiscard]] bool broken() const noexcept { return broken_; }
+  /// Bytes of an event that is not whole yet.
+  [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
+  /// For a new connection.
+  void reset() noexcept {
+    records_.clear();
+    broken_ = false;
+  }
+
+ private:
+  using Record = std::array<std::byte, event_size>;
+
+  static bool parse(const Record& record, SpacenavEvent& event) noexcept {
+    std::array<std::int32_t, 8> words{};
+    std::memcpy(words.data(), record.data(), record.size());
+    switch (words[0]) {
+      case 0:
+        event.kind = SpacenavEvent::Kind::motion;
+        std::copy_n(words.begin() + 1, 6, event.axes.begin());
+        return std::all_of(event.axes.begin(), event.axes.end(), [](std::int32_t counts) {
+          return counts >= -most_counts && counts <= most_counts;
+        });
+      case 1:
+      case 2:
+        event.kind = words[0] == 1 ? SpacenavEvent::Kind::press : SpacenavEvent::Kind::release;
+        event.button = words[1];
+        return event.button >= 0 && event.button < most_buttons;
+      default:
+        event.kind = SpacenavEvent::Kind::other;
+        return words[0] >= 3 && words[0] <= 6;
+    }
+  }
+
+  detail::Records<event_size> records_;
+  bool broken_ = false;
+};
+
+}  // namespace repel::devices

@@ -1,0 +1,561 @@
+#include <repel/record/mcap_reader.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include <repel/base/setup_error.hpp>
+
+#include "crc32.hpp"
+#include "mcap_fields.hpp"
+#include "mcap_format.hpp"
+#include "mcap_source.hpp"
+
+namespace repel::record {
+
+using detail::Fields;
+using detail::Op;
+using detail::Record;
+using detail::Source;
+
+namespace {
+
+/// What stands before the records of a chunk.
+struct ChunkHead {
+  std::uint64_t size = 0;  // [bytes] of the records without compression
+  std::uint32_t crc = 0;   // of them; 0: none
+  std::string_view compression;
+  std::uint64_t length = 0;  // [bytes] of the records as they stand in the file
+};
+
+std::string name_of(Op op) {
+  static constexpr std::array<const char*, 16> names{
+      "empty",      "header",           "footer",
+      "schema",     "channel",          "message",
+      "chunk",      "message index",    "chunk index",
+      "attachment", "attachment index", "statistics",
+      "metadata",   "metadata index",   "summary offset",
+      "end of data"};
+  const auto i = static_cast<std::size_t>(op);
+  return i < names.size() ? names[i] : "unknown (" + std::to_string(i) + ")";
+}
+
+std::string hex(std::uint32_t value) {
+  std::array<char, 8> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, 16).ptr;
+  std::string text = "0x";
+  text.append(digits.data(), end);
+  return text;
+}
+
+/// 0 stands for a CRC that the writer left out.
+void check_crc(const Source& source, std::uint64_t offset, const char* what, std::uint32_t found,
+               std::uint32_t computed) {
+  if (found == 0 || found == computed) return;
+  std::string text = "the CRC of ";
+  text += what;
+  text += " is " + hex(found) + ", but its bytes have " + hex(computed);
+  source.fail(offset, text);
+}
+
+ChunkHead chunk_head(Fields& fields) {
+  (void)fields.take(16);  // the times of its first and last message
+  ChunkHead head;
+  head.size = fields.number<std::uint64_t>();
+  head.crc = fields.number<std::uint32_t>();
+  head.compression = fields.text();
+  head.length = fields.number<std::uint64_t>();
+  return head;
+}
+
+}  // namespace
+
+struct McapReader::State {
+  explicit State(Source&& from) : source(std::move(from)) {}
+
+  void read_all_but_messages();
+  bool next(McapMessage& message);
+
+  // Opening.
+  bool begins_as_mcap();
+  void survey();
+  std::optional<Record> record_at(std::uint64_t offset);
+  void cut(const std::string& what);
+  void load(const Record& record);
+  void keep(std::uint64_t bytes, std::uint64_t offset);
+  void note_damage(const SetupError& error);
+  void take(const Record& record);
+  void take_header(Fields content);
+  void take_schema(Fields content);
+  void take_channel(Fields content);
+  void take_attachment(Fields content);
+  void take_metadata(Fields content);
+  void take_footer(const Record& footer, Fields content);
+  void check_ending(std::uint64_t offset);
+  std::uint32_t crc_of(std::uint64_t from, std::uint64_t to, std::uint32_t before);
+
+  // Reading messages.
+  bool take_record(McapMessage& message);
+  void open_chunk(const Record& record);
+  void open_cut_chunk();
+  void check_compression(const ChunkHead& head, std::uint64_t offset) const;
+  bool next_of_chunk(McapMessage& message);
+  void take_message(Fields content, McapMessage& message) const;
+  void finish();
+
+  Source source;
+  std::string buffer;  // the record in hand
+
+  std::string profile;
+  std::string library;
+  std::map<std::uint16_t, McapSchema> schemas;
+  std::map<std::uint16_t, McapChannel> channels;
+  std::vector<McapAttachment> attachments;
+  std::vector<McapMetadata> metadata;
+  std::uint64_t kept = 0;            // [bytes] about, by the above
+  std::uint64_t end_of_data = 0;     // behind the last record that can have messages
+  std::optional<Record> cut_chunk;   // begins at the end of data
+  std::uint64_t summary_from = 0;    // behind the record that ends the data
+  std::uint32_t data_crc = 0;        // of everything before the end of data; 0: none
+  std::string why;                   // the file is not whole
+  std::optional<SetupError> damage;  // found when opening, behind everything that was taken
+
+  std::uint64_t at = detail::magic.size();  // next record
+  std::uint32_t crc = 0;                    // of everything before it
+  std::string_view chunk;                   // records left of the chunk in hand
+  std::uint64_t chunk_at = 0;               // where they stand in the file
+  bool chunk_is_cut = false;
+  bool finished = false;
+};
+
+void McapReader::State::read_all_but_messages() {
+  end_of_data = detail::magic.size();
+  if (!begins_as_mcap()) return;
+  try {
+    survey();
+  } catch (const SetupError& error) {
+    note_damage(error);
+  }
+}
+
+/// False when the file is cut off before its first record has ended.
+bool McapReader::State::begins_as_mcap() {
+  buffer.resize(std::min<std::uint64_t>(source.size(), detail::magic.size()));
+  source.read(0, buffer);
+  if (buffer != detail::magic.substr(0, buffer.size())) {
+    source.fail(0,
+                "no MCAP file, version 0; allowed: one that begins with the bytes "
+                "89 4d 43 41 50 30 0d 0a");
+  }
+  if (buffer.size() < detail::magic.size()) {
+    end_of_data = 0;
+    at = 0;
+    cut("within the first 8 bytes");
+    return false;
+  }
+  const std::optional<Record> first = record_at(detail::magic.size());
+  if (!first) return false;
+  if (first->op != Op::header) {
+    source.fail(first->offset, "the first record is " + name_of(first->op) + "; allowed: header");
+  }
+  load(*first);
+  take_header(Fields(source, buffer, first->content()));
+  end_of_data = first->end();
+  return true;
+}
+
+void McapReader::State::cut(const std::string& what) {
+  why = source.name() + ": cut off at byte " + std::to_string(source.size()) + ", ";
+  why += what;
+}
+
+/// None when the file ends before it does; `why` says so then.
+std::optional<Record> McapReader::State::record_at(std::uint64_t offset) {
+  const std::uint64_t left = source.size() - offset;
+  if (left < detail::prefix_bytes) {
+    cut("before the closing records");
+    return std::nullopt;
+  }
+  buffer.resize(detail::prefix_bytes);
+  source.read(offset, buffer);
+  Fields prefix(source, buffer, offset);
+  Record record{.op = static_cast<Op>(prefix.number<std::uint8_t>()), .offset = offset};
+  record.length = prefix.number<std::uint64_t>();
+  if (record.op == Op{}) {  // what a file system may leave behind when the power fails
+    why = source.name() + ": no record at byte " + std::to_string(offset);
+    why += ", only zeros";
+    return std::nullopt;
+  }
+  if (record.length > detail::largest_record) {
+    source.fail(offset, "a record (" + name_of(record.op) + ") of " +
+                            std::to_string(record.length) + " bytes; allowed: up to " +
+                            std::to_string(detail::largest_record));
+  }
+  if (record.length > left - detail::prefix_bytes) {
+    if (record.op == Op::chunk) cut_chunk = record;
+    cut("within the record (" + name_of(record.op) + ") at byte " + std::to_string(offset));
+    return std::nullopt;
+  }
+  return record;
+}
+
+void McapReader::State::load(const Record& record) {
+  buffer.resize(record.length);
+  source.read(record.content(), buffer);
+}
+
+/// Walks over all records behind the header. Leaves `why` when the file ends too early.
+void McapReader::State::survey() {
+  bool in_data = true;
+  std::uint64_t offset = end_of_data;
+  while (const std::optional<Record> record = record_at(offset)) {
+    if (record->op == Op::footer && in_data) {
+      source.fail(offset, "a footer; allowed: the end of data first");
+    }
+    try {
+      take(*record);
+    } catch (const SetupError& error) {
+      note_damage(error);  // what stands behind it can be read all the same
+    }
+    if (record->op == Op::footer) return;
+    in_data = in_data && record->op != Op::data_end;
+    offset = record->end();
+    if (in_data) end_of_data = offset;
+  }
+}
+
+/// Anything but messages.
+void McapReader::State::take(const Record& record) {
+  const bool wanted = record.op == Op::schema || record.op == Op::channel ||
+                      record.op == Op::attachment || record.op == Op::metadata ||
+                      record.op == Op::data_end || record.op == Op::footer;
+  if (!wanted) return;
+  if (record.op == Op::attachment) keep(record.length, record.offset);
+  load(record);
+  Fields content(source, buffer, record.content());
+  if (record.op == Op::schema) take_schema(content);
+  if (record.op == Op::channel) take_channel(content);
+  if (record.op == Op::attachment) take_attachment(content);
+  if (record.op == Op::metadata) take_metadata(content);
+  if (record.op == Op::data_end) {
+    data_crc = content.number<std::uint32_t>();
+    summary_from = record.end();
+  }
+  if (record.op == Op::footer) take_footer(record, content);
+}
+
+/// The first counts.
+void McapReader::State::note_damage(const SetupError& error) {
+  if (damage) return;
+  damage = error;
+  why = error.what();
+}
+
+/// Counts what stays in memory.
+void McapReader::State::keep(std::uint64_t bytes, std::uint64_t offset) {
+  kept += bytes + 256;  // what the smallest entry takes beside its text
+  if (kept <= detail::largest_kept) return;
+  source.fail(offset,
+              "schemas, channels, attachments and metadata need more memory than allowed, " +
+                  std::to_string(detail::largest_kept) + " bytes");
+}
+
+void McapReader::State::take_header(Fields content) {
+  profile = content.text();
+  library = content.text();
+}
+
+void McapReader::State::take_schema(Fields content) {
+  const std::uint64_t offset = content.offset();
+  const auto id = content.number<std::uint16_t>();
+  McapSchema schema;
+  schema.name = content.text();
+  schema.encoding = content.text();
+  schema.data = content.text();
+  if (id == 0) return;  // such a record is to be ignored
+  const auto known = schemas.find(id);
+  if (known == schemas.end()) {
+    keep(content.offset() - offset, offset);
+    schemas.emplace(id, std::move(schema));
+  } else if (known->second != schema) {
+    source.fail(offset, "a second schema " + std::to_string(id) + "; allowed: only the same again");
+  }
+}
+
+void McapReader::State::take_channel(Fields content) {
+  const std::uint64_t offset = content.offset();
+  const auto id = content.number<std::uint16_t>();
+  McapChannel channel;
+  channel.schema = content.number<std::uint16_t>();
+  channel.topic = content.text();
+  channel.encoding = content.text();
+  channel.metadata = content.map();
+  if (channel.schema != 0 && !schemas.contains(channel.schema)) {
+    source.fail(offset, "channel '" + channel.topic + "' has schema " +
+                            std::to_string(channel.schema) + "; allowed: 0 or one before it");
+  }
+  const auto known = channels.find(id);
+  if (known == channels.end()) {
+    keep((content.offset() - offset) * 16, offset);  // a small entry of a map takes so much more
+    channels.emplace(id, std::move(channel));
+  } else if (known->second != channel) {
+    source.fail(offset,
+                "a second channel " + std::to_string(id) + "; allowed: only the same again");
+  }
+}
+
+void McapReader::State::take_attachment(Fields content) {
+  const std::uint64_t offset = content.offset();
+  const std::string_view bytes = content.left();
+  McapAttachment attachment;
+  attachment.log_time_ns = content.number<std::uint64_t>();
+  attachment.create_time_ns = content.number<std::uint64_t>();
+  attachment.name = content.text();
+  attachment.media_type = content.text();
+  attachment.data = content.long_text();
+  const std::string_view covered = bytes.substr(0, content.offset() - offset);
+  const auto found = content.number<std::uint32_t>();
+  check_crc(source, offset, "the attachment", found, detail::crc32(covered));
+  attachments.push_back(std::move(attachment));
+}
+
+void McapReader::State::take_metadata(Fields content) {
+  keep(content.left().size() * 16, content.offset());
+  McapMetadata words;
+  words.name = content.text();
+  words.entries = content.map();
+  metadata.push_back(std::move(words));
+}
+
+void McapReader::State::take_footer(const Record& footer, Fields content) {
+  check_ending(footer.end());
+  if (footer.length != detail::footer_bytes) {
+    source.fail(footer.offset, "a footer of " + std::to_string(footer.length) +
+                                   " bytes; allowed: " + std::to_string(detail::footer_bytes));
+  }
+  const auto start = content.number<std::uint64_t>();
+  (void)content.take(8);  // where the table of contents of the summary stands
+  const std::uint64_t covered_end = content.offset();
+  const auto found = content.number<std::uint32_t>();
+  const std::uint64_t summary = start == 0 ? footer.offset : start;  // 0: there is none
+  if (summary < summary_from || summary > footer.offset) {
+    source.fail(footer.content(), "the summary is said to begin at byte " + std::to_string(start) +
+                                      "; allowed: " + std::to_string(summary_from) + " to " +
+                                      std::to_string(footer.offset));
+  }
+  if (found == 0) return;
+  check_crc(source, summary, "the summary", found, crc_of(summary, covered_end, 0));
+}
+
+/// What stands behind the footer.
+void McapReader::State::check_ending(std::uint64_t offset) {
+  std::string ending(std::min<std::uint64_t>(source.size() - offset, detail::magic.size()), ' ');
+  source.read(offset, ending);
+  if (ending != detail::magic.substr(0, ending.size())) {
+    source.fail(offset, "the file does not end with the bytes it begins with");
+  }
+  if (ending.size() < detail::magic.size()) return cut("within the last 8 bytes");
+  const std::uint64_t behind = source.size() - offset - ending.size();
+  if (behind == 0) return;
+  source.fail(offset + ending.size(),
+              std::to_string(behind) + " bytes behind the end; allowed: none");
+}
+
+/// Of the bytes of the file in [from, to), and those before when `before` is their CRC.
+std::uint32_t McapReader::State::crc_of(std::uint64_t from, std::uint64_t to,
+                                        std::uint32_t before) {
+  constexpr std::uint64_t block = 65536;
+  while (from < to) {
+    buffer.resize(std::min(block, to - from));
+    source.read(from, buffer);
+    before = detail::crc32(buffer, before);
+    from += buffer.size();
+  }
+  return before;
+}
+
+bool McapReader::State::next(McapMessage& message) {
+  while (true) {
+    if (!chunk.empty()) {
+      if (next_of_chunk(message)) return true;
+    } else if (at < end_of_data) {
+      if (take_record(message)) return true;
+    } else if (cut_chunk && at == cut_chunk->offset) {
+      at = source.size();
+      open_cut_chunk();
+    } else if (!finished) {
+      finish();
+    } else {
+      return false;
+    }
+  }
+}
+
+/// The next record of the file: true when it is a message.
+bool McapReader::State::take_record(McapMessage& message) {
+  const std::uint64_t offset = at;
+  if (offset == detail::magic.size()) crc = detail::crc32(detail::magic);
+  const std::optional<Record> record = record_at(offset);
+  if (!record) source.fail(offset, "the file has changed since it was opened");
+  at = record->end();
+  if (record->op != Op::chunk && record->op != Op::message) {
+    if (data_crc != 0) crc = crc_of(offset, at, crc);
+    return false;
+  }
+  if (data_crc != 0) crc = detail::crc32(buffer, crc);  // its first bytes
+  load(*record);
+  if (data_crc != 0) crc = detail::crc32(buffer, crc);
+  if (record->op == Op::chunk) {
+    open_chunk(*record);
+    return false;
+  }
+  take_message(Fields(source, buffer, record->content()), message);
+  return true;
+}
+
+void McapReader::State::check_compression(const ChunkHead& head, std::uint64_t offset) const {
+  if (head.compression.empty()) return;
+  std::string what = "a chunk compressed with '";
+  what += head.compression;
+  what += "'; allowed: chunks without compression";
+  source.fail(offset, what);
+}
+
+void McapReader::State::open_chunk(const Record& record) {
+  Fields content(source, buffer, record.content());
+  const ChunkHead head = chunk_head(content);
+  check_compression(head, record.offset);
+  const std::uint64_t records_at = content.offset();
+  const std::string_view records = content.take(head.length);
+  if (head.size != head.length) {
+    source.fail(record.offset, "a chunk of " + std::to_string(head.length) +
+                                   " bytes that is said to have " + std::to_string(head.size));
+  }
+  check_crc(source, record.offset, "the chunk", head.crc, detail::crc32(records));
+  chunk = records;
+  chunk_at = records_at;
+  chunk_is_cut = false;
+}
+
+/// What is there of the last chunk of a file that was cut off within it.
+void McapReader::State::open_cut_chunk() {
+  const Record record = *cut_chunk;
+  buffer.resize(source.size() - record.content());
+  source.read(record.content(), buffer);
+  Fields content(source, buffer, record.content());
+  ChunkHead head;
+  try {
+    head = chunk_head(content);
+  } catch (const SetupError&) {
+    return;  // not even that is there
+  }
+  check_compression(head, record.offset);
+  chunk = content.left();
+  chunk_at = content.offset();
+  chunk_is_cut = true;
+}
+
+/// Walks on in the chunk: true when it comes to a message.
+bool McapReader::State::next_of_chunk(McapMessage& message) {
+  try {
+    while (!chunk.empty()) {
+      Fields record(source, chunk, chunk_at);
+      const auto op = static_cast<Op>(record.number<std::uint8_t>());
+      const auto length = record.number<std::uint64_t>();
+      const std::uint64_t content_at = record.offset();
+      const Fields content(source, record.take(length), content_at);
+      chunk = record.left();
+      chunk_at = record.offset();
+      if (op == Op::schema) take_schema(content);
+      if (op == Op::channel) take_channel(content);
+      if (op == Op::message) {
+        take_message(content, message);
+        return true;
+      }
+    }
+  } catch (const SetupError&) {
+    chunk = {};
+    if (!chunk_is_cut) throw;  // where a file is cut off, an incomplete record is no surprise
+  }
+  return false;
+}
+
+void McapReader::State::take_message(Fields content, McapMessage& message) const {
+  McapMessage taken;
+  const std::uint64_t offset = content.offset();
+  taken.channel = content.number<std::uint16_t>();
+  taken.sequence = content.number<std::uint32_t>();
+  taken.log_time_ns = content.number<std::uint64_t>();
+  taken.publish_time_ns = content.number<std::uint64_t>();
+  taken.data = content.left();
+  if (!channels.contains(taken.channel)) {
+    source.fail(offset, "a message of channel " + std::to_string(taken.channel) +
+                            "; allowed: the channels of the file");
+  }
+  message = taken;
+}
+
+/// Says what is damaged, if anything is.
+void McapReader::State::finish() {
+  finished = true;
+  check_crc(source, end_of_data, "everything before", data_crc, crc);
+  if (damage) throw SetupError(*damage);
+}
+
+McapReader::McapReader(std::unique_ptr<State> state) : state_(std::move(state)) {
+  state_->read_all_but_messages();
+}
+
+McapReader::McapReader(const std::string& path)
+    : McapReader(std::make_unique<State>(Source::file(path))) {}
+
+McapReader McapReader::from_bytes(std::string bytes, const std::string& name) {
+  return McapReader(std::make_unique<State>(Source::memory(std::move(bytes), name)));
+}
+
+McapReader::~McapReader() = default;
+McapReader::McapReader(McapReader&&) noexcept = default;
+McapReader& McapReader::operator=(McapReader&&) noexcept = default;
+
+const std::string& McapReader::profile() const noexcept {
+  return state_->profile;
+}
+
+const std::string& McapReader::library() const noexcept {
+  return state_->library;
+}
+
+const std::map<std::uint16_t, McapSchema>& McapReader::schemas() const noexcept {
+  return state_->schemas;
+}
+
+const std::map<std::uint16_t, McapChannel>& McapReader::channels() const noexcept {
+  return state_->channels;
+}
+
+const std::vector<McapAttachment>& McapReader::attachments() const noexcept {
+  return state_->attachments;
+}
+
+const std::vector<McapMetadata>& McapReader::metadata() const noexcept {
+  return state_->metadata;
+}
+
+bool McapReader::next(McapMessage& message) {
+  return state_->next(message);
+}
+
+void McapReader::rewind() {
+  state_->at = detail::magic.size();
+  state_->chunk = {};
+  state_->finished = false;
+}
+
+const std::string& McapReader::why_not_whole() const noexcept {
+  return state_->why;
+}
+
+}  // namespace repel::record

@@ -1,0 +1,133 @@
+#include "mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <repel/geometry/facets.hpp>
+
+namespace repel::visual {
+namespace {
+
+/// Over the sphere, so that the support map finds every corner of a box, and rims at even angles.
+/// @param turns directions around the axis; a quarter as many from pole to pole
+std::vector<Vec3> directions(int turns) {
+  std::vector<Vec3> all{{0, 0, 1}, {0, 0, -1}};
+  const int rows = turns / 4;
+  for (int row = 1; row < rows; ++row) {
+    const double polar = std::numbers::pi * row / rows;
+    // Half a step off the axes, where a box has no single corner.
+    for (int turn = 0; turn < turns; ++turn) {
+      const double around = 2.0 * std::numbers::pi * (turn + 0.5) / turns;
+      all.emplace_back(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
+                       std::cos(polar));
+    }
+  }
+  return all;
+}
+
+void add_once(std::vector<Vec3>& points, const Vec3& p) {
+  const auto is_same = [&](const Vec3& q) { return (p - q).norm() < 1e-9; };
+  if (std::none_of(points.begin(), points.end(), is_same)) points.push_back(p);
+}
+
+/// The points of the set that the directions find, each carried outward by `radius`.
+std::vector<Vec3> outline(const Convex& set, double radius, int turns) {
+  std::vector<Vec3> points;
+  if (set.is_polytope() && set.kind() == Convex::Kind::polytope && radius == 0.0) {
+    for (int i = 0; i < set.vertex_count(); ++i) {
+      add_once(points, to_vec3(set.place(static_cast<std::uint32_t>(i))));
+    }
+    return points;
+  }
+  for (const Vec3& d : directions(turns)) {
+    add_once(points, to_vec3(set.support(Vec<double>(d)).p) + radius * d);
+  }
+  return points;
+}
+
+/// Those of the points in a plane that are corners of their outline, counter-clockwise by the axes
+/// of the plane: below from left to right, and above back again.
+std::vector<int> corners_of(const std::vector<Vec3>& points, const Vec3& x, const Vec3& y) {
+  const auto at = [&](int i) {
+    const Vec3& p = points[static_cast<std::size_t>(i)];
+    return std::pair(x.dot(p), y.dot(p));
+  };
+  const auto turns_left = [&](int a, int b, int c) {
+    const auto [ax, ay] = at(a);
+    const auto [bx, by] = at(b);
+    const auto [cx, cy] = at(c);
+    return (bx - ax) * (cy - by) > (by - ay) * (cx - bx);
+  };
+  std::vector<int> order(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return at(a) < at(b); });
+  std::vector<int> corners;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t begin = corners.size();
+    for (const int i : order) {
+      while (corners.size() >= begin + 2 && !turns_left(corners.end()[-2], corners.back(), i)) {
+        corners.pop_back();
+      }
+      corners.push_back(i);
+    }
+    corners.pop_back();
+    std::reverse(order.begin(), order.end());
+  }
+  return corners;
+}
+
+/// Both sides of a flat set, as a fan from one corner; nothing for a line.
+std::vector<std::array<int, 3>> fan(const std::vector<Vec3>& points) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+  Vec3 normal = Vec3::Zero();
+  Vec3 x = Vec3::Zero();
+  for (const Vec3& p : points) {
+    for (const Vec3& q : points) {
+      const Vec3 n = (p - middle).cross(q - middle);
+      if (n.norm() <= normal.norm()) continue;
+      normal = n;
+      x = (p - middle).normalized();
+    }
+  }
+  const double size = std::sqrt(normal.norm());
+  if (points.size() < 3 || size < 1e-6) return {};
+  const std::vector<int> corners = corners_of(points, x, normal.normalized().cross(x));
+  std::vector<std::array<int, 3>> triangles;
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    triangles.push_back({corners[0], corners[i], corners[i - 1]});
+  }
+  return triangles;
+}
+
+}  // namespace
+
+Mesh mesh_of(const Shape& shape, int level) {
+  const Level& chosen = shape.level(level);
+  // The core of the first level has its depth around it: a sphere is a point.
+  const bool is_first = level == 0;
+  const std::vector<Vec3> points =
+      outline(chosen.core, is_first ? chosen.depth : 0.0, is_first ? 48 : 24);
+  Mesh mesh;
+  const std::vector<Facet> facets = hull_facets(points);
+  if (facets.empty()) return {points, fan(points)};
+  std::vector<int> index(points.size(), -1);
+  for (const Facet& facet : facets) {
+    std::array<int, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      int& vertex = index[static_cast<std::size_t>(facet.vertices[k])];
+      if (vertex < 0) {
+        vertex = static_cast<int>(mesh.vertices.size());
+        mesh.vertices.push_back(points[static_cast<std::size_t>(facet.vertices[k])]);
+      }
+      triangle[k] = vertex;
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+}  // namespace repel::visual

@@ -1,0 +1,137 @@
+// Who drives. While the controls are ours, what the devices say is added up and sent fifty times a
+// second, at rest too: the program takes a driver who says nothing for gone.
+
+import { banner, toast } from "./messages.js";
+import { bind, settings } from "./settings.js";
+import { state } from "./state.js";
+import { at, finite, write } from "./words.js";
+
+const PERIOD_MS = 20;
+
+export class Controls {
+  #leading = false;  // the lever was used last, rather than the rates
+  #askedAt = -Infinity;
+
+  // `devices` answer poll(now) with rates between -1 and 1, ahead, left and up, or with `world`
+  // rates in metres a second; with null when they are not there.
+  constructor(connection, devices, lever, heading) {
+    Object.assign(this, { connection, devices, lever, heading });
+    const percent = (id) => (x) => write(at(id), `${Math.round(100 * x)} %`);
+    bind("drive-speed", "driveSpeed", () => this.#speeds());
+    bind("dead-band", "deadBand", percent("dead-out"));
+    bind("device-scale", "deviceScale", percent("scale-out"));
+    bind("clutch-mode", "clutchMode");
+    bind("rumble", "rumble");
+    at("take").addEventListener("click", () => (this.ours ? this.release() : this.take()));
+    setInterval(() => this.#tick(), PERIOD_MS);
+    addEventListener("pagehide", () => this.release());
+    document.addEventListener("visibilitychange", () => this.#visible());
+  }
+
+  get ours() {
+    return state.connected && state.operator?.you === true;
+  }
+
+  get #arm() {
+    return state.scene?.arms[0];
+  }
+
+  take() {
+    if (this.ours || state.scene?.mode === "replay") return;
+    if (performance.now() - this.#askedAt < 300) return;  // the answer is on its way
+    this.#askedAt = performance.now();
+    if (this.connection.send({ type: "take" }) && state.operator?.by === "script") {
+      toast("You take over: the script is over");
+    }
+  }
+
+  release() {
+    if (this.ours) this.connection.send({ type: "release" });
+  }
+
+  scene(scene) {
+    at("take").hidden = scene.mode === "replay";
+    this.lever.scene(scene.arms[0]);
+    this.#speeds();
+  }
+
+  operator(message) {
+    const { by, you, name, silent } = message;
+    const words = {
+      script: "The script drives",
+      page: you ? "You drive" : "Another page drives",
+      device: `${name || "A device"} drives`,
+      recording: "A recording plays",
+      nobody: "Nobody drives",
+    };
+    write(at("who"), words[by] ?? by);
+    write(at("take"), you ? "Release" : "Take the controls");
+    at("drive-body").hidden = !you;
+    at("view").classList.toggle("driving", you);
+    banner("silent", silent ? "The device is silent: forces ramp to zero" : "");
+  }
+
+  refused({ what, why }) {
+    const asked = what === "take" ? "No controls" : `Not done (${what})`;
+    toast(`${asked}: ${why || "no reason given"}`);
+  }
+
+  #speeds() {
+    const most = this.#arm?.max_speed_m_s;
+    const speed = finite(most) ? `${Math.round(1000 * most * settings.driveSpeed)} mm/s` : "";
+    write(at("speed-out"), speed);
+  }
+
+  // A hidden page gets no time to drive with, so it does not try.
+  #visible() {
+    if (document.hidden) {
+      this.wasDriving = this.ours;
+    } else if (this.wasDriving) {
+      toast("While this page was hidden nobody drove: the forces had ramped to zero");
+    }
+  }
+
+  #tick() {
+    if (!this.ours || document.hidden) return;
+    const { linear, angular, clutch } = this.#rates();
+    const rate = this.lever.rate();
+    const moving = [...linear, ...angular].some((x) => x !== 0);
+    if (rate !== 0 || moving) this.#leading = rate !== 0;
+    if (this.#leading) {
+      this.connection.send({ type: "servo_lever", direction: this.lever.direction(), rate });
+    } else {
+      this.connection.send({ type: "servo_cv", linear, angular, frame: "world", clutch });
+    }
+  }
+
+  // What all devices together ask for, within what the arm may.
+  #rates() {
+    const { ahead, left, up } = this.heading();
+    const axes = [ahead, left, up].map((axis) => axis.toArray());
+    const world = (v) => [0, 1, 2].map((k) => v.reduce((sum, x, i) => sum + x * axes[i][k], 0));
+    const share = settings.driveSpeed;
+    const fastest = share * (this.#arm?.max_speed_m_s ?? 0.1);
+    const turning = share * (this.#arm?.max_turn_rad_s ?? 0.5);
+    const linear = [0, 0, 0];
+    const angular = [0, 0, 0];
+    let clutch = false;
+    for (const device of this.devices) {
+      const rates = device.poll(performance.now());
+      if (!rates?.clutch) continue;
+      clutch = true;
+      const along = rates.world ?? world(rates.linear).map((x) => x * fastest);
+      const round = world(rates.angular);
+      for (let k = 0; k < 3; ++k) {
+        linear[k] += along[k];
+        angular[k] += round[k] * turning;
+      }
+    }
+    return { linear: within(linear, fastest), angular: within(angular, turning), clutch };
+  }
+}
+
+// The vector, shortened to a length where it is longer.
+function within(v, most) {
+  const size = Math.hypot(...v);
+  return size > most ? v.map((x) => (x * most) / size) : v;
+}

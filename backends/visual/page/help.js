@@ -1,0 +1,69 @@
+// The keys, and what one sees, in an overlay.
+
+import { at } from "./words.js";
+
+const GROUPS = [
+  ["Drive the arm (asks for the controls)", [
+    ["W S", "away from me, towards me"],
+    ["A D", "to the left, to the right"],
+    ["R F", "up, down (also E Q)"],
+    ["I K", "tip forwards, backwards"],
+    ["J L", "turn left, right"],
+    ["U O", "roll left, right"],
+    ["M N", "lever: push, pull"],
+    ["Shift", "held: slowly"],
+    ["C", "take or release the controls"],
+  ]],
+  ["Time", [
+    ["Space", "pause, resume"],
+    [".", "one tick"],
+    [">", "ten ticks"],
+    ["Home", "restart with the script"],
+  ]],
+  ["Mouse", [
+    ["drag", "orbit; right button shifts"],
+    ["wheel", "closer, farther"],
+    ["drag the ring", "lead the tool, once you drive"],
+    ["Shift drag", "the same, from anywhere"],
+  ]],
+  ["Camera and page", [
+    ["1 2 3 4", "home, front, side, top"],
+    ["5", "follow the tool"],
+    ["T", "light or dark"],
+    ["?", "this page"],
+  ]],
+];
+
+const WHAT = "An obstacle begins to push when a part of the arm comes within its range, harder " +
+  "the nearer it is. The orange arrow is that push; the name beside it is what pushes. A " +
+  "thread joins the two points that are nearest. The blue arrow is what pulls the tool towards " +
+  "where the operator wants it. The walls exist in the model alone.";
+
+function element(tag, text, parent) {
+  const made = parent.appendChild(document.createElement(tag));
+  if (text) made.textContent = text;
+  return made;
+}
+
+export function startHelp() {
+  const body = at("help-body");
+  element("p", WHAT, body).className = "wide";
+  for (const [title, keys] of GROUPS) {
+    const group = element("section", "", body);
+    element("h3", title, group);
+    const list = element("dl", "", group);
+    for (const [key, meaning] of keys) {
+      const term = element("dt", "", list);
+      const one = key.includes("drag") || key === "wheel" ? [key] : key.split(" ");
+      for (const cap of one) element("kbd", cap, term);
+      element("dd", meaning, list);
+    }
+  }
+  at("help-open").addEventListener("click", toggleHelp);
+}
+
+export function toggleHelp() {
+  const dialog = at("help");
+  if (dialog.open) dialog.close();
+  else dialog.showModal();
+}

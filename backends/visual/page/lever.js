@@ -1,0 +1,47 @@
+// The lever of the torque arm: a slider that springs back leads it, a bar shows what it would give
+// the hand. A force is shown here where it cannot be felt.
+
+import { at, finite, fixed, write } from "./words.js";
+
+const MOST_RATE = 1.5;  // [rad/s]
+const LEAST_SCALE = 1;  // [Nm]: the bar is full at the largest torque there was, or at this
+
+export class Lever {
+  #most = LEAST_SCALE;
+
+  constructor(keyboard, heading) {
+    this.keyboard = keyboard;
+    this.heading = heading;
+    this.slider = at("lever");
+    for (const end of ["pointerup", "pointercancel", "blur", "keyup"]) {
+      this.slider.addEventListener(end, () => (this.slider.value = 0));
+    }
+  }
+
+  scene(arm) {
+    at("lever-box").hidden = !arm?.modules.includes("torque_arm");
+    this.#most = LEAST_SCALE;
+  }
+
+  // In rad/s; 0 at rest.
+  rate() {
+    if (at("lever-box").hidden) return 0;
+    return MOST_RATE * (Number(this.slider.value) || this.keyboard.lever());
+  }
+
+  direction() {
+    const choice = at("lever-direction").value;
+    const axis = ["x", "y", "z"].indexOf(choice);
+    if (axis >= 0) return [0, 1, 2].map((k) => (k === axis ? 1 : 0));
+    const { ahead, left, up } = this.heading();
+    return ({ away: ahead, left, up }[choice] ?? up).toArray();
+  }
+
+  frame(arm) {
+    const torque = arm?.lever_nm;
+    write(at("lever-out"), `${fixed(torque, 2)} Nm`);
+    const size = finite(torque) ? torque : 0;
+    this.#most = Math.max(this.#most, Math.abs(size));
+    at("lever-bar").style.transform = `scaleX(${(size / this.#most).toFixed(3)})`;
+  }
+}

@@ -1,0 +1,219 @@
+// Joins everything: messages come in, become state, and are drawn when the browser draws.
+
+import { Sphere, Vector3 } from "./vendor/three.min.js";
+import { Cameras } from "./cameras.js";
+import { Connection } from "./connection.js";
+import { Controls } from "./controls.js";
+import { Drag } from "./drag.js";
+import { Gamepad } from "./gamepad.js";
+import { startHelp, toggleHelp } from "./help.js";
+import { Histogram } from "./histogram.js";
+import { Keyboard } from "./keyboard.js";
+import { Labels } from "./labels.js";
+import { Lever } from "./lever.js";
+import { Marks } from "./marks.js";
+import { banner } from "./messages.js";
+import { Parts } from "./parts.js";
+import { startProbe } from "./probe.js";
+import { faded, Readouts } from "./readouts.js";
+import { Stage } from "./scene3d.js";
+import { settings } from "./settings.js";
+import { startShowMenu } from "./show_menu.js";
+import { SpaceMouse } from "./spacemouse.js";
+import { state, thisArmNow, toolPose } from "./state.js";
+import { Strip } from "./strips.js";
+import { startTheme } from "./theme.js";
+import { Trail } from "./trail.js";
+import { Transport } from "./transport.js";
+import { Triad } from "./triad.js";
+import { at, norm, write } from "./words.js";
+
+const CLEAR_MS = 120;  // between two looks at what hides the tool
+const PANELS_MS = 60;  // between two drawings of numbers and charts: faster cannot be read
+
+startTheme();
+startHelp();
+let stage;
+try {
+  stage = new Stage(at("canvas"));
+} catch (error) {
+  banner("webgl", "This browser gives no WebGL: the scene cannot be drawn");
+  throw error;
+}
+const parts = new Parts(stage);
+const cameras = new Cameras(stage);
+const labels = new Labels(at("labels"), stage);
+const marks = new Marks(stage, labels);
+const triad = new Triad(at("triad"), stage.camera);
+const trail = new Trail(stage);
+const readouts = new Readouts((pair, range) => marks.colourOf(pair, range));
+const histogram = new Histogram(at("histogram"));
+const { history } = state;
+const strips = [
+  new Strip({ canvas: at("force-strip"), value: at("force-at"), history, series: "force",
+              scale: 1, unit: "N", tint: "force", least: 10 }),
+  new Strip({ canvas: at("distance-strip"), value: at("distance-at"), history,
+              series: "nearest", scale: 1000, unit: "mm", tint: "far", least: 5 }),
+];
+
+const connection = new Connection(connected);
+const transport = new Transport(connection);
+const keyboard = new Keyboard();
+const gamepad = new Gamepad();
+const heading = () => cameras.heading();
+const lever = new Lever(keyboard, heading);
+const drag = new Drag(stage, parts,
+                      { mayDrive: () => controls.ours, take: () => controls.take() });
+const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag], lever,
+                              heading);
+startProbe({ connection, stage, parts, marks, cameras });
+
+const toolAt = new Vector3();
+const near = new Set();
+let fresh = false;  // a frame came since the last drawing
+let framed = "";  // the scene that the camera was set up for
+let clearedAt = 0;
+let panelsAt = 0;
+let panelsDue = true;
+
+function connected(yes) {
+  state.connected = yes;
+  at("view").classList.toggle("lost", !yes);
+  banner("lost", yes ? "" : "No connection to the program. Trying again.");
+  if (!yes) {
+    state.operator = null;
+    controls.operator({ by: "nobody", you: false, silent: false });
+    write(at("status"), "not connected");
+    at("status").className = "status bad";
+  }
+  stage.invalidate();
+}
+
+connection.on("scene", (scene) => {
+  state.scene = scene;
+  state.frame = null;
+  history.reset(scene.rate_hz);
+  parts.build(scene);
+  at("level").max = parts.mostLevels - 1;
+  at("level").value = settings.level;
+  readouts.scene(scene);
+  transport.scene(scene);
+  controls.scene(scene);
+  drag.scene(scene.arms[0]?.tool_body);
+  trail.clear();
+});
+
+connection.on("frame", (frame) => {
+  if (frame.tick !== null && frame.tick < state.frame?.tick) {
+    trail.clear();
+    history.clear();
+  }
+  state.frame = frame;
+  history.add(frame.recent);
+  fresh = true;
+});
+
+connection.on("timing", (timing) => (state.timing = timing));
+connection.on("operator", (operator) => {
+  state.operator = operator;
+  controls.operator(operator);
+  stage.invalidate();
+});
+connection.on("refused", (refused) => controls.refused(refused));
+
+// Where the bodies are now; the first frame of a scene also sets up floor and camera.
+function move(frame) {
+  parts.move(frame.bodies);
+  const pose = toolPose(frame);
+  if (pose) {
+    toolAt.fromArray(pose);
+    cameras.track(toolAt);
+    trail.add(toolAt);
+  }
+  if (framed !== state.scene?.name) {
+    framed = state.scene?.name;
+    const corners = parts.corners();
+    const { center, radius } = new Sphere().setFromPoints(corners);
+    state.radius = radius;
+    stage.fit(center, radius, Math.min(0, ...corners.map((corner) => corner.z)));
+    const tool = parts.corners(state.scene?.arms[0]?.tool_body);
+    cameras.frame(corners, new Sphere().setFromPoints(tool).radius || radius / 4);
+    showMenu.scale();
+  }
+  near.clear();
+  for (const pair of frame.pairs) {
+    for (const part of state.scene?.pairs[pair.i]?.slice(0, 2) ?? []) near.add(part);
+  }
+  parts.showZones(near);
+  transport.frame(frame);
+  lever.frame(frame.arms[0]);
+  banner("faded", faded(thisArmNow()), true);
+  gamepad.rumble(controls.ours ? norm(frame.arms[0]?.force) : 0, performance.now());
+  panelsDue = true;
+  stage.invalidate();
+}
+
+// The tool, and where it is nearest to something, must be seen.
+function clearView(now) {
+  if (now - clearedAt < CLEAR_MS) return;
+  clearedAt = now;
+  const points = [toolAt.clone()];
+  for (const { a } of state.frame.pairs.slice(0, 2)) {
+    if (a) points.push(new Vector3().fromArray(a));
+  }
+  parts.clear(stage.camera.position, points);
+}
+
+function draw(now) {
+  requestAnimationFrame(draw);
+  if (fresh && state.frame) move(state.frame);
+  fresh = false;
+  cameras.update();
+  if (stage.pending && state.frame) {
+    clearView(now);
+    labels.clear();
+    marks.update(state.frame);
+    labels.show();
+    drag.draw();
+    triad.draw();
+  }
+  stage.render();
+  if (now - panelsAt > PANELS_MS) {
+    panelsAt = now;
+    if (panelsDue && state.frame) readouts.frame(state.frame, now);
+    panelsDue = false;
+    for (const strip of strips) strip.draw();
+    histogram.draw();
+  }
+}
+
+function onKey(event) {
+  if (event.ctrlKey || event.altKey || event.metaKey || at("help").open) return;
+  const { tagName, type } = event.target;
+  if (tagName === "SELECT") return;
+  const presses = tagName === "BUTTON" || tagName === "SUMMARY" || type === "checkbox";
+  if (event.key === " " && presses) return;  // it presses what has the focus
+  if (event.key === "Home" && type === "range") return;
+  if (handle(event)) event.preventDefault();
+}
+
+function handle(event) {
+  if (keyboard.down(event)) {
+    if (!event.repeat) controls.take();
+  } else if (event.repeat && event.key !== ".") return false;
+  else if (event.key === "?") toggleHelp();
+  else if (event.code === "KeyC") at("take").click();
+  else if (event.code === "KeyT") at("theme").click();
+  else return transport.key(event) || cameras.key(event);
+  return true;
+}
+
+const showMenu = startShowMenu({ stage, parts, near, changed: () => (panelsDue = true) });
+addEventListener("keydown", onKey);
+addEventListener("keyup", (event) => keyboard.up(event));
+// What was clicked must not take the next press of the space bar.
+addEventListener("click", (event) => {
+  if (event.detail > 0) event.target.closest?.("button, summary")?.blur();
+});
+connection.open();
+requestAnimationFrame(draw);

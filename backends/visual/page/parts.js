@@ -1,0 +1,187 @@
+// The parts of the scene: solids on bodies that move, their edges, zones of influence, levels.
+
+import {
+  Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
+  MeshBasicMaterial, MeshLambertMaterial, Raycaster, Vector3,
+} from "./vendor/three.min.js";
+import { edges, levelFrames, shell, surface } from "./geometry.js";
+import { settings } from "./settings.js";
+import { colour, onTheme } from "./theme.js";
+
+// Pushed back a little, for the edges to be seen whole.
+const BEHIND_EDGES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+
+function place(object, pose) {
+  if (!pose) return;
+  object.position.set(pose[0], pose[1], pose[2]);
+  object.quaternion.set(pose[3], pose[4], pose[5], pose[6]).normalize();
+}
+
+export class Parts {
+  #materials = {
+    tool: new MeshLambertMaterial(BEHIND_EDGES),
+    link: new MeshLambertMaterial(BEHIND_EDGES),
+    obstacle: new MeshLambertMaterial(BEHIND_EDGES),
+    seeThrough: new MeshLambertMaterial({ transparent: true, opacity: 0.22, depthWrite: false }),
+    passable: new MeshLambertMaterial({ transparent: true, opacity: 0.34, depthWrite: false }),
+    zone: new MeshBasicMaterial({ transparent: true, opacity: 0.07, depthWrite: false }),
+    edge: new LineBasicMaterial({ transparent: true, opacity: 0.55 }),
+    dashed: new LineDashedMaterial({ dashSize: 0.012, gapSize: 0.008 }),
+    level: new LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
+    ghost: new MeshBasicMaterial({ transparent: true, opacity: 0.22, depthTest: false }),
+  };
+
+  #ray = new Raycaster();
+  #along = new Vector3();
+  #hits = [];
+
+  constructor(stage) {
+    this.stage = stage;
+    this.bodies = [];
+    this.parts = [];
+    onTheme(() => this.#paint());
+  }
+
+  // Everything of a scene, in place of what was there before.
+  build(scene) {
+    for (const body of this.bodies) this.#drop(body);
+    this.bodies = scene.bodies.map(() => new Group());
+    for (const body of this.bodies) this.stage.scene.add(body);
+    this.parts = scene.parts.map((part) => this.#part(part));
+    this.mostLevels = Math.max(1, ...this.parts.map((part) => part.groups.length));
+    this.showLevels();
+    this.showZones();
+  }
+
+  #drop(body) {
+    body.traverse((object) => object.geometry?.dispose());
+    this.stage.scene.remove(body);
+  }
+
+  #part(part) {
+    const group = ["tool", "link"].includes(part.group) ? part.group : "obstacle";
+    const kind = part.passable ? "passable" : group;
+    const { levels } = part;
+    const holder = new Group();
+    place(holder, part.pose);
+    const solid = new Mesh(surface(levels[0] ?? {}), this.#materials[kind]);
+    solid.castShadow = !part.passable;
+    solid.receiveShadow = !part.passable;
+    const border = new LineSegments(edges(levels[0] ?? {}),
+                                    this.#materials[part.passable ? "dashed" : "edge"]);
+    if (part.passable) border.computeLineDistances();
+    const { geometry, groups } = levelFrames(levels);
+    const frames = new LineSegments(geometry, this.#materials.level);
+    holder.add(solid, border, frames);
+    let zone = null;
+    if (part.group === "obstacle" && part.range_m > 0) {
+      zone = new Mesh(shell(levels[0] ?? {}, part.range_m), this.#materials.zone);
+      zone.renderOrder = 2;
+      holder.add(zone);
+    }
+    (this.bodies[part.body] ?? this.stage.scene).add(holder);
+    const material = solid.material;
+    return { holder, solid, material, frames, groups, zone, group: part.group, body: part.body };
+  }
+
+  move(poses) {
+    this.bodies.forEach((body, k) => place(body, poses[k]));
+  }
+
+  // Which zones are seen. `near`: parts of pairs near enough to be asked.
+  showZones(near = new Set()) {
+    this.parts.forEach((part, k) => {
+      if (!part.zone) return;
+      part.zone.visible = settings.zones === "all" || (settings.zones === "near" && near.has(k));
+    });
+  }
+
+  showLevels() {
+    const mode = settings.levels;
+    const solidity = mode === "none" ? 1 : 0.25;
+    for (const name of ["tool", "link", "obstacle"]) {
+      const material = this.#materials[name];
+      if (material.opacity !== solidity) material.needsUpdate = true;
+      const whole = solidity === 1;
+      Object.assign(material, { opacity: solidity, transparent: !whole, depthWrite: whole });
+    }
+    for (const { frames, groups } of this.parts) {
+      const one = groups[Math.min(settings.level, groups.length - 1)] ?? [0, 0];
+      frames.visible = mode !== "none";
+      frames.geometry.setDrawRange(...(mode === "one" ? one : [0, Infinity]));
+    }
+    this.stage.invalidate();
+  }
+
+  // Makes what hides one of these points from the eye see-through. Not the tool, and not what may
+  // be passed, which is so already.
+  clear(eye, points) {
+    const { seeThrough, tool, passable } = this.#materials;
+    for (const part of this.parts) {
+      if (part.material === tool || part.material === passable) continue;
+      const hides = points.some((point) => this.#hides(part.solid, eye, point));
+      part.solid.material = hides ? seeThrough : part.material;
+    }
+  }
+
+  #hides(solid, eye, point) {
+    const along = this.#along.subVectors(point, eye);
+    this.#ray.far = along.length() - 0.002;  // what is touched hides nothing
+    this.#ray.set(eye, along.normalize());
+    this.#hits.length = 0;
+    return this.#ray.intersectObject(solid, false, this.#hits).length > 0;
+  }
+
+  // Corners of boxes around all parts where they are now, or around those of one body.
+  corners(body = null) {
+    const corners = [];
+    this.stage.scene.updateMatrixWorld();
+    for (const part of this.parts) {
+      const { geometry, matrixWorld } = part.solid;
+      if (geometry.attributes.position.count === 0 || ![null, part.body].includes(body)) continue;
+      geometry.computeBoundingBox();
+      const { min, max } = geometry.boundingBox;
+      for (let k = 0; k < 8; ++k) {
+        const corner = new Vector3(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y,
+                                   k & 4 ? max.z : min.z);
+        corners.push(corner.applyMatrix4(matrixWorld));
+      }
+    }
+    return corners;
+  }
+
+  // A pale copy of what moves with a body, to show where it is wanted.
+  ghost(body) {
+    const copy = new Group();
+    for (const part of this.parts) {
+      if (part.body !== body) continue;
+      const solid = new Mesh(part.solid.geometry, this.#materials.ghost);
+      solid.position.copy(part.holder.position);
+      solid.quaternion.copy(part.holder.quaternion);
+      copy.add(solid);
+    }
+    copy.visible = false;
+    this.stage.scene.add(copy);
+    return copy;
+  }
+
+  solidsOf(body) {
+    return this.parts.filter((part) => part.body === body).map((part) => part.solid);
+  }
+
+  counts() {
+    const seen = (key) => this.parts.filter((part) => part[key]?.visible).length;
+    return { parts: seen("solid"), levels: seen("frames"), zones: seen("zone") };
+  }
+
+  #paint() {
+    for (const name of ["tool", "link", "obstacle", "passable", "edge", "level"]) {
+      this.#materials[name].color = new Color(colour(name));
+    }
+    this.#materials.seeThrough.color = new Color(colour("obstacle"));
+    this.#materials.zone.color = new Color(colour("near"));
+    this.#materials.dashed.color = new Color(colour("passable"));
+    this.#materials.ghost.color = new Color(colour("operator"));
+    this.stage.invalidate();
+  }
+}

@@ -1,0 +1,42 @@
+// What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
+// pixels(), look(), send().
+
+import { settings } from "./settings.js";
+import { state } from "./state.js";
+import { theme } from "./theme.js";
+
+export function startProbe({ connection, stage, parts, marks, cameras }) {
+  window.repel = {
+    state() {
+      const { frame, scene, operator } = state;
+      const body = scene?.arms?.[0]?.tool_body;
+      return {
+        connected: state.connected,
+        scene: scene?.name ?? null,
+        mode: scene?.mode ?? null,
+        tick: frame?.tick ?? null,
+        time_s: frame?.time_s ?? null,
+        running: frame?.running ?? null,
+        phase: frame?.phase ?? null,
+        operator: operator ?? null,
+        pairs: frame?.pairs?.length ?? 0,
+        partsInScene: scene?.parts?.length ?? 0,
+        drawn: { ...parts.counts(), ...marks.counts },
+        toolPosition: frame?.bodies?.[body]?.slice(0, 3) ?? null,
+        force: frame?.arms?.[0]?.force ?? null,
+        camera: { mode: cameras.mode, following: cameras.following,
+                  position: stage.camera.position.toArray() },
+        theme: theme(),
+        settings: { ...settings },
+        framesRendered: stage.rendered,
+        historyLength: state.history.length,
+      };
+    },
+    pixels: () => stage.pixels(),
+    send: (message) => connection.send(message),
+    // From elsewhere than the fixed views: where the camera is, and what it looks at.
+    look(position, target) {
+      cameras.look(position, target);
+    },
+  };
+}

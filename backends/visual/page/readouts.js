@@ -1,0 +1,131 @@
+// The words and numbers: status, phase, the big numbers, the nearest pairs, the energies.
+
+import { partName, sides, state, thisArm, thisArmNow } from "./state.js";
+import { at, brief, describe, finite, fixed, Held, mm, norm, write } from "./words.js";
+
+const ROWS = 5;
+const FADED = 0.995;  // gain of the forces below which it is said that they are faded
+
+export class Readouts {
+  #status = new Held(700);
+  #rows = [];
+  #energies = [];
+
+  // `colourOf(pair)`: that of the thread in the scene.
+  constructor(colourOf) {
+    this.colourOf = colourOf;
+    for (let k = 0; k < ROWS; ++k) {
+      const row = at("pair-rows").insertRow();
+      const cells = [row.insertCell(), row.insertCell(), row.insertCell()];
+      const dot = cells[0].appendChild(document.createElement("i"));
+      const name = cells[0].appendChild(document.createElement("span"));
+      this.#rows.push({ row, cells, dot, name });
+    }
+  }
+
+  scene(scene) {
+    write(at("scene-name"), scene.name);
+    document.title = `${scene.name} - repel`;
+    at("mode").hidden = scene.mode !== "replay";
+    write(at("mode"), "replay");
+    const ranges = scene.parts.map((part) => part.range_m).filter((range) => range > 0);
+    if (ranges.length > 0) write(at("ramp-text"), `${mm(Math.max(...ranges), 0)} to 0 mm`);
+    this.#arms(scene.arms);
+  }
+
+  #arms(arms) {
+    state.arm = 0;
+    at("arm-row").hidden = arms.length < 2;
+    at("arm").replaceChildren(...arms.map((arm, k) => new Option(arm.name || `arm ${k + 1}`, k)));
+    at("arm").onchange = () => {
+      state.arm = Number(at("arm").value);
+      this.#modules();
+    };
+    this.#modules();
+  }
+
+  #modules() {
+    this.#energies = (thisArm()?.modules ?? []).map((name) => {
+      const row = document.createElement("div");
+      const label = row.appendChild(document.createElement("b"));
+      label.textContent = name.replaceAll("_", " ");
+      label.title = name;
+      const bar = row.appendChild(document.createElement("span"))
+        .appendChild(document.createElement("i"));
+      return { row, bar, value: row.appendChild(document.createElement("output")) };
+    });
+    at("energy").replaceChildren(...this.#energies.map(({ row }) => row));
+  }
+
+  frame(frame, now) {
+    write(at("time"), `${fixed(frame.time_s, 2)} s`);
+    write(at("phase"), frame.phase);
+    this.#showStatus(frame, now);
+    this.#showNumbers(frame.pairs);
+    this.#showPairs(frame);
+    this.#showEnergies();
+  }
+
+  #showStatus(frame, now) {
+    const some = frame.status.length > 0;
+    const { level, text } = this.#status.next(describe(frame.status), now, some);
+    const words = state.connected ? text : "not connected";
+    write(at("status"), words);
+    at("status").title = words;
+    at("status").className = `status ${state.connected ? level : "bad"}`;
+  }
+
+  #showNumbers(pairs) {
+    const nearest = pairs[0]?.d;
+    write(at("nearest"), mm(nearest));
+    at("nearest").classList.toggle("overlap", nearest < 0);
+    const force = thisArmNow()?.force;
+    write(at("force"), fixed(force ? norm(force) : null, 1));
+    const hardest = pairs.reduce((most, pair) => (pair.f > (most?.f ?? 0.05) ? pair : most), null);
+    const side = hardest && sides(hardest);
+    if (!side) {
+      write(at("hardest"), "nothing pushes");
+      return;
+    }
+    const size = document.createElement("b");
+    size.textContent = `${brief(hardest.f)} N`;
+    at("hardest").replaceChildren(`${partName(side.pushed)} \u2013 ${partName(side.by)} `, size);
+  }
+
+  #showPairs(frame) {
+    const asked = `${frame.evaluated ?? "\u2013"} of ${frame.of ?? "\u2013"} evaluated`;
+    const left = frame.pairs_omitted > 0 ? `, ${frame.pairs_omitted} not shown` : "";
+    write(at("pair-counts"), asked + left);
+    this.#rows.forEach(({ row, cells, dot, name }, k) => {
+      const pair = frame.pairs[k];
+      const side = pair && sides(pair);
+      row.classList.toggle("old", Boolean(pair?.stale));
+      dot.hidden = !side;
+      write(name, side ? `${partName(side.pushed)} \u2013 ${partName(side.by)}` : "");
+      write(cells[1], side ? mm(pair.d) : "");
+      write(cells[2], side ? (pair.f > 0 ? fixed(pair.f, 1) : "0") : "");
+      if (!side) return;
+      row.title = `${name.textContent}${pair.stale ? `, answer ${pair.age} ticks old` : ""}`;
+      const tint = this.colourOf(pair);
+      dot.style.setProperty("--c", tint.getStyle());
+    });
+  }
+
+  #showEnergies() {
+    const energies = thisArmNow()?.energy_j ?? [];
+    const most = Math.max(0.1, ...energies.map((e) => (finite(e) ? Math.abs(e) : 0)));
+    this.#energies.forEach(({ bar, value }, k) => {
+      const energy = energies[k];
+      write(value, finite(energy) ? `${fixed(energy, 3)} J` : "\u2013");
+      bar.style.transform = `scaleX(${finite(energy) ? Math.abs(energy) / most : 0})`;
+      bar.classList.toggle("gives", energy < 0);
+    });
+  }
+}
+
+// Whether and why forces are not what the walls ask for.
+export function faded(arm) {
+  return finite(arm?.gain) && arm.gain < FADED
+    ? `Forces are faded: ${Math.round(100 * Math.max(0, arm.gain))} % of what the walls ask for`
+    : "";
+}

@@ -1,0 +1,157 @@
+// The stage: renderer, light, and the floor with its grid. z is up.
+
+import {
+  BufferAttribute, BufferGeometry, Color, DirectionalLight, HemisphereLight, LineBasicMaterial,
+  LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene, ShadowMaterial,
+  WebGLRenderer,
+} from "./vendor/three.min.js";
+import { colour, onTheme } from "./theme.js";
+
+export class Stage {
+  rendered = 0;
+  #dirty = true;
+
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(35, 1, 0.01, 50);
+    this.camera.up.set(0, 0, 1);
+    this.#light();
+    this.#floor();
+    onTheme(() => this.#paint());
+    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
+    this.#resize();
+  }
+
+  invalidate() {
+    this.#dirty = true;
+  }
+
+  get pending() {
+    return this.#dirty;
+  }
+
+  // Draws if something changed, and says whether it did.
+  render() {
+    if (!this.#dirty) return false;
+    this.#dirty = false;
+    this.renderer.render(this.scene, this.camera);
+    this.rendered += 1;
+    return true;
+  }
+
+  setShadows(on) {
+    this.renderer.shadowMap.enabled = on;
+    this.sun.castShadow = on;
+    this.ground.visible = on;
+    this.invalidate();
+  }
+
+  // Lays the floor and its grid under what there is: a sphere that holds it, and its lowest point.
+  fit(center, radius, lowest) {
+    const around = Math.max(radius, 0.05);
+    this.spacing = 10 ** Math.floor(Math.log10(around / 2.5));
+    this.ground.position.set(center.x, center.y, lowest - 0.002);
+    this.ground.scale.setScalar(8 * around);
+    this.grid.geometry.dispose();
+    this.grid.geometry = gridGeometry(center, 1.9 * around, this.spacing);
+    this.grid.position.z = lowest - 0.001;
+    this.sun.position.set(center.x + around, center.y - 0.9 * around, center.z + 2.6 * around);
+    this.sun.target.position.copy(center);
+    const box = this.sun.shadow.camera;
+    box.left = box.bottom = -1.3 * around;
+    box.right = box.top = 1.3 * around;
+    box.far = 6 * around;
+    box.updateProjectionMatrix();
+    this.camera.near = around / 100;
+    this.camera.far = around * 60;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  #light() {
+    this.sky = new HemisphereLight(0xffffff, 0x8a8f96, 1.75);
+    this.sky.position.set(0, 0, 1);
+    this.sun = new DirectionalLight(0xffffff, 1.55);
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.bias = -0.0005;
+    this.sun.shadow.normalBias = 0.004;
+    this.scene.add(this.sky, this.sun, this.sun.target);
+  }
+
+  #floor() {
+    this.ground = new Mesh(new PlaneGeometry(1, 1), new ShadowMaterial({ transparent: true }));
+    this.ground.receiveShadow = true;
+    const lines = new LineBasicMaterial({
+      vertexColors: true, transparent: true, depthWrite: false,
+    });
+    this.grid = new LineSegments(new BufferGeometry(), lines);
+    this.scene.add(this.ground, this.grid);
+  }
+
+  #paint() {
+    this.grid.material.color.set(colour("grid"));
+    this.ground.material.opacity = Number(colour("shade"));
+    this.sky.groundColor = new Color(colour("ground"));
+    this.invalidate();
+  }
+
+  #resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  // Mean colour and its variance over the drawing, for tests: read right after it was drawn.
+  pixels() {
+    this.renderer.render(this.scene, this.camera);
+    const gl = this.renderer.getContext();
+    const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+    const bytes = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    const sum = [0, 0, 0, 0];
+    const squares = [0, 0, 0, 0];
+    bytes.forEach((value, k) => {
+      sum[k % 4] += value;
+      squares[k % 4] += value * value;
+    });
+    const count = width * height;
+    const mean = sum.map((s) => s / count);
+    return { width, height, mean, variance: squares.map((s, k) => s / count - mean[k] ** 2) };
+  }
+}
+
+// Lines that fade towards the rim; each tenth is stronger.
+function gridGeometry(center, radius, spacing) {
+  const positions = [];
+  const colours = [];
+  const pieces = 16;
+  const shade = (x, y, strong) =>
+    Math.max(0, 1 - Math.hypot(x - center.x, y - center.y) / radius) * (strong ? 0.75 : 0.3);
+  const line = (value, axis, from) => {
+    const strong = Math.round(value / spacing) % 10 === 0;
+    for (let k = 0; k < pieces; ++k) {
+      for (const end of [k, k + 1]) {
+        const other = from + (2 * radius * end) / pieces;
+        const [x, y] = axis === 0 ? [value, other] : [other, value];
+        positions.push(x, y, 0);
+        colours.push(1, 1, 1, shade(x, y, strong));
+      }
+    }
+  };
+  for (const [axis, middle, across] of [[0, center.x, center.y], [1, center.y, center.x]]) {
+    const first = Math.ceil((middle - radius) / spacing);
+    const last = Math.floor((middle + radius) / spacing);
+    for (let k = first; k <= last; ++k) line(k * spacing, axis, across - radius);
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
+  geometry.setAttribute("color", new BufferAttribute(new Float32Array(colours), 4));
+  return geometry;
+}

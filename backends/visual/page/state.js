@@ -1,0 +1,112 @@
+// What the program said last, and the last seconds of every tick.
+
+import { settings } from "./settings.js";
+
+const SECONDS = 10;
+const MOST_TICKS = 200000;
+
+// A ring of force and distance, one entry a tick.
+export class History {
+  #capacity = 1;
+  #count = 0;
+  #next = 0;
+  #last = -1;
+
+  // For a program of `rate` ticks a second.
+  reset(rate) {
+    this.rate = rate > 0 ? rate : 1000;
+    this.#capacity = Math.min(MOST_TICKS, Math.ceil(SECONDS * this.rate) + 1);
+    this.time = new Float64Array(this.#capacity);
+    this.force = new Float32Array(this.#capacity);
+    this.nearest = new Float32Array(this.#capacity);
+    this.clear();
+  }
+
+  clear() {
+    this.#count = this.#next = 0;
+    this.#last = -1;
+  }
+
+  get seconds() {
+    return SECONDS;
+  }
+
+  get length() {
+    return this.#count;
+  }
+
+  get now() {
+    return this.#last < 0 ? 0 : this.#last / this.rate;
+  }
+
+  // Position in the arrays of the i-th entry, the oldest first.
+  slot(i) {
+    return (this.#next - this.#count + i + this.#capacity) % this.#capacity;
+  }
+
+  // NaN stands for nothing near, and for what is missing.
+  add(recent) {
+    const ticks = recent.tick;
+    for (let i = 0; i < ticks.length; ++i) {
+      if (ticks[i] === null) continue;
+      if (ticks[i] <= this.#last) this.clear();  // restarted, or sought back
+      this.#last = ticks[i];
+      this.time[this.#next] = ticks[i] / this.rate;
+      this.force[this.#next] = recent.force_n[i] ?? NaN;
+      this.nearest[this.#next] = recent.nearest_m[i] ?? NaN;
+      this.#next = (this.#next + 1) % this.#capacity;
+      this.#count = Math.min(this.#count + 1, this.#capacity);
+    }
+  }
+
+  // Position of the entry nearest to a time; -1 when there is none within a fifth of a second.
+  find(time) {
+    let low = 0;
+    let high = this.#count - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.time[this.slot(middle)] < time) low = middle + 1;
+      else high = middle;
+    }
+    if (this.#count === 0) return -1;
+    const slot = this.slot(low);
+    return Math.abs(this.time[slot] - time) < 0.2 ? slot : -1;
+  }
+}
+
+export const state = {
+  scene: null,
+  frame: null,
+  timing: null,
+  operator: null,
+  connected: false,
+  radius: 1,  // of a sphere that holds the scene [m]
+  arm: 0,  // the one whose numbers are shown
+  history: new History(),
+};
+
+// How long the arrow of a newton is [m]: a scene of ten metres needs longer ones.
+export function forceScale() {
+  return settings.forceScale || 0.001 * 10 ** Math.max(0, Math.round(Math.log10(state.radius)));
+}
+
+export const thisArm = () => state.scene?.arms[state.arm] ?? null;
+export const thisArmNow = () => state.frame?.arms[state.arm] ?? null;
+export const partName = (index) => state.scene?.parts[index]?.name ?? "?";
+export const rangeOf = (pair) => state.scene?.pairs[pair.i]?.[2];
+
+// Where the tool of an arm is in a frame, and null when it is not told.
+export const toolPose = (frame, arm = 0) => frame.bodies[state.scene?.arms[arm]?.tool_body] ?? null;
+
+// The two parts of a pair, the one that is pushed away first: part of an arm rather than an
+// obstacle. `sign` is -1 where that turned them round.
+export function sides(pair) {
+  const indices = state.scene?.pairs[pair.i];
+  if (!indices) return null;
+  const parts = state.scene.parts;
+  const [a, b] = indices;
+  if (!parts[a] || !parts[b]) return null;
+  const turned = parts[a].group === "obstacle" && parts[b].group !== "obstacle";
+  return turned ? { pushed: b, by: a, point: pair.b, sign: -1 }
+                : { pushed: a, by: b, point: pair.a, sign: 1 };
+}

@@ -1,0 +1,151 @@
+// Strip charts: a quantity over the last ten seconds, with what it was where the pointer is.
+
+import { colour } from "./theme.js";
+import { fixed, write } from "./words.js";
+
+const MARGIN = { left: 34, right: 4, top: 5, bottom: 15 };
+
+// A canvas as large as it is shown, in the pixels of the screen; its size in CSS pixels.
+export function fitted(canvas) {
+  const ratio = Math.min(devicePixelRatio || 1, 3);
+  const width = canvas.clientWidth;
+  const height = canvas.clientHeight;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  context.font = `10px ${getComputedStyle(document.body).fontFamily}`;
+  return { context, width, height };
+}
+
+// The next of 1, 2, 5 times a power of ten.
+function nice(x) {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return [1, 2, 5, 10].find((k) => k * power >= x * 0.999) * power;
+}
+
+let hovered = null;  // how long ago the pointer is, in seconds; shared by all strips
+
+export class Strip {
+  // `series`: of the history; `scale`: from its unit to the one shown; `least`: the smallest span.
+  constructor({ canvas, value, history, series, scale, unit, tint, least }) {
+    Object.assign(this, { canvas, value, history, series, scale, unit, tint, least });
+    canvas.addEventListener("pointermove", (event) => {
+      const across = canvas.clientWidth - MARGIN.left - MARGIN.right;
+      const share = (event.offsetX - MARGIN.left) / across;
+      hovered = history.seconds * (1 - Math.max(0, Math.min(1, share)));
+    });
+    canvas.addEventListener("pointerleave", () => (hovered = null));
+  }
+
+  draw() {
+    const { context, width, height } = fitted(this.canvas);
+    const box = { x: MARGIN.left, y: MARGIN.top, w: width - MARGIN.left - MARGIN.right,
+                  h: height - MARGIN.top - MARGIN.bottom };
+    if (box.w < 10 || box.h < 10 || !this.history.rate) return;
+    const columns = this.#columns(Math.floor(box.w));
+    const { low, high, step } = this.#span(columns);
+    const y = (value) => box.y + (box.h * (high - value)) / (high - low);
+    this.#grid(context, box, low, high, step, y);
+    this.#curve(context, box, columns, y);
+    this.#readout(context, box, y);
+  }
+
+  // Least and largest of the ticks in each column of pixels.
+  #columns(count) {
+    const { history } = this;
+    const lows = new Float32Array(count).fill(Infinity);
+    const highs = new Float32Array(count).fill(-Infinity);
+    const values = history[this.series];
+    const start = history.now - history.seconds;
+    for (let i = 0; i < history.length; ++i) {
+      const slot = history.slot(i);
+      const value = values[slot] * this.scale;
+      if (!Number.isFinite(value)) continue;
+      const k = Math.floor(((history.time[slot] - start) / history.seconds) * (count - 1));
+      if (k < 0 || k >= count) continue;
+      if (value < lows[k]) lows[k] = value;
+      if (value > highs[k]) highs[k] = value;
+    }
+    return { lows, highs, count };
+  }
+
+  #span({ lows, highs, count }) {
+    let low = 0;
+    let high = this.least;
+    for (let k = 0; k < count; ++k) {
+      if (lows[k] < low) low = lows[k];
+      if (highs[k] > high) high = highs[k];
+    }
+    const step = nice((high - low) / 3);
+    return { low: Math.floor(low / step) * step, high: Math.ceil(high / step) * step, step };
+  }
+
+  #grid(context, box, low, high, step, y) {
+    context.strokeStyle = colour("rule");
+    context.fillStyle = colour("dim");
+    context.lineWidth = 1;
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (let value = low; value <= high + step / 2; value += step) {
+      const row = Math.round(y(value)) + 0.5;
+      context.strokeStyle = colour(Math.abs(value) < step / 2 ? "dim" : "rule");
+      context.beginPath();
+      context.moveTo(box.x, row);
+      context.lineTo(box.x + box.w, row);
+      context.stroke();
+      const text = Number(value.toPrecision(6)).toString().replace("-", "\u2212");
+      context.fillText(text, box.x - 5, row);
+    }
+    context.textBaseline = "alphabetic";
+    const { seconds } = this.history;
+    context.textAlign = "left";
+    context.fillText(`\u2212${seconds} s`, box.x, box.y + box.h + 12);
+    context.textAlign = "center";
+    context.fillText(`\u2212${seconds / 2} s`, box.x + box.w / 2, box.y + box.h + 12);
+    context.textAlign = "right";
+    context.fillText("now", box.x + box.w, box.y + box.h + 12);
+  }
+
+  // Broken where a column has no value.
+  #curve(context, box, { lows, highs, count }, y) {
+    context.strokeStyle = colour(this.tint);
+    context.lineWidth = 1.5;
+    context.lineJoin = "round";
+    context.beginPath();
+    let last = -9;
+    for (let k = 0; k < count; ++k) {
+      if (lows[k] > highs[k]) continue;
+      if (k - last > 3) context.moveTo(box.x + k, y(highs[k]));
+      context.lineTo(box.x + k, y(highs[k]));
+      context.lineTo(box.x + k, y(lows[k]));
+      last = k;
+    }
+    context.stroke();
+  }
+
+  #readout(context, box, y) {
+    const { history } = this;
+    const slot = history.find(history.now - (hovered ?? 0));
+    const value = slot < 0 ? NaN : history[this.series][slot] * this.scale;
+    const number = Number.isFinite(value) ? `${fixed(value, 1)} ${this.unit}` : "nothing near";
+    const when = hovered === null ? "" : `${(history.now - hovered).toFixed(2)} s: `;
+    write(this.value, history.length === 0 ? "" : when + number);
+    if (hovered === null) return;
+    const x = box.x + box.w * (1 - hovered / history.seconds);
+    context.strokeStyle = colour("ink");
+    context.lineWidth = 1;
+    context.beginPath();
+    context.moveTo(x, box.y);
+    context.lineTo(x, box.y + box.h);
+    context.stroke();
+    if (!Number.isFinite(value)) return;
+    context.fillStyle = colour("ink");
+    context.beginPath();
+    context.arc(x, y(value), 3, 0, 2 * Math.PI);
+    context.fill();
+  }
+}

@@ -1,0 +1,78 @@
+// Pause, steps, restart; of a replay also time and speed.
+
+import { state } from "./state.js";
+import { at, finite, fixed, write } from "./words.js";
+
+const SEEK_PAUSE_MS = 60;  // between two messages while the slider is dragged
+
+export class Transport {
+  #dragging = false;
+  #last = 0;
+  #replay = false;
+
+  constructor(connection) {
+    this.connection = connection;
+    at("pause").addEventListener("click", () => this.toggle());
+    at("step-1").addEventListener("click", () => this.step(1));
+    at("step-10").addEventListener("click", () => this.step(10));
+    at("restart").addEventListener("click", () => this.restart());
+    at("speed").addEventListener("change", () => {
+      connection.send({ type: "speed", factor: Number(at("speed").value) });
+    });
+    at("seek").addEventListener("input", () => this.#seek(false));
+    at("seek").addEventListener("change", () => this.#seek(true));
+    addEventListener("hashchange", () => this.#followLink());
+  }
+
+  scene(scene) {
+    const replay = scene.mode === "replay";
+    at("replay-box").hidden = !replay;
+    at("seek").max = scene.duration_s > 0 ? scene.duration_s : 1;
+    write(at("duration"), `of ${fixed(scene.duration_s, 1)} s`);
+    this.#replay = replay;
+    this.#followLink();
+  }
+
+  // A report links to its slowest ticks as #t=SECONDS: there a replay stops and is looked at.
+  #followLink() {
+    const time = Number(/^#t=([0-9.]+)$/.exec(location.hash)?.[1] ?? NaN);
+    if (!this.#replay || !finite(time)) return;
+    this.connection.send({ type: "pause" });
+    this.connection.send({ type: "seek", time_s: time });
+  }
+
+  frame(frame) {
+    write(at("pause"), frame.running ? "Pause" : "Resume");
+    if (!this.#dragging && finite(frame.time_s)) at("seek").value = frame.time_s;
+  }
+
+  toggle() {
+    this.connection.send({ type: state.frame?.running === false ? "resume" : "pause" });
+  }
+
+  step(ticks) {
+    if (state.frame?.running !== false) this.connection.send({ type: "pause" });
+    this.connection.send({ type: "step", ticks });
+  }
+
+  restart() {
+    this.connection.send({ type: "restart" });
+  }
+
+  #seek(final) {
+    this.#dragging = !final;
+    const now = performance.now();
+    if (!final && now - this.#last < SEEK_PAUSE_MS) return;
+    this.#last = now;
+    this.connection.send({ type: "seek", time_s: Number(at("seek").value) });
+  }
+
+  key(event) {
+    if (event.key === " ") this.toggle();
+    else if (event.key === ".") this.step(1);
+    else if (event.key === ">") this.step(10);
+    else if (event.key === "Home") this.restart();
+    else return false;
+    return true;
+  }
+}

@@ -1,0 +1,101 @@
+// What comes over the wire, made whole: what is missing or no number becomes null or an empty list
+// here, so that the rest of the page need not ask. See docs/live_view.md for the messages.
+
+import { finite } from "./words.js";
+
+const list = (x) => (Array.isArray(x) ? x : []);
+const object = (x) => (x !== null && typeof x === "object" && !Array.isArray(x) ? x : {});
+const number = (x) => (finite(x) ? x : null);
+const text = (x) => (typeof x === "string" ? x : "");
+const numbers = (x) => list(x).map(number);
+
+// `count` numbers, all of them there, or null.
+const vector = (x, count = 3) =>
+  Array.isArray(x) && x.length >= count && x.slice(0, count).every(finite) ? x : null;
+const pose = (x) => vector(x, 7);
+
+function level(x) {
+  const { vertices, triangles, depth_m } = object(x);
+  const whole = list(vertices).every(finite) && list(triangles).every(Number.isInteger);
+  return { depth_m: number(depth_m), vertices: whole ? list(vertices) : [],
+           triangles: whole ? list(triangles) : [] };
+}
+
+function part(x) {
+  const { name, body, group, arm, pose: at, passable, range_m, levels } = object(x);
+  return { name: text(name) || "?", body, group: text(group), arm: number(arm) ?? 0, pose: pose(at),
+           passable: passable === true, range_m: number(range_m) ?? 0,
+           levels: list(levels).map(level) };
+}
+
+function arm(x) {
+  const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s } = object(x);
+  return { name: text(name), modules: list(modules).map(text), tool_body,
+           max_speed_m_s: number(max_speed_m_s), max_turn_rad_s: number(max_turn_rad_s) };
+}
+
+export function scene(x) {
+  return {
+    name: text(x.name),
+    rate_hz: number(x.rate_hz),
+    period_us: number(x.period_us) ?? 1000,
+    mode: x.mode === "replay" ? "replay" : "live",
+    duration_s: number(x.duration_s) ?? 0,
+    bodies: list(x.bodies).map(text),
+    parts: list(x.parts).map(part),
+    pairs: list(x.pairs).map((pair) => vector(pair) ?? vector(pair, 2)),
+    arms: list(x.arms).map(arm),
+  };
+}
+
+function pair(x) {
+  const { i, d, a, b, n, level: deep, f, stale, age } = object(x);
+  return { i, d: number(d), a: vector(a), b: vector(b), n: vector(n), level: number(deep),
+           f: number(f) ?? 0, stale: stale === true, age: number(age) ?? 0 };
+}
+
+function armNow(x) {
+  const { force, torque, coupling, lever_nm, gain, energy_j } = object(x);
+  return { force: vector(force), torque: vector(torque), coupling: vector(coupling),
+           lever_nm: number(lever_nm), gain: number(gain), energy_j: numbers(energy_j) };
+}
+
+export function frame(x) {
+  const recent = object(x.recent);
+  return {
+    tick: number(x.tick),
+    time_s: number(x.time_s),
+    running: x.running !== false,
+    phase: text(x.phase),
+    status: list(x.status).map(text).filter(Boolean),
+    bodies: list(x.bodies).map(pose),
+    pairs: list(x.pairs).map(pair),
+    pairs_omitted: number(x.pairs_omitted) ?? 0,
+    evaluated: number(x.evaluated),
+    of: number(x.of),
+    arms: list(x.arms).map(armNow),
+    recent: { tick: numbers(recent.tick), nearest_m: numbers(recent.nearest_m),
+              force_n: numbers(recent.force_n) },
+  };
+}
+
+function quantiles(x) {
+  const { p50, p99, max } = object(x);
+  return { p50: number(p50), p99: number(p99), max: number(max) };
+}
+
+export function timing(x) {
+  return { edges_us: list(x.edges_us).filter(finite), compute: numbers(x.compute),
+           late: numbers(x.late), ticks: number(x.ticks), misses: number(x.misses),
+           dropped: number(x.dropped) ?? 0, compute_us: quantiles(x.compute_us),
+           late_us: quantiles(x.late_us) };
+}
+
+export function operator(x) {
+  return { by: text(x.by), you: x.you === true, name: text(x.name), silent: x.silent === true,
+           pages: number(x.pages) ?? 0 };
+}
+
+export function refused(x) {
+  return { what: text(x.what), why: text(x.why) };
+}

@@ -1,0 +1,72 @@
+// Numbers and status bits as people read them.
+
+export const at = (id) => document.getElementById(id);
+
+export const finite = (x) => typeof x === "number" && Number.isFinite(x);
+
+// A number with `digits` decimals, or a dash: what is missing must not look like a zero.
+export function fixed(x, digits) {
+  if (!finite(x)) return "\u2013";
+  const digitsOfX = Math.abs(x).toFixed(digits);
+  return x < 0 && Number(digitsOfX) > 0 ? `\u2212${digitsOfX}` : digitsOfX;
+}
+
+export const mm = (metres, digits = 1) => fixed(finite(metres) ? 1000 * metres : null, digits);
+
+// Three figures, whatever the size.
+export function brief(x) {
+  if (!finite(x)) return "\u2013";
+  const size = Math.abs(x);
+  return fixed(x, size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
+}
+
+export const norm = (v) => (v ? Math.hypot(...v) : 0);
+
+// Sets a text only where it changed: the browser lays out again for every one that is set.
+export function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+// The bits of core/repel/base/status.hpp: how bad, and what they mean. `bad` ones ramp the force to
+// zero.
+const BITS = {
+  bad_pose: ["bad", "a pose was not a number: force ramps to zero"],
+  bad_command: ["bad", "the operator's input was not a number: force ramps to zero"],
+  bad_joints: ["bad", "the arm reported no proper joints: force ramps to zero"],
+  clock_fault: ["bad", "the clock stood still or ran back: force ramps to zero"],
+  stale_pairs: ["warn", "some pairs kept an old answer"],
+  late_result: ["warn", "a worker did not answer in time"],
+  torque_limit: ["warn", "a joint torque is at its limit"],
+  crowded_pairs: ["warn", "more pairs are near than there is memory for"],
+  expired_pairs: ["bad", "answers are too old: force ramps to zero"],
+  silent_device: ["bad", "the device is silent: force ramps to zero"],
+  saturated: ["warn", "the operator asks for more than the coupling gives"],
+  joint_limit: ["warn", "a joint is at the end of its range"],
+  network_fault: ["bad", "the network could not be solved: force ramps to zero"],
+  speed_limit: ["warn", "a joint is as fast as it may be"],
+};
+
+// { level: good, warn or bad, text }
+export function describe(status) {
+  const known = status.map((bit) => BITS[bit] ?? ["warn", bit]);
+  if (known.length === 0) return { level: "good", text: "ok" };
+  const bad = known.filter(([level]) => level === "bad");
+  const shown = bad.length > 0 ? bad : known;
+  return { level: shown[0][0], text: shown.map(([, text]) => text).join("; ") };
+}
+
+// Shows what it was last given for at least `ms`: a status of one tick would flicker unread.
+export class Held {
+  #value = null;
+  #until = 0;
+  constructor(ms) {
+    this.ms = ms;
+  }
+  next(value, now, matters) {
+    if (matters || now >= this.#until || this.#value === null) {
+      this.#value = value;
+      this.#until = matters ? now + this.ms : 0;
+    }
+    return this.#value;
+  }
+}

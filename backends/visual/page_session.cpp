@@ -1,0 +1,115 @@
+#include "page_session.hpp"
+
+#include <utility>
+
+#include <boost/asio/buffer.hpp>
+
+namespace repel::visual {
+namespace {
+
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+
+}  // namespace
+
+PageSession::PageSession(beast::tcp_stream&& stream, const ServerOptions& options, Events events)
+    : socket_(std::move(stream)),
+      messages_per_second_(options.messages_per_second),
+      events_(std::move(events)) {
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has time limits of its own
+  websocket::stream_base::timeout limits =
+      websocket::stream_base::timeout::suggested(beast::role_type::server);
+  limits.idle_timeout = std::chrono::seconds(10);
+  limits.keep_alive_pings = true;
+  socket_.set_option(limits);
+  socket_.read_message_max(options.message_bytes);
+}
+
+void PageSession::open(const Request& request) {
+  socket_.async_accept(request, [self = shared_from_this()](Error error) {
+    if (error) return self->events_.failed();
+    self->open_ = true;
+    Error ignored;
+    // Pictures are small and late ones are worth nothing.
+    beast::get_lowest_layer(self->socket_)
+        .socket()
+        .set_option(boost::asio::ip::tcp::no_delay(true), ignored);
+    self->socket_.text(true);
+    self->events_.opened();
+    self->read();
+  });
+}
+
+// Each of these asks for the next when it is called back: from a new stack, not from its own.
+// NOLINTBEGIN(misc-no-recursion)
+void PageSession::read() {
+  socket_.async_read(incoming_, [self = shared_from_this()](Error error, std::size_t bytes) {
+    if (error) return self->end();
+    self->hear(bytes);
+  });
+}
+
+void PageSession::hear(std::size_t bytes) {
+  if (is_flooding()) return close(websocket::close_code::policy_error);
+  const auto data = incoming_.cdata();
+  events_.heard({static_cast<const char*>(data.data()), data.size()});
+  incoming_.consume(bytes);
+  if (closing_) return end();  // by the answer, which was one too many
+  read();
+}
+// NOLINTEND(misc-no-recursion)
+
+bool PageSession::is_flooding() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - second_ >= std::chrono::seconds(1)) {
+    second_ = now;
+    heard_in_second_ = 0;
+  }
+  return ++heard_in_second_ > messages_per_second_;
+}
+
+void PageSession::send(std::shared_ptr<const std::string> text) {
+  if (!open_ || closing_) return;
+  if (waiting_.size() >= most_waiting) return cut();
+  waiting_.push_back(std::move(text));
+  if (waiting_.size() == 1) write();
+}
+
+void PageSession::show(const std::shared_ptr<const std::string>& text) {
+  if (picture_ != nullptr || !open_ || closing_) return;
+  picture_ = text.get();
+  send(text);
+}
+
+// NOLINTBEGIN(misc-no-recursion): as above.
+void PageSession::write() {
+  socket_.async_write(boost::asio::buffer(*waiting_.front()),
+                      [self = shared_from_this()](Error error, std::size_t) {
+                        if (self->waiting_.front().get() == self->picture_)
+                          self->picture_ = nullptr;
+                        self->waiting_.pop_front();
+                        if (error) return self->cut();
+                        if (!self->waiting_.empty() && !self->closing_) self->write();
+                      });
+}
+// NOLINTEND(misc-no-recursion)
+
+void PageSession::close(websocket::close_code code) {
+  if (closing_) return;
+  closing_ = true;
+  socket_.async_close(code, [self = shared_from_this()](Error) { self->end(); });
+}
+
+void PageSession::cut() {
+  closing_ = true;
+  Error ignored;
+  beast::get_lowest_layer(socket_).socket().close(ignored);
+}
+
+void PageSession::end() {
+  cut();  // a message may still be on its way to a page that does not take it
+  if (!std::exchange(open_, false)) return;
+  events_.closed();
+}
+
+}  // namespace repel::visual

@@ -1,0 +1,240 @@
+#include <repel/visual/messages.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace repel::visual {
+namespace messages_test {
+
+using Json = nlohmann::json;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// A tool of two parts, a link, two obstacles, of which one lets pass; one arm.
+struct Stage {
+  explicit Stage(const std::string& name = "stage") {
+    tool = world.add_body("tool");
+    link = world.add_body("link");
+    Pose X = Pose::Identity();
+    X.translation() = Vec3(0.1, -0.2, 0.3);
+    const PartId palm = world.add_part(tool, name + " palm", Shape::box({0.1, 0.1, 0.1}), X);
+    const PartId ball = world.add_part(link, "ball", Shape::sphere(0.1));
+    const PartId wall = world.add_part(World::fixed, "wall", Shape::box({1, 1, 0.1}));
+    const PartId gate = world.add_part(World::fixed, "gate", Shape::cylinder(0.3, 0.1));
+    world.add_pair(palm, wall, {.range = 0.02});
+    world.add_pair(palm, gate, {.range = 0.01, .ceiling = 10.0, .passable = true});
+    world.add_pair(ball, wall, {.range = 0.03});
+    cast.scene = name;
+    ArmCast& arm = cast.arms.emplace_back();
+    arm.tool = tool;
+    arm.links = {link};
+    arm.joints = {"revolute", "prismatic"};
+    arm.modules = {"spaceball", "kbb2"};
+    arm.phases = {"down", name};
+    shot.arms.resize(1);
+    shot.X_WB = {Pose::Identity(), X, Pose::Identity()};
+    shot.pairs.resize(4);
+  }
+
+  World world;
+  BodyId tool;
+  BodyId link;
+  Cast cast;
+  Snapshot shot;
+};
+
+std::set<std::string> keys_of(const Json& object) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.insert(key);
+  return keys;
+}
+
+TEST(Messages, TheSceneIsOfTheDocumentedForm) {
+  const Stage stage;
+  const Json scene = Json::parse(scene_message(stage.cast, stage.world));
+  EXPECT_EQ(keys_of(scene),
+            (std::set<std::string>{"type", "version", "name", "rate_hz", "period_us", "mode",
+                                   "duration_s", "bodies", "parts", "pairs", "arms"}));
+  EXPECT_EQ(scene.at("type"), "scene");
+  EXPECT_EQ(scene.at("mode"), "live");
+  EXPECT_EQ(scene.at("period_us"), 2500.0);
+  EXPECT_EQ(scene.at("bodies"), (Json{"world", "tool", "link"}));
+  EXPECT_EQ(scene.at("pairs"), (Json{{0, 2, 0.02}, {0, 3, 0.01}, {1, 2, 0.03}}));
+  const Json& parts = scene.at("parts");
+  ASSERT_EQ(parts.size(), 4U);
+  const char* groups[] = {"tool", "link", "obstacle", "obstacle"};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Json& part = parts[i];
+    EXPECT_EQ(keys_of(part), (std::set<std::string>{"name", "body", "group", "arm", "pose",
+                                                    "passable", "range_m", "levels"}));
+    EXPECT_EQ(part.at("group"), groups[i]);
+    EXPECT_EQ(part.at("passable"), i == 3);
+    EXPECT_EQ(part.at("pose").size(), 7U);
+    ASSERT_EQ(part.at("levels").size(),
+              static_cast<std::size_t>(stage.world.parts()[i].shape.levels()));
+    EXPECT_EQ(part.at("levels")[0].at("depth_m"), 0.0);
+    for (const Json& level : part.at("levels")) {
+      EXPECT_EQ(keys_of(level), (std::set<std::string>{"depth_m", "vertices", "triangles"}));
+      EXPECT_EQ(level.at("vertices").size() % 3, 0U);
+      EXPECT_EQ(level.at("triangles").size() % 3, 0U);
+      for (const Json& vertex : level.at("triangles")) {
+        EXPECT_LT(vertex.get<std::size_t>(), level.at("vertices").size() / 3);
+      }
+    }
+  }
+  EXPECT_EQ(parts[2].at("range_m"), 0.03);
+  EXPECT_EQ(parts[0].at("pose"), (Json{0.1, -0.2, 0.3, 0.0, 0.0, 0.0, 1.0}));
+  EXPECT_EQ(keys_of(scene.at("arms")[0]),
+            (std::set<std::string>{"name", "joints", "modules", "tool_body", "max_speed_m_s",
+                                   "max_turn_rad_s"}));
+}
+
+TEST(Messages, AFrameIsOfTheDocumentedForm) {
+  Stage stage;
+  TickRecord& record = stage.shot.arms.front();
+  record.tick = 1234;
+  record.time = 3.085;
+  record.phase = 1;
+  record.status = status::saturated | status::joint_limit;
+  record.virtual_force.force = Vec3(1, 2, 3);
+  record.q = {0.5, -0.25};
+  stage.shot.pair_count = 1;
+  stage.shot.pairs[0].pair = {2};
+  stage.shot.pairs[0].force = 12.5;
+  const TickSample samples[] = {{1233, 0.01, 2.0, {}}, {1234, infinite, 0.0, {}}};
+  const Json frame =
+      Json::parse(frame_message(stage.cast, stage.world, stage.shot, samples, false));
+  EXPECT_EQ(keys_of(frame), (std::set<std::string>{"type", "tick", "time_s", "running", "phase",
+                                                   "status", "bodies", "pairs", "pairs_omitted",
+                                                   "near", "evaluated", "of", "arms", "recent"}));
+  EXPECT_EQ(frame.at("tick"), 1234);
+  EXPECT_EQ(frame.at("running"), false);
+  EXPECT_EQ(frame.at("phase"), "stage");
+  EXPECT_EQ(frame.at("status"), (Json{"saturated", "joint_limit"}));
+  EXPECT_EQ(frame.at("bodies").size(), 3U);
+  EXPECT_EQ(frame.at("of"), 3);
+  ASSERT_EQ(frame.at("pairs").size(), 1U);
+  EXPECT_EQ(keys_of(frame.at("pairs")[0]),
+            (std::set<std::string>{"i", "d", "lower", "upper", "a", "b", "n", "level", "f", "stale",
+                                   "age"}));
+  EXPECT_EQ(frame.at("pairs")[0].at("i"), 2);
+  EXPECT_EQ(frame.at("pairs")[0].at("f"), 12.5);
+  ASSERT_EQ(frame.at("arms").size(), 1U);
+  const Json& arm = frame.at("arms")[0];
+  EXPECT_EQ(keys_of(arm), (std::set<std::string>{"force", "torque", "coupling", "lever_nm", "gain",
+                                                 "v", "q", "energy_j"}));
+  EXPECT_EQ(arm.at("force"), (Json{1.0, 2.0, 3.0}));
+  EXPECT_EQ(arm.at("q"), (Json{0.5, -0.25}));
+  EXPECT_EQ(arm.at("energy_j").size(), 2U);
+  EXPECT_EQ(frame.at("recent").at("tick"), (Json{1233, 1234}));
+  EXPECT_EQ(frame.at("recent").at("nearest_m"), (Json{0.01, nullptr}));
+  EXPECT_EQ(keys_of(frame.at("recent")),
+            (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us"}));
+}
+
+// A page that cannot read a message is blind when it matters most.
+TEST(Messages, WhatIsNoNumberIsNull) {
+  Stage stage;
+  TickRecord& record = stage.shot.arms.front();
+  for (const double bad : {nan, infinite, -infinite}) {
+    const Vec3 all = Vec3::Constant(bad);
+    record.time = record.lever_torque = record.gain = bad;
+    record.virtual_force = record.coupling = {all, all};
+    record.v_WT = all;
+    record.q.fill(bad);
+    record.energy.fill(static_cast<float>(bad));
+    stage.shot.X_WB[1].matrix().fill(bad);
+    stage.shot.pair_count = 1;
+    NearPair& near = stage.shot.pairs[0];
+    near.pair = {0};
+    near.force = bad;
+    Separation& s = near.separation;
+    s.distance = s.lower = s.upper = bad;
+    s.p_WA = s.p_WB = s.extraction_W = all;
+    const TickSample sample{7, bad, bad, {}};
+    const Json frame =
+        Json::parse(frame_message(stage.cast, stage.world, stage.shot, {&sample, 1}, true));
+    EXPECT_TRUE(frame.at("time_s").is_null());
+    EXPECT_TRUE(frame.at("bodies")[1][0].is_null());
+    for (const char* key : {"d", "lower", "upper", "f"}) {
+      EXPECT_TRUE(frame.at("pairs")[0].at(key).is_null()) << key;
+    }
+    for (const char* key : {"force", "torque", "coupling", "v", "q", "energy_j"}) {
+      EXPECT_TRUE(frame.at("arms")[0].at(key)[0].is_null()) << key;
+    }
+    EXPECT_TRUE(frame.at("recent").at("nearest_m")[0].is_null());
+    EXPECT_TRUE(frame.at("recent").at("force_n")[0].is_null());
+  }
+}
+
+TEST(Messages, AnyNameGivesTextThatCanBeRead) {
+  const struct {
+    std::string name;
+    bool is_text;
+  } names[] = {{"\"quoted\"", true},
+               {"a\nb\r\t\\", true},
+               {"</script><script>alert(1)</script>", true},
+               {"\xf0\x9f\xa6\xbe", true},
+               {std::string("a\0b", 3), true},
+               {"", true},
+               {"\xff\xfe", false},
+               {"\xc3", false},
+               {"\xed\xa0\x80", false}};
+  for (const auto& [name, is_text] : names) {
+    const Stage stage(name);
+    const Json scene = Json::parse(scene_message(stage.cast, stage.world));
+    EXPECT_TRUE(scene.at("name").is_string());
+    Stage shown(name);
+    shown.shot.arms.front().phase = 1;
+    const Json frame = Json::parse(frame_message(shown.cast, shown.world, shown.shot, {}, true));
+    EXPECT_TRUE(frame.at("phase").is_string());
+    if (!is_text) continue;
+    EXPECT_EQ(scene.at("name"), name);
+    EXPECT_EQ(scene.at("parts")[0].at("name"), name + " palm");
+    EXPECT_EQ(frame.at("phase"), name);
+  }
+}
+
+TEST(Messages, APhaseBeyondTheScriptHasNoName) {
+  Stage stage;
+  for (const std::int32_t phase : {-1, 2, std::numeric_limits<std::int32_t>::max()}) {
+    stage.shot.arms.front().phase = phase;
+    const Json frame = Json::parse(frame_message(stage.cast, stage.world, stage.shot, {}, true));
+    EXPECT_EQ(frame.at("phase"), "");
+  }
+}
+
+TEST(Messages, TimingCountsEveryTickInOneBin) {
+  using namespace std::chrono_literals;
+  Timing timing;
+  const std::chrono::nanoseconds times[] = {-5us, 0ns, 50ns, 100ns, 1us, 99us, 1ms, 100ms, 24h};
+  for (const auto late : times) {
+    for (const auto compute : times) timing.add({late, compute}, 2500us);
+  }
+  const Json message = Json::parse(timing_message(timing));
+  EXPECT_EQ(message.at("edges_us").size(), message.at("compute").size() + 1);
+  EXPECT_EQ(message.at("edges_us").size(), message.at("late").size() + 1);
+  for (const char* what : {"compute", "late"}) {
+    std::int64_t sum = 0;
+    for (const Json& count : message.at(what)) sum += count.get<std::int64_t>();
+    EXPECT_EQ(sum, 81) << what;
+  }
+  EXPECT_EQ(message.at("ticks"), 81);
+  // Those with 100 ms or a day in them, which are 2 of 9 twice over.
+  EXPECT_EQ(message.at("misses"), 81 - 49);
+  for (const char* key : {"p50", "p99", "max"}) {
+    EXPECT_TRUE(message.at("compute_us").at(key).is_number());
+    EXPECT_TRUE(message.at("late_us").at(key).is_number());
+  }
+}
+
+TEST(Messages, TimingOfNothingCanBeRead) {
+  const Json message = Json::parse(timing_message(Timing()));
+  EXPECT_EQ(message.at("ticks"), 0);
+}
+
+}  // namespace messages_test
+}  // namespace repel::visual

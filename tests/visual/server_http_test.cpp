@@ -1,0 +1,181 @@
+// What the server answers to requests, right and wrong.
+#include <repel/base/setup_error.hpp>
+
+#include "end_to_end/folder.hpp"
+#include "visual/fake_show.hpp"
+
+namespace repel::visual {
+namespace server_http_test {
+
+using test::Answer;
+using test::Ask;
+using test::ask;
+using test::Line;
+
+TEST(ServerHttp, FilesComeWithTheirTypeAndMayLoadNothingFromElsewhere) {
+  const Stage stage;
+  const Answer page = ask(stage.port, {});
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.body, "<p>page</p>");
+  EXPECT_TRUE(page.has("Content-Type: text/html; charset=utf-8")) << page.head;
+  EXPECT_TRUE(page.has("X-Content-Type-Options: nosniff")) << page.head;
+  EXPECT_NE(page.head.find("Content-Security-Policy: default-src 'self';"), std::string::npos);
+  EXPECT_NE(page.head.find("frame-ancestors 'none'"), std::string::npos);
+  for (const char* foreign : {"http:", "https:", " *", "unsafe-inline", "unsafe-eval"}) {
+    EXPECT_EQ(page.head.find(foreign), std::string::npos) << foreign;
+  }
+  const Answer style = ask(stage.port, {"GET", "/page.css?v=1"});
+  EXPECT_EQ(style.status, 200);
+  EXPECT_TRUE(style.has("Content-Type: text/css; charset=utf-8")) << style.head;
+  EXPECT_EQ(style.body, "p {}");
+}
+
+TEST(ServerHttp, WhatIsNotThereIsNotFound) {
+  const Stage stage;
+  for (const char* target : {"/no.css", "/../page.css", "/%70age.css", "//", "/page.css/", "*",
+                             "http://127.0.0.1/", "/live", "/?/../../etc/passwd"}) {
+    const int status = ask(stage.port, {"GET", target}).status;
+    EXPECT_EQ(status, std::string(target) == "/?/../../etc/passwd" ? 200 : 404) << target;
+  }
+}
+
+TEST(ServerHttp, OtherMethodsAreRefused) {
+  const Stage stage;
+  const Answer head = ask(stage.port, {"HEAD", "/page.css"});
+  EXPECT_EQ(head.status, 200);
+  EXPECT_EQ(head.body, "");
+  for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT"}) {
+    EXPECT_EQ(ask(stage.port, {method}).status, 405) << method;
+  }
+  const std::string upgrade = test::upgrade_lines();
+  EXPECT_EQ(ask(stage.port, {"POST", "/live", "", upgrade}).status / 100, 4);
+}
+
+// A page of another site, whatever it has its name point to.
+TEST(ServerHttp, OtherHostsAndOriginsAreForbidden) {
+  const Stage stage;
+  const std::string port = ":" + std::to_string(stage.port);
+  for (const char* target : {"/", "/live"}) {
+    const std::string upgrade = target[1] == '\0' ? "" : test::upgrade_lines();
+    for (const std::string& host : {"evil.example" + port, std::string("127.0.0.1:1"),
+                                    std::string("127.0.0.1"), std::string(" ")}) {
+      EXPECT_EQ(ask(stage.port, {"GET", target, host, upgrade}).status, 403) << target << host;
+    }
+    for (const std::string& origin :
+         {std::string("null"), "http://evil.example" + port, std::string("http://localhost:1"),
+          "https://127.0.0.1" + port, std::string("file://")}) {
+      std::string lines = upgrade;
+      lines += "Origin: " + origin + "\r\n";
+      EXPECT_EQ(ask(stage.port, {"GET", target, "", lines}).status, 403) << target << origin;
+    }
+  }
+  EXPECT_EQ(stage.show.count("opened"), 0);
+  EXPECT_EQ(ask(stage.port, {"GET", "/", "localhost" + port}).status, 200);
+}
+
+TEST(ServerHttp, ItsOwnPageMayOpenTheLineAtOnePathOnly) {
+  const Stage stage;
+  const std::string host = "http://127.0.0.1:" + std::to_string(stage.port);
+  for (const std::string& origin : {std::string(), host}) {
+    Line line(stage.port);
+    (void)line.send(Ask{"GET", "/live", "", test::upgrade_lines(origin)}.text(stage.port));
+    const Answer answer(line.receive());
+    EXPECT_EQ(answer.status, 101);
+    EXPECT_TRUE(answer.has("Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=")) << answer.head;
+  }
+  for (const char* target : {"/", "/page.css", "/Live", "/live/", "/live?x=1"}) {
+    EXPECT_EQ(ask(stage.port, {"GET", target, "", test::upgrade_lines()}).status, 404) << target;
+  }
+}
+
+TEST(ServerHttp, GarbageIsNotAnsweredAndHarmsNobody) {
+  Stage stage;
+  for (const std::string& garbage :
+       {std::string("\0\1\2\3\r\n\r\n", 8), std::string(100000, 'x'), std::string("GET\r\n\r\n"),
+        std::string("GET / HTTP/9.9\r\n\r\n"), "GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n",
+        "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " + std::string(20000, 'a') + "\r\n\r\n",
+        std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc", 9) + std::string(500, '\0'),
+        std::string("GET / HTTP/1.1\r\nContent-Length: 99999999999999999999\r\n\r\n"),
+        std::string("GET / HTTP/1.1\r\nHost\r\n\r\n")}) {
+    Line line(stage.port);
+    (void)line.send(garbage);
+    line.end_sending();
+    EXPECT_NE(Answer(line.receive_all()).status, 200);
+  }
+  stage.expect_alive();
+}
+
+// A hundred that say nothing, or half of something: whoever is there already goes on, and when they
+// are gone others can come.
+TEST(ServerHttp, ManyThatSayNothingHoldUpNobodyWhoIsThere) {
+  Stage stage;
+  test::WebPage page(stage.port);
+  {
+    std::vector<Line> silent;
+    for (int i = 0; i < 100; ++i) {
+      silent.emplace_back(stage.port);
+      if (i % 2 == 0) (void)silent.back().send("GET / HTTP/1.1\r\nHost: 127");
+    }
+    stage.expect_pictures(page, 20);
+  }
+  EXPECT_TRUE(eventually([&] { return ask(stage.port, {}).status == 200; }));
+  stage.expect_alive();
+}
+
+TEST(ServerHttp, HalfARequestIsGivenUp) {
+  Stage stage;
+  Line line(stage.port);
+  (void)line.send("GET / HTTP/1.1\r\nHost: 127");
+  EXPECT_EQ(line.receive(), "");
+  EXPECT_TRUE(line.ended());
+  stage.expect_alive();
+}
+
+TEST(ServerHttp, APortInUseIsNamed) {
+  Stage stage;
+  ServerOptions options;
+  options.port = stage.port;
+  FakeShow show;
+  try {
+    const Server second(options, {}, show);
+    FAIL() << "two servers on one port";
+  } catch (const SetupError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("127.0.0.1:" + std::to_string(stage.port)), std::string::npos) << what;
+  }
+  stage.expect_alive();
+}
+
+TEST(ServerHttp, AnAddressThatIsNotOursIsNamed) {
+  FakeShow show;
+  for (const char* address : {"192.0.2.1", "no address", "", "localhost"}) {
+    ServerOptions options;
+    options.address = address;
+    options.port = 0;
+    EXPECT_THROW(Server(options, {}, show), SetupError) << address;
+  }
+}
+
+TEST(ServerHttp, TheUrlIsWhereItListens) {
+  Stage stage;
+  EXPECT_EQ(stage.server->url(), "http://127.0.0.1:" + std::to_string(stage.port) + "/");
+}
+
+TEST(ServerHttp, ItsFilesAreThoseOfAFolder) {
+  const test::Folder folder;
+  EXPECT_THROW((void)load_assets(folder / "none"), SetupError);
+  EXPECT_THROW((void)load_assets(folder / ""), SetupError);
+  (void)folder.with("index.html", "<p>");
+  (void)folder.with("secret.key", "42");
+  test::fs::create_directory(folder / "lib");
+  (void)folder.with("lib/a.js", "1");
+  std::map<std::string, std::string> types;
+  for (const Asset& asset : load_assets(folder / "")) types[asset.target] = asset.media_type;
+  EXPECT_EQ(types,
+            (std::map<std::string, std::string>{{"/", "text/html; charset=utf-8"},
+                                                {"/index.html", "text/html; charset=utf-8"},
+                                                {"/lib/a.js", "text/javascript; charset=utf-8"}}));
+}
+
+}  // namespace server_http_test
+}  // namespace repel::visual
