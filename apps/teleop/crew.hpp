@@ -11,6 +11,7 @@
 #include <repel/schedule/coprocessor.hpp>
 
 #include "cell.hpp"
+#include "hands.hpp"
 
 namespace repel::teleop {
 
@@ -18,16 +19,18 @@ namespace repel::teleop {
 template <TorqueDrivenArm Arm>
 class Crew {
  public:
-  using Member = Teleoperator<Arm, Kinematics>;
+  using Member = Teleoperator<Arm, Kinematics, Hands>;
 
   /// @param arms one for each of the cell, in the same order; kept by reference, as is the cell
+  /// @param controls, device of the first arm; null: its script drives it
   Crew(const scene::Scene& scene, Cell& cell, std::span<Arm> arms, Coprocessor& coprocessor,
-       double rate_hz)
+       Controls* controls, devices::DeviceLink* device, double rate_hz)
       : cell_(cell), coprocessor_(coprocessor), period_(std::llround(1e9 / rate_hz)) {
     for (std::size_t i = 0; i < arms.size(); ++i) {
       const scene::Station& station = scene.station(i);
       Manipulator& arm = cell.arms[i];
-      operators_.emplace_back(station.script);
+      operators_.emplace_back(station.script, i == 0 ? controls : nullptr,
+                              i == 0 ? device : nullptr);
       members_.emplace_back(arm.robot.arm, arms[i], arm.kinematics, cell.world, arm.tool,
                             coprocessor, operators_.back(),
                             scene::build_network(scene, station, arm.robot.arm, rate_hz), period_,
@@ -46,6 +49,11 @@ class Crew {
     return records_;
   }
 
+  /// At the next tick the operator of that arm does what was recorded; `record` must stand.
+  void follow(std::size_t arm, const TickRecord& record) noexcept {
+    operators_[arm].follow(record);
+  }
+
   /// See Teleoperator::rehearse.
   void rehearse() noexcept {
     for (Member& member : members_) member.rehearse();
@@ -57,7 +65,7 @@ class Crew {
   Cell& cell_;
   Coprocessor& coprocessor_;
   std::chrono::nanoseconds period_;
-  std::deque<network::ScriptedOperator> operators_;
+  std::deque<Hands> operators_;
   std::deque<Member> members_;
   std::vector<const TickRecord*> records_;
   std::int64_t ticks_ = 0;

@@ -1,15 +1,52 @@
 /// @file
-/// The log of a run: every tick as it was.
+/// Logs of every tick, written by a thread of their own.
 #pragma once
 
-#include <iosfwd>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
 
-#include "run.hpp"
+#include <repel/loop/tap.hpp>
+
+#include "heading.hpp"
 
 namespace repel::teleop {
 
-/// Writes one line per tick: first what the world did, then each arm, the columns of a partner
-/// behind its name and a slash.
-void write_csv(const RunResult& result, std::ostream& out);
+/// A file that gets every tick. Not for the tick itself: it takes heap and makes system calls.
+class TickLog {
+ public:
+  virtual void write(const Snapshot& tick) = 0;
+  /// What was written so far survives the program.
+  virtual void flush() = 0;
+  /// Ends the file. @throws SetupError if something of it could not be written
+  virtual void close(std::int64_t dropped) = 0;
+
+  TickLog() = default;
+  TickLog(const TickLog&) = delete;
+  TickLog& operator=(const TickLog&) = delete;
+  virtual ~TickLog() = default;
+};
+
+/// A row for every tick, a column for every number, units in the names.
+/// @throws SetupError when the file cannot be written
+[[nodiscard]] std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading);
+
+/// Takes ticks out of the tap and writes them. Never delays the loop: what the thread is too slow
+/// for is dropped and counted by the tap.
+class LogThread {
+ public:
+  /// Both must live as long as it does.
+  LogThread(Ring<Snapshot>& ticks, TickLog& log);
+
+  /// Writes what is left and ends the file; returns how many ticks were dropped.
+  /// @throws SetupError if something of it could not be written
+  std::int64_t close();
+
+ private:
+  Ring<Snapshot>& ticks_;
+  TickLog& log_;
+  std::jthread thread_;
+};
 
 }  // namespace repel::teleop

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "budget.hpp"
 #include "command_line.hpp"
-#include "log.hpp"
+#include "device.hpp"
+#include "html_report.hpp"
+#include "mcap_log.hpp"
 #include "report.hpp"
-#include "run.hpp"
+#include "session.hpp"
 
 namespace {
 
@@ -19,19 +22,37 @@ using namespace repel;
 
 struct Arguments {
   std::string scene = "anderson_4x8";
-  double rate_hz = 0.0;  ///< 0: the scene's own
-  int threads = -1;      ///< -1: the scene's own
+  bool has_seconds = false;  ///< they were given
+  double rate_hz = 0.0;      ///< 0: the scene's own
+  int threads = -1;          ///< -1: the scene's own
   teleop::RunOptions run;
+  teleop::SessionOptions session;
+  std::string replay;
   std::string report;
+  std::string html;
   std::string log;
 };
 
-/// Folders in which a scene is looked for by name: beside the source this was built in, or where
-/// it was installed.
-std::vector<fs::path> scene_folders() {
+/// Folders beside the source this was built in, and where it was installed.
+std::vector<fs::path> folders_of(const char* in_source, const char* installed) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  return {program / "../../../scenes", program / "../share/repel/scenes"};
+  return {program / "../../.." / in_source, program / "../share/repel" / installed};
+}
+
+/// In which a scene is looked for by name.
+std::vector<fs::path> scene_folders() {
+  return folders_of("scenes", "scenes");
+}
+
+/// Of the files of the live view; the first if there is none.
+std::string page_folder() {
+  const std::vector<fs::path> folders = folders_of("backends/visual/page", "page");
+  std::error_code error;
+  for (const fs::path& folder : folders) {
+    if (fs::exists(folder / "index.html", error)) return fs::weakly_canonical(folder).string();
+  }
+  return folders.front().string();
 }
 
 std::string scene_list() {
@@ -62,8 +83,10 @@ std::string find_scene(const std::string& name) {
 
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
-  app.add_option("--seconds", a.run.seconds, "Scene time to run [s]")
+  app.add_option("--seconds", a.run.seconds,
+                 "Scene time to run [s]; with --view until it is stopped, unless it is given")
       ->capture_default_str()
+      ->each([&a](const std::string&) { a.has_seconds = true; })
       ->check(host::between(0.0, 1e6));
   app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
       ->check(host::between(1.0, 1e5));
@@ -97,51 +120,101 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("--tool-alone", a.run.tool_alone,
                "Keep only the tools off the obstacles, not the links of the arms: the paper's way");
   app.add_option("--report", a.report, "Write the report as JSON to FILE");
-  app.add_option("--log", a.log, "Write every tick as CSV to FILE");
+  app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
+  app.add_option("--log", a.log,
+                 "Write every tick to FILE: a recording if its name ends in .mcap, else CSV");
+  CLI::Option* view = app.add_flag("--view", a.session.view,
+                                   "Serve the live view: a page to look on and to drive from");
+  app.add_option("--listen", a.session.listen, "ADDRESS:PORT of the live view; port 0: any")
+      ->capture_default_str()
+      ->needs(view)
+      ->check(CLI::Validator(teleop::listen_complaint, "ADDRESS:PORT"));
+  app.add_option(
+         "--device", a.session.device,
+         "In place of the script: the master that drives, spacenav (a six-axis mouse, "
+         "through spacenavd) or evdev:PATH (a motorised lever). Until it is stopped, unless "
+         "--seconds is given")
+      ->check(CLI::Validator(teleop::device_complaint, "spacenav or evdev:PATH"));
+  app.add_option("--replay", a.replay,
+                 "In place of a scene: go through the recording FILE again and compare the forces")
+      ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
+                 "--budget", "--every-pair", "--tool-alone", "--device");
   app.footer(
       "Scenes:" + scene_list() +
       "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
       "scene):\n"
-      "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n\n"
-      "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage.");
+      "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
+      "or, in place of the script, the page of --view and what --device names\n\n"
+      "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise.");
 }
 
 /// One line that is written over on a terminal, and a line every five seconds elsewhere.
-void show(const scene::Scene& scene, const teleop::Progress& p, bool terminal) {
+/// @param after what there is when no phase of the script is played
+void show(const scene::Scene& scene, const teleop::Progress& p, const char* after, bool terminal) {
   static double next = 0.0;
   if (!terminal && p.time < next) return;
   next = p.time + 5.0;
   const auto phase = static_cast<std::size_t>(p.phase);
-  const std::string name = phase < scene.script.size() ? scene.script[phase].name : "script over";
+  const std::string name = phase < scene.script.size() ? scene.script[phase].name : after;
   std::fprintf(stderr, "%s%7.2f s  %-28.28s force %7.2f N  misses %lld  %-12s%s",
                terminal ? "\r" : "", p.time, name.c_str(), p.force,
                static_cast<long long>(p.misses), to_text(p.status).c_str(),
                terminal ? "\033[K" : "\n");
 }
 
+/// The scene that was asked for, or the one that was recorded, and how to run it.
+struct Work {
+  scene::Scene scene;
+  teleop::RunOptions options;
+  std::optional<teleop::Recording> recording;
+};
+
+Work work_of(const Arguments& arguments) {
+  Work work;
+  if (!arguments.replay.empty()) {
+    work.recording = teleop::load_recording(arguments.replay, find_scene);
+    work.scene = work.recording->scene;
+    work.options = work.recording->options;
+  } else {
+    work.scene = scene::load(find_scene(arguments.scene));
+    work.options = arguments.run;
+    if (arguments.rate_hz <= 0.0) work.options.rate_hz = work.scene.rate_hz;
+    if (arguments.rate_hz > 0.0) work.options.rate_hz = arguments.rate_hz;
+    work.options.threads = arguments.threads >= 0 ? arguments.threads : work.scene.budget.threads;
+    const bool is_driven = arguments.session.view || !arguments.session.device.empty();
+    if (is_driven && !arguments.has_seconds) work.options.seconds = 1e6;
+  }
+  work.options.keep_records = !arguments.html.empty();
+  work.options.log = arguments.log;
+  return work;
+}
+
 int run(const Arguments& arguments) {
-  const scene::Scene scene = scene::load(find_scene(arguments.scene));
-  teleop::RunOptions options = arguments.run;
-  options.rate_hz = arguments.rate_hz > 0.0 ? arguments.rate_hz : scene.rate_hz;
-  options.threads = arguments.threads >= 0 ? arguments.threads : scene.budget.threads;
-  options.keep_records = !arguments.log.empty();
+  const Work work = work_of(arguments);
+  const teleop::Recording* recording = work.recording ? &*work.recording : nullptr;
+  teleop::SessionOptions session = arguments.session;
+  session.page = page_folder();
   host::Output report(arguments.report);
-  host::Output log(arguments.log);
+  host::Output html(arguments.html);
+  const bool by_hand = session.view || !session.device.empty();
+  const char* after = by_hand ? "by hand, or at rest" : "script over";
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const teleop::RunResult result =
-      teleop::run(scene, options, host::interruption(),
-                  [&](const teleop::Progress& p) { show(scene, p, terminal); });
+      teleop::run_session(work.scene, work.options, session, recording, host::interruption(),
+                          [&](const teleop::Progress& p) { show(work.scene, p, after, terminal); });
   if (terminal) std::fputs("\r\033[K", stderr);
   teleop::print_report(result, stdout);
+  if (recording != nullptr) teleop::print_replay(*recording, result, stdout);
   if (report.wanted()) {
     teleop::write_json(result, report.stream());
     report.close();
   }
-  if (log.wanted()) {
-    teleop::write_csv(result, log.stream());
-    log.close();
+  if (html.wanted()) {
+    teleop::write_html(result, html.stream());
+    html.close();
   }
-  return 0;
+  const teleop::ReplayReport& replay = result.replay;
+  return replay.same == replay.ticks ? 0 : 3;
 }
 
 }  // namespace

@@ -194,8 +194,33 @@ void print_report(const RunResult& r, std::FILE* out) {
   print_contact(r, out);
   print_network(r, out);
   print_counts(r, out);
+  if (!r.options.log.empty()) {
+    std::fprintf(out, "  log                    %lld ticks dropped\n",
+                 static_cast<long long>(r.log_dropped));
+  }
   for (const ArmResult& arm : r.arms) print_status(arm, out);
   host::print_machine(r.machine, out);
+}
+
+void print_replay(const Recording& recording, const RunResult& result, std::FILE* out) {
+  const ReplayReport& r = result.replay;
+  std::fprintf(out, "\n%s: %zu ticks recorded", recording.file.c_str(), recording.ticks());
+  if (recording.missing > 0) {
+    std::fprintf(out, ", then %lld that were dropped; what follows them is left out",
+                 static_cast<long long>(recording.missing));
+  }
+  std::fprintf(out, "\n");
+  if (!recording.not_whole.empty()) {
+    std::fprintf(out, "  ends early: %s\n", recording.not_whole.c_str());
+  }
+  std::fprintf(out, "  the same forces        in %lld of %lld ticks, bit for bit\n",
+               static_cast<long long>(r.same), static_cast<long long>(r.ticks));
+  if (r.first_difference < 0) return;
+  std::fprintf(out,
+               "  first difference       in tick %lld; virtual forces by at most %.3g N. A wall "
+               "budget or\n                         a worker that was late makes a run that no "
+               "replay can repeat\n",
+               static_cast<long long>(r.first_difference), r.force_difference);
 }
 
 void write_json(const RunResult& r, std::ostream& file) {
@@ -227,6 +252,13 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["page_faults_in_tick"] = host::known(r.page_faults_in_tick);
   report["voluntary_context_switches_in_tick"] = host::known(r.voluntary_switches_in_tick);
   report["involuntary_context_switches_in_tick"] = host::known(r.involuntary_switches_in_tick);
+  if (!r.options.log.empty()) report["log_ticks_dropped"] = r.log_dropped;
+  if (r.replay.ticks > 0) {
+    report["replay"] = {{"ticks", r.replay.ticks},
+                        {"same", r.replay.same},
+                        {"first_difference", r.replay.first_difference},
+                        {"force_difference_n", r.replay.force_difference}};
+  }
   report["machine"] = host::to_json(r.machine);
   host::write(report, file);
 }

@@ -2,15 +2,9 @@
 
 #include <algorithm>
 
+#include "heading.hpp"
+
 namespace repel::teleop {
-namespace {
-
-std::string name_of(const World& world, PairId id) {
-  const Pair& pair = world.pair(id);
-  return world.part(pair.a).name + " - " + world.part(pair.b).name;
-}
-
-}  // namespace
 
 // Pairs are laid out obstacle by obstacle, with every part of tools and arms in turn.
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result) {

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <thread>
+#include <type_traits>
 
 #include <repel/ideal/arm.hpp>
 #include <repel/loop/gain_check.hpp>
@@ -22,7 +24,8 @@
 #include "contact.hpp"
 #include "crew.hpp"
 #include "heap_guard.hpp"
-#include "metronome.hpp"
+#include "pace.hpp"
+#include "replay.hpp"
 #include "results.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
@@ -98,18 +101,31 @@ bool over_budget(const scene::Budget& budget, nanoseconds compute) {
   return budget.wall_us > 0.0 && 1e-3 * static_cast<double>(compute.count()) > budget.wall_us;
 }
 
+std::int64_t ticks_of(const RunOptions& options, const Recording* recording) {
+  if (recording != nullptr) return static_cast<std::int64_t>(recording->ticks());
+  return std::llround(options.seconds * options.rate_hz);
+}
+
+/// Half a gigabyte of records, 20 minutes at 400 Hz.
+constexpr std::int64_t most_kept = 500000;
+
+/// Of how many ticks the records are kept.
+std::int64_t kept_ticks(const RunOptions& options, std::int64_t ticks) {
+  return options.keep_records ? std::min<std::int64_t>(ticks, most_kept) : 0;
+}
+
 // Each by itself: a copy of an empty recorder has no room.
 std::vector<Recorder> recorders_for(const RunOptions& options, std::size_t arms,
                                     std::int64_t ticks) {
-  const std::int64_t kept = options.keep_records ? std::min<std::int64_t>(ticks, 4000000) : 0;
+  const std::int64_t kept = kept_ticks(options, ticks);
   std::vector<Recorder> recorders;
   for (std::size_t i = 0; i < arms; ++i) recorders.emplace_back(static_cast<std::size_t>(kept));
   return recorders;
 }
 
 /// What is kept of a tick, outside of it.
-void note_tick(std::span<const TickRecord* const> records, RunResult& result,
-               std::vector<Recorder>& recorders) {
+void note_tick(std::span<const TickRecord* const> records, const TickTimes& times,
+               RunResult& result, std::vector<Recorder>& recorders) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     result.arms[i].totals.add(*records[i]);
     result.network_time.record(records[i]->network_time);
@@ -117,60 +133,147 @@ void note_tick(std::span<const TickRecord* const> records, RunResult& result,
   }
   result.most_support_pairs =
       std::max(result.most_support_pairs, records.front()->pairs.iterations);
+  result.deadline.record(times.late, times.compute);
+  result.compute += times.compute;
+  result.over_budget += over_budget(result.scene.budget, times.compute) ? 1 : 0;
+  if (result.times.size() < result.times.capacity()) result.times.push_back(times);
+}
+
+Beating beating_of(const RunOptions& options, const Company& company) {
+  if (company.recording != nullptr && company.controls != nullptr) return Beating::shown;
+  return options.fast ? Beating::at_once : Beating::by_the_clock;
+}
+
+/// Puts what was recorded of the tick in the place of arms and operators.
+template <class Arm>
+void follow(const Recording& recording, std::size_t tick, std::span<Arm> arms, Crew<Arm>& crew) {
+  if constexpr (std::is_same_v<Arm, RecordedArm>) {
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+      arms[i].follow(recording.arms[i][tick]);
+      crew.follow(i, recording.arms[i][tick]);
+    }
+  }
+}
+
+/// All that outlives a tick.
+template <TorqueDrivenArm Arm>
+struct Shift {
+  std::span<Arm> arms;
+  Cell& cell;
+  RunResult& result;
+  const Company& company;
+  const std::atomic<bool>& stop;
+};
+
+/// What the hand is to feel, faded as the forces on the arm are.
+void show_force(devices::DeviceLink* device, const TickRecord& record) {
+#ifdef REPEL_TELEOP_DEVICES
+  if (device == nullptr) return;
+  const Wrench& F = record.virtual_force;
+  device->servo_cf(record.gain * record.lever_torque,
+                   {record.gain * F.force, record.gain * F.torque});
+#else
+  (void)device;
+  (void)record;
+#endif
+}
+
+/// Tells those who look on of a tick, outside of it.
+void show_tick(const Company& company, const Coprocessor& coprocessor, bool fast,
+               std::span<const TickRecord* const> records, const TickTimes& times) {
+  if (company.tap == nullptr) return;
+  // Not by the clock a log is whole: the run waits for it.
+  while (fast && company.tap->has_log() && company.tap->log().full()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  company.tap->note(coprocessor, records, times);
+}
+
+/// The ticks, one after the other.
+template <TorqueDrivenArm Arm>
+void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& coprocessor,
+                std::vector<Recorder>& recorders, Mailbox<Progress>& progress, TickUsage& usage) {
+  RunResult& result = shift.result;
+  const RunOptions& options = result.options;
+  const Recording* recording = shift.company.recording;
+  const double period_s = 1.0 / options.rate_hz;
+  const nanoseconds period(std::llround(1e9 * period_s));
+  Pace pace(beating_of(options, shift.company), period, shift.company.controls);
+  const std::int64_t ticks = ticks_of(options, recording);
+  std::span<const TickRecord* const> records;
+  TickTimes times;
+  const auto show_last = [&] {
+    if (shift.company.tap != nullptr && !records.empty())
+      shift.company.tap->show(coprocessor, records, times);
+  };
+  for (std::int64_t k = 0; k < ticks && !shift.stop; ++k) {
+    const auto tick = static_cast<std::size_t>(k);
+    const double time = period_s * static_cast<double>(k);
+    if (pace.begins_anew(time)) break;
+    const nanoseconds late = pace.wait(
+        time, shift.stop, [&] { crew.rehearse(); }, show_last);
+    if (recording != nullptr) follow(*recording, tick, shift.arms, crew);
+    usage.begin();
+    const auto begin = steady_clock::now();
+    {
+      const host::HeapGuard heap;
+      const SystemCallGuard system_calls;
+      records =
+          crew.tick(options.fast ? clock_of(recording, tick, period) : begin.time_since_epoch());
+    }
+    const auto end = steady_clock::now();
+    usage.end();
+    times = {late, end - begin};
+    const auto arm_begin = steady_clock::now();
+    for (Arm& arm : shift.arms) arm.step(period_s);
+    result.arm_step.record(steady_clock::now() - arm_begin);
+    note_tick(records, times, result, recorders);
+    if (recording != nullptr) compare(*recording, tick, records, result.replay);
+    show_force(shift.company.device, *records.front());
+    show_tick(shift.company, coprocessor, options.fast, records,
+              recording == nullptr ? times : recording->times[tick]);
+    if (pace.has_arrived()) show_last();
+    progress.draft() = progress_of(*records.front(), result);
+    progress.post();
+    result.skipped_ticks += pace.catch_up();
+  }
+  if (recording != nullptr) {
+    show_last();
+    pace.rest(shift.stop);
+  }
+  result.begins_anew = !shift.stop && pace.begins_anew(options.seconds);
 }
 
 template <TorqueDrivenArm Arm>
-void run_with(std::span<Arm> arms, Cell& cell, RunResult& result, const std::atomic<bool>& stop,
-              const std::function<void(const Progress&)>& show) {
+void run_with(const Shift<Arm>& shift, const std::function<void(const Progress&)>& show) {
+  RunResult& result = shift.result;
   const RunOptions& options = result.options;
-  const double period_s = 1.0 / options.rate_hz;
-  const nanoseconds period(std::llround(1e9 * period_s));
+  const nanoseconds period(std::llround(1e9 / options.rate_hz));
+  const std::int64_t ticks = ticks_of(options, shift.company.recording);
   result.deadline = DeadlineMonitor(period);
-  const auto ticks = static_cast<std::int64_t>(std::llround(options.seconds * options.rate_hz));
-  std::vector<Recorder> recorders = recorders_for(options, arms.size(), ticks);
+  std::vector<Recorder> recorders = recorders_for(options, shift.arms.size(), ticks);
+  result.times.reserve(static_cast<std::size_t>(kept_ticks(options, ticks)));
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
 
   result.machine = host::describe_machine(options.fast ? "not by the clock"
                                                        : host::to_text(host::request_real_time()));
-  Coprocessor coprocessor(cell.world, coprocessor_options(result, period));
-  Crew<Arm> crew(result.scene, cell, arms, coprocessor, options.rate_hz);
+  Coprocessor coprocessor(shift.cell.world, coprocessor_options(result, period));
+  if (shift.company.tap != nullptr) shift.company.tap->watch(shift.cell.world);
+  Crew<Arm> crew(result.scene, shift.cell, shift.arms, coprocessor, shift.company.controls,
+                 shift.company.device, options.rate_hz);
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   TickUsage usage;
-  host::Metronome metronome(period);
-  for (std::int64_t k = 1; k <= ticks && !stop; ++k) {
-    const nanoseconds late =
-        options.fast ? nanoseconds(0) : metronome.wait([&] { crew.rehearse(); });
-    usage.begin();
-    const auto begin = steady_clock::now();
-    std::span<const TickRecord* const> records;
-    {
-      const host::HeapGuard heap;
-      const SystemCallGuard system_calls;
-      records = crew.tick(options.fast ? k * period : begin.time_since_epoch());
-    }
-    const auto end = steady_clock::now();
-    usage.end();
-    const auto arm_begin = steady_clock::now();
-    for (Arm& arm : arms) arm.step(period_s);
-    result.arm_step.record(steady_clock::now() - arm_begin);
-    result.deadline.record(late, end - begin);
-    result.compute += end - begin;
-    result.over_budget += over_budget(result.scene.budget, end - begin) ? 1 : 0;
-    note_tick(records, result, recorders);
-    progress.draft() = progress_of(*records.front(), result);
-    progress.post();
-    if (!options.fast) result.skipped_ticks += metronome.catch_up();
-  }
+  make_ticks(shift, crew, coprocessor, recorders, progress, usage);
   coprocessor.stop();
-  for (std::size_t i = 0; i < arms.size(); ++i) {
+  for (std::size_t i = 0; i < shift.arms.size(); ++i) {
     result.arms[i].modules = module_results(crew.members()[i].network());
     result.arms[i].records = recorders[i].records();
-    if constexpr (requires { arms[i].contact(); }) result.arms[i].contact = arms[i].contact();
-    result.records_dropped = options.keep_records ? recorders[i].dropped() : 0;  // alike in all
+    if constexpr (requires { shift.arms[i].contact(); })
+      result.arms[i].contact = shift.arms[i].contact();
   }
-  note_pairs(cell.world, coprocessor, result);
-  result.interrupted = stop;
+  note_pairs(shift.cell.world, coprocessor, result);
+  result.interrupted = shift.stop;
   result.allocations_in_tick = host::HeapGuard::allocations();
   result.system_calls_in_tick = SystemCallGuard::calls();
   result.page_faults_in_tick = usage.page_faults();
@@ -195,16 +298,21 @@ double support_pairs_per_period(const RunResult& result) {
   return static_cast<double>(result.totals().iterations) / (seconds * result.options.rate_hz);
 }
 
-RunResult run(const scene::Scene& scene, const RunOptions& options, const std::atomic<bool>& stop,
-              const std::function<void(const Progress&)>& show) {
+scene::Scene as_run(const scene::Scene& scene, const RunOptions& options) {
+  scene::Scene result = scene;
+  result.budget = budget_of(scene, options.budget, options.rate_hz);
+  if (options.tool_alone) {
+    result.robot.links.emplace();
+    for (scene::Partner& partner : result.partners) partner.robot.links.emplace();
+  }
+  return result;
+}
+
+RunResult run(const scene::Scene& scene, const RunOptions& options, const Company& company,
+              const std::atomic<bool>& stop, const std::function<void(const Progress&)>& show) {
   RunResult result;
   result.options = options;
-  result.scene = scene;
-  result.scene.budget = budget_of(scene, options.budget, options.rate_hz);
-  if (options.tool_alone) {
-    result.scene.robot.links.emplace();
-    for (scene::Partner& partner : result.scene.partners) partner.robot.links.emplace();
-  }
+  result.scene = as_run(scene, options);
   const bool ideal = options.backend == "ideal";
   Cell cell(result.scene, !ideal);
   result.pairs = static_cast<int>(cell.world.pairs().size());
@@ -226,7 +334,8 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
     for (const ArmLink& link : arm.robot.arm.links) added.joints.push_back(link.type);
   }
   const auto with = [&](auto make) {
-    std::vector<decltype(make(cell.arm().robot.arm, std::vector<ContactPart>{}))> arms;
+    using Arm = decltype(make(cell.arm().robot.arm, std::vector<ContactPart>{}));
+    std::vector<Arm> arms;
     for (std::size_t i = 0; i < cell.arms.size(); ++i) {
       const Manipulator& each = cell.arms[i];
       std::vector<ContactPart> parts;
@@ -234,9 +343,13 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const std::a
       arms.push_back(make(each.robot.arm, parts));
       arms.back().reset(each.start);
     }
-    run_with(std::span(arms), cell, result, stop, show);
+    run_with(Shift<Arm>{std::span(arms), cell, result, company, stop}, show);
   };
-  if (ideal) {
+  if (company.recording != nullptr) {
+    std::vector<RecordedArm> arms;
+    for (const auto& records : company.recording->arms) arms.emplace_back(records.front());
+    run_with(Shift<RecordedArm>{std::span(arms), cell, result, company, stop}, show);
+  } else if (ideal) {
     with([](const ArmModel& model, const auto&) { return IdealArm(ideal_joints(model)); });
   } else if (options.backend == "reference") {
     with([](const ArmModel& model, const auto&) { return ReferenceArm(model); });

@@ -13,21 +13,20 @@
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/contact.hpp>
 
+#include "controls.hpp"
+#include "device.hpp"
 #include "machine.hpp"
+#include "recording.hpp"
+#include "run_options.hpp"
 
 namespace repel::teleop {
 
-struct RunOptions {
-  double seconds = 20.0;           ///< [s] of scene time
-  double rate_hz = 400.0;          ///< [Hz]
-  bool fast = false;               ///< not by the clock: as fast as it goes, bitwise repeatable
-  std::string backend = "bullet";  ///< "bullet", "ode", "reference" or "ideal"
-  int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
-  std::string budget;              ///< name of the budget; empty: the scene's own
-  bool every_pair = false;         ///< ask also those that cannot be within range
-  bool tool_alone = false;         ///< no link feels the obstacles, whatever the scene says
-  bool contact = false;            ///< of "bullet" and "ode": arms cannot pass solid obstacles
-  bool keep_records = false;       ///< for a log
+/// How the ticks of a replay compare with those that were recorded.
+struct ReplayReport {
+  std::int64_t ticks = 0;
+  std::int64_t same = 0;               ///< forces and torques of all arms, bit for bit
+  std::int64_t first_difference = -1;  ///< tick; -1: none
+  double force_difference = 0.0;       ///< [N] greatest, of the virtual force
 };
 
 /// What one obstacle did in a run.
@@ -81,9 +80,12 @@ struct RunResult {
   std::int64_t involuntary_switches_in_tick = -1;  ///< the machine's doing
   std::string nearest_pair;                        ///< "part - obstacle"; empty without one
   std::vector<ObstacleResult> obstacles;           ///< in the order of the scene
-  std::vector<std::string> pair_names;  ///< "part - obstacle" by PairId, where there is a log
-  std::int64_t records_dropped = 0;
+  std::vector<std::string> pair_names;  ///< "part - obstacle" by PairId, where records are kept
+  std::vector<TickTimes> times;         ///< of every tick, where records are kept
+  std::int64_t log_dropped = 0;         ///< ticks that the log lacks
   bool interrupted = false;
+  bool begins_anew = false;  ///< those at the controls want another run
+  ReplayReport replay;       ///< of a recording
   host::Machine machine;
 
   /// Of the arm of the scene itself.
@@ -104,11 +106,22 @@ struct Progress {
 /// ticks, with all else they did. 0 where there are none.
 [[nodiscard]] double support_pairs_per_period(const RunResult& result);
 
+/// Who has to do with a run beside the loop. All of them may be missing.
+struct Company {
+  Tap* tap = nullptr;                     ///< told of every tick; of the same scene
+  Controls* controls = nullptr;           ///< of the first arm, and of the time
+  devices::DeviceLink* device = nullptr;  ///< drives the first arm and feels its forces
+  const Recording* recording = nullptr;   ///< is gone through again, in place of arms and operators
+};
+
+/// The scene with the changes that the options make to it.
+[[nodiscard]] scene::Scene as_run(const scene::Scene& scene, const RunOptions& options);
+
 /// Builds the scene and runs it. `show` is called from a thread of its own, a few times a second.
-/// Ends early when `stop` becomes true.
+/// Ends early when `stop` becomes true, or when those at the controls want to begin anew.
 /// @throws SetupError for a scene that cannot be built
 [[nodiscard]] RunResult run(const scene::Scene& scene, const RunOptions& options,
-                            const std::atomic<bool>& stop,
+                            const Company& company, const std::atomic<bool>& stop,
                             const std::function<void(const Progress&)>& show);
 
 }  // namespace repel::teleop

@@ -55,7 +55,7 @@ std::vector<std::string> unused_parts(const RunResult& r) {
       by_wall ? "" : "wall-clock budget",
       r.options.fast ? "metronome and rehearsals" : "",
       r.options.backend == "ideal" ? "arm dynamics" : "",
-      r.options.keep_records ? "" : "log"};
+      r.options.log.empty() ? "log" : ""};
   std::erase(parts, std::string());
   return parts;
 }

@@ -7,6 +7,7 @@
 #include "command_line.hpp"
 #include "times.hpp"
 #include "trial.hpp"
+#include "trials_page.hpp"
 
 namespace {
 
@@ -16,6 +17,7 @@ struct Arguments {
   std::vector<double> rates_hz = {400.0, 1000.0, 4000.0, 10000.0};
   double seconds = 60.0;
   std::string json;
+  std::string html;
 };
 
 void describe(CLI::App& app, Arguments& a) {
@@ -27,6 +29,8 @@ void describe(CLI::App& app, Arguments& a) {
       ->check(host::between(0.001, 1e6));
   app.add_option("--json", a.json,
                  "Write the report as JSON to FILE: an object for one rate, else a list of them")
+      ->type_name("FILE");
+  app.add_option("--html", a.html, "Write the report as a page with curves to FILE")
       ->type_name("FILE");
   app.footer(
       "A tick evaluates 32 pairs of boxes, and is woken and rehearsed as in teleop. A hiccup is\n"
@@ -62,6 +66,7 @@ void print_table(const std::vector<host::Trial>& trials) {
 
 int run(const Arguments& arguments) {
   host::Output json(arguments.json);
+  host::Output html(arguments.html);
   std::vector<host::Trial> trials;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   const std::atomic<bool>& stop = host::interruption();
@@ -81,6 +86,10 @@ int run(const Arguments& arguments) {
   if (json.wanted()) {
     host::write(arguments.rates_hz.size() == 1 ? list.front() : list, json.stream());
     json.close();
+  }
+  if (html.wanted()) {
+    write_page(trials, html.stream());
+    html.close();
   }
   return 0;
 }

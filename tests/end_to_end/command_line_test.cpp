@@ -6,9 +6,10 @@ namespace command_line_test {
 TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   const Ending ending = teleop("--help");
   EXPECT_EQ(ending.status, 0) << ending;
-  for (const char* words : {"anderson_4x8", "--tool-alone", "bullet", "ode", "reference", "ideal",
-                            "spaceball", "torque_arm", "Exit status", "--fast", "--report", "--log",
-                            "--threads", "--budget", "i860", "--every-pair", "--contact"}) {
+  for (const char* words :
+       {"anderson_4x8", "--tool-alone", "bullet", "ode", "reference", "ideal", "spaceball",
+        "torque_arm", "Exit status", "--fast", "--report", "--log", "--threads", "--budget", "i860",
+        "--every-pair", "--contact", "--html"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }

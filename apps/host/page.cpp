@@ -1,0 +1,87 @@
+#include "page.hpp"
+
+#include <cmath>
+
+#include "page_style.hpp"
+
+namespace repel::host::page {
+
+std::string escaped(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+std::string with_unit(double value, const char* unit) {
+  return std::isfinite(value) ? repel::to_text(value, 4) + " " + unit : "-";
+}
+
+/// Rows of cells; the first row is the head, columns before `names` are text.
+std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t names) {
+  std::string html = "<table>";
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const char* cell = row == 0 ? "th" : "td";
+    html += "<tr>";
+    for (std::size_t i = 0; i < rows[row].size(); ++i) {
+      html += std::string("<") + cell + (i < names ? " class='name'>" : ">") +
+              escaped(rows[row][i]) + "</" + cell + ">";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string tile(const std::string& name, const std::string& value) {
+  return "<div><dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd></div>\n";
+}
+
+std::vector<Percentile> percentiles(const DurationHistogram& times) {
+  std::vector<Percentile> points;
+  for (int tenth = 3; tenth <= 50; ++tenth) {
+    const double share = 1.0 - std::pow(10.0, -0.1 * tenth);
+    points.push_back({share, times.percentile_us(share)});
+  }
+  return points;
+}
+
+std::string where(const Machine& machine) {
+  std::string html = "<p>";
+  html += escaped(machine.cpu) + ", " + escaped(machine.kernel);
+  html += "<br/>granted: " + escaped(machine.scheduler);
+  html += "<br/>" + escaped(machine.compiler) + ", commit " + escaped(machine.commit) + "</p>\n";
+  return html;
+}
+
+void begin(const std::string& title, std::ostream& out) {
+  const std::string name = escaped(title);
+  out << "<!doctype html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'/>\n"
+      << "<meta name='viewport' content='width=device-width, initial-scale=1'/>\n<title>" << name
+      << " - repel</title>\n<style>" << style << "</style>\n</head>\n<body>\n<h1>" << name
+      << "</h1>\n";
+}
+
+void end(std::ostream& out) {
+  out << "</body>\n</html>\n";
+}
+
+}  // namespace repel::host::page

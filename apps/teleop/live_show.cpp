@@ -1,0 +1,250 @@
+#include "live_show.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "hands.hpp"
+
+namespace repel::teleop {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The number of that name within +-`most`.
+std::optional<double> number(const Json& message, const char* name, double most) {
+  const auto found = message.find(name);
+  if (found == message.end() || !found->is_number()) return std::nullopt;
+  const double value = found->get<double>();
+  if (!(std::abs(value) <= most)) return std::nullopt;
+  return value;
+}
+
+std::optional<Vec3> vector(const Json& message, const char* name, double most) {
+  const auto found = message.find(name);
+  if (found == message.end() || !found->is_array() || found->size() != 3) return std::nullopt;
+  Vec3 v;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Json& entry = (*found)[axis];
+    if (!entry.is_number()) return std::nullopt;
+    v[static_cast<Eigen::Index>(axis)] = entry.get<double>();
+  }
+  if (!(v.norm() <= most)) return std::nullopt;
+  return v;
+}
+
+std::string text(const Json& message, const char* name) {
+  const auto found = message.find(name);
+  return found != message.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+const char* to_word(Driver driver, bool replay) {
+  if (replay) return "recording";
+  switch (driver) {
+    case Driver::script:
+      return "script";
+    case Driver::page:
+      return "page";
+    case Driver::device:
+      return "device";
+    case Driver::nobody:
+      break;
+  }
+  return "nobody";
+}
+
+constexpr const char* out_of_range = "a number is missing or out of range";
+
+}  // namespace
+
+LiveShow::LiveShow(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
+                   const std::string& device)
+    : cast_(cast),
+      world_(world),
+      tap_(tap),
+      controls_(controls),
+      device_(device),
+      greeting_(visual::scene_message(cast, world)),
+      period_(std::llround(1e9 / cast.rate_hz)),
+      driver_(device.empty() ? Driver::script : Driver::device) {}
+
+void LiveShow::opened(int page, visual::Pages& pages) {
+  open_pages_.push_back(page);
+  pages.send(page, greeting_);
+  say_who_drives(pages);
+  pages.send(page, visual::timing_message(timing_));
+  if (!has_picture_) return;
+  pages.send(page,
+             visual::frame_message(cast_, world_, tap_.pictures().newest(), {}, !controls_.paused));
+}
+
+void LiveShow::closed(int page, visual::Pages& pages) {
+  std::erase(open_pages_, page);
+  say_who_drives(pages);  // one that had the controls falls silent: watch_driver sees to it
+}
+
+void LiveShow::heard(int page, std::string_view said, visual::Pages& pages) {
+  const Json message = Json::parse(said, nullptr, false);
+  if (message.is_discarded() || !message.is_object()) {
+    return pages.send(page,
+                      Json{{"type", "refused"}, {"what", ""}, {"why", "no JSON object"}}.dump());
+  }
+  const std::string type = text(message, "type");
+  const Driver driver = driver_;
+  const int driving = page_;
+  const std::string why = obey(page, type, message);
+  if (!why.empty()) {
+    // What it has sent may be no valid text.
+    pages.send(page, Json{{"type", "refused"}, {"what", type}, {"why", why}}.dump(
+                         -1, ' ', true, Json::error_handler_t::replace));
+  }
+  if (driver != driver_ || driving != page_) say_who_drives(pages);
+}
+
+std::string LiveShow::obey(int page, const std::string& type, const Json& message) {
+  if (page_ != nobody && page_ != page) return "another page has the controls";
+  if (type == "take" || type == "release" || type == "servo_cv" || type == "servo_lever")
+    return drive(page, type, message);
+  return conduct(type, message);
+}
+
+std::string LiveShow::drive(int page, const std::string& type, const Json& message) {
+  if (cast_.replay) return "this is a recording";
+  if (driver_ == Driver::device) return device_ + " has the controls";
+  if (type == "take") {
+    hand_over(Driver::page, page);
+    return {};
+  }
+  if (page_ != page) return "take the controls first";
+  if (type == "release") {
+    hand_over(Driver::nobody, nobody);
+    return {};
+  }
+  Grip grip;
+  grip.driver = Driver::page;
+  if (type == "servo_cv") {
+    const auto linear = vector(message, "linear", 10.0);
+    const auto angular = vector(message, "angular", 100.0);
+    const std::string frame = text(message, "frame");
+    if (!linear || !angular || (frame != "world" && frame != "tool")) return out_of_range;
+    grip.in_tool = frame == "tool";
+    const auto clutch = message.find("clutch");
+    const bool held = clutch != message.end() && clutch->is_boolean() && clutch->get<bool>();
+    if (held) grip.rates = {*linear, *angular};
+  } else {
+    const auto direction = vector(message, "direction", 1e3);
+    const auto rate = number(message, "rate", 100.0);
+    if (!direction || !rate || direction->norm() < 1e-6) return out_of_range;
+    grip.direction_W = direction->normalized();
+    grip.lever_rate = *rate;
+  }
+  controls_.grip.draft() = grip;
+  controls_.grip.post();
+  heard_ = Clock::now();
+  return {};
+}
+
+std::string LiveShow::conduct(const std::string& type, const Json& message) {
+  if (type == "pause" || type == "resume") {
+    controls_.steps = 0;
+    controls_.paused = type == "pause";
+  } else if (type == "step") {
+    const auto ticks = number(message, "ticks", 10000.0);
+    if (!ticks || *ticks < 1.0) return out_of_range;
+    controls_.paused = true;
+    controls_.steps += std::llround(*ticks);
+  } else if (type == "restart" && !controls_.may_restart) {
+    return "a log is being written, which begins once";
+  } else if (type == "restart") {
+    if (driver_ != Driver::device) hand_over(Driver::script, nobody);
+    controls_.steps = 0;
+    controls_.paused = false;
+    controls_.restart = true;
+    timing_ = {};
+  } else if (type == "seek" && cast_.replay) {
+    const auto time = number(message, "time_s", 1e9);
+    if (!time || *time < 0.0) return out_of_range;
+    // What lies beyond the last tick would never come.
+    controls_.seek = std::min(*time, cast_.duration - 1.0 / cast_.rate_hz);
+  } else if (type == "speed" && cast_.replay) {
+    const auto factor = number(message, "factor", 100.0);
+    if (!factor || *factor < 0.01) return out_of_range;
+    controls_.speed = *factor;
+  } else {
+    return cast_.replay ? "no such message" : "no such message for a live run";
+  }
+  return {};
+}
+
+void LiveShow::hand_over(Driver driver, int page) {
+  driver_ = driver;
+  page_ = page;
+  silent_ = false;
+  heard_ = Clock::now();
+  controls_.grip.draft() = {};
+  controls_.grip.draft().driver = driver;
+  controls_.grip.post();
+}
+
+void LiveShow::say_who_drives(visual::Pages& pages) const {
+  for (const int page : open_pages_) {
+    pages.send(page, Json{{"type", "operator"},
+                          {"by", to_word(driver_, cast_.replay)},
+                          {"you", page == page_},
+                          {"name", device_},
+                          {"silent", silent_},
+                          {"pages", pages.count()}}
+                         .dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+}
+
+void LiveShow::read_samples() {
+  for (const TickSample* sample = tap_.samples().front(); sample != nullptr;
+       sample = tap_.samples().front()) {
+    timing_.add(sample->times, period_);
+    // No more than a second's: a page that has just opened needs no past.
+    if (recent_.size() < 1000) recent_.push_back(*sample);
+    tap_.samples().pop();
+  }
+  timing_.dropped = tap_.samples().dropped();
+}
+
+void LiveShow::watch_driver(visual::Pages& pages) {
+  const bool was_silent = silent_;
+  if (driver_ == Driver::device) {
+    const Status status = tap_.pictures().newest().arms.front().status;
+    silent_ = (status & status::silent_device) != 0U;
+  }
+  if (page_ != nobody) {
+    const double unheard = std::chrono::duration<double>(Clock::now() - heard_).count();
+    silent_ = unheard > Hands::silent_after;
+    if (unheard > Hands::silent_after + 2.0) hand_over(Driver::nobody, nobody);
+  }
+  if (silent_ != was_silent) say_who_drives(pages);
+}
+
+void LiveShow::beat(visual::Pages& pages) {
+  read_samples();
+  watch_driver(pages);
+  const bool running = !controls_.paused;
+  const bool is_new = tap_.pictures().take();
+  const auto now = Clock::now();
+  has_picture_ = has_picture_ || is_new;
+  // Again and again while nothing happens: a page that was busy may have missed the last.
+  const bool is_due = running != was_running_ || now > shown_ + std::chrono::milliseconds(200);
+  if (is_new || (has_picture_ && is_due)) {
+    was_running_ = running;
+    shown_ = now;
+    if (pages.count() > 0) {
+      pages.show(visual::frame_message(cast_, world_, tap_.pictures().newest(), recent_, running));
+    }
+    recent_.clear();
+  }
+  if (now < next_timing_) return;
+  next_timing_ = now + std::chrono::milliseconds(500);
+  if (pages.count() > 0) pages.send_all(visual::timing_message(timing_));
+}
+
+}  // namespace repel::teleop

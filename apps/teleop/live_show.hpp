@@ -1,0 +1,65 @@
+/// @file
+/// What the pages of the live view see and may do: one show for a run, or for several in a row.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <repel/loop/tap.hpp>
+#include <repel/visual/messages.hpp>
+#include <repel/visual/server.hpp>
+
+#include "controls.hpp"
+
+namespace repel::teleop {
+
+/// Reads the tap and passes on what the pages say to the controls. One page at a time drives.
+class LiveShow final : public visual::Show {
+ public:
+  /// @param device name of the master that has the controls all the time; empty: there is none
+  LiveShow(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
+           const std::string& device);
+
+  void opened(int page, visual::Pages& pages) override;
+  void heard(int page, std::string_view text, visual::Pages& pages) override;
+  void closed(int page, visual::Pages& pages) override;
+  void beat(visual::Pages& pages) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr int nobody = 0;
+
+  /// Each does what the message asks; empty, or why not.
+  [[nodiscard]] std::string obey(int page, const std::string& type, const nlohmann::json& message);
+  [[nodiscard]] std::string drive(int page, const std::string& type, const nlohmann::json& message);
+  [[nodiscard]] std::string conduct(const std::string& type, const nlohmann::json& message);
+  void hand_over(Driver driver, int page);
+  void say_who_drives(visual::Pages& pages) const;
+  void read_samples();
+  void watch_driver(visual::Pages& pages);
+
+  visual::Cast cast_;
+  const World& world_;
+  Tap& tap_;
+  Controls& controls_;
+  std::string device_;
+  std::string greeting_;
+  std::chrono::nanoseconds period_;
+  visual::Timing timing_;
+  std::vector<TickSample> recent_;  ///< since the last picture
+  std::vector<int> open_pages_;
+  Driver driver_;
+  int page_ = nobody;  ///< that drives
+  bool silent_ = false;
+  bool was_running_ = true;
+  bool has_picture_ = false;
+  Clock::time_point heard_;
+  Clock::time_point shown_;
+  Clock::time_point next_timing_;
+};
+
+}  // namespace repel::teleop

@@ -1,0 +1,214 @@
+#include "mcap_log.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include <repel/record/mcap_writer.hpp>
+
+#include "mcap_names.hpp"
+
+namespace repel::teleop {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw SetupError("the file cannot be opened", path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Json to_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+template <std::size_t N>
+Json first_of(const std::array<double, N>& values, std::size_t count) {
+  return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+Json inputs_of(const TickRecord& k, std::size_t joints) {
+  const network::Command& command = k.command;
+  return {{"q", first_of(k.q, joints)},
+          {"v", first_of(k.v, joints)},
+          {"status", k.status},
+          {"phase", k.phase},
+          {"linear", to_json(command.hand.ball.linear)},
+          {"angular", to_json(command.hand.ball.angular)},
+          {"lever_rate", command.hand.lever_rate},
+          {"direction", to_json(command.hand.direction_W)},
+          {"sound", command.sound},
+          {"silent_for_s", command.silent_for}};
+}
+
+Json forces_of(const TickRecord& k, std::size_t joints) {
+  return {{"force", to_json(k.virtual_force.force)},
+          {"torque", to_json(k.virtual_force.torque)},
+          {"coupling_force", to_json(k.coupling.force)},
+          {"coupling_torque", to_json(k.coupling.torque)},
+          {"force_n", k.virtual_force.force.norm()},
+          {"lever_torque", k.lever_torque},
+          {"gain", k.gain},
+          {"torques", first_of(k.torques, joints)}};
+}
+
+class McapLog final : public TickLog {
+ public:
+  McapLog(const std::string& path, const Heading& heading, const scene::Scene& scene,
+          const RunOptions& options)
+      : path_(path), heading_(heading), writer_(path, {.profile = mcap::profile}) {
+    using std::chrono::system_clock;
+    // Replays of a run that is not by the clock are to be the same file, bit for bit.
+    if (!options.fast) {
+      begin_ns_ = static_cast<std::uint64_t>(
+          std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count());
+    }
+    writer_.add_metadata(mcap::run_metadata, metadata_of(scene, options));
+    writer_.attach(mcap::scene_attachment, "application/yaml", read_file(scene.file), begin_ns_);
+    attach_robot(scene.robot);
+    for (const scene::Partner& partner : scene.partners) attach_robot(partner.robot);
+    inputs_ = add(mcap::inputs);
+    forces_ = add(mcap::forces);
+    separations_ = add(mcap::separations);
+    energy_ = add(mcap::energy);
+    timing_ = add(mcap::timing);
+    poses_ = add(mcap::poses);
+    every_ = std::max<std::int64_t>(1, std::llround(options.rate_hz / poses_per_second));
+    writer_.flush();
+    check();
+  }
+
+  void write(const Snapshot& tick) override {
+    const TickRecord& k = tick.arms.front();
+    now_ns_ = begin_ns_ + static_cast<std::uint64_t>(std::llround(1e9 * k.time));
+    sequence_ = static_cast<std::uint32_t>(k.tick);
+    Json inputs{{"tick", k.tick}, {"time_s", k.time}, {"arms", Json::array()}};
+    Json forces{{"tick", k.tick}, {"arms", Json::array()}};
+    Json energy{{"tick", k.tick}, {"energy_j", Json::object()}};
+    for (std::size_t i = 0; i < heading_.arms.size(); ++i) {
+      const ArmHeading& arm = heading_.arms[i];
+      inputs["arms"].push_back(inputs_of(tick.arms[i], arm.joints.size()));
+      forces["arms"].push_back(forces_of(tick.arms[i], arm.joints.size()));
+      for (std::size_t module = 0; module < arm.modules.size(); ++module) {
+        energy["energy_j"][arm.prefix() + arm.modules[module]] = tick.arms[i].energy[module];
+      }
+    }
+    put(inputs_, inputs);
+    put(forces_, forces);
+    put(separations_, separations_of(tick));
+    put(energy_, energy);
+    put(timing_, {{"tick", k.tick},
+                  {"compute_us", static_cast<double>(tick.times.compute.count()) / 1e3},
+                  {"late_us", static_cast<double>(tick.times.late.count()) / 1e3}});
+    if (k.tick % every_ == 0) put(poses_, transforms_of(tick));
+  }
+  void flush() override { writer_.flush(); }
+  void close(std::int64_t dropped) override {
+    writer_.add_metadata(mcap::end_metadata, {{"ticks_dropped", std::to_string(dropped)}});
+    writer_.close();
+    check();
+  }
+
+ private:
+  static constexpr double poses_per_second = 100.0;
+
+  static std::map<std::string, std::string> metadata_of(const scene::Scene& scene,
+                                                        const RunOptions& options) {
+    const auto word = [](bool yes) { return std::string(yes ? "yes" : "no"); };
+    return {{"version", "1"},
+            {"scene", scene.file},
+            {"rate_hz", to_text(options.rate_hz)},
+            {"backend", options.backend},
+            {"threads", std::to_string(options.threads)},
+            {"budget", options.budget},
+            {"by_the_clock", word(!options.fast)},
+            {"every_pair", word(options.every_pair)},
+            {"tool_alone", word(options.tool_alone)}};
+  }
+
+  void attach_robot(const scene::RobotChoice& robot) {
+    std::string name = "robot ";
+    name += std::to_string(robots_++);
+    name += ".urdf";
+    writer_.attach(name, "application/xml", read_file(robot.urdf), begin_ns_);
+  }
+
+  std::uint16_t add(const mcap::Channel& channel) {
+    const std::uint16_t schema = writer_.add_schema(channel.schema, "jsonschema", channel.text);
+    return writer_.add_channel(channel.topic, schema, "json");
+  }
+
+  void put(std::uint16_t channel, const Json& message) {
+    writer_.write(channel, sequence_, now_ns_,
+                  message.dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+
+  [[nodiscard]] Json separations_of(const Snapshot& tick) const {
+    const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
+    Json pairs = Json::array();
+    for (const NearPair& near : tick.near()) {
+      const Separation& s = near.separation;
+      pairs.push_back({{"pair", heading_.pairs[static_cast<std::size_t>(near.pair.index)]},
+                       {"index", near.pair.index},
+                       {"distance", s.distance},
+                       {"lower", number(s.lower)},
+                       {"upper", number(s.upper)},
+                       {"a", to_json(s.p_WA)},
+                       {"b", to_json(s.p_WB)},
+                       {"extraction", to_json(s.extraction_W)},
+                       {"level", s.level},
+                       {"force", near.force},
+                       {"stale", near.stale},
+                       {"age", near.age}});
+    }
+    const PairTotals& totals = tick.arms.front().pairs;
+    return {{"tick", tick.arms.front().tick},
+            {"nearest_m", number(totals.nearest)},
+            {"near", totals.near},
+            {"evaluated", totals.evaluated},
+            {"omitted", tick.pairs_omitted},
+            {"pairs", std::move(pairs)}};
+  }
+
+  [[nodiscard]] Json transforms_of(const Snapshot& tick) const {
+    Json transforms = Json::array();
+    for (std::size_t i = 1; i < tick.X_WB.size(); ++i) {  // the first is the world
+      const Vec3 p = tick.X_WB[i].translation();
+      const Eigen::Quaterniond q(tick.X_WB[i].linear());
+      transforms.push_back(
+          {{"timestamp", {{"sec", now_ns_ / 1000000000U}, {"nsec", now_ns_ % 1000000000U}}},
+           {"parent_frame_id", heading_.bodies.front()},
+           {"child_frame_id", heading_.bodies[i]},
+           {"translation", {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}}},
+           {"rotation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}});
+    }
+    return {{"transforms", std::move(transforms)}};
+  }
+
+  void check() const {
+    if (writer_.failed()) throw SetupError(writer_.error());
+  }
+
+  std::string path_;
+  Heading heading_;
+  record::McapWriter writer_;
+  std::uint64_t begin_ns_ = 0;
+  std::uint64_t now_ns_ = 0;
+  std::uint32_t sequence_ = 0;
+  std::int64_t every_ = 1;
+  int robots_ = 0;
+  std::uint16_t inputs_ = 0, forces_ = 0, separations_ = 0, energy_ = 0, timing_ = 0, poses_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
+                                  const scene::Scene& scene, const RunOptions& options) {
+  return std::make_unique<McapLog>(path, heading, scene, options);
+}
+
+}  // namespace repel::teleop

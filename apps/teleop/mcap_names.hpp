@@ -1,0 +1,96 @@
+/// @file
+/// What the channels of a recording are called, and what their messages are.
+#pragma once
+
+namespace repel::teleop::mcap {
+
+struct Channel {
+  const char* topic;
+  const char* schema;  ///< its name
+  const char* text;    ///< JSON Schema
+};
+
+inline constexpr const char* profile = "";
+inline constexpr const char* run_metadata = "repel run";
+inline constexpr const char* end_metadata = "repel end";
+inline constexpr const char* scene_attachment = "scene.yaml";
+
+/// What went into the tick: what a replay needs.
+inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
+  "title": "repel.Inputs", "type": "object",
+  "description": "What a tick has read. SI units, radians, world axes.",
+  "properties": {
+    "tick": {"type": "integer"}, "time_s": {"type": "number"},
+    "arms": {"type": "array", "items": {"type": "object", "properties": {
+      "q": {"type": "array", "items": {"type": "number"}, "description": "joints [rad] or [m]"},
+      "v": {"type": "array", "items": {"type": "number"}, "description": "their rates"},
+      "status": {"type": "integer", "description": "bits of the tick"},
+      "phase": {"type": "integer", "description": "of the script"},
+      "linear": {"type": "array", "items": {"type": "number"}, "description": "hand [m/s]"},
+      "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
+      "lever_rate": {"type": "number", "description": "hand at the lever [rad/s]"},
+      "direction": {"type": "array", "items": {"type": "number"}, "description": "of the lever"},
+      "sound": {"type": "boolean"}, "silent_for_s": {"type": "number"}}}}}})"};
+
+inline constexpr Channel forces{"/forces", "repel.Forces", R"({
+  "title": "repel.Forces", "type": "object",
+  "description": "What came out of a tick. Wrenches about the origin of the tool, world axes.",
+  "properties": {
+    "tick": {"type": "integer"},
+    "arms": {"type": "array", "items": {"type": "object", "properties": {
+      "force": {"type": "array", "items": {"type": "number"}, "description": "virtual [N]"},
+      "torque": {"type": "array", "items": {"type": "number"}, "description": "virtual [N m]"},
+      "coupling_force": {"type": "array", "items": {"type": "number"}, "description": "[N]"},
+      "coupling_torque": {"type": "array", "items": {"type": "number"}, "description": "[N m]"},
+      "force_n": {"type": "number", "description": "size of the virtual force [N]"},
+      "lever_torque": {"type": "number", "description": "[N m]"},
+      "gain": {"type": "number", "description": "of the fail-safe, 0 to 1"},
+      "torques": {"type": "array", "items": {"type": "number"},
+                  "description": "to the joints [N m] or [N]"}}}}}})"};
+
+inline constexpr Channel separations{"/separations", "repel.Separations", R"({
+  "title": "repel.Separations", "type": "object",
+  "description": "The pairs that are near, the nearest first. Metres, newtons, world axes.",
+  "properties": {
+    "tick": {"type": "integer"}, "nearest_m": {"type": ["number", "null"]},
+    "near": {"type": "integer"}, "evaluated": {"type": "integer"},
+    "omitted": {"type": "integer", "description": "near as well, but farther than those here"},
+    "pairs": {"type": "array", "items": {"type": "object", "properties": {
+      "pair": {"type": "string"}, "index": {"type": "integer"},
+      "distance": {"type": "number"}, "lower": {"type": ["number", "null"]},
+      "upper": {"type": ["number", "null"]},
+      "a": {"type": "array", "items": {"type": "number"}, "description": "witness point"},
+      "b": {"type": "array", "items": {"type": "number"}, "description": "witness point"},
+      "extraction": {"type": "array", "items": {"type": "number"}},
+      "level": {"type": "integer"}, "force": {"type": "number"},
+      "stale": {"type": "boolean"}, "age": {"type": "integer"}}}}}})"};
+
+inline constexpr Channel energy{"/energy", "repel.Energy", R"({
+  "title": "repel.Energy", "type": "object",
+  "description": "The ledger of each module of the networks [J], by arm/module.",
+  "properties": {"tick": {"type": "integer"},
+    "energy_j": {"type": "object", "additionalProperties": {"type": "number"}}}})"};
+
+inline constexpr Channel timing{"/timing", "repel.Timing", R"({
+  "title": "repel.Timing", "type": "object",
+  "properties": {"tick": {"type": "integer"},
+    "compute_us": {"type": "number", "description": "of the tick"},
+    "late_us": {"type": "number", "description": "how long after it was due it began"}}})"};
+
+/// Known to Foxglove by its name.
+inline constexpr Channel poses{"/poses", "foxglove.FrameTransforms", R"({
+  "title": "foxglove.FrameTransforms", "type": "object",
+  "description": "Poses of the bodies in the world.",
+  "properties": {"transforms": {"type": "array", "items": {"type": "object",
+    "title": "foxglove.FrameTransform", "properties": {
+      "timestamp": {"type": "object", "title": "time", "properties": {
+        "sec": {"type": "integer", "minimum": 0},
+        "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
+      "parent_frame_id": {"type": "string"}, "child_frame_id": {"type": "string"},
+      "translation": {"type": "object", "title": "foxglove.Vector3", "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}}},
+      "rotation": {"type": "object", "title": "foxglove.Quaternion", "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
+        "w": {"type": "number"}}}}}}}})"};
+
+}  // namespace repel::teleop::mcap

@@ -1,0 +1,236 @@
+#include "recording.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include <repel/record/mcap_reader.hpp>
+
+#include "mcap_log.hpp"
+#include "mcap_names.hpp"
+
+namespace repel::teleop {
+namespace {
+
+using Json = nlohmann::json;
+using record::McapReader;
+
+/// Reads values of one message; what is missing or of another kind is an error of the file.
+class Fields {
+ public:
+  Fields(const Json& json, const std::string& file) : json_(json), file_(file) {}
+
+  [[nodiscard]] Fields at(const char* name) const {
+    const auto found = json_.find(name);
+    if (!json_.is_object() || found == json_.end()) bad(name);
+    return {*found, file_};
+  }
+  [[nodiscard]] Fields entry(std::size_t i) const {
+    if (!json_.is_array() || i >= json_.size()) bad("an entry");
+    return {json_[i], file_};
+  }
+  /// null stands for what is no number.
+  [[nodiscard]] double number() const {
+    if (json_.is_null()) return std::numeric_limits<double>::quiet_NaN();
+    if (!json_.is_number()) bad("a number");
+    return json_.get<double>();
+  }
+  [[nodiscard]] std::int64_t integer() const {
+    if (!json_.is_number_integer()) bad("a whole number");
+    return json_.get<std::int64_t>();
+  }
+  [[nodiscard]] bool yes() const {
+    if (!json_.is_boolean()) bad("true or false");
+    return json_.get<bool>();
+  }
+  [[nodiscard]] Vec3 vector() const {
+    return {entry(0).number(), entry(1).number(), entry(2).number()};
+  }
+  template <std::size_t N>
+  void read(std::array<double, N>& values) const {
+    if (!json_.is_array() || json_.size() > N) bad("a list of joints");
+    for (std::size_t i = 0; i < json_.size(); ++i) values[i] = entry(i).number();
+  }
+
+ private:
+  [[noreturn]] void bad(const char* what) const {
+    std::string text = "not a recording of this program: a message lacks ";
+    text += what;
+    throw SetupError(text, file_);
+  }
+
+  const Json& json_;
+  const std::string& file_;
+};
+
+void read_inputs(const Fields& arm, TickRecord& k) {
+  arm.at("q").read(k.q);
+  arm.at("v").read(k.v);
+  k.status = static_cast<Status>(arm.at("status").integer());
+  k.phase = static_cast<std::int32_t>(arm.at("phase").integer());
+  k.command.hand.ball = {arm.at("linear").vector(), arm.at("angular").vector()};
+  k.command.hand.lever_rate = arm.at("lever_rate").number();
+  k.command.hand.direction_W = arm.at("direction").vector();
+  k.command.sound = arm.at("sound").yes();
+  k.command.silent_for = arm.at("silent_for_s").number();
+}
+
+void read_forces(const Fields& arm, TickRecord& k) {
+  k.virtual_force = {arm.at("force").vector(), arm.at("torque").vector()};
+  k.coupling = {arm.at("coupling_force").vector(), arm.at("coupling_torque").vector()};
+  k.lever_torque = arm.at("lever_torque").number();
+  k.gain = arm.at("gain").number();
+  arm.at("torques").read(k.torques);
+}
+
+/// The ticks as they come: each is whole when all three of its messages are there.
+class Ticks {
+ public:
+  Ticks(Recording& recording, std::size_t arms) : recording_(recording) {
+    recording.arms.resize(arms);
+  }
+
+  void add(const std::string& topic, const Json& json) {
+    const Fields message(json, recording_.file);
+    if (topic == mcap::inputs.topic) return begin(message);
+    if (open_ && message.at("tick").integer() != tick_) open_ = false;  // its messages are cut off
+    if (!open_) return;
+    if (topic == mcap::forces.topic) {
+      for (std::size_t i = 0; i < records_.size(); ++i) {
+        read_forces(message.at("arms").entry(i), records_[i]);
+      }
+      has_forces_ = true;
+    } else {
+      end(message);
+    }
+  }
+
+ private:
+  void begin(const Fields& message) {
+    tick_ = message.at("tick").integer();
+    const auto expected = static_cast<std::int64_t>(recording_.ticks());
+    if (tick_ > expected && recording_.missing == 0) recording_.missing = tick_ - expected;
+    open_ = tick_ == expected && recording_.missing == 0;
+    if (!open_) return;
+    has_forces_ = false;
+    records_.assign(recording_.arms.size(), TickRecord{});
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      records_[i].tick = tick_;
+      records_[i].time = message.at("time_s").number();
+      read_inputs(message.at("arms").entry(i), records_[i]);
+    }
+  }
+  void end(const Fields& message) {
+    if (!has_forces_) return;
+    const auto time = [&](const char* name) {
+      return std::chrono::nanoseconds(std::llround(1e3 * message.at(name).number()));
+    };
+    recording_.times.push_back({time("late_us"), time("compute_us")});
+    for (std::size_t i = 0; i < records_.size(); ++i) recording_.arms[i].push_back(records_[i]);
+    open_ = false;
+  }
+
+  Recording& recording_;
+  std::vector<TickRecord> records_;
+  std::int64_t tick_ = 0;
+  bool open_ = false;
+  bool has_forces_ = false;
+};
+
+const std::string& attachment(const McapReader& reader, const std::string& name,
+                              const std::string& file) {
+  for (const record::McapAttachment& each : reader.attachments()) {
+    if (each.name == name) return each.data;
+  }
+  std::string text = "not a recording of this program: it has no attachment ";
+  text += name;
+  throw SetupError(text, file);
+}
+
+void read_options(const McapReader& reader, Recording& recording, std::string& scene) {
+  for (const record::McapMetadata& each : reader.metadata()) {
+    if (each.name != mcap::run_metadata) continue;
+    const auto word = [&](const char* name) {
+      const auto found = each.entries.find(name);
+      return found == each.entries.end() ? std::string() : found->second;
+    };
+    RunOptions& options = recording.options;
+    if (word("version") != "1") {
+      throw SetupError("a recording of another version: " + word("version") + "; allowed: 1",
+                       recording.file);
+    }
+    scene = word("scene");
+    options.rate_hz = std::strtod(word("rate_hz").c_str(), nullptr);
+    options.threads = std::atoi(word("threads").c_str());
+    options.backend = word("backend");
+    options.budget = word("budget");
+    options.every_pair = word("every_pair") == "yes";
+    options.tool_alone = word("tool_alone") == "yes";
+    checked("rate_hz of the recording", options.rate_hz, 1.0, 1e5, "Hz");
+    checked("threads of the recording", options.threads, 0.0, 16.0, "");
+    return;
+  }
+  throw SetupError("not a recording of this program: it has no metadata 'repel run'",
+                   recording.file);
+}
+
+void require_same_robot(const McapReader& reader, int index, const std::string& urdf,
+                        const std::string& file) {
+  std::string name = "robot ";
+  name += std::to_string(index);
+  name += ".urdf";
+  std::ifstream now(urdf, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(now), {}};
+  if (!now || text != attachment(reader, name, file)) {
+    throw SetupError("the robot is not as it was recorded; allowed: the file that is attached to " +
+                         file + " as '" + name + "'",
+                     urdf);
+  }
+}
+
+void read_scene(const McapReader& reader, const std::string& recorded,
+                const std::function<std::string(const std::string&)>& find, Recording& recording) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const std::string path =
+      fs::exists(recorded, error) ? recorded : find(fs::path(recorded).stem().string());
+  recording.scene = scene::parse(attachment(reader, mcap::scene_attachment, recording.file), path);
+  int robots = 0;
+  require_same_robot(reader, robots++, recording.scene.robot.urdf, recording.file);
+  for (const scene::Partner& partner : recording.scene.partners) {
+    require_same_robot(reader, robots++, partner.robot.urdf, recording.file);
+  }
+}
+
+}  // namespace
+
+Recording load_recording(const std::string& path,
+                         const std::function<std::string(const std::string&)>& find) {
+  McapReader reader(path);
+  Recording recording;
+  recording.file = path;
+  std::string scene;
+  read_options(reader, recording, scene);
+  read_scene(reader, scene, find, recording);
+  Ticks ticks(recording, 1 + recording.scene.partners.size());
+  record::McapMessage message;
+  while (reader.next(message)) {
+    const std::string& topic = reader.channels().at(message.channel).topic;
+    if (topic != mcap::inputs.topic && topic != mcap::forces.topic && topic != mcap::timing.topic)
+      continue;
+    const Json json = Json::parse(message.data, nullptr, false);
+    if (json.is_discarded()) throw SetupError("a message is no JSON", path);
+    ticks.add(topic, json);
+  }
+  recording.not_whole = reader.why_not_whole();
+  if (recording.ticks() == 0) throw SetupError("the recording has no tick that is whole", path);
+  RunOptions& options = recording.options;
+  options.seconds = static_cast<double>(recording.ticks()) / options.rate_hz;
+  options.fast = true;
+  return recording;
+}
+
+}  // namespace repel::teleop

@@ -1,0 +1,47 @@
+#include "replay.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace repel::teleop {
+namespace {
+
+using std::chrono::nanoseconds;
+
+template <class Values>
+bool same_bits(const Values& a, const Values& b) {
+  return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+bool same_bits(const Wrench& a, const Wrench& b) {
+  return same_bits(a.force, b.force) && same_bits(a.torque, b.torque);
+}
+
+}  // namespace
+
+void compare(const Recording& recording, std::size_t tick,
+             std::span<const TickRecord* const> records, ReplayReport& report) {
+  bool same = true;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const TickRecord& then = recording.arms[i][tick];
+    const TickRecord& now = *records[i];
+    same = same && same_bits(then.virtual_force, now.virtual_force) &&
+           same_bits(then.coupling, now.coupling) && same_bits(then.torques, now.torques) &&
+           then.lever_torque == now.lever_torque && then.gain == now.gain;
+    report.force_difference = std::max(report.force_difference,
+                                       (then.virtual_force.force - now.virtual_force.force).norm());
+  }
+  ++report.ticks;
+  report.same += same ? 1 : 0;
+  if (!same && report.first_difference < 0) report.first_difference = records.front()->tick;
+}
+
+/// The time of the clock that the tick is told. A clock that stood still did so again.
+nanoseconds clock_of(const Recording* recording, std::size_t tick, nanoseconds period) {
+  const auto regular = static_cast<std::int64_t>(tick + 1) * period;
+  if (recording == nullptr) return regular;
+  const bool stood = (recording->arms.front()[tick].status & status::clock_fault) != 0U;
+  return stood ? nanoseconds::min() : regular;
+}
+
+}  // namespace repel::teleop

@@ -1,0 +1,283 @@
+// The program as a browser sees it.
+#include "end_to_end/live.hpp"
+
+namespace repel::test {
+namespace live_test {
+
+const Vec3 down(0, 0, -0.1);
+const Vec3 up(0, 0, 0.1);
+
+bool touches(const Json& frame) {
+  return force_of(frame) > 5.0;
+}
+
+TEST(Live, APageIsToldAllPartsAndSeesThemMove) {
+  LiveTeleop program({"anderson_4x8"});
+  LivePage page(program);
+  const Json scene = page.await("scene");
+  ASSERT_FALSE(scene.is_null());
+  EXPECT_EQ(scene.at("name"), "anderson_4x8");
+  EXPECT_EQ(scene.at("mode"), "live");
+  EXPECT_EQ(scene.at("parts").size(), 4U + 11U + 8U);
+  EXPECT_EQ(scene.at("pairs").size(), 120U);
+  int obstacles = 0;
+  for (const Json& part : scene.at("parts")) {
+    EXPECT_FALSE(part.at("levels").empty());
+    EXPECT_FALSE(part.at("levels")[0].at("triangles").empty()) << part.at("name");
+    obstacles += part.at("group") == "obstacle" ? 1 : 0;
+  }
+  EXPECT_EQ(obstacles, 8);
+  EXPECT_EQ(page.await("operator").at("by"), "script");
+  const Json first = page.await("frame", [](const Json& f) { return f.at("tick") > 0; });
+  ASSERT_FALSE(first.is_null());
+  const Json later = page.await("frame", [&](const Json& f) {
+    return f.at("tick") > first.at("tick") && f.at("bodies") != first.at("bodies");
+  });
+  ASSERT_FALSE(later.is_null());
+  EXPECT_EQ(later.at("bodies").size(), scene.at("bodies").size());
+  EXPECT_EQ(page.await("timing").at("dropped"), 0);
+  EXPECT_EQ(program.interrupt().status, 0);
+}
+
+TEST(Live, ADrivenToolIsHeldUpByTheTable) {
+  LiveTeleop program({"anderson_4x8"});
+  LivePage page(program);
+  const Json scene = page.await("scene");
+  ASSERT_FALSE(page.take().is_null());
+  const Json frame = page.drive(down, [](const Json& f) {
+    if (!touches(f)) return false;
+    for (const Json& pair : f.at("pairs")) {
+      if (pair.at("f") > 1.0) return true;
+    }
+    return false;
+  });
+  ASSERT_FALSE(frame.is_null());
+  const Json& nearest = frame.at("pairs")[0];
+  const auto part = scene.at("pairs")[nearest.at("i").get<std::size_t>()][1].get<std::size_t>();
+  EXPECT_EQ(scene.at("parts")[part].at("name"), "table");
+  EXPECT_LT(nearest.at("d"), 0.02);
+  EXPECT_EQ(frame.at("phase"), "") << "the script is over";
+  EXPECT_GT(frame.at("arms")[0].at("force")[2], 0.0) << "it is pushed up";
+  page.say({{"type", "release"}});
+  const Json who = page.await("operator", [](const Json& o) { return o.at("by") == "nobody"; });
+  EXPECT_FALSE(who.is_null());
+  EXPECT_EQ(program.interrupt().status, 0);
+}
+
+TEST(Live, OfTwoPagesOneDrives) {
+  LiveTeleop program({"plates"});
+  LivePage one(program);
+  LivePage two(program);
+  ASSERT_FALSE(one.take().is_null());
+  EXPECT_EQ(two.refusal_of({{"type", "take"}}), "another page has the controls");
+  EXPECT_EQ(two.refusal_of({{"type", "pause"}}), "another page has the controls");
+  one.say({{"type", "release"}});
+  EXPECT_FALSE(
+      one.await("operator", [](const Json& o) { return o.at("by") == "nobody"; }).is_null());
+  EXPECT_FALSE(two.take().is_null());
+}
+
+// The page drives one of the two arms; the other goes on with its script.
+TEST(Live, OfTwoArmsTheFirstIsDriven) {
+  LiveTeleop program({"two_arms"});
+  LivePage page(program);
+  EXPECT_EQ(page.await("scene").at("arms").size(), 2U);
+  ASSERT_FALSE(page.take().is_null());
+  const Json first = page.drive(up, [](const Json& f) { return f.at("tick") > 0; });
+  ASSERT_FALSE(first.is_null());
+  const Json later = page.drive(up, [&](const Json& f) {
+    return f.at("arms")[0].at("v")[2] > 0.02 &&
+           f.at("arms")[1].at("q") != first.at("arms")[1].at("q");
+  });
+  EXPECT_FALSE(later.is_null());
+}
+
+// First silent, with the forces gone; then free for another.
+TEST(Live, WhoeverIsKilledAtTheControlsLosesThem) {
+  LiveTeleop program({"anderson_4x8"});
+  LivePage other(program);
+  {
+    LivePage driver(program);
+    ASSERT_FALSE(driver.take().is_null());
+    ASSERT_FALSE(driver.drive(down, touches).is_null());
+    driver.page().line().reset();
+  }
+  const Json silent =
+      other.await("frame", [](const Json& f) { return has_status(f, "silent_device"); });
+  ASSERT_FALSE(silent.is_null());
+  const Json faded =
+      other.await("frame", [](const Json& f) { return f.at("arms")[0].at("gain") == 0.0; });
+  ASSERT_FALSE(faded.is_null());
+  const Json who = other.await("operator", [](const Json& o) { return o.at("by") == "nobody"; });
+  ASSERT_FALSE(who.is_null());
+  ASSERT_FALSE(other.take().is_null());
+  const Json again = other.drive(up, [](const Json& f) {
+    return !has_status(f, "silent_device") && f.at("arms")[0].at("v")[2] > 0.02;
+  });
+  EXPECT_FALSE(again.is_null());
+}
+
+/// What a page must not do, on connections of its own.
+void misbehave(const LiveTeleop& program, int round) {
+  WebPage flood(program.port());
+  for (int i = 0; i < 1000 && flood.say("{\"type\":\"take\"}x"); ++i) {
+  }
+  WebPage huge(program.port());
+  Frame frame{Frame::text, std::string(1 << 20, 'g')};
+  frame.announced = 1U << 30U;
+  (void)huge.send(frame);
+  EXPECT_EQ(huge.await_close() == 0 ? 1009 : huge.close_code(), 1009);
+  Line garbage(program.port());
+  (void)garbage.send(std::string(5000, static_cast<char>(round)));
+  EXPECT_EQ(ask(program.port(), {"GET", "/", "evil.example"}).status, 403);
+}
+
+TEST(Live, FloodsAndGigabytesDoNotReachTheTick) {
+  const Folder folder;
+  const std::string path = folder / "report.json";
+  LiveTeleop program({"anderson_4x8", "--report", path});
+  LivePage page(program);
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const Json first = page.await("frame", [](const Json& f) { return f.at("tick") > 0; });
+  ASSERT_FALSE(first.is_null());
+  const auto begin = now();
+  Json last = first;
+  for (int round = 0; round < 8; ++round) {
+    misbehave(program, round);
+    last = page.await("frame", [&](const Json& f) { return f.at("tick") > last.at("tick"); });
+    ASSERT_FALSE(last.is_null());
+  }
+  // The last picture that waits is up to a picture behind the clock.
+  const std::int64_t target = last.at("tick").get<std::int64_t>() + 800;
+  last = page.await("frame", [&](const Json& f) { return f.at("tick") >= target; });
+  ASSERT_FALSE(last.is_null());
+  const double passed = std::chrono::duration<double>(now() - begin).count();
+  const double ticks = last.at("tick").get<double>() - first.at("tick").get<double>();
+  EXPECT_GT(ticks, 0.5 * 400.0 * passed);
+  EXPECT_LT(ticks, 2.0 * 400.0 * passed);
+  EXPECT_EQ(last.at("time_s"), last.at("tick").get<double>() / 400.0);
+  const Ending ending = program.interrupt();
+  EXPECT_EQ(ending.status, 0) << ending;
+  const Json report = report_of(path);
+  EXPECT_GE(report.at("ticks"), last.at("tick"));
+  EXPECT_EQ(report.at("interrupted"), true);
+  for (const char* what : {"allocations_in_tick", "system_calls_in_tick"}) {
+    EXPECT_TRUE(report.at(what).is_null() || report.at(what) == 0) << what << report.at(what);
+  }
+  for (const char* fault : {"bad_pose", "bad_command", "bad_joints", "clock_fault", "expired_pairs",
+                            "silent_device", "network_fault"}) {
+    EXPECT_EQ(report.at("status_ticks").value(fault, 0), 0) << fault;
+  }
+}
+
+TEST(Live, PausedItStandsAndAStepIsOneTick) {
+  LiveTeleop program({"plates"});
+  LivePage page(program);
+  ASSERT_FALSE(page.await("frame").is_null());  // before the first tick there is none
+  page.say({{"type", "pause"}});
+  ASSERT_FALSE(
+      page.await("frame", [](const Json& f) { return f.at("running") == false; }).is_null());
+  // The tick that was under way may still come; what stands is shown again and again.
+  std::int64_t tick = -1;
+  const auto stands = [&](const Json& f) {
+    const std::int64_t before = std::exchange(tick, f.at("tick").get<std::int64_t>());
+    return f.at("running") == false && before == tick;
+  };
+  ASSERT_FALSE(page.await("frame", stands).is_null());
+  for (const int ticks : {1, 1, 5}) {
+    tick += ticks;
+    const Json frame = page.await(
+        "frame", [&](const Json& f) { return f.at("tick") >= tick; },
+        [&, said = false]() mutable {
+          if (!std::exchange(said, true)) page.say({{"type", "step"}, {"ticks", ticks}});
+        });
+    ASSERT_FALSE(frame.is_null());
+    EXPECT_EQ(frame.at("tick"), tick);
+    EXPECT_EQ(frame.at("running"), false);
+  }
+  EXPECT_EQ(page.await("frame").at("tick"), tick) << "it stands";
+  page.say({{"type", "resume"}});
+  EXPECT_FALSE(
+      page.await("frame", [&](const Json& f) { return f.at("tick") > tick + 50; }).is_null());
+}
+
+TEST(Live, ARestartBeginsFromTheBeginningWithTheScript) {
+  LiveTeleop program({"plates"});
+  LivePage page(program);
+  ASSERT_FALSE(page.take().is_null());
+  const Json before = page.drive(up, [](const Json& f) { return f.at("tick") > 300; });
+  ASSERT_FALSE(before.is_null());
+  page.say({{"type", "restart"}});
+  const Json after =
+      page.await("frame", [&](const Json& f) { return f.at("tick") < before.at("tick"); });
+  ASSERT_FALSE(after.is_null());
+  EXPECT_NE(after.at("phase"), "");
+  ASSERT_FALSE(page.take().is_null());
+  EXPECT_FALSE(page.drive(up, [](const Json& f) { return f.at("phase") == ""; }).is_null());
+  EXPECT_EQ(program.interrupt().status, 0);
+}
+
+/// Records a run that a page drives, until the tool has been on the table and off again.
+void record(const std::string& path) {
+  LiveTeleop program({"anderson_4x8", "--log", path});
+  LivePage page(program);
+  ASSERT_FALSE(page.take().is_null());
+  EXPECT_NE(page.refusal_of({{"type", "restart"}}), "") << "a log begins once";
+  ASSERT_FALSE(page.drive(down, touches).is_null());
+  page.say({{"type", "pause"}});
+  page.say({{"type", "step"}, {"ticks", 3}});
+  page.say({{"type", "resume"}});
+  ASSERT_FALSE(page.drive(up, [](const Json& f) { return force_of(f) == 0.0; }).is_null());
+  page.say({{"type", "release"}});
+  ASSERT_FALSE(
+      page.await("operator", [](const Json& o) { return o.at("by") == "nobody"; }).is_null());
+  const Ending ending = program.interrupt();
+  ASSERT_EQ(ending.status, 0) << ending;
+}
+
+TEST(Live, ARunThatWasDrivenCanBeGoneThroughAgain) {
+  const Folder folder;
+  record(folder / "run.mcap");
+  const Ending ending = teleop("--replay " + quoted(folder / "run.mcap") + " --report " +
+                               quoted(folder / "report.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  const Json replay = report_of(folder / "report.json").at("replay");
+  EXPECT_GT(replay.at("ticks"), 100);
+  EXPECT_EQ(replay.at("same"), replay.at("ticks"));
+  EXPECT_EQ(replay.at("force_difference_n"), 0.0);
+}
+
+TEST(Live, ARecordingCanBeWoundToItsEndAndBack) {
+  const Folder folder;
+  record(folder / "run.mcap");
+  LiveTeleop program({"--replay", folder / "run.mcap"});
+  LivePage page(program);
+  const Json scene = page.await("scene");
+  ASSERT_FALSE(scene.is_null());
+  EXPECT_EQ(scene.at("mode"), "replay");
+  const double duration = scene.at("duration_s");
+  EXPECT_EQ(page.refusal_of({{"type", "take"}}), "this is a recording");
+  const auto wound_to = [&](double time, double expected) {
+    page.say({{"type", "seek"}, {"time_s", time}});
+    const Json frame = page.await("frame", [&](const Json& f) {
+      return std::abs(f.at("time_s").get<double>() - expected) < 1e-6;
+    });
+    EXPECT_FALSE(frame.is_null()) << time;
+  };
+  const double last = duration - 1.0 / 400.0;
+  page.say({{"type", "pause"}});
+  for (const double time : {0.5, 0.1, 0.3, duration, 0.2, duration + 5.0, 0.0}) {
+    wound_to(time, std::min(time, last));
+  }
+  page.say({{"type", "speed"}, {"factor", 100.0}});
+  page.say({{"type", "resume"}});
+  wound_to(duration, last);
+  page.say({{"type", "speed"}, {"factor", 1.0}});
+  wound_to(0.4, 0.4);
+  EXPECT_TRUE(program.runs());
+  const Ending ending = program.interrupt();
+  EXPECT_EQ(ending.status, 0) << ending;
+}
+
+}  // namespace live_test
+}  // namespace repel::test

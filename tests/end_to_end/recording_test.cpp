@@ -1,0 +1,190 @@
+// Runs that are recorded and gone through again, as a user does it.
+#include <filesystem>
+#include <fstream>
+
+#include <repel/record/mcap_reader.hpp>
+#include <repel/record/mcap_writer.hpp>
+
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace recording_test {
+
+/// Records a run of `arguments` to `file`.
+void record(const std::string& arguments, const std::string& file) {
+  const Ending ending = teleop(arguments + " --log " + quoted(file));
+  ASSERT_EQ(ending.status, 0) << ending;
+}
+
+/// The "replay" of the report of going through the file again.
+nlohmann::json replay(const std::string& file, int status = 0) {
+  const Folder folder;
+  const Ending ending =
+      teleop("--replay " + quoted(file) + " --report " + quoted(folder / "report.json"));
+  EXPECT_EQ(ending.status, status) << ending;
+  return report_of(folder / "report.json").at("replay");
+}
+
+TEST(Recording, ReplayHasTheSameForcesBitForBit) {
+  const Folder folder;
+  const std::string file = folder / "run.mcap";
+  for (const std::string arguments :
+       {"anderson_4x8 --fast --seconds 20", "anderson_4x8 --seconds 3 --threads 0",
+        "two_arms --fast --seconds 6 --backend ode", "conveyor --fast --seconds 6",
+        "delayed --fast --seconds 3 --threads 2 --backend ideal"}) {
+    SCOPED_TRACE(arguments);
+    record(arguments, file);
+    const auto result = replay(file);
+    EXPECT_GE(result.at("ticks"), 1200);
+    EXPECT_EQ(result.at("same"), result.at("ticks"));
+    EXPECT_EQ(result.at("first_difference"), -1);
+  }
+}
+
+// A device that falls silent, a hand that gives no number, a budget that binds: all of it comes
+// again.
+TEST(Recording, FaultsAndBudgetsComeAgain) {
+  const Folder folder;
+  const std::string file = folder / "run.mcap";
+  const std::string script =
+      "script:\n"
+      "  - {name: push, device: spaceball, duration: 1 s, linear: 0 0 -100 mm/s}\n"
+      "  - {name: lost, device: spaceball, duration: 500 ms, silent: yes}\n"
+      "  - {name: back, device: spaceball, duration: 2 s, linear: 0 0 50 mm/s}\n"
+      "budget: {work: 1}\n";
+  const std::string scene = folder.with("scene.yaml", robot_text() + table_text() + script);
+  record(quoted(scene) + " --fast --seconds 4", file);
+  const auto result = replay(file);
+  EXPECT_EQ(result.at("ticks"), 1600);
+  EXPECT_EQ(result.at("same"), 1600);
+}
+
+/// Reads the messages of a topic.
+std::vector<nlohmann::json> messages_of(const std::string& file, const std::string& topic) {
+  record::McapReader reader(file);
+  std::vector<nlohmann::json> all;
+  record::McapMessage message;
+  while (reader.next(message)) {
+    if (reader.channels().at(message.channel).topic == topic)
+      all.push_back(nlohmann::json::parse(message.data));
+  }
+  return all;
+}
+
+TEST(Recording, EveryChannelHasItsTicks) {
+  const Folder folder;
+  const std::string file = folder / "run.mcap";
+  record("anderson_4x8 --fast --seconds 2", file);
+  for (const std::string topic : {"/inputs", "/forces", "/separations", "/energy", "/timing"}) {
+    const auto messages = messages_of(file, topic);
+    ASSERT_EQ(messages.size(), 800U) << topic;
+    for (std::size_t i = 0; i < messages.size(); ++i) ASSERT_EQ(messages[i].at("tick"), i) << topic;
+  }
+  double peak = 0.0;
+  std::size_t near = 0;
+  for (const auto& forces : messages_of(file, "/forces")) {
+    peak = std::max(peak, forces.at("arms").at(0).at("force_n").get<double>());
+  }
+  for (const auto& separations : messages_of(file, "/separations")) {
+    near += separations.at("pairs").size();
+  }
+  EXPECT_GT(peak, 10.0);
+  EXPECT_GT(near, 800U);
+  const auto poses = messages_of(file, "/poses");
+  ASSERT_EQ(poses.size(), 200U);
+  EXPECT_EQ(poses.front().at("transforms").at(0).at("child_frame_id"), "tool");
+}
+
+// As after a crash: what is there can be gone through, and is said to be no whole.
+TEST(Recording, FileThatIsCutOffReplaysUpToThere) {
+  const Folder folder;
+  const std::string file = folder / "run.mcap";
+  record("anderson_4x8 --fast --seconds 4", file);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const Ending ending = teleop("--replay " + quoted(file));
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("ends early")) << ending;
+  const auto result = replay(file);
+  EXPECT_GT(result.at("ticks"), 400);
+  EXPECT_LT(result.at("ticks"), 1400);
+  EXPECT_EQ(result.at("same"), result.at("ticks"));
+}
+
+// Nobody has the time to end the file.
+TEST(Recording, RunThatIsKilledLeavesAllButTheLastHalfSecond) {
+  const Folder folder;
+  const std::string file = folder / "run.mcap";
+  const Ending ending = run_program(
+      "timeout", "-s KILL 3 " + quoted(REPEL_TELEOP) + " anderson_4x8 --log " + quoted(file));
+  ASSERT_EQ(ending.status, 137) << ending;
+  const auto result = replay(file);
+  EXPECT_GT(result.at("ticks"), 400) << "3 s less what it takes to begin";
+  EXPECT_EQ(result.at("same"), result.at("ticks"));
+}
+
+/// Writes the recording again with `before` in its scene replaced by `after`.
+void rewrite(const std::string& from, const std::string& to, const std::string& before,
+             const std::string& after) {
+  record::McapReader reader(from);
+  record::McapWriter writer(to);
+  for (const auto& metadata : reader.metadata()) {
+    writer.add_metadata(metadata.name, metadata.entries);
+  }
+  for (const auto& attachment : reader.attachments()) {
+    std::string data = attachment.data;
+    const std::size_t at = data.find(before);
+    if (at != std::string::npos) data.replace(at, before.size(), after);
+    writer.attach(attachment.name, attachment.media_type, data, attachment.log_time_ns);
+  }
+  std::map<std::uint16_t, std::uint16_t> channels;
+  for (const auto& [id, channel] : reader.channels()) {
+    channels[id] = writer.add_channel(channel.topic, 0, channel.encoding);
+  }
+  record::McapMessage message;
+  while (reader.next(message)) {
+    writer.write(channels.at(message.channel), message.sequence, message.log_time_ns, message.data);
+  }
+}
+
+// With another wall, what was recorded of the forces cannot come out.
+TEST(Recording, ReplayThatDiffersIsSaidAndCounted) {
+  const Folder folder;
+  const std::string file = folder / "run.mcap";
+  const std::string scene = folder.with("scene.yaml", robot_text() + table_text() + push_text());
+  record(quoted(scene) + " --fast --seconds 2", file);
+  rewrite(file, folder / "same.mcap", "no such words", "");
+  EXPECT_EQ(replay(folder / "same.mcap").at("same"), 800);
+  rewrite(file, folder / "other.mcap", "surface_force: 40 N", "surface_force: 41 N");
+  const auto result = replay(folder / "other.mcap", 3);
+  EXPECT_GT(result.at("same"), 20) << "before the table is felt";
+  EXPECT_LT(result.at("same"), 800);
+  EXPECT_EQ(result.at("first_difference"), result.at("same"));
+  EXPECT_GT(result.at("force_difference_n"), 0.1);
+}
+
+TEST(Recording, WhatIsNoRecordingIsRefusedByName) {
+  const Folder folder;
+  const std::string text = folder.with("text.mcap", "no recording at all, but long enough to read");
+  for (const std::string& file : {text, folder / "absent.mcap"}) {
+    const Ending ending = teleop("--replay " + quoted(file));
+    EXPECT_EQ(ending.status, 1) << ending;
+    EXPECT_TRUE(ending.says(file)) << ending;
+  }
+  EXPECT_EQ(teleop("--replay " + quoted(text) + " --seconds 3").status, 2);
+  EXPECT_EQ(teleop("plates --log " + quoted(folder / "no/such.mcap")).status, 1);
+}
+
+TEST(Recording, AnotherRobotIsRefused) {
+  const Folder folder;
+  const std::string urdf = folder.with("arm.urdf", text_of(REPEL_SOURCE "/robots/puma560.urdf"));
+  const std::string scene =
+      folder.with("scene.yaml", robot_text(urdf) + table_text() + push_text());
+  record(quoted(scene) + " --fast --seconds 1", folder / "run.mcap");
+  std::ofstream(urdf, std::ios::app) << "<!-- changed -->\n";
+  const Ending ending = teleop("--replay " + quoted(folder / "run.mcap"));
+  EXPECT_EQ(ending.status, 1) << ending;
+  EXPECT_TRUE(ending.says("arm.urdf")) << ending;
+}
+
+}  // namespace recording_test
+}  // namespace repel::test

@@ -1,0 +1,205 @@
+// Any messages from three pages, sound ones and others: never more than one page has the controls,
+// what the loop is told is finite and in range, and every answer is JSON.
+#include <live_show.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <fuzz/bytes.hpp>
+
+namespace repel::teleop {
+namespace {
+
+using fuzz::Bytes;
+using fuzz::require;
+using Json = nlohmann::json;
+
+constexpr int most_pages = 3;
+
+/// What the pages are told of who drives.
+class ToldPages final : public visual::Pages {
+ public:
+  std::array<bool, most_pages + 1> open{};
+  std::array<bool, most_pages + 1> drives{};
+  int refusals = 0;
+
+  void send(int page, std::string text) override {
+    require(page >= 1 && page <= most_pages && open[static_cast<std::size_t>(page)],
+            "only open pages are spoken to");
+    hear(text, page);
+  }
+  void send_all(std::string text) override { hear(text, 0); }
+  void show(std::string text) override { hear(text, 0); }
+  [[nodiscard]] int count() const override {
+    return static_cast<int>(std::count(open.begin(), open.end(), true));
+  }
+
+ private:
+  void hear(const std::string& text, int page) {
+    if (text.size() > 600) return;  // of the scene, a picture, times: they do not follow from input
+    const Json message = Json::parse(text, nullptr, false);
+    require(message.is_object() && message.contains("type"), "what is said is JSON");
+    if (message["type"] == "refused") {
+      ++refusals;
+      require(message["why"].is_string() && message["why"] != "", "a refusal has a reason");
+    }
+    if (message["type"] == "operator") drives[static_cast<std::size_t>(page)] = message["you"];
+  }
+};
+
+std::string number_text(Bytes& bytes) {
+  static constexpr std::array<const char*, 8> odd{"1e999", "-1e999", "NaN",      "null",
+                                                  "\"1\"", "[]",     "99999999", "-0"};
+  const auto kind = bytes.take<std::uint8_t>();
+  if (kind < 16) return odd[kind % odd.size()];
+  if (kind < 128) return std::to_string(static_cast<double>(bytes.take<std::int8_t>()) / 16.0);
+  char text[40];
+  (void)std::snprintf(text, sizeof text, "%.17g", bytes.number());
+  return text;
+}
+
+std::string vector_text(Bytes& bytes) {
+  std::string text = "[";
+  for (int i = bytes.take<std::uint8_t>() < 240 ? 3 : 2; i > 0; --i) {
+    text += number_text(bytes);
+    text += i > 1 ? "," : "]";
+  }
+  return text;
+}
+
+/// A message of a known type, perhaps with a wrong number; or with a wrong byte; or no message.
+std::string message_text(Bytes& bytes) {
+  static constexpr std::array<const char*, 9> types{
+      "take", "release", "servo_cv", "servo_lever", "pause", "resume", "step", "restart", "seek"};
+  const auto kind = bytes.take<std::uint8_t>();
+  std::string text;
+  if (kind < 24) {
+    text.resize(bytes.take<std::uint8_t>() % 64);
+    for (char& c : text) c = static_cast<char>(bytes.take<std::uint8_t>());
+    return text;
+  }
+  const auto type = bytes.take<std::uint8_t>();
+  text = "{\"type\":\"";
+  text += type % 10 == 9 ? "speed" : types[type % 10];
+  text += "\",\"linear\":" + vector_text(bytes);
+  text += ",\"angular\":" + vector_text(bytes);
+  text += ",\"direction\":" + vector_text(bytes);
+  text += bytes.take<std::uint8_t>() < 240 ? ",\"frame\":\"world\"" : ",\"frame\":\"tool\"";
+  text += bytes.take<std::uint8_t>() < 200 ? ",\"clutch\":true" : "";
+  for (const char* name : {"rate", "ticks", "time_s", "factor"}) {
+    text += ",\"";
+    text += name;
+    text += "\":" + number_text(bytes);
+  }
+  text += '}';
+  if (kind < 48) text[bytes.take<std::uint8_t>() % text.size()] = bytes.take<char>();
+  return text;
+}
+
+/// A tool and a wall, and a show of them.
+struct Stage {
+  explicit Stage(Bytes& bytes)
+      : replay(bytes.take<std::uint8_t>() % 8 == 0),
+        device(bytes.take<std::uint8_t>() % 8 == 0),
+        tool(world.add_body("tool")),
+        tap(build(world, tool), {.pairs = 1, .samples = 2}),
+        show(cast(), world, tap, controls, device ? "a device" : "") {
+    controls.may_restart = bytes.take<std::uint8_t>() % 2 == 0;
+  }
+
+  static const World& build(World& world, BodyId tool) {
+    // As small as they can be: they are described for every input.
+    const std::array<Vec3, 1> point{Vec3::Zero()};
+    const PartId tip = world.add_part(tool, "tip", Shape::hull(point));
+    const PartId wall = world.add_part(World::fixed, "wall", Shape::hull(point));
+    world.add_pair(tip, wall, {.range = 0.01});
+    return world;
+  }
+  [[nodiscard]] visual::Cast cast() const {
+    visual::Cast cast;
+    cast.replay = replay;
+    cast.duration = 10.0;
+    cast.arms.emplace_back().tool = tool;
+    return cast;
+  }
+
+  bool replay;
+  bool device;
+  World world;
+  BodyId tool;
+  Tap tap;
+  Controls controls;
+  ToldPages pages;
+  LiveShow show;
+};
+
+bool moves(const Grip& grip) {
+  return !grip.rates.linear.isZero(0.0) || !grip.rates.angular.isZero(0.0) ||
+         grip.lever_rate != 0.0;
+}
+
+/// @param page that has just spoken; 0: none
+void check(Stage& stage, int page) {
+  const auto& drives = stage.pages.drives;
+  require(std::count(drives.begin(), drives.end(), true) <= 1, "one page drives");
+  const bool is_driver = page != 0 && drives[static_cast<std::size_t>(page)];
+  if (stage.controls.grip.take()) {
+    const Grip& grip = stage.controls.grip.newest();
+    require(is_finite(grip.rates) && is_finite(grip.direction_W) && std::isfinite(grip.lever_rate),
+            "what is said to the loop is finite");
+    require(grip.rates.linear.norm() <= 10.0 && grip.rates.angular.norm() <= 100.0 &&
+                std::abs(grip.lever_rate) <= 100.0,
+            "and in range");
+    require(std::abs(grip.direction_W.norm() - 1.0) < 1e-9, "the direction is a unit");
+    require((grip.driver != Driver::page && !moves(grip)) || is_driver, "whoever drives said it");
+    require(grip.driver != Driver::page || (!stage.replay && !stage.device), "they can be driven");
+    require(grip.driver != Driver::device, "a device speaks for itself");
+  }
+  const Controls& controls = stage.controls;
+  require(controls.steps >= 0 && controls.steps <= 1000000, "steps are counted");
+  require(controls.seek < 0.0 || (stage.replay && controls.seek < 10.0), "a recording has an end");
+  require(controls.speed >= 0.01 && controls.speed <= 100.0, "speed is in range");
+  require(stage.replay || controls.speed == 1.0, "and of a recording");
+  require(!controls.restart || controls.may_restart, "a log is begun once");
+}
+
+void run(Bytes& bytes) {
+  Stage stage(bytes);
+  ToldPages& pages = stage.pages;
+  for (int i = 0; i < 40; ++i) {
+    const auto what = bytes.take<std::uint8_t>();
+    const int page = 1 + what % most_pages;
+    auto& open = pages.open[static_cast<std::size_t>(page)];
+    if (!open) {
+      open = true;
+      stage.show.opened(page, pages);
+    } else if (what < 16) {
+      open = false;
+      pages.drives[static_cast<std::size_t>(page)] = false;
+      stage.show.closed(page, pages);
+    } else if (what < 32) {
+      stage.show.beat(pages);
+    } else {
+      const int refusals = pages.refusals;
+      stage.show.heard(page, message_text(bytes), pages);
+      require(pages.refusals <= refusals + 1, "one answer at most");
+      check(stage, page);
+      continue;
+    }
+    check(stage, 0);
+  }
+}
+
+}  // namespace
+}  // namespace repel::teleop
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  repel::fuzz::Bytes bytes(data, size);
+  repel::teleop::run(bytes);
+  return 0;
+}

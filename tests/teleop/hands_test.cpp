@@ -1,0 +1,240 @@
+#include "hands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace repel::teleop {
+namespace hands_test {
+
+using network::Command;
+constexpr double period = 0.0025;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+network::Script script() {
+  network::Phase down;
+  down.rates.linear = Vec3(0, 0, -0.1);
+  network::Phase up;
+  up.rates.linear = Vec3(0, 0, 0.1);
+  return {down, up};
+}
+
+Mat3 quarter_turn() {
+  return Eigen::AngleAxisd(M_PI / 2, Vec3::UnitZ()).toRotationMatrix();
+}
+
+/// Hands that somebody can take the controls of.
+struct Bench {
+  Controls controls;
+  Hands hands{script(), &controls};
+
+  void post(const Grip& grip) {
+    controls.grip.draft() = grip;
+    controls.grip.post();
+  }
+  void push(const Vec3& rates) {
+    Grip grip;
+    grip.driver = Driver::page;
+    grip.rates.linear = rates;
+    post(grip);
+  }
+  const Command& tick(const Mat3& R_WT = Mat3::Identity()) { return hands.step(R_WT, period); }
+  /// The command of the last of so many ticks.
+  const Command& ticks(double seconds) {
+    for (int i = 1; i < seconds / period; ++i) (void)tick();
+    return tick();
+  }
+};
+
+bool at_rest(const Command& command) {
+  return command.hand.ball.linear.isZero(0.0) && command.hand.ball.angular.isZero(0.0) &&
+         command.hand.lever_rate == 0.0;
+}
+
+TEST(Hands, PlayTheirScriptWhileNobodyTakesTheControls) {
+  Bench bench;
+  Hands alone(script());
+  network::ScriptedOperator plain(script());
+  for (int i = 0; i < 1000; ++i) {
+    const Command expected = plain.step(Mat3::Identity(), period);
+    for (const Command& c : {bench.tick(), alone.step(Mat3::Identity(), period)}) {
+      EXPECT_EQ(c.hand.ball.linear, expected.hand.ball.linear) << i;
+      EXPECT_EQ(c.silent_for, 0.0);
+    }
+    EXPECT_EQ(bench.hands.phase(), plain.phase());
+    EXPECT_EQ(alone.phase(), plain.phase());
+  }
+}
+
+TEST(Hands, OnceTakenTheScriptIsOver) {
+  Bench bench;
+  (void)bench.tick();
+  bench.push(Vec3(0.1, 0, 0));
+  EXPECT_EQ(bench.tick().hand.ball.linear, Vec3(0.1, 0, 0));
+  EXPECT_EQ(bench.hands.phase(), script().size());
+  Grip released;
+  released.driver = Driver::nobody;
+  bench.post(released);
+  EXPECT_TRUE(at_rest(bench.tick()));
+  EXPECT_TRUE(at_rest(bench.ticks(5.0)));
+  EXPECT_EQ(bench.ticks(1.0).silent_for, 0.0);
+  EXPECT_EQ(bench.hands.phase(), script().size());
+}
+
+TEST(Hands, ADriverWhoSaysNothingIsAtRestAndThenSilent) {
+  Bench bench;
+  bench.push(Vec3(0.1, 0, 0));
+  EXPECT_FALSE(at_rest(bench.ticks(Hands::rest_after - period)));
+  const Command& resting = bench.ticks(4 * period);
+  EXPECT_TRUE(at_rest(resting));
+  EXPECT_EQ(resting.silent_for, 0.0);
+  EXPECT_EQ(bench.ticks(0.13).silent_for, 0.0);
+  const Command& silent = bench.ticks(0.03);
+  EXPECT_GT(silent.silent_for, Hands::silent_after);
+  EXPECT_TRUE(silent.sound);
+  EXPECT_TRUE(at_rest(silent));
+  const double before = silent.silent_for;
+  EXPECT_GT(bench.ticks(1.0).silent_for, before);
+  bench.push(Vec3(0, 0.1, 0));
+  EXPECT_EQ(bench.tick().hand.ball.linear, Vec3(0, 0.1, 0));
+  EXPECT_EQ(bench.tick().silent_for, 0.0);
+}
+
+TEST(Hands, WhoSpeaksTenTimesASecondIsNeverSilent) {
+  Bench bench;
+  for (int i = 0; i < 50; ++i) {
+    bench.push(Vec3(0.1, 0, 0));
+    for (int k = 0; k < 40; ++k) {
+      const Command& command = bench.tick();
+      EXPECT_EQ(command.hand.ball.linear, Vec3(0.1, 0, 0));
+      EXPECT_EQ(command.silent_for, 0.0);
+    }
+  }
+}
+
+TEST(Hands, WhatIsNoNumberIsUnsoundAndAtRest) {
+  for (const double bad : {nan, infinite, -infinite}) {
+    for (int where = 0; where < 10; ++where) {
+      Bench bench;
+      bench.push(Vec3(0.1, 0, 0));
+      EXPECT_TRUE(bench.tick().sound);
+      Grip grip;
+      grip.driver = Driver::page;
+      grip.in_tool = where % 2 == 0;
+      grip.lever_rate = 0.5;
+      if (where < 3) grip.rates.linear[where] = bad;
+      if (where >= 3 && where < 6) grip.rates.angular[where - 3] = bad;
+      if (where >= 6 && where < 9) grip.direction_W[where - 6] = bad;
+      if (where == 9) grip.lever_rate = bad;
+      bench.post(grip);
+      const Command& command = bench.tick();
+      EXPECT_FALSE(command.sound) << where;
+      EXPECT_TRUE(at_rest(command)) << where;
+      EXPECT_TRUE(command.hand.direction_W.allFinite()) << where;
+      bench.push(Vec3(0, 0.1, 0));
+      EXPECT_TRUE(bench.tick().sound) << where;
+      EXPECT_EQ(bench.tick().hand.ball.linear, Vec3(0, 0.1, 0)) << where;
+    }
+  }
+}
+
+// Their axes turn with the tool while nothing new is said.
+TEST(Hands, RatesInTheFrameOfTheToolTurnWithIt) {
+  Bench bench;
+  Grip grip;
+  grip.driver = Driver::page;
+  grip.rates = {Vec3(0.1, 0, 0), Vec3(0, 0, 1)};
+  grip.in_tool = true;
+  bench.post(grip);
+  EXPECT_TRUE(bench.tick().hand.ball.linear.isApprox(Vec3(0.1, 0, 0)));
+  EXPECT_TRUE(bench.tick(quarter_turn()).hand.ball.linear.isApprox(Vec3(0, 0.1, 0)));
+  EXPECT_TRUE(bench.tick(quarter_turn()).hand.ball.angular.isApprox(Vec3(0, 0, 1)));
+  grip.in_tool = false;
+  bench.post(grip);
+  EXPECT_TRUE(bench.tick(quarter_turn()).hand.ball.linear.isApprox(Vec3(0.1, 0, 0)));
+}
+
+TEST(Hands, TheLeverIsLedTheWayThatIsSaid) {
+  Bench bench;
+  Grip grip;
+  grip.driver = Driver::page;
+  grip.lever_rate = 0.5;
+  grip.direction_W = Vec3::UnitY();
+  bench.post(grip);
+  EXPECT_EQ(bench.tick().hand.lever_rate, 0.5);
+  EXPECT_EQ(bench.tick().hand.direction_W, Vec3::UnitY());
+  EXPECT_EQ(bench.ticks(0.2).hand.lever_rate, 0.0);
+}
+
+TEST(Hands, FollowARecordingWhateverIsSaid) {
+  Bench bench;
+  TickRecord record;
+  record.phase = 7;
+  record.command.hand.ball.linear = Vec3(1, 2, 3);
+  record.command.sound = false;
+  record.command.silent_for = 0.5;
+  bench.hands.follow(record);
+  bench.push(Vec3(0.1, 0, 0));
+  const Command& command = bench.tick();
+  EXPECT_EQ(command.hand.ball.linear, Vec3(1, 2, 3));
+  EXPECT_FALSE(command.sound);
+  EXPECT_EQ(command.silent_for, 0.5);
+  EXPECT_EQ(bench.hands.phase(), 7U);
+}
+
+#ifdef REPEL_TELEOP_DEVICES
+/// The thread's end of a device as well.
+struct FakeLink final : devices::DeviceLink {
+  void post(const devices::Measured& measured) {
+    measured_.draft() = measured;
+    measured_.post();
+  }
+};
+
+TEST(Hands, ADeviceHasTheControlsFromTheBeginning) {
+  Controls controls;
+  FakeLink link;
+  Hands hands(script(), &controls, &link);
+  EXPECT_EQ(hands.phase(), script().size());
+  devices::Measured measured;
+  measured.silent = false;
+  measured.measured_cv = {Vec3(0.1, 0, 0), Vec3(0, 0, 1)};
+  measured.lever_rate = 0.25;
+  measured.lever_direction_W = Vec3::UnitZ();
+  link.post(measured);
+  controls.grip.draft().driver = Driver::page;
+  controls.grip.post();
+  const Command& command = hands.step(quarter_turn(), period);
+  EXPECT_EQ(command.hand.ball.linear, Vec3(0.1, 0, 0));
+  EXPECT_EQ(command.hand.ball.angular, Vec3(0, 0, 1));
+  EXPECT_EQ(command.hand.lever_rate, 0.25);
+  EXPECT_EQ(command.hand.direction_W, Vec3::UnitZ());
+  EXPECT_EQ(command.silent_for, 0.0);
+}
+
+// It says so itself, or its thread hangs.
+TEST(Hands, ADeviceThatIsSilentIsAtRest) {
+  for (const bool hangs : {false, true}) {
+    FakeLink link;
+    Hands hands(script(), nullptr, &link);
+    devices::Measured measured;
+    measured.silent = false;
+    measured.measured_cv.linear = Vec3(0.1, 0, 0);
+    link.post(measured);
+    EXPECT_EQ(hands.step(Mat3::Identity(), period).silent_for, 0.0);
+    const Command* command = nullptr;
+    for (int i = 0; i < 200; ++i) {
+      devices::Measured silent;
+      silent.silent = true;
+      if (!hangs) link.post(silent);
+      command = &hands.step(Mat3::Identity(), period);
+    }
+    EXPECT_GE(command->silent_for, Hands::silent_after);
+    EXPECT_TRUE(at_rest(*command));
+  }
+}
+#endif
+
+}  // namespace hands_test
+}  // namespace repel::teleop

@@ -1,0 +1,236 @@
+#include "teleop/live_stage.hpp"
+
+namespace repel::teleop {
+namespace live_show_test {
+
+const Json take{{"type", "take"}};
+const Json release{{"type", "release"}};
+
+TEST(LiveShow, WhoComesIsToldAll) {
+  LiveStage stage;
+  ++stage.pages.open;
+  stage.show.opened(4, stage.pages);
+  const std::vector<Json> heard = stage.pages.heard_by(4);
+  ASSERT_GE(heard.size(), 3U);
+  EXPECT_EQ(heard.front().at("type"), "scene");
+  for (const char* type : {"scene", "operator", "timing"}) {
+    EXPECT_NE(last_of(heard, type), nullptr) << type;
+  }
+  EXPECT_EQ(last_of(heard, "frame"), nullptr) << "no tick was made";
+  EXPECT_EQ(last_of(heard, "operator")->at("by"), "script");
+  EXPECT_EQ(last_of(heard, "operator")->at("pages"), 4);
+}
+
+TEST(LiveShow, OnePageAtATimeHasTheControls) {
+  LiveStage stage;
+  EXPECT_EQ(stage.say(1, servo(0.1, 0, 0)), "take the controls first");
+  EXPECT_EQ(stage.say(1, release), "take the controls first");
+  EXPECT_FALSE(stage.posted());
+  EXPECT_EQ(stage.say(1, take), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.grip().driver, Driver::page);
+  EXPECT_TRUE(stage.grip().rates.linear.isZero(0.0));
+  for (const Json& message :
+       {take, release, servo(0, 0, 0.1), Json{{"type", "pause"}}, Json{{"type", "resume"}},
+        Json{{"type", "restart"}}, Json{{"type", "step"}, {"ticks", 1}}}) {
+    EXPECT_EQ(stage.say(2, message), "another page has the controls") << message;
+  }
+  EXPECT_FALSE(stage.posted());
+  EXPECT_FALSE(stage.controls.paused);
+  EXPECT_FALSE(stage.controls.restart);
+  EXPECT_EQ(stage.controls.steps, 0);
+  EXPECT_EQ(stage.say(1, servo(0.1, 0, 0)), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.grip().rates.linear, Vec3(0.1, 0, 0));
+  EXPECT_EQ(stage.say(1, release), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.grip().driver, Driver::nobody);
+  EXPECT_EQ(stage.say(2, take), "");
+}
+
+TEST(LiveShow, EveryPageIsToldWhoDrives) {
+  LiveStage stage;
+  stage.show.heard(1, take.dump(), stage.pages);
+  for (const int page : {1, 2, 3}) {
+    const std::vector<Json> heard = stage.pages.heard_by(page);
+    const Json* who = last_of(heard, "operator");
+    ASSERT_NE(who, nullptr) << page;
+    EXPECT_EQ(who->at("by"), "page");
+    EXPECT_EQ(who->at("you"), page == 1);
+    EXPECT_EQ(who->at("silent"), false);
+  }
+  stage.show.heard(1, release.dump(), stage.pages);
+  const std::vector<Json> heard = stage.pages.heard_by(2);
+  EXPECT_EQ(last_of(heard, "operator")->at("by"), "nobody");
+}
+
+TEST(LiveShow, WithoutTheClutchTheHandRests) {
+  LiveStage stage;
+  (void)stage.say(1, take);
+  Json message = servo(0.1, 0, 0);
+  for (const Json& clutch : {Json(false), Json("true"), Json(1), Json(nullptr), Json::object()}) {
+    message["clutch"] = clutch;
+    EXPECT_EQ(stage.say(1, message), "");
+    ASSERT_TRUE(stage.posted());
+    EXPECT_TRUE(stage.grip().rates.linear.isZero(0.0)) << clutch;
+    EXPECT_EQ(stage.grip().driver, Driver::page);
+  }
+  message.erase("clutch");
+  EXPECT_EQ(stage.say(1, message), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_TRUE(stage.grip().rates.linear.isZero(0.0));
+}
+
+TEST(LiveShow, FrameAndLeverArePassedOn) {
+  LiveStage stage;
+  (void)stage.say(1, take);
+  Json message = servo(0.1, 0, 0);
+  message["frame"] = "tool";
+  EXPECT_EQ(stage.say(1, message), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_TRUE(stage.grip().in_tool);
+  EXPECT_EQ(stage.say(1, Json{{"type", "servo_lever"}, {"direction", {0, 3, 4}}, {"rate", -0.5}}),
+            "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_TRUE(stage.grip().direction_W.isApprox(Vec3(0, 0.6, 0.8)));
+  EXPECT_EQ(stage.grip().lever_rate, -0.5);
+}
+
+TEST(LiveShow, ClosingFreesTheControlsOnlyAfterASilence) {
+  LiveStage stage;
+  (void)stage.say(1, take);
+  --stage.pages.open;
+  stage.show.closed(1, stage.pages);
+  EXPECT_EQ(stage.say(2, take), "another page has the controls");
+  bool silent = false;
+  EXPECT_TRUE(stage.until_told([&](const Json& who) {
+    silent = silent || (who.at("by") == "page" && who.at("silent") == true);
+    return who.at("by") == "nobody";
+  }));
+  EXPECT_TRUE(silent) << "before it is free, it is silent";
+  stage.controls.grip.take();
+  EXPECT_EQ(stage.grip().driver, Driver::nobody);
+  EXPECT_EQ(stage.say(2, take), "");
+}
+
+TEST(LiveShow, WhoSpeaksAgainIsNoLongerSilent) {
+  LiveStage stage;
+  (void)stage.say(1, take);
+  EXPECT_TRUE(stage.until_told([](const Json& who) { return who.at("silent") == true; }));
+  EXPECT_EQ(stage.say(1, servo(0, 0, 0)), "");
+  EXPECT_TRUE(stage.until_told(
+      [](const Json& who) { return who.at("by") == "page" && who.at("silent") == false; }));
+}
+
+TEST(LiveShow, PauseStepAndResume) {
+  LiveStage stage;
+  EXPECT_EQ(stage.say(1, Json{{"type", "pause"}}), "");
+  EXPECT_TRUE(stage.controls.paused);
+  EXPECT_EQ(stage.say(1, Json{{"type", "step"}, {"ticks", 3}}), "");
+  EXPECT_EQ(stage.say(2, Json{{"type", "step"}, {"ticks", 2}}), "");
+  EXPECT_EQ(stage.controls.steps, 5);
+  EXPECT_EQ(stage.say(1, Json{{"type", "resume"}}), "");
+  EXPECT_FALSE(stage.controls.paused);
+  EXPECT_EQ(stage.controls.steps, 0);
+  EXPECT_EQ(stage.say(1, Json{{"type", "step"}, {"ticks", 1}}), "");
+  EXPECT_TRUE(stage.controls.paused) << "a step is one of a run that pauses";
+  for (const Json& ticks :
+       {Json(0), Json(-1), Json(0.5), Json(10001), Json(1e300), Json("1"), Json(nullptr)}) {
+    EXPECT_NE(stage.say(1, Json{{"type", "step"}, {"ticks", ticks}}), "") << ticks;
+  }
+  EXPECT_EQ(stage.controls.steps, 1);
+}
+
+TEST(LiveShow, RestartGivesTheControlsBackToTheScript) {
+  LiveStage stage;
+  (void)stage.say(1, take);
+  (void)stage.say(1, Json{{"type", "pause"}});
+  EXPECT_EQ(stage.say(1, Json{{"type", "restart"}}), "");
+  EXPECT_TRUE(stage.controls.restart);
+  EXPECT_FALSE(stage.controls.paused);
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.grip().driver, Driver::script);
+  EXPECT_EQ(stage.say(2, take), "");
+}
+
+TEST(LiveShow, ALogIsNotBegunTwice) {
+  LiveStage stage;
+  stage.controls.may_restart = false;
+  EXPECT_NE(stage.say(1, Json{{"type", "restart"}}), "");
+  EXPECT_FALSE(stage.controls.restart);
+}
+
+TEST(LiveShow, OnlyARecordingCanBeWoundOn) {
+  const Json seek{{"type", "seek"}, {"time_s", 3.2}};
+  const Json speed{{"type", "speed"}, {"factor", 0.25}};
+  LiveStage live;
+  EXPECT_EQ(live.say(1, seek), "no such message for a live run");
+  EXPECT_EQ(live.say(1, speed), "no such message for a live run");
+  EXPECT_LT(live.controls.seek, 0.0);
+  EXPECT_EQ(live.controls.speed, 1.0);
+  LiveStage replay(true);
+  EXPECT_EQ(replay.say(1, seek), "");
+  EXPECT_EQ(replay.controls.seek, 3.2);
+  EXPECT_EQ(replay.say(1, speed), "");
+  EXPECT_EQ(replay.controls.speed, 0.25);
+  for (const Json& bad : {Json(-1), Json(1e10), Json("3"), Json(nullptr), Json::array({1})}) {
+    EXPECT_NE(replay.say(1, Json{{"type", "seek"}, {"time_s", bad}}), "") << bad;
+    EXPECT_NE(replay.say(1, Json{{"type", "speed"}, {"factor", bad}}), "") << bad;
+  }
+  EXPECT_NE(replay.say(1, Json{{"type", "speed"}, {"factor", 0}}), "");
+  EXPECT_EQ(replay.controls.seek, 3.2);
+  EXPECT_EQ(replay.controls.speed, 0.25);
+}
+
+// What lies beyond the end is the end: there is no tick that would come to it.
+TEST(LiveShow, ARecordingIsNotWoundBeyondItsLastTick) {
+  for (const double time : {9.9976, 9.999, 10.0, 1000.0}) {
+    LiveStage replay(true);
+    EXPECT_EQ(replay.say(1, Json{{"type", "seek"}, {"time_s", time}}), "");
+    EXPECT_NEAR(replay.controls.seek, 10.0 - 1.0 / 400.0, 1e-12) << time;
+  }
+}
+
+TEST(LiveShow, NobodyDrivesARecordingOrInPlaceOfADevice) {
+  LiveStage replay(true);
+  LiveStage device(false, "Spaceball on /run/spnav.sock");
+  for (const Json& message : {take, release, servo(0.1, 0, 0)}) {
+    EXPECT_EQ(replay.say(1, message), "this is a recording");
+    EXPECT_EQ(device.say(1, message), "Spaceball on /run/spnav.sock has the controls");
+  }
+  EXPECT_FALSE(replay.posted());
+  EXPECT_FALSE(device.posted());
+  const auto by = [](LiveStage& stage) {
+    ++stage.pages.open;
+    stage.show.opened(4, stage.pages);
+    return last_of(stage.pages.heard_by(4), "operator")->at("by").get<std::string>();
+  };
+  EXPECT_EQ(by(replay), "recording");
+  EXPECT_EQ(by(device), "device");
+  EXPECT_EQ(device.say(1, Json{{"type", "restart"}}), "");
+  EXPECT_FALSE(device.posted());
+}
+
+TEST(LiveShow, APictureIsShownWhenThereIsOne) {
+  LiveStage stage;
+  Coprocessor coprocessor(stage.boxes.world, {});
+  TickRecord record;
+  const TickRecord* arms[] = {&record};
+  stage.show.beat(stage.pages);
+  (void)stage.pages.heard_by(1);
+  stage.show.beat(stage.pages);
+  EXPECT_EQ(last_of(stage.pages.heard_by(1), "frame"), nullptr);
+  for (record.tick = 1; record.tick <= 3; ++record.tick) {
+    (void)coprocessor.exchange();
+    stage.tap.note(coprocessor, arms, {});
+    stage.tap.show(coprocessor, arms, {});
+  }
+  stage.show.beat(stage.pages);
+  const std::vector<Json> heard = stage.pages.heard_by(1);
+  ASSERT_NE(last_of(heard, "frame"), nullptr);
+  EXPECT_EQ(last_of(heard, "frame")->at("tick"), 3);
+  EXPECT_EQ(last_of(heard, "frame")->at("recent").at("tick"), (Json{1, 2, 3}));
+}
+
+}  // namespace live_show_test
+}  // namespace repel::teleop

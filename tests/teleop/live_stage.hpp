@@ -1,0 +1,124 @@
+/// @file
+/// A live view without a server: what is said to it and what it says.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "live_show.hpp"
+#include "schedule/boxes.hpp"
+#include "support/web_page.hpp"
+
+namespace repel::teleop {
+
+using Json = nlohmann::json;
+
+/// Keeps what is said to each page.
+class FakePages final : public visual::Pages {
+ public:
+  void send(int page, std::string text) override { said_.emplace_back(page, Json::parse(text)); }
+  void send_all(std::string text) override { said_.emplace_back(0, Json::parse(text)); }
+  void show(std::string text) override { said_.emplace_back(0, Json::parse(text)); }
+  [[nodiscard]] int count() const override { return open; }
+
+  int open = 0;
+  /// What was said to a page, or to all, since the last time it was asked for.
+  std::vector<Json> heard_by(int page) {
+    std::vector<Json> all;
+    std::vector<std::pair<int, Json>> rest;
+    for (auto& [to, message] : said_) {
+      if (to == page || to == 0) all.push_back(message);
+      if (to != page) rest.emplace_back(to, std::move(message));
+    }
+    said_ = std::move(rest);
+    return all;
+  }
+
+ private:
+  std::vector<std::pair<int, Json>> said_;
+};
+
+inline const Json* last_of(const std::vector<Json>& messages, const char* type) {
+  const Json* last = nullptr;
+  for (const Json& message : messages) {
+    if (message.at("type") == type) last = &message;
+  }
+  return last;
+}
+
+inline visual::Cast cast_of(BodyId tool, bool replay) {
+  visual::Cast cast;
+  cast.scene = "stage";
+  cast.replay = replay;
+  cast.duration = replay ? 10.0 : 0.0;
+  visual::ArmCast& arm = cast.arms.emplace_back();
+  arm.tool = tool;
+  arm.joints = {"revolute"};
+  return cast;
+}
+
+/// A show with pages 1 to 3 open.
+struct LiveStage {
+  explicit LiveStage(bool replay = false, const std::string& device = "")
+      : boxes(2, 3, {.range = 0.02}, 7),
+        tap(boxes.world),
+        show(cast_of(boxes.tool, replay), boxes.world, tap, controls, device) {
+    for (int page = 1; page <= 3; ++page) {
+      ++pages.open;
+      show.opened(page, pages);
+    }
+    (void)pages.heard_by(1);
+  }
+
+  /// Why the message was refused; empty: it was not.
+  std::string say(int page, const std::string& text) {
+    (void)pages.heard_by(page);
+    show.heard(page, text, pages);
+    const std::vector<Json> answers = pages.heard_by(page);
+    for (const Json& answer : answers) {
+      if (answer.at("type") == "refused") return answer.at("why").get<std::string>();
+    }
+    return {};
+  }
+  std::string say(int page, const Json& message) { return say(page, message.dump()); }
+
+  /// Something was said to the loop.
+  bool posted() { return controls.grip.take(); }
+  [[nodiscard]] const Grip& grip() const { return controls.grip.newest(); }
+
+  /// Beats until the pages are told of such an operator; false when they are not for too long.
+  bool until_told(const std::function<bool(const Json&)>& such) {
+    const auto until = std::chrono::steady_clock::now() + test::patience;
+    while (std::chrono::steady_clock::now() < until) {
+      show.beat(pages);
+      for (const Json& message : pages.heard_by(3)) {
+        if (message.at("type") == "operator" && such(message)) return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+
+  test::Boxes boxes;
+  Tap tap;
+  Controls controls;
+  FakePages pages;
+  LiveShow show;
+};
+
+inline Json servo(double x, double y, double z, bool clutch = true) {
+  return {{"type", "servo_cv"},
+          {"linear", {x, y, z}},
+          {"angular", {0, 0, 0}},
+          {"frame", "world"},
+          {"clutch", clutch}};
+}
+
+}  // namespace repel::teleop
