@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include "commit.hpp"
@@ -80,6 +82,21 @@ bool run_on(const std::vector<int>& processors) noexcept {
   CPU_ZERO(&set);
   for (const int processor : processors) CPU_SET(processor, &set);
   return sched_setaffinity(0, sizeof set, &set) == 0;
+}
+
+void clear_own_processor() {
+  std::vector<int> others = allowed_processors();
+  std::erase(others, sched_getcpu());
+  if (others.empty()) return;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int processor : others) CPU_SET(processor, &set);
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task", error)) {
+    const int thread = std::atoi(entry.path().filename().c_str());
+    if (thread == gettid() || sched_getscheduler(thread) != SCHED_OTHER) continue;
+    (void)sched_setaffinity(thread, sizeof set, &set);
+  }
 }
 
 std::string to_text(const Grant& grant) {

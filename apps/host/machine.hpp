@@ -36,6 +36,11 @@ int follow_real_time() noexcept;
 /// Binds the calling thread to these; false where that is refused.
 [[nodiscard]] bool run_on(const std::vector<int>& processors) noexcept;
 
+/// Moves the threads of this program that have no real-time priority off the processor that the
+/// calling thread is on, where there is another: what they do there would cost it its caches. Takes
+/// milliseconds.
+void clear_own_processor();
+
 /// What was granted, in words.
 [[nodiscard]] std::string to_text(const Grant& grant);
 

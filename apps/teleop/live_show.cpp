@@ -247,4 +247,18 @@ void LiveShow::beat(visual::Pages& pages) {
   if (pages.count() > 0) pages.send_all(visual::timing_message(timing_));
 }
 
+std::optional<LiveShow::Clock::time_point> LiveShow::next_beat() const {
+  using std::chrono::nanoseconds;
+  // A picture is made by the first tick that ends so long after the last.
+  const nanoseconds spacing =
+      (TapOptions{}.picture_period + period_ - nanoseconds(1)) / period_ * period_;
+  const nanoseconds behind = std::min(nanoseconds(200000), period_ / 8);
+  const Clock::time_point now = Clock::now();
+  const Clock::time_point due = tap_.pictures().newest().made + spacing + behind;
+  if (due > now) return due;
+  const nanoseconds late = now - due;
+  if (late > std::chrono::seconds(1)) return std::nullopt;  // nothing is made: the pace will do
+  return due + (late / period_ + 1) * period_;
+}
+
 }  // namespace repel::teleop

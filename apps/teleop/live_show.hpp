@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ namespace repel::teleop {
 /// Reads the tap and passes on what the pages say to the controls. One page at a time drives.
 class LiveShow final : public visual::Show {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// @param device name of the master that has the controls all the time; empty: there is none
   LiveShow(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
            const std::string& device);
@@ -28,9 +31,11 @@ class LiveShow final : public visual::Show {
   void heard(int page, std::string_view text, visual::Pages& pages) override;
   void closed(int page, visual::Pages& pages) override;
   void beat(visual::Pages& pages) override;
+  /// Just after the tick that makes the next picture: a page that is served while a tick is made
+  /// costs it cycles and cache, and one that is served between two costs it nothing.
+  [[nodiscard]] std::optional<Clock::time_point> next_beat() const override;
 
  private:
-  using Clock = std::chrono::steady_clock;
   static constexpr int nobody = 0;
 
   /// Each does what the message asks; empty, or why not.

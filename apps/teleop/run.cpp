@@ -256,13 +256,14 @@ void run_with(const Shift<Arm>& shift, const std::function<void(const Progress&)
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
 
-  result.machine = host::describe_machine(options.fast ? "not by the clock"
-                                                       : host::to_text(host::request_real_time()));
+  const host::Grant grant = options.fast ? host::Grant{} : host::request_real_time();
+  result.machine = host::describe_machine(options.fast ? "not by the clock" : host::to_text(grant));
   Coprocessor coprocessor(shift.cell.world, coprocessor_options(result, period));
   if (shift.company.tap != nullptr) shift.company.tap->watch(shift.cell.world);
   Crew<Arm> crew(result.scene, shift.cell, shift.arms, coprocessor, shift.company.controls,
                  shift.company.device, options.rate_hz);
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
+  if (grant.priority > 0) host::clear_own_processor();
   TickUsage usage;
   make_ticks(shift, crew, coprocessor, recorders, progress, usage);
   coprocessor.stop();

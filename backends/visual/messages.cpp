@@ -5,6 +5,7 @@
 
 #include <repel/visual/messages.hpp>
 
+#include "json_text.hpp"
 #include "mesh.hpp"
 
 namespace repel::visual {
@@ -15,15 +16,6 @@ using Json = nlohmann::json;
 /// To a micrometre, a microradian: what nobody can see would make half of the text.
 double rounded(double value) {
   return std::round(1e6 * value) / 1e6;
-}
-
-/// null for what is not finite.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json to_json(const Vec3& v) {
-  return {rounded(v.x()), rounded(v.y()), rounded(v.z())};
 }
 
 Json to_json(const Pose& X) {
@@ -77,59 +69,62 @@ void add_laws(const World& world, std::int32_t part, Json& json) {
   json["passable"] = passable;
 }
 
-Json to_json(const NearPair& near) {
-  const Separation& s = near.separation;
-  return {{"i", near.pair.index},         {"d", rounded(s.distance)}, {"lower", number(s.lower)},
-          {"upper", number(s.upper)},     {"a", to_json(s.p_WA)},     {"b", to_json(s.p_WB)},
-          {"n", to_json(s.extraction_W)}, {"level", s.level},         {"f", rounded(near.force)},
-          {"stale", near.stale},          {"age", near.age}};
-}
-
-Json arm_frame(const ArmCast& cast, const TickRecord& k) {
-  Json q = Json::array();
-  for (std::size_t i = 0; i < cast.joints.size(); ++i) q.push_back(rounded(k.q[i]));
-  Json energy = Json::array();
-  for (std::size_t i = 0; i < cast.modules.size(); ++i) energy.push_back(number(k.energy[i]));
-  return {{"force", to_json(k.virtual_force.force)},
-          {"torque", to_json(k.virtual_force.torque)},
-          {"coupling", to_json(k.coupling.force)},
-          {"lever_nm", rounded(k.lever_torque)},
-          {"gain", rounded(k.gain)},
-          {"v", to_json(k.v_WT)},
-          {"q", std::move(q)},
-          {"energy_j", std::move(energy)}};
-}
-
-Json status_of(Status status) {
-  Json names = Json::array();
-  for (unsigned bit = 0; bit < 32; ++bit) {
-    if ((status >> bit & 1U) != 0U) names.push_back(to_text(1U << bit));
-  }
-  return names;
-}
-
 double us(std::chrono::nanoseconds time) {
   return static_cast<double>(time.count()) / 1e3;
 }
 
-Json recent_of(std::span<const TickSample> samples) {
-  Json tick = Json::array();
-  Json nearest = tick;
-  Json force = tick;
-  Json compute = tick;
-  Json late = tick;
-  for (const TickSample& sample : samples) {
-    tick.push_back(sample.tick);
-    nearest.push_back(number(rounded(sample.nearest)));
-    force.push_back(rounded(sample.force));
-    compute.push_back(us(sample.times.compute));
-    late.push_back(us(sample.times.late));
+void write(const NearPair& near, JsonText& out) {
+  const Separation& s = near.separation;
+  out.open('{');
+  out.name("i").integer(near.pair.index).name("d").number(s.distance);
+  out.name("lower").number(s.lower).name("upper").number(s.upper);
+  out.name("a").vector(s.p_WA).name("b").vector(s.p_WB).name("n").vector(s.extraction_W);
+  out.name("level").integer(s.level).name("f").number(near.force);
+  out.name("stale").boolean(near.stale).name("age").integer(near.age);
+  out.close('}');
+}
+
+void write(const ArmCast& cast, const TickRecord& k, JsonText& out) {
+  out.open('{');
+  out.name("force").vector(k.virtual_force.force).name("torque").vector(k.virtual_force.torque);
+  out.name("coupling").vector(k.coupling.force).name("lever_nm").number(k.lever_torque);
+  out.name("gain").number(k.gain).name("v").vector(k.v_WT).name("q").open('[');
+  for (std::size_t i = 0; i < cast.joints.size(); ++i) out.number(k.q[i]);
+  out.close(']').name("energy_j").open('[');
+  for (std::size_t i = 0; i < cast.modules.size(); ++i) out.number(k.energy[i]);
+  out.close(']').close('}');
+}
+
+void write(Status status, JsonText& out) {
+  out.open('[');
+  for (unsigned bit = 0; bit < 32; ++bit) {
+    if ((status >> bit & 1U) != 0U) out.json(Json(to_text(1U << bit)).dump());
   }
-  return {{"tick", std::move(tick)},
-          {"nearest_m", std::move(nearest)},
-          {"force_n", std::move(force)},
-          {"compute_us", std::move(compute)},
-          {"late_us", std::move(late)}};
+  out.close(']');
+}
+
+/// One list of numbers: f of every sample.
+template <class F>
+void write(const char* name, std::span<const TickSample> samples, const F& f, JsonText& out) {
+  out.name(name).open('[');
+  for (const TickSample& sample : samples) out.number(f(sample));
+  out.close(']');
+}
+
+void write(std::span<const TickSample> samples, JsonText& out) {
+  using Sample = const TickSample&;
+  out.open('{').name("tick").open('[');
+  for (Sample sample : samples) out.integer(sample.tick);
+  out.close(']');
+  write(
+      "nearest_m", samples, [](Sample each) { return each.nearest; }, out);
+  write(
+      "force_n", samples, [](Sample each) { return each.force; }, out);
+  write(
+      "compute_us", samples, [](Sample each) { return us(each.times.compute); }, out);
+  write(
+      "late_us", samples, [](Sample each) { return us(each.times.late); }, out);
+  out.close('}');
 }
 
 }  // namespace
@@ -176,33 +171,27 @@ std::string scene_message(const Cast& cast, const World& world) {
 std::string frame_message(const Cast& cast, const World& world, const Snapshot& shot,
                           std::span<const TickSample> recent, bool running) {
   const TickRecord& first = shot.arms.front();
-  Json bodies = Json::array();
-  for (const Pose& X : shot.X_WB) bodies.push_back(to_json(X));
-  Json pairs = Json::array();
-  for (const NearPair& near : shot.near()) pairs.push_back(to_json(near));
-  Json arms = Json::array();
-  Status status = 0;
-  for (std::size_t i = 0; i < cast.arms.size(); ++i) {
-    arms.push_back(arm_frame(cast.arms[i], shot.arms[i]));
-    status |= shot.arms[i].status;
-  }
   const auto phase = static_cast<std::size_t>(first.phase);
   const std::vector<std::string>& phases = cast.arms.front().phases;
-  return Json{{"type", "frame"},
-              {"tick", first.tick},
-              {"time_s", first.time},
-              {"running", running},
-              {"phase", phase < phases.size() ? phases[phase] : ""},
-              {"status", status_of(status)},
-              {"bodies", std::move(bodies)},
-              {"pairs", std::move(pairs)},
-              {"pairs_omitted", shot.pairs_omitted},
-              {"near", first.pairs.near},
-              {"evaluated", first.pairs.evaluated},
-              {"of", world.pairs().size()},
-              {"arms", std::move(arms)},
-              {"recent", recent_of(recent)}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string name = phase < phases.size() ? phases[phase] : "";
+  Status status = 0;
+  for (std::size_t i = 0; i < cast.arms.size(); ++i) status |= shot.arms[i].status;
+  JsonText out;
+  out.open('{').name("type").json("\"frame\"").name("tick").integer(first.tick);
+  out.name("time_s").number(first.time).name("running").boolean(running);
+  out.name("phase").json(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace));
+  write(status, out.name("status"));
+  out.name("bodies").open('[');
+  for (const Pose& X : shot.X_WB) out.pose(X);
+  out.close(']').name("pairs").open('[');
+  for (const NearPair& near : shot.near()) write(near, out);
+  out.close(']').name("pairs_omitted").integer(shot.pairs_omitted);
+  out.name("near").integer(first.pairs.near).name("evaluated").integer(first.pairs.evaluated);
+  out.name("of").integer(std::ssize(world.pairs())).name("arms").open('[');
+  for (std::size_t i = 0; i < cast.arms.size(); ++i) write(cast.arms[i], shot.arms[i], out);
+  write(recent, out.close(']').name("recent"));
+  out.close('}');
+  return std::move(out).take();
 }
 
 const std::vector<double>& Timing::edges() {

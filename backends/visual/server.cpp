@@ -201,8 +201,10 @@ class Server::Impl final : public Pages {
   }
 
   void beat() {
-    beats_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-        std::chrono::duration<double>(1.0 / options_.beats_per_second)));
+    using Clock = std::chrono::steady_clock;
+    const auto pace = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(1.0 / options_.beats_per_second));
+    beats_.expires_at(show_.next_beat().value_or(Clock::now() + pace));
     beats_.async_wait([this](Error error) {
       if (error) return;
       show_.beat(*this);

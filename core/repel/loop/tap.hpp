@@ -30,6 +30,7 @@ struct Snapshot {
   int pair_count = 0;
   int pairs_omitted = 0;  ///< near as well, but farther than all of these
   TickTimes times;
+  std::chrono::steady_clock::time_point made;  ///< when this was written down, after the tick
 
   [[nodiscard]] std::span<const NearPair> near() const noexcept {
     return {pairs.data(), static_cast<std::size_t>(pair_count)};
@@ -117,6 +118,7 @@ class Tap {
     const Motion& motion = world_->motion();
     for (std::size_t i = 0; i < s.X_WB.size(); ++i) s.X_WB[i] = motion.bodies[i].X_WB;
     s.times = times;
+    s.made = std::chrono::steady_clock::now();
     s.pair_count = s.pairs_omitted = 0;
     // A heap with the farthest on top, which makes room for a nearer one.
     const auto begin = s.pairs.begin();

@@ -2,8 +2,10 @@
 /// Serves one page and talks to it: HTTP and WebSocket on one port, from a thread of its own.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +29,7 @@ struct ServerOptions {
   int pages = 8;                      ///< that may be open at a time
   int messages_per_second = 400;      ///< of one page, before it is cut off
   std::size_t message_bytes = 4096;   ///< of one message, before the page is cut off
-  double beats_per_second = 60.0;     ///< [Hz] of Show::beat
+  double beats_per_second = 60.0;     ///< [Hz] of Show::beat, unless it says when
 };
 
 /// The pages that are open, for Show to speak to.
@@ -55,6 +57,10 @@ class Show {
   virtual void heard(int page, std::string_view text, Pages& pages) = 0;
   virtual void closed(int page, Pages& pages) = 0;
   virtual void beat(Pages& pages) = 0;
+  /// After a beat: when the next is wanted, if not at the pace of the server.
+  [[nodiscard]] virtual std::optional<std::chrono::steady_clock::time_point> next_beat() const {
+    return std::nullopt;
+  }
 
   Show() = default;
   Show(const Show&) = delete;
