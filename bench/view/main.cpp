@@ -122,6 +122,11 @@ int run(const Arguments& arguments) {
                                    result.times[static_cast<std::size_t>(i)].compute.count()));
     }
   }
+  // Without a push there was less to do, and without a turn of either kind there is no ratio.
+  if (open.us.empty() || closed.us.empty() || !(result.totals().peak_force > 1.0)) {
+    throw SetupError(
+        "nothing to compare: the arm was not pressed, or a page never opened and closed");
+  }
   const double ratio = open.percentile(0.99) / closed.percentile(0.99);
   std::printf("\n%-16s %8s %8s %8s %8s\n", "page", "ticks", "p50 [us]", "p99 [us]", "max [us]");
   for (auto* each : {&closed, &open}) {
