@@ -64,10 +64,11 @@ class Metronome {
     return late;
   }
 
-  /// After a pause of more than a second, gives up the ticks that were missed; returns how many.
-  std::int64_t catch_up() {
+  /// Gives up the ticks that were missed if the next is overdue by `patience` or more; returns how
+  /// many. With less they are made up for, one right after the other.
+  std::int64_t catch_up(nanoseconds patience = std::chrono::seconds(1)) {
     const nanoseconds behind = steady_now() - due_;
-    if (behind < std::chrono::seconds(1)) return 0;
+    if (behind < std::max(patience, period_)) return 0;
     const std::int64_t lost = behind / period_;
     due_ += lost * period_;
     return lost;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <repel/loop/tick.hpp>
+#include <repel/loop/tick_clock.hpp>
 #include <repel/schedule/coprocessor.hpp>
 
 #include "cell.hpp"
@@ -25,7 +26,10 @@ class Crew {
   /// @param controls, device of the first arm; null: its script drives it
   Crew(const scene::Scene& scene, Cell& cell, std::span<Arm> arms, Coprocessor& coprocessor,
        Controls* controls, devices::DeviceLink* device, double rate_hz)
-      : cell_(cell), coprocessor_(coprocessor), period_(std::llround(1e9 / rate_hz)) {
+      : cell_(cell),
+        coprocessor_(coprocessor),
+        period_(std::llround(1e9 / rate_hz)),
+        clock_(period_, std::chrono::nanoseconds::max()) {
     for (std::size_t i = 0; i < arms.size(); ++i) {
       const scene::Station& station = scene.station(i);
       Manipulator& arm = cell.arms[i];
@@ -34,14 +38,18 @@ class Crew {
       members_.emplace_back(arm.robot.arm, arms[i], arm.kinematics, cell.world, arm.tool,
                             coprocessor, operators_.back(),
                             scene::build_network(scene, station, arm.robot.arm, rate_hz), period_,
-                            arm.links);
+                            arm.links, options_of(scene));
       records_.push_back(nullptr);
     }
   }
 
   /// One tick of the world, due at `now` [ns]: what each arm did, in their order.
   std::span<const TickRecord* const> tick(std::chrono::nanoseconds now) noexcept {
-    const double time = 1e-9 * static_cast<double>(period_.count()) * static_cast<double>(ticks_++);
+    // What moves by itself went on while ticks were missing.
+    (void)clock_.step(now);
+    if (ticks_ > 0) periods_ += clock_.elapsed();
+    ++ticks_;
+    const double time = 1e-9 * static_cast<double>(period_.count()) * static_cast<double>(periods_);
     for (const Shuttle& shuttle : cell_.shuttles) (void)shuttle.place(cell_.world, time);
     for (Member& member : members_) member.sense(now);
     const PairForces& forces = coprocessor_.exchange();
@@ -62,13 +70,17 @@ class Crew {
   [[nodiscard]] const std::deque<Member>& members() const noexcept { return members_; }
 
  private:
+  static TeleoperatorOptions options_of(const scene::Scene& /*scene*/) { return {}; }
+
   Cell& cell_;
   Coprocessor& coprocessor_;
   std::chrono::nanoseconds period_;
+  TickClock clock_;
   std::deque<Hands> operators_;
   std::deque<Member> members_;
   std::vector<const TickRecord*> records_;
   std::int64_t ticks_ = 0;
+  std::int64_t periods_ = 0;  // since the first tick
 };
 
 }  // namespace repel::teleop

@@ -25,6 +25,7 @@ void write_names(const ArmHeading& arm, std::ostream& file) {
   }
   for (const std::string& module : arm.modules)
     file << ',' << prefix << "energy_" << module << "_j";
+  file << ',' << prefix << "stop," << prefix << "brakes";
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
@@ -36,6 +37,7 @@ void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file
   file << ',' << to_text(k.lever_torque) << ',' << to_text(k.gain);
   for (std::size_t i = 0; i < arm.joints.size(); ++i) file << ',' << to_text(k.q[i]);
   for (std::size_t i = 0; i < arm.modules.size(); ++i) file << ',' << to_text(double{k.energy[i]});
+  file << ',' << to_text(k.stop) << ',' << (k.brakes ? 1 : 0);
 }
 
 class CsvLog final : public TickLog {

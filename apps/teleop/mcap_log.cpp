@@ -33,16 +33,22 @@ Json first_of(const std::array<double, N>& values, std::size_t count) {
 
 Json inputs_of(const TickRecord& k, std::size_t joints) {
   const network::Command& command = k.command;
-  return {{"q", first_of(k.q, joints)},
-          {"v", first_of(k.v, joints)},
-          {"status", k.status},
-          {"phase", k.phase},
-          {"linear", to_json(command.hand.ball.linear)},
-          {"angular", to_json(command.hand.ball.angular)},
-          {"lever_rate", command.hand.lever_rate},
-          {"direction", to_json(command.hand.direction_W)},
-          {"sound", command.sound},
-          {"silent_for_s", command.silent_for}};
+  Json inputs = {{"q", first_of(k.q, joints)},
+                 {"v", first_of(k.v, joints)},
+                 {"status", k.status},
+                 {"elapsed_ticks", k.elapsed},
+                 {"phase", k.phase},
+                 {"linear", to_json(command.hand.ball.linear)},
+                 {"angular", to_json(command.hand.ball.angular)},
+                 {"lever_rate", command.hand.lever_rate},
+                 {"direction", to_json(command.hand.direction_W)},
+                 {"sound", command.sound},
+                 {"silent_for_s", command.silent_for}};
+  if ((k.status & status::blind) != 0U) {  // what is no number is null
+    inputs["q_read"] = first_of(k.q_read, joints);
+    inputs["v_read"] = first_of(k.v_read, joints);
+  }
+  return inputs;
 }
 
 Json forces_of(const TickRecord& k, std::size_t joints) {
@@ -53,6 +59,8 @@ Json forces_of(const TickRecord& k, std::size_t joints) {
           {"force_n", k.virtual_force.force.norm()},
           {"lever_torque", k.lever_torque},
           {"gain", k.gain},
+          {"stop", to_text(k.stop)},
+          {"brakes", k.brakes},
           {"torques", first_of(k.torques, joints)}};
 }
 

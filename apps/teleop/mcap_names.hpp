@@ -25,6 +25,9 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "q": {"type": "array", "items": {"type": "number"}, "description": "joints [rad] or [m]"},
       "v": {"type": "array", "items": {"type": "number"}, "description": "their rates"},
       "status": {"type": "integer", "description": "bits of the tick"},
+      "elapsed_ticks": {"type": "integer", "description": "since the tick before"},
+      "q_read": {"type": "array", "description": "as read, where that was not believed"},
+      "v_read": {"type": "array", "description": "as read, where that was not believed"},
       "phase": {"type": "integer", "description": "of the script"},
       "linear": {"type": "array", "items": {"type": "number"}, "description": "hand [m/s]"},
       "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
@@ -45,6 +48,8 @@ inline constexpr Channel forces{"/forces", "repel.Forces", R"({
       "force_n": {"type": "number", "description": "size of the virtual force [N]"},
       "lever_torque": {"type": "number", "description": "[N m]"},
       "gain": {"type": "number", "description": "of the fail-safe, 0 to 1"},
+      "stop": {"type": "string", "description": "running, holding, braking or released"},
+      "brakes": {"type": "boolean", "description": "the brakes of the arm are asked for"},
       "torques": {"type": "array", "items": {"type": "number"},
                   "description": "to the joints [N m] or [N]"}}}}}})"};
 

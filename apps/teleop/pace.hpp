@@ -39,8 +39,11 @@ class Pace {
     return nanoseconds(0);
   }
 
-  /// After a tick: gives up those that a long interruption has made impossible. Returns how many.
-  std::int64_t catch_up() { return beating_ == Beating::by_the_clock ? metronome_.catch_up() : 0; }
+  /// After a tick: gives up those that were due meanwhile; an arm went on without them. Returns how
+  /// many.
+  std::int64_t catch_up() {
+    return beating_ == Beating::by_the_clock ? metronome_.catch_up(period_) : 0;
+  }
 
   /// The ticks made so far are to be forgotten: `time` [s] is the next one's.
   [[nodiscard]] bool begins_anew(double time) const {

@@ -1,5 +1,6 @@
 #include "recording.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +29,7 @@ class Fields {
     if (!json_.is_object() || found == json_.end()) bad(name);
     return {*found, file_};
   }
+  [[nodiscard]] bool has(const char* name) const { return json_.contains(name); }
   [[nodiscard]] Fields entry(std::size_t i) const {
     if (!json_.is_array() || i >= json_.size()) bad("an entry");
     return {json_[i], file_};
@@ -69,6 +71,14 @@ class Fields {
 void read_inputs(const Fields& arm, TickRecord& k) {
   arm.at("q").read(k.q);
   arm.at("v").read(k.v);
+  k.q_read = k.q;
+  k.v_read = k.v;
+  // Only where they were not believed.
+  if (arm.has("q_read")) arm.at("q_read").read(k.q_read);
+  if (arm.has("v_read")) arm.at("v_read").read(k.v_read);
+  if (arm.has("elapsed_ticks")) {
+    k.elapsed = std::clamp<std::int64_t>(arm.at("elapsed_ticks").integer(), 1, 1000000000);
+  }
   k.status = static_cast<Status>(arm.at("status").integer());
   k.phase = static_cast<std::int32_t>(arm.at("phase").integer());
   k.command.hand.ball = {arm.at("linear").vector(), arm.at("angular").vector()};

@@ -2,8 +2,8 @@
 /// A run that was recorded: what went into each of its ticks, and what came out.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,16 +37,19 @@ class RecordedArm {
 
   void set_torques(std::span<const double> /*torques*/) noexcept {}
   void step(double /*period*/) noexcept {}
-  void read_positions(std::span<double> q) const noexcept { read(now_->q, q); }
-  void read_velocities(std::span<double> v) const noexcept { read(now_->v, v); }
+  void read_positions(std::span<double> q) const noexcept { read(now_->q_read, q); }
+  void read_velocities(std::span<double> v) const noexcept { read(now_->v_read, v); }
+  void enable() noexcept {}
+  void stop() noexcept {}
+  void engage_brakes(bool /*on*/) noexcept {}
+  [[nodiscard]] ArmState state() const noexcept {
+    const bool stopped = (now_->status & status::arm_stopped) != 0U;
+    return stopped ? ArmState::stopped : ArmState::enabled;
+  }
 
  private:
-  /// What was no number was replaced before it was recorded: the status remembers it.
-  void read(std::span<const double> values, std::span<double> out) const noexcept {
-    const bool sound = (now_->status & status::bad_joints) == 0U;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = sound ? values[i] : std::numeric_limits<double>::quiet_NaN();
-    }
+  static void read(std::span<const double> values, std::span<double> out) noexcept {
+    std::copy_n(values.begin(), out.size(), out.begin());
   }
 
   const TickRecord* now_;

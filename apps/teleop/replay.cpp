@@ -36,12 +36,12 @@ void compare(const Recording& recording, std::size_t tick,
   if (!same && report.first_difference < 0) report.first_difference = records.front()->tick;
 }
 
-/// The time of the clock that the tick is told. A clock that stood still did so again.
-nanoseconds clock_of(const Recording* recording, std::size_t tick, nanoseconds period) {
-  const auto regular = static_cast<std::int64_t>(tick + 1) * period;
-  if (recording == nullptr) return regular;
-  const bool stood = (recording->arms.front()[tick].status & status::clock_fault) != 0U;
-  return stood ? nanoseconds::min() : regular;
+nanoseconds RegularClock::next(std::size_t tick) noexcept {
+  if (recording_ == nullptr) return now_ += period_;
+  const TickRecord& then = recording_->arms.front()[tick];
+  now_ += then.elapsed * period_;
+  const bool stood = (then.status & status::clock_fault) != 0U;
+  return stood ? nanoseconds::min() : now_;
 }
 
 }  // namespace repel::teleop

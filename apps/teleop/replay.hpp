@@ -14,8 +14,20 @@ namespace repel::teleop {
 void compare(const Recording& recording, std::size_t tick,
              std::span<const TickRecord* const> records, ReplayReport& report);
 
-/// The time of the clock that a tick is told: regular, unless it stood still when it was recorded.
-[[nodiscard]] std::chrono::nanoseconds clock_of(const Recording* recording, std::size_t tick,
-                                                std::chrono::nanoseconds period);
+/// What the clock is said to be in runs that do not go by it: regular, or as it was recorded.
+class RegularClock {
+ public:
+  /// @param recording null: none
+  RegularClock(const Recording* recording, std::chrono::nanoseconds period)
+      : recording_(recording), period_(period) {}
+
+  /// The time that a tick is told, one after the other. A clock that stood still did so again.
+  [[nodiscard]] std::chrono::nanoseconds next(std::size_t tick) noexcept;
+
+ private:
+  const Recording* recording_;
+  std::chrono::nanoseconds period_;
+  std::chrono::nanoseconds now_{0};
+};
 
 }  // namespace repel::teleop

@@ -73,10 +73,31 @@ ordered_json partner_list(const RunResult& r) {
     list.push_back({{"name", arm.name},
                     {"peak_force_n", arm.totals.peak_force},
                     {"status_ticks", host::status_ticks(arm.totals)},
+                    {"stop", stop_ticks(arm.totals)},
                     {"physical_contact", contact_to_json(r, arm)},
                     {"modules", modules_to_json(arm.modules)}});
   }
   return list;
+}
+
+/// Ticks in each stop.
+ordered_json stop_ticks(const RunTotals& totals) {
+  ordered_json ticks;
+  for (const Stop stop : {Stop::running, Stop::holding, Stop::braking, Stop::released}) {
+    ticks[to_text(stop)] = totals.stop_ticks[static_cast<std::size_t>(stop)];
+  }
+  return ticks;
+}
+
+/// The stops an arm made, where it made any.
+void print_stops(const ArmResult& arm, std::FILE* out) {
+  const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
+  for (const Stop stop : {Stop::holding, Stop::braking, Stop::released}) {
+    const std::int64_t ticks = arm.totals.stop_ticks[static_cast<std::size_t>(stop)];
+    if (ticks == 0) continue;
+    std::fprintf(out, "  stop   %-15s in %lld ticks%s\n", to_text(stop).c_str(),
+                 static_cast<long long>(ticks), whose.c_str());
+  }
 }
 
 /// The status bits that were set for an arm, and for how long.
@@ -198,7 +219,10 @@ void print_report(const RunResult& r, std::FILE* out) {
     std::fprintf(out, "  log                    %lld ticks dropped\n",
                  static_cast<long long>(r.log_dropped));
   }
-  for (const ArmResult& arm : r.arms) print_status(arm, out);
+  for (const ArmResult& arm : r.arms) {
+    print_stops(arm, out);
+    print_status(arm, out);
+  }
   host::print_machine(r.machine, out);
 }
 
@@ -242,6 +266,8 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["network_us"] = host::percentiles(r.network_time);
   report["device_damping_n_s_per_m"] = r.device_damping;
   report["warnings"] = r.warnings;
+  report["stop"] = stop_ticks(r.totals());
+  report["brake_ticks"] = r.totals().brake_ticks;
   report["modules"] = modules_to_json(r.arms.front().modules);
   report["partners"] = partner_list(r);
   report["nearest_pair"] = r.nearest_pair;

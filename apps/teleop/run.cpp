@@ -189,6 +189,14 @@ void show_tick(const Company& company, const Coprocessor& coprocessor, bool fast
   company.tap->note(coprocessor, records, times);
 }
 
+/// A simulated arm has a clock of its own: it goes on where no tick is made.
+template <TorqueDrivenArm Arm>
+void move_on(std::span<Arm> arms, double period, std::int64_t periods) {
+  for (std::int64_t i = 0; i < periods; ++i) {
+    for (Arm& arm : arms) arm.step(period);
+  }
+}
+
 /// The ticks, one after the other.
 template <TorqueDrivenArm Arm>
 void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& coprocessor,
@@ -202,6 +210,7 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
   const std::int64_t ticks = ticks_of(options, recording);
   std::span<const TickRecord* const> records;
   TickTimes times;
+  RegularClock clock(recording, period);
   const auto show_last = [&] {
     if (shift.company.tap != nullptr && !records.empty())
       shift.company.tap->show(coprocessor, records, times);
@@ -218,14 +227,13 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     {
       const host::HeapGuard heap;
       const SystemCallGuard system_calls;
-      records =
-          crew.tick(options.fast ? clock_of(recording, tick, period) : begin.time_since_epoch());
+      records = crew.tick(options.fast ? clock.next(tick) : begin.time_since_epoch());
     }
     const auto end = steady_clock::now();
     usage.end();
     times = {late, end - begin};
     const auto arm_begin = steady_clock::now();
-    for (Arm& arm : shift.arms) arm.step(period_s);
+    move_on(shift.arms, period_s, 1);
     result.arm_step.record(steady_clock::now() - arm_begin);
     note_tick(records, times, result, recorders);
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
@@ -235,7 +243,11 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     if (pace.has_arrived()) show_last();
     progress.draft() = progress_of(*records.front(), result);
     progress.post();
-    result.skipped_ticks += pace.catch_up();
+    const std::int64_t lost = pace.catch_up();
+    result.skipped_ticks += lost;
+    result.deadline.skip(lost);
+    move_on(shift.arms, period_s, lost);
+    k += lost;
   }
   if (recording != nullptr) {
     show_last();

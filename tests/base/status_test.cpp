@@ -9,11 +9,13 @@
 namespace repel {
 namespace status_test {
 
-constexpr Status every_bit[] = {status::bad_pose,      status::bad_command,   status::bad_joints,
-                                status::clock_fault,   status::stale_pairs,   status::late_result,
-                                status::torque_limit,  status::crowded_pairs, status::expired_pairs,
-                                status::silent_device, status::saturated,     status::joint_limit,
-                                status::network_fault, status::speed_limit};
+constexpr Status every_bit[] = {
+    status::bad_pose,      status::bad_command,   status::bad_joints,         status::clock_fault,
+    status::stale_pairs,   status::late_result,   status::torque_limit,       status::crowded_pairs,
+    status::expired_pairs, status::silent_device, status::saturated,          status::joint_limit,
+    status::network_fault, status::speed_limit,   status::implausible_joints, status::frozen_joints,
+    status::clock_gap,     status::bad_torque,    status::torque_rate,        status::tool_speed,
+    status::arm_stopped,   status::pushed_out};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");
@@ -44,10 +46,24 @@ TEST(Status, SeveralBitsAreListedCommaByComma) {
             "bad_pose, stale_pairs, late_result");
 }
 
-TEST(Status, FailsafeIsEveryFaultThatLeavesTheWorldUnknownAndNothingElse) {
-  EXPECT_EQ(status::failsafe, status::bad_pose | status::bad_command | status::bad_joints |
-                                  status::clock_fault | status::expired_pairs |
-                                  status::silent_device | status::network_fault);
+TEST(Status, FailsafeIsEveryFaultThatLeavesSomethingUnknownAndNothingElse) {
+  EXPECT_EQ(status::failsafe,
+            status::bad_pose | status::bad_command | status::bad_joints | status::clock_fault |
+                status::expired_pairs | status::silent_device | status::network_fault |
+                status::implausible_joints | status::frozen_joints | status::clock_gap |
+                status::bad_torque | status::arm_stopped | status::pushed_out);
+}
+
+TEST(Status, BlindIsWhatJointsCanHideAndAlwaysAFault) {
+  EXPECT_EQ(status::blind, status::bad_joints | status::implausible_joints | status::frozen_joints);
+  EXPECT_EQ(status::blind & status::failsafe, status::blind);
+}
+
+TEST(Status, EachStopHasAName) {
+  EXPECT_EQ(to_text(Stop::running), "running");
+  EXPECT_EQ(to_text(Stop::holding), "holding");
+  EXPECT_EQ(to_text(Stop::braking), "braking");
+  EXPECT_EQ(to_text(Stop::released), "released");
 }
 
 }  // namespace status_test

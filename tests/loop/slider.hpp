@@ -76,6 +76,8 @@ inline ArmModel slider_model(double effort_limit) {
     link.lower = -10.0;
     link.upper = 10.0;
     link.effort_limit = effort_limit;
+    link.rotor_inertia = SliderArm{}.mass;
+    link.viscous_friction = SliderArm{}.friction;
     model.links.push_back(link);
   }
   return model;

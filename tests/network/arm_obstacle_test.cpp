@@ -36,7 +36,7 @@ TEST(ArmObstacle, LetsGoAtRest) {
   module.fit(Space::joints, 2);
   Signals signals = signals_of(2);
   signals.arm_torques << 1.0, -2.0;
-  signals.at_rest = true;
+  signals.released = true;
   module.read(signals);
   EXPECT_EQ(module.torques(), Vec<any_size>::Zero(2));
 }

@@ -45,7 +45,7 @@ void push_at_random(const ObstacleOptions& options, int ticks) {
     const double asked = to_vec(signals.walls).dot(flow);  // power to the tool
     const double given = to_vec(obstacle.on_tool()).dot(flow);
     const double rounding = 1e-10 * (1.0 + std::abs(asked));
-    if (signals.at_rest) {
+    if (signals.released) {
       ASSERT_EQ(to_vec(obstacle.on_tool()).norm(), 0.0);
       continue;
     }

@@ -22,15 +22,21 @@ struct TickRecord {
   double time = 0.0;       ///< [s] since the first tick
   std::int32_t phase = 0;  ///< of the operator's script
   Status status = 0;
-  std::array<double, network::most_joints> q{};  ///< [rad] or [m] joints, as they were read
-  std::array<double, network::most_joints> v{};  ///< [rad/s] or [m/s] and their rates
-  network::Command command;                      ///< of the operator
-  Vec3 p_WT{0, 0, 0};                            ///< [m] tool
-  Vec3 v_WT{0, 0, 0};                            ///< [m/s]
-  Wrench virtual_force;                          ///< [N, N m] on the tool, about its origin
-  Wrench coupling;                               ///< [N, N m] from the operator's side on the tool
-  double lever_torque = 0.0;                     ///< [N m] reflected to the torque arm
-  double gain = 1.0;                             ///< of the fail-safe
+  Stop stop = Stop::running;  ///< what was done about faults
+  bool brakes = false;        ///< the brakes of the arm are asked for
+  std::int64_t elapsed = 1;   ///< [periods] since the tick before; more where ticks are missing
+  /// [rad] or [m] joints, as they were read, or predicted where that was not believed.
+  std::array<double, network::most_joints> q{};
+  std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] and their rates
+  std::array<double, network::most_joints> q_read{};  ///< as they were read in any case
+  std::array<double, network::most_joints> v_read{};
+  network::Command command;   ///< of the operator
+  Vec3 p_WT{0, 0, 0};         ///< [m] tool
+  Vec3 v_WT{0, 0, 0};         ///< [m/s]
+  Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
+  Wrench coupling;            ///< [N, N m] from the operator's side on the tool
+  double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
+  double gain = 1.0;          ///< of the fail-safe
   std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_modules> energy{};
@@ -74,6 +80,9 @@ struct RunTotals {
   double deepest = 0.0;                         ///< [m] proven: no pair was deeper when asked
   double peak_force = 0.0;                      ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
+  std::array<std::int64_t, 4> stop_ticks{};     ///< ticks in each Stop
+  std::int64_t brake_ticks = 0;                 ///< in which the brakes were asked for
+  std::int64_t missing = 0;                     ///< ticks that were due and never made
   WorkerReport workers;                         ///< as of the last tick
 
   void add(const TickRecord& r) noexcept {
@@ -92,6 +101,9 @@ struct RunTotals {
     deepest = std::max(deepest, r.pairs.deepest);
     peak_force = std::max(peak_force, r.virtual_force.force.norm());
     for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
+    ++stop_ticks[static_cast<std::size_t>(r.stop)];
+    brake_ticks += r.brakes ? 1 : 0;
+    missing += r.elapsed - 1;
     workers = r.workers;
   }
 };

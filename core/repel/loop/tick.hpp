@@ -9,10 +9,11 @@
 #include <vector>
 
 #include <repel/loop/arm_bodies.hpp>
-#include <repel/loop/failsafe.hpp>
-#include <repel/loop/joint_speed.hpp>
+#include <repel/loop/arm_command.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/network/friction.hpp>
+#include <repel/loop/tick_clock.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/schedule/coprocessor.hpp>
@@ -32,11 +33,13 @@ class Teleoperator {
 
   /// @param network built for `period`
   /// @param links bodies whose forces act on the arm through the module ARM_OBSTACLE
-  /// @throws SetupError when the network does not end in as many joints as the arm has
+  /// @throws SetupError when the network does not end in as many joints as the arm has, or for an
+  /// option out of range
   Teleoperator(const ArmModel& model, Arm& arm, Kinematics& kinematics, World& world, BodyId tool,
                Coprocessor& coprocessor, Operator& the_operator, network::Network network,
-               std::chrono::nanoseconds period, std::vector<LinkBody> links = {})
-      : model_(model),
+               std::chrono::nanoseconds period, std::vector<LinkBody> links = {},
+               const TeleoperatorOptions& options = {})
+      : options_(checked(options)),
         arm_(arm),
         kinematics_(kinematics),
         world_(world),
@@ -45,15 +48,19 @@ class Teleoperator {
         coprocessor_(coprocessor),
         operator_(the_operator),
         network_(std::move(network)),
+        clock_(period, in_nanoseconds(options.longest_gap)),
         period_(std::chrono::duration<double>(period).count()),
+        watch_(model, period_, options.joints),
+        inertia_(model),
+        command_(model, arm, period_, options),
         q_(model.links.size()),
         v_(model.links.size()),
-        new_q_(model.links.size()),
-        new_v_(model.links.size()),
-        torques_(model.links.size()),
+        read_q_(model.links.size()),
+        read_v_(model.links.size()),
         jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(model.links.size()))),
         new_jacobian_(jacobian_),
-        flow_(static_cast<int>(model.links.size())) {
+        flow_(static_cast<int>(model.links.size())),
+        pushing_out_(options.push_out) {
     if (robot() == nullptr || robot()->size() != static_cast<int>(model.links.size())) {
       throw SetupError("the network must end in a robot (puma_joints) of " +
                        std::to_string(model.links.size()) + " joints");
@@ -61,8 +68,11 @@ class Teleoperator {
     const network::Node* at = network_.node_of<network::Obstacle>();
     if (at == nullptr) at = network_.node_of<network::PumaKin>();
     before_walls_ = at == nullptr ? -1 : at->left;
-    signals_.period = period_;
-    begin_tick({});
+    const auto* lever = network_.find<network::Multiplex>();
+    lever_scale_ = lever == nullptr ? 1.0 : lever->velocity_scale();
+    signals_.period = signals_.elapsed = period_;
+    kinematics_.update(q_);
+    inertia_.update(kinematics_);
     read_joints();
     place_bodies();
     flow_.reset(joints_vec(q_));
@@ -84,12 +94,12 @@ class Teleoperator {
 
   /// The second half. @param forces of the world in which all arms have been placed
   const TickRecord& act(const PairForces& forces) noexcept {
-    push_away(forces);  // world -> virtual forces on tool and links
-    ask_operator();     // script -> what the hands do
-    run_network();      // hands, walls, joint rates -> torques
-    const double gain = failsafe_.step(record_.status, period_);  // status -> share allowed
-    drive(gain);                                                  // torques -> arm
-    finish_tick(gain);                                            // everything -> record
+    push_away(forces);                                  // world -> virtual forces on tool and links
+    ask_operator();                                     // script -> what the hands do
+    run_network();                                      // hands, walls, joint rates -> torques
+    command_.judge(record_, watch_, signals_.elapsed);  // status -> stop, share of the operator
+    drive();                                            // torques -> arm
+    finish_tick();                                      // everything -> record
     return record_;
   }
 
@@ -100,28 +110,26 @@ class Teleoperator {
   void rehearse() noexcept {
     kinematics_.update(q_);
     kinematics_.tool_jacobian(new_jacobian_);
-    kinematics_.gravity_torques(torques_);
+    kinematics_.gravity_torques(command_.gravity());
     coprocessor_.rehearse();
   }
 
  private:
   void begin_tick(std::chrono::nanoseconds now) noexcept {
-    record_.status = now > last_now_ ? 0U : status::clock_fault;
-    last_now_ = now;
+    record_.status = clock_.step(now);
+    record_.elapsed = clock_.elapsed();
+    signals_.elapsed = period_ * static_cast<double>(clock_.elapsed());
+    // The arm went on without the loop: what it reports now need not follow what it reported then.
+    if ((record_.status & status::clock_gap) != 0U || next_tick_ == 0) watch_.begin_anew();
   }
 
   void read_joints() noexcept {
-    arm_.read_positions(new_q_);
-    arm_.read_velocities(new_v_);
-    double zero = 0.0;
+    arm_.read_positions(read_q_);
+    arm_.read_velocities(read_v_);
+    record_.status |= watch_.step(read_q_, read_v_, signals_.elapsed, inertia_.matrix());
     for (std::size_t i = 0; i < q_.size(); ++i) {
-      zero += (new_q_[i] - new_q_[i]) + (new_v_[i] - new_v_[i]);
-    }
-    if (zero == 0.0) {
-      q_.swap(new_q_);
-      v_.swap(new_v_);
-    } else {
-      record_.status |= status::bad_joints;
+      q_[i] = watch_.position(i);
+      v_[i] = watch_.rate(i);
     }
   }
 
@@ -135,6 +143,7 @@ class Teleoperator {
       X_WT_ = X_WT;
       V_WT_ = V_WT;
       jacobian_.swap(new_jacobian_);
+      inertia_.update(kinematics_);
     } else {
       record_.status |= status::bad_pose;
     }
@@ -152,25 +161,46 @@ class Teleoperator {
     links_.gather(forces, signals_.arm_torques);
     signals_.walls_power = forces.carried[tool_.index];
     signals_.arm_power = links_.carried(forces);
+    if (pushing_out_) push_out(forces.totals);
+  }
+
+  // The walls may give what an arm takes that leaves at exit_speed, and nobody leads it meanwhile.
+  void push_out(const PairTotals& totals) noexcept {
+    constexpr double lever = 0.5;  // [m] of a wall that turns a joint
+    if (totals.nearest > 0.0) {
+      pushing_out_ = false;
+      return;
+    }
+    record_.status |= status::pushed_out;
+    signals_.walls_power += options_.exit_speed * signals_.walls.force.norm();
+    signals_.arm_power += options_.exit_speed / lever * signals_.arm_torques.norm();
   }
 
   void ask_operator() noexcept {
-    const network::Command& command = operator_.step(X_WT_.linear(), period_);
+    const network::Command& command = operator_.step(X_WT_.linear(), signals_.elapsed);
     if (!command.sound) record_.status |= status::bad_command;
     if (command.silent_for > patience) record_.status |= status::silent_device;
     signals_.hand = command.hand;
     record_.command = command;
+    // No hand leads faster than the tool may be.
+    const double ball = signals_.hand.ball.linear.stableNorm();
+    if (ball > options_.tool_speed) signals_.hand.ball.linear *= options_.tool_speed / ball;
+    const double length = signals_.hand.direction_W.stableNorm();
+    if (length > 1.0 + 1e-9) signals_.hand.direction_W /= length;
+    const double most = options_.tool_speed / lever_scale_;
+    signals_.hand.lever_rate = std::clamp(signals_.hand.lever_rate, -most, most);
   }
 
   void run_network() noexcept {
     const auto begin = std::chrono::steady_clock::now();
-    // With all force gone, springs and accounts begin anew from where the tool is.
-    signals_.at_rest = failsafe_.tripped() && failsafe_.gain() == 0.0;
+    // With the operator let go, springs and accounts of his side begin anew from where the tool is.
+    signals_.released = record_.stop == Stop::released || command_.is_poisoned();
+    signals_.at_rest = command_.has_let_go() || signals_.released;
     signals_.joints = joints_vec(q_);
-    if (signals_.at_rest) {
+    if (signals_.released) {
       flow_.reset(signals_.joints);
     } else {
-      flow_.step(signals_.joints, joints_vec(v_), period_);
+      flow_.step(signals_.joints, joints_vec(v_), period_, signals_.elapsed);
     }
     signals_.rates = flow_.flow();
     signals_.mean_rates = flow_.mean();
@@ -194,42 +224,28 @@ class Teleoperator {
     record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
   }
 
-  // tau = g(q) + those of the network + dry friction, within the speed of each joint and cut to
-  // what it can give. The joint limits hold during a fault as well.
-  void drive(double gain) noexcept {
-    kinematics_.gravity_torques(torques_);
-    const auto* limits = network_.find<network::Limits>();
-    network::Vec<network::any_size> wanted = gain * robot()->torques();
-    if (limits != nullptr) wanted += (1.0 - gain) * limits->torques();
-    for (std::size_t i = 0; i < torques_.size(); ++i) {
-      const ArmLink& link = model_.links[i];
-      const double wish = wanted(static_cast<Eigen::Index>(i));
-      const double asked = within_speed(wish, v_[i], link.velocity_limit);
-      if (asked != wish) record_.status |= status::speed_limit;
-      torques_[i] += asked + friction_(link.coulomb_friction, v_[i], asked);
-      const double most = link.effort_limit > 0.0 ? link.effort_limit : 1e9;
-      if (!(std::abs(torques_[i]) <= most)) {
-        record_.status |= status::torque_limit;
-        torques_[i] = std::isnan(torques_[i]) ? 0.0 : std::clamp(torques_[i], -most, most);
-      }
-    }
-    arm_.set_torques(torques_);
+  void drive() noexcept {
+    kinematics_.gravity_torques(command_.gravity());
+    command_.drive({network_, jacobian_, v_, V_WT_.linear.norm()}, inertia_, watch_, record_);
   }
 
-  void finish_tick(double gain) noexcept {
+  void finish_tick() noexcept {
     record_.tick = next_tick_++;
-    record_.time = period_ * static_cast<double>(record_.tick);
+    if (record_.tick > 0) periods_ += record_.elapsed;
+    record_.time = period_ * static_cast<double>(periods_);
     record_.phase = static_cast<std::int32_t>(operator_.phase());
     std::copy(q_.begin(), q_.end(), record_.q.begin());
     std::copy(v_.begin(), v_.end(), record_.v.begin());
-    std::copy(torques_.begin(), torques_.end(), record_.torques.begin());
+    std::copy(read_q_.begin(), read_q_.end(), record_.q_read.begin());
+    std::copy(read_v_.begin(), read_v_.end(), record_.v_read.begin());
+    const std::vector<double>& torques = command_.torques();
+    std::copy(torques.begin(), torques.end(), record_.torques.begin());
     record_.p_WT = X_WT_.translation();
     record_.v_WT = V_WT_.linear;
     record_.virtual_force = signals_.walls;
     record_.coupling = before_walls_ < 0
                            ? Wrench{}
                            : network::to_wrench(network_.connection(before_walls_).effort());
-    record_.gain = gain;
     std::size_t module = 0;
     for (const network::Node& node : network_.nodes()) {
       record_.energy[module++] = static_cast<float>(node.ledger.energy);
@@ -245,7 +261,11 @@ class Teleoperator {
         values.data(), static_cast<Eigen::Index>(values.size()));
   }
 
-  const ArmModel& model_;
+  [[nodiscard]] static std::chrono::nanoseconds in_nanoseconds(double seconds) noexcept {
+    return std::chrono::nanoseconds(std::llround(1e9 * seconds));
+  }
+
+  TeleoperatorOptions options_;
   Arm& arm_;
   Kinematics& kinematics_;
   World& world_;
@@ -254,20 +274,23 @@ class Teleoperator {
   Coprocessor& coprocessor_;
   Operator& operator_;
   network::Network network_;
-  network::FrictionCompensation friction_;
-  Failsafe failsafe_;
-  double period_;                              ///< [s]
-  std::vector<double> q_, v_, new_q_, new_v_;  ///< [rad], [rad/s]
-  std::vector<double> torques_;                ///< [N m]
+  TickClock clock_;
+  double period_;  ///< [s]
+  JointWatch watch_;
+  ArmInertia inertia_;
+  ArmCommand<Arm> command_;
+  std::vector<double> q_, v_, read_q_, read_v_;  ///< [rad], [rad/s]
   Jacobian jacobian_, new_jacobian_;
   Pose X_WT_ = Pose::Identity();
   Twist V_WT_;
   network::MeasuredFlow flow_;
   network::Signals signals_;
-  int before_walls_ = -1;  // connection over which the operator's side acts on the tool
+  int before_walls_ = -1;     // connection over which the operator's side acts on the tool
+  double lever_scale_ = 1.0;  ///< [m/rad]
+  bool pushing_out_;
   TickRecord record_;
   std::int64_t next_tick_ = 0;
-  std::chrono::nanoseconds last_now_ = std::chrono::nanoseconds::min();
+  std::int64_t periods_ = 0;  ///< since the first tick
 };
 
 }  // namespace repel

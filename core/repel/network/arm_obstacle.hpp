@@ -39,15 +39,15 @@ class ArmObstacle {
 
   void read(const Signals& signals) noexcept {
     effort_ = -signals.arm_torques;
-    if (signals.at_rest) {
+    if (signals.released) {
       controller_.reset();
       effort_.setZero();
       supplied_ = 0.0;
       return;
     }
     supplied_ = signals.arm_power;
-    const double damping =
-        controller_.step(effort_, signals.rates, signals.mean_rates, signals.period, supplied_);
+    const double damping = controller_.step(effort_, signals.rates, signals.mean_rates,
+                                            signals.period, supplied_, signals.since_last());
     if (damping > 0.0) effort_ += damping * signals.rates;
   }
 

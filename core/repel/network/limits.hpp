@@ -69,7 +69,7 @@ class Limits {
       Vec<1> effort(-law_(signals.joints(i), rate, joint.range.lower, joint.range.upper));
       active_ = active_ || effort(0) != 0.0;
       effort(0) += rate * joint.controller.step(effort, Vec<1>(rate), Vec<1>(signals.mean_rates(i)),
-                                                signals.period);
+                                                signals.period, 0.0, signals.since_last());
       effort_(i) = effort(0);
     }
   }

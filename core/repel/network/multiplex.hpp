@@ -69,6 +69,9 @@ class Multiplex {
   }
   /// How much more the power of its left port counts in the ledger.
   [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
+  [[nodiscard]] double velocity_scale() const noexcept {  ///< s_v [m/rad]
+    return options_.velocity_scale;
+  }
   /// d, world axes; shorter than one while it turns.
   [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
 

@@ -43,7 +43,7 @@ class Obstacle {
   void read(const Signals& signals) noexcept {
     const Vec<any_size> flow = signals.tool_flow();
     effort_ = -to_vec(signals.walls);
-    if (signals.at_rest) {
+    if (signals.released) {
       controller_.reset();
       effort_.setZero(6);
       supplied_ = 0.0;
@@ -51,7 +51,8 @@ class Obstacle {
     }
     const Six mean = signals.mean_tool_flow();
     supplied_ = signals.walls_power;
-    const double damping = controller_.step(effort_, flow, mean, signals.period, supplied_);
+    const double damping =
+        controller_.step(effort_, flow, mean, signals.period, supplied_, signals.since_last());
     if (damping > 0.0) effort_ += damping * controller_.weight().cwiseProduct(flow);
   }
 

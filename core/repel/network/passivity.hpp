@@ -57,11 +57,11 @@ class PassivityController {
 
   /// The damping by which `effort` has to be corrected: add it times weight times `flow`.
   /// @param effort into the element; `flow` of this tick; `mean_flow` of the period that ended with
-  ///        it; `period` [s]; `supplied` [W] to the element otherwise than over its port. All
-  ///        finite.
+  ///        it; `period` [s]; `supplied` [W] to the element otherwise than over its port;
+  ///        `elapsed` [s] since the step before, 0: one period. All finite.
   [[nodiscard]] double step(const Vec<N>& effort, const Vec<N>& flow, const Vec<N>& mean_flow,
-                            double period, double supplied = 0.0) noexcept {
-    sampled_ += period * (held_.dot(mean_flow) + supplied);
+                            double period, double supplied = 0.0, double elapsed = 0.0) noexcept {
+    sampled_ += (elapsed > 0.0 ? elapsed : period) * (held_.dot(mean_flow) + supplied);
     energy_ = std::max(0.0, energy_ + period * supplied);
     limit_damping(damped_.dot(mean_flow));
     const double square = flow.cwiseProduct(weight_).dot(flow);

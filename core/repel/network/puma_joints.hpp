@@ -27,9 +27,11 @@ class MeasuredFlow {
     flow_.setZero();
     mean_.setZero();
   }
-  /// One `period` [s] later; `q` [rad], `rate` [rad/s] measured, finite.
-  void step(const Vec<any_size>& q, const Vec<any_size>& rate, double period) noexcept {
-    mean_ = (q - position_) / period;
+  /// One `period` [s] of the network later, `elapsed` [s] by the clock (0: a period); `q` [rad],
+  /// `rate` [rad/s] measured, finite.
+  void step(const Vec<any_size>& q, const Vec<any_size>& rate, double period,
+            double elapsed = 0.0) noexcept {
+    mean_ = (q - position_) / (elapsed > 0.0 ? elapsed : period);
     position_ = q;
     const Vec<any_size> error = q - integral_ - 0.5 * period * (flow_ + rate);
     integral_ += 0.5 * period * flow_;
@@ -67,7 +69,8 @@ class PumaJoints {
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
 
   void read(const Signals& signals) noexcept {
-    sampling_energy_ += signals.period * effort_.dot(signals.mean_rates - flow_);
+    sampling_energy_ += signals.period * effort_.dot(signals.mean_rates - flow_) +
+                        (signals.since_last() - signals.period) * effort_.dot(signals.mean_rates);
     flow_ = signals.rates;
   }
   void equivalent(Equivalent<any_size>& shown) const noexcept {

@@ -18,7 +18,7 @@ struct HandInput {
 struct Signals {
   Vec<any_size> joints;      ///< q [rad], [m]
   Vec<any_size> rates;       ///< [rad/s], [m/s] the measured flow
-  Vec<any_size> mean_rates;  ///< [rad/s], [m/s] (q - last q) / T
+  Vec<any_size> mean_rates;  ///< [rad/s], [m/s] (q - last q) / elapsed
   Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints>
       jacobian;                  ///< tool, world axes
   Pose X_WT = Pose::Identity();  ///< [m]
@@ -28,8 +28,12 @@ struct Signals {
   double arm_power = 0.0;     ///< [W] and to the links
   HandInput hand;
   double period = 0.0025;  ///< [s]
-  bool at_rest = false;    ///< the fail-safe holds the forces at zero: memories let go
+  double elapsed = 0.0;    ///< [s] since the tick before, more where ticks are missing; 0: a period
+  bool at_rest = false;    ///< the operator is let go: memories of his side begin anew
+  bool released = false;   ///< nothing can be trusted: those of the walls begin anew, too
 
+  /// [s] since the tick before.
+  [[nodiscard]] double since_last() const noexcept { return elapsed > 0.0 ? elapsed : period; }
   /// Twist of the tool, J rates, and that of the last period, J mean_rates.
   [[nodiscard]] Vec<any_size> tool_flow() const noexcept { return jacobian.lazyProduct(rates); }
   [[nodiscard]] Vec<any_size> mean_tool_flow() const noexcept {

@@ -65,21 +65,20 @@ class DeadlineMonitor {
  public:
   explicit DeadlineMonitor(std::chrono::nanoseconds period) noexcept : period_(period) {}
 
+  /// `ticks` that were due and never made: each missed its deadline.
+  void skip(std::int64_t ticks) noexcept {
+    for (std::int64_t i = 0; i < ticks; ++i) count(true);
+  }
+
   /// @param lateness how long after it was due the tick began
   /// @param compute how long it took
   void record(std::chrono::nanoseconds lateness, std::chrono::nanoseconds compute) noexcept {
     wakeup_.record(lateness);
     compute_.record(compute);
-    const bool missed = lateness + compute > period_;
-    misses_ += missed ? 1 : 0;
-    const std::size_t slot = static_cast<std::size_t>(ticks_ % window);
-    recent_misses_ += (missed ? 1 : 0) - (recent_[slot] ? 1 : 0);
-    recent_[slot] = missed;
-    ++ticks_;
-    const double rate = success_rate();
-    if (rate < lowest_) lowest_ = rate;
+    count(lateness + compute > period_);
   }
 
+  /// Those made and those skipped.
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
   [[nodiscard]] std::int64_t misses() const noexcept { return misses_; }
   /// Share of the last 100 ticks (of all, while there are fewer) that met their deadline, 0 to 1.
@@ -94,6 +93,16 @@ class DeadlineMonitor {
 
  private:
   static constexpr std::int64_t window = 100;
+
+  void count(bool missed) noexcept {
+    misses_ += missed ? 1 : 0;
+    const std::size_t slot = static_cast<std::size_t>(ticks_ % window);
+    recent_misses_ += (missed ? 1 : 0) - (recent_[slot] ? 1 : 0);
+    recent_[slot] = missed;
+    ++ticks_;
+    const double rate = success_rate();
+    if (rate < lowest_) lowest_ = rate;
+  }
 
   std::chrono::nanoseconds period_;
   std::int64_t ticks_ = 0;

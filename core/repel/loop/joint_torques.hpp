@@ -1,0 +1,200 @@
+/// @file
+/// What is sent to the joints: who has a share in it, and how much it may be.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <repel/base/status.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/joint_speed.hpp>
+#include <repel/network/friction.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+struct JointTorqueOptions {
+  double brake_time = 0.02;  ///< [s], and no less than four ticks, in which braking takes 63 % of a
+                             ///< speed, as far as the efforts of the joints allow
+  double slew_time = 0.005;  ///< [s] in which a torque may go from none to the most there is
+};
+
+/// Who has which share in a tick.
+struct TorqueShares {
+  double operators = 1.0;  ///< of what the network gives beside walls and limits
+  double drive = 1.0;      ///< of the same again where it gives power
+  double walls = 1.0;      ///< of walls and limits of joints
+  double friction = 1.0;   ///< of the compensation of dry friction
+  double brake = 0.0;      ///< of a damping that brakes all motion
+  double gravity = 1.0;    ///< of what holds the arm
+};
+
+/// Adds the shares up:
+///
+///     tau = g(q) + operator + walls + friction - M v / brake_time
+///
+/// within the speed and the effort of each joint, and not from none to all in a tick. Braking takes
+/// what effort is left over: its direction is kept, so that it never drives. Where a wall pushes
+/// the arm ahead of itself, braking steps back. Memory is taken at construction.
+class JointTorques {
+ public:
+  using Vector = ArmInertia::Vector;
+
+  /// @param period [s]; @throws SetupError for an option out of range
+  JointTorques(const ArmModel& model, double period, const JointTorqueOptions& options)
+      : model_(model),
+        period_(period),
+        brake_time_(
+            std::max(checked("brake time", options.brake_time, 1e-4, 10.0, "s"), 4.0 * period)),
+        slew_(std::min(1.0, period / checked("slew time", options.slew_time, 0.0, 10.0, "s"))),
+        gravity_(model.links.size()),
+        last_gravity_(gravity_),
+        torques_(model.links.size()) {
+    for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
+    const auto size = static_cast<Eigen::Index>(model.links.size());
+    net_.setZero(size);
+    wanted_ = brake_ = rate_ = net_;
+  }
+
+  /// Where gravity torques are to be written before `compose` [N m].
+  [[nodiscard]] std::span<double> gravity() noexcept { return gravity_; }
+
+  /// Makes the torques of this tick. @param network all that it sends the joints [N m]; `walls` the
+  /// part of it that comes from walls and limits; `v` [rad/s]
+  /// @return status bits
+  [[nodiscard]] Status compose(const Vector& network, const Vector& walls, const TorqueShares& s,
+                               const std::vector<double>& v, const ArmInertia& inertia) noexcept {
+    const bool sound = keep_sound(network, walls);
+    Status found = sound ? 0U : status::bad_torque;
+    const TorqueShares given =
+        sound ? s : TorqueShares{.operators = 0.0, .walls = 0.0, .friction = 0.0, .brake = s.brake};
+    if (share_out(network, walls, given, v)) found |= status::speed_limit;
+    const double braking = brake(walls, given, v, inertia);
+    for (std::size_t i = 0; i < torques_.size(); ++i) found |= send(i);
+    has_sent_ = true;
+    expect(v, inertia, braking);
+    return found;
+  }
+
+  [[nodiscard]] const std::vector<double>& torques() const noexcept { return torques_; }  ///< [N m]
+  /// tau - g of the last tick [N m].
+  [[nodiscard]] const Vector& net() const noexcept { return net_; }
+  /// At which each joint is to move a period later by what was sent, dry friction and all [rad/s].
+  [[nodiscard]] const Vector& expected_rate() const noexcept { return rate_; }
+
+ private:
+  static bool is_number(double x) noexcept { return x - x == 0.0; }
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+
+  // What is no number is not sent; of gravity the last that was one.
+  [[nodiscard]] bool keep_sound(const Vector& network, const Vector& walls) noexcept {
+    bool sound = true;
+    for (std::size_t i = 0; i < gravity_.size(); ++i) {
+      sound = sound && is_number(network(index(i))) && is_number(walls(index(i)));
+    }
+    for (std::size_t i = 0; i < gravity_.size(); ++i) {
+      if (is_number(gravity_[i])) {
+        last_gravity_[i] = gravity_[i];
+      } else {
+        gravity_[i] = last_gravity_[i];
+        sound = false;
+      }
+    }
+    return sound;
+  }
+
+  // True when a joint was kept from going faster.
+  [[nodiscard]] bool share_out(const Vector& network, const Vector& walls, const TorqueShares& s,
+                               const std::vector<double>& v) noexcept {
+    double power = 0.0;  // of the operator
+    for (std::size_t i = 0; i < v.size(); ++i)
+      power += (network(index(i)) - walls(index(i))) * v[i];
+    const double share = s.operators * (power > 0.0 ? s.drive : 1.0);
+    bool is_kept = false;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const ArmLink& link = model_.links[i];
+      // What has no share may be no number.
+      double wish = share > 0.0 ? share * (network(index(i)) - walls(index(i))) : 0.0;
+      if (s.walls > 0.0) wish += s.walls * walls(index(i));
+      const double asked = within_speed(wish, v[i], link.velocity_limit);
+      is_kept = is_kept || asked != wish;
+      gravity_[i] *= s.gravity;
+      wanted_(index(i)) = asked + s.friction * friction_(link.coulomb_friction, v[i], asked);
+    }
+    return is_kept;
+  }
+
+  // The share of a damping M v / brake_time that is given; in `brake_` what it is.
+  double brake(const Vector& walls, const TorqueShares& s, const std::vector<double>& v,
+               const ArmInertia& inertia) noexcept {
+    double share = 0.0;
+    if (s.brake > 0.0) {
+      inertia.momenta(v, brake_);
+      double taken = 0.0;
+      double given = 0.0;  // by the walls [W]
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        taken += brake_(index(i)) * v[i] / brake_time_;
+        if (s.walls > 0.0) given += s.walls * walls(index(i)) * v[i];
+      }
+      share = s.brake;
+      if (given > 0.0) share *= std::max(0.0, 1.0 - give_way * given / taken);
+      for (std::size_t i = 0; i < v.size(); ++i) {
+        const double b = -brake_(index(i)) / brake_time_;
+        const double rest = gravity_[i] + wanted_(index(i));
+        const double room = std::max(0.0, effort_[i] - (b > 0.0 ? rest : -rest));
+        if (share * std::abs(b) > room) share = room / std::abs(b);
+      }
+    }
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      brake_(index(i)) = share > 0.0 ? -share * brake_(index(i)) / brake_time_ : 0.0;
+    }
+    return share;
+  }
+
+  [[nodiscard]] Status send(std::size_t i) noexcept {
+    Status found = 0;
+    const double most = effort_[i];
+    double torque = gravity_[i] + wanted_(index(i)) + brake_(index(i));
+    if (std::abs(torque) > most) {
+      found |= status::torque_limit;
+      torque = std::clamp(torque, -most, most);
+    }
+    const double change = torque - torques_[i];
+    if (has_sent_ && std::abs(change) > slew_ * most) {
+      found |= status::torque_rate;
+      torque = torques_[i] + std::clamp(change, -slew_ * most, slew_ * most);
+    }
+    torques_[i] = torque;
+    return found;
+  }
+
+  void expect(const std::vector<double>& v, const ArmInertia& inertia, double braking) noexcept {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const ArmLink& link = model_.links[i];
+      const double mass = inertia.matrix()(index(i), index(i));
+      net_(index(i)) = torques_[i] - gravity_[i];
+      const double push = net_(index(i)) - brake_(index(i)) - link.viscous_friction * v[i];
+      double rate = v[i] * (1.0 - braking * period_ / brake_time_) + period_ * push / mass;
+      const double friction = period_ * link.coulomb_friction / mass;
+      rate = rate > 0.0 ? std::max(0.0, rate - friction) : std::min(0.0, rate + friction);
+      rate_(index(i)) = rate;
+    }
+  }
+
+  static constexpr double give_way = 4.0;
+
+  const ArmModel& model_;
+  network::FrictionCompensation friction_;
+  double period_;                                         // [s]
+  double brake_time_;                                     // [s]
+  double slew_;                                           // share of the effort in a tick
+  std::vector<double> effort_;                            // [N m]
+  std::vector<double> gravity_, last_gravity_, torques_;  // [N m]
+  Vector wanted_, brake_, net_, rate_;
+  bool has_sent_ = false;
+};
+
+}  // namespace repel

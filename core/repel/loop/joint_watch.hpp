@@ -1,0 +1,276 @@
+/// @file
+/// Whether what an arm reports of its joints can be true, and where it is while it cannot.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <repel/base/status.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// How far readings of a sound arm may be off. Angles; lengths likewise in [m] and [m/s].
+struct JointWatchOptions {
+  double position_noise = 1e-3;   ///< [rad] error of one reading against the next
+  double rate_noise = 0.2;        ///< [rad/s] error of one rate against the next
+  double resolution = 1e-5;       ///< [rad] smallest step that a position can show
+  double jitter = 1.0;            ///< [periods] by which the time between readings may be off
+  int repeats = 1;                ///< ticks for which a sound arm may report the same of a moving
+                                  ///< joint; more where it is asked more often than it measures
+  double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
+  int regain = 4;                 ///< sound readings in a row after which they are believed again
+};
+
+/// Compares every reading with the one before, with the torques that were sent in between and with
+/// the inertia of the arm, joint by joint:
+///
+/// - positions and rates are finite, rates below twice the speed limit;
+/// - a position follows the last one by the mean of the rates, within the noise; what is missing
+///   over several ticks adds up;
+/// - a rate grows no faster than the joint's whole effort, and what the other joints pass on, can
+///   accelerate it: M_ii |dv_i| <= T (|tau_i - g_i| + effort_i) + sum |M_ik dv_k|. To lose speed is
+///   possible at once, where something is hit;
+/// - a joint that moves, or is driven by more than its friction can hold, does not report the very
+///   same position again and again.
+///
+/// A reading that fails is not used. Meanwhile the motion is predicted from the last one that was
+/// believed. Memory is taken at construction; a tick costs a few comparisons a joint.
+class JointWatch {
+ public:
+  using Vector = ArmInertia::Vector;
+
+  /// @param period [s] from reading to reading
+  /// @throws SetupError for an option out of range
+  JointWatch(const ArmModel& model, double period, const JointWatchOptions& options = {})
+      : model_(model), options_(options), period_(period), joints_(model.links.size()) {
+    checked("JointWatchOptions::position_noise", options.position_noise, 0.0, 1e3, "rad");
+    checked("JointWatchOptions::rate_noise", options.rate_noise, 0.0, 1e6, "rad/s");
+    checked("JointWatchOptions::resolution", options.resolution, 0.0, 1e3, "rad");
+    checked("JointWatchOptions::jitter", options.jitter, 0.0, 1e3, "periods");
+    checked("JointWatchOptions::repeats", options.repeats, 0, 1e6, "ticks");
+    checked("JointWatchOptions::mass_uncertainty", options.mass_uncertainty, 1.0, 1e3, "");
+    checked("JointWatchOptions::regain", options.regain, 1, 1e6, "ticks");
+    for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].effort = effort_bound(model, i);
+  }
+
+  /// Compares a reading `q` [rad], `v` [rad/s] with what was known; if it stands, `position` and
+  /// `rate` become it, else the prediction. @param elapsed [s] since the reading before
+  /// @return the bits of status::blind that hold; 0 when the reading is believed
+  [[nodiscard]] Status step(const std::vector<double>& q, const std::vector<double>& v,
+                            double elapsed, const ArmInertia::Matrix& M) noexcept {
+    Status found = 0;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      if (!is_number(q[i]) || !is_number(v[i])) found = status::bad_joints;
+    }
+    if (found == 0U) {
+      if (has_reading_) found = compare(q, v, elapsed, M);
+      if (blind_ != 0U && !agrees(q)) found |= status::implausible_joints;
+      keep(q, v);
+    }
+    return believe(found, elapsed);
+  }
+
+  /// What the loop sent after the reading: the net torque `net` = tau - g [N m], g itself, and the
+  /// rate that is expected a period later [rad/s]. `held`: brakes are on.
+  void expect(const Vector& net, std::span<const double> weight, const Vector& rate,
+              bool held) noexcept {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      joints_[i].net = held ? 0.0 : net(index(i));
+      joints_[i].weight = weight[i];
+      joints_[i].expected_rate = held ? 0.0 : rate(index(i));
+    }
+    held_ = held;
+  }
+
+  /// The next reading is taken as it is: the loop stood still, and the arm moved on by itself.
+  void begin_anew() noexcept {
+    has_reading_ = false;
+    for (Joint& joint : joints_) joint.forget();
+  }
+
+  /// Read or predicted [rad] or [m].
+  [[nodiscard]] double position(std::size_t joint) const noexcept { return joints_[joint].q; }
+  /// Read or predicted [rad/s] or [m/s].
+  [[nodiscard]] double rate(std::size_t joint) const noexcept { return joints_[joint].v; }
+  /// [s] since the last reading that was believed; 0: now.
+  [[nodiscard]] double blind_for() const noexcept { return blind_for_; }
+  /// No reading was ever believed.
+  [[nodiscard]] bool knows_nothing() const noexcept { return !has_believed_; }
+
+ private:
+  struct Joint {
+    double q = 0.0, v = 0.0;            // believed or predicted
+    double read_q = 0.0, read_v = 0.0;  // the last finite reading
+    double net = 0.0;                   // [N m] sent, without what carries the weight
+    double expected_rate = 0.0;         // [rad/s]
+    double effort = 0.0;                // [N m]
+    double drift = 0.0;                 // [rad] positions less rates, of the last ticks
+    double change = 0.0;                // [rad/s] of the rate, of the last ticks
+    double weight = 0.0;                // [N m] that is carried
+    double forced_rate = 0.0;           // [rad/s] it would have by what was sent, where it stands
+    double forced_way = 0.0;            // [rad] and its integral
+    int same = 0;                       // positions like the one before
+    double moved_at = 0.0;              // [rad/s] before it began to report the same
+    bool moved = false;                 // before it began to report the same
+    bool stuck = false;                 // until it reports anything else
+
+    void forget() noexcept {
+      drift = change = forced_rate = forced_way = 0.0;
+      same = 0;
+      moved = false;
+    }
+  };
+
+  static constexpr double memory = 0.9;  // of the last ticks, per tick
+
+  static bool is_number(double x) noexcept { return x - x == 0.0; }
+
+  [[nodiscard]] Status compare(const std::vector<double>& q, const std::vector<double>& v,
+                               double elapsed, const ArmInertia::Matrix& M) noexcept {
+    Status found = 0;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      if (!can_be_true(i, q, v, elapsed, M)) found |= status::implausible_joints;
+      if (stands_still(joints_[i], model_.links[i], q[i], v[i], elapsed, M(index(i), index(i)))) {
+        found |= status::frozen_joints;
+      }
+    }
+    return found;
+  }
+
+  [[nodiscard]] bool can_be_true(std::size_t i, const std::vector<double>& q,
+                                 const std::vector<double>& v, double elapsed,
+                                 const ArmInertia::Matrix& M) noexcept {
+    Joint& joint = joints_[i];
+    const double limit = model_.links[i].velocity_limit;
+    if (limit > 0.0 && !(std::abs(v[i]) <= 2.0 * limit + options_.rate_noise)) return false;
+    double passed_on = 0.0;  // by the other joints [N m s]
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+      if (k != i) passed_on += std::abs(M(index(i), index(k)) * (v[k] - joints_[k].read_v));
+    }
+    const double push = elapsed * (std::abs(joint.net) + joint.effort) + passed_on;
+    const double gain =
+        options_.rate_noise + options_.mass_uncertainty * push / M(index(i), index(i));
+    if (!(std::abs(v[i]) <= std::abs(joint.read_v) + gain)) return false;
+    // Between two readings the rate may have been anything from one to the other; where some are
+    // missing, it may have been more for a while.
+    const double step = std::abs(v[i] - joint.read_v);
+    const double missing = q[i] - joint.read_q - 0.5 * elapsed * (v[i] + joint.read_v);
+    const double speed = std::max(std::abs(v[i]), std::abs(joint.read_v));
+    double most = options_.position_noise + 0.5 * elapsed * step;
+    if (elapsed > 1.5 * period_) most += elapsed * (speed + options_.rate_noise);
+    const double off = options_.jitter * period_ * speed;
+    joint.drift = memory * joint.drift + missing;
+    joint.change = memory * joint.change + step;
+    const bool follows =
+        std::abs(missing) <= most + off &&
+        std::abs(joint.drift) <= 3.0 * most + 2.0 * off + 0.6 * elapsed * joint.change;
+    if (!follows) joint.drift = joint.change = 0.0;  // of what cannot be true nothing is to stay
+    return follows;
+  }
+
+  // The same position again, bit for bit, of a joint that moved, moves, or must move: what friction
+  // and a wrong weight can hold may stand, up to a way that is noise; against a twentieth of its
+  // effort it may not.
+  [[nodiscard]] bool stands_still(Joint& joint, const ArmLink& link, double q, double v,
+                                  double elapsed, double inertia) noexcept {
+    const bool is_same = q == joint.read_q;
+    joint.same = is_same ? joint.same + 1 : 0;
+    joint.stuck = joint.stuck && is_same;
+    if (held_) return joint.stuck;
+    const double clear = 0.25 * options_.rate_noise;
+    if (joint.same == 1) {
+      const double speed = std::abs(joint.read_v);
+      joint.moved = speed > clear && speed * elapsed > 10.0 * options_.resolution;
+      joint.moved_at = joint.read_v;
+    }
+    const bool moves = std::abs(v) * elapsed > options_.resolution &&
+                       (v == joint.read_v || std::abs(v) > 2.0 * clear);
+    const double force =
+        std::abs(joint.net) - 1.5 * link.coulomb_friction - 0.3 * std::abs(joint.weight);
+    if (is_same && force > 0.0) {
+      joint.forced_rate += elapsed * force / (options_.mass_uncertainty * inertia);
+      joint.forced_way += elapsed * joint.forced_rate;
+    } else {
+      joint.forced_rate = joint.forced_way = 0.0;
+    }
+    const double most =
+        force > 0.05 * joint.effort ? 2.0 * options_.resolution : options_.position_noise;
+    const bool must_move = joint.forced_way > most;
+    if (joint.same > options_.repeats && (joint.moved || moves || must_move)) joint.stuck = true;
+    return joint.stuck;
+  }
+
+  // Where a reading may be after a while without any: on from the last one believed, which braked.
+  [[nodiscard]] bool agrees(const std::vector<double>& q) const noexcept {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      const double way = lost_speed_ * std::min(blind_for_, 0.2) +
+                         (held_ ? 0.0 : 0.25 * blind_for_) + 3.0 * options_.position_noise;
+      if (!(std::abs(q[i] - joints_[i].q) <= way)) return false;
+    }
+    return true;
+  }
+
+  void keep(const std::vector<double>& q, const std::vector<double>& v) noexcept {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      joints_[i].read_q = q[i];
+      joints_[i].read_v = v[i];
+    }
+    has_reading_ = true;
+  }
+
+  [[nodiscard]] Status believe(Status found, double elapsed) noexcept {
+    if (found != 0U) {
+      if (blind_ == 0U) lose(elapsed);
+      blind_ |= found;
+      sound_ = 0;
+    } else if (blind_ != 0U) {
+      ++sound_;
+    }
+    if (blind_ == 0U || sound_ >= options_.regain) {
+      for (Joint& joint : joints_) joint.q = joint.read_q, joint.v = joint.read_v;
+      blind_ = 0U;
+      blind_for_ = 0.0;
+      has_believed_ = true;
+      return 0U;
+    }
+    blind_for_ += elapsed;
+    for (Joint& joint : joints_) {
+      joint.v = joint.expected_rate;
+      joint.q += elapsed * joint.v;
+    }
+    return blind_;
+  }
+
+  // Of a joint that stands still only in what it reports, the motion was lost some ticks ago.
+  void lose(double elapsed) noexcept {
+    lost_speed_ = 0.0;
+    for (Joint& joint : joints_) {
+      if (joint.stuck) {
+        const double driven = std::copysign(joint.forced_rate, joint.net);
+        joint.expected_rate = joint.moved ? joint.moved_at : joint.v + driven;
+        joint.q += elapsed * (joint.same - 1) * joint.expected_rate;
+      }
+      lost_speed_ = std::max(lost_speed_, std::abs(joint.expected_rate));
+      joint.forget();
+    }
+  }
+
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+
+  const ArmModel& model_;
+  JointWatchOptions options_;
+  double period_;  // [s]
+  std::vector<Joint> joints_;
+  Status blind_ = 0U;        // why the readings are not believed
+  int sound_ = 0;            // readings in a row since
+  double blind_for_ = 0.0;   // [s]
+  double lost_speed_ = 0.0;  // [rad/s] greatest, when they were believed last
+  bool has_reading_ = false, has_believed_ = false, held_ = false;
+};
+
+}  // namespace repel

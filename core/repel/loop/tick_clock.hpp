@@ -1,0 +1,55 @@
+/// @file
+/// How many periods have gone by since the tick before.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+
+#include <repel/base/status.hpp>
+
+namespace repel {
+
+/// Counts the periods of a grid that begins with the first tick. A tick that is late by less than
+/// three quarters of a period is late; one that is later stands for those that are missing, too.
+class TickClock {
+ public:
+  using nanoseconds = std::chrono::nanoseconds;
+
+  /// @param longest_gap without a tick that is no fault
+  TickClock(nanoseconds period, nanoseconds longest_gap) noexcept
+      : period_(std::max(period, nanoseconds(1))), longest_gap_(std::max(longest_gap, period_)) {}
+
+  /// The next tick is made at `now`. @return status::clock_fault or clock_gap, or 0
+  [[nodiscard]] Status step(nanoseconds now) noexcept {
+    elapsed_ = 1;
+    const bool runs = now > last_;
+    if (runs && has_begun_) {
+      const std::int64_t index = (now - first_ + period_ / 4) / period_;
+      elapsed_ = std::max<std::int64_t>(1, index - index_);
+      index_ += elapsed_;
+    } else {
+      first_ = now;  // or after a fault the next one
+      index_ = 0;
+    }
+    has_begun_ = runs;
+    last_ = now;
+    if (!runs) return status::clock_fault;
+    return elapsed_ * period_ > longest_gap_ ? status::clock_gap : 0U;
+  }
+
+  [[nodiscard]] std::int64_t elapsed() const noexcept {
+    return elapsed_;
+  }  ///< [periods], 1 or more
+
+ private:
+  nanoseconds period_;
+  nanoseconds longest_gap_;
+  nanoseconds first_{0};
+  nanoseconds last_{0};
+  std::int64_t index_ = 0;
+  std::int64_t elapsed_ = 1;
+  bool has_begun_ = false;
+};
+
+}  // namespace repel
