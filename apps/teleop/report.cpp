@@ -65,6 +65,15 @@ void print_contact(const RunResult& r, std::FILE* out) {
   }
 }
 
+/// Ticks in each stop.
+ordered_json stop_ticks(const RunTotals& totals) {
+  ordered_json ticks;
+  for (const Stop stop : {Stop::running, Stop::holding, Stop::braking, Stop::released}) {
+    ticks[to_text(stop)] = totals.stop_ticks[static_cast<std::size_t>(stop)];
+  }
+  return ticks;
+}
+
 /// Partners with what their arms did; the arm of the scene itself has the report's own keys.
 ordered_json partner_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -78,15 +87,6 @@ ordered_json partner_list(const RunResult& r) {
                     {"modules", modules_to_json(arm.modules)}});
   }
   return list;
-}
-
-/// Ticks in each stop.
-ordered_json stop_ticks(const RunTotals& totals) {
-  ordered_json ticks;
-  for (const Stop stop : {Stop::running, Stop::holding, Stop::braking, Stop::released}) {
-    ticks[to_text(stop)] = totals.stop_ticks[static_cast<std::size_t>(stop)];
-  }
-  return ticks;
 }
 
 /// The stops an arm made, where it made any.

@@ -87,6 +87,9 @@ class JointWatch {
     held_ = held;
   }
 
+  /// Brakes are on, whoever engaged them: nothing has to move.
+  void hold() noexcept { held_ = true; }
+
   /// The next reading is taken as it is: the loop stood still, and the arm moved on by itself.
   void begin_anew() noexcept {
     has_reading_ = false;
@@ -182,7 +185,7 @@ class JointWatch {
     joint.same = is_same ? joint.same + 1 : 0;
     joint.stuck = joint.stuck && is_same;
     if (held_) return joint.stuck;
-    const double clear = 0.25 * options_.rate_noise;
+    const double clear = 0.1 * options_.rate_noise;
     if (joint.same == 1) {
       const double speed = std::abs(joint.read_v);
       joint.moved = speed > clear && speed * elapsed > 10.0 * options_.resolution;
@@ -251,8 +254,8 @@ class JointWatch {
     lost_speed_ = 0.0;
     for (Joint& joint : joints_) {
       if (joint.stuck) {
-        const double driven = std::copysign(joint.forced_rate, joint.net);
-        joint.expected_rate = joint.moved ? joint.moved_at : joint.v + driven;
+        const double driven = options_.mass_uncertainty * joint.forced_rate;
+        joint.expected_rate = joint.moved_at + std::copysign(driven, joint.net);
         joint.q += elapsed * (joint.same - 1) * joint.expected_rate;
       }
       lost_speed_ = std::max(lost_speed_, std::abs(joint.expected_rate));

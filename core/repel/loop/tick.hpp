@@ -126,6 +126,9 @@ class Teleoperator {
   void read_joints() noexcept {
     arm_.read_positions(read_q_);
     arm_.read_velocities(read_v_);
+    if constexpr (BrakedArm<Arm>) {
+      if (arm_.state() != ArmState::enabled) watch_.hold();
+    }
     record_.status |= watch_.step(read_q_, read_v_, signals_.elapsed, inertia_.matrix());
     for (std::size_t i = 0; i < q_.size(); ++i) {
       q_[i] = watch_.position(i);
