@@ -34,6 +34,7 @@ struct ArmLink {
   double viscous_friction = 0.0;         ///< [N m s/rad] or [N s/m], at the joint
   double coulomb_friction = 0.0;         ///< [N m] or [N], at the joint
   double rotor_inertia = 0.0;            ///< [kg m^2] or [kg], motor and gears seen at the joint
+  double brake_torque = 0.0;             ///< [N m] or [N] its brake holds; 0: none is known
 };
 
 /// A serial chain from a fixed base. Fixed joints of the source are merged into their parents.
@@ -54,6 +55,27 @@ concept TorqueDrivenArm = requires(T arm, const T& const_arm, std::span<const do
   { arm.step(period) } -> std::same_as<void>;                // [s]
   { const_arm.read_positions(out) } -> std::same_as<void>;   // [rad]
   { const_arm.read_velocities(out) } -> std::same_as<void>;  // [rad/s]
+};
+
+/// What a drive does with the torques it is sent.
+enum class ArmState {
+  disabled,  ///< not enabled yet: no torque acts, the brakes are on
+  enabled,   ///< they act
+  stopped,   ///< by `stop`, or by its watchdog: no torque acts, the brakes are on until `enable`
+};
+
+/// An arm whose drive can be enabled and stopped and whose joints have brakes. Its drive may have a
+/// watchdog, which stops an arm that no torques are sent to. None of these functions throws.
+template <class T>
+concept BrakedArm = TorqueDrivenArm<T> && requires(T arm, const T& const_arm, bool on) {
+  { arm.enable() }
+  noexcept->std::same_as<void>;  // torques act, brakes off
+  { arm.stop() }
+  noexcept->std::same_as<void>;  // no torque, brakes on until `enable`
+  { arm.engage_brakes(on) }
+  noexcept->std::same_as<void>;  // while enabled; no torque while on
+  { const_arm.state() }
+  noexcept->std::same_as<ArmState>;
 };
 
 /// Kinematics of an arm. After `update` everything answers for those joints; nothing throws or
