@@ -27,6 +27,10 @@ TEST(BulletBrakes, AnArmOfWhoseMotorsNothingIsKnownDoesSoToo) {
   expect_a_sound_drive(maker(light_arm(), std::vector(6, 0.5)), light_push());
 }
 
+TEST(BulletBrakes, ALongChainStretchedOutDoesNotCreep) {
+  expect_brakes_to_hold(maker(chain(), std::vector(8, 0.0)), std::vector(8, 0.0));
+}
+
 TEST(BulletBrakes, AStopForgetsWhatWasSent) {
   expect_a_stop_to_forget_what_was_sent(maker(turntable(0.5), {0.0}));
 }

@@ -26,6 +26,10 @@ TEST(OdeBrakes, AnArmOfWhoseMotorsNothingIsKnownDoesSoToo) {
   expect_a_sound_drive(maker(light_arm(), std::vector(6, 0.5)), light_push());
 }
 
+TEST(OdeBrakes, ALongChainStretchedOutDoesNotCreep) {
+  expect_brakes_to_hold(maker(chain(), std::vector(8, 0.0)), std::vector(8, 0.0));
+}
+
 TEST(OdeBrakes, AStopForgetsWhatWasSent) {
   expect_a_stop_to_forget_what_was_sent(maker(turntable(0.5), {0.0}));
 }

@@ -34,6 +34,10 @@ TEST(ReferenceBrakes, TheLongReachStopsAndStandsByItsLimitsOfEffort) {
                        {200.0, 20.0, 100.0, 50.0, 1.0, 1.0, 0.1});
 }
 
+TEST(ReferenceBrakes, ALongChainStretchedOutDoesNotCreep) {
+  expect_brakes_to_hold(maker(chain(), std::vector(8, 0.0)), std::vector(8, 0.0));
+}
+
 TEST(ReferenceBrakes, AStopForgetsWhatWasSent) {
   expect_a_stop_to_forget_what_was_sent(maker(turntable(0.5), {0.0}));
 }

@@ -130,6 +130,20 @@ inline ArmModel light_arm() {
   return model;
 }
 
+/// Eight equal links of 1 m and 10 kg, stretched out to the side at zero, which sweeps from joint
+/// to joint bring to rest very slowly.
+inline ArmModel chain() {
+  ArmModel model;
+  model.name = "chain";
+  for (int i = 0; i < 8; ++i) {
+    ArmLink link = link_with(10.0, {0.5, 0, 0}, {0.1, 0.1, 0.1});
+    link.axis_J = Vec3::UnitY();
+    if (i > 0) link.X_PJ.translation() = Vec3::UnitX();
+    model.links.push_back(link);
+  }
+  return model;
+}
+
 /// The pose of every link at `q`, base outward.
 inline std::vector<Pose> link_poses(const ArmModel& model, const std::vector<double>& q) {
   std::vector<Pose> X_WL;
