@@ -1,10 +1,13 @@
 #include <repel/robots/dynamics.hpp>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <kdl/chaindynparam.hpp>
 #include <limits>
+
+#include <repel/world/arm_drive.hpp>
 
 #include "kdl_chain.hpp"
 
@@ -76,19 +79,25 @@ struct ReferenceArm::Impl {
   };
 
   Impl(const ArmModel& model, const ReferenceOptions& given)
-      : dynamics(model), links(model.links), options(given), M(dynamics.links(), dynamics.links()) {
+      : dynamics(model),
+        links(model.links),
+        options(given),
+        drive(given.watchdog),
+        M(dynamics.links(), dynamics.links()) {
     const double largest = std::numeric_limits<double>::max();
     checked("ReferenceOptions::substeps", options.substeps, 1, 100000, "");
     checked("ReferenceOptions::friction_speed", options.friction_speed,
             std::numeric_limits<double>::min(), largest, "rad/s or m/s");
     const Vector zero = Vector::Zero(dynamics.links());
     at = {zero, zero};
-    torque = bias = zero;
+    torque = bias = viscous = most_held = zero;
     dynamics.inertia(span_of(at.q), M);
     for (Eigen::Index i = 0; i < zero.size(); ++i) {
       const ArmLink& link = links[static_cast<std::size_t>(i)];
       checked("joint '" + link.joint_name + "': inertia it moves", M(i, i), 1e-12, largest,
               "kg m^2 or kg");
+      viscous[i] = link.viscous_friction;
+      most_held[i] = link.coulomb_friction + brake_torque(model, static_cast<int>(i));
     }
   }
 
@@ -110,12 +119,8 @@ struct ReferenceArm::Impl {
   }
 
   void sub_step(double h) {
-    const State k1 = rate(at);
-    const State k2 = rate(moved(at, k1, 0.5 * h));
-    const State k3 = rate(moved(at, k2, 0.5 * h));
-    const State k4 = rate(moved(at, k3, h));
-    const State next{at.q + h / 6.0 * (k1.q + 2.0 * k2.q + 2.0 * k3.q + k4.q),
-                     at.v + h / 6.0 * (k1.v + 2.0 * k2.v + 2.0 * k3.v + k4.v)};
+    if (drive.advance(h)) torque.setZero();
+    const State next = drive.braked() ? slowed(h) : driven(h);
     if (next.q.allFinite() && next.v.allFinite()) {
       at = next;
     } else {
@@ -123,12 +128,57 @@ struct ReferenceArm::Impl {
     }
   }
 
+  State driven(double h) {
+    const State k1 = rate(at);
+    const State k2 = rate(moved(at, k1, 0.5 * h));
+    const State k3 = rate(moved(at, k2, 0.5 * h));
+    const State k4 = rate(moved(at, k3, h));
+    return {at.q + h / 6.0 * (k1.q + 2.0 * k2.q + 2.0 * k3.q + k4.q),
+            at.v + h / 6.0 * (k1.v + 2.0 * k2.v + 2.0 * k3.v + k4.v)};
+  }
+
+  // Semi-implicit Euler under dry friction f, brakes among it, without motors:
+  //     (M + h B) v' = M v + h (f - c),   |f_i| <= F_i,   f_i = -F_i sign(v'_i) unless v'_i = 0.
+  // The search begins where every joint stands, and so holds the arm without any error.
+  State slowed(double h) {
+    dynamics.inertia(span_of(at.q), M);
+    dynamics.bias(span_of(at.q), span_of(at.v), span_of(bias));
+    const Vector holding = bias - M * at.v / h;
+    const Vector f = holding.cwiseMin(most_held).cwiseMax(-most_held);
+    if (f == holding) return {at.q, Vector::Zero(f.size())};
+    M.diagonal() += h * viscous;
+    const Eigen::MatrixXd W = M.inverse();
+    Vector v = h * W * (f - holding);
+    oppose(W, f, h, v);
+    return {at.q + h * v, v};
+  }
+
+  /// Finds the friction by projected Gauss-Seidel, from `f`, and the velocity `v` that it leaves.
+  void oppose(const Eigen::MatrixXd& W, Vector f, double h, Vector& v) const {
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      double change = 0.0;  // [rad/s] largest
+      for (Eigen::Index i = 0; i < f.size(); ++i) {
+        const double stopping = f[i] - v[i] / (h * W(i, i));
+        const double added = std::clamp(stopping, -most_held[i], most_held[i]) - f[i];
+        f[i] += added;
+        v += added * h * W.col(i);
+        change = std::max(change, h * std::abs(added) * W(i, i));
+      }
+      if (change < settled) return;
+    }
+  }
+
+  static constexpr int most_sweeps = 1000;
+  static constexpr double settled = 1e-14;  // [rad/s] or [m/s]
+
   Dynamics dynamics;
   std::vector<ArmLink> links;
   ReferenceOptions options;
+  ArmDrive drive;
   Eigen::MatrixXd M;
   State at;
   Vector torque, bias;
+  Vector viscous, most_held;  // [N m s/rad]; [N m] dry friction of a joint and its brake
 };
 
 ReferenceArm::ReferenceArm(const ArmModel& model, const ReferenceOptions& options)
@@ -153,9 +203,11 @@ void ReferenceArm::reset(std::span<const double> q, std::span<const double> v) {
   impl_->at.v.setZero();
   std::copy(v.begin(), v.end(), impl_->at.v.begin());
   impl_->torque.setZero();
+  impl_->drive.reset();
 }
 
 void ReferenceArm::set_torques(std::span<const double> torques) noexcept {
+  impl_->drive.heard();
   for (std::size_t i = 0; i < impl_->links.size(); ++i) {
     const bool usable = i < torques.size() && std::isfinite(torques[i]);
     impl_->torque[static_cast<Eigen::Index>(i)] = usable ? torques[i] : 0.0;
@@ -166,6 +218,23 @@ void ReferenceArm::step(double period) noexcept {
   if (!(period > 0.0 && std::isfinite(period))) return;
   const double h = period / impl_->options.substeps;
   for (int part = 0; part < impl_->options.substeps; ++part) impl_->sub_step(h);
+}
+
+void ReferenceArm::enable() noexcept {
+  impl_->drive.enable();
+}
+
+void ReferenceArm::stop() noexcept {
+  impl_->drive.stop();
+  impl_->torque.setZero();
+}
+
+void ReferenceArm::engage_brakes(bool on) noexcept {
+  impl_->drive.engage_brakes(on);
+}
+
+ArmState ReferenceArm::state() const noexcept {
+  return impl_->drive.state();
 }
 
 void ReferenceArm::read_positions(std::span<double> out) const noexcept {

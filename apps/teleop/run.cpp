@@ -298,9 +298,15 @@ void run_with(const Shift<Arm>& shift, const std::function<void(const Progress&)
 std::vector<IdealJoint> ideal_joints(const ArmModel& model) {
   std::vector<IdealJoint> joints;
   for (const ArmLink& link : model.links) {
-    joints.push_back({std::max(0.1, link.rotor_inertia), std::max(1.0, link.viscous_friction)});
+    joints.push_back({std::max(0.1, link.rotor_inertia), std::max(1.0, link.viscous_friction),
+                      brake_torque(model, static_cast<int>(joints.size()))});
   }
   return joints;
+}
+
+/// Time without torques [s] after which a simulated arm stops; more than a period of a slow tick.
+double watchdog_of(const RunOptions& options) {
+  return std::max(0.1, 5.0 / options.rate_hz);
 }
 
 }  // namespace
@@ -358,23 +364,32 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const Compan
     }
     run_with(Shift<Arm>{std::span(arms), cell, result, company, stop}, show);
   };
+  const double watchdog = watchdog_of(options);
   if (company.recording != nullptr) {
     std::vector<RecordedArm> arms;
     for (const auto& records : company.recording->arms) arms.emplace_back(records.front());
     run_with(Shift<RecordedArm>{std::span(arms), cell, result, company, stop}, show);
   } else if (ideal) {
-    with([](const ArmModel& model, const auto&) { return IdealArm(ideal_joints(model)); });
+    with([&](const ArmModel& model, const auto&) {
+      return IdealArm(ideal_joints(model), {.watchdog = watchdog});
+    });
   } else if (options.backend == "reference") {
-    with([](const ArmModel& model, const auto&) { return ReferenceArm(model); });
+    with([&](const ArmModel& model, const auto&) {
+      return ReferenceArm(model, {.watchdog = watchdog});
+    });
   } else if (options.backend == "ode") {
 #ifdef REPEL_TELEOP_ODE
-    with([](const ArmModel& model, const auto& parts) { return ode::Arm(model, {}, parts); });
+    with([&](const ArmModel& model, const auto& parts) {
+      return ode::Arm(model, {.watchdog = watchdog}, parts);
+    });
 #else
     throw SetupError("backend ode is not built in; to have it: apt-get install libode-dev");
 #endif
   } else {
 #ifdef REPEL_TELEOP_BULLET
-    with([](const ArmModel& model, const auto& parts) { return bullet::Arm(model, {}, parts); });
+    with([&](const ArmModel& model, const auto& parts) {
+      return bullet::Arm(model, {.watchdog = watchdog}, parts);
+    });
 #else
     throw SetupError("backend bullet is not built in; to have it: apt-get install libbullet-dev");
 #endif

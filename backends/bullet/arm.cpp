@@ -35,12 +35,13 @@ struct Arm::Simulation {
 
   ArmModel model;
   int substeps;
+  ArmDrive drive;
   int links;
   detail::ImplicitJoints joints;
   std::unique_ptr<btMultiBody> body;
   std::unique_ptr<detail::Contacts> contacts;  // none without parts
   ArmFaults faults;
-  Eigen::VectorXd torque, q, v, a;  // as set; state; acceleration
+  Eigen::VectorXd torque, no_torque, q, v, a;  // as set; zero; state; acceleration
   Eigen::MatrixXd M_inverse;
   // Bullet's scratch memory; spatial vectors have 6 entries for the base, then the joints.
   btAlignedObjectArray<btScalar> scalars;
@@ -53,11 +54,13 @@ Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options,
                             std::span<const ContactPart> parts)
     : model(validated(given, options)),
       substeps(options.substeps),
+      drive(options.watchdog),
       links(static_cast<int>(model.links.size())),
       joints(model, options),
       body(detail::make_multibody(model)),
       contacts(parts.empty() ? nullptr : std::make_unique<detail::Contacts>(model, options, parts)),
       torque(Eigen::VectorXd::Zero(links)),
+      no_torque(torque),
       q(torque),
       v(torque),
       a(torque),
@@ -74,6 +77,7 @@ Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options,
 
 void Arm::Simulation::reset(std::span<const double> at, std::span<const double> moving) {
   require_state(model, at, moving);
+  drive.reset();
   torque.setZero();
   body->clearForcesAndTorques();
   body->clearVelocities();
@@ -130,10 +134,12 @@ void Arm::Simulation::require_inertia_at_every_joint() {
 // so D and f would have to go back in as torques. That costs a second run of the algorithm and
 // multiplies the rounding error of a by D / M.
 void Arm::Simulation::sub_step(double h) noexcept {
-  load(joints.linearize(q, v, torque, h));  // weight and joint torque
-  find_free_acceleration();                 // -> a, M^-1
+  if (drive.advance(h)) torque.setZero();
+  const bool braked = drive.braked();
+  load(joints.linearize(q, v, braked ? no_torque : torque, h));  // weight and joint torque
+  find_free_acceleration();                                      // -> a, M^-1
   if (contacts) contacts->find(q);
-  joints.solve(M_inverse, a, v, h, contacts.get());  // -> a with rotors, stops and friction
+  joints.solve(M_inverse, a, v, h, braked, contacts.get());  // -> a with rotors, stops and friction
   v += h * a;
   if (!v.allFinite() || !(q + h * v).allFinite()) {
     faults.state = true;
@@ -159,6 +165,7 @@ void Arm::reset(std::span<const double> q, std::span<const double> v) {
 }
 
 void Arm::set_torques(std::span<const double> torques) noexcept {
+  simulation_->drive.heard();
   for (std::size_t i = 0; i < simulation_->model.links.size(); ++i) {
     const bool usable = i < torques.size() && std::isfinite(torques[i]);
     simulation_->torque[static_cast<Eigen::Index>(i)] = usable ? torques[i] : 0.0;
@@ -174,6 +181,23 @@ void Arm::step(double period) noexcept {
   const double h = period / simulation_->substeps;
   for (int part = 0; part < simulation_->substeps; ++part) simulation_->sub_step(h);
   if (simulation_->contacts) simulation_->contacts->end_step();
+}
+
+void Arm::enable() noexcept {
+  simulation_->drive.enable();
+}
+
+void Arm::stop() noexcept {
+  simulation_->drive.stop();
+  simulation_->torque.setZero();
+}
+
+void Arm::engage_brakes(bool on) noexcept {
+  simulation_->drive.engage_brakes(on);
+}
+
+ArmState Arm::state() const noexcept {
+  return simulation_->drive.state();
 }
 
 void Arm::read_positions(std::span<double> out) const noexcept {

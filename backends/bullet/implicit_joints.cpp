@@ -16,6 +16,14 @@ Eigen::VectorXd gathered(const ArmModel& model, double ArmLink::*field) {
   return values;
 }
 
+Eigen::VectorXd brakes_of(const ArmModel& model) {
+  Eigen::VectorXd values(static_cast<Eigen::Index>(model.links.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    values[i] = brake_torque(model, static_cast<int>(i));
+  }
+  return values;
+}
+
 }  // namespace
 
 ImplicitJoints::ImplicitJoints(const ArmModel& model, const ArmOptions& options)
@@ -24,10 +32,13 @@ ImplicitJoints::ImplicitJoints(const ArmModel& model, const ArmOptions& options)
       rotor_inertia_(gathered(model, &ArmLink::rotor_inertia)),
       viscous_(gathered(model, &ArmLink::viscous_friction)),
       coulomb_(gathered(model, &ArmLink::coulomb_friction)),
+      brake_(brakes_of(model)),
       diagonal_(lower_.size()),
       torque_(lower_.size()),
+      most_(lower_.size()),
       friction_(lower_.size()),
       column_(lower_.size()),
+      factor_(lower_.size()),
       stop_stiffness_(options.stop_stiffness),
       stop_damping_(options.stop_damping) {}
 
@@ -46,9 +57,15 @@ const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const
 }
 
 void ImplicitJoints::solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v,
-                           double h, Contacts* contacts) noexcept {
+                           double h, bool braked, Contacts* contacts) noexcept {
   add_diagonal(M_inverse, a);
   if (contacts != nullptr) contacts->begin(M_inverse, v, h);
+  most_ = coulomb_;
+  friction_.setZero();
+  if (braked) {
+    most_ += brake_;
+    stand(M_inverse, a, v, h);
+  }
   find_friction(M_inverse, a, v, h, contacts);
 }
 
@@ -64,6 +81,19 @@ void ImplicitJoints::add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexce
   }
 }
 
+// Begins the search with the torques that bring every joint to rest, W f = -(v / h + a), cut to
+// the bounds. Where none is cut they are the answer; sweeps alone would come near it slowly where
+// a heavy joint carries light ones, and a braked arm would creep.
+void ImplicitJoints::stand(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const Eigen::VectorXd& v,
+                           double h) noexcept {
+  factor_.compute(W);
+  if (factor_.info() != Eigen::Success) return;
+  friction_ = -(v / h + a);
+  factor_.solveInPlace(friction_);
+  friction_ = friction_.cwiseMin(most_).cwiseMax(-most_);
+  a.noalias() += W * friction_;
+}
+
 // The friction torques f are those within +-F that leave the least kinetic energy at the end of
 // the sub-step. One joint at a time (projected Gauss-Seidel): with W = (M + D)^-1 the torque that
 // brings v' = v + h a to rest changes f_i by -v'_i / (h W_ii); it is cut to the bounds. Forces of
@@ -71,12 +101,11 @@ void ImplicitJoints::add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexce
 void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
                                    const Eigen::VectorXd& v, double h,
                                    Contacts* contacts) noexcept {
-  friction_.setZero();
   for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
     double largest_change = 0.0;
     for (Eigen::Index i = 0; i < a.size(); ++i) {
       const double stopping = friction_[i] - (v[i] / h + a[i]) / W(i, i);
-      const double change = std::clamp(stopping, -coulomb_[i], coulomb_[i]) - friction_[i];
+      const double change = std::clamp(stopping, -most_[i], most_[i]) - friction_[i];
       friction_[i] += change;
       a += change * W.col(i);
       largest_change = std::max(largest_change, h * std::abs(change) * W(i, i));

@@ -2,6 +2,7 @@
 /// Rotor inertia, friction and stops at the joints of an arm, solved together with its inertia.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "contacts.hpp"
@@ -22,7 +23,8 @@ namespace repel::bullet::detail {
 ///
 ///     (M + D) a = u - c + f,   |f_i| <= F_i,   f_i = -F_i sign(v'_i) unless v'_i = 0.
 ///
-/// D is positive, so no stiffness or friction makes a step unstable. R is in it exactly.
+/// D is positive, so no stiffness or friction makes a step unstable. R is in it exactly. A brake
+/// that is on adds its torque to F.
 class ImplicitJoints {
  public:
   ImplicitJoints(const ArmModel& model, const ArmOptions& options);
@@ -33,18 +35,23 @@ class ImplicitJoints {
                                    const Eigen::VectorXd& torque, double h) noexcept;
 
   /// Turns `a`, the free acceleration, into the acceleration, and `M_inverse` into (M + D)^-1.
+  /// @param braked true when the brakes are on
   /// @param contacts what is found to touch; null for an arm that touches nothing
   void solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v, double h,
-             Contacts* contacts) noexcept;
+             bool braked, Contacts* contacts) noexcept;
 
  private:
   void add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexcept;
+  void stand(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const Eigen::VectorXd& v,
+             double h) noexcept;
   void find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const Eigen::VectorXd& v,
                      double h, Contacts* contacts) noexcept;
 
   Eigen::VectorXd lower_, upper_;                      // [rad]
   Eigen::VectorXd rotor_inertia_, viscous_, coulomb_;  // [kg m^2], [N m s/rad], [N m]
-  Eigen::VectorXd diagonal_, torque_, friction_, column_;
+  Eigen::VectorXd brake_;                              // [N m]
+  Eigen::VectorXd diagonal_, torque_, most_, friction_, column_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
   double stop_stiffness_, stop_damping_;
 };
 

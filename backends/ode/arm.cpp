@@ -49,6 +49,7 @@ struct Arm::Simulation {
   Simulation(const ArmModel& given, const ArmOptions& chosen, std::span<const ContactPart> parts)
       : model(validated(given, chosen)),
         options(chosen),
+        drive(chosen.watchdog),
         torque(model.links.size()),
         q(torque),
         v(torque),
@@ -80,11 +81,14 @@ struct Arm::Simulation {
   void reset(std::span<const double> at, std::span<const double> moving);
   void sub_step(double h) noexcept;
   void resist(std::size_t i, double h) noexcept;
+  /// Dry friction from now on that of the joints, with `braked` that of their brakes as well.
+  void engage(bool braked) noexcept;
   void read_state() noexcept;
   [[nodiscard]] double parted() const noexcept;
 
   ArmModel model;
   ArmOptions options;
+  ArmDrive drive;
   struct EndWorld {
     void operator()(dWorldID ended) const { dWorldDestroy(ended); }
   };
@@ -93,6 +97,7 @@ struct Arm::Simulation {
   std::vector<dBodyID> body;  // at the centre of mass, with the axes of the link
   std::vector<dJointID> joint;
   std::vector<dJointID> friction;  // a motor that brings its joint to rest with limited force
+  bool engaged = false;            // the brakes are in that force
   std::optional<detail::Contacts> contacts;
   ArmFaults faults;
 };
@@ -160,6 +165,8 @@ void Arm::Simulation::place() noexcept {
 
 void Arm::Simulation::reset(std::span<const double> at, std::span<const double> moving) {
   require_state(model, at, moving);
+  drive.reset();
+  engage(false);
   std::fill(torque.begin(), torque.end(), 0.0);
   std::copy(at.begin(), at.end(), q.begin());
   std::fill(v.begin(), v.end(), 0.0);
@@ -190,10 +197,23 @@ void Arm::Simulation::resist(std::size_t i, double h) noexcept {
   set(joint[i], dParamVel, velocity);
 }
 
+void Arm::Simulation::engage(bool braked) noexcept {
+  if (braked == engaged) return;
+  engaged = braked;
+  for (std::size_t i = 0; i < friction.size(); ++i) {
+    const double brake = braked ? brake_torque(model, static_cast<int>(i)) : 0.0;
+    const auto set = turns(i) ? &dJointSetAMotorParam : &dJointSetLMotorParam;
+    set(friction[i], dParamFMax, model.links[i].coulomb_friction + brake);
+  }
+}
+
 void Arm::Simulation::sub_step(double h) noexcept {
+  if (drive.advance(h)) std::fill(torque.begin(), torque.end(), 0.0);
+  const bool braked = drive.braked();
+  engage(braked);
   for (std::size_t i = 0; i < body.size(); ++i) {
     resist(i, h);
-    (turns(i) ? dJointAddHingeTorque : dJointAddSliderForce)(joint[i], torque[i]);
+    (turns(i) ? dJointAddHingeTorque : dJointAddSliderForce)(joint[i], braked ? 0.0 : torque[i]);
   }
   last_q = q;
   if (contacts) contacts->find(h);
@@ -256,6 +276,7 @@ void Arm::reset(std::span<const double> q, std::span<const double> v) {
 }
 
 void Arm::set_torques(std::span<const double> torques) noexcept {
+  simulation_->drive.heard();
   for (std::size_t i = 0; i < simulation_->body.size(); ++i) {
     const bool usable = i < torques.size() && std::abs(torques[i]) <= most_torque;
     simulation_->torque[i] = usable ? torques[i] : 0.0;
@@ -271,6 +292,23 @@ void Arm::step(double period) noexcept {
   const double h = period / simulation_->options.substeps;
   for (int part = 0; part < simulation_->options.substeps; ++part) simulation_->sub_step(h);
   if (simulation_->contacts) simulation_->contacts->end_step();
+}
+
+void Arm::enable() noexcept {
+  simulation_->drive.enable();
+}
+
+void Arm::stop() noexcept {
+  simulation_->drive.stop();
+  std::fill(simulation_->torque.begin(), simulation_->torque.end(), 0.0);
+}
+
+void Arm::engage_brakes(bool on) noexcept {
+  simulation_->drive.engage_brakes(on);
+}
+
+ArmState Arm::state() const noexcept {
+  return simulation_->drive.state();
 }
 
 void Arm::read_positions(std::span<double> out) const noexcept {

@@ -83,6 +83,7 @@ TEST(BulletArm, AStepAllocatesNothing) {
   std::vector<double> out(6);
   const long before = allocations;
   for (int tick = 0; tick < 100; ++tick) {
+    arm.engage_brakes(tick >= 50);
     arm.set_torques(torques);
     arm.step(1.0 / 400);
     arm.read_positions(out);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "simulated/brakes.hpp"
+
 namespace repel {
 namespace ideal_arm_test {
 
@@ -62,6 +64,19 @@ TEST(IdealArm, SetUpRefusesWhatHasNoMotion) {
   EXPECT_THROW(IdealArm(std::vector<IdealJoint>{{1.0, -1.0}}), SetupError);
   IdealArm arm(std::vector<IdealJoint>(2));
   EXPECT_THROW(arm.reset(std::vector{0.0}), SetupError);
+}
+
+TEST(IdealArm, ItsDriveStopsAndHoldsItAndGoesOn) {
+  const auto two = [](double seconds) {
+    return IdealArm(std::vector<IdealJoint>{{0.5, 0.1, 3.0}, {2.0, 0.0}}, {.watchdog = seconds});
+  };
+  const auto free = [](double seconds) {
+    return IdealArm(std::vector<IdealJoint>{{0.5, 0.0, 3.0}}, {.watchdog = seconds});
+  };
+  simulated::expect_a_sound_drive(two, {1.0, -2.0});
+  simulated::expect_a_stop_to_forget_what_was_sent(free);
+  EXPECT_THROW((IdealArm(std::vector<IdealJoint>{{1.0, 0.0, -1.0}})), SetupError);
+  EXPECT_THROW(two(-1.0), SetupError);
 }
 
 }  // namespace ideal_arm_test

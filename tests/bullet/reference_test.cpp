@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <repel/robots/dynamics.hpp>
+#include <repel/robots/urdf.hpp>
 
 #include "arms.hpp"
+#include "simulated/brakes.hpp"
 #include "simulated/motions.hpp"
 
 namespace repel::bullet::test {
@@ -26,6 +28,31 @@ TEST(BulletAgainstTheReference, PumaMovesAlikeToFirstOrderInTheSubStep) {
   EXPECT_LT(four, 5e-3);
   EXPECT_NEAR(sixteen / four, 0.25, 0.05);
   EXPECT_NEAR(error(64) / sixteen, 0.25, 0.05);
+}
+
+TEST(BulletAgainstTheReference, TheLongReachStopsAndStandsByItsLimitsOfEffort) {
+  const ArmModel model = load_arm("robots/long_reach.urdf").arm;
+  const auto make = [&](double seconds) {
+    Arm arm(model, {.watchdog = seconds});
+    arm.reset(std::vector{2.5, 0.3, 0.8, -0.9, 0.2, 0.5, 0.1});
+    return arm;
+  };
+  simulated::expect_a_sound_drive(make, {200.0, 20.0, 100.0, 50.0, 1.0, 1.0, 0.1});
+}
+
+TEST(BulletAgainstTheReference, BrakesStopAPumaWhereTheyStopTheReference) {
+  const ArmModel model = simulated::heavy_puma();
+  const auto stopped = [](auto arm) {
+    arm.reset(simulated::puma_start());
+    simulated::drive(arm, simulated::puma_push(), 80);
+    arm.stop();
+    simulated::leave(arm, 400);
+    return positions(arm);
+  };
+  const auto reference = stopped(ReferenceArm(model));
+  const auto here = stopped(Arm(model));
+  EXPECT_LT(apart({reference}, {here}), 5e-3);
+  EXPECT_GT(apart({reference}, {simulated::puma_start()}), 0.1) << "it must have moved";
 }
 
 }  // namespace reference_test

@@ -18,13 +18,6 @@ static_assert(TorqueDrivenArm<Arm>);
 
 constexpr double period = 1.0 / 400;
 
-ArmModel puma() {
-  ArmModel model = puma560();
-  model.links[0].mass = 10.0;
-  model.links[0].I_C_L = Vec3(0.35, 0.35, 0.35).asDiagonal();
-  return model;
-}
-
 double energy(const ArmModel& model, const Arm& arm) {
   return potential_energy(model, positions(arm)) +
          kinetic_energy(model, positions(arm), velocities(arm));
@@ -57,7 +50,7 @@ TEST(OdeArm, AnswersTorquesAsBothMassesAndRotorsSay) {
 }
 
 TEST(OdeArm, TorquesThatBalanceGravityHoldTheArmStill) {
-  const ArmModel model = puma();
+  const ArmModel model = heavy_puma();
   const std::vector q{0.3, 0.8, -0.5, 0.4, 0.9, -0.2};
   Arm arm(model);
   arm.reset(q);
@@ -124,14 +117,14 @@ std::vector<double> state_after_a_second(Arm& arm, unsigned seed) {
 }
 
 TEST(OdeArm, TheSameInputsGiveTheSameBits) {
-  Arm one(puma());
-  Arm two(puma());
+  Arm one(heavy_puma());
+  Arm two(heavy_puma());
   EXPECT_EQ(state_after_a_second(one, 3), state_after_a_second(two, 3));
   EXPECT_LT(one.parted(), 1e-3);
 }
 
 TEST(OdeArm, LivesThroughBadInputAndRemembersIt) {
-  Arm arm(puma());
+  Arm arm(heavy_puma());
   arm.set_torques(std::vector{std::nan(""), 0.0, 0.0, 0.0, 0.0});
   EXPECT_TRUE(arm.faults().torque);
   arm.step(std::nan(""));
@@ -147,11 +140,11 @@ TEST(OdeArm, LivesThroughBadInputAndRemembersIt) {
 }
 
 TEST(OdeArm, SetUpRefusesWhatItCannotMove) {
-  ArmModel model = puma();
+  ArmModel model = heavy_puma();
   model.links[3].mass = 0.0;
   EXPECT_THROW(Arm{model}, SetupError);
-  EXPECT_THROW((Arm{puma(), {.substeps = 0}}), SetupError);
-  Arm arm(puma());
+  EXPECT_THROW((Arm{heavy_puma(), {.substeps = 0}}), SetupError);
+  Arm arm(heavy_puma());
   EXPECT_THROW(arm.reset(std::vector(5, 0.0)), SetupError);
   EXPECT_THROW(arm.reset(std::vector(6, 100.0)), SetupError);
 }

@@ -10,13 +10,6 @@ namespace contact_test {
 
 using namespace simulated;
 
-ArmModel puma() {
-  ArmModel model = puma560();
-  model.links[0].mass = 10.0;
-  model.links[0].I_C_L = Vec3(0.35, 0.35, 0.35).asDiagonal();
-  return model;
-}
-
 TEST(OdeContact, ABoxHoldsEveryShapeThatIsPushedIntoIt) {
   for (const ContactPart& part : probes()) expect_a_box_stops<Arm>(part);
 }
@@ -26,15 +19,15 @@ TEST(OdeContact, EveryShapeHoldsACapsule) {
 }
 
 TEST(OdeContact, APumaThatFallsComesToRestOnATable) {
-  expect_to_rest_on_a_table<Arm>(puma());
+  expect_to_rest_on_a_table<Arm>(heavy_puma());
 }
 
 TEST(OdeContact, TheSameFallGivesTheSameBits) {
-  expect_the_same_again<Arm>(puma());
+  expect_the_same_again<Arm>(heavy_puma());
 }
 
 TEST(OdeContact, WhatIsNotTouchedChangesNoBit) {
-  expect_untouched_the_same<Arm>(puma());
+  expect_untouched_the_same<Arm>(heavy_puma());
 }
 
 TEST(OdeContact, SetUpNamesThePartThatCannotBeTouched) {
@@ -42,7 +35,7 @@ TEST(OdeContact, SetUpNamesThePartThatCannotBeTouched) {
                              Shape::hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}})}) {
     const std::vector<ContactPart> parts{{"spike", -1, shape, Pose::Identity()}};
     try {
-      const Arm arm(puma(), {}, parts);
+      const Arm arm(heavy_puma(), {}, parts);
       FAIL() << "nothing was thrown";
     } catch (const SetupError& error) {
       EXPECT_NE(std::string(error.what()).find("'spike'"), std::string::npos) << error.what();

@@ -3,8 +3,10 @@
 
 #include <repel/ode/arm.hpp>
 #include <repel/robots/dynamics.hpp>
+#include <repel/robots/urdf.hpp>
 
 #include "simulated/arms.hpp"
+#include "simulated/brakes.hpp"
 #include "simulated/motions.hpp"
 
 namespace repel::ode {
@@ -12,12 +14,10 @@ namespace reference_test {
 
 using namespace simulated;
 
-/// A PUMA whose first link has a mass, which no joint of a fixed base feels but ODE wants.
-ArmModel heavy_puma() {
-  ArmModel model = puma560();
-  model.links[0].mass = 10.0;
-  model.links[0].I_C_L = Vec3(0.35, 0.35, 0.35).asDiagonal();
-  for (ArmLink& link : model.links) {  // the reference has no stops
+/// Without stops, which the reference has not.
+ArmModel free_puma() {
+  ArmModel model = heavy_puma();
+  for (ArmLink& link : model.links) {
     link.lower = -kInfinity;
     link.upper = kInfinity;
   }
@@ -25,7 +25,7 @@ ArmModel heavy_puma() {
 }
 
 TEST(OdeAgainstTheReference, PumaMovesAlikeToFirstOrderInTheSubStep) {
-  const ArmModel model = heavy_puma();
+  const ArmModel model = free_puma();
   const auto reference = motion_of(ReferenceArm(model, {.substeps = 8}));
   const auto error = [&](int substeps) {
     return apart(reference, motion_of(Arm(model, {.substeps = substeps})));
@@ -35,6 +35,31 @@ TEST(OdeAgainstTheReference, PumaMovesAlikeToFirstOrderInTheSubStep) {
   EXPECT_LT(four, 1e-2);
   EXPECT_NEAR(sixteen / four, 0.25, 0.05);
   EXPECT_NEAR(error(64) / sixteen, 0.25, 0.05);
+}
+
+TEST(OdeAgainstTheReference, TheLongReachStopsAndStandsByItsLimitsOfEffort) {
+  const ArmModel model = load_arm("robots/long_reach.urdf").arm;
+  const auto make = [&](double seconds) {
+    Arm arm(model, {.watchdog = seconds});
+    arm.reset(std::vector{2.5, 0.3, 0.8, -0.9, 0.2, 0.5, 0.1});
+    return arm;
+  };
+  simulated::expect_a_sound_drive(make, {200.0, 20.0, 100.0, 50.0, 1.0, 1.0, 0.1});
+}
+
+TEST(OdeAgainstTheReference, BrakesStopAPumaWhereTheyStopTheReference) {
+  const ArmModel model = simulated::heavy_puma();
+  const auto stopped = [](auto arm) {
+    arm.reset(simulated::puma_start());
+    simulated::drive(arm, simulated::puma_push(), 80);
+    arm.stop();
+    simulated::leave(arm, 400);
+    return positions(arm);
+  };
+  const auto reference = stopped(ReferenceArm(model));
+  const auto here = stopped(Arm(model));
+  EXPECT_LT(apart({reference}, {here}), 5e-3);
+  EXPECT_GT(apart({reference}, {simulated::puma_start()}), 0.1) << "it must have moved";
 }
 
 }  // namespace reference_test

@@ -94,6 +94,56 @@ inline ArmModel puma560() {
   return model;
 }
 
+/// The same with a mass in the first link, which no joint of a fixed base feels but ODE wants.
+inline ArmModel heavy_puma() {
+  ArmModel model = puma560();
+  model.links[0].mass = 10.0;
+  model.links[0].I_C_L = Vec3(0.35, 0.35, 0.35).asDiagonal();
+  return model;
+}
+
+/// Six joints that turn, about as long and as heavy as a UR5, without motors, friction, stops and
+/// limits: of its brakes nothing is known, and light links hang on heavy ones.
+inline ArmModel light_arm() {
+  struct Link {
+    double alpha, a, d, mass;  // DH: [rad], [m], [m]; [kg]
+    Vec3 p_LC;                 // [m]
+  };
+  const std::array<Link, 6> links{{
+      {kPi / 2, 0, .089, 3.7, {0, 0, .06}},
+      {0, -.425, 0, 8.4, {-.21, 0, .11}},
+      {0, -.392, 0, 2.3, {-.24, 0, .03}},
+      {kPi / 2, 0, .109, 1.2, {0, 0, .1}},
+      {-kPi / 2, 0, .095, 1.2, {0, 0, .1}},
+      {0, 0, .082, .2, {0, 0, .05}},
+  }};
+  ArmModel model;
+  model.name = "light";
+  Pose X_PJ = Pose::Identity();
+  for (const auto& [alpha, a, d, mass, p_LC] : links) {
+    const double size = 0.05 + std::abs(a) / 3;  // [m] radius of gyration
+    ArmLink link = link_with(mass, p_LC, Vec3::Constant(mass * size * size));
+    link.X_PJ = X_PJ;
+    model.links.push_back(link);
+    X_PJ = Eigen::Translation3d(a, 0, d) * Pose(Eigen::AngleAxisd(alpha, Vec3::UnitX()));
+  }
+  return model;
+}
+
+/// Eight equal links of 1 m and 10 kg, stretched out to the side at zero, which sweeps from joint
+/// to joint bring to rest very slowly.
+inline ArmModel chain() {
+  ArmModel model;
+  model.name = "chain";
+  for (int i = 0; i < 8; ++i) {
+    ArmLink link = link_with(10.0, {0.5, 0, 0}, {0.1, 0.1, 0.1});
+    link.axis_J = Vec3::UnitY();
+    if (i > 0) link.X_PJ.translation() = Vec3::UnitX();
+    model.links.push_back(link);
+  }
+  return model;
+}
+
 /// The pose of every link at `q`, base outward.
 inline std::vector<Pose> link_poses(const ArmModel& model, const std::vector<double>& q) {
   std::vector<Pose> X_WL;

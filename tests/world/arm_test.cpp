@@ -12,6 +12,17 @@ struct Arm {
   void read_velocities(std::span<double>) const noexcept {}
 };
 
+struct ArmWithBrakes : Arm {
+  void enable() noexcept {}
+  void stop() noexcept {}
+  void engage_brakes(bool) noexcept {}
+  [[nodiscard]] ArmState state() const noexcept { return ArmState::enabled; }
+};
+
+struct ArmWhoseStopMayThrow : ArmWithBrakes {
+  void stop() {}
+};
+
 struct Kinematics {
   void update(std::span<const double>) noexcept {}
   [[nodiscard]] Pose X_WT() const noexcept { return Pose::Identity(); }
@@ -57,6 +68,9 @@ static_assert(TorqueDrivenArm<Arm>);
 static_assert(!TorqueDrivenArm<ArmThatCannotStep>);
 static_assert(!TorqueDrivenArm<ArmThatReportsFailure>);
 static_assert(!TorqueDrivenArm<ArmThatChangesWhenRead>);
+static_assert(!BrakedArm<Arm>, "an arm without brakes is a torque-driven arm all the same");
+static_assert(BrakedArm<ArmWithBrakes>);
+static_assert(!BrakedArm<ArmWhoseStopMayThrow>);
 static_assert(ArmKinematics<Kinematics>);
 static_assert(!ArmKinematics<KinematicsWithoutGravity>);
 static_assert(!ArmKinematics<KinematicsOfTheToolAlone>);

@@ -45,6 +45,7 @@ TEST(SimulatedArm, NamesTheJointAndTheNumber) {
   expect("'elbow': rotor", [](ArmModel&, ArmLink& l) { l.rotor_inertia = not_a_number; });
   expect("'elbow': viscous", [](ArmModel&, ArmLink& l) { l.viscous_friction = -1.0; });
   expect("'elbow': Coulomb", [](ArmModel&, ArmLink& l) { l.coulomb_friction = -1.0; });
+  expect("'elbow': brake", [](ArmModel&, ArmLink& l) { l.brake_torque = -1.0; });
   expect("'elbow': axis_J", [](ArmModel&, ArmLink& l) { l.axis_J *= 2.0; });
   expect("'elbow': X_PJ", [](ArmModel&, ArmLink& l) { l.X_PJ.linear() *= 2.0; });
   expect("centre of mass", [](ArmModel&, ArmLink& l) { l.p_LC.x() = not_a_number; });
@@ -64,6 +65,8 @@ TEST(SimulatedArm, OptionsAndStatesOutOfRangeAreRefused) {
   EXPECT_THROW(require_valid({.contact_stiffness = -1.0}), SetupError);
   EXPECT_THROW(require_valid({.contact_damping = 0.0}), SetupError);
   EXPECT_THROW(require_valid({.contact_friction = not_a_number}), SetupError);
+  EXPECT_THROW(require_valid({.watchdog = -0.1}), SetupError);
+  EXPECT_THROW(require_valid({.watchdog = not_a_number}), SetupError);
   const ArmModel model = sound();
   const double inside[] = {0.5};
   const double outside[] = {1.5};

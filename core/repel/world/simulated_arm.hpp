@@ -10,6 +10,7 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/world/arm.hpp>
+#include <repel/world/arm_drive.hpp>
 
 namespace repel {
 
@@ -21,6 +22,7 @@ struct SimulationOptions {
   double contact_stiffness = 1e6;  ///< [N/m] of a point of contact; 0 to 1e12
   double contact_damping = 1e4;    ///< [N s/m] of the same, which never pulls; 1e-3 to 1e12
   double contact_friction = 0.5;   ///< share of the normal force; 0 to 1e3
+  double watchdog = 0.0;           ///< [s] without torques after which the arm stops; 0: never
 };
 
 /// What a simulated arm has refused since construction or since its faults were cleared.
@@ -46,6 +48,7 @@ inline void require_simulable(const ArmLink& link) {
   not_negative("viscous friction", link.viscous_friction, "N m s/rad");
   not_negative("Coulomb friction", link.coulomb_friction, "N m");
   not_negative("rotor inertia", link.rotor_inertia, "kg m^2");
+  not_negative("brake torque", link.brake_torque, "N m");
   require(is_finite(link.X_PJ) && is_rigid(link.X_PJ), link, "X_PJ is not a rigid pose");
   require(std::abs(link.axis_J.norm() - 1.0) <= 1e-9, link, "axis_J is not of unit length");
   require(is_finite(link.p_LC), link, "the centre of mass is not finite");
@@ -84,6 +87,8 @@ inline void require_valid(const SimulationOptions& options) {
   checked("SimulationOptions::contact_stiffness", options.contact_stiffness, 0.0, 1e12, "N/m");
   checked("SimulationOptions::contact_damping", options.contact_damping, 1e-3, 1e12, "N s/m");
   checked("SimulationOptions::contact_friction", options.contact_friction, 0.0, 1e3, "");
+  checked("SimulationOptions::watchdog", options.watchdog, 0.0,
+          std::numeric_limits<double>::infinity(), "s");
 }
 
 /// Throws SetupError unless `q` [rad] or [m] and `v` [rad/s] or [m/s], which may be empty, are

@@ -45,12 +45,14 @@ struct ReferenceOptions {
   /// [rad/s] or [m/s], > 0. Coulomb friction grows from none at rest to 76 % at this speed: what
   /// stands by friction alone creeps.
   double friction_speed = 0.01;
+  double watchdog = 0.0;  ///< [s] without torques after which the arm stops; 0: never
 };
 
 /// An arm that obeys its equations of motion, weight and friction included, by Runge and Kutta's
 /// fourth order. Without stops: it turns beyond its limits. Made to be right, not fast, and
-/// unstable where friction is strong on little inertia and the sub-step is long. Satisfies
-/// TorqueDrivenArm. One thread at a time.
+/// unstable where friction is strong on little inertia and the sub-step is long. While its brakes
+/// are on it moves by the first order instead, with dry friction that stops it and holds it still.
+/// Satisfies TorqueDrivenArm and BrakedArm. One thread at a time.
 class ReferenceArm {
  public:
   /// Starts at rest at zero. Throws SetupError when a number of `model` or `options` is out of
@@ -62,8 +64,8 @@ class ReferenceArm {
 
   [[nodiscard]] int links() const noexcept;
 
-  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when empty), with
-  /// zero torque. Throws SetupError when a size is wrong or an entry is not finite.
+  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when empty),
+  /// enabled, with zero torque. Throws SetupError when a size is wrong or an entry is not finite.
   void reset(std::span<const double> q, std::span<const double> v = {});
 
   /// Joint torques [N m] or forces [N], held until the next call. An entry that is not finite or
@@ -73,6 +75,18 @@ class ReferenceArm {
   /// Moves the arm by `period` [s]; not when that is not finite and positive. A motion that leaves
   /// the range of numbers stops where it was.
   void step(double period) noexcept;
+
+  /// Torques act and the brakes are off, from now on; so the arm begins.
+  void enable() noexcept;
+
+  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
+  /// the options finds that no torques were set for too long a time of the arm.
+  void stop() noexcept;
+
+  /// Brakes on or off while the arm is enabled; no torque acts while they are on.
+  void engage_brakes(bool on) noexcept;
+
+  [[nodiscard]] ArmState state() const noexcept;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
   void read_positions(std::span<double> out) const noexcept;

@@ -13,7 +13,8 @@ namespace repel::bullet {
 using ArmOptions = SimulationOptions;
 using ArmFaults = SimulationFaults;
 
-/// Satisfies TorqueDrivenArm. Same calls, bitwise the same motion. One thread at a time.
+/// Satisfies TorqueDrivenArm and BrakedArm. Same calls, bitwise the same motion. One thread at a
+/// time.
 class Arm {
  public:
   /// Starts at rest at zero, or at the limit nearest to it.
@@ -31,7 +32,7 @@ class Arm {
   [[nodiscard]] int links() const noexcept;
 
   /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
-  /// with zero torque and nothing touched. Faults stay.
+  /// enabled, with zero torque and nothing touched. Faults stay.
   /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
@@ -41,6 +42,18 @@ class Arm {
   /// Moves the arm by `period` [s]. No allocation, no lock; cost grows with substeps x links^3.
   /// With parts each sub-step has to find what they touch, and Bullet may allocate for it.
   void step(double period) noexcept;
+
+  /// Torques act and the brakes are off, from now on; so the arm begins.
+  void enable() noexcept;
+
+  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
+  /// the options finds that no torques were set for too long a time of the arm.
+  void stop() noexcept;
+
+  /// Brakes on or off while the arm is enabled; no torque acts while they are on.
+  void engage_brakes(bool on) noexcept;
+
+  [[nodiscard]] ArmState state() const noexcept;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
   void read_positions(std::span<double> out) const noexcept;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/world/arm.hpp>
+#include <repel/world/arm_drive.hpp>
 
 namespace repel {
 
@@ -18,15 +18,24 @@ namespace repel {
 struct IdealJoint {
   double inertia = 1.0;           ///< [kg m^2] or [kg]; > 0
   double viscous_friction = 0.0;  ///< [N m s/rad] or [N s/m]; >= 0
+  /// [N m] or [N] of its brake; >= 0. Infinite: the joint stands at once.
+  double brake_torque = std::numeric_limits<double>::infinity();
+};
+
+/// What the drive of an IdealArm does by itself.
+struct IdealOptions {
+  double watchdog = 0.0;  ///< [s] without torques after which the arm stops; 0: never
 };
 
 /// An arm whose joints obey inertia * a = torque - viscous_friction * v, each on its own, by
-/// semi-implicit Euler with the friction at the new velocity. Satisfies TorqueDrivenArm.
+/// semi-implicit Euler with the friction at the new velocity. A brake is dry friction, which stops
+/// a joint and holds it. Satisfies TorqueDrivenArm and BrakedArm.
 class IdealArm {
  public:
   /// Starts at rest at zero.
-  /// @throws SetupError when there is no joint, or an inertia or friction is out of range
-  explicit IdealArm(std::span<const IdealJoint> joints) {
+  /// @throws SetupError when there is no joint, or an inertia, friction or option is out of range
+  explicit IdealArm(std::span<const IdealJoint> joints, const IdealOptions& options = {})
+      : drive_(options.watchdog) {
     if (joints.empty()) throw SetupError("an IdealArm needs at least one joint");
     for (const IdealJoint& joint : joints) joints_.push_back({validated(joint), 0.0, 0.0, 0.0});
   }
@@ -34,7 +43,7 @@ class IdealArm {
   /// Number of joints.
   [[nodiscard]] int links() const noexcept { return static_cast<int>(joints_.size()); }
 
-  /// Puts the arm at rest at `q` [rad] or [m] with zero torque. The fault stays.
+  /// Puts the arm at rest at `q` [rad] or [m], enabled, with zero torque. The fault stays.
   /// @throws SetupError when the size is wrong or an entry is not finite
   void reset(std::span<const double> q) {
     const bool finite = std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); });
@@ -42,11 +51,13 @@ class IdealArm {
       throw SetupError("reset needs " + std::to_string(joints_.size()) + " finite positions");
     }
     for (std::size_t i = 0; i < q.size(); ++i) joints_[i] = {joints_[i].constants, q[i], 0.0, 0.0};
+    drive_.reset();
   }
 
   /// Joint torques [N m] or forces [N], held until the next call. An entry that is not finite or
   /// missing counts as zero and sets `torque_fault`.
   void set_torques(std::span<const double> torques) noexcept {
+    drive_.heard();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const bool usable = i < torques.size() && std::isfinite(torques[i]);
       joints_[i].torque = usable ? torques[i] : 0.0;
@@ -57,13 +68,35 @@ class IdealArm {
   /// Moves the arm by `period` [s]; does nothing when that is not finite and positive.
   void step(double period) noexcept {
     if (!(period > 0.0 && std::isfinite(period))) return;
+    if (drive_.advance(period)) forget_torques();
+    const bool braked = drive_.braked();
     for (Joint& joint : joints_) {
-      const auto [inertia, viscous_friction] = joint.constants;
-      joint.velocity = (inertia * joint.velocity + period * joint.torque) /
-                       (inertia + period * viscous_friction);
+      const auto [inertia, viscous_friction, brake] = joint.constants;
+      const double torque = braked ? 0.0 : joint.torque;
+      const double divisor = inertia + period * viscous_friction;
+      joint.velocity = (inertia * joint.velocity + period * torque) / divisor;
+      if (braked) {
+        const double stopped = period * brake / divisor;
+        joint.velocity -= std::clamp(joint.velocity, -stopped, stopped);
+      }
       joint.position += period * joint.velocity;
     }
   }
+
+  /// Torques act and the brakes are off, from now on; so the arm begins.
+  void enable() noexcept { drive_.enable(); }
+
+  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
+  /// the options finds that no torques were set for too long a time of the arm.
+  void stop() noexcept {
+    drive_.stop();
+    forget_torques();
+  }
+
+  /// Brakes on or off while the arm is enabled; no torque acts while they are on.
+  void engage_brakes(bool on) noexcept { drive_.engage_brakes(on); }
+
+  [[nodiscard]] ArmState state() const noexcept { return drive_.state(); }
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
   void read_positions(std::span<double> out) const noexcept {
@@ -87,14 +120,21 @@ class IdealArm {
     double position, velocity, torque;  // [rad], [rad/s], [N m]
   };
 
+  void forget_torques() noexcept {
+    for (Joint& joint : joints_) joint.torque = 0.0;
+  }
+
   static IdealJoint validated(const IdealJoint& joint) {
     constexpr double kLargest = std::numeric_limits<double>::max();
     constexpr double kSmallest = std::numeric_limits<double>::min();
     checked("IdealJoint::inertia", joint.inertia, kSmallest, kLargest, "kg m^2");
     checked("IdealJoint::viscous_friction", joint.viscous_friction, 0.0, kLargest, "N m s/rad");
+    checked("IdealJoint::brake_torque", joint.brake_torque, 0.0,
+            std::numeric_limits<double>::infinity(), "N m");
     return joint;
   }
 
+  ArmDrive drive_;
   std::vector<Joint> joints_;
   bool torque_fault_ = false;
 };

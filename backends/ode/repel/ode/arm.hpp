@@ -14,9 +14,9 @@ namespace repel::ode {
 using ArmOptions = SimulationOptions;
 using ArmFaults = SimulationFaults;
 
-/// Satisfies TorqueDrivenArm. Each link is a free body that its joint holds: links part by what a
-/// sub-step leaves, less the shorter it is. Same calls, bitwise the same motion. One thread at a
-/// time.
+/// Satisfies TorqueDrivenArm and BrakedArm. Each link is a free body that its joint holds: links
+/// part by what a sub-step leaves, less the shorter it is. Same calls, bitwise the same motion. One
+/// thread at a time.
 class Arm {
  public:
   /// Starts at rest at zero, or at the limit nearest to it.
@@ -35,7 +35,7 @@ class Arm {
   [[nodiscard]] int links() const noexcept;
 
   /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
-  /// with zero torque and nothing touched. Faults stay.
+  /// enabled, with zero torque and nothing touched. Faults stay.
   /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
@@ -44,6 +44,18 @@ class Arm {
 
   /// Moves the arm by `period` [s]. Cost grows with substeps x links^3; ODE allocates.
   void step(double period) noexcept;
+
+  /// Torques act and the brakes are off, from now on; so the arm begins.
+  void enable() noexcept;
+
+  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
+  /// the options finds that no torques were set for too long a time of the arm.
+  void stop() noexcept;
+
+  /// Brakes on or off while the arm is enabled; no torque acts while they are on.
+  void engage_brakes(bool on) noexcept;
+
+  [[nodiscard]] ArmState state() const noexcept;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
   void read_positions(std::span<double> out) const noexcept;
