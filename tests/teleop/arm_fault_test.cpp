@@ -1,0 +1,207 @@
+/// A PUMA whose operator, readings or loop fail while its tool moves towards a table: how far the
+/// tool gets, from several heights of the fault, against the same way without a fault.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <repel/loop/tick.hpp>
+#ifdef REPEL_TELEOP_BULLET
+#include <repel/bullet/arm.hpp>
+#endif
+
+#include "cell.hpp"
+
+#ifdef REPEL_TELEOP_BULLET
+
+namespace repel::teleop {
+namespace arm_fault_test {
+
+enum class Fault {
+  none,
+  silent_operator,
+  bad_command,
+  not_a_number,  ///< one position, for ever
+  all_not_numbers,
+  frame_of_zeros,  ///< once
+  jump,            ///< of the second joint by 0.1 rad, once
+  frozen_frame,
+  frozen_encoder,  ///< of the second joint, its rate with it
+  huge_rate,       ///< once
+};
+
+constexpr const char* names[] = {"none",         "silent operator", "bad command",
+                                 "not a number", "all not numbers", "frame of zeros",
+                                 "jump",         "frozen frame",    "frozen encoder",
+                                 "huge rate"};
+
+/// A simulated arm whose readings fail, from tick `begins` on.
+class FaultyArm {
+ public:
+  FaultyArm(const ArmModel& model, Fault fault, int begins)
+      : arm_(model), fault_(fault), begins_(begins), q_(model.links.size()), v_(q_) {}
+
+  void reset(std::span<const double> q) { arm_.reset(q); }
+  void begin_tick(int tick) noexcept {
+    since_ = tick - begins_;
+    if (since_ >= 0) return;
+    arm_.read_positions(q_);
+    arm_.read_velocities(v_);
+  }
+  void set_torques(std::span<const double> torques) noexcept { arm_.set_torques(torques); }
+  void step(double period) noexcept { arm_.step(period); }
+  void read_positions(std::span<double> out) const noexcept {
+    arm_.read_positions(out);
+    if (since_ < 0) return;
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    if (fault_ == Fault::not_a_number) out[1] = none;
+    if (fault_ == Fault::all_not_numbers) std::fill(out.begin(), out.end(), none);
+    if (fault_ == Fault::frozen_frame) std::copy(q_.begin(), q_.end(), out.begin());
+    if (fault_ == Fault::frozen_encoder) out[1] = q_[1];
+    if (fault_ == Fault::frame_of_zeros && since_ == 0) std::fill(out.begin(), out.end(), 0.0);
+    if (fault_ == Fault::jump && since_ == 0) out[1] += 0.1;
+  }
+  void read_velocities(std::span<double> out) const noexcept {
+    arm_.read_velocities(out);
+    if (since_ < 0) return;
+    if (fault_ == Fault::frozen_frame) std::copy(v_.begin(), v_.end(), out.begin());
+    if (fault_ == Fault::frozen_encoder) out[1] = 0.0;
+    if (fault_ == Fault::frame_of_zeros && since_ == 0) std::fill(out.begin(), out.end(), 0.0);
+    if (fault_ == Fault::huge_rate && since_ == 0) out[2] = -1e308;
+  }
+  void enable() noexcept { arm_.enable(); }
+  void stop() noexcept { arm_.stop(); }
+  void engage_brakes(bool on) noexcept { arm_.engage_brakes(on); }
+  [[nodiscard]] ArmState state() const noexcept { return arm_.state(); }
+  /// As it really is.
+  [[nodiscard]] const bullet::Arm& truth() const noexcept { return arm_; }
+
+ private:
+  bullet::Arm arm_;
+  Fault fault_;
+  int begins_;
+  int since_ = -1;
+  std::vector<double> q_, v_;
+};
+
+struct Descent {
+  double lowest = 1.0;                         ///< [m] of the tool, in truth
+  double top_speed = 0.0, speed_at_end = 0.0;  ///< [m/s]
+  int noticed = -1;
+  Stop stop = Stop::running;
+  Status status = 0;
+  double torque = 0.0;  ///< greatest share of an effort limit
+  double change = 0.0;  ///< greatest in a tick, as a share of it
+};
+
+std::string scene_text(double speed, Fault fault, double before) {
+  const std::string rate = std::to_string(-1e3 * speed);
+  const std::string down = "device: spaceball, linear: 0 0 " + rate + " mm/s";
+  std::string after = down;
+  if (fault == Fault::silent_operator) after += ", silent: yes";
+  if (fault == Fault::bad_command) after = "device: spaceball, linear: 0 0 .nan mm/s";
+  return "rate: 400 Hz\nrobot: {urdf: " REPEL_SOURCE
+         "/robots/puma560.urdf, start: 0 45 -180 0 -45 0 deg, tool_frame: {position: 0 0 150 mm}}\n"
+         "laws: {wall: {range: 20 mm, surface_force: 200 N, damping: 100 N s/m}}\n"
+         "tool: [{name: finger, shape: box, size: 24 24 130 mm, position: 0 0 -45 mm}]\n"
+         "obstacles: [{name: table, shape: box, size: 0.70 1.10 0.06 m, position: 0.66 -0.15 0.32 "
+         "m, "
+         "law: wall}]\n"
+         "network: [{module: torque_arm}, {module: multiplex}, {module: spaceball}, {module: kbb2, "
+         "stiffness: 3 N/mm, damping: 300 N s/m, force_limit: 120 N, angular_stiffness: 30 N "
+         "m/rad, "
+         "angular_damping: 4 N m s/rad, torque_limit: 15 N m}, {module: obstacle, gain_check: "
+         "warning}, {module: puma_kin}, {module: arm_obstacle}, {module: limits}, {module: "
+         "puma_joints}]\nscript: [{name: down, duration: " +
+         std::to_string(before) + " s, " + down + "}, {name: on, duration: 3 s, " + after + "}]\n";
+}
+
+/// [m] of the tool frame in truth.
+double height(const Manipulator& at, Kinematics& kinematics, const FaultyArm& arm) {
+  std::vector<double> q(at.start.size());
+  arm.truth().read_positions(q);
+  kinematics.update(q);
+  return kinematics.X_WT().translation().z();
+}
+
+/// Down towards the table at `speed`; the fault comes when the operator has led for `before` [s].
+/// Without one he presses on.
+Descent run_down(Fault fault, double speed, double before) {
+  const scene::Scene parsed = scene::parse(scene_text(speed, fault, before), "scene");
+  Cell cell(parsed, true);
+  const Manipulator& puma = cell.arm();
+  const ArmModel& model = puma.robot.arm;
+  const std::chrono::nanoseconds period(2500000);
+  const int begins = static_cast<int>(std::lround(400.0 * before));
+  FaultyArm arm(model, fault, begins);
+  arm.reset(puma.start);
+  CoprocessorOptions options;
+  options.period = period;
+  options.lock_step = true;
+  Coprocessor coprocessor(cell.world, options);
+  network::ScriptedOperator hands(parsed.script);
+  Teleoperator teleoperator(model, arm, cell.arm().kinematics, cell.world, puma.tool, coprocessor,
+                            hands, scene::build_network(parsed, parsed, model, 400.0), period,
+                            puma.links);
+  Kinematics truth(model);
+  Descent run;
+  std::vector<double> sent(model.links.size());
+  double z = height(puma, truth, arm);
+  for (int k = 0; k < begins + 800; ++k) {
+    arm.begin_tick(k);
+    const TickRecord& record = teleoperator.tick((k + 1) * period);
+    arm.step(0.0025);
+    const double before_step = z;
+    z = height(puma, truth, arm);
+    run.lowest = std::min(run.lowest, z);
+    run.speed_at_end = std::abs(z - before_step) * 400.0;
+    run.top_speed = std::max(run.top_speed, run.speed_at_end);
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+      const double limit = model.links[i].effort_limit;
+      run.torque = std::max(run.torque, std::abs(record.torques[i]) / limit);
+      if (k > 0) run.change = std::max(run.change, std::abs(record.torques[i] - sent[i]) / limit);
+      sent[i] = record.torques[i];
+    }
+    if (k < begins) continue;
+    if (record.stop != Stop::running && run.noticed < 0) run.noticed = k - begins;
+    run.stop = std::max(run.stop, record.stop);
+    run.status |= record.status;
+  }
+  return run;
+}
+
+TEST(ArmFault, NoFaultBringsThePumaDeeperThanItGoesWithoutOne) {
+  for (const double speed : {0.1, 0.2, 0.25}) {
+    const Descent without = run_down(Fault::none, speed, 0.2);
+    ASSERT_EQ(without.stop, Stop::running) << to_text(without.status);
+    for (const double way : {0.02, 0.04, 0.055}) {  // [m] that it has gone when the fault comes
+      for (int i = 1; i < static_cast<int>(std::size(names)); ++i) {
+        const Fault fault = static_cast<Fault>(i);
+        const Descent run = run_down(fault, speed, way / speed);
+        SCOPED_TRACE(std::string(names[i]) + " at " + std::to_string(speed) + " m/s after " +
+                     std::to_string(way) + " m: lowest " + std::to_string(1e3 * run.lowest) +
+                     " mm, without " + std::to_string(1e3 * without.lowest) + " mm, " +
+                     to_text(run.status) + ", " + to_text(run.stop));
+        EXPECT_GE(run.lowest, without.lowest - 1e-4);
+        EXPECT_LE(run.noticed, fault == Fault::silent_operator ? 8 : 2);
+        EXPECT_GE(run.noticed, 0);
+        EXPECT_LE(run.torque, 1.0);
+        EXPECT_LE(run.change, 0.5 + 1e-9);
+        EXPECT_LE(run.top_speed, 1.5 * 0.25);
+        // An operator who is back, or never was away, leads it again.
+        const bool for_ever =
+            fault != Fault::frame_of_zeros && fault != Fault::jump && fault != Fault::huge_rate;
+        if (for_ever) {
+          EXPECT_LE(run.speed_at_end, 1e-3);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace arm_fault_test
+}  // namespace repel::teleop
+
+#endif
