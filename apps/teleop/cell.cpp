@@ -71,6 +71,9 @@ Pose pose_of(const World& world, const Part& part) {
   return world.motion().bodies[static_cast<std::size_t>(part.body.index)].X_WB * part.X_BP;
 }
 
+/// [m] that parts which touch may overlap by rounding.
+constexpr double touch = 1e-6;
+
 /// How many joints stand between the bodies of two parts of one arm; the tool is on the last link.
 int joints_between(const Manipulator& arm, const World& world, PartId a, PartId b) {
   const auto link_of = [&](PartId id) {
@@ -191,11 +194,28 @@ std::vector<std::string> Cell::overlaps() const {
     const Part& b = world.part(pair.b);
     const Separation s =
         separation(a.shape, pose_of(world, a), b.shape, pose_of(world, b), {.ignore_beyond = 0.0});
-    if (!(s.upper < 0.0)) continue;
+    if (!(s.upper < -touch)) continue;
     sentences.push_back("'" + a.name + "' starts inside '" + b.name + "', " +
                         to_text(-1e3 * s.upper, 3) + " mm deep or more");
   }
   return sentences;
+}
+
+void Cell::require_clear_start(const scene::Scene& scene) const {
+  if (scene.start_inside == scene::StartInside::push_out) return;
+  constexpr std::size_t most_named = 5;
+  const std::vector<std::string> found = overlaps();
+  if (found.empty()) return;
+  std::string sentence;
+  for (std::size_t i = 0; i < std::min(found.size(), most_named); ++i) {
+    sentence += (i == 0 ? "" : ", ") + found[i];
+  }
+  if (found.size() > most_named) {
+    sentence += ", and " + std::to_string(found.size() - most_named) + " more";
+  }
+  throw SetupError(
+      sentence + "; allowed: another 'start', or 'start_inside: push_out' in the scene",
+      scene.file);
 }
 
 double Cell::device_damping() {

@@ -44,8 +44,11 @@ struct Cell {
   /// The least viscous damping of any arm at its tool, where it starts [N s/m].
   [[nodiscard]] double device_damping();
 
-  /// A sentence for each solid pair whose parts overlap where the arms start.
+  /// A sentence for each solid pair whose parts overlap where the arms start, by more than touch.
   [[nodiscard]] std::vector<std::string> overlaps() const;
+
+  /// Throws SetupError with what overlaps, unless nothing does or the scene has it pushed out.
+  void require_clear_start(const scene::Scene& scene) const;
 
   /// The arm of the scene itself; its partners follow it in `arms`.
   [[nodiscard]] Manipulator& arm() noexcept { return arms.front(); }

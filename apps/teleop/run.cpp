@@ -344,6 +344,7 @@ RunResult run(const scene::Scene& scene, const RunOptions& options, const Compan
                          " (to run all the same: 'gain_check: warning' at the obstacle module)",
                      scene.file);
   }
+  if (company.recording == nullptr) cell.require_clear_start(scene);  // one has started already
   for (const std::string& overlap : cell.overlaps()) result.warnings.push_back(overlap);
   result.threads = std::min(options.threads, detail::PairWorker::blocks_of(cell.world));
   for (const Manipulator& arm : cell.arms) {

@@ -117,6 +117,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   }
   const scene::Scene ready = as_run(scene, options);
   const Cell cell(ready, options.backend != "ideal");
+  if (recording == nullptr) cell.require_clear_start(ready);  // before anyone looks on
   const Heading heading = heading_of(ready, cell, options.rate_hz);
   TapOptions tap_options;
   tap_options.arms = static_cast<int>(heading.arms.size());

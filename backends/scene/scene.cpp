@@ -306,11 +306,16 @@ Scene parse(std::string_view yaml, const std::string& file) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
   map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "partners",
-             "budget"});
+             "budget", "start_inside", "tool_speed"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
   map.read("name", scene.name);
+  map.read("tool_speed", {unit::speed, 1e-3, 10.0}, scene.tool_speed);
+  if (const Value* inside = map.find("start_inside")) {
+    const bool out = inside->word_of({"refuse", "push_out"}) == "push_out";
+    scene.start_inside = out ? StartInside::push_out : StartInside::refuse;
+  }
   map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
   const Laws laws = laws_of(map);
   read_station(map, laws, file, scene);

@@ -76,16 +76,48 @@ TEST(WholeArm, LinksThatAreNoneAreRefused) {
   EXPECT_TRUE(ending.says("'tail' is no moving link")) << ending;
 }
 
-TEST(WholeArm, LinkThatStartsInsideAnObstacleIsNamed) {
+/// A post where the forearm starts.
+std::string inside_scene(const std::string& law, const std::string& more) {
+  return robot_text(REPEL_SOURCE "/robots/puma560.urdf", "") + "laws: {default: " + law +
+         "}\nobstacles: [{name: post, shape: capsule, radius: 20 mm, length: 0.6 m, "
+         "position: 0.3 -0.15 0.9 m}]\n" +
+         more;
+}
+
+constexpr const char* solid = "{range: 40 mm, surface_force: 40 N, damping: 1 N s/m}";
+
+TEST(WholeArm, AStartInsideAnObstacleIsRefusedAndThePartAndWhatToDoAreNamed) {
   const Folder folder;
-  const std::string scene = folder.with(
-      "inside.yaml", robot_text(REPEL_SOURCE "/robots/puma560.urdf", "") +
-                         "laws: {default: {range: 40 mm, surface_force: 40 N, damping: 1 N s/m}}\n"
-                         "obstacles: [{name: post, shape: capsule, radius: 20 mm, length: 0.6 m, "
-                         "position: 0.3 -0.15 0.9 m}]\n");
+  for (const char* more : {"", "start_inside: refuse\n"}) {
+    const std::string scene = folder.with("inside.yaml", inside_scene(solid, more));
+    const Ending ending = teleop(quoted(scene) + " --fast --seconds 0.1");
+    EXPECT_EQ(ending.status, 1) << ending;
+    EXPECT_TRUE(ending.says("inside.yaml: 'link_3_0' ")) << ending;
+    EXPECT_TRUE(ending.says("starts inside 'post'")) << ending;
+    EXPECT_TRUE(ending.says(" mm deep or more")) << ending;
+    EXPECT_TRUE(ending.says("another 'start', or 'start_inside: push_out'")) << ending;
+  }
+}
+
+TEST(WholeArm, AStartInsideAnObstacleIsAWarningWhereItIsToBePushedOut) {
+  const Folder folder;
+  const std::string scene =
+      folder.with("inside.yaml", inside_scene(solid, "start_inside: push_out\n"));
   const Ending ending = teleop(quoted(scene) + " --fast --seconds 0.1");
   EXPECT_EQ(ending.status, 0) << ending;
   EXPECT_TRUE(ending.says("starts inside 'post'")) << ending;
+}
+
+TEST(WholeArm, AStartInsideWhatMayBeEnteredIsNoneToSpeakOf) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "inside.yaml",
+      inside_scene("{range: 40 mm, surface_force: 40 N, damping: 1 N s/m, passable: yes, "
+                   "ceiling: 10 N}",
+                   ""));
+  const Ending ending = teleop(quoted(scene) + " --fast --seconds 0.1");
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_FALSE(ending.says("starts inside")) << ending;
 }
 
 /// An arm with a joint to spare, its elbow out to the side, a bar that comes 150 mm towards the

@@ -53,6 +53,15 @@ TEST(SceneError, AnUnknownKeyLikeNoOtherIsRefusedWithAllThatAreAllowed) {
   expect_refused(base_scene + "xyzzy: 1\n", 8, {"'xyzzy'; allowed: name, rate, robot, tool"});
 }
 
+TEST(SceneError, AStartInsideOrAToolSpeedThatIsNotAllowedIsRefused) {
+  expect_refused(base_scene + "start_inside: push\n", 8, {"'push'", "refuse", "push_out"});
+  expect_refused(base_scene + "start_inside: yes\n", 8, {"'yes'", "push_out"});
+  expect_refused(base_scene + "tool_speed: 0.0009 m/s\n", 8, {"tool_speed", "0.001", "10 m/s"});
+  expect_refused(base_scene + "tool_speed: 10.1 m/s\n", 8, {"tool_speed", "0.001", "10 m/s"});
+  expect_refused(base_scene + "tool_speed: 0.25\n", 8, {"tool_speed", "m/s"});
+  expect_refused(base_scene + "tool_speed: 5 rad/s\n", 8, {"tool_speed", "m/s"});
+}
+
 TEST(SceneError, ASizeOfAnotherShapeIsRefused) {
   expect_refused(changed("radius: 20 mm", "radius: 20 mm, size: 1 1 1 m"), 5, {"'size'"});
   expect_refused(changed("size: 1 2 3 m", "size: 1 2 3 m, length: 1 m"), 7, {"'length'"});

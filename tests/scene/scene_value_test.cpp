@@ -154,6 +154,21 @@ TEST(SceneValue, ASceneThatSaysLittleHasTheStatedDefaults) {
   EXPECT_EQ(scene.budget.max_age, 100);
 }
 
+TEST(SceneValue, AnArmMayStartInsideAnObstacleWhereTheSceneSaysSo) {
+  const auto read = [](const std::string& line) { return parsed(base_scene + line).start_inside; };
+  EXPECT_EQ(read(""), StartInside::refuse);
+  EXPECT_EQ(read("start_inside: refuse\n"), StartInside::refuse);
+  EXPECT_EQ(read("start_inside: push_out\n"), StartInside::push_out);
+}
+
+TEST(SceneValue, AToolHasAMostSpeed) {
+  const auto read = [](const std::string& line) { return parsed(base_scene + line).tool_speed; };
+  EXPECT_EQ(read(""), 0.25);
+  EXPECT_EQ(read("tool_speed: 100 mm/s\n"), 0.1);
+  EXPECT_EQ(read("tool_speed: 0.001 m/s\n"), 0.001);
+  EXPECT_EQ(read("tool_speed: 10 m/s\n"), 10.0);
+}
+
 TEST(SceneValue, AnObstacleTakesTheLawItNamesOrTheDefault) {
   const Scene scene = parsed(base_scene +
                              "  - {name: skin, shape: sphere, radius: 1 m, law: soft}\n"

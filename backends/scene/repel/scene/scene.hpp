@@ -115,10 +115,18 @@ struct Partner : Station {
   ForceLaw law;  ///< between its parts and those of every arm before it
 };
 
+/// What becomes of an arm that starts with a part of it inside an obstacle that is not passable.
+enum class StartInside {
+  refuse,    ///< it does not start
+  push_out,  ///< it starts, and is pushed out slowly
+};
+
 struct Scene : Station {
   std::string name;
   std::string file;
-  double rate_hz = 400.0;  ///< [Hz] of the tick
+  double rate_hz = 400.0;    ///< [Hz] of the tick
+  double tool_speed = 0.25;  ///< [m/s] most of a tool
+  StartInside start_inside = StartInside::refuse;
   std::vector<Obstacle> obstacles;
   std::vector<Partner> partners;
   Budget budget;
