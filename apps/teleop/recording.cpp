@@ -2,11 +2,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
+#include <repel/base/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
 
 #include "mcap_log.hpp"
@@ -182,9 +181,7 @@ void require_same_robot(const McapReader& reader, int index, const std::string& 
   std::string name = "robot ";
   name += std::to_string(index);
   name += ".urdf";
-  std::ifstream now(urdf, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(now), {}};
-  if (!now || text != attachment(reader, name, file)) {
+  if (text_of_file(urdf, "a robot description") != attachment(reader, name, file)) {
     throw SetupError("the robot is not as it was recorded; allowed: the file that is attached to " +
                          file + " as '" + name + "'",
                      urdf);
@@ -221,6 +218,11 @@ Recording load_recording(const std::string& path,
     const std::string& topic = reader.channels().at(message.channel).topic;
     if (topic != mcap::inputs.topic && topic != mcap::forces.topic && topic != mcap::timing.topic)
       continue;
+    if (message.data.size() > input_limits.message_bytes) {
+      throw SetupError("a message of " + std::to_string(message.data.size()) +
+                           " bytes; allowed: up to " + std::to_string(input_limits.message_bytes),
+                       path);
+    }
     const Json json = Json::parse(message.data, nullptr, false);
     if (json.is_discarded()) throw SetupError("a message is no JSON", path);
     ticks.add(topic, json);
