@@ -214,7 +214,7 @@ std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
                      std::to_string(input_limits.mesh_bytes));
   }
   const auto mebibytes = static_cast<int>(bytes >> 20U);
-  const ChildLimits limits{.seconds = std::min(input_limits.mesh_seconds, 2 * (1 + mebibytes)),
+  const ChildLimits limits{.seconds = std::min(input_limits.mesh_seconds, 1 + 2 * mebibytes),
                            .memory = std::min<std::size_t>(input_limits.mesh_memory,
                                                            (std::size_t{256} << 20) + 64 * bytes)};
   try {

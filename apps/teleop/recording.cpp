@@ -1,5 +1,6 @@
 #include "recording.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -163,13 +164,18 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     }
     scene = word("scene");
     options.rate_hz = std::strtod(word("rate_hz").c_str(), nullptr);
-    options.threads = std::atoi(word("threads").c_str());
+    options.threads =
+        static_cast<int>(std::clamp(std::strtol(word("threads").c_str(), nullptr, 10), -1L, 1000L));
     options.backend = word("backend");
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
-    checked("rate_hz of the recording", options.rate_hz, 1.0, 1e5, "Hz");
-    checked("threads of the recording", options.threads, 0.0, 16.0, "");
+    try {
+      checked("rate_hz of the recording", options.rate_hz, 1.0, 1e5, "Hz");
+      checked("threads of the recording", options.threads, 0.0, 16.0, "");
+    } catch (const SetupError& error) {
+      throw SetupError(error.what(), recording.file);
+    }
     return;
   }
   throw SetupError("not a recording of this program: it has no metadata 'repel run'",
