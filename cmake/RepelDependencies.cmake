@@ -48,8 +48,8 @@ macro(repel_find_ode)
 endmacro()
 
 macro(repel_find_scene)
-  find_package(yaml-cpp QUIET)
-  repel_all_found(SCENE yaml-cpp_FOUND)
+  repel_pkg_config(LIBYAML yaml-0.1)
+  repel_all_found(SCENE LIBYAML_FOUND)
 endmacro()
 
 macro(repel_find_visual)

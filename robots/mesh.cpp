@@ -1,15 +1,18 @@
 #include "mesh.hpp"
 
 #include <algorithm>
-#include <fstream>
+#include <cstring>
 #include <iterator>
 #include <optional>
 
 #include <tinyxml2.h>
 
+#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/geometry/facets.hpp>
 #include <repel/robots/urdf.hpp>
+
+#include "child_process.hpp"
 
 #ifdef REPEL_HAS_ASSIMP
 #include <assimp/config.h>
@@ -39,8 +42,10 @@ constexpr int deepest_package = 4;  // folders below a package path
 bool is_package(const fs::path& folder, const std::string& package) {
   if (folder.filename() == package) return true;
   tinyxml2::XMLDocument manifest;
-  if (!fs::is_regular_file(folder / "package.xml") ||
-      manifest.LoadFile((folder / "package.xml").c_str()) != tinyxml2::XML_SUCCESS) {
+  std::error_code error;
+  const fs::path file = folder / "package.xml";
+  if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > input_limits.file_bytes ||
+      manifest.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
     return false;
   }
   const auto* root = manifest.FirstChildElement("package");
@@ -125,6 +130,28 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
   fail_to_find(uri, folders);
 }
 
+const std::vector<Vec3>& MeshReader::hull(const std::string& uri, const Vec3& scale) {
+  const std::string path = find_mesh(uri, folders_).string();
+  const Key key(path, scale.x(), scale.y(), scale.z());
+  const auto known = hulls_.find(key);
+  std::error_code error;
+  if (known == hulls_.end()) bytes_ += fs::file_size(path, error);
+  const auto require_at_most = [&](std::uintmax_t count, std::uintmax_t most, const char* what) {
+    if (count <= most) return;
+    throw SetupError("mesh '" + uri + "': the robot's meshes up to this one have " +
+                     std::to_string(count) + " " + what + "; allowed: up to " +
+                     std::to_string(most) + " in all");
+  };
+  require_at_most(bytes_, input_limits.mesh_bytes, "bytes");
+  require_at_most(hulls_.size() + (known == hulls_.end() ? 1 : 0), input_limits.meshes, "files");
+  const std::vector<Vec3>& points =
+      known != hulls_.end() ? known->second
+                            : hulls_.emplace(key, hull_of_mesh(path, scale)).first->second;
+  corners_ += points.size();
+  require_at_most(corners_, input_limits.hull_points, "corners");
+  return points;
+}
+
 #ifdef REPEL_HAS_ASSIMP
 namespace {
 
@@ -137,6 +164,10 @@ void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
   const aiMatrix4x4 X = above * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    if (mesh.mNumVertices > input_limits.mesh_vertices - out.size()) {
+      throw SetupError("has more than " + std::to_string(input_limits.mesh_vertices) +
+                       " vertices; allowed: up to " + std::to_string(input_limits.mesh_vertices));
+    }
     std::transform(mesh.mVertices, mesh.mVertices + mesh.mNumVertices, std::back_inserter(out),
                    [&](const aiVector3D& v) { return X * v; });
   }
@@ -145,14 +176,13 @@ void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
   }
 }
 
-}  // namespace
-
-std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
+/// hull_of_mesh() here and now; errors go without the name of the file.
+std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_JoinIdenticalVertices);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_JoinIdenticalVertices);
   if (!scene || !scene->mRootNode) {
-    throw SetupError("mesh '" + path.string() + "' cannot be read: " + importer.GetErrorString());
+    throw SetupError(std::string("cannot be read: ") + importer.GetErrorString());
   }
   std::vector<aiVector3D> vertices;
   gather(*scene, *scene->mRootNode, aiMatrix4x4(), vertices);
@@ -160,20 +190,47 @@ std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
   points.reserve(vertices.size());
   for (const aiVector3D& v : vertices) {
     points.emplace_back(scale.cwiseProduct(Vec3(v.x, v.y, v.z)));
-    if (!is_finite(points.back())) {
-      throw SetupError("mesh '" + path.string() + "' has a corner that is not finite");
-    }
+    if (!is_finite(points.back())) throw SetupError("has a corner that is not finite");
   }
-  if (points.empty()) throw SetupError("mesh '" + path.string() + "' holds no corner");
+  if (points.empty()) throw SetupError("holds no corner");
   // What lies in one plane has no facets: all of its points stay.
   const std::vector<Facet> facets = hull_facets(points);
   if (!facets.empty()) points = hull_corners(points, facets);
   if (points.size() > most_points) {
-    throw SetupError("the hull of mesh '" + path.string() + "' has " +
-                     std::to_string(points.size()) + " corners; allowed: 1 to " +
+    throw SetupError("has a hull of " + std::to_string(points.size()) + " corners; allowed: 1 to " +
                      std::to_string(most_points));
   }
   return points;
+}
+
+}  // namespace
+
+std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  const std::string file = "mesh '" + path.string() + "' ";
+  if (error || bytes > input_limits.mesh_bytes) {
+    throw SetupError(file + "has " + std::to_string(bytes) + " bytes; allowed: up to " +
+                     std::to_string(input_limits.mesh_bytes));
+  }
+  const auto mebibytes = static_cast<int>(bytes >> 20U);
+  const ChildLimits limits{.seconds = std::min(input_limits.mesh_seconds, 1 + 2 * mebibytes),
+                           .memory = std::min<std::size_t>(input_limits.mesh_memory,
+                                                           (std::size_t{256} << 20) + 64 * bytes)};
+  try {
+    const std::string numbers = result_of_child(
+        [&] {
+          const std::vector<Vec3> points = read_hull(path.string(), scale);
+          return std::string(reinterpret_cast<const char*>(points.data()),
+                             points.size() * sizeof(Vec3));
+        },
+        limits);
+    std::vector<Vec3> points(numbers.size() / sizeof(Vec3));
+    if (!points.empty()) std::memcpy(points.data()->data(), numbers.data(), numbers.size());
+    return points;
+  } catch (const SetupError& wrong) {
+    throw SetupError(file + wrong.what());
+  }
 }
 #else
 std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3&) {

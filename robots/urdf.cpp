@@ -75,7 +75,7 @@ class ArmBuilder {
  public:
   ArmBuilder(const detail::UrdfDocument& document, const urdf::ModelInterface& model,
              const UrdfOptions& options, const std::string& file)
-      : document_(document), options_(options), folders_{file, options.package_paths} {
+      : document_(document), options_(options), meshes_({file, options.package_paths}) {
     robot_.arm.name = model.getName();
     require_known(model);
     find_chain(model);
@@ -187,14 +187,13 @@ class ArmBuilder {
     }
   }
 
-  RobotPart part_of(const std::string& link, std::size_t index, const urdf::Geometry& shape) const {
+  RobotPart part_of(const std::string& link, std::size_t index, const urdf::Geometry& shape) {
     const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
     if (!mesh) return simple_part(shape, document_.is_capsule(link, index));
     try {
       RobotPart part;
       part.kind = PartKind::hull;
-      part.points =
-          detail::hull_of_mesh(detail::find_mesh(mesh->filename, folders_), from_urdf(mesh->scale));
+      part.points = meshes_.hull(mesh->filename, from_urdf(mesh->scale));
       return part;
     } catch (const SetupError& error) {
       document_.fail_at_collision(link, index, error.what());
@@ -228,7 +227,7 @@ class ArmBuilder {
 
   const detail::UrdfDocument& document_;
   const UrdfOptions& options_;
-  detail::MeshFolders folders_;
+  detail::MeshReader meshes_;
   std::string end_;
   std::set<std::string> chain_;
   Robot robot_;

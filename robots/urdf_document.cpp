@@ -4,6 +4,7 @@
 #include <charconv>
 #include <optional>
 
+#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
 
 namespace repel::detail {
@@ -124,6 +125,8 @@ UrdfDocument::UrdfDocument(std::string_view text, std::string file,
   }
   robot_ = xml_.FirstChildElement("robot");
   if (!robot_) throw SetupError("no <robot> element; allowed: one", file_, 1);
+  Counts counts;
+  require_modest(*robot_, counts);
   require_plain_urdf();
   index_names();
   for (const auto* child = robot_->FirstChildElement(); child;
@@ -228,6 +231,32 @@ void UrdfDocument::check_numbers(const Element& element, const std::string& owne
   for (const auto* child = element.FirstChildElement(); child;
        child = child->NextSiblingElement()) {
     check_numbers(*child, owner);
+  }
+}
+
+// urdfdom compares each attribute of an element with all before it.
+// NOLINTNEXTLINE(misc-no-recursion): tinyxml2 reads no more than 500 elements in each other
+void UrdfDocument::require_modest(const Element& element, Counts& counts) const {
+  const auto require_at_most = [&](std::size_t count, std::size_t most, const std::string& what) {
+    if (count <= most) return;
+    fail(&element, "more than " + std::to_string(most) + " " + what + "; allowed: up to " +
+                       std::to_string(most));
+  };
+  require_at_most(++counts.elements, input_limits.values, "elements");
+  const bool is_collision = std::string_view(element.Name()) == "collision";
+  counts.collisions += is_collision ? 1 : 0;
+  require_at_most(counts.collisions, input_limits.entries, "collisions");
+  std::size_t attributes = 0;
+  for (const auto* a = element.FirstAttribute(); a; a = a->Next()) {
+    require_at_most(++attributes, input_limits.attributes, "attributes of one element");
+    const std::size_t bytes = std::string_view(a->Value()).size();
+    if (bytes <= input_limits.text_bytes) continue;
+    fail(&element, "the attribute '" + std::string(a->Name()).substr(0, 100) + "' has " +
+                       std::to_string(bytes) + " bytes; allowed: up to " +
+                       std::to_string(input_limits.text_bytes));
+  }
+  for (const auto* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
+    require_modest(*e, counts);
   }
 }
 

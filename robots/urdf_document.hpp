@@ -43,12 +43,19 @@ class UrdfDocument {
                                       const std::string& what) const;
 
  private:
+  /// So far, in the order of the file.
+  struct Counts {
+    std::size_t elements = 0;
+    std::size_t collisions = 0;
+  };
+
   [[noreturn]] void fail(const Element* at, const std::string& what) const;
   void index_names();
   void require_plain_urdf() const;
   void require_tree() const;
   void check_numbers(const Element& element, const std::string& owner) const;
   void check_joint(const Element& joint) const;
+  void require_modest(const Element& element, Counts& counts) const;
   [[nodiscard]] const Element* shape_of(const Element& collision, const std::string& owner) const;
 
   std::string file_;

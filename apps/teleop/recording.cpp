@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
+#include <repel/base/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
 
 #include "mcap_log.hpp"
@@ -174,13 +173,18 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     }
     scene = word("scene");
     options.rate_hz = std::strtod(word("rate_hz").c_str(), nullptr);
-    options.threads = std::atoi(word("threads").c_str());
+    options.threads =
+        static_cast<int>(std::clamp(std::strtol(word("threads").c_str(), nullptr, 10), -1L, 1000L));
     options.backend = word("backend");
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
-    checked("rate_hz of the recording", options.rate_hz, 1.0, 1e5, "Hz");
-    checked("threads of the recording", options.threads, 0.0, 16.0, "");
+    try {
+      checked("rate_hz of the recording", options.rate_hz, 1.0, 1e5, "Hz");
+      checked("threads of the recording", options.threads, 0.0, 16.0, "");
+    } catch (const SetupError& error) {
+      throw SetupError(error.what(), recording.file);
+    }
     return;
   }
   throw SetupError("not a recording of this program: it has no metadata 'repel run'",
@@ -192,9 +196,7 @@ void require_same_robot(const McapReader& reader, int index, const std::string& 
   std::string name = "robot ";
   name += std::to_string(index);
   name += ".urdf";
-  std::ifstream now(urdf, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(now), {}};
-  if (!now || text != attachment(reader, name, file)) {
+  if (text_of_file(urdf, "a robot description") != attachment(reader, name, file)) {
     throw SetupError("the robot is not as it was recorded; allowed: the file that is attached to " +
                          file + " as '" + name + "'",
                      urdf);
@@ -231,6 +233,11 @@ Recording load_recording(const std::string& path,
     const std::string& topic = reader.channels().at(message.channel).topic;
     if (topic != mcap::inputs.topic && topic != mcap::forces.topic && topic != mcap::timing.topic)
       continue;
+    if (message.data.size() > input_limits.message_bytes) {
+      throw SetupError("a message of " + std::to_string(message.data.size()) +
+                           " bytes; allowed: up to " + std::to_string(input_limits.message_bytes),
+                       path);
+    }
     const Json json = Json::parse(message.data, nullptr, false);
     if (json.is_discarded()) throw SetupError("a message is no JSON", path);
     ticks.add(topic, json);

@@ -206,7 +206,8 @@ Module module_of(const Value& value, Network& network) {
   if (const Value* to = map.find("to")) {
     module.to.next = false;
     if (to->is_list()) {
-      for (const Value& name : to->list()) module.to.names.push_back(name.text());
+      for (const Value& name : to->list(input_limits.modules))
+        module.to.names.push_back(name.text());
     } else {
       module.to.names.push_back(to->text());
     }
@@ -292,7 +293,9 @@ Network detail::network_of(const Value* value) {
                        {"puma_joints", {}, Joints{}}};
     return network;
   }
-  for (const Value& entry : value->list()) network.modules.push_back(module_of(entry, network));
+  for (const Value& entry : value->list(input_limits.modules)) {
+    network.modules.push_back(module_of(entry, network));
+  }
   if (network.modules.empty()) value->fail("'network' has no module; allowed: 1 or more");
   return network;
 }

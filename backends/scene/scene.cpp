@@ -1,13 +1,12 @@
 #include <repel/scene/scene.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
 #include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/base/text_file.hpp>
 
 #include "network.hpp"
 #include "yaml.hpp"
@@ -20,6 +19,20 @@ constexpr Rule extent{unit::length, 0.0, Shape::largest};
 constexpr Rule angles{unit::angle, -1e3, 1e3};
 
 using Laws = std::map<std::string, ForceLaw>;
+
+/// Counts the points of all hulls of a scene, for each of which its reduction has to be paid.
+class HullPoints {
+ public:
+  void add(const Value& list, std::size_t points) {
+    sum_ += points;
+    if (sum_ <= input_limits.hull_points) return;
+    list.fail("the hulls of the scene up to this one have " + std::to_string(sum_) +
+              " points; allowed: up to " + std::to_string(input_limits.hull_points) + " in all");
+  }
+
+ private:
+  std::size_t sum_ = 0;
+};
 
 /// Rotations about the fixed x, then y, then z axis, as in URDF.
 Pose pose_of(const Map& map) {
@@ -52,11 +65,16 @@ std::vector<std::string_view> size_keys(std::string_view kind) {
   return {"radius", "length"};
 }
 
-Shape shape_of(const Map& map, std::string_view kind) {
+Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
   if (kind == "box") return Shape::box(0.5 * map.at("size").vector(extent));
   if (kind == "hull") {
+    const Value& list = map.at("points");
     std::vector<Vec3> points;
-    for (const Value& point : map.at("points").list()) points.push_back(point.vector(position));
+    for (const Value& point : list.list(input_limits.values)) {
+      points.push_back(point.vector(position));
+    }
+    // A single hull of too many is left to the shape.
+    if (points.size() <= input_limits.entries) counted.add(list, points.size());
     return Shape::hull(points);
   }
   const double radius = map.at("radius").number(extent);
@@ -68,7 +86,8 @@ Shape shape_of(const Map& map, std::string_view kind) {
 }
 
 /// What a part of the tool and an obstacle have in common. `keys` are those it may have besides.
-Part part_of(const Value& value, const Map& map, std::span<const std::string_view> keys) {
+Part part_of(const Value& value, const Map& map, std::span<const std::string_view> keys,
+             HullPoints& counted) {
   std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
   common.insert(common.end(), keys.begin(), keys.end());
   auto any = common;
@@ -81,7 +100,7 @@ Part part_of(const Value& value, const Map& map, std::span<const std::string_vie
   common.insert(common.end(), sizes.begin(), sizes.end());
   map.allow(common);
   try {
-    return {name, shape_of(map, kind), kind, pose_of(map)};
+    return {name, shape_of(map, kind, counted), kind, pose_of(map)};
   } catch (const SetupError& error) {
     if (error.line() > 0) throw;
     value.fail(kind + " '" + name + "': " + error.what());
@@ -94,12 +113,12 @@ void require_new(std::set<std::string>& names, const Map& map) {
   if (!names.insert(name.text()).second) name.fail_with_value("a name no other entry has");
 }
 
-std::vector<Part> tool_of(const Value& value) {
+std::vector<Part> tool_of(const Value& value, HullPoints& counted) {
   std::vector<Part> parts;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry);
-    parts.push_back(part_of(entry, map, {}));
+    parts.push_back(part_of(entry, map, {}, counted));
     require_new(names, map);
   }
   if (parts.empty()) value.fail("'tool' has no part; allowed: 1 or more");
@@ -141,7 +160,13 @@ const ForceLaw& law_called(const Laws& laws, const Map& map, std::string_view ke
   const auto found = laws.find(name ? name->text() : "default");
   if (found != laws.end()) return found->second;
   std::string defined;
-  for (const auto& [known, law] : laws) defined += (defined.empty() ? "" : ", ") + known;
+  for (const auto& [known, law] : laws) {
+    if (defined.size() > 500) {
+      defined += ", and more";
+      break;
+    }
+    defined += (defined.empty() ? "" : ", ") + known;
+  }
   name->fail_with_value("a law under 'laws': " + defined);
 }
 
@@ -154,13 +179,13 @@ std::optional<ObstacleMotion> motion_of(const Map& obstacle) {
                         map.at("duration").number({unit::time, 1e-3, 86400.0})};
 }
 
-std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws) {
+std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, HullPoints& counted) {
   constexpr std::string_view keys[] = {"law", "motion"};
   std::vector<Obstacle> obstacles;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry);
-    Part part = part_of(entry, map, keys);
+    Part part = part_of(entry, map, keys, counted);
     require_new(names, map);
     obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
                          part.X_BP, law_called(laws, map), motion_of(map)});
@@ -259,26 +284,28 @@ network::Script script_of(const Map& scene) {
   return script;
 }
 
-void read_station(const Map& map, const Laws& laws, const std::string& file, Station& station) {
+void read_station(const Map& map, const Laws& laws, const std::string& file, HullPoints& counted,
+                  Station& station) {
   station.robot = robot_of(map.at("robot"), laws, file);
-  station.tool = tool_of(map.at("tool"));
+  station.tool = tool_of(map.at("tool"), counted);
   station.network = detail::network_of(map.find("network"));
   station.script = script_of(map);
 }
 
-std::vector<Partner> partners_of(const Map& scene, const Laws& laws, const std::string& file) {
+std::vector<Partner> partners_of(const Map& scene, const Laws& laws, const std::string& file,
+                                 HullPoints& counted) {
   std::vector<Partner> partners;
   const Value* value = scene.find("partners");
   if (!value) return partners;
   std::set<std::string> names;
-  for (const Value& entry : value->list()) {
+  for (const Value& entry : value->list(static_cast<std::size_t>(Limits{}.bodies))) {
     const Map map(entry);
     map.allow({"name", "law", "robot", "tool", "network", "script"});
     Partner& partner = partners.emplace_back();
     partner.name = map.at("name").text();
     require_new(names, map);
     partner.law = law_called(laws, map);
-    read_station(map, laws, file, partner);
+    read_station(map, laws, file, counted, partner);
   }
   return partners;
 }
@@ -318,23 +345,16 @@ Scene parse(std::string_view yaml, const std::string& file) {
   }
   map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
   const Laws laws = laws_of(map);
-  read_station(map, laws, file, scene);
-  scene.obstacles = obstacles_of(map.at("obstacles"), laws);
-  scene.partners = partners_of(map, laws, file);
+  HullPoints counted;
+  read_station(map, laws, file, counted, scene);
+  scene.obstacles = obstacles_of(map.at("obstacles"), laws, counted);
+  scene.partners = partners_of(map, laws, file, counted);
   scene.budget = budget_of(map);
   return scene;
 }
 
 Scene load(const std::string& path) {
-  std::error_code unused;
-  if (std::filesystem::is_directory(path, unused)) {
-    throw SetupError("this is a directory; allowed: a scene file", path);
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw SetupError("the file cannot be opened; allowed: a scene file", path);
-  const std::string yaml{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) throw SetupError("the file cannot be read; allowed: a scene file", path);
-  return parse(yaml, path);
+  return parse(text_of_file(path, "a scene file"), path);
 }
 
 }  // namespace repel::scene

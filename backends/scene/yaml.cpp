@@ -39,55 +39,48 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-int line_of(const YAML::Mark& mark) {
-  return mark.is_null() ? 0 : mark.line + 1;
+/// What an error shows of a text.
+std::string shown(const std::string& text) {
+  constexpr std::size_t most = 200;
+  return text.size() <= most
+             ? in_quotes(text)
+             : in_quotes(text.substr(0, most)) + "... (" + std::to_string(text.size()) + " bytes)";
 }
 
 }  // namespace
 
 Value Value::document(std::string_view yaml, const std::string& file) {
-  try {
-    const auto documents = YAML::LoadAll(std::string(yaml));
-    if (documents.empty() || documents.front().IsNull()) {
-      throw SetupError("the file is empty; allowed: one scene", file, 1);
-    }
-    Value first(documents.front(), "the scene", std::make_shared<std::string>(file));
-    if (documents.size() > 1) {
-      const Value second(documents[1], "", first.file_);
-      second.fail("a second YAML document; allowed: one scene in a file");
-    }
-    return first;
-  } catch (const YAML::Exception& error) {
-    throw SetupError("not YAML: " + error.msg, file, line_of(error.mark));
-  }
+  auto document = read_yaml(yaml, file);
+  const Node& root = *document->root;
+  return {root, "the scene", std::move(document)};
 }
 
 void Value::fail(const std::string& what) const {
-  throw SetupError(what, *file_, line_of(mark_));
+  throw SetupError(what, document_->file, line_);
 }
 
 void Value::fail_with_value(const std::string& allowed) const {
-  const std::string found = node_.IsScalar()     ? in_quotes(node_.Scalar())
-                            : node_.IsMap()      ? "a map"
-                            : node_.IsSequence() ? "a list"
-                                                 : "empty";
+  const std::string found = is_scalar()                       ? shown(node_->text)
+                            : node_->kind == Node::Kind::map  ? "a map"
+                            : node_->kind == Node::Kind::list ? "a list"
+                                                              : "empty";
   fail(in_quotes(name_) + " is " + found + "; allowed: " + allowed);
 }
 
 std::string Value::text() const {
-  if (!node_.IsScalar() || node_.Scalar().empty()) fail_with_value("a text");
-  return node_.Scalar();
+  if (!is_scalar() || node_->text.empty()) fail_with_value("a text");
+  return node_->text;
 }
 
 std::string Value::word_of(std::initializer_list<std::string_view> words) const {
   const bool known =
-      node_.IsScalar() && std::find(words.begin(), words.end(), node_.Scalar()) != words.end();
+      is_scalar() && std::find(words.begin(), words.end(), node_->text) != words.end();
   if (!known) fail_with_value(listed({words.begin(), words.size()}));
-  return node_.Scalar();
+  return node_->text;
 }
 
 std::int64_t Value::integer(std::int64_t low, std::int64_t high) const {
-  const std::string digits = node_.IsScalar() ? node_.Scalar() : "";
+  const std::string& digits = node_->text;
   const char* const last = digits.data() + digits.size();
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(digits.data(), last, value);
@@ -98,14 +91,14 @@ std::int64_t Value::integer(std::int64_t low, std::int64_t high) const {
 }
 
 std::vector<double> Value::numbers(const Rule& rule, std::size_t least, std::size_t most) const {
-  const auto values =
-      quantity(node_.IsScalar() ? std::string_view(node_.Scalar()) : "", rule.units);
+  const auto values = quantity(node_->text, rule.units);
   if (!values || values->size() < least || values->size() > most) {
     const std::string count = least == most ? std::to_string(most)
                                             : std::to_string(least) + " to " + std::to_string(most);
     const std::string units = units_text(rule.units);
     fail_with_value(count + (most == 1 ? " number" : " numbers") +
-                    (units.empty() ? ", no unit" : ", then the unit " + units));
+                    (units.empty() ? ", no unit" : ", then the unit " + units) + "; " +
+                    range_text(rule));
   }
   for (const double value : *values) {
     if (!obeys(value, rule)) fail_with_value(range_text(rule));
@@ -118,38 +111,51 @@ Vec3 Value::vector(const Rule& rule) const {
   return {values[0], values[1], values[2]};
 }
 
-std::vector<Value> Value::list() const {
-  if (!node_.IsSequence()) fail_with_value("a list");
+std::vector<Value> Value::list(std::size_t most) const {
+  if (!is_list()) fail_with_value("a list");
+  const auto& nodes = node_->children;
+  if (nodes.size() > most) {
+    fail(in_quotes(name_) + " has " + std::to_string(nodes.size()) + " entries; allowed: up to " +
+         std::to_string(most));
+  }
   std::vector<Value> entries;
-  entries.reserve(node_.size());
-  for (const auto& node : node_) {
-    entries.emplace_back(node, name_ + "[" + std::to_string(entries.size()) + "]", file_);
+  entries.reserve(nodes.size());
+  for (const Node* node : nodes) {
+    entries.emplace_back(*node, name_ + "[" + std::to_string(entries.size()) + "]", document_);
   }
   return entries;
 }
 
 Map::Map(const Value& value) : self_(value) {
-  if (!value.node_.IsMap()) value.fail_with_value("a map");
-  for (const auto& entry : value.node_) {
-    const Value key(entry.first, "key", value.file_);
+  if (value.node_->kind != Node::Kind::map) value.fail_with_value("a map");
+  const auto& nodes = value.node_->children;
+  if (nodes.size() / 2 > input_limits.entries) {
+    value.fail(in_quotes(value.name_) + " has " + std::to_string(nodes.size() / 2) +
+               " entries; allowed: up to " + std::to_string(input_limits.entries));
+  }
+  for (std::size_t i = 0; i < nodes.size(); i += 2) {
+    const Value key(*nodes[i], "key", value.document_);
     const std::string name = key.text();
-    if (find(name)) key.fail("a second key " + in_quotes(name) + "; allowed: one");
-    entries_.emplace_back(name, Value(entry.second, name, value.file_));
-    if (entry.second.IsNull()) entries_.back().second.mark_ = key.mark_;
+    if (!index_.emplace(name, entries_.size()).second) {
+      key.fail("a second key " + shown(name) + "; allowed: one");
+    }
+    entries_.emplace_back(name, Value(*nodes[i + 1], name, value.document_));
+    if (nodes[i + 1]->kind == Node::Kind::empty) entries_.back().second.line_ = key.line_;
   }
 }
 
 void Map::allow(std::span<const std::string_view> keys) const {
-  for (const auto& entry : self_.node_) {
-    const std::string& found = entry.first.Scalar();
+  const auto& nodes = self_.node_->children;
+  for (std::size_t i = 0; i < nodes.size(); i += 2) {
+    const std::string& found = nodes[i]->text;
     if (std::find(keys.begin(), keys.end(), found) != keys.end()) continue;
     const auto nearer = [&](std::string_view a, std::string_view b) {
       return edit_distance(found, a) < edit_distance(found, b);
     };
     const std::string_view nearest = *std::min_element(keys.begin(), keys.end(), nearer);
     const bool near = edit_distance(found, nearest) <= 1 + nearest.size() / 3;
-    Value(entry.first, found, self_.file_)
-        .fail("unknown key " + in_quotes(found) +
+    Value(*nodes[i], found, self_.document_)
+        .fail("unknown key " + shown(found) +
               (near ? "; did you mean " + in_quotes(nearest) + "?" : ";") +
               " allowed: " + listed(keys));
   }
@@ -162,10 +168,8 @@ const Value& Map::at(std::string_view key) const {
 }
 
 const Value* Map::find(std::string_view key) const {
-  for (const auto& [name, value] : entries_) {
-    if (name == key) return &value;
-  }
-  return nullptr;
+  const auto found = index_.find(key);
+  return found == index_.end() ? nullptr : &entries_[found->second].second;
 }
 
 void Map::read(std::string_view key, const Rule& rule, double& out) const {

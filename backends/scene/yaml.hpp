@@ -2,7 +2,9 @@
 /// Strict access to YAML: every value knows its name and line, nothing is guessed, nothing skipped.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include <yaml-cpp/yaml.h>
-
+#include <repel/base/input_limits.hpp>
 #include <repel/base/types.hpp>
 
 #include "units.hpp"
+#include "yaml_document.hpp"
 
 namespace repel::scene {
 
@@ -23,14 +25,14 @@ namespace repel::scene {
 /// allowed, when it is not what is asked for.
 class Value {
  public:
-  Value(const YAML::Node& node, std::string name, std::shared_ptr<const std::string> file)
-      : node_(node), name_(std::move(name)), file_(std::move(file)), mark_(node.Mark()) {}
+  Value(const Node& node, std::string name, std::shared_ptr<const Document> document)
+      : node_(&node), line_(node.line), name_(std::move(name)), document_(std::move(document)) {}
 
   /// The only document of a text.
   [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
 
   /// Of the file, from 1.
-  [[nodiscard]] int line() const noexcept { return mark_.line + 1; }
+  [[nodiscard]] int line() const noexcept { return line_; }
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail_with_value(const std::string& allowed) const;
 
@@ -43,21 +45,24 @@ class Value {
   [[nodiscard]] Vec3 vector(const Rule& rule) const;
   [[nodiscard]] std::vector<double> numbers(const Rule& rule, std::size_t least,
                                             std::size_t most) const;
-  [[nodiscard]] bool is_list() const { return node_.IsSequence(); }
-  /// The entries of a list.
-  [[nodiscard]] std::vector<Value> list() const;
+  [[nodiscard]] bool is_list() const { return node_->kind == Node::Kind::list; }
+  /// The entries of a list of up to `most`.
+  [[nodiscard]] std::vector<Value> list(std::size_t most = input_limits.entries) const;
 
  private:
   friend class Map;
-  YAML::Node node_;
+  [[nodiscard]] bool is_scalar() const { return node_->kind == Node::Kind::scalar; }
+
+  const Node* node_;
+  int line_;  // of the key where the value is empty: such a value has no place of its own
   std::string name_;
-  std::shared_ptr<const std::string> file_;
-  YAML::Mark mark_;  // of the key where the value is empty: such a value has no place of its own
+  std::shared_ptr<const Document> document_;
 };
 
-/// A map of a file, keys unique.
+/// A map of a file, keys unique. A value is found in the logarithm of their number.
 class Map {
  public:
+  /// Throws SetupError when it is none or has more entries than input_limits allows.
   explicit Map(const Value& value);
 
   /// Throws SetupError for a key that is not in `keys`, naming the nearest.
@@ -83,6 +88,7 @@ class Map {
  private:
   Value self_;
   std::vector<std::pair<std::string, Value>> entries_;
+  std::map<std::string, std::size_t, std::less<>> index_;  // of the entries by their keys
 };
 
 }  // namespace repel::scene

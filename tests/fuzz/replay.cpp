@@ -1,4 +1,6 @@
-// Runs a fuzz target without the fuzzer: on the files named, or on so many random inputs.
+// Runs a fuzz target without the fuzzer: on the files named, and on so many inputs at random, which
+// are changes of those files where there are any.
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -6,35 +8,54 @@
 #include <iterator>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <fuzz/mutation.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {
 
-void run_random(long count) {
-  std::mt19937_64 rng(1);
-  std::vector<std::uint8_t> bytes;
+// Signs and numbers of the languages that are read.
+constexpr std::array<std::string_view, 24> words{
+    ",", ":",  ": ",  "- ", "[",   "]",  "{",     "}",   "?",   "&a ",  "*a ",  "!",
+    "|", "\"", "'\n", "#",  "\n ", "\t", "1e308", "nan", "<l>", "/>\n", "%%\n", "\xff"};
+
+void run(const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+}
+
+void run_random(long count, const std::vector<std::string>& seeds) {
+  constexpr std::uint64_t seed = 1;
+  std::printf("%ld inputs, seed %llu\n", count, static_cast<unsigned long long>(seed));
+  std::mt19937_64 rng(seed);
+  std::string bytes;
   for (long i = 0; i < count; ++i) {
+    if (!seeds.empty()) {
+      run(repel::fuzz::mutated(seeds[rng() % seeds.size()], rng, words));
+      continue;
+    }
     bytes.resize(rng() % 512);
-    for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(rng());
-    LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+    for (char& b : bytes) b = static_cast<char>(rng());
+    run(bytes);
   }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::vector<std::string> seeds;
   for (int i = 1; i < argc; ++i) {
     std::ifstream file(argv[i], std::ios::binary);
     if (!file) {
-      run_random(std::strtol(argv[i], nullptr, 10));
+      run_random(std::strtol(argv[i], nullptr, 10), seeds);
       continue;
     }
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    std::printf("%s: %zu bytes\n", argv[i], text.size());
-    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-    LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
+    seeds.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    std::printf("%s: %zu bytes\n", argv[i], seeds.back().size());
+    run(seeds.back());
   }
   return 0;
 }

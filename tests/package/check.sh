@@ -63,14 +63,14 @@ done
 
 step "find_package, core only, nothing else installed" works find_package -DPARTS=core \
   -DCMAKE_DISABLE_FIND_PACKAGE_orocos_kdl=ON -DCMAKE_DISABLE_FIND_PACKAGE_urdfdom=ON \
-  -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
+  -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
 step "find_package, $parts" works find_package "-DPARTS=$parts"
 step "find_package, a part that does not exist" \
   fails_saying "repel has no part 'cellar'" find_package -DPARTS=cellar
 case $parts in *scene*)
   step "find_package, a part whose packages are gone" \
-    fails_saying "apt-get install libyaml-cpp-dev" find_package -DPARTS=scene \
-    -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON ;;
+    fails_saying "apt-get install libyaml-dev" find_package -DPARTS=scene \
+    -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON ;;
 esac
 rm -f "$package/repel-bullet.cmake"
 step "find_package, a part that was not built" \

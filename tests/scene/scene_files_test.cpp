@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/input_limits.hpp>
+#include <repel/base/limits.hpp>
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {
@@ -47,6 +49,26 @@ TEST(SceneFiles, EveryKeyTheReaderKnowsIsOnThePage) {
     ++keys;
   }
   EXPECT_GT(keys, 100);
+}
+
+TEST(SceneFiles, TheLimitsOnThePageAreThoseThatHold) {
+  const std::string page = text_of("scenes/README.md");
+  const auto expect_row = [&](const std::string& what, std::size_t most) {
+    const auto at = page.find("| " + what);
+    ASSERT_NE(at, std::string::npos) << what;
+    const std::string row = page.substr(at, page.find('\n', at) - at);
+    EXPECT_NE(row.find(" | " + std::to_string(most)), std::string::npos) << row;
+  };
+  expect_row("the file", input_limits.file_bytes);
+  expect_row("one text", input_limits.text_bytes);
+  expect_row("one list or map", input_limits.entries);
+  expect_row("`partners` |", static_cast<std::size_t>(Limits{}.bodies));
+  expect_row("`network` of one arm", input_limits.modules);
+  expect_row("`points` of one hull", 10000);
+  expect_row("`points` of all hulls", input_limits.hull_points);
+  expect_row("values in all", input_limits.values);
+  expect_row("lists and maps in each other", input_limits.depth);
+  expect_row("lines that begin with `%`", input_limits.directives);
 }
 
 TEST(SceneFiles, EverySceneLoads) {

@@ -31,20 +31,29 @@ inline Vec3 centroid_of(std::span<const Vec3> vertices) {
 /// A point near the deepest one: walks away from the nearest plane in steps that shrink. Whatever
 /// it finds is honest, since its depth is measured afterwards.
 inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> vertices) {
+  struct Nearest {
+    const Facet* facet;
+    double depth;
+  };
+  const auto nearest_to = [&](const Vec3& x) {
+    Nearest nearest{&facets.front(), facets.front().offset - facets.front().n.dot(x)};
+    for (const Facet& f : facets) {
+      const double depth = f.offset - f.n.dot(x);
+      if (depth < nearest.depth) nearest = {&f, depth};
+    }
+    return nearest;
+  };
   Vec3 x = centroid_of(vertices);
   Vec3 best = x;
-  double best_depth = depth_in(facets, x);
+  Nearest nearest = nearest_to(x);
+  double best_depth = nearest.depth;
   double step = best_depth;
   for (int i = 0; i < 400; ++i) {
-    const Facet* nearest = &facets.front();
-    for (const Facet& f : facets) {
-      if (f.offset - f.n.dot(x) < nearest->offset - nearest->n.dot(x)) nearest = &f;
-    }
-    x -= step * nearest->n;
-    const double depth = depth_in(facets, x);
-    if (depth > best_depth) {
+    x -= step * nearest.facet->n;
+    nearest = nearest_to(x);
+    if (nearest.depth > best_depth) {
       best = x;
-      best_depth = depth;
+      best_depth = nearest.depth;
     } else {
       step *= 0.97;
     }

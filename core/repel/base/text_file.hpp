@@ -1,0 +1,49 @@
+/// @file
+/// Reads a whole file into memory, if it is not too big for that.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+
+#include <repel/base/input_limits.hpp>
+#include <repel/base/setup_error.hpp>
+
+namespace repel {
+
+/// The bytes of the file at `path`. No more than `most` [byte] and one are ever read, so that a
+/// device or a pipe without an end is refused too.
+/// @param what it should be, for errors: "a scene file"
+/// @throws SetupError naming the file when it cannot be read or is larger than `most`
+[[nodiscard]] inline std::string text_of_file(const std::string& path, const std::string& what,
+                                              std::size_t most = input_limits.file_bytes) {
+  std::error_code unused;
+  if (std::filesystem::is_directory(path, unused)) {
+    throw SetupError("this is a directory; allowed: " + what, path);
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw SetupError("the file cannot be opened; allowed: " + what, path);
+  std::string text;
+  constexpr std::size_t block = std::size_t{1} << 16;
+  while (file && text.size() <= most) {
+    const std::size_t before = text.size();
+    const std::size_t wanted = most - before < block ? most - before + 1 : block;
+    text.resize(before + wanted);
+    file.read(text.data() + before, static_cast<std::streamsize>(wanted));
+    text.resize(before + static_cast<std::size_t>(file.gcount()));
+  }
+  if (file.bad()) throw SetupError("the file cannot be read; allowed: " + what, path);
+  if (text.size() > most) {
+    const auto size = std::filesystem::file_size(path, unused);
+    const bool known = !unused && size > most;
+    throw SetupError((known ? "the file has " + std::to_string(size) + " bytes"
+                            : "the file has more than " + std::to_string(most) + " bytes") +
+                         "; allowed: " + what + " of up to " + std::to_string(most),
+                     path);
+  }
+  return text;
+}
+
+}  // namespace repel

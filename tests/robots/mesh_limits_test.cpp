@@ -1,0 +1,98 @@
+// Meshes and descriptions that would eat the machine are refused with their number and the limit.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <repel/base/input_limits.hpp>
+#include <repel/base/setup_error.hpp>
+#include <repel/robots/urdf.hpp>
+
+#include "end_to_end/folder.hpp"
+
+namespace repel {
+namespace mesh_limits_test {
+
+using test::Folder;
+
+std::string repeated(const std::string& text, std::size_t count) {
+  std::string result;
+  for (std::size_t i = 0; i < count; ++i) result += text;
+  return result;
+}
+
+std::string robot_with(const std::string& in_link) {
+  return "<robot name='r'><link name='base'/><link name='arm'>\n" + in_link +
+         "</link>\n<joint name='j' type='continuous'><parent link='base'/>"
+         "<child link='arm'/></joint></robot>\n";
+}
+
+std::string with_mesh(const std::string& attributes) {
+  return "<collision><geometry><mesh " + attributes + "/></geometry></collision>\n";
+}
+
+void expect_refused(const Folder& folder, const std::string& in_link, const std::string& words) {
+  try {
+    (void)load_arm(folder.with("r.urdf", robot_with(in_link)));
+    ADD_FAILURE() << "accepted";
+  } catch (const SetupError& error) {
+    EXPECT_GT(error.line(), 0);
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+// assimp 5.2.5 looks for the end of this header for ever; found by fuzzing.
+TEST(MeshLimits, APlyFileWhoseHeaderDoesNotEndIsRefused) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  (void)folder.with("a.ply", test::text_of("tests/fuzz/seeds/endless.ply"));
+  expect_refused(folder, with_mesh("filename='a.ply'"), "link 'arm': mesh '");
+}
+
+TEST(MeshLimits, AMeshOfTooManyBytesIsRefusedUnread) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  std::filesystem::resize_file(folder.with("a.stl", "solid\n"), input_limits.mesh_bytes + 1);
+  expect_refused(folder, with_mesh("filename='a.stl'"),
+                 "268435457 bytes; allowed: up to 268435456");
+}
+
+TEST(MeshLimits, OneMeshIsReadOnceAndTooManyAreRefused) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  std::string sphere;  // of 2500 corners
+  for (int i = 0; i < 2500; ++i) {
+    const double z = (i - 1249.5) / 1250.0;
+    const double r = std::sqrt(1.0 - z * z);
+    sphere += "v " + std::to_string(r * std::cos(2.4 * i)) + " " +
+              std::to_string(r * std::sin(2.4 * i)) + " " + std::to_string(z) + "\n";
+  }
+  for (int i = 1; i <= 2500; i += 2) sphere += "f 1 " + std::to_string(i) + " 2500\n";
+  for (int i = 2; i <= 2500; i += 2) sphere += "f 2 " + std::to_string(i) + " 2499\n";
+  (void)folder.with("a.obj", sphere);
+  const std::string mesh = with_mesh("filename='a.obj'");
+  EXPECT_EQ(load_arm(folder.with("r.urdf", robot_with(repeated(mesh, 5)))).parts.size(), 5U);
+  expect_refused(folder, repeated(mesh, 60), "corners; allowed: up to 100000 in all");
+}
+
+TEST(MeshLimits, ANameThatIsTooLongForAPathIsRefused) {
+  const Folder folder;
+  expect_refused(folder, with_mesh("filename='package://" + std::string(3000, 'n') + "/a.stl'"),
+                 "is not found");
+  expect_refused(folder, with_mesh("filename='" + std::string(4000, 'n') + "'"), "is not a file");
+}
+
+TEST(MeshLimits, TextsAttributesAndCollisionsOfADescriptionAreLimited) {
+  const Folder folder;
+  expect_refused(folder, "<collision name='" + std::string(5000, 'n') + "'/>",
+                 "'name' has 5000 bytes; allowed: up to 4096");
+  std::string many = "<collision";
+  for (int i = 0; i < 65; ++i) many += " a" + std::to_string(i) + "='1'";
+  expect_refused(folder, many + "/>", "more than 64 attributes of one element");
+  expect_refused(folder, repeated("<collision/>", 10'001), "more than 10000 collisions");
+  expect_refused(folder, repeated("<x/>", 500'000), "more than 500000 elements");
+}
+
+}  // namespace mesh_limits_test
+}  // namespace repel
