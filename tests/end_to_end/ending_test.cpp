@@ -4,8 +4,13 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <thread>
+
+#include <command_line.hpp>
 
 #include "end_to_end/teleop.hpp"
 
@@ -183,6 +188,23 @@ TEST(Ending, RunThatFadedReplaysBitForBit) {
     EXPECT_EQ(report.at("replay").at("same"), report.at("replay").at("ticks"));
     EXPECT_GE(report.at("status_ticks").at("silent_device"), 20) << "the hands had let go";
   }
+}
+
+// `timeout` sends its signal twice at once, and a terminal that is closed does so, too.
+TEST(Ending, SecondSignalEndsAtOnceUnlessItIsTheSameWish) {
+  const std::atomic<bool>& asked = host::interruption();
+  const std::atomic<bool>& asked_again = host::insistence();
+  EXPECT_FALSE(asked);
+  for (int i = 0; i < 3; ++i) {
+    (void)std::raise(SIGTERM);
+    EXPECT_TRUE(asked);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(110));
+  (void)std::raise(SIGHUP);
+  EXPECT_FALSE(asked_again);
+  (void)std::raise(SIGINT);
+  EXPECT_TRUE(asked_again);
+  EXPECT_EQ(std::signal(SIGINT, SIG_DFL), SIG_DFL) << "the next kills";
 }
 
 TEST(Ending, HangUpThatIsIgnoredStaysSo) {
