@@ -15,8 +15,8 @@ int main() {
   for (const double height : {0.150, 0.135, 0.125, 0.119, 0.100}) {
     X_WTool.translation() = Vec3(0.1, 0.0, height);
     const Separation s = separation(tool, X_WTool, table, X_WTable, {}, warm);
-    const double force = wall(s.distance, 0.0);  // at rest
-    const Vec3& n = s.extraction_W;
+    const double force = wall(s.distance, 0.0);    // at rest
+    const Vec3 n = s.extraction_W + Vec3::Zero();  // a zero prints without its sign
     std::printf("tool at %.3f m: distance %+.3f m, way out (%.0f %.0f %.0f), force %.2f N\n",
                 height, s.distance, n.x(), n.y(), n.z(), force);
   }

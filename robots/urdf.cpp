@@ -1,8 +1,6 @@
 #include <repel/robots/urdf.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <set>
 
@@ -106,25 +104,37 @@ class ArmBuilder {
     }
   }
 
-  int joints_above(urdf::LinkConstSharedPtr link) const {
-    int count = 0;
-    for (; link->parent_joint; link = link->getParent()) count += moves(*link->parent_joint);
-    return count;
+  /// The link with the most moving joints above it; of several the first by name, the root before
+  /// all. Each link is looked at once.
+  urdf::LinkConstSharedPtr farthest(const urdf::ModelInterface& model) const {
+    struct Reached {
+      urdf::LinkConstSharedPtr link;
+      int joints;  ///< above it that move
+    };
+    Reached best{model.getRoot(), 0};
+    std::vector<Reached> open{best};
+    while (!open.empty()) {
+      const Reached at = open.back();
+      open.pop_back();
+      const bool is_before = at.joints > 0 && at.link->name < best.link->name;
+      if (at.joints > best.joints || (at.joints == best.joints && is_before)) best = at;
+      for (const auto& child : at.link->child_links) {
+        open.push_back({child, at.joints + (moves(*child->parent_joint) ? 1 : 0)});
+      }
+    }
+    return best.link;
   }
 
   /// The links from the root to the chosen tip, or else to one with the most moving joints above.
   void find_chain(const urdf::ModelInterface& model) {
-    urdf::LinkConstSharedPtr end = model.getRoot();
-    for (const auto& [name, link] : model.links_) {
-      if (joints_above(link) > joints_above(end)) end = link;
-    }
-    if (!options_.tip.empty()) end = model.getLink(options_.tip);
+    urdf::LinkConstSharedPtr end =
+        options_.tip.empty() ? farthest(model) : model.getLink(options_.tip);
     end_ = end->name;
     for (; end; end = end->getParent()) chain_.insert(end->name);
   }
 
   /// Adds `node`, fixed to arm link `link` at `X_LN`, and all beyond it.
-  // NOLINTNEXTLINE(misc-no-recursion): a file is a tree, read once at set-up
+  // NOLINTNEXTLINE(misc-no-recursion): the tree is no deeper than UrdfDocument allows
   void add(const urdf::Link& node, int link, const Pose& X_LN) {
     if (link >= 0 && node.inertial) add_body(*node.inertial, X_LN, robot_.arm.links.back());
     robot_.links.push_back({node.name, node.inertial ? node.inertial->mass : 0.0, link, X_LN});
@@ -213,11 +223,12 @@ class ArmBuilder {
   /// The tool frame: of the chosen tip, of the only one on the last moving link, or of that link.
   void choose_tool() {
     const int last = static_cast<int>(robot_.arm.links.size()) - 1;
+    const std::set<std::string> all_tips(robot_.tips.begin(), robot_.tips.end());
     const RobotLink* only = nullptr;
     int tips = 0;
     for (const RobotLink& link : robot_.links) {
       const bool chosen = link.name == options_.tip;
-      const bool is_tip = std::count(robot_.tips.begin(), robot_.tips.end(), link.name) != 0;
+      const bool is_tip = all_tips.contains(link.name);
       if (!(options_.tip.empty() ? is_tip && link.link == last : chosen)) continue;
       only = &link;
       ++tips;
@@ -244,10 +255,7 @@ Robot parse_arm(std::string_view urdf, const UrdfOptions& options, const std::st
 }
 
 Robot load_arm(const std::string& path, const UrdfOptions& options) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw SetupError("cannot be opened", path);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
-  return parse_arm(text, options, path);
+  return parse_arm(detail::text_of_description(path), options, path);
 }
 
 }  // namespace repel

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include <repel/base/input_limits.hpp>
@@ -114,11 +117,32 @@ double number_of(const Element* element, double otherwise) {
   return element ? numbers_in(text_of(element, "value"))->front() : otherwise;
 }
 
+[[noreturn]] void refuse_size(std::uintmax_t bytes, const std::string& file) {
+  throw SetupError("has " + std::to_string(bytes) + " bytes; allowed: up to " +
+                       std::to_string(most_description_bytes),
+                   file);
+}
+
 }  // namespace
+
+std::string text_of_description(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw SetupError("cannot be opened", path);
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (!error && bytes > most_description_bytes) refuse_size(bytes, path);
+  std::string text(most_description_bytes + 1, '\0');  // a pipe does not say how much it has
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) throw SetupError("cannot be read", path);
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > most_description_bytes) refuse_size(text.size(), path);
+  return text;
+}
 
 UrdfDocument::UrdfDocument(std::string_view text, std::string file,
                            const std::vector<std::string>& held)
     : file_(std::move(file)) {
+  if (text.size() > most_description_bytes) refuse_size(text.size(), file_);
   if (xml_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw SetupError(std::string("not well-formed XML: ") + xml_.ErrorStr(), file_,
                      xml_.ErrorLineNum());
@@ -128,6 +152,7 @@ UrdfDocument::UrdfDocument(std::string_view text, std::string file,
   Counts counts;
   require_modest(*robot_, counts);
   require_plain_urdf();
+  require_bounded();
   index_names();
   for (const auto* child = robot_->FirstChildElement(); child;
        child = child->NextSiblingElement()) {
@@ -151,9 +176,19 @@ void UrdfDocument::require_plain_urdf() const {
   }
 }
 
+void UrdfDocument::require_bounded() const {
+  std::size_t links = 0;
+  for (const auto* e = robot_->FirstChildElement("link"); e; e = e->NextSiblingElement("link")) {
+    ++links;
+  }
+  if (links <= most_urdf_links) return;
+  fail(robot_, label(*robot_) + " has " + std::to_string(links) + " links; allowed: up to " +
+                   std::to_string(most_urdf_links));
+}
+
 void UrdfDocument::require_tree() const {
   std::map<std::string, const Element*> joint_above;
-  std::map<std::string, std::string> parent;
+  Tree children;
   for (const auto& [name, joint] : joints_) {
     const std::string above = text_of(joint->FirstChildElement("parent"), "link");
     const std::string below = text_of(joint->FirstChildElement("child"), "link");
@@ -165,7 +200,7 @@ void UrdfDocument::require_tree() const {
     if (!joint_above.emplace(below, joint).second) {
       fail(joint, "link '" + below + "' hangs on two joints; allowed: one");
     }
-    parent[below] = above;
+    children[above].push_back(below);
   }
   const Element* root = nullptr;
   for (const auto& [name, link] : links_) {
@@ -176,12 +211,38 @@ void UrdfDocument::require_tree() const {
     }
     root = link;
   }
-  for (const auto& [name, link] : links_) {
-    std::string at = name;
-    for (std::size_t steps = 0; link != root && at != text_of(root, "name"); ++steps) {
-      if (steps > links_.size()) fail(link, "link '" + name + "' hangs in a loop of joints");
-      at = parent.at(at);
+  require_reached(text_of(root, "name"), children);
+}
+
+/// Every link is below the root, and not too far: from the root outward, each link once.
+void UrdfDocument::require_reached(const std::string& root, const Tree& children) const {
+  std::map<std::string, std::size_t> depth;  // of the links that were reached
+  std::vector<std::string> open;
+  if (links_.contains(root)) {
+    depth[root] = 0;
+    open.push_back(root);
+  }
+  while (!open.empty()) {
+    const std::string at = std::move(open.back());
+    open.pop_back();
+    const auto below = children.find(at);
+    if (below == children.end()) continue;
+    for (const std::string& child : below->second) {
+      depth[child] = depth[at] + 1;
+      open.push_back(child);
     }
+  }
+  for (const auto& [name, link] : links_) {
+    const auto found = depth.find(name);
+    if (found == depth.end()) fail(link, "link '" + name + "' hangs in a loop of joints");
+    if (found->second <= most_urdf_depth) continue;
+    const std::size_t deepest =
+        std::max_element(depth.begin(), depth.end(), [](const auto& a, const auto& b) {
+          return a.second < b.second;
+        })->second;
+    fail(link, "link '" + name + "' is " + std::to_string(found->second) +
+                   " joints from the root, the farthest " + std::to_string(deepest) +
+                   "; allowed: up to " + std::to_string(most_urdf_depth));
   }
 }
 
@@ -195,6 +256,11 @@ void UrdfDocument::index_names() {
   };
   index("link", links_);
   index("joint", joints_);
+  for (auto* e = robot_->FirstChildElement("transmission"); e;
+       e = e->NextSiblingElement("transmission")) {
+    const auto* actuator = e->FirstChildElement("actuator");
+    if (actuator) actuators_.emplace(text_of(e->FirstChildElement("joint"), "name"), actuator);
+  }
   for (const auto& [name, link] : links_) {
     for (auto* e = link->FirstChildElement("collision"); e;
          e = e->NextSiblingElement("collision")) {
@@ -321,14 +387,11 @@ bool UrdfDocument::is_capsule(const std::string& link, std::size_t index) const 
 }
 
 double UrdfDocument::rotor_inertia(const std::string& joint) const {
-  for (const auto* e = robot_->FirstChildElement("transmission"); e;
-       e = e->NextSiblingElement("transmission")) {
-    const auto* actuator = e->FirstChildElement("actuator");
-    if (text_of(e->FirstChildElement("joint"), "name") != joint || !actuator) continue;
-    const double ratio = number_of(actuator->FirstChildElement("drake:gear_ratio"), 1.0);
-    return number_of(actuator->FirstChildElement("drake:rotor_inertia"), 0.0) * ratio * ratio;
-  }
-  return 0.0;
+  const auto found = actuators_.find(joint);
+  if (found == actuators_.end()) return 0.0;
+  const Element* actuator = found->second;
+  const double ratio = number_of(actuator->FirstChildElement("drake:gear_ratio"), 1.0);
+  return number_of(actuator->FirstChildElement("drake:rotor_inertia"), 0.0) * ratio * ratio;
 }
 
 void UrdfDocument::fail_at_link(const std::string& name, const std::string& what) const {

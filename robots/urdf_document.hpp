@@ -13,12 +13,23 @@
 
 namespace repel::detail {
 
+/// What a robot description may have at most: several times what any robot has, little enough for
+/// urdfdom, which takes down a chain link by link on the stack.
+inline constexpr std::size_t most_description_bytes = std::size_t{16} << 20;
+inline constexpr std::size_t most_urdf_links = 4096;
+inline constexpr std::size_t most_urdf_depth = 512;  ///< joints between the root and a link
+
+/// The text of the URDF or SRDF file at `path`. Throws SetupError when it cannot be read or has
+/// more than `most_description_bytes`, of which no more is read than that.
+[[nodiscard]] std::string text_of_description(const std::string& path);
+
 /// A URDF text that has passed every check that can be made on the text alone.
 class UrdfDocument {
  public:
   using Element = tinyxml2::XMLElement;
 
-  /// Throws SetupError when the text is not XML, a number is malformed, not finite or out of range,
+  /// Throws SetupError when the text is not XML, has more bytes or links than allowed above or a
+  /// deeper tree of them, a number is malformed, not finite or out of range,
   /// a joint lacks a limit or cannot be one of a serial arm, or two links or joints share a name.
   /// What the joints in `held` do is of no concern.
   UrdfDocument(std::string_view text, std::string file, const std::vector<std::string>& held = {});
@@ -48,11 +59,14 @@ class UrdfDocument {
     std::size_t elements = 0;
     std::size_t collisions = 0;
   };
+  using Tree = std::map<std::string, std::vector<std::string>>;  // from a link to its children
 
   [[noreturn]] void fail(const Element* at, const std::string& what) const;
   void index_names();
   void require_plain_urdf() const;
+  void require_bounded() const;
   void require_tree() const;
+  void require_reached(const std::string& root, const Tree& children) const;
   void check_numbers(const Element& element, const std::string& owner) const;
   void check_joint(const Element& joint) const;
   void require_modest(const Element& element, Counts& counts) const;
@@ -64,6 +78,7 @@ class UrdfDocument {
   std::map<std::string, const Element*> links_;
   std::map<std::string, const Element*> joints_;
   std::map<std::string, std::vector<const Element*>> shapes_;  // of collisions, by link
+  std::map<std::string, const Element*> actuators_;  // by joint: of its first transmission with one
 };
 
 }  // namespace repel::detail

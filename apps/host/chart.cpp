@@ -104,7 +104,7 @@ struct Band {
         most(least.size(), -std::numeric_limits<double>::infinity()) {
     for (std::size_t i = 0; i < samples; ++i) {
       const double value = curve.value(i);
-      if (!std::isfinite(value)) continue;
+      if (!(std::abs(value) < 1e300)) continue;  // nor what no axis can hold
       const std::size_t column = i * least.size() / samples;
       least[column] = std::min(least[column], value);
       most[column] = std::max(most[column], value);

@@ -1,15 +1,40 @@
 #include "command_line.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <repel/base/setup_error.hpp>
+#include <system_error>
 
 namespace repel::host {
 namespace {
 
 // A signal handler has nothing else to write to.
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<bool> interrupted{false};
+std::atomic<bool> insisted{false};
+std::atomic<std::int64_t> first_signal_ns{0};
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
+
+/// Of SIGINT, SIGTERM and SIGHUP. `timeout` sends its signal twice at once, a terminal that is
+/// closed its SIGHUP.
+void note_signal(int signal) {
+  constexpr std::int64_t same_wish_ns = 100'000'000;
+  const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch().count();
+  std::int64_t first = 0;
+  if (first_signal_ns.compare_exchange_strong(first, now)) {
+    interrupted = true;
+  } else if (signal != SIGHUP && now - first >= same_wish_ns) {
+    insisted = true;
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+  }
+}
 
 /// A round number as people write it, without an exponent.
 std::string in_full(double value) {
@@ -32,24 +57,45 @@ CLI::Validator between(double low, double high) {
 }
 
 const std::atomic<bool>& interruption() {
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  std::signal(SIGINT, note_signal);
+  std::signal(SIGTERM, note_signal);
+  if (std::signal(SIGHUP, note_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return interrupted;
 }
 
-Output::Output(const std::string& path) : path_(path) {
+const std::atomic<bool>& insistence() {
+  return insisted;
+}
+
+Output::Output(const std::string& path) : path_(path), part_(path) {
   if (path.empty()) return;
-  file_.open(path);
+  errno = 0;
+  file_.open(part_.name(), std::ios::binary | std::ios::app);
   check();
+}
+
+std::ostream& Output::stream() {
+  errno = 0;
+  return file_;
 }
 
 void Output::close() {
   file_.close();
   check();
+  part_.put_in_place();
 }
 
 void Output::check() const {
-  if (!file_) throw SetupError("cannot write the file", path_);
+  if (file_) return;
+  std::string what = "cannot write the file";
+  if (errno != 0) what += ": " + std::generic_category().message(errno);
+  throw SetupError(what, path_);
+}
+
+bool has_printed() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  struct stat out {};
+  return fstat(STDOUT_FILENO, &out) == 0 && (S_ISFIFO(out.st_mode) || S_ISSOCK(out.st_mode));
 }
 
 }  // namespace repel::host

@@ -32,8 +32,12 @@ std::string escaped(const std::string& text) {
   return html;
 }
 
+std::string number(double value) {
+  return std::isfinite(value) ? repel::to_text(value, 4) : "-";
+}
+
 std::string with_unit(double value, const char* unit) {
-  return std::isfinite(value) ? repel::to_text(value, 4) + " " + unit : "-";
+  return std::isfinite(value) ? number(value) + " " + unit : "-";
 }
 
 /// Rows of cells; the first row is the head, columns before `names` are text.

@@ -16,7 +16,10 @@ namespace repel::host::page {
 /// `text` with the characters replaced that mean something in HTML.
 [[nodiscard]] std::string escaped(const std::string& text);
 
-/// A number and its unit; "-" for one that is not finite.
+/// A number of four digits; "-" for one that is not finite.
+[[nodiscard]] std::string number(double value);
+
+/// The same and its unit; "-" for one that is not finite.
 [[nodiscard]] std::string with_unit(double value, const char* unit);
 
 /// Rows of cells, which are escaped; the first row is the head, columns before `names` are text.

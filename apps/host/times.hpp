@@ -42,7 +42,7 @@ void print_pairs(const RunTotals& totals, int pairs, std::FILE* out);
 /// Prints what the tick took from the heap, in one line.
 void print_allocations(std::int64_t count, std::FILE* out);
 
-/// Prints p50, p99, p99.9 and the maximum in one line.
+/// Prints p50, p99, p99.9 and the maximum in one line; "none" without a sample.
 void print_times(const char* name, const DurationHistogram& times, std::FILE* out);
 
 /// Prints the machine, in three lines.

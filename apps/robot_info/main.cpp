@@ -12,6 +12,7 @@
 #include <repel/robots/urdf.hpp>
 
 #include "command_line.hpp"
+#include "times.hpp"
 
 namespace {
 
@@ -172,7 +173,7 @@ int run(const Arguments& arguments) {
   print(robot, tips);
   if (!arguments.srdf.empty()) std::printf("\n%zu link pairs may touch\n", disabled.size());
   if (json.wanted()) {
-    json.stream() << report_of(robot, tips, disabled).dump(2) << '\n';
+    host::write(report_of(robot, tips, disabled), json.stream());
     json.close();
   }
   return 0;

@@ -38,9 +38,8 @@ std::vector<double> checked_start(const std::string& file, const scene::RobotCho
                        file);
     }
     if (start[i] < link.lower || start[i] > link.upper) {
-      throw SetupError("robot start: " + std::to_string(start[i]) + " for " + link.joint_name +
-                           "; allowed: " + std::to_string(link.lower) + " to " +
-                           std::to_string(link.upper),
+      throw SetupError("robot start: " + to_text(start[i], 6) + " for " + link.joint_name +
+                           "; allowed: " + to_text(link.lower, 6) + " to " + to_text(link.upper, 6),
                        file);
     }
   }

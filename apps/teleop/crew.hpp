@@ -62,6 +62,11 @@ class Crew {
     operators_[arm].follow(record);
   }
 
+  /// From the next tick on no operator drives: see Hands::let_go.
+  void let_go() noexcept {
+    for (Hands& each : operators_) each.let_go();
+  }
+
   /// See Teleoperator::rehearse.
   void rehearse() noexcept {
     for (Member& member : members_) member.rehearse();

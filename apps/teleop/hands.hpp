@@ -39,14 +39,22 @@ class Hands {
   /// From now on what `record`, which must stand, says at each tick.
   void follow(const TickRecord& record) noexcept { recorded_ = &record; }
 
+  /// From now on they rest and are silent, whoever drives: the fail-safe fades the forces.
+  void let_go() noexcept { has_let_go_ = true; }
+
   [[nodiscard]] const network::Command& step(const Mat3& R_WT, double period) noexcept {
     if (recorded_ != nullptr) return recorded_->command;
+    if (has_let_go_) {
+      rest(period);
+      return command_;
+    }
     if (device_ != nullptr) {
       feel(period);
     } else if (controls_ != nullptr) {
       listen(R_WT, period);
     }
-    return driver_ == Driver::script ? script_.step(R_WT, period) : command_;
+    if (driver_ == Driver::script) command_ = script_.step(R_WT, period);
+    return command_;
   }
 
   [[nodiscard]] std::size_t phase() const noexcept {
@@ -55,6 +63,14 @@ class Hands {
   }
 
  private:
+  /// The lever keeps its direction: what its spring holds goes no other way.
+  void rest(double period) noexcept {
+    command_.hand.ball = {};
+    command_.hand.lever_rate = 0.0;
+    command_.sound = true;
+    command_.silent_for = std::max(silent_after, command_.silent_for + period);
+  }
+
   void listen(const Mat3& R_WT, double period) noexcept {
     const bool heard = controls_->grip.take();
     unheard_ = heard ? 0.0 : unheard_ + period;
@@ -93,6 +109,7 @@ class Hands {
   Driver driver_ = Driver::script;
   network::Command command_;
   double unheard_ = 0.0;  ///< [s] since the last post
+  bool has_let_go_ = false;
 };
 
 }  // namespace repel::teleop

@@ -31,7 +31,7 @@ std::string tiles(const RunResult& r) {
                  std::to_string(r.deadline.misses()) + " of " + std::to_string(r.deadline.ticks()));
     html += tile("wake-up lateness, p99", with_unit(r.deadline.wakeup().percentile_us(0.99), "us"));
   }
-  html += tile("nearest", with_unit(1e3 * t.nearest, "mm"));
+  html += tile("nearest", r.nearest_pair.empty() ? "none" : with_unit(1e3 * t.nearest, "mm"));
   html += tile("deepest intrusion", with_unit(1e3 * t.deepest, "mm"));
   html += tile("peak virtual force on the tool", with_unit(t.peak_force, "N"));
   html += tile("allocations in the tick", count_of(r.allocations_in_tick));
@@ -165,9 +165,9 @@ std::string obstacle_table(const RunResult& r) {
       {"obstacle", "hardest on", "of", "peak [N]", "nearest [mm]", "deepest [mm]"}};
   for (const ObstacleResult& o : r.obstacles) {
     const PairExtremes& e = o.extremes;
-    rows.push_back({o.name, o.part, o.body, to_text(e.peak_force, 4),
-                    std::isfinite(e.nearest) ? to_text(1e3 * e.nearest, 4) : "never near",
-                    to_text(1e3 * e.deepest, 4)});
+    rows.push_back({o.name, o.part, o.body, number(e.peak_force),
+                    std::isfinite(e.nearest) ? number(1e3 * e.nearest) : "never near",
+                    number(1e3 * e.deepest)});
   }
   return table(rows, 3);
 }
@@ -176,9 +176,9 @@ std::string module_table(const ArmResult& arm) {
   std::vector<std::vector<std::string>> rows{
       {"module", "energy [J]", "lowest [J]", "passed [J]", "supplied [J]", "controller took [J]"}};
   for (const ModuleResult& m : arm.modules) {
-    rows.push_back({m.name, to_text(m.ledger.energy, 4), to_text(m.ledger.least, 4),
-                    to_text(m.ledger.passed, 4), to_text(m.ledger.supplied, 4),
-                    to_text(m.passivity.dissipated, 4)});
+    rows.push_back({m.name, number(m.ledger.energy), number(m.ledger.least),
+                    number(m.ledger.passed), number(m.ledger.supplied),
+                    number(m.passivity.dissipated)});
   }
   return table(rows, 1);
 }
@@ -216,8 +216,12 @@ std::string summary(const RunResult& r) {
 
 void write_html(const RunResult& r, std::ostream& out) {
   begin(r.scene.name, out);
-  out << summary(r) << tiles(r);
+  out << summary(r);
+  if (!r.log_trouble.empty()) {
+    out << "<p>The log is not whole: " << escaped(r.log_trouble) << "</p>\n";
+  }
   for (const std::string& warning : r.warnings) out << "<p>" << escaped(warning) << "</p>\n";
+  out << tiles(r);
   out << "<h2>What was near</h2>\n" << charts_of_the_world(r);
   out << "<h2>What pushed</h2>\n";
   for (const ArmResult& arm : r.arms) out << charts_of(r, arm);

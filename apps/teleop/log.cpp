@@ -2,30 +2,45 @@
 
 #include <pthread.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <system_error>
+#include <utility>
 
 #include "times.hpp"
 
 namespace repel::teleop {
 namespace {
 
+/// As one cell: in quotes where it is asked for or the text needs them, inner ones doubled.
+std::string cell_of(const std::string& text, bool in_quotes = false) {
+  if (!in_quotes && text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string cell(1, '"');
+  for (const char c : text) cell.append(c == '"' ? 2 : 1, c);
+  return cell += '"';
+}
+
 /// The columns that every arm has.
 void write_names(const ArmHeading& arm, std::ostream& file) {
   const std::string prefix = arm.prefix();
+  const auto write = [&](const std::string& name, const std::string& more = {},
+                         const char* unit = "") {
+    file << ',' << cell_of(std::string(prefix).append(name).append(more).append(unit));
+  };
   for (const char* name :
        {"phase", "status", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "virtual_fx_n",
         "virtual_fy_n", "virtual_fz_n", "virtual_tx_nm", "virtual_ty_nm", "virtual_tz_nm",
         "coupling_fx_n", "coupling_fy_n", "coupling_fz_n", "lever_torque_nm", "gain"}) {
-    file << ',' << prefix << name;
+    write(name);
   }
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    file << ',' << prefix << 'q' << i + 1 << (arm.joints[i] == JointType::revolute ? "_rad" : "_m");
+    write("q", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad" : "_m");
   }
-  for (const std::string& module : arm.modules)
-    file << ',' << prefix << "energy_" << module << "_j";
-  file << ',' << prefix << "stop," << prefix << "brakes";
+  for (const std::string& module : arm.modules) write("energy_", module, "_j");
+  write("stop");
+  write("brakes");
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
@@ -43,12 +58,13 @@ void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file
 class CsvLog final : public TickLog {
  public:
   CsvLog(const std::string& path, const Heading& heading)
-      : path_(path), heading_(heading), file_(path, std::ios::binary) {
+      : path_(path), heading_(heading), file_(path, std::ios::binary | std::ios::app) {
     file_ << "tick,time_s,nearest_m,hardest_pair,hardest_n,pairs_near,pairs_evaluated,pairs_stale,"
              "oldest_age_ticks";
     for (const ArmHeading& arm : heading.arms) write_names(arm, file_);
     file_ << '\n' << std::flush;
-    check();
+    look();
+    if (!trouble_.empty()) throw SetupError(trouble_);
   }
 
   void write(const Snapshot& tick) override {
@@ -60,30 +76,36 @@ class CsvLog final : public TickLog {
       write_values(tick.arms[i], heading_.arms[i], file_);
     }
     file_ << '\n';
+    look();
   }
-  void flush() override { file_.flush(); }
+  void flush() override {
+    file_.flush();
+    look();
+  }
   void close(std::int64_t /*dropped*/) override {
     file_.close();
-    check();
+    look();
   }
+  [[nodiscard]] std::string trouble() const override { return trouble_; }
 
  private:
-  /// In quotes, since it may have a comma; nothing for none.
+  /// Nothing for none.
   [[nodiscard]] std::string name(PairId pair) const {
-    std::string text;
-    if (!pair.valid()) return text;
-    text += '"';
-    text += heading_.pairs[static_cast<std::size_t>(pair.index)];
-    text += '"';
-    return text;
+    if (!pair.valid()) return {};
+    return cell_of(heading_.pairs[static_cast<std::size_t>(pair.index)], true);
   }
-  void check() const {
-    if (!file_) throw SetupError("the file cannot be written", path_);
+  /// Keeps what the operating system says of the first failure.
+  void look() {
+    if (file_ || !trouble_.empty()) return;
+    const int error = errno;
+    trouble_ = path_ + ": cannot be written";
+    if (error != 0) trouble_ += ": " + std::generic_category().message(error);
   }
 
   std::string path_;
   Heading heading_;
   std::ofstream file_;
+  std::string trouble_;
 };
 
 }  // namespace
@@ -92,29 +114,47 @@ std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading
   return std::make_unique<CsvLog>(path, heading);
 }
 
-LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log)
-    : ticks_(ticks), log_(log), thread_([this](const std::stop_token& stop) {
+LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log,
+                     std::function<void(const std::string&)> on_trouble)
+    : ticks_(ticks),
+      log_(log),
+      on_trouble_(std::move(on_trouble)),
+      thread_([this](const std::stop_token& stop) {
         (void)pthread_setname_np(pthread_self(), "repel log");
         using Clock = std::chrono::steady_clock;
         auto flushed = Clock::now();
         for (;;) {
           const bool last = stop.stop_requested();  // and then what is left
-          for (const Snapshot* tick = ticks_.front(); tick != nullptr; tick = ticks_.front()) {
-            log_.write(*tick);
-            ticks_.pop();
-          }
+          write_all();
           if (last) return;
           if (Clock::now() - flushed > std::chrono::milliseconds(500)) {
-            log_.flush();
+            if (!is_lost_) log_.flush();
+            look_for_trouble();
             flushed = Clock::now();
           }
           std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
       }) {}
 
+void LogThread::write_all() {
+  for (const Snapshot* tick = ticks_.front(); tick != nullptr; tick = ticks_.front()) {
+    if (!is_lost_) log_.write(*tick);
+    ticks_.pop();
+    look_for_trouble();
+  }
+}
+
+void LogThread::look_for_trouble() {
+  if (is_lost_) return;
+  const std::string trouble = log_.trouble();
+  is_lost_ = !trouble.empty();
+  if (is_lost_) on_trouble_(trouble);
+}
+
 std::int64_t LogThread::close() {
   thread_ = {};
   log_.close(ticks_.dropped());
+  look_for_trouble();
   return ticks_.dropped();
 }
 

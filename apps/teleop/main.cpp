@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 
 #include "budget.hpp"
 #include "command_line.hpp"
 #include "device.hpp"
+#include "figure.hpp"
 #include "html_report.hpp"
 #include "mcap_log.hpp"
 #include "report.hpp"
@@ -145,21 +147,28 @@ void describe(CLI::App& app, Arguments& a) {
       "scene):\n"
       "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
       "or, in place of the script, the page of --view and what --device names\n\n"
-      "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise.");
+      "What is written stands beside its place as FILE.part until it is whole. Ctrl-C, SIGTERM "
+      "and\n"
+      "SIGHUP fade the forces, then the run ends with its report; a second Ctrl-C ends it at "
+      "once.\n\n"
+      "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
+      "4 it ran, but a file or the output could not be written whole.");
 }
 
 /// One line that is written over on a terminal, and a line every five seconds elsewhere.
 /// @param after what there is when no phase of the script is played
-void show(const scene::Scene& scene, const teleop::Progress& p, const char* after, bool terminal) {
+void show(const scene::Scene& scene, const teleop::Progress& p, const char* after, bool fast,
+          bool terminal) {
   static double next = 0.0;
   if (!terminal && p.time < next) return;
   next = p.time + 5.0;
   const auto phase = static_cast<std::size_t>(p.phase);
   const std::string name = phase < scene.script.size() ? scene.script[phase].name : after;
-  std::fprintf(stderr, "%s%7.2f s  %-28.28s force %7.2f N  misses %lld  %-12s%s",
-               terminal ? "\r" : "", p.time, name.c_str(), p.force,
-               static_cast<long long>(p.misses), to_text(p.status).c_str(),
-               terminal ? "\033[K" : "\n");
+  std::string misses;
+  if (!fast) misses.append("misses ").append(std::to_string(p.misses)).append("  ");
+  std::fprintf(stderr, "%s%7.2f s  %-28.28s force %7s N  %s%-12s%s", terminal ? "\r" : "", p.time,
+               name.c_str(), host::figure(p.force, 2).c_str(), misses.c_str(),
+               to_text(p.status).c_str(), terminal ? "\033[K" : "\n");
 }
 
 /// The scene that was asked for, or the one that was recorded, and how to run it.
@@ -189,8 +198,39 @@ Work work_of(const Arguments& arguments) {
   return work;
 }
 
+/// Throws SetupError where a file to be written is one that is read, or another that is written.
+void require_files_apart(const Arguments& arguments, const Work& work) {
+  std::vector<host::NamedFile> read{{"the scene file", work.scene.file},
+                                    {"the recording", arguments.replay}};
+  const auto add = [&read](const scene::RobotChoice& robot) {
+    read.push_back({"the robot", robot.urdf});
+    read.push_back({"the robot's srdf file", robot.srdf});
+  };
+  add(work.scene.robot);
+  for (const scene::Partner& partner : work.scene.partners) add(partner.robot);
+  host::require_apart(
+      read, {{"--log", arguments.log}, {"--report", arguments.report}, {"--html", arguments.html}});
+}
+
+/// Writes a file of a run that is over. False, and said on stderr, where it is not whole.
+template <class Write>
+bool wrote(host::Output& file, const teleop::RunResult& result, Write&& write) {
+  if (!file.wanted()) return true;
+  try {
+    std::ostringstream text;
+    write(result, text);
+    file.stream() << text.str();
+    file.close();
+    return true;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "teleop: %s\n", error.what());
+    return false;
+  }
+}
+
 int run(const Arguments& arguments) {
   const Work work = work_of(arguments);
+  require_files_apart(arguments, work);
   const teleop::Recording* recording = work.recording ? &*work.recording : nullptr;
   teleop::SessionOptions session = arguments.session;
   session.page = page_folder();
@@ -199,22 +239,22 @@ int run(const Arguments& arguments) {
   const bool by_hand = session.view || !session.device.empty();
   const char* after = by_hand ? "by hand, or at rest" : "script over";
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const teleop::RunResult result =
-      teleop::run_session(work.scene, work.options, session, recording, host::interruption(),
-                          [&](const teleop::Progress& p) { show(work.scene, p, after, terminal); });
+  const teleop::RunResult result = teleop::run_session(
+      work.scene, work.options, session, recording, host::interruption(), host::insistence(),
+      [&](const teleop::Progress& p) { show(work.scene, p, after, work.options.fast, terminal); });
   if (terminal) std::fputs("\r\033[K", stderr);
   teleop::print_report(result, stdout);
   if (recording != nullptr) teleop::print_replay(*recording, result, stdout);
-  if (report.wanted()) {
-    teleop::write_json(result, report.stream());
-    report.close();
+  bool is_whole = result.log_trouble.empty();
+  if (!host::has_printed()) {
+    std::fputs("teleop: the report could not be printed whole\n", stderr);
+    is_whole = false;
   }
-  if (html.wanted()) {
-    teleop::write_html(result, html.stream());
-    html.close();
-  }
+  is_whole = wrote(report, result, teleop::write_json) && is_whole;
+  is_whole = wrote(html, result, teleop::write_html) && is_whole;
   const teleop::ReplayReport& replay = result.replay;
-  return replay.same == replay.ticks ? 0 : 3;
+  if (replay.same != replay.ticks) return 3;
+  return is_whole ? 0 : 4;
 }
 
 }  // namespace

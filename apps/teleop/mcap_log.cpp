@@ -87,7 +87,7 @@ class McapLog final : public TickLog {
     poses_ = add(mcap::poses);
     every_ = std::max<std::int64_t>(1, std::llround(options.rate_hz / poses_per_second));
     writer_.flush();
-    check();
+    if (writer_.failed()) throw SetupError(writer_.error());
   }
 
   void write(const Snapshot& tick) override {
@@ -118,8 +118,8 @@ class McapLog final : public TickLog {
   void close(std::int64_t dropped) override {
     writer_.add_metadata(mcap::end_metadata, {{"ticks_dropped", std::to_string(dropped)}});
     writer_.close();
-    check();
   }
+  [[nodiscard]] std::string trouble() const override { return writer_.error(); }
 
  private:
   static constexpr double poses_per_second = 100.0;
@@ -195,10 +195,6 @@ class McapLog final : public TickLog {
            {"rotation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}});
     }
     return {{"transforms", std::move(transforms)}};
-  }
-
-  void check() const {
-    if (writer_.failed()) throw SetupError(writer_.error());
   }
 
   std::string path_;

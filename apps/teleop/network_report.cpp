@@ -1,8 +1,11 @@
 #include "network_report.hpp"
 
+#include "figure.hpp"
+
 namespace repel::teleop {
 namespace {
 
+using host::figure;
 using nlohmann::ordered_json;
 
 /// Why a module's ledger may fall below zero; empty for one that claims it never does.
@@ -16,9 +19,12 @@ void print_modules(const ArmResult& arm, std::FILE* out) {
                "passed\n",
                arm.name.empty() ? "" : (arm.name + ": ").c_str());
   for (const ModuleResult& m : arm.modules) {
-    std::fprintf(out, "    %-20s %10.4f   lowest %10.3g   passed %10.4f", m.name.c_str(),
-                 m.ledger.energy, m.ledger.least, m.ledger.passed);
-    if (m.ledger.supplied != 0.0) std::fprintf(out, "   supplied %.4f", m.ledger.supplied);
+    std::fprintf(out, "    %-20s %10s   lowest %10.3g   passed %10s", m.name.c_str(),
+                 figure(m.ledger.energy, 4).c_str(), m.ledger.least,
+                 figure(m.ledger.passed, 4).c_str());
+    if (m.ledger.supplied != 0.0) {
+      std::fprintf(out, "   supplied %s", figure(m.ledger.supplied, 4).c_str());
+    }
     if (m.passivity.dissipated > 0.0) {
       std::fprintf(out, "   controller took %.4g", m.passivity.dissipated);
     }
@@ -33,9 +39,6 @@ void print_modules(const ArmResult& arm, std::FILE* out) {
 void print_network(const RunResult& r, std::FILE* out) {
   host::print_times("network alone", r.network_time, out);
   for (const ArmResult& arm : r.arms) print_modules(arm, out);
-  for (const std::string& warning : r.warnings) {
-    std::fprintf(out, "  warning                %s\n", warning.c_str());
-  }
 }
 
 ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {

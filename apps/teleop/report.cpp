@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ostream>
 
+#include "figure.hpp"
 #include "network_report.hpp"
 #include "times.hpp"
 #include "unused.hpp"
@@ -10,6 +11,7 @@
 namespace repel::teleop {
 namespace {
 
+using host::figure;
 using nlohmann::ordered_json;
 
 /// The obstacles that pushed, hardest first.
@@ -23,12 +25,16 @@ void print_obstacles(const RunResult& r, std::FILE* out) {
     return a.extremes.peak_force > b.extremes.peak_force;
   });
   for (std::size_t i = 0; i < std::min(most, touched.size()); ++i) {
-    std::fprintf(out, "    %-20s peak %8.2f N   nearest %9.3f mm   hardest on %s (%s)\n",
-                 touched[i].name.c_str(), touched[i].extremes.peak_force,
-                 1e3 * touched[i].extremes.nearest, touched[i].part.c_str(),
+    std::fprintf(out, "    %-20s peak %8s N   nearest %9s mm   hardest on %s (%s)\n",
+                 touched[i].name.c_str(), figure(touched[i].extremes.peak_force, 2).c_str(),
+                 figure(1e3 * touched[i].extremes.nearest, 3).c_str(), touched[i].part.c_str(),
                  touched[i].body.c_str());
   }
   if (touched.size() > most) std::fprintf(out, "    and %zu more\n", touched.size() - most);
+}
+
+void print_line(const char* name, const std::string& text, std::FILE* out) {
+  std::fprintf(out, "  %-22s %s\n", name, text.c_str());
 }
 
 /// What a tick must not do, and how often it was interrupted.
@@ -58,9 +64,9 @@ void print_contact(const RunResult& r, std::FILE* out) {
     if (arm.contact.steps == 0) {
       std::fprintf(out, "none%s\n", whose.c_str());
     } else {
-      std::fprintf(out, "in %lld steps%s, deepest %.3f mm\n",
+      std::fprintf(out, "in %lld steps%s, deepest %s mm\n",
                    static_cast<long long>(arm.contact.steps), whose.c_str(),
-                   1e3 * arm.contact.deepest);
+                   figure(1e3 * arm.contact.deepest, 3).c_str());
     }
   }
 }
@@ -182,10 +188,15 @@ void print_report(const RunResult& r, std::FILE* out) {
                static_cast<double>(t.ticks) / r.options.rate_hz, r.options.backend.c_str(),
                r.threads, r.options.fast ? ", not by the clock" : "",
                r.interrupted ? ", interrupted" : "");
+  // First what to know before the rest is read.
+  if (!r.log_trouble.empty()) print_line("log is not whole", r.log_trouble, out);
+  for (const std::string& warning : r.warnings) print_line("warning", warning, out);
   host::print_times("compute of the tick", r.deadline.compute(), out);
   if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
   host::print_times("simulated arm", r.arm_step, out);
-  if (!r.options.fast) {
+  if (r.options.fast) {
+    print_line("deadline misses", "not by the clock", out);
+  } else {
     std::fprintf(out, "  deadline misses        %lld, skipped ticks %lld\n",
                  static_cast<long long>(r.deadline.misses()),
                  static_cast<long long>(r.skipped_ticks));
@@ -206,11 +217,14 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   print_work(r, out);
   print_skipped(r, out);
-  if (!r.nearest_pair.empty()) {
-    std::fprintf(out, "  nearest                %.3f mm (%s), deepest intrusion %.3f mm\n",
-                 1e3 * t.nearest, r.nearest_pair.c_str(), 1e3 * t.deepest);
+  if (r.nearest_pair.empty()) {
+    print_line("nearest", "none", out);
+  } else {
+    std::fprintf(out, "  nearest                %s mm (%s), deepest intrusion %s mm\n",
+                 figure(1e3 * t.nearest, 3).c_str(), r.nearest_pair.c_str(),
+                 figure(1e3 * t.deepest, 3).c_str());
   }
-  std::fprintf(out, "  peak virtual force     %.2f N\n", t.peak_force);
+  print_line("peak virtual force", figure(t.peak_force, 2) + " N", out);
   print_obstacles(r, out);
   print_contact(r, out);
   print_network(r, out);
@@ -252,7 +266,14 @@ void write_json(const RunResult& r, std::ostream& file) {
                          {"backend", r.options.backend},    {"rate_hz", r.options.rate_hz},
                          {"by_the_clock", !r.options.fast}, {"threads", r.threads},
                          {"ticks", r.totals().ticks},       {"interrupted", r.interrupted}};
+  report["warnings"] = r.warnings;
   report.update(host::to_json(r.deadline, r.skipped_ticks));
+  if (r.options.fast) {  // without a clock nothing is early or late
+    for (const char* key : {"deadline_misses", "success_rate_last_100", "success_rate_lowest"}) {
+      report[key] = nullptr;
+    }
+    for (auto& share : report["wakeup_us"]) share = nullptr;
+  }
   report["simulated_arm_us"] = host::percentiles(r.arm_step);
   report["every_pair"] = r.options.every_pair;
   report["budget"] = budget_list(r);
@@ -265,7 +286,6 @@ void write_json(const RunResult& r, std::ostream& file) {
                        {"silent_at_end", r.totals().workers.stood_in}};
   report["network_us"] = host::percentiles(r.network_time);
   report["device_damping_n_s_per_m"] = r.device_damping;
-  report["warnings"] = r.warnings;
   report["stop"] = stop_ticks(r.totals());
   report["brake_ticks"] = r.totals().brake_ticks;
   report["modules"] = modules_to_json(r.arms.front().modules);
@@ -278,7 +298,11 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["page_faults_in_tick"] = host::known(r.page_faults_in_tick);
   report["voluntary_context_switches_in_tick"] = host::known(r.voluntary_switches_in_tick);
   report["involuntary_context_switches_in_tick"] = host::known(r.involuntary_switches_in_tick);
-  if (!r.options.log.empty()) report["log_ticks_dropped"] = r.log_dropped;
+  if (!r.options.log.empty()) {
+    report["log_ticks_dropped"] = r.log_dropped;
+    report["log_trouble"] = nullptr;
+    if (!r.log_trouble.empty()) report["log_trouble"] = r.log_trouble;
+  }
   if (r.replay.ticks > 0) {
     report["replay"] = {{"ticks", r.replay.ticks},
                         {"same", r.replay.same},

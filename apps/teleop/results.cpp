@@ -1,6 +1,7 @@
 #include "results.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "heading.hpp"
 
@@ -17,7 +18,8 @@ void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& r
     if (result.options.keep_records) result.pair_names.push_back(name_of(world, {i}));
     const PairExtremes extremes = coprocessor.extremes_of({i});
     totals.deepest = std::max(totals.deepest, extremes.deepest);
-    if (extremes.nearest <= totals.nearest) {  // also of evaluations before the first tick
+    // Also of evaluations before the first tick; not finite while nothing was near.
+    if (std::isfinite(extremes.nearest) && extremes.nearest <= totals.nearest) {
       totals.nearest = extremes.nearest;
       result.nearest_pair = name_of(world, {i});
     }

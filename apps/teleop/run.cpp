@@ -23,6 +23,7 @@
 #include "cell.hpp"
 #include "contact.hpp"
 #include "crew.hpp"
+#include "fade_out.hpp"
 #include "heap_guard.hpp"
 #include "pace.hpp"
 #include "replay.hpp"
@@ -215,7 +216,9 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     if (shift.company.tap != nullptr && !records.empty())
       shift.company.tap->show(coprocessor, records, times);
   };
-  for (std::int64_t k = 0; k < ticks && !shift.stop; ++k) {
+  FadeOut fade(shift.stop, recording == nullptr ? shift.company.at_once : &shift.stop, period_s);
+  for (std::int64_t k = 0; k < ticks && !fade.is_over(records); ++k) {
+    if (fade.has_begun()) crew.let_go();
     const auto tick = static_cast<std::size_t>(k);
     const double time = period_s * static_cast<double>(k);
     if (pace.begins_anew(time)) break;

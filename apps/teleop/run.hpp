@@ -78,11 +78,12 @@ struct RunResult {
   std::int64_t page_faults_in_tick = -1;  ///< minor and major; of the thread of the tick, as below
   std::int64_t voluntary_switches_in_tick = -1;
   std::int64_t involuntary_switches_in_tick = -1;  ///< the machine's doing
-  std::string nearest_pair;                        ///< "part - obstacle"; empty without one
-  std::vector<ObstacleResult> obstacles;           ///< in the order of the scene
-  std::vector<std::string> pair_names;  ///< "part - obstacle" by PairId, where records are kept
-  std::vector<TickTimes> times;         ///< of every tick, where records are kept
-  std::int64_t log_dropped = 0;         ///< ticks that the log lacks
+  std::string nearest_pair;               ///< "part - obstacle"; empty where nothing was near
+  std::vector<ObstacleResult> obstacles;  ///< in the order of the scene
+  std::vector<std::string> pair_names;    ///< "part - obstacle" by PairId, where records are kept
+  std::vector<TickTimes> times;           ///< of every tick, where records are kept
+  std::int64_t log_dropped = 0;           ///< ticks that the log lacks
+  std::string log_trouble;                ///< why the log is not whole otherwise; empty: it is
   bool interrupted = false;
   bool begins_anew = false;  ///< those at the controls want another run
   ReplayReport replay;       ///< of a recording
@@ -112,13 +113,16 @@ struct Company {
   Controls* controls = nullptr;           ///< of the first arm, and of the time
   devices::DeviceLink* device = nullptr;  ///< drives the first arm and feels its forces
   const Recording* recording = nullptr;   ///< is gone through again, in place of arms and operators
+  const std::atomic<bool>* at_once = nullptr;  ///< end without fading the forces
 };
 
 /// The scene with the changes that the options make to it.
 [[nodiscard]] scene::Scene as_run(const scene::Scene& scene, const RunOptions& options);
 
 /// Builds the scene and runs it. `show` is called from a thread of its own, a few times a second.
-/// Ends early when `stop` becomes true, or when those at the controls want to begin anew.
+/// When `stop` becomes true the operators let go, and it ends as soon as the fail-safe has faded
+/// the forces, see FadeOut; at once where nothing moves an arm. It ends early as well when those at
+/// the controls want to begin anew.
 /// @throws SetupError for a scene that cannot be built
 [[nodiscard]] RunResult run(const scene::Scene& scene, const RunOptions& options,
                             const Company& company, const std::atomic<bool>& stop,

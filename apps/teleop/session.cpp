@@ -1,5 +1,7 @@
 #include "session.hpp"
 
+#include <unistd.h>
+
 #include <charconv>
 #include <cstdio>
 #include <memory>
@@ -8,6 +10,7 @@
 #include "cell.hpp"
 #include "log.hpp"
 #include "mcap_log.hpp"
+#include "part_file.hpp"
 #ifdef REPEL_TELEOP_VISUAL
 #include "live_show.hpp"
 #endif
@@ -37,12 +40,44 @@ std::optional<Place> place_of(const std::string& listen) {
   return place;
 }
 
-std::unique_ptr<TickLog> log_for(const std::string& path, const Heading& heading,
-                                 const scene::Scene& scene, const RunOptions& options) {
-  if (path.empty()) return nullptr;
-  if (path.ends_with(".mcap")) return mcap_log(path, heading, scene, options);
-  return csv_log(path, heading);
-}
+/// The log of a run: its file, what writes it, and the thread that does.
+class RunLog {
+ public:
+  RunLog(Tap& tap, const Heading& heading, const scene::Scene& scene, const RunOptions& options)
+      : part_(options.log),
+        log_(options.log.ends_with(".mcap") ? mcap_log(part_.name(), heading, scene, options)
+                                            : csv_log(part_.name(), heading)),
+        thread_(tap.log(), *log_, [this](const std::string& trouble) { note(trouble); }) {}
+
+  /// Ends the file and puts it in its place, or leaves what there is of it where it is.
+  void close(RunResult& result) {
+    result.log_dropped = thread_.close();
+    if (log_->trouble().empty()) {
+      try {
+        part_.put_in_place();
+      } catch (const SetupError& error) {
+        note(error.what());
+      }
+    } else {
+      part_.keep();
+    }
+    result.log_trouble = trouble_;
+  }
+
+ private:
+  /// On a line of its own, behind what is written over on a terminal.
+  void note(const std::string& trouble) {
+    trouble_ = trouble;
+    const char* before = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";
+    std::fprintf(stderr, "%steleop: the log is not whole: %s; the run goes on\n", before,
+                 trouble.c_str());
+  }
+
+  std::string trouble_;  ///< written by the thread, read when it has ended
+  host::PartFile part_;
+  std::unique_ptr<TickLog> log_;
+  LogThread thread_;
+};
 
 #ifdef REPEL_TELEOP_VISUAL
 visual::Cast cast_of(const scene::Scene& scene, const RunOptions& options, const Heading& heading,
@@ -109,11 +144,12 @@ std::string listen_complaint(const std::string& listen) {
 
 RunResult run_session(const scene::Scene& scene, const RunOptions& options,
                       const SessionOptions& session, const Recording* recording,
-                      const std::atomic<bool>& stop,
+                      const std::atomic<bool>& stop, const std::atomic<bool>& at_once,
                       const std::function<void(const Progress&)>& show) {
   const Device device = open_device(session.device);
   if (!session.view && options.log.empty()) {
-    return run(scene, options, {nullptr, nullptr, device.link.get(), recording}, stop, show);
+    return run(scene, options, {nullptr, nullptr, device.link.get(), recording, &at_once}, stop,
+               show);
   }
   const scene::Scene ready = as_run(scene, options);
   const Cell cell(ready, options.backend != "ideal");
@@ -125,10 +161,9 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   Tap tap(cell.world, tap_options);
   Controls controls;
   controls.may_restart = options.log.empty();
-  Company company{&tap, nullptr, device.link.get(), recording};
-  const std::unique_ptr<TickLog> log = log_for(options.log, heading, scene, options);
-  std::optional<LogThread> writing;
-  if (log != nullptr) writing.emplace(tap.log(), *log);
+  Company company{&tap, nullptr, device.link.get(), recording, &at_once};
+  std::optional<RunLog> log;
+  if (!options.log.empty()) log.emplace(tap, heading, scene, options);
 #ifdef REPEL_TELEOP_VISUAL
   std::optional<View> view;
   if (session.view) {
@@ -146,7 +181,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
     controls.restart = false;
     result = run(scene, options, company, stop, show);
   }
-  if (writing) result.log_dropped = writing->close();
+  if (log) log->close(result);
   return result;
 }
 

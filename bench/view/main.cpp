@@ -109,7 +109,7 @@ int run(const Arguments& arguments) {
   std::vector<Turn> turns;
   std::thread looking([&] { turns = take_turns(arguments, options.rate_hz, over, bytes); });
   const teleop::RunResult result = teleop::run_session(
-      scene, options, session, nullptr, host::interruption(),
+      scene, options, session, nullptr, host::interruption(), host::insistence(),
       [](const teleop::Progress& p) { std::fprintf(stderr, "\r%7.2f s", p.time); });
   over = true;
   looking.join();

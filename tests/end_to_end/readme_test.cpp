@@ -1,17 +1,32 @@
-// The first program of README.md is the first example, byte for byte. Links of all pages are
-// checked by tests/style/check.sh.
+// The first program of README.md is the first example, byte for byte, and prints what stands there.
+// Links of all pages are checked by tests/style/check.sh.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-#include <string>
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
 
-namespace repel {
+#include "end_to_end/folder.hpp"
+
+namespace repel::test {
 namespace readme_test {
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+/// What stands in `text` between two marks behind `from`.
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+  const auto begin = text.find(from);
+  if (begin == std::string::npos) return {};
+  const auto first = begin + from.size();
+  return text.substr(first, text.find(to, first) - first);
+}
+
+/// A block of README.md without the four blanks before its lines.
+std::string flush_left(const std::string& block) {
+  std::istringstream lines(block);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    text += line.substr(std::min<std::size_t>(4, line.size())) + '\n';
+  }
+  return text;
 }
 
 TEST(Readme, FirstProgramIsTheFirstExampleByteForByte) {
@@ -29,5 +44,25 @@ TEST(Readme, FirstProgramIsTheFirstExampleByteForByte) {
   EXPECT_EQ(readme.substr(code, end - code), program);
 }
 
+// It printed (-0 -0 1) for way out, on any compiler, where README has (0 0 1).
+TEST(Readme, FirstProgramPrintsWhatStandsThere) {
+  const Folder folder;
+  const std::string readme = text_of(REPEL_SOURCE "/README.md");
+  const std::string program = between(readme, "```cpp\n", "```");
+  const std::string command = between(readme, "```\n\n    g++ ", "\n");
+  const std::string said = flush_left(between(readme, "prints\n\n", "\n\nThe core"));
+  ASSERT_NE(command.find(" -I core -I /usr/include/eigen3 examples/01_two_boxes.cpp "),
+            std::string::npos);
+  ASSERT_EQ(std::count(said.begin(), said.end(), '\n'), 5) << said;
+  const std::string options = command.substr(0, command.find(" -I"));
+  const std::string source = folder.with("main.cpp", program);
+  const auto run = [](const std::string& line) { return std::system(line.c_str()); };
+  ASSERT_EQ(run(REPEL_COMPILER " " + options + " -I '" REPEL_SOURCE "/core' -I '" REPEL_EIGEN "' " +
+                source + " -o " + (folder / "two_boxes")),
+            0);
+  ASSERT_EQ(run((folder / "two_boxes") + " >" + (folder / "out")), 0);
+  EXPECT_EQ(text_of(folder / "out"), said);
+}
+
 }  // namespace readme_test
-}  // namespace repel
+}  // namespace repel::test

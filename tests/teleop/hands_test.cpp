@@ -236,5 +236,32 @@ TEST(Hands, ADeviceThatIsSilentIsAtRest) {
 }
 #endif
 
+// The end of a run: whoever drives, the fail-safe is to see a silent device, and no lever may turn
+// what its spring holds another way.
+TEST(Hands, OnceLetGoTheyRestAndAreSilentWhoeverDrives) {
+  network::Phase lever;
+  lever.master = network::Master::torque_arm;
+  lever.direction = Vec3(0, 0, -1);
+  lever.lever_rate = 0.3;
+  Hands scripted({lever});
+  EXPECT_EQ(scripted.step(Mat3::Identity(), period).hand.lever_rate, 0.3);
+  scripted.let_go();
+  for (int i = 0; i < 1000; ++i) {
+    const Command& command = scripted.step(Mat3::Identity(), period);
+    ASSERT_TRUE(at_rest(command)) << i;
+    ASSERT_EQ(command.hand.direction_W, Vec3(0, 0, -1)) << i;
+    ASSERT_GE(command.silent_for, Hands::silent_after) << i;
+    ASSERT_TRUE(command.sound) << i;
+  }
+  Bench bench;
+  bench.push(Vec3(0.1, 0, 0));
+  (void)bench.tick();
+  bench.hands.let_go();
+  bench.push(Vec3(nan, 0, 0));
+  EXPECT_TRUE(at_rest(bench.tick()));
+  EXPECT_TRUE(bench.tick().sound);
+  EXPECT_GE(bench.tick().silent_for, Hands::silent_after);
+}
+
 }  // namespace hands_test
 }  // namespace repel::teleop
