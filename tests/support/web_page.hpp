@@ -176,9 +176,15 @@ struct Frame {
 /// A page that is open. It reads only while it is asked for what has come.
 class WebPage {
  public:
+  /// As a browser opens it, which names the page that asks.
   explicit WebPage(std::uint16_t port, const std::string& target = "/live", int room = 0)
-      : line_(port, room) {
-    (void)line_.send(Ask{"GET", target, "", upgrade_lines()}.text(port));
+      : WebPage(
+            Line(port, room),
+            Ask{"GET", target, "", upgrade_lines("http://127.0.0.1:" + std::to_string(port))}.text(
+                port)) {}
+  /// @param request that asks for the WebSocket
+  WebPage(Line line, const std::string& request) : line_(std::move(line)) {
+    (void)line_.send(request);
     std::size_t end = std::string::npos;
     while (end == std::string::npos && more()) end = come_.find("\r\n\r\n");
     const Answer answer(come_);
