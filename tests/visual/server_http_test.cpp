@@ -139,6 +139,31 @@ TEST(ServerHttp, OnAllInterfacesAForeignAddressIsForbidden) {
   }
 }
 
+TEST(ServerHttp, OverIPv6ItIsReachedByItsAddressInBrackets) {
+  ServerOptions options;
+  options.address = "::1";
+  std::unique_ptr<Stage> stage;
+  try {
+    stage = std::make_unique<Stage>(options);
+  } catch (const SetupError& error) {
+    GTEST_SKIP() << "no IPv6 on this machine: " << error.what();
+  }
+  const std::uint16_t port = stage->port;
+  const std::string own = "[::1]:" + std::to_string(port);
+  EXPECT_EQ(stage->server->url(), "http://" + own + "/");
+  const auto status = [&](const Ask& request) {
+    Line line = Line::over_ipv6(port);
+    (void)line.send(request.text(port));
+    return Answer(line.receive()).status;
+  };
+  EXPECT_EQ(status({"GET", "/", own}), 200);
+  EXPECT_EQ(status({"GET", "/live", own, test::upgrade_lines("http://" + own)}), 101);
+  EXPECT_EQ(status({"GET", "/", "127.0.0.1:" + std::to_string(port)}), 403);
+  EXPECT_EQ(status({"GET", "/", "[::2]:" + std::to_string(port)}), 403);
+  const std::string foreign = test::upgrade_lines("http://[::2]:" + std::to_string(port));
+  EXPECT_EQ(status({"GET", "/live", own, foreign}), 403);
+}
+
 // A hundred that say nothing, or half of something, hold up neither who is there nor who comes.
 TEST(ServerHttp, ManyThatSayNothingDoNotKeepANewPageOut) {
   ServerOptions options;
