@@ -29,6 +29,7 @@ struct Controls {
   std::atomic<std::int64_t> steps{0};  ///< ticks to make all the same while paused
   std::atomic<bool> restart{false};    ///< end this run and begin another
   bool may_restart = true;             ///< not in the middle of a log; stands from set-up on
+  bool over_device = false;            ///< a page may take them from a device; as above
   std::atomic<double> seek{-1.0};      ///< [s] of a replay: go there; negative: nowhere
   std::atomic<double> speed{1.0};      ///< of a replay, against the clock
 };

@@ -20,7 +20,8 @@ namespace repel::teleop {
 
 /// A network::Operator. With nothing else it plays its script. Once somebody has taken the controls
 /// the script is over: the hand does what the last post says, or rests while nobody drives. A
-/// device has the controls from the beginning.
+/// device has the controls from the beginning; where the controls say so a page can have them from
+/// it for a while.
 class Hands {
  public:
   /// [s] A driver of whom nothing was heard for so long is taken to rest, and then to be silent, at
@@ -48,11 +49,9 @@ class Hands {
       rest(period);
       return command_;
     }
-    if (device_ != nullptr) {
-      feel(period);
-    } else if (controls_ != nullptr) {
-      listen(R_WT, period);
-    }
+    const bool listens = hear(period);
+    if (device_ != nullptr) feel(period, listens);
+    if (listens) listen(R_WT);
     if (driver_ == Driver::script) command_ = script_.step(R_WT, period);
     return command_;
   }
@@ -71,9 +70,16 @@ class Hands {
     command_.silent_for = std::max(silent_after, command_.silent_for + period);
   }
 
-  void listen(const Mat3& R_WT, double period) noexcept {
+  /// True while it is not the device that has the controls.
+  bool hear(double period) noexcept {
+    if (controls_ == nullptr) return false;
     const bool heard = controls_->grip.take();
     unheard_ = heard ? 0.0 : unheard_ + period;
+    if (device_ == nullptr) return true;
+    return controls_->over_device && controls_->grip.newest().driver == Driver::page;
+  }
+
+  void listen(const Mat3& R_WT) noexcept {
     const Grip& grip = controls_->grip.newest();
     driver_ = grip.driver;
     // Rates in the axes of the tool turn with it from tick to tick.
@@ -89,16 +95,21 @@ class Hands {
     command_.silent_for = driver_ == Driver::page && unheard_ > silent_after ? unheard_ : 0.0;
   }
 
-  /// A device says itself when it is silent, and then it is at rest.
-  void feel(double period) noexcept {
+  /// A device says itself when it is silent, and then it is at rest. It is read while a page has
+  /// the controls too: what is old must not count when it gets them back.
+  void feel(double period, bool taken) noexcept {
 #ifdef REPEL_TELEOP_DEVICES
     const devices::Measured& m = device_->measured(period);
+    if (taken) return;
+    driver_ = Driver::device;
+    command_.sound = true;
     command_.hand.ball = m.measured_cv;
     command_.hand.lever_rate = m.lever_rate;
     if (m.lever_rate != 0.0) command_.hand.direction_W = m.lever_direction_W;
     command_.silent_for = m.silent ? std::max(silent_after, device_->silent_for()) : 0.0;
 #else
     (void)period;
+    (void)taken;
 #endif
   }
 

@@ -55,23 +55,30 @@ const char* to_word(Driver driver, bool replay) {
   return "nobody";
 }
 
+/// Cut to a length: more than the master of the scene can command no page can ask for.
+Vec3 within(const Vec3& v, double most) {
+  const double length = v.norm();
+  return length > most ? Vec3(v * (most / length)) : v;
+}
+
 constexpr const char* out_of_range = "a number is missing or out of range";
 
 }  // namespace
 
 LiveShow::LiveShow(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
-                   const std::string& device)
+                   const std::string& device, bool pages_drive)
     : cast_(cast),
       world_(world),
       tap_(tap),
       controls_(controls),
       device_(device),
+      pages_drive_(pages_drive),
       greeting_(visual::scene_message(cast, world)),
       period_(std::llround(1e9 / cast.rate_hz)),
       driver_(device.empty() ? Driver::script : Driver::device) {}
 
-void LiveShow::opened(int page, visual::Pages& pages) {
-  open_pages_.push_back(page);
+void LiveShow::opened(int page, visual::Role role, visual::Pages& pages) {
+  open_pages_[page] = role;
   pages.send(page, greeting_);
   say_who_drives(pages);
   pages.send(page, visual::timing_message(timing_));
@@ -81,7 +88,7 @@ void LiveShow::opened(int page, visual::Pages& pages) {
 }
 
 void LiveShow::closed(int page, visual::Pages& pages) {
-  std::erase(open_pages_, page);
+  open_pages_.erase(page);
   say_who_drives(pages);  // one that had the controls falls silent: watch_driver sees to it
 }
 
@@ -104,24 +111,35 @@ void LiveShow::heard(int page, std::string_view said, visual::Pages& pages) {
 }
 
 std::string LiveShow::obey(int page, const std::string& type, const Json& message) {
+  std::string bar = bar_of(page);
+  if (!bar.empty()) return bar;
   if (page_ != nobody && page_ != page) return "another page has the controls";
   if (type == "take" || type == "release" || type == "servo_cv" || type == "servo_lever")
     return drive(page, type, message);
   return conduct(type, message);
 }
 
+std::string LiveShow::bar_of(int page) const {
+  if (!pages_drive_ && !device_.empty()) return device_ + " has the controls: pages look on only";
+  if (!pages_drive_) return "pages look on only";
+  const auto found = open_pages_.find(page);
+  if (found == open_pages_.end() || found->second == visual::Role::looks_on)
+    return "a program without an Origin or a secret looks on only";
+  return {};
+}
+
 std::string LiveShow::drive(int page, const std::string& type, const Json& message) {
   if (cast_.replay) return "this is a recording";
-  if (driver_ == Driver::device) return device_ + " has the controls";
   if (type == "take") {
     hand_over(Driver::page, page);
     return {};
   }
   if (page_ != page) return "take the controls first";
   if (type == "release") {
-    hand_over(Driver::nobody, nobody);
+    hand_over(device_.empty() ? Driver::nobody : Driver::device, nobody);
     return {};
   }
+  const visual::ArmCast& arm = cast_.arms.front();
   Grip grip;
   grip.driver = Driver::page;
   if (type == "servo_cv") {
@@ -132,13 +150,13 @@ std::string LiveShow::drive(int page, const std::string& type, const Json& messa
     grip.in_tool = frame == "tool";
     const auto clutch = message.find("clutch");
     const bool held = clutch != message.end() && clutch->is_boolean() && clutch->get<bool>();
-    if (held) grip.rates = {*linear, *angular};
+    if (held) grip.rates = {within(*linear, arm.max_speed), within(*angular, arm.max_turn)};
   } else {
     const auto direction = vector(message, "direction", 1e3);
     const auto rate = number(message, "rate", 100.0);
     if (!direction || !rate || direction->norm() < 1e-6) return out_of_range;
     grip.direction_W = direction->normalized();
-    grip.lever_rate = *rate;
+    grip.lever_rate = std::clamp(*rate, -arm.max_lever_rate, arm.max_lever_rate);
   }
   controls_.grip.draft() = grip;
   controls_.grip.post();
@@ -158,7 +176,8 @@ std::string LiveShow::conduct(const std::string& type, const Json& message) {
   } else if (type == "restart" && !controls_.may_restart) {
     return "a log is being written, which begins once";
   } else if (type == "restart") {
-    if (driver_ != Driver::device) hand_over(Driver::script, nobody);
+    if (driver_ != Driver::device)
+      hand_over(device_.empty() ? Driver::script : Driver::device, nobody);
     controls_.steps = 0;
     controls_.paused = false;
     controls_.restart = true;
@@ -189,12 +208,15 @@ void LiveShow::hand_over(Driver driver, int page) {
 }
 
 void LiveShow::say_who_drives(visual::Pages& pages) const {
-  for (const int page : open_pages_) {
+  for (const auto& [page, role] : open_pages_) {
+    const std::string bar = bar_of(page);
     pages.send(page, Json{{"type", "operator"},
                           {"by", to_word(driver_, cast_.replay)},
                           {"you", page == page_},
                           {"name", device_},
                           {"silent", silent_},
+                          {"looks_on", !bar.empty()},
+                          {"why_not", bar},
                           {"pages", pages.count()}}
                          .dump(-1, ' ', false, Json::error_handler_t::replace));
   }
@@ -220,7 +242,8 @@ void LiveShow::watch_driver(visual::Pages& pages) {
   if (page_ != nobody) {
     const double unheard = std::chrono::duration<double>(Clock::now() - heard_).count();
     silent_ = unheard > Hands::silent_after;
-    if (unheard > Hands::silent_after + 2.0) hand_over(Driver::nobody, nobody);
+    if (unheard > Hands::silent_after + 2.0)
+      hand_over(device_.empty() ? Driver::nobody : Driver::device, nobody);
   }
   if (silent_ != was_silent) say_who_drives(pages);
 }

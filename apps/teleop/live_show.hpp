@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,11 +24,12 @@ class LiveShow final : public visual::Show {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param device name of the master that has the controls all the time; empty: there is none
+  /// @param device name of the master that has the controls whenever no page has; empty: none
+  /// @param pages_drive false: they look on, whatever they ask for
   LiveShow(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
-           const std::string& device);
+           const std::string& device, bool pages_drive);
 
-  void opened(int page, visual::Pages& pages) override;
+  void opened(int page, visual::Role role, visual::Pages& pages) override;
   void heard(int page, std::string_view text, visual::Pages& pages) override;
   void closed(int page, visual::Pages& pages) override;
   void beat(visual::Pages& pages) override;
@@ -42,6 +44,8 @@ class LiveShow final : public visual::Show {
   [[nodiscard]] std::string obey(int page, const std::string& type, const nlohmann::json& message);
   [[nodiscard]] std::string drive(int page, const std::string& type, const nlohmann::json& message);
   [[nodiscard]] std::string conduct(const std::string& type, const nlohmann::json& message);
+  /// Why the page may not drive, pause, step or begin anew; empty: it may.
+  [[nodiscard]] std::string bar_of(int page) const;
   void hand_over(Driver driver, int page);
   void say_who_drives(visual::Pages& pages) const;
   void read_samples();
@@ -52,11 +56,12 @@ class LiveShow final : public visual::Show {
   Tap& tap_;
   Controls& controls_;
   std::string device_;
+  bool pages_drive_;
   std::string greeting_;
   std::chrono::nanoseconds period_;
   visual::Timing timing_;
   std::vector<TickSample> recent_;  ///< since the last picture
-  std::vector<int> open_pages_;
+  std::map<int, visual::Role> open_pages_;
   Driver driver_;
   int page_ = nobody;  ///< that drives
   bool silent_ = false;

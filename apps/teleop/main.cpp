@@ -83,6 +83,28 @@ std::string find_scene(const std::string& name) {
                    name.empty() ? "''" : name);
 }
 
+/// Who may open the live view, and what a page may do.
+void describe_pages(CLI::App& app, Arguments& a, CLI::Option* view) {
+  CLI::Option* file =
+      app.add_option("--secret", a.session.secret_file,
+                     "What a page must present, #secret=... behind its address: the first line of "
+                     "FILE, 16 characters or more. Wanted where other machines reach the view")
+          ->needs(view)
+          ->type_name("FILE");
+  app.add_option("--secret-env", a.session.secret_env,
+                 "The same from the environment variable NAME")
+      ->needs(view)
+      ->excludes(file)
+      ->type_name("NAME");
+  CLI::Option* only = app.add_flag("--view-only", a.session.view_only,
+                                   "Pages look on: they do not drive, pause, step or restart")
+                          ->needs(view);
+  app.add_flag("--page-drives", a.session.page_drives,
+               "With --device, while which pages look on: they may take the controls from it")
+      ->needs(view)
+      ->excludes(only);
+}
+
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds,
@@ -106,6 +128,8 @@ void describe(CLI::App& app, Arguments& a) {
                "Of bullet and ode: obstacles that are not passable stop the arm by themselves, "
                "too, where no virtual force does it first");
   app.final_callback([&a] {
+    const std::string insecure = teleop::settle_secret(a.session);
+    if (!insecure.empty()) throw CLI::ValidationError(insecure);
     if (!a.run.contact || a.run.backend == "bullet" || a.run.backend == "ode") return;
     throw CLI::ValidationError(
         "--contact", "backend " + a.run.backend + " knows no contact; allowed: bullet, ode");
@@ -131,12 +155,14 @@ void describe(CLI::App& app, Arguments& a) {
       ->capture_default_str()
       ->needs(view)
       ->check(CLI::Validator(teleop::listen_complaint, "ADDRESS:PORT"));
+  describe_pages(app, a, view);
   app.add_option(
          "--device", a.session.device,
          "In place of the script: the master that drives, spacenav (a six-axis mouse, "
          "through spacenavd) or evdev:PATH (a motorised lever). Until it is stopped, unless "
          "--seconds is given")
       ->check(CLI::Validator(teleop::device_complaint, "spacenav or evdev:PATH"));
+  app.get_option("--page-drives")->needs("--device");
   app.add_option("--replay", a.replay,
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",

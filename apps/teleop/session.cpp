@@ -2,12 +2,13 @@
 
 #include <unistd.h>
 
-#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "cell.hpp"
+#include "listening.hpp"
 #include "log.hpp"
 #include "mcap_log.hpp"
 #include "part_file.hpp"
@@ -20,25 +21,6 @@ namespace {
 
 /// Ticks that the log may be behind: some seconds of them.
 constexpr std::size_t log_room = 2048;
-
-struct Place {
-  std::string address;
-  std::uint16_t port = 0;
-};
-
-std::optional<Place> place_of(const std::string& listen) {
-  const std::size_t colon = listen.rfind(':');
-  if (colon == std::string::npos || colon == 0) return std::nullopt;
-  Place place{listen.substr(0, colon), 0};
-  if (place.address.front() == '[' && place.address.back() == ']') {
-    place.address = place.address.substr(1, place.address.size() - 2);
-  }
-  const char* begin = listen.data() + colon + 1;
-  const char* end = listen.data() + listen.size();
-  const auto [last, error] = std::from_chars(begin, end, place.port);
-  if (error != std::errc() || last != end || begin == end) return std::nullopt;
-  return place;
-}
 
 /// The log of a run: its file, what writes it, and the thread that does.
 class RunLog {
@@ -98,6 +80,10 @@ visual::Cast cast_of(const scene::Scene& scene, const RunOptions& options, const
     }
     added.modules = arm.modules;
     added.phases = arm.phases;
+    for (const network::Phase& phase : scene.station(i).script) {
+      const double rate = std::abs(phase.lever_rate);
+      if (rate > added.max_lever_rate) added.max_lever_rate = rate;
+    }
     for (const scene::Module& module : scene.station(i).network.modules) {
       const auto* ball = std::get_if<network::SpaceballOptions>(&module.options);
       if (ball == nullptr) continue;
@@ -113,21 +99,19 @@ class View {
  public:
   View(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
        const SessionOptions& session, const std::string& device)
-      : show_(cast, world, tap, controls, device),
+      : show_(cast, world, tap, controls, device,
+              !session.view_only && (device.empty() || session.page_drives)),
         server_(options_of(session), visual::load_assets(session.page), show_) {
-    std::fprintf(stderr, "Live view: %s\n", server_.url().c_str());
+    announce(session, server_.url());
   }
 
  private:
   static visual::ServerOptions options_of(const SessionOptions& session) {
     const Place place = place_of(session.listen).value_or(Place{});
-    const bool loopback = place.address.starts_with("127.") || place.address == "::1";
-    if (!loopback) {
-      std::fprintf(stderr, "Whoever reaches %s can look on and drive.\n", session.listen.c_str());
-    }
     visual::ServerOptions options;
     options.address = place.address;
     options.port = place.port;
+    options.secret = session.secret;
     return options;
   }
 
@@ -137,10 +121,6 @@ class View {
 #endif
 
 }  // namespace
-
-std::string listen_complaint(const std::string& listen) {
-  return place_of(listen) ? "" : "'" + listen + "'; allowed: ADDRESS:PORT, as 127.0.0.1:8448";
-}
 
 RunResult run_session(const scene::Scene& scene, const RunOptions& options,
                       const SessionOptions& session, const Recording* recording,
@@ -161,6 +141,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   Tap tap(cell.world, tap_options);
   Controls controls;
   controls.may_restart = options.log.empty();
+  controls.over_device = session.page_drives;
   Company company{&tap, nullptr, device.link.get(), recording, &at_once};
   std::optional<RunLog> log;
   if (!options.log.empty()) log.emplace(tap, heading, scene, options);

@@ -3,41 +3,55 @@
 namespace repel::visual {
 namespace {
 
+namespace ip = boost::asio::ip;
+
+constexpr std::string_view web_port = ":80";
+
 bool is_made_of(std::string_view text, std::string_view characters) {
   return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos;
 }
 
-/// An address of IPv4, or one of IPv6 in brackets: no name that somebody could own.
-bool is_numeric(std::string_view name) {
-  if (is_made_of(name, "0123456789.")) return true;
-  return name.starts_with('[') && name.ends_with(']') &&
-         is_made_of(name.substr(1, name.size() - 2), "0123456789abcdefABCDEF.:");
+std::string_view without_web_port(std::string_view host) {
+  if (host.ends_with(web_port)) host.remove_suffix(web_port.size());
+  return host;
 }
 
 }  // namespace
 
-Gate::Gate(const std::string& address, std::uint16_t port)
-    : any_(address == "0.0.0.0" || address == "::"),
-      port_(":"),
-      address_(address.find(':') == std::string::npos ? address : "[") {
-  port_ += std::to_string(port);
-  if (address_ == "[") {
-    address_ += address;
-    address_ += ']';
-  }
+ip::address plain(const ip::address& address) {
+  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+  return ip::make_address_v4(ip::v4_mapped, address.to_v6());
 }
+
+Gate::Gate(const std::string& address, std::uint16_t port)
+    : address_(plain(ip::make_address(address))), port_(port) {}
 
 bool Gate::is_host(std::string_view host) const {
-  if (host.size() <= port_.size() || !host.ends_with(port_)) return false;
-  const std::string_view name = host.substr(0, host.size() - port_.size());
-  if (name == address_ || (any_ && is_numeric(name))) return true;
-  const bool loopback = any_ || address_ == "[::1]" || address_.starts_with("127.");
-  return loopback && name == "localhost";
+  if (port_ == 80 && is_name(host)) return true;
+  const std::string port = ":" + std::to_string(port_);
+  return host.ends_with(port) && is_name(host.substr(0, host.size() - port.size()));
 }
 
-bool Gate::is_origin(std::string_view origin) const {
+bool Gate::is_name(std::string_view name) const {
+  boost::system::error_code error;
+  if (is_made_of(name, "0123456789.")) {
+    const auto v4 = ip::make_address_v4(std::string(name), error);
+    return !error && address_.is_v4() && v4 == address_.to_v4();
+  }
+  if (name.starts_with('[') && name.ends_with(']')) {
+    const std::string_view inside = name.substr(1, name.size() - 2);
+    if (!is_made_of(inside, "0123456789abcdefABCDEF.:") || !address_.is_v6()) return false;
+    // A browser never names the interface of a link-local address.
+    const auto v6 = ip::make_address_v6(std::string(inside), error);
+    return !error && v6.to_bytes() == address_.to_v6().to_bytes();
+  }
+  return name == "localhost" && address_.is_loopback();
+}
+
+bool Gate::is_origin(std::string_view origin, std::string_view host) {
   constexpr std::string_view scheme = "http://";
-  return origin.empty() || (origin.starts_with(scheme) && is_host(origin.substr(scheme.size())));
+  return origin.starts_with(scheme) &&
+         without_web_port(origin.substr(scheme.size())) == without_web_port(host);
 }
 
 }  // namespace repel::visual

@@ -152,7 +152,8 @@ std::string scene_message(const Cast& cast, const World& world) {
                     {"modules", arm.modules},
                     {"tool_body", arm.tool.index},
                     {"max_speed_m_s", arm.max_speed},
-                    {"max_turn_rad_s", arm.max_turn}});
+                    {"max_turn_rad_s", arm.max_turn},
+                    {"max_lever_rad_s", arm.max_lever_rate}});
   }
   return Json{{"type", "scene"},
               {"version", 1},

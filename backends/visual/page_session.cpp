@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 
 namespace repel::visual {
 namespace {
@@ -13,7 +14,7 @@ namespace websocket = beast::websocket;
 }  // namespace
 
 PageSession::PageSession(beast::tcp_stream&& stream, const ServerOptions& options, Events events)
-    : socket_(std::move(stream)),
+    : socket_(MeteredStream(std::move(stream))),
       messages_per_second_(options.messages_per_second),
       events_(std::move(events)) {
   beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has time limits of its own
@@ -21,11 +22,13 @@ PageSession::PageSession(beast::tcp_stream&& stream, const ServerOptions& option
       websocket::stream_base::timeout::suggested(beast::role_type::server);
   limits.idle_timeout = std::chrono::seconds(10);
   limits.keep_alive_pings = true;
+  limits.handshake_timeout = options.patience;
   socket_.set_option(limits);
   socket_.read_message_max(options.message_bytes);
 }
 
 void PageSession::open(const Request& request) {
+  socket_.next_layer().on_frames([this](int frames) { count(frames); });
   socket_.async_accept(request, [self = shared_from_this()](Error error) {
     if (error) return self->events_.failed();
     self->open_ = true;
@@ -50,7 +53,7 @@ void PageSession::read() {
 }
 
 void PageSession::hear(std::size_t bytes) {
-  if (is_flooding()) return close(websocket::close_code::policy_error);
+  if (flooding_ || closes_in_order_) return;  // its end is on its way
   const auto data = incoming_.cdata();
   events_.heard({static_cast<const char*>(data.data()), data.size()});
   incoming_.consume(bytes);
@@ -59,13 +62,19 @@ void PageSession::hear(std::size_t bytes) {
 }
 // NOLINTEND(misc-no-recursion)
 
-bool PageSession::is_flooding() {
+void PageSession::count(int frames) {
   const auto now = std::chrono::steady_clock::now();
   if (now - second_ >= std::chrono::seconds(1)) {
     second_ = now;
     heard_in_second_ = 0;
   }
-  return ++heard_in_second_ > messages_per_second_;
+  heard_in_second_ += frames;
+  if (flooding_ || heard_in_second_ <= messages_per_second_) return;
+  flooding_ = true;
+  // Not from within the read that has found it.
+  boost::asio::post(socket_.get_executor(), [self = shared_from_this()] {
+    self->close(websocket::close_code::policy_error);
+  });
 }
 
 void PageSession::send(std::shared_ptr<const std::string> text) {
@@ -95,8 +104,9 @@ void PageSession::write() {
 // NOLINTEND(misc-no-recursion)
 
 void PageSession::close(websocket::close_code code) {
+  if (!open_) return cut();
   if (closing_) return;
-  closing_ = true;
+  closing_ = closes_in_order_ = true;
   socket_.async_close(code, [self = shared_from_this()](Error) { self->end(); });
 }
 

@@ -16,6 +16,8 @@
 
 #include <repel/visual/server.hpp>
 
+#include "metered_stream.hpp"
+
 namespace repel::visual {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
@@ -38,6 +40,8 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   void send(std::shared_ptr<const std::string> text);
   /// Queues a picture, unless the last one is still on its way.
   void show(const std::shared_ptr<const std::string>& text);
+  /// Closes it in order, with a code that says why; nothing of it is heard any more.
+  void close(boost::beast::websocket::close_code code);
   /// Ends it at once.
   void cut();
 
@@ -47,12 +51,11 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
 
   void read();
   void hear(std::size_t bytes);
-  [[nodiscard]] bool is_flooding();
+  void count(int frames);
   void write();
-  void close(boost::beast::websocket::close_code code);
   void end();
 
-  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::beast::websocket::stream<MeteredStream> socket_;
   int messages_per_second_;
   Events events_;
   boost::beast::flat_buffer incoming_;
@@ -61,7 +64,9 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   std::chrono::steady_clock::time_point second_;
   int heard_in_second_ = 0;
   bool open_ = false;
+  bool flooding_ = false;
   bool closing_ = false;
+  bool closes_in_order_ = false;
 };
 
 }  // namespace repel::visual

@@ -10,11 +10,15 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <repel/base/setup_error.hpp>
 #include <repel/visual/server.hpp>
 
 #include "gate.hpp"
+#include "lobby.hpp"
 #include "page_session.hpp"
+#include "secret.hpp"
 
 namespace repel::visual {
 namespace {
@@ -25,14 +29,41 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using Error = beast::error_code;
 using Response = http::response<http::string_body>;
+using Clock = std::chrono::steady_clock;
+using beast::websocket::close_code;
 
 /// Nothing is loaded from elsewhere, nothing is shown inside another page.
 constexpr const char* policy =
     "default-src 'self'; connect-src 'self' ws:; img-src 'self' data: blob:; frame-ancestors "
     "'none'; base-uri 'none'; form-action 'none'";
 
+/// For those who have not presented the secret, or not the right one.
+constexpr auto no_secret = static_cast<close_code>(4401);
+constexpr auto too_many_secrets = static_cast<close_code>(4429);
+constexpr const char* question = R"({"type":"secret"})";
+
 std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
+}
+
+/// What a page presents: {"type": "secret", "secret": TEXT}.
+std::optional<std::string> secret_in(std::string_view text) {
+  using Json = nlohmann::json;
+  const Json message = Json::parse(text, nullptr, false);
+  if (!message.is_object()) return std::nullopt;
+  const auto type = message.find("type");
+  const auto secret = message.find("secret");
+  if (type == message.end() || *type != "secret") return std::nullopt;
+  if (secret == message.end() || !secret->is_string()) return std::nullopt;
+  return secret->get<std::string>();
+}
+
+/// Where a browser on this machine finds what listens there.
+std::string url_of(const tcp::endpoint& place) {
+  const asio::ip::address address = place.address();
+  std::string name = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+  if (address.is_unspecified()) name = "localhost";
+  return "http://" + name + ":" + std::to_string(place.port()) + "/";
 }
 
 }  // namespace
@@ -41,20 +72,17 @@ class Server::Impl final : public Pages {
  public:
   Impl(const ServerOptions& options, std::vector<Asset> assets, Show& show)
       : options_(options),
+        lobby_(static_cast<std::size_t>(options.visitors),
+               static_cast<std::size_t>(options.visitors_of_one)),
+        secret_(options.secret),
         acceptor_(listening(context_, options)),
-        gate_(options.address, acceptor_.local_endpoint().port()),
+        url_(url_of(acceptor_.local_endpoint())),
         show_(show),
         beats_(context_) {
     for (Asset& asset : assets) {
       std::string target = asset.target;
       assets_.emplace(std::move(target), std::move(asset));
     }
-    const bool is_v6 = options.address.find(':') != std::string::npos;
-    url_ = is_v6 ? "http://[" : "http://";
-    url_ += options.address;
-    url_ += is_v6 ? "]:" : ":";
-    url_ += std::to_string(acceptor_.local_endpoint().port());
-    url_ += '/';
     accept();
     beat();
     thread_ = std::jthread([this] {
@@ -83,8 +111,6 @@ class Server::Impl final : public Pages {
   [[nodiscard]] const std::string& url() const noexcept { return url_; }
 
  private:
-  static constexpr int most_connections = 64;
-
   /// A connection until it is answered or has become a page.
   struct Visitor {
     explicit Visitor(tcp::socket&& socket) : stream(std::move(socket)) {
@@ -92,12 +118,25 @@ class Server::Impl final : public Pages {
       parser->header_limit(8192);
       parser->body_limit(0);
     }
+    void leave() {
+      Error ignored;
+      stream.socket().close(ignored);
+    }
     beast::tcp_stream stream;
     beast::flat_buffer buffer{16384};
     std::optional<http::request_parser<http::empty_body>> parser;
     Response response;
+    std::optional<Gate> gate;
+    std::shared_ptr<Seat> seat;
   };
   using Guest = std::shared_ptr<Visitor>;
+
+  /// A page that has not presented the secret yet.
+  struct Newcomer {
+    std::shared_ptr<PageSession> page;
+    std::shared_ptr<Seat> seat;
+    Clock::time_point until;
+  };
 
   static tcp::acceptor listening(asio::io_context& context, const ServerOptions& options) {
     std::string place = options.address;
@@ -114,8 +153,7 @@ class Server::Impl final : public Pages {
 
   void accept() {
     acceptor_.async_accept([this](Error error, tcp::socket socket) {
-      if (!error && visitors_ < most_connections)
-        receive(std::make_shared<Visitor>(std::move(socket)));
+      if (!error) receive(std::make_shared<Visitor>(std::move(socket)));
       if (error == asio::error::operation_aborted) return;
       if (!error) return accept();
       // Out of descriptors: not at once again.
@@ -127,42 +165,52 @@ class Server::Impl final : public Pages {
   }
 
   void receive(const Guest& guest) {
-    ++visitors_;
-    // Leaves when it is answered, has become a page or takes too long.
-    const std::shared_ptr<void> seat(nullptr, [this](void*) { --visitors_; });
-    guest->stream.expires_after(std::chrono::seconds(10));
+    Error error;
+    const tcp::endpoint there = guest->stream.socket().remote_endpoint(error);
+    if (error) return;  // gone already
+    const tcp::endpoint here = guest->stream.socket().local_endpoint(error);
+    if (error) return;
+    guest->gate.emplace(here.address().to_string(), here.port());
+    guest->seat = lobby_.enter(network_of(there.address()));
+    guest->seat->leave = [who = std::weak_ptr(guest)] {
+      if (const Guest still = who.lock()) still->leave();
+    };
+    guest->stream.expires_after(options_.patience);
     http::async_read_header(guest->stream, guest->buffer, *guest->parser,
-                            [this, guest, seat](Error error, std::size_t) {
-                              if (error) return;
-                              answer(guest, seat);
+                            [this, guest](Error failed, std::size_t) {
+                              if (!failed) answer(guest);
                             });
   }
 
-  void answer(const Guest& guest, const std::shared_ptr<void>& seat) {
+  void answer(const Guest& guest) {
     const Request request = guest->parser->release();
     const bool is_page = beast::websocket::is_upgrade(request);
-    guest->response = response_to(request, is_page);
+    guest->response = response_to(request, *guest->gate, is_page);
     if (is_page && guest->response.result() == http::status::ok) return open(guest, request);
+    guest->seat->idle = false;
+    guest->stream.expires_after(std::chrono::seconds(10));
     guest->response.keep_alive(false);
     guest->response.prepare_payload();
     if (request.method() == http::verb::head) guest->response.body().clear();
-    http::async_write(guest->stream, guest->response, [guest, seat](Error, std::size_t) {
+    http::async_write(guest->stream, guest->response, [guest](Error, std::size_t) {
       Error ignored;
       guest->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
     });
   }
 
   /// Of an upgrade: ok if it may go on.
-  [[nodiscard]] Response response_to(const Request& request, bool is_page) const {
+  [[nodiscard]] Response response_to(const Request& request, const Gate& gate, bool is_page) const {
     const auto refuse = [&](http::status status, const char* why) {
       Response response{status, request.version()};
       response.set(http::field::content_type, "text/plain; charset=utf-8");
       response.body() = why;
       return response;
     };
-    if (!gate_.is_host(view(request[http::field::host])))
+    const std::string_view host = view(request[http::field::host]);
+    if (request.count(http::field::host) != 1 || !gate.is_host(host))
       return refuse(http::status::forbidden, "This host is not served here.\n");
-    if (!gate_.is_origin(view(request[http::field::origin])))
+    const std::size_t origins = request.count(http::field::origin);
+    if (origins > 1 || (origins == 1 && !Gate::is_origin(view(request[http::field::origin]), host)))
       return refuse(http::status::forbidden, "Pages of other origins may not ask here.\n");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return refuse(http::status::method_not_allowed, "Only GET and HEAD are answered.\n");
@@ -186,42 +234,86 @@ class Server::Impl final : public Pages {
 
   void open(const Guest& guest, const Request& request) {
     const int number = next_page_++;
+    // Every browser says of which page a WebSocket is.
+    const Role role = request.count(http::field::origin) > 0 ? Role::drives : Role::looks_on;
     PageSession::Events events;
-    events.opened = [this, number] { show_.opened(number, *this); };
-    events.heard = [this, number](std::string_view text) { show_.heard(number, text, *this); };
-    events.closed = [this, number] {
-      pages_.erase(number);
-      show_.closed(number, *this);
+    events.opened = [this, number, role] {
+      if (pages_.contains(number)) return show_.opened(number, role, *this);
+      const auto found = newcomers_.find(number);
+      if (found != newcomers_.end())
+        found->second.page->send(std::make_shared<const std::string>(question));
     };
-    events.failed = [this, number] { pages_.erase(number); };
+    events.heard = [this, number](std::string_view text) {
+      if (pages_.contains(number)) return show_.heard(number, text, *this);
+      present(number, text);
+    };
+    events.closed = [this, number] {
+      newcomers_.erase(number);
+      if (pages_.erase(number) > 0) show_.closed(number, *this);
+    };
+    events.failed = [this, number] {
+      newcomers_.erase(number);
+      pages_.erase(number);
+    };
     const auto page =
         std::make_shared<PageSession>(std::move(guest->stream), options_, std::move(events));
-    pages_.emplace(number, page);
+    if (secret_.is_wanted()) {
+      guest->seat->leave = [who = std::weak_ptr(page)] {
+        if (const auto still = who.lock()) still->cut();
+      };
+      newcomers_.emplace(number, Newcomer{page, guest->seat, Clock::now() + options_.patience});
+    } else {
+      pages_.emplace(number, page);
+    }
     page->open(request);
   }
 
+  /// The first that a newcomer says.
+  void present(int number, std::string_view text) {
+    const auto found = newcomers_.find(number);
+    if (found == newcomers_.end()) return;
+    const std::shared_ptr<PageSession> page = found->second.page;
+    const std::optional<std::string> given = secret_in(text);
+    if (!given) return page->close(no_secret);
+    using Verdict = SecretKeeper::Verdict;
+    const Verdict verdict = secret_.judge(*given, found->second.seat->from, Clock::now());
+    if (verdict == Verdict::wrong) return page->close(no_secret);
+    if (verdict == Verdict::too_many) return page->close(too_many_secrets);
+    if (count() >= options_.pages) return page->close(close_code::try_again_later);
+    newcomers_.erase(found);
+    pages_.emplace(number, page);
+    show_.opened(number, Role::drives, *this);
+  }
+
   void beat() {
-    using Clock = std::chrono::steady_clock;
     const auto pace = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1.0 / options_.beats_per_second));
     beats_.expires_at(show_.next_beat().value_or(Clock::now() + pace));
     beats_.async_wait([this](Error error) {
       if (error) return;
+      send_away_the_late();
       show_.beat(*this);
       beat();
     });
   }
 
+  void send_away_the_late() {
+    for (const auto& [number, newcomer] : newcomers_) {
+      if (newcomer.until < Clock::now()) newcomer.page->close(no_secret);
+    }
+  }
+
   ServerOptions options_;
   asio::io_context context_{1};
+  Lobby lobby_;
+  SecretKeeper secret_;
   tcp::acceptor acceptor_;
-  Gate gate_;
-  Show& show_;
   std::string url_;
+  Show& show_;
   std::map<std::string, Asset> assets_;
   std::map<int, std::shared_ptr<PageSession>> pages_;
+  std::map<int, Newcomer> newcomers_;
   int next_page_ = 1;
-  int visitors_ = 0;
   asio::steady_timer beats_;
   asio::steady_timer retry_{context_};
   std::jthread thread_;

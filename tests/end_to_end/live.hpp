@@ -27,9 +27,12 @@ using Json = nlohmann::json;
 /// A program that runs beside the test, and is ended with it at the latest.
 class LiveTeleop {
  public:
-  explicit LiveTeleop(std::vector<std::string> arguments) {
+  explicit LiveTeleop(std::vector<std::string> arguments,
+                      const std::string& listen = "127.0.0.1:0") {
     arguments.insert(arguments.begin(), REPEL_TELEOP);
-    for (const char* more : {"--view", "--listen", "127.0.0.1:0"}) arguments.emplace_back(more);
+    for (const std::string& more : {std::string("--view"), std::string("--listen"), listen}) {
+      arguments.push_back(more);
+    }
     std::vector<char*> words;
     for (std::string& word : arguments) words.push_back(word.data());
     words.push_back(nullptr);
@@ -54,6 +57,8 @@ class LiveTeleop {
   /// Of the live view; 0: it said none.
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] bool runs() const { return program_ > 0 && ::kill(program_, 0) == 0; }
+  /// What it has said on stderr.
+  [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   /// Has it end as Ctrl-C does.
   Ending interrupt() { return end_with(SIGINT); }
 

@@ -77,6 +77,97 @@ TEST(Live, OfTwoPagesOneDrives) {
   EXPECT_FALSE(two.take().is_null());
 }
 
+const std::string secret = "0f1e2d3c4b5a69788796a5b4c3d2e1f0";
+
+/// Opens a page that presents this.
+void present(LivePage& page, const std::string& text) {
+  page.say({{"type", "secret"}, {"secret", text}});
+}
+
+TEST(Live, WhereOtherMachinesReachItASecretIsNeeded) {
+  const Folder folder;
+  const std::string path = folder.with("secret", secret + "\nnot this\n");
+  LiveTeleop program({"plates", "--secret", path}, "0.0.0.0:0");
+  EXPECT_EQ(program.err().find(secret), std::string::npos);
+  EXPECT_NE(program.err().find("#secret="), std::string::npos) << "how to add it";
+  LivePage stranger(program);
+  present(stranger, "not this");
+  EXPECT_EQ(stranger.page().await_close(), 4401);
+  LivePage page(program);
+  present(page, secret);
+  ASSERT_FALSE(page.await("scene").is_null());
+  ASSERT_FALSE(page.take().is_null());
+  page.page().close();
+  const Ending ending = program.interrupt();
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_FALSE(ending.says(secret)) << ending;
+}
+
+TEST(Live, TheSecretCanComeFromTheEnvironment) {
+  ASSERT_EQ(::setenv("REPEL_TEST_SECRET", secret.c_str(), 1), 0);
+  LiveTeleop program({"plates", "--secret-env", "REPEL_TEST_SECRET"});
+  (void)::unsetenv("REPEL_TEST_SECRET");
+  LivePage page(program);
+  present(page, secret);
+  EXPECT_FALSE(page.await("scene").is_null());
+}
+
+TEST(Live, ListeningForOthersWithoutASecretEndsWithTwoAndSaysWhatToAdd) {
+  for (const char* place : {"0.0.0.0:0", "[::]:0", "192.0.2.1:8448", "[2001:db8::1]:8448"}) {
+    const Ending ending = teleop(std::string("plates --view --listen ") + place);
+    EXPECT_EQ(ending.status, 2) << ending;
+    for (const char* words : {place, "--secret FILE", "--secret-env", "ssh -L"}) {
+      EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
+    }
+  }
+}
+
+TEST(Live, ASecretThatIsNoneEndsWithTwoAndIsNotShown) {
+  const Folder folder;
+  const std::string listen = "plates --view --listen 0.0.0.0:0 ";
+  for (const std::string& text :
+       {std::string(), std::string("\nsecond line is long enough"), std::string("123456789012345"),
+        std::string("with spaces within it"), std::string(300, 'x'),
+        std::string("\x01\x02\x03\x04\x05\x06\x07\x08\x0e\x0f\x10\x11\x12\x13\x14\x15")}) {
+    const std::string path = folder.with("secret", text);
+    const Ending ending = teleop(listen + "--secret " + quoted(path));
+    EXPECT_EQ(ending.status, 2) << ending;
+    EXPECT_TRUE(ending.says(path)) << ending;
+    EXPECT_FALSE(text.size() > 3 && ending.says(text)) << ending;
+  }
+  for (const std::string& wrong :
+       {"--secret " + quoted(folder / "none"), std::string("--secret-env REPEL_NOT_SET"),
+        "--secret " + quoted(folder / "none") + " --secret-env HOME"}) {
+    const Ending ending = teleop(listen + wrong);
+    EXPECT_EQ(ending.status, 2) << ending;
+  }
+}
+
+TEST(Live, WhoMayDriveIsSaidOnTheCommandLine) {
+  for (const char* wrong : {"--view-only", "--view --page-drives", "--secret file",
+                            "--view --view-only --page-drives --device spacenav",
+                            "--view --listen localhost:0", "--view --listen 127.0.0.1:70000"}) {
+    const Ending ending = teleop(std::string("plates ") + wrong);
+    EXPECT_EQ(ending.status, 2) << ending;
+  }
+  const Ending help = teleop("--help");
+  for (const char* option : {"--secret", "--secret-env", "--view-only", "--page-drives"}) {
+    EXPECT_TRUE(help.says(option)) << option;
+  }
+}
+
+TEST(Live, ViewOnlyIsToLookOn) {
+  LiveTeleop program({"plates", "--view-only"});
+  LivePage page(program);
+  EXPECT_EQ(page.await("operator").at("looks_on"), true);
+  for (const char* type : {"take", "pause", "restart", "step", "servo_cv"}) {
+    EXPECT_EQ(page.refusal_of({{"type", type}}), "pages look on only") << type;
+  }
+  const Json first = page.await("frame", [](const Json& f) { return f.at("tick") > 0; });
+  ASSERT_FALSE(first.is_null());
+  EXPECT_NE(first.at("phase"), "") << "the script goes on";
+}
+
 // The page drives one of the two arms; the other goes on with its script.
 TEST(Live, OfTwoArmsTheFirstIsDriven) {
   LiveTeleop program({"two_arms"});

@@ -26,6 +26,7 @@ class ToldPages final : public visual::Pages {
  public:
   std::array<bool, most_pages + 1> open{};
   std::array<bool, most_pages + 1> drives{};
+  std::array<bool, most_pages + 1> looks_on{};
   int refusals = 0;
 
   void send(int page, std::string text) override {
@@ -106,9 +107,10 @@ struct Stage {
   explicit Stage(Bytes& bytes)
       : replay(bytes.take<std::uint8_t>() % 8 == 0),
         device(bytes.take<std::uint8_t>() % 8 == 0),
+        pages_drive(bytes.take<std::uint8_t>() % 8 != 0),
         tool(world.add_body("tool")),
         tap(build(world, tool), {.pairs = 1, .samples = 2}),
-        show(cast(), world, tap, controls, device ? "a device" : "") {
+        show(cast(), world, tap, controls, device ? "a device" : "", pages_drive) {
     controls.may_restart = bytes.take<std::uint8_t>() % 2 == 0;
   }
 
@@ -130,6 +132,7 @@ struct Stage {
 
   bool replay;
   bool device;
+  bool pages_drive;
   World world;
   BodyId tool;
   Tap tap;
@@ -152,19 +155,27 @@ void check(Stage& stage, int page) {
     const Grip& grip = stage.controls.grip.newest();
     require(is_finite(grip.rates) && is_finite(grip.direction_W) && std::isfinite(grip.lever_rate),
             "what is said to the loop is finite");
-    require(grip.rates.linear.norm() <= 10.0 && grip.rates.angular.norm() <= 100.0 &&
-                std::abs(grip.lever_rate) <= 100.0,
-            "and in range");
+    const visual::ArmCast arm;
+    constexpr double rounding = 1.0 + 1e-12;
+    require(grip.rates.linear.norm() <= arm.max_speed * rounding &&
+                grip.rates.angular.norm() <= arm.max_turn * rounding &&
+                std::abs(grip.lever_rate) <= arm.max_lever_rate,
+            "and no faster than the master of the scene");
     require(std::abs(grip.direction_W.norm() - 1.0) < 1e-9, "the direction is a unit");
     require((grip.driver != Driver::page && !moves(grip)) || is_driver, "whoever drives said it");
-    require(grip.driver != Driver::page || (!stage.replay && !stage.device), "they can be driven");
-    require(grip.driver != Driver::device, "a device speaks for itself");
+    require(grip.driver != Driver::page || (!stage.replay && stage.pages_drive),
+            "they can be driven");
+    require(page == 0 || !stage.pages.looks_on[static_cast<std::size_t>(page)],
+            "who looks on says nothing to the loop");
+    require(grip.driver != Driver::device || stage.device, "there is a device");
   }
   const Controls& controls = stage.controls;
   require(controls.steps >= 0 && controls.steps <= 1000000, "steps are counted");
   require(controls.seek < 0.0 || (stage.replay && controls.seek < 10.0), "a recording has an end");
   require(controls.speed >= 0.01 && controls.speed <= 100.0, "speed is in range");
   require(stage.replay || controls.speed == 1.0, "and of a recording");
+  require(stage.pages_drive || (!controls.paused && !controls.restart && controls.steps == 0),
+          "who looks on stops nothing");
   require(!controls.restart || controls.may_restart, "a log is begun once");
 }
 
@@ -177,7 +188,9 @@ void run(Bytes& bytes) {
     auto& open = pages.open[static_cast<std::size_t>(page)];
     if (!open) {
       open = true;
-      stage.show.opened(page, pages);
+      const bool looks_on = bytes.take<std::uint8_t>() % 8 == 0;
+      pages.looks_on[static_cast<std::size_t>(page)] = looks_on;
+      stage.show.opened(page, looks_on ? visual::Role::looks_on : visual::Role::drives, pages);
     } else if (what < 16) {
       open = false;
       pages.drives[static_cast<std::size_t>(page)] = false;

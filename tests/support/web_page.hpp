@@ -37,6 +37,18 @@ class Line {
       throw std::runtime_error("nobody listens on port " + std::to_string(port));
     }
   }
+  /// Over IPv6; one that has ended where this machine has none.
+  static Line over_ipv6(std::uint16_t port) {
+    Line line;
+    line.file_ = ::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in6 address{};
+    address.sin6_family = AF_INET6;
+    address.sin6_port = htons(port);
+    address.sin6_addr = in6addr_loopback;
+    line.ended_ =
+        ::connect(line.file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0;
+    return line;
+  }
   Line(Line&& other) noexcept : file_(std::exchange(other.file_, -1)), ended_(other.ended_) {}
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
@@ -88,6 +100,7 @@ class Line {
   }
 
  private:
+  Line() = default;
   static int in_ms(std::chrono::milliseconds time) { return static_cast<int>(time.count()); }
 
   int file_ = -1;
@@ -176,9 +189,15 @@ struct Frame {
 /// A page that is open. It reads only while it is asked for what has come.
 class WebPage {
  public:
+  /// As a browser opens it, which names the page that asks.
   explicit WebPage(std::uint16_t port, const std::string& target = "/live", int room = 0)
-      : line_(port, room) {
-    (void)line_.send(Ask{"GET", target, "", upgrade_lines()}.text(port));
+      : WebPage(
+            Line(port, room),
+            Ask{"GET", target, "", upgrade_lines("http://127.0.0.1:" + std::to_string(port))}.text(
+                port)) {}
+  /// @param request that asks for the WebSocket
+  WebPage(Line line, const std::string& request) : line_(std::move(line)) {
+    (void)line_.send(request);
     std::size_t end = std::string::npos;
     while (end == std::string::npos && more()) end = come_.find("\r\n\r\n");
     const Answer answer(come_);

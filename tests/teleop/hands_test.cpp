@@ -213,6 +213,39 @@ TEST(Hands, ADeviceHasTheControlsFromTheBeginning) {
   EXPECT_EQ(command.silent_for, 0.0);
 }
 
+devices::Measured deflected(double x) {
+  devices::Measured measured;
+  measured.silent = false;
+  measured.measured_cv.linear = Vec3(x, 0, 0);
+  return measured;
+}
+
+// What the device has said meanwhile is old: it must not be done when it gets them back.
+TEST(Hands, WhereAPageMayHaveThemFromADeviceItDrivesUntilItGivesThemBack) {
+  FakeLink link;
+  Controls controls;
+  controls.over_device = true;
+  Hands hands(script(), &controls, &link);
+  const auto tick = [&]() -> const Command& { return hands.step(Mat3::Identity(), period); };
+  link.post(deflected(0.1));
+  EXPECT_EQ(tick().hand.ball.linear, Vec3(0.1, 0, 0));
+  controls.grip.draft() = {};
+  controls.grip.draft().driver = Driver::page;
+  controls.grip.draft().rates.linear = Vec3(0, 0.2, 0);
+  controls.grip.post();
+  EXPECT_EQ(tick().hand.ball.linear, Vec3(0, 0.2, 0));
+  for (int i = 0; i < 200; ++i) (void)tick();
+  EXPECT_GT(tick().silent_for, Hands::silent_after) << "it is the page that is silent";
+  controls.grip.draft() = {};
+  controls.grip.draft().driver = Driver::device;
+  controls.grip.post();
+  EXPECT_TRUE(at_rest(tick())) << "the thread of the device hangs";
+  EXPECT_GE(tick().silent_for, Hands::silent_after);
+  link.post(deflected(0.3));
+  EXPECT_EQ(tick().hand.ball.linear, Vec3(0.3, 0, 0));
+  EXPECT_EQ(tick().silent_for, 0.0);
+}
+
 // It says so itself, or its thread hangs.
 TEST(Hands, ADeviceThatIsSilentIsAtRest) {
   for (const bool hangs : {false, true}) {

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "teleop/live_stage.hpp"
 
 namespace repel::teleop {
@@ -9,7 +11,7 @@ const Json release{{"type", "release"}};
 TEST(LiveShow, WhoComesIsToldAll) {
   LiveStage stage;
   ++stage.pages.open;
-  stage.show.opened(4, stage.pages);
+  stage.show.opened(4, visual::Role::drives, stage.pages);
   const std::vector<Json> heard = stage.pages.heard_by(4);
   ASSERT_GE(heard.size(), 3U);
   EXPECT_EQ(heard.front().at("type"), "scene");
@@ -191,24 +193,108 @@ TEST(LiveShow, ARecordingIsNotWoundBeyondItsLastTick) {
   }
 }
 
-TEST(LiveShow, NobodyDrivesARecordingOrInPlaceOfADevice) {
+/// What a page that opens is told of who drives.
+Json operator_of(LiveStage& stage, visual::Role role = visual::Role::drives) {
+  ++stage.pages.open;
+  stage.show.opened(4, role, stage.pages);
+  return *last_of(stage.pages.heard_by(4), "operator");
+}
+
+/// Everything that a page can ask for.
+std::vector<Json> all_requests() {
+  return {take,
+          release,
+          servo(0.1, 0, 0),
+          {{"type", "servo_lever"}, {"direction", {1, 0, 0}}, {"rate", 0.5}},
+          {{"type", "pause"}},
+          {{"type", "resume"}},
+          {{"type", "step"}, {"ticks", 1}},
+          {{"type", "restart"}},
+          {{"type", "seek"}, {"time_s", 1.0}},
+          {{"type", "speed"}, {"factor", 2.0}}};
+}
+
+/// Nothing of what page `number` asks for is done.
+void expect_onlooker(LiveStage& stage, int number, const std::string& why) {
+  for (const Json& message : all_requests()) {
+    EXPECT_EQ(stage.say(number, message), why) << message;
+    EXPECT_FALSE(stage.posted()) << message;
+  }
+  EXPECT_FALSE(stage.controls.paused);
+  EXPECT_FALSE(stage.controls.restart);
+  EXPECT_EQ(stage.controls.steps, 0);
+  EXPECT_LT(stage.controls.seek, 0.0);
+  EXPECT_EQ(stage.controls.speed, 1.0);
+}
+
+TEST(LiveShow, NobodyDrivesARecording) {
   LiveStage replay(true);
-  LiveStage device(false, "Spaceball on /run/spnav.sock");
   for (const Json& message : {take, release, servo(0.1, 0, 0)}) {
     EXPECT_EQ(replay.say(1, message), "this is a recording");
-    EXPECT_EQ(device.say(1, message), "Spaceball on /run/spnav.sock has the controls");
   }
   EXPECT_FALSE(replay.posted());
-  EXPECT_FALSE(device.posted());
-  const auto by = [](LiveStage& stage) {
-    ++stage.pages.open;
-    stage.show.opened(4, stage.pages);
-    return last_of(stage.pages.heard_by(4), "operator")->at("by").get<std::string>();
-  };
-  EXPECT_EQ(by(replay), "recording");
-  EXPECT_EQ(by(device), "device");
-  EXPECT_EQ(device.say(1, Json{{"type", "restart"}}), "");
-  EXPECT_FALSE(device.posted());
+  EXPECT_EQ(operator_of(replay).at("by"), "recording");
+}
+
+TEST(LiveShow, WhileADeviceDrivesPagesLookOn) {
+  LiveStage stage(false, "Spaceball on /run/spnav.sock");
+  const std::string why = "Spaceball on /run/spnav.sock has the controls: pages look on only";
+  expect_onlooker(stage, 1, why);
+  const Json who = operator_of(stage);
+  EXPECT_EQ(who.at("by"), "device");
+  EXPECT_EQ(who.at("looks_on"), true);
+  EXPECT_EQ(who.at("why_not"), why);
+}
+
+TEST(LiveShow, APageMayTakeTheControlsFromADeviceWhereThatIsAllowedAndGivesThemBack) {
+  LiveStage stage(false, "Spaceball", true);
+  EXPECT_EQ(operator_of(stage).at("looks_on"), false);
+  EXPECT_EQ(stage.say(1, servo(0.1, 0, 0)), "take the controls first");
+  EXPECT_EQ(stage.say(1, take), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.grip().driver, Driver::page);
+  EXPECT_EQ(stage.say(1, release), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.grip().driver, Driver::device);
+  EXPECT_EQ(stage.say(1, take), "");
+  EXPECT_TRUE(stage.until_told([](const Json& who) { return who.at("by") == "device"; }))
+      << "one that falls silent gives them back too";
+  EXPECT_EQ(stage.say(1, Json{{"type", "restart"}}), "");
+  EXPECT_TRUE(stage.controls.restart);
+}
+
+TEST(LiveShow, WherePagesLookOnNothingTheyAskForIsDone) {
+  for (const bool replay : {false, true}) {
+    LiveStage stage(replay, "", false);
+    expect_onlooker(stage, 1, "pages look on only");
+    EXPECT_EQ(operator_of(stage).at("looks_on"), true);
+  }
+}
+
+TEST(LiveShow, AProgramThatIsNoBrowserLooksOnAndThePagesGoOnDriving) {
+  LiveStage stage;
+  EXPECT_EQ(operator_of(stage, visual::Role::looks_on).at("looks_on"), true);
+  expect_onlooker(stage, 4, "a program without an Origin or a secret looks on only");
+  EXPECT_EQ(stage.say(1, take), "");
+}
+
+// The page itself stays within them; whoever speaks in its place need not.
+TEST(LiveShow, NobodyIsFasterThanTheMasterOfTheScene) {
+  LiveStage stage;
+  (void)stage.say(1, take);
+  Json fast = servo(3, 0, 4);
+  fast["angular"] = {0, -50, 0};
+  EXPECT_EQ(stage.say(1, fast), "");
+  ASSERT_TRUE(stage.posted());
+  const visual::ArmCast cast;
+  EXPECT_TRUE(stage.grip().rates.linear.isApprox(cast.max_speed * Vec3(0.6, 0, 0.8)));
+  EXPECT_TRUE(stage.grip().rates.angular.isApprox(cast.max_turn * Vec3(0, -1, 0)));
+  for (const double rate : {1.6, 5.0, -100.0}) {
+    EXPECT_EQ(stage.say(1, Json{{"type", "servo_lever"}, {"direction", {1, 0, 0}}, {"rate", rate}}),
+              "");
+    ASSERT_TRUE(stage.posted());
+    EXPECT_EQ(stage.grip().lever_rate, std::copysign(cast.max_lever_rate, rate));
+  }
 }
 
 TEST(LiveShow, APictureIsShownWhenThereIsOne) {

@@ -67,12 +67,14 @@ inline visual::Cast cast_of(BodyId tool, bool replay) {
 /// A show with pages 1 to 3 open.
 struct LiveStage {
   explicit LiveStage(bool replay = false, const std::string& device = "")
+      : LiveStage(replay, device, device.empty()) {}
+  LiveStage(bool replay, const std::string& device, bool pages_drive)
       : boxes(2, 3, {.range = 0.02}, 7),
         tap(boxes.world),
-        show(cast_of(boxes.tool, replay), boxes.world, tap, controls, device) {
+        show(cast_of(boxes.tool, replay), boxes.world, tap, controls, device, pages_drive) {
     for (int page = 1; page <= 3; ++page) {
       ++pages.open;
-      show.opened(page, pages);
+      show.opened(page, visual::Role::drives, pages);
     }
     (void)pages.heard_by(1);
   }

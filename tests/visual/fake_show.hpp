@@ -28,8 +28,8 @@ class FakeShow final : public Show {
   std::atomic<int> answer_size{0};   ///< [byte] of what is sent back for "ask"
   std::atomic<bool> tells{false};    ///< sends a message to all at every beat
 
-  void opened(int page, Pages& pages) override {
-    note("opened", page);
+  void opened(int page, Role role, Pages& pages) override {
+    note(role == Role::drives ? "opened" : "looks on", page);
     pages.send(page, "welcome");
   }
   void heard(int page, std::string_view text, Pages& pages) override {

@@ -89,7 +89,7 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   EXPECT_EQ(parts[0].at("pose"), (Json{0.1, -0.2, 0.3, 0.0, 0.0, 0.0, 1.0}));
   EXPECT_EQ(keys_of(scene.at("arms")[0]),
             (std::set<std::string>{"name", "joints", "modules", "tool_body", "max_speed_m_s",
-                                   "max_turn_rad_s"}));
+                                   "max_turn_rad_s", "max_lever_rad_s"}));
 }
 
 TEST(Messages, AFrameIsOfTheDocumentedForm) {

@@ -63,7 +63,8 @@ TEST(ServerHttp, OtherHostsAndOriginsAreForbidden) {
     }
     for (const std::string& origin :
          {std::string("null"), "http://evil.example" + port, std::string("http://localhost:1"),
-          "https://127.0.0.1" + port, std::string("file://")}) {
+          "https://127.0.0.1" + port, std::string("file://"), "http://localhost" + port,
+          "http://127.0.0.2" + port, "http://8.8.8.8" + port, "http://[::1]" + port}) {
       std::string lines = upgrade;
       lines += "Origin: " + origin + "\r\n";
       EXPECT_EQ(ask(stage.port, {"GET", target, "", lines}).status, 403) << target << origin;
@@ -105,20 +106,94 @@ TEST(ServerHttp, GarbageIsNotAnsweredAndHarmsNobody) {
   stage.expect_alive();
 }
 
-// A hundred that say nothing, or half of something: whoever is there already goes on, and when they
-// are gone others can come.
-TEST(ServerHttp, ManyThatSayNothingHoldUpNobodyWhoIsThere) {
-  Stage stage;
-  test::WebPage page(stage.port);
-  {
-    std::vector<Line> silent;
-    for (int i = 0; i < 100; ++i) {
-      silent.emplace_back(stage.port);
-      if (i % 2 == 0) (void)silent.back().send("GET / HTTP/1.1\r\nHost: 127");
-    }
-    stage.expect_pictures(page, 20);
+// Of two hosts or two origins one would have been looked at.
+TEST(ServerHttp, ASecondHostOrOriginIsForbidden) {
+  const Stage stage;
+  const std::string own = "127.0.0.1:" + std::to_string(stage.port);
+  for (const std::string& more :
+       {std::string("Host: evil.example\r\n"), "Host: " + own + "\r\n",
+        "Origin: http://" + own + "\r\nOrigin: http://evil.example\r\n"}) {
+    EXPECT_NE(ask(stage.port, {"GET", "/", "", more}).status, 200) << more;
+    EXPECT_NE(ask(stage.port, {"GET", "/live", "", test::upgrade_lines() + more}).status, 101);
   }
-  EXPECT_TRUE(eventually([&] { return ask(stage.port, {}).status == 200; }));
+}
+
+// On all interfaces too: only the address at this end of the connection is one of this server.
+TEST(ServerHttp, OnAllInterfacesAForeignAddressIsForbidden) {
+  for (const char* address : {"0.0.0.0", "::"}) {
+    ServerOptions options;
+    options.address = address;
+    const Stage stage(options);
+    EXPECT_EQ(stage.server->url(), "http://localhost:" + std::to_string(stage.port) + "/");
+    const std::string port = ":" + std::to_string(stage.port);
+    EXPECT_EQ(ask(stage.port, {"GET", "/", "127.0.0.1" + port}).status, 200) << address;
+    EXPECT_EQ(ask(stage.port, {"GET", "/", "localhost" + port}).status, 200) << address;
+    for (const char* name : {"8.8.8.8", "10.0.0.7", "0.0.0.0", "127.0.0.2", "[::1]", "[::]"}) {
+      EXPECT_EQ(ask(stage.port, {"GET", "/", name + port}).status, 403) << address << name;
+      const std::string upgrade = test::upgrade_lines("http://" + (name + port));
+      EXPECT_EQ(ask(stage.port, {"GET", "/live", "", upgrade}).status, 403) << address << name;
+      EXPECT_EQ(ask(stage.port, {"GET", "/live", name + port, upgrade}).status, 403) << name;
+    }
+    test::WebPage own(stage.port);
+    EXPECT_EQ(own.status(), 101);
+  }
+}
+
+TEST(ServerHttp, OverIPv6ItIsReachedByItsAddressInBrackets) {
+  ServerOptions options;
+  options.address = "::1";
+  std::unique_ptr<Stage> stage;
+  try {
+    stage = std::make_unique<Stage>(options);
+  } catch (const SetupError& error) {
+    GTEST_SKIP() << "no IPv6 on this machine: " << error.what();
+  }
+  const std::uint16_t port = stage->port;
+  const std::string own = "[::1]:" + std::to_string(port);
+  EXPECT_EQ(stage->server->url(), "http://" + own + "/");
+  const auto status = [&](const Ask& request) {
+    Line line = Line::over_ipv6(port);
+    (void)line.send(request.text(port));
+    return Answer(line.receive()).status;
+  };
+  EXPECT_EQ(status({"GET", "/", own}), 200);
+  EXPECT_EQ(status({"GET", "/live", own, test::upgrade_lines("http://" + own)}), 101);
+  EXPECT_EQ(status({"GET", "/", "127.0.0.1:" + std::to_string(port)}), 403);
+  EXPECT_EQ(status({"GET", "/", "[::2]:" + std::to_string(port)}), 403);
+  const std::string foreign = test::upgrade_lines("http://[::2]:" + std::to_string(port));
+  EXPECT_EQ(status({"GET", "/live", own, foreign}), 403);
+}
+
+// A hundred that say nothing, or half of something, hold up neither who is there nor who comes.
+TEST(ServerHttp, ManyThatSayNothingDoNotKeepANewPageOut) {
+  ServerOptions options;
+  options.patience = std::chrono::hours(1);
+  Stage stage(options);
+  test::WebPage page(stage.port);
+  std::vector<Line> silent;
+  for (int i = 0; i < 100; ++i) {
+    silent.emplace_back(stage.port);
+    if (i % 2 == 0) (void)silent.back().send("GET / HTTP/1.1\r\nHost: 127");
+  }
+  stage.expect_pictures(page, 20);
+  EXPECT_EQ(ask(stage.port, {}).status, 200);
+  stage.expect_alive();
+  EXPECT_EQ(silent.front().receive(), "");
+  EXPECT_TRUE(silent.front().ended()) << "the oldest has made way";
+  EXPECT_EQ(silent.back().receive(std::chrono::milliseconds(100)), "");
+  EXPECT_FALSE(silent.back().ended()) << "the newest has not";
+}
+
+// A handshake that comes byte by byte is not given more time with each.
+TEST(ServerHttp, ASlowRequestIsGivenUpHoweverItGoesOn) {
+  Stage stage;
+  Line line(stage.port);
+  (void)line.send("GET / HTTP/1.1\r\nX: ");
+  EXPECT_TRUE(eventually([&] {
+    (void)line.send("x");
+    (void)line.receive(std::chrono::milliseconds(50));
+    return line.ended();
+  }));
   stage.expect_alive();
 }
 

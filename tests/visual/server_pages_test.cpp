@@ -140,6 +140,35 @@ TEST(ServerPages, FloodingCutsItOff) {
   });
 }
 
+// What a reader of messages does not see: pings, pongs, empty parts.
+TEST(ServerPages, FloodingWithFramesThatAreNoMessagesCutsItOff) {
+  for (const Frame& frame :
+       {Frame{Frame::ping, "p"}, Frame{Frame::ping}, Frame{Frame::pong}, Frame{Frame::text, ""}}) {
+    expect_cut_off({1008}, [&](WebPage& page) {
+      for (int i = 0; i < 1000; ++i) {
+        if (!page.send(frame)) return;
+      }
+    });
+  }
+  expect_cut_off({1008}, [](WebPage& page) {
+    for (int i = 0; i < 1000; ++i) {
+      if (!page.send({i == 0 ? Frame::text : Frame::more, "", false})) return;
+    }
+  });
+}
+
+// The last of a flood is not heard after the page was told that it is over.
+TEST(ServerPages, OfAFloodNoMoreIsHeardThanIsAllowed) {
+  Stage stage;
+  WebPage page(stage.port);
+  std::string flood;
+  for (int i = 0; i < 2000; ++i) flood += Frame{Frame::text, "flood"}.bytes();
+  (void)page.line().send(flood);
+  EXPECT_EQ(page.await_close(), 1008);
+  EXPECT_TRUE(eventually([&] { return stage.show.count("closed") == 1; }));
+  EXPECT_LE(stage.show.count("flood"), 400);
+}
+
 TEST(ServerPages, WhatIsAllowedInASecondIsHeard) {
   Stage stage;
   WebPage page(stage.port);

@@ -40,6 +40,7 @@ export class Controls {
     if (this.ours || state.scene?.mode === "replay") return;
     if (performance.now() - this.#askedAt < 300) return;  // the answer is on its way
     this.#askedAt = performance.now();
+    if (state.operator?.looksOn) return toast(`You look on: ${state.operator.whyNot}`);
     if (this.connection.send({ type: "take" }) && state.operator?.by === "script") {
       toast("You take over: the script is over");
     }
@@ -50,13 +51,12 @@ export class Controls {
   }
 
   scene(scene) {
-    at("take").hidden = scene.mode === "replay";
     this.lever.scene(scene.arms[0]);
     this.#speeds();
   }
 
   operator(message) {
-    const { by, you, name, silent } = message;
+    const { by, you, name, silent, looksOn, whyNot } = message;
     const words = {
       script: "The script drives",
       page: you ? "You drive" : "Another page drives",
@@ -66,6 +66,9 @@ export class Controls {
     };
     write(at("who"), words[by] ?? by);
     write(at("take"), you ? "Release" : "Take the controls");
+    at("take").hidden = looksOn || by === "recording";
+    at("onlooker").hidden = !looksOn;
+    at("onlooker").title = whyNot ?? "";
     at("drive-body").hidden = !you;
     at("view").classList.toggle("driving", you);
     banner("silent", silent ? "The device is silent: forces ramp to zero" : "");

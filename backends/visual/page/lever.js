@@ -3,11 +3,11 @@
 
 import { at, finite, fixed, write } from "./words.js";
 
-const MOST_RATE = 1.5;  // [rad/s]
 const LEAST_SCALE = 1;  // [Nm]: the bar is full at the largest torque there was, or at this
 
 export class Lever {
   #most = LEAST_SCALE;
+  #fastest = 0;  // [rad/s]
 
   constructor(keyboard, heading) {
     this.keyboard = keyboard;
@@ -21,12 +21,13 @@ export class Lever {
   scene(arm) {
     at("lever-box").hidden = !arm?.modules.includes("torque_arm");
     this.#most = LEAST_SCALE;
+    this.#fastest = arm?.max_lever_rad_s ?? 0;
   }
 
   // In rad/s; 0 at rest.
   rate() {
     if (at("lever-box").hidden) return 0;
-    return MOST_RATE * (Number(this.slider.value) || this.keyboard.lever());
+    return this.#fastest * (Number(this.slider.value) || this.keyboard.lever());
   }
 
   direction() {

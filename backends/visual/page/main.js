@@ -17,6 +17,7 @@ import { Parts } from "./parts.js";
 import { startProbe } from "./probe.js";
 import { faded, Readouts } from "./readouts.js";
 import { Stage } from "./scene3d.js";
+import { askForSecret, secret, startSecret } from "./secret.js";
 import { settings } from "./settings.js";
 import { startShowMenu } from "./show_menu.js";
 import { SpaceMouse } from "./spacemouse.js";
@@ -76,10 +77,15 @@ let clearedAt = 0;
 let panelsAt = 0;
 let panelsDue = true;
 
-function connected(yes) {
+const MISSING = { "": "No connection to the program. Trying again.",
+                  secret: "",
+                  patience: "Too many wrong secrets came from here. Trying again." };
+
+function connected(yes, missing = "") {
   state.connected = yes;
   at("view").classList.toggle("lost", !yes);
-  banner("lost", yes ? "" : "No connection to the program. Trying again.");
+  banner("lost", yes ? "" : MISSING[missing]);
+  askForSecret(missing === "secret", secret() ? "The secret is another one." : "");
   if (!yes) {
     state.operator = null;
     controls.operator({ by: "nobody", you: false, silent: false });
@@ -117,6 +123,7 @@ connection.on("timing", (timing) => (state.timing = timing));
 connection.on("operator", (operator) => {
   state.operator = operator;
   controls.operator(operator);
+  transport.operator(operator);
   stage.invalidate();
 });
 connection.on("refused", (refused) => controls.refused(refused));
@@ -190,7 +197,7 @@ function draw(now) {
 function onKey(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || at("help").open) return;
   const { tagName, type } = event.target;
-  if (tagName === "SELECT") return;
+  if (tagName === "SELECT" || type === "password") return;
   const presses = tagName === "BUTTON" || tagName === "SUMMARY" || type === "checkbox";
   if (event.key === " " && presses) return;  // it presses what has the focus
   if (event.key === "Home" && type === "range") return;
@@ -215,5 +222,6 @@ addEventListener("keyup", (event) => keyboard.up(event));
 addEventListener("click", (event) => {
   if (event.detail > 0) event.target.closest?.("button, summary")?.blur();
 });
+startSecret(() => connection.reopen());
 connection.open();
 requestAnimationFrame(draw);

@@ -9,6 +9,7 @@ export class Transport {
   #dragging = false;
   #last = 0;
   #replay = false;
+  #looksOn = false;
 
   constructor(connection) {
     this.connection = connection;
@@ -41,6 +42,14 @@ export class Transport {
     this.connection.send({ type: "seek", time_s: time });
   }
 
+  // Who looks on has nothing to press.
+  operator({ looksOn }) {
+    this.#looksOn = looksOn === true;
+    for (const id of ["restart", "pause", "step-1", "step-10", "seek", "speed"]) {
+      at(id).disabled = this.#looksOn;
+    }
+  }
+
   frame(frame) {
     write(at("pause"), frame.running ? "Pause" : "Resume");
     if (!this.#dragging && finite(frame.time_s)) at("seek").value = frame.time_s;
@@ -68,6 +77,7 @@ export class Transport {
   }
 
   key(event) {
+    if (this.#looksOn) return false;
     if (event.key === " ") this.toggle();
     else if (event.key === ".") this.step(1);
     else if (event.key === ">") this.step(10);

@@ -29,9 +29,10 @@ function part(x) {
 }
 
 function arm(x) {
-  const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s } = object(x);
+  const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s } = object(x);
   return { name: text(name), modules: list(modules).map(text), tool_body,
-           max_speed_m_s: number(max_speed_m_s), max_turn_rad_s: number(max_turn_rad_s) };
+           max_speed_m_s: number(max_speed_m_s), max_turn_rad_s: number(max_turn_rad_s),
+           max_lever_rad_s: number(max_lever_rad_s) };
 }
 
 export function scene(x) {
@@ -93,7 +94,7 @@ export function timing(x) {
 
 export function operator(x) {
   return { by: text(x.by), you: x.you === true, name: text(x.name), silent: x.silent === true,
-           pages: number(x.pages) ?? 0 };
+           pages: number(x.pages) ?? 0, looksOn: x.looks_on === true, whyNot: text(x.why_not) };
 }
 
 export function refused(x) {

@@ -21,6 +21,7 @@ struct ArmCast {
   std::vector<std::string> phases;   ///< names of those of its script
   double max_speed = 0.25;           ///< [m/s] that its master can command
   double max_turn = 1.0;             ///< [rad/s]
+  double max_lever_rate = 1.5;       ///< [rad/s] at which a hand leads the lever
 };
 
 /// What stays as it is while a scene runs.

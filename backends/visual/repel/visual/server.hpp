@@ -27,10 +27,18 @@ struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of the interface to listen on
   std::uint16_t port = 8448;          ///< 0: any that is free
   int pages = 8;                      ///< that may be open at a time
-  int messages_per_second = 400;      ///< of one page, before it is cut off
+  int messages_per_second = 400;      ///< of one page, pings and parts too, before it is cut off
   std::size_t message_bytes = 4096;   ///< of one message, before the page is cut off
   double beats_per_second = 60.0;     ///< [Hz] of Show::beat, unless it says when
+  std::string secret;                 ///< that a page must present; empty: none
+  int visitors = 64;                  ///< connections that wait for an answer; the oldest makes way
+  int visitors_of_one = 32;           ///< of them from one address
+  std::chrono::milliseconds patience{2000};  ///< with one that has not said what it wants
 };
+
+/// What a page may do at most: one of another program, which is no browser and presents no secret,
+/// looks on.
+enum class Role { looks_on, drives };
 
 /// The pages that are open, for Show to speak to.
 class Pages {
@@ -53,7 +61,7 @@ class Pages {
 /// What is shown. The thread of the server calls these, one at a time.
 class Show {
  public:
-  virtual void opened(int page, Pages& pages) = 0;
+  virtual void opened(int page, Role role, Pages& pages) = 0;
   virtual void heard(int page, std::string_view text, Pages& pages) = 0;
   virtual void closed(int page, Pages& pages) = 0;
   virtual void beat(Pages& pages) = 0;
@@ -69,8 +77,10 @@ class Show {
 };
 
 /// Listens from construction on. Only a page that it has served itself may talk to it: a request
-/// for another host than the one it listens on and a WebSocket of another origin get 403. Neither a
-/// page that is slow nor one that sends too much or too long messages holds up anyone but itself.
+/// for another host than the end of its own connection and a WebSocket of another origin get 403.
+/// Neither a page that is slow nor one that sends too much or too long messages holds up anyone but
+/// itself, nor do those who connect and say nothing. With a secret nothing is shown or heard before
+/// a page has presented it.
 class Server {
  public:
   /// @param show must live as long as the server
@@ -80,7 +90,7 @@ class Server {
   Server& operator=(const Server&) = delete;
   ~Server();
 
-  /// Where the page is: "http://127.0.0.1:8448/".
+  /// Where the page is for a browser on this machine: "http://127.0.0.1:8448/".
   [[nodiscard]] const std::string& url() const noexcept;
 
  private:

@@ -1,0 +1,88 @@
+/// @file
+/// A connection of which every frame that comes in is counted.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <utility>
+
+#include <boost/asio/compose.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+
+namespace repel::visual {
+
+/// Counts the frames of WebSocket in a stream of bytes: also pings, pongs and empty parts of
+/// messages, which a reader of messages never gets to see.
+class FrameCounter {
+ public:
+  /// How many frames begin in these bytes, which follow those of the last call.
+  [[nodiscard]] int count(std::string_view bytes) noexcept;
+
+ private:
+  [[nodiscard]] std::size_t header_size() const noexcept;
+  [[nodiscard]] std::uint64_t payload_size() const noexcept;
+
+  std::array<unsigned char, 10> header_{};
+  std::size_t known_ = 0;   ///< bytes of the header
+  std::uint64_t skip_ = 0;  ///< bytes of mask and payload that are still to come
+};
+
+/// A layer between a WebSocket and its connection.
+class MeteredStream {
+ public:
+  using executor_type = boost::beast::tcp_stream::executor_type;
+  using Error = boost::beast::error_code;
+
+  explicit MeteredStream(boost::beast::tcp_stream&& stream) : stream_(std::move(stream)) {}
+
+  /// Is told how many frames have come, before they are read.
+  void on_frames(std::function<void(int)> heard) { heard_ = std::move(heard); }
+
+  [[nodiscard]] executor_type get_executor() noexcept { return stream_.get_executor(); }
+  [[nodiscard]] boost::beast::tcp_stream& next_layer() noexcept { return stream_; }
+  [[nodiscard]] const boost::beast::tcp_stream& next_layer() const noexcept { return stream_; }
+
+  template <class Buffers, class Handler>
+  auto async_read_some(const Buffers& buffers, Handler&& handler) {
+    auto read = [this, buffers, begun = false](auto& self, Error error = {},
+                                               std::size_t bytes = 0) mutable {
+      if (!std::exchange(begun, true)) return stream_.async_read_some(buffers, std::move(self));
+      if (bytes > 0) meter(buffers, bytes);
+      self.complete(error, bytes);
+    };
+    return boost::asio::async_compose<Handler, void(Error, std::size_t)>(std::move(read), handler,
+                                                                         stream_);
+  }
+  template <class Buffers, class Handler>
+  auto async_write_some(const Buffers& buffers, Handler&& handler) {
+    return stream_.async_write_some(buffers, std::forward<Handler>(handler));
+  }
+
+  template <class Handler>
+  friend void async_teardown(boost::beast::role_type role, MeteredStream& stream,
+                             Handler&& handler) {
+    using boost::beast::websocket::async_teardown;
+    async_teardown(role, stream.stream_.socket(), std::forward<Handler>(handler));
+  }
+
+ private:
+  template <class Buffers>
+  void meter(const Buffers& buffers, std::size_t bytes) {
+    int frames = 0;
+    const auto come = boost::beast::buffers_prefix(bytes, buffers);
+    for (const auto buffer : boost::beast::buffers_range_ref(come)) {
+      frames += counter_.count({static_cast<const char*>(buffer.data()), buffer.size()});
+    }
+    if (frames > 0 && heard_) heard_(frames);
+  }
+
+  boost::beast::tcp_stream stream_;
+  FrameCounter counter_;
+  std::function<void(int)> heard_;
+};
+
+}  // namespace repel::visual
