@@ -10,6 +10,18 @@
 namespace repel::teleop {
 namespace {
 
+/// What the arm of the back end "ideal" is: joints that move their motors and weigh nothing.
+void make_ideal(ArmModel& model) {
+  model.gravity_W.setZero();
+  for (ArmLink& link : model.links) {
+    link.mass = 0.0;
+    link.I_C_L.setZero();
+    link.rotor_inertia = std::max(0.1, link.rotor_inertia);
+    link.viscous_friction = std::max(1.0, link.viscous_friction);
+    link.coulomb_friction = 0.0;
+  }
+}
+
 Robot load_robot(const scene::RobotChoice& choice, bool with_gravity) {
   UrdfOptions options;
   options.tip = choice.tip_link;
@@ -17,7 +29,7 @@ Robot load_robot(const scene::RobotChoice& choice, bool with_gravity) {
   ArmModel& model = robot.arm;
   model.X_WB = choice.X_WB * model.X_WB;
   model.X_LT = model.X_LT * choice.X_LT;
-  if (!with_gravity) model.gravity_W.setZero();
+  if (!with_gravity) make_ideal(model);
   return robot;
 }
 

@@ -45,6 +45,9 @@ class Pace {
     return beating_ == Beating::by_the_clock ? metronome_.catch_up(period_) : 0;
   }
 
+  /// For how long those at the controls have held the run in all: no time of the loop.
+  [[nodiscard]] nanoseconds paused_for() const { return paused_for_; }
+
   /// The ticks made so far are to be forgotten: `time` [s] is the next one's.
   [[nodiscard]] bool begins_anew(double time) const {
     if (controls_ == nullptr) return false;
@@ -69,6 +72,21 @@ class Pace {
   template <class OnPause>
   bool pause(const std::atomic<bool>& stop, OnPause&& on_pause) {
     bool is_shown = false;
+    const nanoseconds begin = host::steady_now();
+    const bool is_step = sit_out(stop, on_pause, is_shown);
+    if (is_shown) paused_for_ += host::steady_now() - begin;
+    if (is_step) return true;
+    if (held_) {
+      metronome_ = host::Metronome(period_);
+      base_ = {};
+    }
+    held_ = false;
+    return false;
+  }
+
+  /// Returns when the pause is over, or with true when a tick is to be made in it.
+  template <class OnPause>
+  bool sit_out(const std::atomic<bool>& stop, OnPause&& on_pause, bool& is_shown) {
     while (controls_->paused && !stop && !controls_->restart && controls_->seek < 0.0) {
       held_ = true;
       // The other side may take them back at the same time.
@@ -81,11 +99,6 @@ class Pace {
       is_shown = true;
       nap();
     }
-    if (held_) {
-      metronome_ = host::Metronome(period_);
-      base_ = {};
-    }
-    held_ = false;
     return false;
   }
 
@@ -121,6 +134,7 @@ class Pace {
   std::chrono::steady_clock::time_point base_;  ///< of a replay: when `base_time_` was
   double base_time_ = 0.0;                      ///< [s]
   double speed_ = 1.0;
+  nanoseconds paused_for_{0};
   bool held_ = false;  ///< the clock went on without it
   bool has_arrived_ = false;
 };

@@ -230,7 +230,8 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     {
       const host::HeapGuard heap;
       const SystemCallGuard system_calls;
-      records = crew.tick(options.fast ? clock.next(tick) : begin.time_since_epoch());
+      records =
+          crew.tick(options.fast ? clock.next(tick) : begin.time_since_epoch() - pace.paused_for());
     }
     const auto end = steady_clock::now();
     usage.end();

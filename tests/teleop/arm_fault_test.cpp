@@ -101,7 +101,6 @@ std::string scene_text(double speed, Fault fault, double before) {
   const std::string down = "device: spaceball, linear: 0 0 " + rate + " mm/s";
   std::string after = down;
   if (fault == Fault::silent_operator) after += ", silent: yes";
-  if (fault == Fault::bad_command) after = "device: spaceball, linear: 0 0 .nan mm/s";
   return "rate: 400 Hz\nrobot: {urdf: " REPEL_SOURCE
          "/robots/puma560.urdf, start: 0 45 -180 0 -45 0 deg, tool_frame: {position: 0 0 150 mm}}\n"
          "laws: {wall: {range: 20 mm, surface_force: 200 N, damping: 100 N s/m}}\n"
@@ -129,7 +128,8 @@ double height(const Manipulator& at, Kinematics& kinematics, const FaultyArm& ar
 /// Down towards the table at `speed`; the fault comes when the operator has led for `before` [s].
 /// Without one he presses on.
 Descent run_down(Fault fault, double speed, double before) {
-  const scene::Scene parsed = scene::parse(scene_text(speed, fault, before), "scene");
+  scene::Scene parsed = scene::parse(scene_text(speed, fault, before), "scene");
+  if (fault == Fault::bad_command) parsed.script.back().rates.linear.z() = std::nan("");
   Cell cell(parsed, true);
   const Manipulator& puma = cell.arm();
   const ArmModel& model = puma.robot.arm;
