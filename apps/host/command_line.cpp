@@ -51,7 +51,10 @@ CLI::Validator between(double low, double high) {
             double value = 0.0;
             const bool number = CLI::detail::lexical_cast(text, value);
             if (number && value >= low && value <= high) return std::string();
-            return text + " is not a number from " + in_full(low) + " to " + in_full(high);
+            constexpr std::size_t readable = 24;
+            const std::string found =
+                number && text.size() > readable ? repel::to_text(value) : text;
+            return found + " is not a number from " + in_full(low) + " to " + in_full(high);
           },
           in_full(low) + " to " + in_full(high), "between"};
 }

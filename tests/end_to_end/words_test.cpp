@@ -128,7 +128,9 @@ TEST(Words, HugeNumbersGetAnExponent) {
   const Ending start = teleop(quoted(folder.with("start.yaml", text)) + " --fast");
   EXPECT_EQ(start.status, 1) << start;
   EXPECT_FALSE(std::regex_search(start.err, std::regex("[0-9]{20}"))) << start;
-  for (const char* arguments : {"--seconds 1e140", "--rate 1e140", "--budget 1e140"}) {
+  const std::string long_seconds = "--seconds " + std::string(140, '9');
+  const std::string long_rate = "--rate " + std::string(140, '9');
+  for (const std::string& arguments : {long_seconds, long_rate}) {
     const Ending ending = teleop(arguments);
     EXPECT_EQ(ending.status, 2) << ending;
     EXPECT_FALSE(std::regex_search(ending.err, std::regex("[0-9]{20}"))) << ending;
