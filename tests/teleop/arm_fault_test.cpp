@@ -184,16 +184,16 @@ TEST(ArmFault, NoFaultBringsThePumaDeeperThanItGoesWithoutOne) {
                      std::to_string(way) + " m: lowest " + std::to_string(1e3 * run.lowest) +
                      " mm, without " + std::to_string(1e3 * without.lowest) + " mm, " +
                      to_text(run.status) + ", " + to_text(run.stop));
-        EXPECT_GE(run.lowest, without.lowest - 1e-4);
+        // An operator who is back presses on: there the last tenth of a millimetre is friction's.
+        const bool comes_back =
+            fault == Fault::frame_of_zeros || fault == Fault::jump || fault == Fault::huge_rate;
+        EXPECT_GE(run.lowest, without.lowest - (comes_back ? 1e-3 : 1e-5));
         EXPECT_LE(run.noticed, fault == Fault::silent_operator ? 8 : 2);
         EXPECT_GE(run.noticed, 0);
         EXPECT_LE(run.torque, 1.0);
         EXPECT_LE(run.change, 0.5 + 1e-9);
         EXPECT_LE(run.top_speed, 1.5 * 0.25);
-        // An operator who is back, or never was away, leads it again.
-        const bool for_ever =
-            fault != Fault::frame_of_zeros && fault != Fault::jump && fault != Fault::huge_rate;
-        if (for_ever) {
+        if (!comes_back) {
           EXPECT_LE(run.speed_at_end, 1e-3);
         }
       }
