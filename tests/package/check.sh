@@ -50,8 +50,28 @@ plain() {
 }
 
 install_and_move() {
-  cmake --install "$build" --prefix "$scratch/first" && mv "$scratch/first" "$scratch/moved"
+  cmake --install "$build" --prefix "$scratch/first" >"$scratch/installed" &&
+    mv "$scratch/first" "$scratch/moved"
+  cat "$scratch/installed"
+  ! grep 'not built' "$scratch/installed"
 }
+
+# A build of some targets only, as that of ./run, is installed as far as it goes.
+install_a_part() {
+  cmake -S "$root" -B "$scratch/half" -G Ninja -DCMAKE_UNITY_BUILD=ON -DREPEL_BUILD_TESTS=OFF \
+    -DREPEL_BUILD_BENCH=OFF &&
+    cmake --build "$scratch/half" --target repel_record &&
+    cmake --install "$scratch/half" --prefix "$scratch/of_half" >"$scratch/installed" || return 1
+  [ ! -e "$root/apps/qualify" ] || grep 'qualify is not built' "$scratch/installed"
+}
+step "install a build of one library" install_a_part
+prefix=$scratch/of_half
+step "find_package, what was built of it" works find_package "-DPARTS=core;record"
+if [ -e "$(find "$build" -name 'librepel_robots.*')" ]; then
+  step "find_package, what was not" \
+    fails_saying "without its part 'robots'" find_package -DPARTS=robots
+fi
+
 prefix=$scratch/moved
 step "install, then move" install_and_move
 package=$(dirname "$(find "$prefix" -name repel-config.cmake)")
