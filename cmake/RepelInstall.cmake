@@ -6,9 +6,10 @@ include(GNUInstallDirs)
 # repel_say_if_not_built(TARGET FILES...): then FILES, which promise it, are taken away again.
 function(repel_say_if_not_built target)
   string(REPLACE ";" " " promises "${ARGN}")
+  set(remedy "cmake --build ${PROJECT_BINARY_DIR} --target ${target}")
   install(CODE "
     if(NOT EXISTS \"$<TARGET_FILE:${target}>\")
-      message(STATUS \"repel: ${target} is not built, so not installed; to have it: cmake --build ${PROJECT_BINARY_DIR} --target ${target}\")
+      message(STATUS \"repel: ${target} is not built, so not installed; to have it: ${remedy}\")
       foreach(pattern ${promises})
         file(GLOB promises \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/\${pattern}\")
         if(promises)

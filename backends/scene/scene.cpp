@@ -332,4 +332,6 @@ Scene load(const std::string& path) {
   return parse(yaml, path);
 }
 
+void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}
+
 }  // namespace repel::scene

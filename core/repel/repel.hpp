@@ -3,6 +3,7 @@
 #pragma once
 
 #include <repel/base/ids.hpp>
+#include <repel/base/layout.hpp>
 #include <repel/base/limits.hpp>
 #include <repel/base/mailbox.hpp>
 #include <repel/base/ring.hpp>

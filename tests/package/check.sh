@@ -44,6 +44,19 @@ fails_saying() {
   grep -qF "$text" "$scratch/flat"
 }
 
+# A program that is compiled for other registers than the parts it links must not link, and the
+# linker must say it of each part.
+fails_to_link_for_other_registers() {
+  configure find_package "-DPARTS=$parts" -DCMAKE_CXX_FLAGS="$1" || return 1
+  ! cmake --build "$scratch/build" --target consumer >"$scratch/said" 2>&1 || return 1
+  for part in robots bullet ode scene visual; do
+    case ";$parts;" in *";$part;"*)
+      grep "repel::$part::is_built_for(repel::EigenAlignment<.*VectorRegister<" "$scratch/said" ||
+        return 1 ;;
+    esac
+  done
+}
+
 # plain COMPILER FLAGS...: no build system at all.
 plain() {
   "$@" -o "$scratch/plain" && "$scratch/plain"
@@ -85,6 +98,10 @@ step "find_package, core only, nothing else installed" works find_package -DPART
   -DCMAKE_DISABLE_FIND_PACKAGE_orocos_kdl=ON -DCMAKE_DISABLE_FIND_PACKAGE_urdfdom=ON \
   -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
 step "find_package, $parts" works find_package "-DPARTS=$parts"
+if echo 'int i;' | ${CXX:-c++} -mavx512f -mfma -x c++ -c - -o "$scratch/plain" 2>/dev/null; then
+  step "a program for other registers than its parts" \
+    fails_to_link_for_other_registers "-mavx512f -mfma"
+fi
 step "find_package, a part that does not exist" \
   fails_saying "repel has no part 'cellar'" find_package -DPARTS=cellar
 case $parts in *scene*)

@@ -24,7 +24,7 @@ packages_with() {
       END { n = split(wanted, names, " "); for (i = 1; i <= n; ++i) take(names[i]) }'
 }
 
-# owners FILES...: "PACKAGE FILE"; Debian knows a file by the path it had before /lib became /usr/lib.
+# owners FILES...: "PACKAGE FILE"; Debian knows some files by the path without /usr.
 owners() {
   for file in "$@"; do
     package=$( (dpkg-query -S "$file" || dpkg-query -S "${file#/usr}") 2>/dev/null |
