@@ -30,11 +30,14 @@ macro(repel_find_robots)
   repel_pkg_config(TINYXML2 tinyxml2)
   find_package(orocos_kdl QUIET)
   find_package(urdfdom QUIET)
-  find_package(assimp QUIET)  # only for meshes; where they were built in, they are needed
+  # Only for meshes; where they were built in, they are needed. Debian's assimp links zlib by the
+  # name of a file, without its package asking for it.
+  find_package(assimp QUIET)
+  find_package(ZLIB QUIET)
   if(REPEL_ROBOTS_READ_MESHES)
-    set(repel_assimp_or_none assimp_FOUND)
+    set(repel_for_meshes assimp_FOUND ZLIB_FOUND)
   endif()
-  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_assimp_or_none})
+  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_for_meshes})
 endmacro()
 
 macro(repel_find_bullet)

@@ -1,6 +1,23 @@
-# Installs every part that was built, the package file and the pkg-config file of the core.
+# Installs every part that was built, the package file and the pkg-config file of the core. A build
+# may be of some targets only, as that of ./run: what it left out is named and not installed.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
+
+# repel_say_if_not_built(TARGET FILES...): then FILES, which promise it, are taken away again.
+function(repel_say_if_not_built target)
+  string(REPLACE ";" " " promises "${ARGN}")
+  set(remedy "cmake --build ${PROJECT_BINARY_DIR} --target ${target}")
+  install(CODE "
+    if(NOT EXISTS \"$<TARGET_FILE:${target}>\")
+      message(STATUS \"repel: ${target} is not built, so not installed; to have it: ${remedy}\")
+      foreach(pattern ${promises})
+        file(GLOB promises \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/\${pattern}\")
+        if(promises)
+          file(REMOVE \${promises})
+        endif()
+      endforeach()
+    endif()")
+endfunction()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/repel)
 set(REPEL_PACKAGES "")  # a line of the package file for each part: the Debian packages it needs
@@ -13,13 +30,19 @@ foreach(part core ideal devices record robots bullet ode scene visual)
   string(APPEND REPEL_PACKAGES "set(repel_packages_${part} \"${packages}\")\n")
   if(TARGET repel_${part})
     set_target_properties(repel_${part} PROPERTIES EXPORT_NAME ${part})
-    install(TARGETS repel_${part} EXPORT repel-${part} FILE_SET HEADERS)
+    install(TARGETS repel_${part} EXPORT repel-${part} OPTIONAL FILE_SET HEADERS)
     install(EXPORT repel-${part} NAMESPACE repel:: DESTINATION ${package_dir})
+    get_target_property(type repel_${part} TYPE)
+    if(NOT type STREQUAL INTERFACE_LIBRARY)
+      repel_say_if_not_built(
+        repel_${part} ${package_dir}/repel-${part}.cmake ${package_dir}/repel-${part}-*.cmake)
+    endif()
   endif()
 endforeach()
 foreach(program teleop qualify robot_info)
   if(TARGET ${program})
-    install(TARGETS ${program})
+    install(TARGETS ${program} OPTIONAL)
+    repel_say_if_not_built(${program})
   endif()
 endforeach()
 foreach(data scenes robots)

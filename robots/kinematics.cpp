@@ -107,3 +107,6 @@ void Kinematics::gravity_torques(std::span<double> out) noexcept {
 }
 
 }  // namespace repel
+
+void repel::robots::is_built_for(EigenAlignmentHere /*alignment*/,
+                                 VectorRegisterHere /*size*/) noexcept {}

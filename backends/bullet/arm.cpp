@@ -222,4 +222,6 @@ void Arm::clear_faults() noexcept {
   simulation_->faults = {};
 }
 
+void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}
+
 }  // namespace repel::bullet

@@ -357,4 +357,6 @@ Scene load(const std::string& path) {
   return parse(text_of_file(path, "a scene file"), path);
 }
 
+void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}
+
 }  // namespace repel::scene

@@ -237,4 +237,6 @@ std::string timing_message(const Timing& timing) {
       .dump();
 }
 
+void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}
+
 }  // namespace repel::visual

@@ -4,6 +4,7 @@
 
 #include <repel/base/ids.hpp>
 #include <repel/base/input_limits.hpp>
+#include <repel/base/layout.hpp>
 #include <repel/base/limits.hpp>
 #include <repel/base/mailbox.hpp>
 #include <repel/base/ring.hpp>

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <mutex>
 #include <string_view>
 
 namespace {
@@ -31,6 +32,9 @@ void disturb() {
   } else if (kind == "context switch") {
     const timespec nap{0, 1000};
     nanosleep(&nap, nullptr);
+  } else if (kind == "lock") {
+    static std::mutex mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
   }
 }
 

@@ -44,14 +44,47 @@ fails_saying() {
   grep -qF "$text" "$scratch/flat"
 }
 
+# A program that is compiled for other registers than the parts it links must not link, and the
+# linker must say it of each part.
+fails_to_link_for_other_registers() {
+  configure find_package "-DPARTS=$parts" -DCMAKE_CXX_FLAGS="$1" || return 1
+  ! cmake --build "$scratch/build" --target consumer >"$scratch/said" 2>&1 || return 1
+  for part in robots bullet ode scene visual; do
+    case ";$parts;" in *";$part;"*)
+      grep "repel::$part::is_built_for(repel::EigenAlignment<.*VectorRegister<" "$scratch/said" ||
+        return 1 ;;
+    esac
+  done
+}
+
 # plain COMPILER FLAGS...: no build system at all.
 plain() {
   "$@" -o "$scratch/plain" && "$scratch/plain"
 }
 
 install_and_move() {
-  cmake --install "$build" --prefix "$scratch/first" && mv "$scratch/first" "$scratch/moved"
+  cmake --install "$build" --prefix "$scratch/first" >"$scratch/installed" &&
+    mv "$scratch/first" "$scratch/moved"
+  cat "$scratch/installed"
+  ! grep 'not built' "$scratch/installed"
 }
+
+# A build of some targets only, as that of ./run, is installed as far as it goes.
+install_a_part() {
+  cmake -S "$root" -B "$scratch/half" -G Ninja -DCMAKE_UNITY_BUILD=ON -DREPEL_BUILD_TESTS=OFF \
+    -DREPEL_BUILD_BENCH=OFF &&
+    cmake --build "$scratch/half" --target repel_record &&
+    cmake --install "$scratch/half" --prefix "$scratch/of_half" >"$scratch/installed" || return 1
+  [ ! -e "$root/apps/qualify" ] || grep 'qualify is not built' "$scratch/installed"
+}
+step "install a build of one library" install_a_part
+prefix=$scratch/of_half
+step "find_package, what was built of it" works find_package "-DPARTS=core;record"
+if [ -e "$(find "$build" -name 'librepel_robots.*')" ]; then
+  step "find_package, what was not" \
+    fails_saying "without its part 'robots'" find_package -DPARTS=robots
+fi
+
 prefix=$scratch/moved
 step "install, then move" install_and_move
 package=$(dirname "$(find "$prefix" -name repel-config.cmake)")
@@ -65,6 +98,10 @@ step "find_package, core only, nothing else installed" works find_package -DPART
   -DCMAKE_DISABLE_FIND_PACKAGE_orocos_kdl=ON -DCMAKE_DISABLE_FIND_PACKAGE_urdfdom=ON \
   -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
 step "find_package, $parts" works find_package "-DPARTS=$parts"
+if echo 'int i;' | ${CXX:-c++} -mavx512f -mfma -x c++ -c - -o "$scratch/plain" 2>/dev/null; then
+  step "a program for other registers than its parts" \
+    fails_to_link_for_other_registers "-mavx512f -mfma"
+fi
 step "find_package, a part that does not exist" \
   fails_saying "repel has no part 'cellar'" find_package -DPARTS=cellar
 case $parts in *scene*)

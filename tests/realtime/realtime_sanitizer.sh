@@ -17,7 +17,7 @@ for candidate in clang++ clang++-29 clang++-28 clang++-27 clang++-26 clang++-25 
   fi
 done
 if [ -z "$compiler" ]; then
-  echo "skipped: no clang++ 20 or newer; to have it (from apt.llvm.org): apt-get install clang-20"
+  echo "skipped: no clang++ 20 or newer; to have it: apt-get install clang-22 libclang-rt-22-dev"
   exit 77
 fi
 

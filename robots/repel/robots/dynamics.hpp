@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <repel/base/types.hpp>
+#include <repel/robots/built_alike.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <repel/base/types.hpp>
+#include <repel/robots/built_alike.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {

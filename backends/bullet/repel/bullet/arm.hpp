@@ -5,10 +5,15 @@
 #include <memory>
 #include <span>
 
+#include <repel/base/layout.hpp>
 #include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 
 namespace repel::bullet {
+
+/// Defined for the flags this part was built with: a program with others does not link.
+void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+[[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 using ArmOptions = SimulationOptions;
 using ArmFaults = SimulationFaults;

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include <repel/base/layout.hpp>
 #include <repel/base/types.hpp>
 #include <repel/force/law.hpp>
 #include <repel/network/clean_stiffness.hpp>
@@ -20,6 +21,10 @@
 #include <repel/world/arm.hpp>
 
 namespace repel::scene {
+
+/// Defined for the flags this part was built with: a program with others does not link.
+void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+[[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// One convex part P of the tool.
 struct Part {

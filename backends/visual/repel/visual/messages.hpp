@@ -6,10 +6,15 @@
 #include <string>
 #include <vector>
 
+#include <repel/base/layout.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/schedule/deadline.hpp>
 
 namespace repel::visual {
+
+/// Defined for the flags this part was built with: a program with others does not link.
+void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+[[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// One arm of a world, for those who look on.
 struct ArmCast {

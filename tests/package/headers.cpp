@@ -1,0 +1,20 @@
+// The headers of the parts that PARTS asks for. Nothing of them is called: including them is enough
+// for the linker to see whether program and parts were built alike.
+#ifdef PART_robots
+#include <repel/robots/dynamics.hpp>
+#include <repel/robots/kinematics.hpp>
+#include <repel/robots/parts.hpp>
+#include <repel/robots/urdf.hpp>
+#endif
+#ifdef PART_bullet
+#include <repel/bullet/arm.hpp>
+#endif
+#ifdef PART_ode
+#include <repel/ode/arm.hpp>
+#endif
+#ifdef PART_scene
+#include <repel/scene/scene.hpp>
+#endif
+#ifdef PART_visual
+#include <repel/visual/messages.hpp>
+#endif
