@@ -71,7 +71,7 @@ export class Controls {
     at("onlooker").title = whyNot ?? "";
     at("drive-body").hidden = !you;
     at("view").classList.toggle("driving", you);
-    banner("silent", silent ? "The device is silent: forces ramp to zero" : "");
+    banner("silent", silent ? "The device is silent: the operator is let go" : "");
   }
 
   refused({ what, why }) {

@@ -126,6 +126,6 @@ export class Readouts {
 // Whether and why forces are not what the walls ask for.
 export function faded(arm) {
   return finite(arm?.gain) && arm.gain < FADED
-    ? `Forces are faded: ${Math.round(100 * Math.max(0, arm.gain))} % of what the walls ask for`
+    ? `The operator is let go: ${Math.round(100 * Math.max(0, arm.gain))} % of his force`
     : "";
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/base/status.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/joint_speed.hpp>

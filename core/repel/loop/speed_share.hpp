@@ -15,7 +15,7 @@ struct SpeedShare {
 /// @param speed of the tool [m/s]; `limit` [m/s] at which the operator may lead it, above 0
 [[nodiscard]] inline SpeedShare speed_share(double speed, double limit) noexcept {
   const double part = speed / limit;
-  return {std::clamp((1.2 - part) / 0.2, 0.0, 1.0), std::clamp((part - 1.2) / 0.3, 0.0, 1.0)};
+  return {std::clamp(1.0 - (part - 1.0) / 0.2, 0.0, 1.0), std::clamp((part - 1.2) / 0.3, 0.0, 1.0)};
 }
 
 }  // namespace repel

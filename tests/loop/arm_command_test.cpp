@@ -8,7 +8,7 @@
 #include "loop/faulty_slider.hpp"
 
 namespace repel {
-namespace fault_test {
+namespace arm_command_test {
 
 using test::Fault;
 using test::FaultRun;
@@ -142,5 +142,5 @@ TEST(Fault, TorquesChangeNoFasterThanStated) {
   }
 }
 
-}  // namespace fault_test
+}  // namespace arm_command_test
 }  // namespace repel

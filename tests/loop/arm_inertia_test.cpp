@@ -1,0 +1,95 @@
+#include <repel/loop/arm_inertia.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "loop/slider.hpp"
+
+namespace repel {
+namespace arm_inertia_test {
+
+/// A link of 2 kg that turns about z at the end of an arm of 0.5 m, and one of 1 kg 0.3 m further.
+struct TwoLinks {
+  TwoLinks() {
+    for (int i = 0; i < 2; ++i) {
+      ArmLink link;
+      link.mass = 2.0 - i;
+      link.p_LC = Vec3(i == 0 ? 0.5 : 0.3, 0.0, 0.0);
+      link.X_PJ.translation().x() = i == 0 ? 0.0 : 0.8;
+      link.I_C_L = Mat3::Identity() * 0.01;
+      link.rotor_inertia = 0.1;
+      model.links.push_back(link);
+    }
+  }
+  void update(std::span<const double> joints) noexcept { q = {joints[0], joints[1]}; }
+  [[nodiscard]] Pose X_WL(int link) const noexcept {
+    Pose X = Pose(Eigen::AngleAxisd(q[0], Vec3::UnitZ()));
+    if (link == 0) return X;
+    X = X * model.links[1].X_PJ;
+    return X * Eigen::AngleAxisd(q[1], Vec3::UnitZ());
+  }
+  [[nodiscard]] Pose X_WT() const noexcept { return X_WL(1); }
+  void jacobian(int link, const Vec3& p_WQ,
+                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+    J.setZero();
+    for (int i = 0; i <= link; ++i) {
+      J.col(i).head<3>() = Vec3::UnitZ().cross(p_WQ - X_WL(i).translation());
+      J.col(i).tail<3>() = Vec3::UnitZ();
+    }
+  }
+  void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+    jacobian(1, X_WT().translation(), J);
+  }
+  void gravity_torques(std::span<double> out) noexcept { std::fill(out.begin(), out.end(), 0.0); }
+
+  ArmModel model;
+  std::array<double, 2> q{};
+};
+
+TEST(ArmInertia, IsThatOfTheTextbookForTwoLinks) {
+  TwoLinks arm;
+  ArmInertia inertia(arm.model);
+  for (const double elbow : {0.0, 1.0, -2.0}) {
+    arm.q = {0.3, elbow};
+    inertia.update(arm);
+    const double c = std::cos(elbow);
+    const double own = 0.01 + 1.0 * 0.3 * 0.3;
+    EXPECT_NEAR(inertia.matrix()(1, 1), own + 0.1, 1e-12);
+    EXPECT_NEAR(inertia.matrix()(0, 1), own + 1.0 * 0.8 * 0.3 * c, 1e-12);
+    EXPECT_NEAR(inertia.matrix()(1, 0), inertia.matrix()(0, 1), 0.0);
+    EXPECT_NEAR(inertia.matrix()(0, 0),
+                0.1 + 0.01 + 2.0 * 0.25 + own + 0.8 * 0.8 + 2.0 * 0.8 * 0.3 * c, 1e-12);
+  }
+}
+
+TEST(ArmInertia, AJointOfWhichNoMassIsKnownMovesAHundredthOfItsEffort) {
+  ArmModel model = test::slider_model(300.0);
+  model.links[1].rotor_inertia = 0.0;
+  ArmInertia inertia(model);
+  inertia.update(test::SliderKinematics());
+  EXPECT_EQ(inertia.matrix()(0, 0), 5.0);
+  EXPECT_EQ(inertia.matrix()(1, 1), 3.0);
+  ArmInertia::Vector p;
+  inertia.momenta({1.0, 2.0, 0.0}, p);
+  EXPECT_EQ(p(0), 5.0);
+  EXPECT_EQ(p(1), 6.0);
+  EXPECT_EQ(p(2), 0.0);
+}
+
+TEST(ArmInertia, AnEffortThatIsNotKnownIsBoundedByWhatTheJointCarries) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(effort_bound(test::slider_model(300.0), 0), 300.0);
+  for (const double unknown : {0.0, infinite}) {
+    EXPECT_EQ(effort_bound(test::slider_model(unknown), 0), 1000.0);
+  }
+  TwoLinks arm;
+  EXPECT_EQ(effort_bound(arm.model, 1), 200.0);
+  arm.model.links[1].mass = 50.0;
+  const double carried = 2.0 * 9.81 * (2.0 * 0.5 + 50.0 * 1.1);
+  EXPECT_GT(effort_bound(arm.model, 0), carried);
+  EXPECT_LT(effort_bound(arm.model, 0), 1e4);
+}
+
+}  // namespace arm_inertia_test
+}  // namespace repel

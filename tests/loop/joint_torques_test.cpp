@@ -1,0 +1,126 @@
+#include <repel/loop/joint_torques.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "loop/slider.hpp"
+
+namespace repel {
+namespace joint_torques_test {
+
+constexpr double period = 0.0025;
+
+struct Bench {
+  explicit Bench(double effort_limit = 100.0)
+      : model(test::slider_model(effort_limit)), torques(model, period, {}), inertia(model) {
+    inertia.update(test::SliderKinematics());
+    network.setZero(3);
+    walls.setZero(3);
+    set_weight(0.0);
+  }
+  void set_weight(double weight) { std::fill_n(torques.gravity().begin(), 3, weight); }
+  Status step(const TorqueShares& shares = {}) {
+    return torques.compose(network, walls, shares, v, inertia);
+  }
+  [[nodiscard]] double sent(int joint = 0) const { return torques.torques()[joint]; }
+
+  ArmModel model;  // three sliders of 5 kg
+  JointTorques torques;
+  ArmInertia inertia;
+  JointTorques::Vector network, walls;  // [N]
+  std::vector<double> v{0.0, 0.0, 0.0};
+};
+
+TEST(JointTorques, AddUpWeightOperatorAndWalls) {
+  Bench bench;
+  bench.network << 7.0, 0.0, 0.0;
+  bench.walls << 3.0, 0.0, 0.0;
+  bench.set_weight(20.0);
+  EXPECT_EQ(bench.step({.operators = 0.5}), 0U);
+  EXPECT_EQ(bench.sent(), 20.0 + 0.5 * 4.0 + 3.0);
+  EXPECT_EQ(bench.torques.net()(0), 5.0);
+}
+
+TEST(JointTorques, TheShareOfDrivingActsWhereTheOperatorGivesPowerAlone) {
+  for (const double rate : {0.1, -0.1}) {
+    Bench bench;
+    bench.network << 7.0, 0.0, 0.0;
+    bench.v[0] = rate;
+    EXPECT_EQ(bench.step({.drive = 0.0}), 0U);
+    EXPECT_EQ(bench.sent(), rate > 0.0 ? 0.0 : 7.0);
+  }
+}
+
+TEST(JointTorques, BrakingTakesItsShareOfTheMomentumAndNeverDrives) {
+  Bench bench;
+  bench.v = {0.1, -0.05, 0.0};
+  EXPECT_EQ(bench.step({.brake = 1.0}), 0U);
+  EXPECT_NEAR(bench.sent(0), -5.0 * 0.1 / 0.02, 1e-12);
+  EXPECT_NEAR(bench.sent(1), 5.0 * 0.05 / 0.02, 1e-12);
+  EXPECT_EQ(bench.sent(2), 0.0);
+}
+
+TEST(JointTorques, BrakingTakesWhatEffortIsLeftAndKeepsItsDirection) {
+  Bench bench;
+  bench.set_weight(90.0);
+  bench.v = {-0.2, 0.1, 0.0};
+  (void)bench.step({.brake = 1.0});
+  EXPECT_NEAR(bench.sent(0), 100.0, 1e-9);
+  EXPECT_NEAR(bench.sent(1), 85.0, 1e-9);
+}
+
+TEST(JointTorques, BrakingStepsBackWhereAWallPushesTheArmAhead) {
+  Bench bench;
+  bench.v[0] = 0.1;
+  bench.walls << 5.0, 0.0, 0.0;
+  bench.network = bench.walls;
+  (void)bench.step({.brake = 1.0});
+  EXPECT_NEAR(bench.sent(), 5.0 - (25.0 - 4.0 * 5.0), 1e-9);
+  bench.walls << 50.0, 0.0, 0.0;
+  bench.network = bench.walls;
+  (void)bench.step({.brake = 1.0});
+  EXPECT_GT(bench.sent(), 45.0);
+}
+
+TEST(JointTorques, AreWithinTheEffortAndChangeNoFasterThanStated) {
+  Bench bench;
+  (void)bench.step();
+  bench.network << 1e9, 0.0, 0.0;
+  EXPECT_EQ(bench.step(), status::torque_limit | status::torque_rate);
+  EXPECT_EQ(bench.sent(), 50.0);  // half a slew time
+  EXPECT_EQ(bench.step(), status::torque_limit);
+  EXPECT_EQ(bench.sent(), 100.0);
+  bench.network << -1e9, 0.0, 0.0;
+  for (const double expected : {50.0, 0.0, -50.0, -100.0, -100.0}) {
+    (void)bench.step();
+    EXPECT_EQ(bench.sent(), expected);
+  }
+}
+
+TEST(JointTorques, ANumberThatIsNoneIsAFaultAndTheWeightIsCarriedOn) {
+  for (int which = 0; which < 3; ++which) {
+    Bench bench;
+    bench.set_weight(20.0);
+    (void)bench.step();
+    if (which == 0) bench.network(1) = std::nan("");
+    if (which == 1) bench.walls(1) = INFINITY;
+    if (which == 2) bench.torques.gravity()[1] = std::nan("");
+    EXPECT_EQ(bench.step() & status::bad_torque, status::bad_torque) << which;
+    for (int joint = 0; joint < 3; ++joint) EXPECT_EQ(bench.sent(joint), 20.0) << which;
+  }
+}
+
+TEST(JointTorques, SayHowFastEachJointIsExpectedToBe) {
+  Bench bench;
+  bench.model.links[0].viscous_friction = 0.0;
+  bench.network << 10.0, 0.0, 0.0;
+  (void)bench.step();
+  EXPECT_NEAR(bench.torques.expected_rate()(0), period * 10.0 / 5.0, 1e-12);
+  bench.model.links[0].coulomb_friction = 4.0;
+  (void)bench.step({.friction = 0.0});
+  EXPECT_NEAR(bench.torques.expected_rate()(0), period * 6.0 / 5.0, 1e-12);
+}
+
+}  // namespace joint_torques_test
+}  // namespace repel

@@ -1,0 +1,32 @@
+#include <repel/loop/speed_share.hpp>
+
+#include <gtest/gtest.h>
+
+namespace repel {
+namespace speed_share_test {
+
+TEST(SpeedShare, LeavesTheToolAloneUpToTheLimit) {
+  for (const double speed : {0.0, 0.1, 0.25}) {
+    EXPECT_EQ(speed_share(speed, 0.25).drive, 1.0);
+    EXPECT_EQ(speed_share(speed, 0.25).brake, 0.0);
+  }
+}
+
+TEST(SpeedShare, DrivesNoMoreAndBrakesBeyondAFifthMore) {
+  EXPECT_NEAR(speed_share(0.275, 0.25).drive, 0.5, 1e-12);
+  EXPECT_EQ(speed_share(0.275, 0.25).brake, 0.0);
+  EXPECT_NEAR(speed_share(0.3, 0.25).drive, 0.0, 1e-12);
+  EXPECT_NEAR(speed_share(0.3375, 0.25).brake, 0.5, 1e-12);
+  EXPECT_EQ(speed_share(10.0, 0.25).drive, 0.0);
+  EXPECT_EQ(speed_share(10.0, 0.25).brake, 1.0);
+}
+
+TEST(SpeedShare, NeverDrivesAndBrakesAtOnce) {
+  for (double speed = 0.0; speed < 1.0; speed += 0.001) {
+    const SpeedShare share = speed_share(speed, 0.25);
+    EXPECT_NEAR(share.drive * share.brake, 0.0, 1e-12) << speed;
+  }
+}
+
+}  // namespace speed_share_test
+}  // namespace repel
