@@ -4,7 +4,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
+
+#include <repel/base/complaint.hpp>
 
 #include "times.hpp"
 
@@ -98,22 +101,36 @@ LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log)
         for (;;) {
           const bool last = stop.stop_requested();  // and then what is left
           for (const Snapshot* tick = ticks_.front(); tick != nullptr; tick = ticks_.front()) {
-            log_.write(*tick);
+            attempt([&] { log_.write(*tick); });
+            if (!failure_.empty()) ++unwritten_;
             ticks_.pop();
           }
           if (last) return;
           if (Clock::now() - flushed > std::chrono::milliseconds(500)) {
-            log_.flush();
+            attempt([&] { log_.flush(); });
             flushed = Clock::now();
           }
           std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
       }) {}
 
+template <class Work>
+void LogThread::attempt(const Work& work) noexcept {
+  if (!failure_.empty()) return;
+  failure_ = complaint_of(work);
+  if (failure_.empty()) return;
+  std::fprintf(stderr, "The log ends here, the run goes on: %s\n", failure_.c_str());
+}
+
 std::int64_t LogThread::close() {
   thread_ = {};
-  log_.close(ticks_.dropped());
-  return ticks_.dropped();
+  const std::int64_t lacking = ticks_.dropped() + unwritten_;
+  if (!failure_.empty()) {
+    (void)complaint_of([&] { log_.close(lacking); });  // as far as it goes
+    return lacking;
+  }
+  log_.close(lacking);
+  return lacking;
 }
 
 }  // namespace repel::teleop

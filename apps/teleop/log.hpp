@@ -33,7 +33,8 @@ class TickLog {
 [[nodiscard]] std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading);
 
 /// Takes ticks out of the tap and writes them. Never delays the loop: what the thread is too slow
-/// for is dropped and counted by the tap.
+/// for is dropped and counted by the tap. Never ends it either: when the log throws, that is said
+/// on stderr and kept, and what comes after it is counted as dropped.
 class LogThread {
  public:
   /// Both must live as long as it does.
@@ -42,10 +43,17 @@ class LogThread {
   /// Writes what is left and ends the file; returns how many ticks were dropped.
   /// @throws SetupError if something of it could not be written
   std::int64_t close();
+  /// What the log threw; empty if nothing. After `close`.
+  [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
 
  private:
+  template <class Work>
+  void attempt(const Work& work) noexcept;
+
   Ring<Snapshot>& ticks_;
   TickLog& log_;
+  std::string failure_;         // of the thread until it has ended, as is what follows
+  std::int64_t unwritten_ = 0;  // since then
   std::jthread thread_;
 };
 

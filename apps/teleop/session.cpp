@@ -145,7 +145,11 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
     controls.restart = false;
     result = run(scene, options, company, stop, show);
   }
-  if (writing) result.log_dropped = writing->close();
+  if (writing) {
+    result.log_dropped = writing->close();
+    const std::string& failure = writing->failure();
+    if (!failure.empty()) result.warnings.push_back("the log ends early: " + failure);
+  }
   return result;
 }
 

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <thread>
@@ -10,6 +11,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <repel/base/complaint.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/visual/server.hpp>
 
@@ -59,7 +61,7 @@ class Server::Impl final : public Pages {
     beat();
     thread_ = std::jthread([this] {
       (void)pthread_setname_np(pthread_self(), "repel view");
-      context_.run();
+      while (!context_.stopped()) attempt([this] { context_.run(); });
     });
   }
   Impl(const Impl&) = delete;
@@ -115,7 +117,7 @@ class Server::Impl final : public Pages {
   void accept() {
     acceptor_.async_accept([this](Error error, tcp::socket socket) {
       if (!error && visitors_ < most_connections)
-        receive(std::make_shared<Visitor>(std::move(socket)));
+        attempt([&] { receive(std::make_shared<Visitor>(std::move(socket))); });
       if (error == asio::error::operation_aborted) return;
       if (!error) return accept();
       // Out of descriptors: not at once again.
@@ -187,11 +189,13 @@ class Server::Impl final : public Pages {
   void open(const Guest& guest, const Request& request) {
     const int number = next_page_++;
     PageSession::Events events;
-    events.opened = [this, number] { show_.opened(number, *this); };
-    events.heard = [this, number](std::string_view text) { show_.heard(number, text, *this); };
+    events.opened = [this, number] { attempt([&] { show_.opened(number, *this); }); };
+    events.heard = [this, number](std::string_view text) {
+      attempt([&] { show_.heard(number, text, *this); });
+    };
     events.closed = [this, number] {
       pages_.erase(number);
-      show_.closed(number, *this);
+      attempt([&] { show_.closed(number, *this); });
     };
     events.failed = [this, number] { pages_.erase(number); };
     const auto page =
@@ -204,12 +208,23 @@ class Server::Impl final : public Pages {
     using Clock = std::chrono::steady_clock;
     const auto pace = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1.0 / options_.beats_per_second));
-    beats_.expires_at(show_.next_beat().value_or(Clock::now() + pace));
+    std::optional<Clock::time_point> next;
+    attempt([&] { next = show_.next_beat(); });
+    beats_.expires_at(next.value_or(Clock::now() + pace));
     beats_.async_wait([this](Error error) {
       if (error) return;
-      show_.beat(*this);
+      attempt([this] { show_.beat(*this); });
       beat();
     });
+  }
+
+  /// The server goes on whatever is thrown, and says so once for as long as it is the same.
+  template <class Work>
+  void attempt(const Work& work) noexcept {
+    const std::string why = complaint_of(work);
+    if (why.empty() || why == complaint_) return;
+    std::fprintf(stderr, "The live view has failed and goes on: %s\n", why.c_str());
+    (void)complaint_of([&] { complaint_ = why; });
   }
 
   ServerOptions options_;
@@ -222,6 +237,7 @@ class Server::Impl final : public Pages {
   std::map<int, std::shared_ptr<PageSession>> pages_;
   int next_page_ = 1;
   int visitors_ = 0;
+  std::string complaint_;  // the last that was said
   asio::steady_timer beats_;
   asio::steady_timer retry_{context_};
   std::jthread thread_;
