@@ -5,9 +5,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <system_error>
 #include <utility>
+
+#include <repel/base/complaint.hpp>
 
 #include "times.hpp"
 
@@ -128,8 +131,7 @@ LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log,
           write_all();
           if (last) return;
           if (Clock::now() - flushed > std::chrono::milliseconds(500)) {
-            if (!is_lost_) log_.flush();
-            look_for_trouble();
+            attempt([this] { log_.flush(); });
             flushed = Clock::now();
           }
           std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -138,24 +140,35 @@ LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log,
 
 void LogThread::write_all() {
   for (const Snapshot* tick = ticks_.front(); tick != nullptr; tick = ticks_.front()) {
-    if (!is_lost_) log_.write(*tick);
+    attempt([&] { log_.write(*tick); });
+    unwritten_ += is_lost_ ? 1 : 0;
     ticks_.pop();
-    look_for_trouble();
   }
 }
 
-void LogThread::look_for_trouble() {
+/// What the log throws, and what it says of its file, ends the writing and not the run.
+template <class Work>
+void LogThread::attempt(const Work& work) noexcept {
   if (is_lost_) return;
-  const std::string trouble = log_.trouble();
-  is_lost_ = !trouble.empty();
-  if (is_lost_) on_trouble_(trouble);
+  std::string trouble = complaint_of(work);
+  if (trouble.empty()) trouble = log_.trouble();
+  if (!trouble.empty()) lose(trouble);
+}
+
+void LogThread::lose(const std::string& trouble) {
+  is_lost_ = true;
+  on_trouble_(trouble);
 }
 
 std::int64_t LogThread::close() {
   thread_ = {};
-  log_.close(ticks_.dropped());
-  look_for_trouble();
-  return ticks_.dropped();
+  const std::int64_t lacking = ticks_.dropped() + unwritten_;
+  if (is_lost_) {
+    (void)complaint_of([&] { log_.close(lacking); });  // as far as it goes
+  } else {
+    attempt([&] { log_.close(lacking); });
+  }
+  return lacking;
 }
 
 }  // namespace repel::teleop

@@ -38,7 +38,8 @@ class TickLog {
 [[nodiscard]] std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading);
 
 /// Takes ticks out of the tap and writes them. Never delays the loop: what the thread is too slow
-/// for is dropped and counted by the tap. With a file that cannot be written on the run goes on.
+/// for is dropped and counted by the tap. With a file that cannot be written, or a log that throws,
+/// the run goes on, and what comes after is counted as dropped.
 class LogThread {
  public:
   /// Both must live as long as it does.
@@ -51,12 +52,15 @@ class LogThread {
 
  private:
   void write_all();
-  void look_for_trouble();
+  template <class Work>
+  void attempt(const Work& work) noexcept;
+  void lose(const std::string& trouble);
 
   Ring<Snapshot>& ticks_;
   TickLog& log_;
   std::function<void(const std::string&)> on_trouble_;
-  bool is_lost_ = false;  ///< nothing more need be written
+  bool is_lost_ = false;        ///< nothing more need be written
+  std::int64_t unwritten_ = 0;  ///< ticks since then
   std::jthread thread_;
 };
 

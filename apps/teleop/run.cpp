@@ -8,6 +8,7 @@
 #include <thread>
 #include <type_traits>
 
+#include <repel/base/complaint.hpp>
 #include <repel/ideal/arm.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/loop/tick.hpp>
@@ -84,7 +85,12 @@ class ProgressThread {
           name_this_thread("repel progress");
           while (!stop.stop_requested()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
-            if (box.take()) show(box.newest());
+            if (!box.take()) continue;
+            const std::string why = complaint_of([&] { show(box.newest()); });
+            if (why.empty()) continue;
+            std::fprintf(stderr, "Progress is not shown any more, the run goes on: %s\n",
+                         why.c_str());
+            return;
           }
         }) {}
 

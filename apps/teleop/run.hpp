@@ -65,7 +65,7 @@ struct RunResult {
   std::vector<ArmResult> arms;        ///< that of the scene itself, then its partners
   double device_damping = 0.0;        ///< [N s/m] least, of the arms at their tools at the start
   std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts that start
-                                      ///< in an obstacle
+                                      ///< in an obstacle, a log that ended early
   DurationHistogram network_time;     ///< of the networks alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
   std::int64_t most_support_pairs = 0;  ///< in one tick

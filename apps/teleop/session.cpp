@@ -34,7 +34,7 @@ class RunLog {
   /// Ends the file and puts it in its place, or leaves what there is of it where it is.
   void close(RunResult& result) {
     result.log_dropped = thread_.close();
-    if (log_->trouble().empty()) {
+    if (trouble_.empty()) {
       try {
         part_.put_in_place();
       } catch (const SetupError& error) {

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <thread>
@@ -12,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/base/complaint.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/visual/server.hpp>
 
@@ -87,7 +89,7 @@ class Server::Impl final : public Pages {
     beat();
     thread_ = std::jthread([this] {
       (void)pthread_setname_np(pthread_self(), "repel view");
-      context_.run();
+      while (!context_.stopped()) attempt([this] { context_.run(); });
     });
   }
   Impl(const Impl&) = delete;
@@ -153,7 +155,7 @@ class Server::Impl final : public Pages {
 
   void accept() {
     acceptor_.async_accept([this](Error error, tcp::socket socket) {
-      if (!error) receive(std::make_shared<Visitor>(std::move(socket)));
+      if (!error) attempt([&] { receive(std::make_shared<Visitor>(std::move(socket))); });
       if (error == asio::error::operation_aborted) return;
       if (!error) return accept();
       // Out of descriptors: not at once again.
@@ -238,18 +240,18 @@ class Server::Impl final : public Pages {
     const Role role = request.count(http::field::origin) > 0 ? Role::drives : Role::looks_on;
     PageSession::Events events;
     events.opened = [this, number, role] {
-      if (pages_.contains(number)) return show_.opened(number, role, *this);
+      if (pages_.contains(number)) return attempt([&] { show_.opened(number, role, *this); });
       const auto found = newcomers_.find(number);
       if (found != newcomers_.end())
         found->second.page->send(std::make_shared<const std::string>(question));
     };
     events.heard = [this, number](std::string_view text) {
-      if (pages_.contains(number)) return show_.heard(number, text, *this);
-      present(number, text);
+      if (pages_.contains(number)) return attempt([&] { show_.heard(number, text, *this); });
+      attempt([&] { present(number, text); });
     };
     events.closed = [this, number] {
       newcomers_.erase(number);
-      if (pages_.erase(number) > 0) show_.closed(number, *this);
+      if (pages_.erase(number) > 0) attempt([&] { show_.closed(number, *this); });
     };
     events.failed = [this, number] {
       newcomers_.erase(number);
@@ -288,11 +290,13 @@ class Server::Impl final : public Pages {
   void beat() {
     const auto pace = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(1.0 / options_.beats_per_second));
-    beats_.expires_at(show_.next_beat().value_or(Clock::now() + pace));
+    std::optional<Clock::time_point> next;
+    attempt([&] { next = show_.next_beat(); });
+    beats_.expires_at(next.value_or(Clock::now() + pace));
     beats_.async_wait([this](Error error) {
       if (error) return;
       send_away_the_late();
-      show_.beat(*this);
+      attempt([this] { show_.beat(*this); });
       beat();
     });
   }
@@ -301,6 +305,15 @@ class Server::Impl final : public Pages {
     for (const auto& [number, newcomer] : newcomers_) {
       if (newcomer.until < Clock::now()) newcomer.page->close(no_secret);
     }
+  }
+
+  /// The server goes on whatever is thrown, and says so once for as long as it is the same.
+  template <class Work>
+  void attempt(const Work& work) noexcept {
+    const std::string why = complaint_of(work);
+    if (why.empty() || why == complaint_) return;
+    std::fprintf(stderr, "The live view has failed and goes on: %s\n", why.c_str());
+    (void)complaint_of([&] { complaint_ = why; });
   }
 
   ServerOptions options_;
@@ -314,6 +327,7 @@ class Server::Impl final : public Pages {
   std::map<int, std::shared_ptr<PageSession>> pages_;
   std::map<int, Newcomer> newcomers_;
   int next_page_ = 1;
+  std::string complaint_;  // the last that was said
   asio::steady_timer beats_;
   asio::steady_timer retry_{context_};
   std::jthread thread_;

@@ -2,6 +2,7 @@
 /// Everything of the core in one include.
 #pragma once
 
+#include <repel/base/complaint.hpp>
 #include <repel/base/ids.hpp>
 #include <repel/base/input_limits.hpp>
 #include <repel/base/layout.hpp>

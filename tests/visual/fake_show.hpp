@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -26,6 +27,7 @@ class FakeShow final : public Show {
   std::atomic<bool> shows{true};     ///< a picture at every beat
   std::atomic<int> picture_size{8};  ///< [byte]
   std::atomic<int> answer_size{0};   ///< [byte] of what is sent back for "ask"
+  std::atomic<bool> throws{false};   ///< whatever it is asked
   std::atomic<bool> tells{false};    ///< sends a message to all at every beat
 
   void opened(int page, Role role, Pages& pages) override {
@@ -34,11 +36,13 @@ class FakeShow final : public Show {
   }
   void heard(int page, std::string_view text, Pages& pages) override {
     note(std::string(text.substr(0, 100)), page);
+    if (throws) throw std::runtime_error("the show fails");
     if (text == "ask") pages.send(page, std::string(static_cast<std::size_t>(answer_size), 'a'));
   }
   void closed(int page, Pages& /*pages*/) override { note("closed", page); }
   void beat(Pages& pages) override {
     ++beats_;
+    if (throws) throw std::runtime_error("the show fails");
     open_ = pages.count();
     if (tells) pages.send_all(std::string(static_cast<std::size_t>(picture_size), 't'));
     if (shows) pages.show(std::string(static_cast<std::size_t>(picture_size), 'p'));

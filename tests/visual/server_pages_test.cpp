@@ -45,6 +45,25 @@ TEST(ServerPages, TheShowHearsOfAPageFromItsBeginningToItsEnd) {
             (std::vector<std::string>{"opened", "hello", "", "in two parts", "closed"}));
 }
 
+TEST(ServerPages, AShowThatThrowsInTheThreadOfTheServerEndsNeitherTheProgramNorThePage) {
+  testing::internal::CaptureStderr();
+  {
+    Stage stage;
+    WebPage page(stage.port);
+    EXPECT_EQ(page.next(), "welcome");
+    stage.show.throws = true;
+    const std::int64_t before = stage.show.beats();
+    EXPECT_TRUE(page.say("hello"));
+    EXPECT_TRUE(eventually([&] { return stage.show.count("hello") == 1; }));
+    EXPECT_TRUE(eventually([&] { return stage.show.beats() > before + 3; }));
+    stage.show.throws = false;
+    stage.expect_pictures(page, 3);
+    stage.expect_alive();
+  }
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(said, "The live view has failed and goes on: the show fails\n");  // once
+}
+
 TEST(ServerPages, EachHasANumberOfItsOwn) {
   Stage stage;
   for (int i = 0; i < 3; ++i) {

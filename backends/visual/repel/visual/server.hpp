@@ -58,7 +58,8 @@ class Pages {
   virtual ~Pages() = default;
 };
 
-/// What is shown. The thread of the server calls these, one at a time.
+/// What is shown. The thread of the server calls these, one at a time. What they throw is said on
+/// stderr, and the server goes on.
 class Show {
  public:
   virtual void opened(int page, Role role, Pages& pages) = 0;
