@@ -37,7 +37,7 @@ std::string without_end(std::string line) {
 }
 
 /// What is wrong with a secret, which is not shown.
-std::string complaint_of(const std::string& secret) {
+std::string secret_complaint(const std::string& secret) {
   const bool plain =
       std::all_of(secret.begin(), secret.end(), [](char c) { return c > ' ' && c <= '~'; });
   if (plain && secret.size() >= least_secret && secret.size() <= most_secret) return {};
@@ -51,7 +51,7 @@ std::string read_secret(SessionOptions& session) {
     const char* value = std::getenv(session.secret_env.c_str());
     if (value == nullptr) return "--secret-env: " + session.secret_env + " is not set";
     session.secret = value;
-    const std::string complaint = complaint_of(session.secret);
+    const std::string complaint = secret_complaint(session.secret);
     return complaint.empty() ? complaint : "--secret-env: " + session.secret_env + complaint;
   }
   const std::string& path = session.secret_file;
@@ -60,7 +60,7 @@ std::string read_secret(SessionOptions& session) {
   if (!file || !std::getline(file, line))
     return "--secret: " + path + " cannot be read, or is empty";
   session.secret = without_end(line);
-  const std::string complaint = complaint_of(session.secret);
+  const std::string complaint = secret_complaint(session.secret);
   if (!complaint.empty()) return "--secret: the first line of " + path + complaint;
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&

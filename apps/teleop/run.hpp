@@ -72,7 +72,7 @@ struct RunResult {
   std::chrono::nanoseconds compute{0};  ///< of all ticks together
   DurationHistogram arm_step;           ///< time of the simulated arm, outside the tick
   std::int64_t over_budget = 0;         ///< ticks that computed longer than the scene's wall budget
-  std::int64_t skipped_ticks = 0;       ///< given up after a pause of more than a second
+  std::int64_t skipped_ticks = 0;       ///< due, and never made: each a miss
   std::int64_t allocations_in_tick = -1;  ///< -1, here and below: could not be counted
   std::int64_t system_calls_in_tick = -1;
   std::int64_t page_faults_in_tick = -1;  ///< minor and major; of the thread of the tick, as below
