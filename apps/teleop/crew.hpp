@@ -13,6 +13,7 @@
 
 #include "cell.hpp"
 #include "hands.hpp"
+#include "run_options.hpp"
 
 namespace repel::teleop {
 
@@ -25,10 +26,10 @@ class Crew {
   /// @param arms one for each of the cell, in the same order; kept by reference, as is the cell
   /// @param controls, device of the first arm; null: its script drives it
   Crew(const scene::Scene& scene, Cell& cell, std::span<Arm> arms, Coprocessor& coprocessor,
-       Controls* controls, devices::DeviceLink* device, double rate_hz)
+       Controls* controls, devices::DeviceLink* device, const RunOptions& run)
       : cell_(cell),
         coprocessor_(coprocessor),
-        period_(std::llround(1e9 / rate_hz)),
+        period_(std::llround(1e9 / run.rate_hz)),
         clock_(period_, std::chrono::nanoseconds::max()) {
     for (std::size_t i = 0; i < arms.size(); ++i) {
       const scene::Station& station = scene.station(i);
@@ -37,8 +38,8 @@ class Crew {
                               i == 0 ? device : nullptr);
       members_.emplace_back(arm.robot.arm, arms[i], arm.kinematics, cell.world, arm.tool,
                             coprocessor, operators_.back(),
-                            scene::build_network(scene, station, arm.robot.arm, rate_hz), period_,
-                            arm.links, options_of(scene));
+                            scene::build_network(scene, station, arm.robot.arm, run.rate_hz),
+                            period_, arm.links, options_of(scene, run));
       records_.push_back(nullptr);
     }
   }

@@ -196,6 +196,11 @@ void show_tick(const Company& company, const Coprocessor& coprocessor, bool fast
   company.tap->note(coprocessor, records, times);
 }
 
+/// When a tick was due that began `late` [ns].
+nanoseconds due_at(steady_clock::time_point begin, nanoseconds late) noexcept {
+  return std::chrono::duration_cast<nanoseconds>(begin.time_since_epoch()) - late;
+}
+
 /// A simulated arm has a clock of its own: it goes on where no tick is made.
 template <TorqueDrivenArm Arm>
 void move_on(std::span<Arm> arms, double period, std::int64_t periods) {
@@ -230,14 +235,19 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     if (pace.begins_anew(time)) break;
     const nanoseconds late = pace.wait(
         time, shift.stop, [&] { crew.rehearse(); }, show_last);
+    const std::int64_t lost = pace.catch_up();
+    result.skipped_ticks += lost;
+    result.deadline.skip(lost);
+    move_on(shift.arms, period_s, lost);
+    k += lost;
     if (recording != nullptr) follow(*recording, tick, shift.arms, crew);
     usage.begin();
     const auto begin = steady_clock::now();
     {
       const host::HeapGuard heap;
       const SystemCallGuard system_calls;
-      records =
-          crew.tick(options.fast ? clock.next(tick) : begin.time_since_epoch() - pace.paused_for());
+      records = crew.tick(options.fast ? clock.next(tick)
+                                       : due_at(begin, late - lost * period) - pace.paused_for());
     }
     const auto end = steady_clock::now();
     usage.end();
@@ -253,11 +263,6 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     if (pace.has_arrived()) show_last();
     progress.draft() = progress_of(*records.front(), result);
     progress.post();
-    const std::int64_t lost = pace.catch_up();
-    result.skipped_ticks += lost;
-    result.deadline.skip(lost);
-    move_on(shift.arms, period_s, lost);
-    k += lost;
   }
   if (recording != nullptr) {
     show_last();
@@ -283,7 +288,7 @@ void run_with(const Shift<Arm>& shift, const std::function<void(const Progress&)
   Coprocessor coprocessor(shift.cell.world, coprocessor_options(result, period));
   if (shift.company.tap != nullptr) shift.company.tap->watch(shift.cell.world);
   Crew<Arm> crew(result.scene, shift.cell, shift.arms, coprocessor, shift.company.controls,
-                 shift.company.device, options.rate_hz);
+                 shift.company.device, options);
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
   TickUsage usage;

@@ -101,7 +101,7 @@ TEST(Words, RunThatIsNotByTheClockClaimsNoDeadline) {
 TEST(Words, WarningsStandBeforeTheNumbers) {
   const Folder folder;
   const std::string scene =
-      folder.with("scene.yaml", robot_text() +
+      folder.with("scene.yaml", "start_inside: push_out\n" + robot_text() +
                                     "obstacles:\n  - {name: around, shape: sphere, radius: 100 mm, "
                                     "position: 0.6 -0.15 0.5 m}\n"
                                     "laws:\n  default: {range: 1 mm, surface_force: 1 N, "

@@ -28,5 +28,23 @@ TEST(SpeedShare, NeverDrivesAndBrakesAtOnce) {
   }
 }
 
+TEST(SpeedShare, NoHandLeadsFasterThanTheToolMayBe) {
+  network::HandInput hand;
+  hand.ball.linear = Vec3(0.0, 0.1, 0.0);
+  hand.lever_rate = 1.0;
+  EXPECT_FALSE(cut_to_speed(hand, 0.25, 0.1));
+  EXPECT_EQ(hand.ball.linear, Vec3(0.0, 0.1, 0.0));
+  EXPECT_EQ(hand.lever_rate, 1.0);
+  for (const double huge : {10.0, 1e300}) {
+    hand.ball.linear = Vec3(0.0, huge, 0.0);
+    hand.lever_rate = -huge;
+    hand.direction_W = Vec3(huge, 0.0, 0.0);
+    EXPECT_TRUE(cut_to_speed(hand, 0.25, 0.1));
+    EXPECT_NEAR(hand.ball.linear.y(), 0.25, 1e-12);
+    EXPECT_EQ(hand.lever_rate, -2.5);
+    EXPECT_NEAR(hand.direction_W.x(), 1.0, 1e-12);
+  }
+}
+
 }  // namespace speed_share_test
 }  // namespace repel

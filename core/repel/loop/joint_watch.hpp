@@ -24,6 +24,8 @@ struct JointWatchOptions {
   int repeats = 1;                ///< ticks for which a sound arm may report the same of a moving
                                   ///< joint; more where it is asked more often than it measures
   double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
+  bool touches = false;           ///< the arm may press on what is not in the model: a joint that
+                                  ///< stands still against a force is believed
   int regain = 4;                 ///< sound readings in a row after which they are believed again
 };
 
@@ -204,7 +206,7 @@ class JointWatch {
     }
     const double most =
         force > 0.05 * joint.effort ? 2.0 * options_.resolution : options_.position_noise;
-    const bool must_move = joint.forced_way > most;
+    const bool must_move = !options_.touches && joint.forced_way > most;
     if (joint.same > options_.repeats && (joint.moved || moves || must_move)) joint.stuck = true;
     return joint.stuck;
   }

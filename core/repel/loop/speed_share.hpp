@@ -3,6 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+
+#include <repel/network/signals.hpp>
 
 namespace repel {
 
@@ -16,6 +19,21 @@ struct SpeedShare {
 [[nodiscard]] inline SpeedShare speed_share(double speed, double limit) noexcept {
   const double part = speed / limit;
   return {std::clamp(1.0 - (part - 1.0) / 0.2, 0.0, 1.0), std::clamp((part - 1.2) / 0.3, 0.0, 1.0)};
+}
+
+/// No hand leads faster than the tool may be: cuts what it does to that. The way of the lever is at
+/// most of length one. True when something was cut.
+/// @param scale of the lever [m/rad], above 0
+[[nodiscard]] inline bool cut_to_speed(network::HandInput& hand, double limit,
+                                       double scale) noexcept {
+  const double ball = hand.ball.linear.stableNorm();
+  if (ball > limit) hand.ball.linear *= limit / ball;
+  const double length = hand.direction_W.stableNorm();
+  if (length > 1.0 + 1e-9) hand.direction_W /= length;
+  const double most = limit / scale;
+  const bool is_fast = ball > limit || std::abs(hand.lever_rate) > most;
+  hand.lever_rate = std::clamp(hand.lever_rate, -most, most);
+  return is_fast;
 }
 
 }  // namespace repel

@@ -13,6 +13,7 @@
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
+#include <repel/loop/speed_share.hpp>
 #include <repel/loop/tick_clock.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
@@ -185,13 +186,9 @@ class Teleoperator {
     if (command.silent_for > patience) record_.status |= status::silent_device;
     signals_.hand = command.hand;
     record_.command = command;
-    // No hand leads faster than the tool may be.
-    const double ball = signals_.hand.ball.linear.stableNorm();
-    if (ball > options_.tool_speed) signals_.hand.ball.linear *= options_.tool_speed / ball;
-    const double length = signals_.hand.direction_W.stableNorm();
-    if (length > 1.0 + 1e-9) signals_.hand.direction_W /= length;
-    const double most = options_.tool_speed / lever_scale_;
-    signals_.hand.lever_rate = std::clamp(signals_.hand.lever_rate, -most, most);
+    if (cut_to_speed(signals_.hand, options_.tool_speed, lever_scale_)) {
+      record_.status |= status::saturated;
+    }
   }
 
   void run_network() noexcept {
