@@ -76,7 +76,13 @@ class Crew {
   [[nodiscard]] const std::deque<Member>& members() const noexcept { return members_; }
 
  private:
-  static TeleoperatorOptions options_of(const scene::Scene& /*scene*/) { return {}; }
+  static TeleoperatorOptions options_of(const scene::Scene& scene, const RunOptions& run) {
+    TeleoperatorOptions options;
+    options.tool_speed = scene.tool_speed;
+    options.push_out = scene.start_inside == scene::StartInside::push_out;
+    options.joints.touches = run.contact;
+    return options;
+  }
 
   Cell& cell_;
   Coprocessor& coprocessor_;

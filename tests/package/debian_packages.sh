@@ -44,7 +44,8 @@ scratch=$(mktemp)
 trap 'rm -f "$scratch"' EXIT
 listed=$(awk '!/^#/ && NF && $1 !~ /^(ci|browser|fresh|rtsan)$/ { print $2 }' \
   "$1/cmake/debian-packages.txt" | tr '\n' ' ')
-files=$(grep -ohE '/usr/lib/[^ |:$]*\.(so[.0-9]*|a)( |$)' "$2/build.ninja" | grep -v 'libclang_rt' | sort -u)
+files=$(grep -ohE '/usr/lib/[^ |:$]*\.(so[.0-9]*|a)( |$)' "$2/build.ninja" |
+  grep -v libclang_rt | sort -u)
 # shellcheck disable=SC2086
 found=$(missing "$listed" $files)
 if [ -n "$found" ]; then

@@ -82,6 +82,8 @@ class ArmCommand {
   [[nodiscard]] bool has_let_go() const noexcept {
     return failsafe_.tripped() && failsafe_.gain() == 0.0;
   }
+  /// Of what pushes the arm out of where it starts, nothing is held back any more.
+  [[nodiscard]] bool pushes_out_whole() const noexcept { return exit_share_ >= 1.0; }
   /// The last torques were no numbers: all memories begin anew.
   [[nodiscard]] bool is_poisoned() const noexcept { return is_poisoned_; }
 
@@ -100,7 +102,7 @@ class ArmCommand {
   }
 
   [[nodiscard]] TorqueShares shares_of(const ArmMotion& motion, const JointWatch& watch,
-                                       TickRecord& record) const noexcept {
+                                       TickRecord& record) noexcept {
     const bool let_go = failsafe_.tripped();
     const SpeedShare at_speed = speed_share(motion.tool_speed, options_.tool_speed);
     if (at_speed.drive < 1.0 && !let_go) record.status |= status::tool_speed;
@@ -108,12 +110,20 @@ class ArmCommand {
     shares.operators = record.brakes ? 0.0 : record.gain;
     shares.drive = let_go ? 0.0 : at_speed.drive;
     shares.walls = record.brakes ? 0.0 : 1.0;
+    if ((record.status & status::pushed_out) != 0U) shares.walls = exit_share(motion.tool_speed);
     shares.friction = let_go ? 0.0 : record.gain;
     shares.brake = std::max(let_go ? 1.0 : 1.0 - record.gain, at_speed.brake);
     if (!BrakedArm<Arm>) return without_brakes(shares, watch);
     if (record.brakes) shares.brake = 0.0;
     if (record.stop == Stop::released) shares.gravity = 0.0;
     return shares;
+  }
+
+  // Of walls that push an arm out of what it starts in: from none up until it moves, and less again
+  // where it is too fast.
+  [[nodiscard]] double exit_share(double speed) noexcept {
+    exit_share_ += speed < options_.exit_speed ? 0.005 : -0.02;
+    return exit_share_ = std::clamp(exit_share_, 0.0, 1.0);
   }
 
   // Nothing but the motors holds the weight, as long as a pose is known.
@@ -148,6 +158,7 @@ class ArmCommand {
   StopControl stop_control_;
   JointTorques torques_;
   network::Vec<network::any_size> walls_;  // [N m] of walls and limits on the joints
+  double exit_share_ = 0.0;
   bool is_poisoned_ = false;
   double stopped_for_ = 0.0;  // [s] the arm by itself, with nothing else wrong
 };

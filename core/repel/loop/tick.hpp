@@ -171,7 +171,8 @@ class Teleoperator {
   // The walls may give what an arm takes that leaves at exit_speed, and nobody leads it meanwhile.
   void push_out(const PairTotals& totals) noexcept {
     constexpr double lever = 0.5;  // [m] of a wall that turns a joint
-    if (totals.nearest > 0.0) {
+    const bool is_felt = totals.peak_force > 0.0;
+    if (totals.nearest > 0.0 && (!is_felt || command_.pushes_out_whole())) {
       pushing_out_ = false;
       return;
     }
