@@ -48,6 +48,7 @@ std::string secret_complaint(const std::string& secret) {
 
 std::string read_secret(SessionOptions& session) {
   if (!session.secret_env.empty()) {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): at the beginning, before there is another thread
     const char* value = std::getenv(session.secret_env.c_str());
     if (value == nullptr) return "--secret-env: " + session.secret_env + " is not set";
     session.secret = value;

@@ -93,7 +93,7 @@ class ArmInertia {
   // The lower triangle.
   template <ArmKinematics Kinematics>
   void add(const Kinematics& kinematics, const ArmLink& link, int index) noexcept {
-    const Pose X_WL = kinematics.X_WL(index);
+    const Pose& X_WL = kinematics.X_WL(index);
     kinematics.jacobian(index, X_WL * link.p_LC, drawn_);
     const Mat3 I_W = X_WL.linear() * link.I_C_L * X_WL.linear().transpose();
     for (Eigen::Index i = 0; i <= index; ++i) {
