@@ -105,6 +105,21 @@ void describe_pages(CLI::App& app, Arguments& a, CLI::Option* view) {
       ->excludes(only);
 }
 
+/// Below the options of --help.
+std::string footer() {
+  return "Scenes:" + scene_list() +
+         "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
+         "scene):\n"
+         "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
+         "or, in place of the script, the page of --view and what --device names\n\n"
+         "What is written stands beside its place as FILE.part until it is whole. Ctrl-C, SIGTERM "
+         "and\n"
+         "SIGHUP fade the forces, then the run ends with its report; a second Ctrl-C ends it at "
+         "once.\n\n"
+         "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
+         "4 it ran, but a file or the output could not be written whole.";
+}
+
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds,
@@ -167,18 +182,7 @@ void describe(CLI::App& app, Arguments& a) {
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
                  "--budget", "--every-pair", "--tool-alone", "--device");
-  app.footer(
-      "Scenes:" + scene_list() +
-      "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
-      "scene):\n"
-      "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
-      "or, in place of the script, the page of --view and what --device names\n\n"
-      "What is written stands beside its place as FILE.part until it is whole. Ctrl-C, SIGTERM "
-      "and\n"
-      "SIGHUP fade the forces, then the run ends with its report; a second Ctrl-C ends it at "
-      "once.\n\n"
-      "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
-      "4 it ran, but a file or the output could not be written whole.");
+  app.footer(footer());
 }
 
 /// One line that is written over on a terminal, and a line every five seconds elsewhere.
