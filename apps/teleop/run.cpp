@@ -196,9 +196,9 @@ void show_tick(const Company& company, const Coprocessor& coprocessor, bool fast
   company.tap->note(coprocessor, records, times);
 }
 
-/// When a tick was due that began `late` [ns].
-nanoseconds due_at(steady_clock::time_point begin, nanoseconds late) noexcept {
-  return std::chrono::duration_cast<nanoseconds>(begin.time_since_epoch()) - late;
+/// When a tick was due that begins now, `late` [ns].
+nanoseconds due_before(nanoseconds late) noexcept {
+  return std::chrono::duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()) - late;
 }
 
 /// A simulated arm has a clock of its own: it goes on where no tick is made.
@@ -235,6 +235,7 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     if (pace.begins_anew(time)) break;
     const nanoseconds late = pace.wait(
         time, shift.stop, [&] { crew.rehearse(); }, show_last);
+    const nanoseconds due = due_before(late) - pace.paused_for();
     const std::int64_t lost = pace.catch_up();
     result.skipped_ticks += lost;
     result.deadline.skip(lost);
@@ -246,8 +247,7 @@ void make_ticks(const Shift<Arm>& shift, Crew<Arm>& crew, const Coprocessor& cop
     {
       const host::HeapGuard heap;
       const SystemCallGuard system_calls;
-      records = crew.tick(options.fast ? clock.next(tick)
-                                       : due_at(begin, late - lost * period) - pace.paused_for());
+      records = crew.tick(options.fast ? clock.next(tick) : due + lost * period);
     }
     const auto end = steady_clock::now();
     usage.end();
