@@ -142,6 +142,25 @@ TEST(JointWatch, AJointAtRestMayReportTheSameForEver) {
   for (int tick = 0; tick < 4000; ++tick) ASSERT_EQ(bench.read(bench.q, bench.v), 0U);
 }
 
+// A wrist of little inertia and much friction stands within a period, at 100 Hz still where it was
+// read last.
+TEST(JointWatch, AJointThatItsFrictionStopsAtOnceIsBelieved) {
+  Bench bench;
+  bench.model.links[0].coulomb_friction = 400.0;
+  bench.net(0) = 4.0;
+  for (int tick = 0; tick < 100; ++tick) ASSERT_EQ(bench.step(), 0U);
+  ASSERT_GT(bench.v[0], 0.05);
+  bench.v[0] = 0.0;
+  for (int tick = 0; tick < 400; ++tick) ASSERT_EQ(bench.read(bench.q, bench.v), 0U) << tick;
+  // Without friction it cannot have stopped there.
+  bench.model.links[0].coulomb_friction = 0.0;
+  for (int tick = 0; tick < 100; ++tick) ASSERT_EQ(bench.step(), 0U);
+  bench.v[0] = 0.0;
+  Status found = 0;
+  for (int tick = 0; tick < 3; ++tick) found |= bench.read(bench.q, bench.v);
+  EXPECT_EQ(found, status::frozen_joints);
+}
+
 TEST(JointWatch, OptionsOutOfRangeAreRefused) {
   const ArmModel model = test::slider_model(100.0);
   EXPECT_THROW(JointWatch(model, period, {.position_noise = -1.0}), SetupError);

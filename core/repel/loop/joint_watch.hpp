@@ -190,8 +190,8 @@ class JointWatch {
     if (held_) return joint.stuck;
     const double clear = 0.1 * options_.rate_noise;
     if (joint.same == 1) {
-      const double speed = std::abs(joint.read_v);
-      joint.moved = speed > clear && speed * elapsed > 10.0 * options_.resolution;
+      joint.moved = std::abs(joint.read_v) > clear &&
+                    shortest_way(joint, link, inertia, elapsed) > 5.0 * options_.resolution;
       joint.moved_at = joint.read_v;
     }
     const bool moves = std::abs(v) * elapsed > options_.resolution &&
@@ -209,6 +209,15 @@ class JointWatch {
     const bool must_move = !options_.touches && joint.forced_way > most;
     if (joint.same > options_.repeats && (joint.moved || moves || must_move)) joint.stuck = true;
     return joint.stuck;
+  }
+
+  // [rad] on from the last reading, if friction and all that was sent stop the joint.
+  [[nodiscard]] double shortest_way(const Joint& joint, const ArmLink& link, double inertia,
+                                    double elapsed) const noexcept {
+    const double force = 1.5 * link.coulomb_friction + std::abs(joint.net);
+    const double v = std::abs(joint.read_v);
+    const double stopping = 0.5 * v * v * inertia / (options_.mass_uncertainty * force + 1e-12);
+    return std::min(v * elapsed, stopping);
   }
 
   // Where a reading may be after a while without any: on from the last one believed, which braked.
