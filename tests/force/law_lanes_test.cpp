@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/double_double.hpp>
+
 #include "support/families.hpp"
 
 namespace repel::detail {
@@ -36,6 +38,23 @@ TEST(LawLanes, AreTheLawsOneByOne) {
   }
   EXPECT_GT(pushing, 1000);
   EXPECT_GT(capped, 100);
+}
+
+// One formula for numbers of every kind: in extended precision it is the same to the last digits.
+TEST(LawLanes, AreTheFormulaOfExtendedPrecision) {
+  constexpr unsigned seed = 43;
+  families::Rng random(seed);
+  for (int round = 0; round < 3000; ++round) {
+    const ForceLaw law{.range = families::uniform(random, 0.001, 0.1),
+                       .surface_force = families::uniform(random, 0.0, 200.0),
+                       .damping = families::uniform(random, 0.0, 100.0)};
+    const LawFormula<DoubleDouble> exact{law.range, law.surface_force, law.damping, 1e9};
+    const double distance = families::uniform(random, -0.05, 0.12);
+    const double rate = families::uniform(random, -0.5, 0.5);
+    const double force = exact(distance, rate).hi;
+    ASSERT_NEAR(law(distance, rate), force, 1e-12 * (1.0 + force) + 1e-12 * law.surface_force)
+        << "round " << round << ", seed " << seed;
+  }
 }
 
 }  // namespace law_lanes_test

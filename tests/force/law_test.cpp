@@ -98,11 +98,11 @@ TEST(ForceLaw, RetreatNeverMeetsMoreForceThanRest) {
 
 TEST(ForceLaw, DampingBeginsAtZeroAtTheRangeAndIsFullFromTheSurfaceOn) {
   const ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 50.0};
-  EXPECT_EQ(law.damper(0.02), 0.0);
-  EXPECT_EQ(law.damper(0.03), 0.0);
-  EXPECT_NEAR(law.damper(0.01), 25.0, 1e-12);
-  EXPECT_EQ(law.damper(0.0), 50.0);
-  EXPECT_EQ(law.damper(-0.01), 50.0);
+  EXPECT_EQ(law.formula().damper(0.02), 0.0);
+  EXPECT_EQ(law.formula().damper(0.03), 0.0);
+  EXPECT_NEAR(law.formula().damper(0.01), 25.0, 1e-12);
+  EXPECT_EQ(law.formula().damper(0.0), 50.0);
+  EXPECT_EQ(law.formula().damper(-0.01), 50.0);
 }
 
 TEST(ForceLaw, SpringGivesBackOnAClosedPathWhatItTook) {

@@ -11,6 +11,42 @@
 
 namespace repel {
 
+/// The force of a pair that is not passable, for numbers of any kind: double, an extended
+/// precision, or lanes with a pair in each. The formula stands here and nowhere else; its letters
+/// are those of ForceLaw.
+template <class Number>
+struct LawFormula {
+  Number range;          ///< r [m]
+  Number surface_force;  ///< F [N]
+  Number damping;        ///< c0 [N s/m]
+  Number ceiling;        ///< [N]
+
+  /// phi(d) [N] within the range, without the ceiling.
+  [[nodiscard]] Number spring(const Number& distance) const noexcept {
+    const Number share = distance / range;
+    const Number inward = 1.0 - share;
+    const Number bent = surface_force * inward * inward;
+    const Number straight = surface_force * (1.0 - 2.0 * share);
+    return distance > 0.0 ? bent : straight;
+  }
+  /// c(d) [N s/m].
+  [[nodiscard]] Number damper(const Number& distance) const noexcept {
+    const Number none = Number{};
+    const Number all = none + 1.0;
+    const Number share = 1.0 - distance / range;
+    const Number positive = share > none ? share : none;
+    return damping * (positive < all ? positive : all);
+  }
+  /// f [N], 0 to the ceiling.
+  [[nodiscard]] Number operator()(const Number& distance, const Number& rate) const noexcept {
+    const Number none = Number{};
+    const Number wanted = spring(distance) - damper(distance) * rate;
+    const Number pushed = wanted > none ? wanted : none;
+    const Number size = pushed < ceiling ? pushed : ceiling;
+    return distance < range ? size : none;
+  }
+};
+
 /// The nonlinear spring-damper of one pair (Anderson 1993, section 2: zero outside a threshold
 /// region, a large force at the surface).
 ///
@@ -40,12 +76,13 @@ struct ForceLaw {
 
   static constexpr double most = 1e9;  ///< of every number but the ceiling
 
+  [[nodiscard]] LawFormula<double> formula() const noexcept {
+    return {range, surface_force, damping, ceiling};
+  }
+
   /// phi(d) [N], never negative, without the ceiling.
   [[nodiscard]] double spring(double distance) const noexcept {
-    if (distance >= range) return 0.0;
-    const double inward = 1.0 - distance / range;
-    return distance > 0.0 ? surface_force * inward * inward
-                          : surface_force * (1.0 - 2.0 * distance / range);
+    return distance >= range ? 0.0 : formula().spring(distance);
   }
 
   /// The work [J] it takes against the spring to bring the pair to this distance from beyond its
@@ -78,18 +115,12 @@ struct ForceLaw {
     return std::min(spring * std::max(0.0, 1.0 - damping / ceiling * rate), ceiling);
   }
 
-  /// c(d) [N s/m].
-  [[nodiscard]] double damper(double distance) const noexcept {
-    return damping * std::clamp(1.0 - distance / range, 0.0, 1.0);
-  }
-
   /// Size of the force along the extraction direction [N], 0 to `ceiling`.
   /// @param distance [m] signed
   /// @param rate [m/s] its rate of change; positive on retreat
   [[nodiscard]] double operator()(double distance, double rate) const noexcept {
     if (!(distance < range)) return 0.0;
-    if (passable) return damped(passing_spring(distance), rate);
-    return std::clamp(spring(distance) - damper(distance) * rate, 0.0, ceiling);
+    return passable ? damped(passing_spring(distance), rate) : formula()(distance, rate);
   }
 
   /// Largest slope of the spring [N/m]: what a sampled wall must be able to hold.
