@@ -57,10 +57,16 @@ included_from_the_umbrella() {
       }'
 }
 
+# The targets of the links of a Markdown page, but for those of code.
+links_of() {
+  # shellcheck disable=SC2016  # the backquotes are those of Markdown
+  sed '/^```/,/^```/d' "$1" | grep -o '](\([^) #]*\)' | sed 's/^](//'
+}
+
 # Links of Markdown pages to files of this repository.
 dead_links() {
   for page in $(files | grep '\.md$'); do
-    for link in $(grep -o '](\([^) #]*\)' "$page" | sed 's/^](//' | grep -v ':' || true); do
+    for link in $(links_of "$page" | grep -v ':' || true); do
       [ -e "$(dirname "$page")/$link" ] ||
         echo "$page:1: [dead-link] $link does not exist"
     done
