@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repel/network/puma_joints.hpp>
+
 #include "heading.hpp"
 
 namespace repel::teleop {
@@ -39,13 +41,8 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
     result.name = node.name;
     result.passive = node.traits.passive && !node.traits.measures_flow;
     result.ledger = node.ledger;
-    if (const auto* walls = std::get_if<network::Obstacle>(&node.module)) {
-      result.passivity = walls->passivity();
-    } else if (const auto* on_arm = std::get_if<network::ArmObstacle>(&node.module)) {
-      result.passivity = on_arm->passivity();
-    } else if (const auto* limits = std::get_if<network::Limits>(&node.module)) {
-      result.passivity = limits->passivity();
-    } else if (const auto* joints = std::get_if<network::PumaJoints>(&node.module)) {
+    result.passivity = node.module->passivity().value_or(network::PassivityReport{});
+    if (const auto* joints = node.module.as<network::PumaJoints>()) {
       result.sampling_energy = joints->sampling_energy();
     }
     results.push_back(result);

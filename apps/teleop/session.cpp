@@ -2,10 +2,13 @@
 
 #include <unistd.h>
 
+#include <any>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
+
+#include <repel/network/spaceball.hpp>
 
 #include "cell.hpp"
 #include "listening.hpp"
@@ -85,7 +88,7 @@ visual::Cast cast_of(const scene::Scene& scene, const RunOptions& options, const
       if (rate > added.max_lever_rate) added.max_lever_rate = rate;
     }
     for (const scene::Module& module : scene.station(i).network.modules) {
-      const auto* ball = std::get_if<network::SpaceballOptions>(&module.options);
+      const auto* ball = std::any_cast<network::SpaceballOptions>(&module.options);
       if (ball == nullptr) continue;
       added.max_speed = ball->saturation;
       added.max_turn = ball->angular_saturation;

@@ -284,16 +284,22 @@ network::Script script_of(const Map& scene) {
   return script;
 }
 
-void read_station(const Map& map, const Laws& laws, const std::string& file, HullPoints& counted,
-                  Station& station) {
-  station.robot = robot_of(map.at("robot"), laws, file);
-  station.tool = tool_of(map.at("tool"), counted);
-  station.network = detail::network_of(map.find("network"));
+/// What the stations of a file have in common.
+struct Shared {
+  const Laws& laws;
+  const std::string& file;
+  const ModuleKinds& kinds;
+  HullPoints& counted;
+};
+
+void read_station(const Map& map, const Shared& shared, Station& station) {
+  station.robot = robot_of(map.at("robot"), shared.laws, shared.file);
+  station.tool = tool_of(map.at("tool"), shared.counted);
+  station.network = detail::network_of(map.find("network"), shared.kinds);
   station.script = script_of(map);
 }
 
-std::vector<Partner> partners_of(const Map& scene, const Laws& laws, const std::string& file,
-                                 HullPoints& counted) {
+std::vector<Partner> partners_of(const Map& scene, const Shared& shared) {
   std::vector<Partner> partners;
   const Value* value = scene.find("partners");
   if (!value) return partners;
@@ -304,8 +310,8 @@ std::vector<Partner> partners_of(const Map& scene, const Laws& laws, const std::
     Partner& partner = partners.emplace_back();
     partner.name = map.at("name").text();
     require_new(names, map);
-    partner.law = law_called(laws, map);
-    read_station(map, laws, file, counted, partner);
+    partner.law = law_called(shared.laws, map);
+    read_station(map, shared, partner);
   }
   return partners;
 }
@@ -329,7 +335,7 @@ Budget budget_of(const Map& scene) {
 
 }  // namespace
 
-Scene parse(std::string_view yaml, const std::string& file) {
+Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
   map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "partners",
@@ -346,15 +352,16 @@ Scene parse(std::string_view yaml, const std::string& file) {
   map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
   const Laws laws = laws_of(map);
   HullPoints counted;
-  read_station(map, laws, file, counted, scene);
+  const Shared shared{laws, file, kinds, counted};
+  read_station(map, shared, scene);
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, counted);
-  scene.partners = partners_of(map, laws, file, counted);
+  scene.partners = partners_of(map, shared);
   scene.budget = budget_of(map);
   return scene;
 }
 
-Scene load(const std::string& path) {
-  return parse(text_of_file(path, "a scene file"), path);
+Scene load(const std::string& path, const ModuleKinds& kinds) {
+  return parse(text_of_file(path, "a scene file"), path, kinds);
 }
 
 void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}

@@ -29,6 +29,19 @@ std::optional<double> number(std::string_view word) {
 
 }  // namespace
 
+Units unit::of_dimension(std::string_view name) {
+  for (const Units units :
+       {Units(none), Units(length), Units(angle), Units(time), Units(frequency), Units(speed),
+        Units(angular_speed), Units(force), Units(torque), Units(stiffness), Units(damping),
+        Units(angular_stiffness), Units(angular_damping), Units(mass), Units(inertia),
+        Units(energy), Units(share), Units(length_per_angle)}) {
+    for (const Unit& each : units) {
+      if (each.name == name) return units;
+    }
+  }
+  throw SetupError("no unit is called '" + std::string(name) + "'");
+}
+
 std::optional<std::vector<double>> quantity(std::string_view text, Units units) {
   std::vector<double> values;
   std::string_view word = next_word(text);

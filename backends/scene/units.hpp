@@ -40,6 +40,9 @@ inline constexpr Unit inertia[] = {{"kg m^2"}};
 inline constexpr Unit energy[] = {{"J"}};
 inline constexpr Unit share[] = {{""}, {"%", 1, 100}};
 inline constexpr Unit length_per_angle[] = {{"m/rad"}, {"mm/rad", 1, 1000}};
+
+/// The units of the dimension that has one called `name`. @throws SetupError when none has
+[[nodiscard]] Units of_dimension(std::string_view name);
 }  // namespace unit
 
 /// What a value may be.

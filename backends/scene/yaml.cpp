@@ -72,10 +72,10 @@ std::string Value::text() const {
   return node_->text;
 }
 
-std::string Value::word_of(std::initializer_list<std::string_view> words) const {
+std::string Value::word_of(std::span<const std::string_view> words) const {
   const bool known =
       is_scalar() && std::find(words.begin(), words.end(), node_->text) != words.end();
-  if (!known) fail_with_value(listed({words.begin(), words.size()}));
+  if (!known) fail_with_value(listed(words));
   return node_->text;
 }
 

@@ -39,7 +39,10 @@ class Value {
   /// A scalar that is not empty.
   [[nodiscard]] std::string text() const;
   /// One of `words`.
-  [[nodiscard]] std::string word_of(std::initializer_list<std::string_view> words) const;
+  [[nodiscard]] std::string word_of(std::span<const std::string_view> words) const;
+  [[nodiscard]] std::string word_of(std::initializer_list<std::string_view> words) const {
+    return word_of(std::span<const std::string_view>(words.begin(), words.size()));
+  }
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] double number(const Rule& rule) const { return numbers(rule, 1, 1).front(); }
   [[nodiscard]] Vec3 vector(const Rule& rule) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <repel/base/status.hpp>
+#include <repel/network/limits.hpp>
 
 #include "arm_run.hpp"
 #include "part.hpp"

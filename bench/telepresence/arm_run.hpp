@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <repel/loop/record.hpp>
+#include <repel/network/modules.hpp>
 #include <repel/network/network.hpp>
 
 namespace repel::telepresence {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include <repel/force/law.hpp>
+#include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
-#include <repel/network/puma_joints.hpp>
 
 #include "slider.hpp"
 

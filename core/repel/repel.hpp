@@ -23,6 +23,7 @@
 #include <repel/loop/tap.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/clean_stiffness.hpp>
+#include <repel/network/modules.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/reduction/separation.hpp>

@@ -4,6 +4,7 @@
 
 #include <repel/loop/shuttle.hpp>
 #include <repel/loop/tick.hpp>
+#include <repel/network/modules.hpp>
 
 #include <array>
 #include <limits>

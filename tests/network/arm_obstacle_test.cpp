@@ -1,6 +1,7 @@
 // Forces on the links become torques on the joints, and never more energy than went in.
 #include <gtest/gtest.h>
 
+#include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
 
 #include "network/drawn.hpp"

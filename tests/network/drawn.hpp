@@ -138,18 +138,18 @@ class DrawnEnds {
 };
 
 /// A two-port between what is behind it and what the root is, with its ledger.
-template <network::TwoPort M>
+template <class M>
 class Cell {
  public:
   Cell(M m, Side root) : module(std::move(m)) {
-    module.face(root);
-    module.prepare(period);
+    if constexpr (requires { module.face(root); }) module.face(root);
+    if constexpr (requires { module.prepare(period); }) module.prepare(period);
   }
 
   /// One tick; false when it cannot be solved.
   [[nodiscard]] bool run(const network::Signals& signals, Equivalent behind,
                          const Equivalent& root) {
-    module.read(signals);
+    if constexpr (requires { module.read(signals); }) module.read(signals);
     if (!module.reflected(behind, shown)) return false;
     Equivalent sum = shown;
     if (root.form == network::Form::impedance) {

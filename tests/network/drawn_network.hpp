@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
 
 #include "network/drawn.hpp"
@@ -215,18 +216,18 @@ class Laws {
                 answer.norm() + c.shown.offset.norm());
   }
   [[nodiscard]] bool holds(const network::Node& node) const {
-    if (const auto* m = std::get_if<network::Junction>(&node.module)) {
+    if (const auto* m = node.module.as<network::Junction>()) {
       return holds_at_junction(node, m->common());
     }
     if (node.toward_root < 0 || node.branches.size() != 1) return true;
     const State& root = network_.connection(node.toward_root).state;
     const State& leaf = network_.connection(node.branches[0]).state;
-    if (std::holds_alternative<network::Relief>(node.module) ||
-        std::holds_alternative<network::Spaceball>(node.module)) {
+    if (node.module.as<network::Relief>() != nullptr ||
+        node.module.as<network::Spaceball>() != nullptr) {
       return near(root.effort, leaf.effort, 0.0);
     }
-    if (std::holds_alternative<network::Obstacle>(node.module) ||
-        std::holds_alternative<network::Limits>(node.module)) {
+    if (node.module.as<network::Obstacle>() != nullptr ||
+        node.module.as<network::Limits>() != nullptr) {
       return near(root.flow, leaf.flow, 0.0);
     }
     return true;

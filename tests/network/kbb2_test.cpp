@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/network/one_ports.hpp>
+
 #include "network/drawn.hpp"
 
 namespace repel::network {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/network/one_ports.hpp>
+
 #include <deque>
 
 #include "network/drawn.hpp"
@@ -264,7 +266,7 @@ TEST(Line, PlainLineCarriesVelocityOneWayAndForceTheOther) {
   EXPECT_EQ(left.offset(0), -7.0);
   EXPECT_EQ(right.form, Form::admittance);
   EXPECT_EQ(right.offset(0), 0.25);
-  EXPECT_EQ(line.kind(), LineKind::force_velocity);
+  EXPECT_FALSE(line.traits().passive);
 }
 
 TEST(Line, DropsWhatArrivesAtRestForGood) {

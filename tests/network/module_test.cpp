@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/network/modules.hpp>
+#include <repel/network/plan.hpp>
+
 #include "network/drawn.hpp"
 
 namespace repel::network {
@@ -13,19 +16,6 @@ using test::Rng;
 using test::Vector;
 
 constexpr unsigned seed = 37;
-
-template <class M>
-constexpr int kinds = (detail::is_two_port<M> ? 1 : 0) + (detail::is_one_port<M> ? 1 : 0) +
-                      (detail::is_junction<M> ? 1 : 0) + (detail::is_line<M> ? 1 : 0);
-
-template <class... M>
-constexpr bool each_is_of_one_kind(const std::variant<M...>* /*list*/) {
-  return ((kinds<M> == 1) && ...);
-}
-static_assert(each_is_of_one_kind(static_cast<const Module*>(nullptr)));
-static_assert(detail::is_two_port<Multiplex> && detail::is_two_port<Limits>);
-static_assert(detail::is_one_port<TorqueArm> && detail::is_one_port<PumaJoints>);
-static_assert(detail::is_one_port<Spring<any_size>> && detail::is_source<FlowSource<any_size>>);
 
 const Matrix one = Matrix::Identity(1, 1);
 
@@ -56,53 +46,11 @@ TEST(Module, OnlyWhatReadsAMeasuredFlowNeedsOne) {
   }
 }
 
-/// A one-port, shown and settled as a network does it: its energy is what the states say.
-template <class M>
-void expect_settled(M module, int size) {
-  Rng rng(seed);
-  module.prepare(period);
-  double energy = 0.0;
-  for (int tick = 0; tick < 1000; ++tick) {
-    Equivalent<any_size> shown;
-    detail::show_one_port(module, shown);
-    ASSERT_EQ(shown.form, Form::impedance);
-    ASSERT_EQ(shown.matrix.rows(), size);
-    PortState<any_size> state;
-    shown.at_flow(test::drawn_vector(rng, size, 1.0), state);
-    detail::settle_one_port(module, state);
-    energy += period * (state.power() + detail::supplied_by(module));
-    if constexpr (requires { module.stored(); }) {
-      ASSERT_LE(module.stored(), energy + 1e-9 * (1.0 + energy)) << "seed " << seed;
-    }
-    ASSERT_GE(energy, -1e-9);
-  }
-}
-
-TEST(Module, OnePortsAreShownAndSettledByTheirWaves) {
-  Rng rng(seed);
-  expect_settled(Spring<any_size>(test::drawn_gain(rng, 6, 1.0, 100.0)), 6);
-  expect_settled(Mass<any_size>(test::drawn_gain(rng, 6, 0.1, 10.0)), 6);
-  expect_settled(Damper<any_size>(test::drawn_gain(rng, 3, 0.1, 10.0)), 3);
-  expect_settled(TorqueArm({.torque_limit = 1e4}), 1);
-}
-
-TEST(Module, SourcesShowThemselvesAndTheArmTakesItsTorque) {
-  Equivalent<any_size> shown;
-  detail::show_one_port(FlowSource<any_size>(Vector::Constant(2, 3.0)), shown);
-  EXPECT_EQ(shown.form, Form::admittance);
-  EXPECT_EQ(shown.offset, Vector(Vector::Constant(2, 3.0)));
-  PumaJoints arm(2);
-  detail::show_one_port(arm, shown);
-  EXPECT_EQ(shown.form, Form::admittance);
-  detail::settle_one_port(arm, PortState<any_size>{Vector::Ones(2), Vector::Zero(2)});
-  EXPECT_EQ(arm.torques(), Vector(Vector::Ones(2)));
-}
-
 TEST(Module, OnlyAMultiplexWeighsAndOnlyHandsSupply) {
-  const Multiplex multiplex({.velocity_scale = 0.2, .force_scale = 0.1});
-  EXPECT_DOUBLE_EQ(detail::left_weight_of(multiplex), 2.0);
-  EXPECT_EQ(detail::left_weight_of(PumaKin()), 1.0);
-  EXPECT_EQ(detail::supplied_by(Kbb2()), 0.0);
+  EXPECT_DOUBLE_EQ(Module(Multiplex({.velocity_scale = 0.2, .force_scale = 0.1}))->left_weight(),
+                   2.0);
+  EXPECT_EQ(Module(PumaKin())->left_weight(), 1.0);
+  EXPECT_EQ(Module(Kbb2())->supplied(), 0.0);
   TorqueArm arm({.friction = 1.0});
   arm.prepare(period);
   Signals signals;
@@ -112,7 +60,96 @@ TEST(Module, OnlyAMultiplexWeighsAndOnlyHandsSupply) {
     // Nothing at the motor: f = 0.
     detail::settle_one_port(arm, {Vector::Zero(1), -arm.reflected() / arm.resistance()(0)});
   }
-  EXPECT_NEAR(detail::supplied_by(arm), 1.0, 1e-6);
+  EXPECT_NEAR(Module(arm)->supplied(), 1.0, 1e-6);
+}
+
+TEST(Module, IsOneOfItsTypeAndItsCopiesAreTheirOwn) {
+  Module first{Spaceball({.time_constant = 0.0})};
+  EXPECT_EQ(first.as<TorqueArm>(), nullptr);
+  Module second = first;
+  Signals signals;
+  signals.hand.ball.linear = Vec3::UnitX();
+  first->prepare(period);
+  first->read(signals);
+  EXPECT_GT(first.as<Spaceball>()->twist().linear.x(), 0.1);
+  EXPECT_EQ(second.as<Spaceball>()->twist().linear.x(), 0.0);
+  second = first;
+  EXPECT_GT(second.as<Spaceball>()->twist().linear.x(), 0.1);
+}
+
+/// A two-port that no header of the library knows, with no more than it must have: it halves what
+/// is behind it, as a lever of two arms does, so it passes all power on.
+struct Lever {
+  static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
+  bool reflected(const Equivalent<any_size>& behind, Equivalent<any_size>& shown) noexcept {
+    shown = behind;
+    if (!shown.take_form(Form::impedance)) return false;
+    shown.matrix *= 0.25;
+    shown.offset *= 0.5;
+    return true;
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
+                PortState<any_size>& at_leaf) noexcept {
+    Equivalent<any_size> other = behind;
+    (void)other.take_form(Form::impedance);
+    other.at_flow(0.5 * at_root.flow, at_leaf);
+  }
+};
+
+TEST(Module, OfAnotherProgramStandsInANetworkLikeAnyOther) {
+  const Matrix six = Matrix::Identity(6, 6);
+  const auto flow_behind = [&](const Module& between) {
+    Network network = Plan()
+                          .add("near", Mass<any_size>(six), "middle")
+                          .add("push", EffortSource<any_size>(Vector::Ones(6)), "middle")
+                          .add("middle", Junction())
+                          .add("between", between)
+                          .add("far", Mass<any_size>(2.0 * six))
+                          .build(period);
+    for (int tick = 0; tick < 50; ++tick) EXPECT_TRUE(network.run(Signals{}));
+    for (const Node& node : network.nodes()) {
+      EXPECT_TRUE(!node.traits.passive || node.ledger.deficit() <= 1e-9) << node.name;
+    }
+    const Node& node = *network.find("between");
+    EXPECT_GT(node.ledger.passed, 1e-3);
+    const Vector& behind = network.connection(node.branches.front()).state.flow;
+    return behind.norm() / network.connection(node.toward_root).state.flow.norm();
+  };
+  EXPECT_NEAR(flow_behind(Lever()), 0.5, 1e-12);
+  EXPECT_NEAR(flow_behind(Spaceball()), 1.0, 1e-12);
+}
+
+/// A wall of its own in the space of joints, with the functions that are there for walls.
+struct Fence {
+  static constexpr Traits traits{
+      .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    return series::shown(behind, Vector::Constant(2, -3.0), shown);
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) const noexcept {
+    series::pass(at_root, Vector::Constant(2, -3.0), at_leaf);
+  }
+  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
+    torques += Vector::Constant(2, 3.0);
+  }
+  [[nodiscard]] bool saturated() const noexcept { return true; }
+  [[nodiscard]] PassivityReport passivity() const noexcept { return {.dissipated = 1.0}; }
+};
+
+TEST(Module, TellsOfWallsSaturationAndPassivityWhereItHasThem) {
+  Vector torques = Vector::Ones(2);
+  const Module fence{Fence()};
+  fence->add_walls({}, torques);
+  EXPECT_EQ(torques, Vector(Vector::Constant(2, 4.0)));
+  EXPECT_TRUE(fence->saturated());
+  EXPECT_EQ(fence->passivity()->dissipated, 1.0);
+  const Module ball{Visual()};
+  ball->add_walls({}, torques);
+  EXPECT_EQ(torques, Vector(Vector::Constant(2, 4.0)));
+  EXPECT_FALSE(ball->saturated());
+  EXPECT_FALSE(ball->passivity().has_value());
 }
 
 }  // namespace module_test

@@ -34,7 +34,6 @@ void push_at_random(const ObstacleOptions& options, int ticks) {
   Rng rng(seed);
   DrawnSignals drawn(rng, 6);
   Obstacle obstacle(options);
-  obstacle.prepare(period);
   double account = 0.0;
   double passed = 0.0;
   int corrected = 0;
@@ -98,7 +97,6 @@ TEST(Obstacle, AddsItsForceOnTheSameFlowWithALedgerAboveZero) {
 // A wall that pushes back softer than it was pressed is let through as it is.
 TEST(Obstacle, LeavesAWallThatTakesEnergyAlone) {
   Obstacle obstacle;
-  obstacle.prepare(period);
   for (int tick = 0; tick < 200; ++tick) {
     obstacle.read(along_x(-20.0, 0.1, 0.1));
     EXPECT_EQ(obstacle.on_tool().force.x(), -20.0);
@@ -112,7 +110,6 @@ TEST(Obstacle, LeavesAWallThatTakesEnergyAlone) {
 
 TEST(Obstacle, HoldsAToolThatStartsInsideAWallAndDoesNotThrowItOut) {
   Obstacle obstacle;
-  obstacle.prepare(period);
   for (int tick = 0; tick < 100; ++tick) {
     obstacle.read(along_x(-50.0, 0.0, 0.0));
     EXPECT_EQ(obstacle.on_tool().force.x(), -50.0);
@@ -124,7 +121,6 @@ TEST(Obstacle, HoldsAToolThatStartsInsideAWallAndDoesNotThrowItOut) {
 // The motion of a period is known when it is over: the wall has pushed on meanwhile.
 TEST(Obstacle, TakesBackWhatSamplingGaveAsSoonAsItIsPressedAgain) {
   Obstacle obstacle({{.most_damping = 1e6}});
-  obstacle.prepare(period);
   obstacle.read(along_x(-10.0, 0.1, 0.1));
   obstacle.read(along_x(-10.0, -0.001, -0.4));  // the tool was thrown back within the period
   EXPECT_GT(obstacle.passivity().owed, 0.0);

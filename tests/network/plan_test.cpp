@@ -160,7 +160,7 @@ TEST(Plan, WhatInsistsOnBothSidesIsRefused) {
 
 TEST(Plan, TrialAtSetUpLeavesNoTrace) {
   const Network network = figure_9().build(period);
-  EXPECT_FALSE(network.find<Visual>()->pictures().take());
+  EXPECT_EQ(network.find<TorqueArm>()->angle(), 0.0);
   for (const Node& node : network.nodes()) {
     EXPECT_EQ(node.ledger.passed, 0.0) << node.name;
   }

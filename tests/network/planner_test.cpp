@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
 
 namespace repel::network {

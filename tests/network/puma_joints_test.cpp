@@ -86,7 +86,6 @@ Signals moving(const Vector& rates, const Vector& mean_rates) {
 TEST(PumaJoints, DecideTheirFlowAndTakeTheTorques) {
   Rng rng(seed);
   PumaJoints arm(3);
-  arm.prepare(period);
   EXPECT_EQ(arm.size(), 3);
   EXPECT_FALSE(PumaJoints::traits.passive);
   EXPECT_TRUE(PumaJoints::traits.measures_flow);
@@ -107,7 +106,6 @@ TEST(PumaJoints, DecideTheirFlowAndTakeTheTorques) {
 TEST(PumaJoints, ReportTheEnergyThatHoldingATorqueGives) {
   Rng rng(seed);
   PumaJoints arm(4);
-  arm.prepare(period);
   double energy = 0.0;
   Vector torques = Vector::Zero(4);
   Vector flow = Vector::Zero(4);

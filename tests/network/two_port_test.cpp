@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <repel/network/kbb2.hpp>
-#include <repel/network/puma_kin.hpp>
-
 #include "network/drawn.hpp"
 
 namespace repel::network {
@@ -15,9 +12,6 @@ using test::Vector;
 
 constexpr unsigned seed = 29;
 using Map = Eigen::Matrix<double, any_size, any_size, Eigen::ColMajor, most_joints, most_joints>;
-
-static_assert(TwoPort<Kbb2> && TwoPort<PumaKin>);
-static_assert(!TwoPort<Damper<any_size>> && !TwoPort<int>);
 
 Map drawn_map(Rng& rng, int rows, int columns) {
   Map map(rows, columns);

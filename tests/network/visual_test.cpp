@@ -34,41 +34,5 @@ TEST(Visual, ChangesNothing) {
   }
 }
 
-TEST(Visual, ShowsTheNewestTickWhole) {
-  Rng rng(seed);
-  DrawnSignals drawn(rng, 3);
-  DrawnEnds ends(rng, 6, 20.0);
-  Cell cell(Visual(), Side::right);
-  Mailbox<Picture>& pictures = cell.module.pictures();
-  EXPECT_FALSE(pictures.take());
-  for (int tick = 0; tick < 1000; ++tick) {
-    const Signals& signals = drawn.next();
-    ASSERT_TRUE(cell.run(signals, ends.definite(), ends.definite()));
-    if (tick % 7 != 0) continue;
-    ASSERT_TRUE(pictures.take());
-    const Picture& picture = pictures.newest();
-    EXPECT_EQ(picture.tick, tick);
-    EXPECT_EQ(picture.joints, signals.joints);
-    EXPECT_EQ(picture.walls.force, signals.walls.force);
-    EXPECT_EQ(picture.walls.torque, signals.walls.torque);
-    EXPECT_TRUE(picture.X_WT.isApprox(signals.X_WT, 0.0));
-    EXPECT_EQ(picture.port.effort, cell.at_root.effort);
-    EXPECT_EQ(picture.port.flow, cell.at_root.flow);
-    EXPECT_FALSE(pictures.take());  // seen already
-  }
-}
-
-// Two networks of one plan once posted into one mailbox, which has room for one writer only.
-TEST(Visual, CopyHasAMailboxOfItsOwn) {
-  Visual tap;
-  Visual copy = tap;
-  EXPECT_NE(&tap.pictures(), &copy.pictures());
-  copy = tap;
-  EXPECT_NE(&tap.pictures(), &copy.pictures());
-  const Mailbox<Picture>* const before = &tap.pictures();
-  const Visual moved = std::move(tap);
-  EXPECT_EQ(&moved.pictures(), before);
-}
-
 }  // namespace visual_test
 }  // namespace repel::network

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include <repel/network/modules.hpp>
+
 #include "yaml_text.hpp"
 
 namespace repel::scene {

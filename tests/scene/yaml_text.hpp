@@ -32,7 +32,7 @@ inline Scene parsed(const std::string& text) {
 /// What the first module of the network is given.
 template <class Options>
 Options options(const Scene& scene) {
-  return std::get<Options>(scene.network.modules.front().options);
+  return std::any_cast<Options>(scene.network.modules.front().options);
 }
 
 }  // namespace repel::scene::testing

@@ -46,6 +46,8 @@ class ArmBodies {
         drawn_(Jacobian::Zero(6, joints)),
         jacobians_(links_.size(), drawn_) {}
 
+  [[nodiscard]] std::span<const LinkBody> bodies() const noexcept { return links_; }
+
   /// Places every body where `kinematics` is, moving with the joint rates `v`. False when a pose is
   /// not sound: that body stays where it was.
   template <ArmKinematics Kinematics>

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <span>
-#include <variant>
 #include <vector>
 
 #include <repel/loop/arm_bodies.hpp>
@@ -17,16 +16,17 @@
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/stop_control.hpp>
 #include <repel/network/network.hpp>
+#include <repel/network/puma_joints.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
 
 /// What a tick has found out about the motion and the forces of an arm.
 struct ArmMotion {
-  const network::Network& network;  ///< solved
-  const Jacobian& jacobian;         ///< of the tool
-  const std::vector<double>& v;     ///< [rad/s] of the joints
-  double tool_speed = 0.0;          ///< [m/s]
+  const network::Network& network;    ///< solved
+  const network::Jacobian& jacobian;  ///< of the tool
+  const std::vector<double>& v;       ///< [rad/s] of the joints
+  double tool_speed = 0.0;            ///< [m/s]
 };
 
 /// Decides on the stop, shares out the torques, and tells the arm: torques, brakes, enable. All
@@ -137,18 +137,7 @@ class ArmCommand {
   void gather_walls(const ArmMotion& motion) noexcept {
     walls_.setZero();
     for (const network::Node& node : motion.network.nodes()) {
-      if (const auto* obstacle = std::get_if<network::Obstacle>(&node.module)) {
-        const Wrench F = obstacle->on_tool();
-        for (Eigen::Index i = 0; i < walls_.size(); ++i) {
-          const auto column = motion.jacobian.col(i);
-          walls_(i) +=
-              column.template head<3>().dot(F.force) + column.template tail<3>().dot(F.torque);
-        }
-      } else if (const auto* links = std::get_if<network::ArmObstacle>(&node.module)) {
-        walls_ += links->torques();
-      } else if (const auto* limits = std::get_if<network::Limits>(&node.module)) {
-        walls_ += limits->torques();
-      }
+      node.module->add_walls(motion.jacobian, walls_);
     }
   }
 

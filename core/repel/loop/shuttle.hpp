@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <repel/base/spatial.hpp>
 #include <repel/world/world.hpp>
@@ -19,13 +20,13 @@ struct Shuttle {
 
   /// The most it moves [m/s].
   [[nodiscard]] double top_speed() const noexcept {
-    return 3.14159265358979324 / duration * along_W.norm();
+    return std::numbers::pi / duration * along_W.norm();
   }
 
   /// Places the body where it is `time` [s] after the start. False when that is no sound pose: the
   /// body stays where it was.
   [[nodiscard]] bool place(World& world, double time) const noexcept {
-    const double turn = 2.0 * 3.14159265358979324 / duration;
+    const double turn = 2.0 * std::numbers::pi / duration;
     Pose X = X_WB;
     X.translation() += 0.5 * (1.0 - std::cos(turn * time)) * along_W;
     return world.place(body, X, {0.5 * turn * std::sin(turn * time) * along_W, Vec3::Zero()});

@@ -11,12 +11,19 @@
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/network_check.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/tick_clock.hpp>
+#include <repel/network/limits.hpp>
+#include <repel/network/multiplex.hpp>
+#include <repel/network/obstacle.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
+#include <repel/network/puma_joints.hpp>
+#include <repel/network/puma_kin.hpp>
+#include <repel/network/torque_arm.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/world/arm.hpp>
 
@@ -34,7 +41,7 @@ class Teleoperator {
 
   /// @param network built for `period`
   /// @param links bodies whose forces act on the arm through the module ARM_OBSTACLE
-  /// @throws SetupError when the network does not end in as many joints as the arm has, or for an
+  /// @throws SetupError for a network that does not fit arm and world (`require_complete`), or an
   /// option out of range
   Teleoperator(const ArmModel& model, Arm& arm, Kinematics& kinematics, World& world, BodyId tool,
                Coprocessor& coprocessor, Operator& the_operator, network::Network network,
@@ -62,10 +69,7 @@ class Teleoperator {
         new_jacobian_(jacobian_),
         flow_(static_cast<int>(model.links.size())),
         pushing_out_(options.push_out) {
-    if (robot() == nullptr || robot()->size() != static_cast<int>(model.links.size())) {
-      throw SetupError("the network must end in a robot (puma_joints) of " +
-                       std::to_string(model.links.size()) + " joints");
-    }
+    require_complete(network_, static_cast<int>(model.links.size()), world, tool, links_.bodies());
     const network::Node* at = network_.node_of<network::Obstacle>();
     if (at == nullptr) at = network_.node_of<network::PumaKin>();
     before_walls_ = at == nullptr ? -1 : at->left;
@@ -213,21 +217,19 @@ class Teleoperator {
   }
 
   void note_limits() noexcept {
-    const auto* arm = network_.find<network::TorqueArm>();
-    const auto* ball = network_.find<network::Spaceball>();
-    const auto* coupling = network_.find<network::Kbb2>();
-    const auto* limits = network_.find<network::Limits>();
-    if ((arm != nullptr && arm->saturated()) || (ball != nullptr && ball->saturated()) ||
-        (coupling != nullptr && coupling->saturated())) {
-      record_.status |= status::saturated;
+    for (const network::Node& node : network_.nodes()) {
+      if (node.module->saturated()) record_.status |= status::saturated;
     }
+    const auto* arm = network_.find<network::TorqueArm>();
+    const auto* limits = network_.find<network::Limits>();
     if (limits != nullptr && limits->active()) record_.status |= status::joint_limit;
     record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
   }
 
   void drive() noexcept {
     kinematics_.gravity_torques(command_.gravity());
-    command_.drive({network_, jacobian_, v_, V_WT_.linear.norm()}, inertia_, watch_, record_);
+    command_.drive({network_, signals_.jacobian, v_, V_WT_.linear.norm()}, inertia_, watch_,
+                   record_);
   }
 
   void finish_tick() noexcept {
@@ -253,9 +255,6 @@ class Teleoperator {
     }
   }
 
-  [[nodiscard]] const network::PumaJoints* robot() const noexcept {
-    return network_.find<network::PumaJoints>();
-  }
   [[nodiscard]] static network::Vec<network::any_size> joints_vec(
       const std::vector<double>& values) noexcept {
     return Eigen::Map<const network::Vec<network::any_size>>(

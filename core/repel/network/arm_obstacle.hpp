@@ -2,7 +2,6 @@
 /// ARM_OBSTACLE: the virtual forces of the world model on the links of the arm.
 #pragma once
 
-#include <repel/network/one_ports.hpp>
 #include <repel/network/passivity.hpp>
 #include <repel/network/two_port.hpp>
 
@@ -20,8 +19,11 @@ struct ArmObstacleOptions {
 /// together: one of them may give what another has taken.
 class ArmObstacle {
  public:
-  static constexpr Traits traits{
-      .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
+  static constexpr Traits traits{.left = Space::joints,
+                                 .right = Space::joints,
+                                 .needs_flow = true,
+                                 .keeps_flow = true,
+                                 .walls = Walls::links};
 
   explicit ArmObstacle(const ArmObstacleOptions& options = {})
       : options_(options), controller_(passivity_of(options), Vec<any_size>::Ones(1)) {
@@ -34,8 +36,6 @@ class ArmObstacle {
     controller_ = PassivityController<any_size>(passivity_of(options_), Vec<any_size>::Ones(size));
     effort_.setZero(size);
   }
-  void prepare(double period) { (void)detail::checked_period(period); }
-  void face(Side /*root*/) noexcept {}
 
   void read(const Signals& signals) noexcept {
     effort_ = -signals.arm_torques;
@@ -62,6 +62,9 @@ class ArmObstacle {
 
   /// Of the walls on the joints after the controller [N m].
   [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
+  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
+    torques += this->torques();
+  }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by what moves
 

@@ -17,9 +17,8 @@ enum class Common {
 /// make.
 class Junction {
  public:
-  static constexpr Traits traits{};
-
   explicit Junction(Common common = Common::flow) noexcept : common_(common) {}
+  [[nodiscard]] Traits traits() const noexcept { return {.keeps_flow = common_ == Common::flow}; }
   [[nodiscard]] Common common() const noexcept { return common_; }
 
   /// Begins `sum` with the first branch.

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include <repel/network/one_ports.hpp>
 #include <repel/network/two_port.hpp>
 
 namespace repel::network {

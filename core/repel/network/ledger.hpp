@@ -1,5 +1,5 @@
 /// @file
-/// The energy ledger of one module.
+/// The energy ledger of one module, and what its passivity controller has done.
 #pragma once
 
 #include <algorithm>
@@ -30,6 +30,12 @@ struct Ledger {
   [[nodiscard]] double deficit() const noexcept {
     return std::max(0.0, -least) / std::max(passed, 1e-3);
   }
+};
+
+/// What a passivity controller has done.
+struct PassivityReport {
+  double dissipated = 0.0;  ///< [J] withheld or damped away since the start
+  double owed = 0.0;        ///< [J] given too much by sampling and not yet taken back
 };
 
 }  // namespace repel::network

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <repel/network/one_ports.hpp>
 #include <repel/network/passivity.hpp>
 #include <repel/network/two_port.hpp>
 
@@ -57,8 +56,6 @@ class Limits {
     effort_.setZero(static_cast<Eigen::Index>(ranges.size()));
   }
 
-  void prepare(double period) { (void)detail::checked_period(period); }
-  void face(Side /*root*/) noexcept {}
   [[nodiscard]] int size() const noexcept { return static_cast<int>(joints_.size()); }
 
   void read(const Signals& signals) noexcept {
@@ -85,6 +82,9 @@ class Limits {
 
   /// Of the limits on the joints [N m].
   [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
+  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
+    torques += this->torques();
+  }
   /// True while a joint is within `range` of its limit and is pushed back.
   [[nodiscard]] bool active() const noexcept { return active_; }
   /// Of all joints together.

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include <repel/network/channel.hpp>
-#include <repel/network/one_ports.hpp>
-#include <repel/network/two_port.hpp>
+#include <repel/network/equivalent.hpp>
+#include <repel/network/signals.hpp>
 
 namespace repel::network {
 
@@ -43,8 +43,6 @@ struct LineOptions {
 /// what comes out never exceeds what went in, whatever the channel does.
 class Line {
  public:
-  static constexpr Traits traits{};
-
   /// @throws SetupError for a number out of range
   explicit Line(const LineOptions& options = {}) : options_(options) {
     checked("impedance", options.impedance, 1e-6, 1e6, "N s/m");
@@ -81,7 +79,9 @@ class Line {
     }
   }
 
-  [[nodiscard]] LineKind kind() const noexcept { return options_.kind; }
+  [[nodiscard]] Traits traits() const noexcept {
+    return {.passive = options_.kind == LineKind::waves};
+  }
 
   void read(const Signals& signals) noexcept {
     for (int i = 0; i < 2; ++i) {

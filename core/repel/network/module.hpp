@@ -1,121 +1,86 @@
 /// @file
-/// Every kind of module that a network can hold.
+/// A module of any type, as a network holds it.
 #pragma once
 
 #include <concepts>
-#include <cstddef>
+#include <memory>
 #include <type_traits>
 #include <utility>
-#include <variant>
 
-#include <repel/network/arm_obstacle.hpp>
-#include <repel/network/junction.hpp>
-#include <repel/network/kbb2.hpp>
-#include <repel/network/limits.hpp>
-#include <repel/network/line.hpp>
-#include <repel/network/multiplex.hpp>
-#include <repel/network/obstacle.hpp>
-#include <repel/network/one_ports.hpp>
-#include <repel/network/puma_joints.hpp>
-#include <repel/network/puma_kin.hpp>
-#include <repel/network/relief.hpp>
-#include <repel/network/spaceball.hpp>
-#include <repel/network/torque_arm.hpp>
-#include <repel/network/visual.hpp>
+#include <repel/network/any_module.hpp>
 
 namespace repel::network {
 
-/// One of them. What a network does with each is settled when it is compiled: there is no base
-/// class. A module of your own goes into this list.
-using Module =
-    std::variant<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaKin, ArmObstacle,
-                 Limits, Visual, PumaJoints, Junction, Line, Spring<any_size>, Mass<any_size>,
-                 Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
-
-namespace detail {
-
-template <class Variant, class Action, std::size_t... I>
-void act(Variant& module, const Action& action, std::index_sequence<I...> /*each*/) {
-  (void)((module.index() == I ? (action(*std::get_if<I>(&module)), true) : false) || ...);
-}
-/// std::visit without the throw for a variant that holds nothing, which a tick must not contain.
-template <class Action>
-void visit(const Action& action, Module& module) {
-  act(module, action, std::make_index_sequence<std::variant_size_v<Module>>());
-}
-template <class Action>
-void visit(const Action& action, const Module& module) {
-  act(module, action, std::make_index_sequence<std::variant_size_v<Module>>());
-}
-
-template <class M>
-inline constexpr bool is_source =
-    std::is_same_v<M, EffortSource<any_size>> || std::is_same_v<M, FlowSource<any_size>>;
-template <class M>
-inline constexpr bool is_junction = std::is_same_v<M, Junction>;
-template <class M>
-inline constexpr bool is_line = std::is_same_v<M, Line>;
-template <class M>
-inline constexpr bool is_two_port = TwoPort<M>;
-/// One-ports that are matched, and those that insist on an effort or a flow.
-template <class M>
-inline constexpr bool is_one_port = !is_junction<M> && !is_line<M> && !is_two_port<M>;
-
-template <class M>
-constexpr Traits traits_of(const M& module) noexcept {
-  if constexpr (is_junction<M>) {
-    return {.keeps_flow = module.common() == Common::flow};
-  } else if constexpr (requires { module.kind(); }) {
-    return {.passive = module.kind() == LineKind::waves};
-  } else if constexpr (requires { M::traits; }) {
-    return M::traits;
-  } else {
-    return {.passive = !is_source<M>};
+/// A module of a network: an object of any copyable type that offers what one of these needs.
+///
+/// A two-port:
+///
+///     bool reflected(const Equivalent<any_size>& behind, Equivalent<any_size>& shown) noexcept;
+///     void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
+///                   PortState<any_size>& at_leaf) noexcept;
+///
+/// A one-port, by what it shows or, matched, by its waves:
+///
+///     void equivalent(Equivalent<any_size>& shown) const noexcept;
+///     void incident(const PortState<any_size>& state) noexcept;         // or not at all
+///
+///     const Mat<N>& resistance() const noexcept;
+///     Vec<N> reflected() const noexcept;
+///     void incident(const Vec<N>& wave) noexcept;
+///
+/// A line, of which each end is a one-port: `equivalent` and `incident` with a `Side` before the
+/// other arguments. And of these what it has a use for:
+///
+///     static constexpr Traits traits;                // or a function of that name
+///     void fit(Space space, int size);               // the port it stands at; may throw
+///     int size() const noexcept;                     // of its port, if it has one of its own
+///     void face(Side root) noexcept;                 // where the root is
+///     void prepare(double period);                   // [s]; may throw
+///     void read(const Signals& signals) noexcept;    // first of all in every tick
+///     double supplied() const noexcept;              // [W] by a source of its own
+///     double left_weight() const noexcept;           // of the power of its left port
+///     bool saturated() const noexcept;               // something was cut to its limit
+///     PassivityReport passivity() const noexcept;
+///     void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept;
+///
+/// `add_walls` adds what a wall or a limit does to the joints [N m]: it stays when the operator is
+/// let go. Nothing but `fit` and `prepare` may throw or allocate. What is missing is said when it
+/// is compiled. Cost: a virtual call for each.
+class Module {
+ public:
+  template <class M>
+  requires(!std::same_as<std::remove_cvref_t<M>, Module>)
+      // NOLINTNEXTLINE(google-explicit-constructor): any module can stand for itself
+      Module(M module)
+      : ports_(detail::ports_of<M>()),
+        held_(std::make_unique<detail::ModuleOf<M>>(std::move(module))) {
+    detail::require_module<M>();
   }
-}
-
-/// The resistance of a one-port as a matrix of the network's size.
-template <class M>
-void show_one_port(const M& module, Equivalent<any_size>& shown) noexcept {
-  if constexpr (requires { module.equivalent(shown); }) {
-    module.equivalent(shown);
-  } else {
-    shown.form = Form::impedance;
-    shown.matrix = module.resistance();
-    shown.offset = module.reflected();
+  Module(const Module& other) : ports_(other.ports_), held_(other.held_->copy()) {}
+  Module(Module&&) noexcept = default;
+  Module& operator=(const Module& other) {
+    if (this != &other) *this = Module(other);
+    return *this;
   }
-}
+  Module& operator=(Module&&) noexcept = default;
+  ~Module() = default;
 
-template <class M>
-void settle_one_port(M& module, const PortState<any_size>& state) noexcept {
-  if constexpr (requires { module.resistance(); }) {
-    const auto& R = module.resistance();
-    module.incident(state.effort + R.lazyProduct(state.flow));
-  } else if constexpr (requires { module.incident(state); }) {
-    module.incident(state);
+  /// The object itself, if it is an `M`; else null.
+  template <class M>
+  [[nodiscard]] const M* as() const noexcept {
+    return static_cast<const M*>(held_->get(&detail::type_mark<M>));
   }
-}
 
-/// Power [W] that a source inside the module supplies.
-template <class M>
-[[nodiscard]] double supplied_by(const M& module) noexcept {
-  if constexpr (requires { module.supplied(); }) {
-    return module.supplied();
-  } else {
-    return 0.0;
-  }
-}
+  [[nodiscard]] Ports ports() const noexcept { return ports_; }
 
-/// How much more the power of the left port counts.
-template <class M>
-[[nodiscard]] double left_weight_of(const M& module) noexcept {
-  if constexpr (requires { module.left_weight(); }) {
-    return module.left_weight();
-  } else {
-    return 1.0;
-  }
-}
+  [[nodiscard]] detail::AnyModule& operator*() noexcept { return *held_; }
+  [[nodiscard]] const detail::AnyModule& operator*() const noexcept { return *held_; }
+  [[nodiscard]] detail::AnyModule* operator->() noexcept { return held_.get(); }
+  [[nodiscard]] const detail::AnyModule* operator->() const noexcept { return held_.get(); }
 
-}  // namespace detail
+ private:
+  Ports ports_;
+  std::unique_ptr<detail::AnyModule> held_;
+};
 
 }  // namespace repel::network

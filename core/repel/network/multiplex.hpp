@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/network/one_ports.hpp>
 #include <repel/network/two_port.hpp>
 
 namespace repel::network {

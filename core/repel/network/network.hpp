@@ -54,13 +54,7 @@ class Network {
   /// has read its inputs and none has moved on. Cost: one visit to each module on the way to the
   /// root and one back; one inversion of size 6 at a coupling.
   bool run(const Signals& signals) noexcept {
-    for (Node& node : nodes_) {
-      detail::visit(
-          [&](auto& module) {
-            if constexpr (requires { module.read(signals); }) module.read(signals);
-          },
-          node.module);
-    }
+    for (Node& node : nodes_) node.module->read(signals);
     for (const Step& step : upward_) {
       if (!show(step)) return stuck(step);
     }
@@ -80,14 +74,14 @@ class Network {
   template <class M>
   [[nodiscard]] const Node* node_of() const noexcept {
     for (const Node& node : nodes_) {
-      if (std::holds_alternative<M>(node.module)) return &node;
+      if (node.module.as<M>() != nullptr) return &node;
     }
     return nullptr;
   }
   template <class M>
   [[nodiscard]] const M* find() const noexcept {
     const Node* node = node_of<M>();
-    return node == nullptr ? nullptr : std::get_if<M>(&node->module);
+    return node == nullptr ? nullptr : node->module.as<M>();
   }
   /// Where the module of a name stands; null when there is none.
   [[nodiscard]] const Node* find(std::string_view name) const noexcept {
@@ -125,75 +119,41 @@ class Network {
   /// The connection of a one-port or of an end of a line.
   [[nodiscard]] int only_connection(const Step& step) noexcept {
     const Node& node = node_at(step);
-    if (std::holds_alternative<Line>(node.module)) {
+    if (node.module.ports() == Ports::line) {
       return node.branches[step.side == Side::left ? 0 : 1];
     }
     return node.toward_root >= 0 ? node.toward_root : node.branches.front();
   }
-  void show_end(const Step& step, Equivalent<any_size>& shown) noexcept {
-    detail::visit(
-        [&](const auto& module) {
-          using M = std::decay_t<decltype(module)>;
-          if constexpr (detail::is_line<M>) {
-            module.equivalent(step.side, shown);
-          } else if constexpr (detail::is_one_port<M>) {
-            detail::show_one_port(module, shown);
-          }
-        },
-        node_at(step).module);
-  }
-  void settle_end(const Step& step, const PortState<any_size>& state) noexcept {
-    detail::visit(
-        [&](auto& module) {
-          using M = std::decay_t<decltype(module)>;
-          if constexpr (detail::is_line<M>) {
-            module.incident(step.side, state);
-          } else if constexpr (detail::is_one_port<M>) {
-            detail::settle_one_port(module, state);
-          }
-        },
-        node_at(step).module);
-  }
-
   // Towards the root: what the module makes of what is behind it.
   [[nodiscard]] bool show(const Step& step) noexcept {
     Node& node = node_at(step);
-    bool shown = true;
-    detail::visit(
-        [&](auto& module) {
-          using M = std::decay_t<decltype(module)>;
-          if constexpr (detail::is_two_port<M>) {
-            shown = module.reflected(at(node.branches.front()).shown, at(node.toward_root).shown);
-          } else if constexpr (detail::is_junction<M>) {
-            Equivalent<any_size>& sum = at(node.toward_root).shown;
-            module.begin(at(node.branches.front()).shown, sum);
-            for (std::size_t i = 1; i < node.branches.size(); ++i) {
-              shown = shown && module.add(at(node.branches[i]).shown, sum);
-            }
-          } else {
-            show_end(step, at(only_connection(step)).shown);
-          }
-        },
-        node.module);
-    return shown;
+    if (node.module.ports() == Ports::two) {
+      return node.module->reflected(at(node.branches.front()).shown, at(node.toward_root).shown);
+    }
+    if (const auto* junction = node.module.as<Junction>()) return show_junction(*junction, node);
+    node.module->show_end(step.side, at(only_connection(step)).shown);
+    return true;
+  }
+  [[nodiscard]] bool show_junction(const Junction& junction, const Node& node) noexcept {
+    Equivalent<any_size>& sum = at(node.toward_root).shown;
+    junction.begin(at(node.branches.front()).shown, sum);
+    for (std::size_t i = 1; i < node.branches.size(); ++i) {
+      if (!junction.add(at(node.branches[i]).shown, sum)) return false;
+    }
+    return true;
   }
 
   // Away from the root.
   void settle(const Step& step) noexcept {
     Node& node = node_at(step);
-    detail::visit(
-        [&](auto& module) {
-          using M = std::decay_t<decltype(module)>;
-          if constexpr (detail::is_two_port<M>) {
-            Connection& leaf = at(node.branches.front());
-            module.incident(at(node.toward_root).state, leaf.shown, leaf.state);
-          } else if constexpr (detail::is_junction<M>) {
-            settle_junction(module, node);
-          } else {
-            settle_end(step, at(only_connection(step)).state);
-          }
-        },
-        node.module);
+    if (node.module.ports() == Ports::two) {
+      Connection& leaf = at(node.branches.front());
+      node.module->incident(at(node.toward_root).state, leaf.shown, leaf.state);
+    } else if (const auto* junction = node.module.as<Junction>()) {
+      settle_junction(*junction, node);
+    } else {
+      node.module->settle_end(step.side, at(only_connection(step)).state);
+    }
   }
 
   // One branch at most insists on its own flow where flow is common (on its own effort where effort
@@ -225,7 +185,7 @@ class Network {
   [[nodiscard]] bool solve(const Step& root) noexcept {
     Connection& connection = at(only_connection(root));
     Equivalent<any_size> own;
-    show_end(root, own);
+    node_at(root).module->show_end(root.side, own);
     Vec<any_size> flow = own.offset;
     if (own.form == Form::impedance) {
       Equivalent<any_size> sum = connection.shown;
@@ -250,19 +210,12 @@ class Network {
   void settle_root(const Step& root) noexcept {
     PortState<any_size> own = at(only_connection(root)).state;
     own.effort = -own.effort;
-    settle_end(root, own);
+    node_at(root).module->settle_end(root.side, own);
   }
 
   void keep_accounts(double period) noexcept {
     for (Node& node : nodes_) {
-      double left_weight = 1.0;
-      double supplied = 0.0;
-      detail::visit(
-          [&](const auto& module) {
-            left_weight = detail::left_weight_of(module);
-            supplied = detail::supplied_by(module);
-          },
-          node.module);
+      const double left_weight = node.module->left_weight();
       double in = 0.0;
       double moved = 0.0;
       const auto count = [&](int index, double sign) {
@@ -271,9 +224,9 @@ class Network {
         moved += std::abs(power);
       };
       if (node.toward_root >= 0) count(node.toward_root, 1.0);
-      const bool line = std::holds_alternative<Line>(node.module);
+      const bool line = node.module.ports() == Ports::line;
       for (const int index : node.branches) count(index, line ? sign_of_end(index, node) : -1.0);
-      node.ledger.add(period * in, period * moved, period * supplied);
+      node.ledger.add(period * in, period * moved, period * node.module->supplied());
     }
   }
   // The end of a line is the root of its side or a leaf of it.

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include <repel/network/one_ports.hpp>
 #include <repel/network/passivity.hpp>
 #include <repel/network/two_port.hpp>
 
@@ -26,8 +25,11 @@ struct ObstacleOptions {
 /// by its motion: that is supplied, and may be passed on.
 class Obstacle {
  public:
-  static constexpr Traits traits{
-      .left = Space::tool, .right = Space::tool, .needs_flow = true, .keeps_flow = true};
+  static constexpr Traits traits{.left = Space::tool,
+                                 .right = Space::tool,
+                                 .needs_flow = true,
+                                 .keeps_flow = true,
+                                 .walls = Walls::tool};
 
   explicit Obstacle(const ObstacleOptions& options = {})
       : controller_(options.passivity, weight_of(options.passivity)) {
@@ -36,9 +38,6 @@ class Obstacle {
     checked("most damping", p.most_damping, 0.0, 1e6, "N s/m");
     checked("lever", p.lever, 1e-6, 100.0, "m");
   }
-
-  void prepare(double period) { (void)detail::checked_period(period); }
-  void face(Side /*root*/) noexcept {}
 
   void read(const Signals& signals) noexcept {
     const Vec<any_size> flow = signals.tool_flow();
@@ -67,6 +66,14 @@ class Obstacle {
 
   /// What the walls do to the tool after the controller [N, N m].
   [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
+  /// The same on the joints.
+  void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept {
+    const Wrench F = on_tool();
+    for (Eigen::Index i = 0; i < torques.size(); ++i) {
+      const auto column = jacobian.col(i);
+      torques(i) += column.head<3>().dot(F.force) + column.tail<3>().dot(F.torque);
+    }
+  }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by what moves
 

@@ -6,25 +6,11 @@
 /// input.
 #pragma once
 
-#include <concepts>
-#include <utility>
-
 #include <repel/base/setup_error.hpp>
 #include <repel/network/equivalent.hpp>
 #include <repel/network/signals.hpp>
 
 namespace repel::network {
-
-/// A one-port that can be matched: it states its resistance and reflects what does not depend on
-/// the wave of the same tick.
-template <class T, int N>
-concept OnePort = requires(T element, const T& const_element, double period, const Vec<N>& a) {
-  element.prepare(period);                                               // [s]; may throw
-  { const_element.resistance() } -> std::convertible_to<const Mat<N>&>;  // R, after `prepare`
-  { const_element.reflected() } -> std::convertible_to<Vec<N>>;          // b of this tick
-  { element.incident(a) }
-  noexcept;  // a of this tick
-};
 
 namespace detail {
 /// Throws SetupError unless `gain` is square, symmetric and positive definite.
@@ -37,10 +23,6 @@ const Mat<N>& checked_gain(const char* name, const Mat<N>& gain) {
   }
   return gain;
 }
-/// [s] up to an hour
-inline double checked_period(double period) {
-  return checked("period", period, 1e-9, 3600.0, "s");
-}
 }  // namespace detail
 
 /// f = D v. It reflects nothing.
@@ -49,7 +31,6 @@ class Damper {
  public:
   /// @param D [N s/m], [N m s/rad] symmetric positive definite; else SetupError
   explicit Damper(const Mat<N>& D) : R_(detail::checked_gain<N>("damping", D)) {}
-  void prepare(double period) { (void)detail::checked_period(period); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(R_.rows()); }
   [[nodiscard]] const Mat<N>& resistance() const noexcept { return R_; }
   [[nodiscard]] Vec<N> reflected() const noexcept { return Vec<N>::Zero(R_.rows()); }
@@ -123,8 +104,9 @@ class Mass {
 template <int N>
 class EffortSource {
  public:
+  static constexpr Traits traits{.passive = false};
+
   explicit EffortSource(const Vec<N>& effort) : effort_(effort) {}
-  void prepare(double period) { (void)detail::checked_period(period); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(effort_.size()); }
   void set(const Vec<N>& effort) noexcept { effort_ = effort; }  ///< [N], [N m] of this tick
   void equivalent(Equivalent<N>& shown) const noexcept {
@@ -142,8 +124,9 @@ class EffortSource {
 template <int N>
 class FlowSource {
  public:
+  static constexpr Traits traits{.passive = false};
+
   explicit FlowSource(const Vec<N>& flow) : flow_(flow) {}
-  void prepare(double period) { (void)detail::checked_period(period); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
   void set(const Vec<N>& flow) noexcept { flow_ = flow; }  ///< [m/s], [rad/s] of this tick
   void equivalent(Equivalent<N>& shown) const noexcept {

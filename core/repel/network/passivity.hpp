@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repel/network/ledger.hpp>
 #include <repel/network/port.hpp>
 
 namespace repel::network {
@@ -15,12 +16,6 @@ struct PassivityOptions {
   double most_damping = 300.0;  ///< [N s/m] injected against energy from sampling; the rest is
                                 ///< carried over
   double lever = 0.1;           ///< [m] at which damping acts on a rotation
-};
-
-/// What a controller has done.
-struct PassivityReport {
-  double dissipated = 0.0;  ///< [J] withheld or damped away since the start
-  double owed = 0.0;        ///< [J] given too much by sampling and not yet taken back
 };
 
 /// Keeps two accounts of a nonlinear element whose flow is measured (Hannaford and Ryu 2002).

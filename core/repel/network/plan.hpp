@@ -89,19 +89,14 @@ inline Signals neutral_signals(int joints, double period) {
 
 /// Brings a module to its place: space, size, period and the way to the root.
 inline void ready(Node& node, const Connection& first, Side root, double period) {
-  const auto ready_one = [&](auto& module) {
-    if constexpr (requires { module.fit(first.space, first.size); }) {
-      module.fit(first.space, first.size);
-    }
-    if constexpr (requires { module.size(); }) {
-      checked("size, where '" + first.left + "' is joined to '" + first.right + "',", module.size(),
+  try {
+    node.module->fit(first.space, first.size);
+    if (const int size = node.module->size(); size > 0) {
+      checked("size, where '" + first.left + "' is joined to '" + first.right + "',", size,
               first.size, first.size, "");
     }
-    if constexpr (requires { module.face(root); }) module.face(root);
-    if constexpr (requires { module.prepare(period); }) module.prepare(period);
-  };
-  try {
-    std::visit(ready_one, node.module);
+    node.module->face(root);
+    node.module->prepare(period);
   } catch (const SetupError& error) {
     throw SetupError("module '" + node.name + "': " + error.what());
   }
@@ -119,9 +114,7 @@ inline void Plan::lay_out(Network& network, detail::Planner& planner) const {
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const Entry& entry = entries_[i];
     if (find(entry.name) != i) throw SetupError("two modules are called '" + entry.name + "'");
-    Node node{entry.name, entry.module, {}, -1, {}, -1, {}};
-    node.traits = std::visit([](const auto& m) { return detail::traits_of(m); }, entry.module);
-    network.nodes_.push_back(std::move(node));
+    network.nodes_.push_back({entry.name, entry.module, entry.module->traits(), -1, {}, -1, {}});
   }
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const To& to = entries_[i].to;
@@ -149,7 +142,7 @@ inline Network Plan::build(double period) const {
     auto& steps = vertex.toward_root < 0 ? network.roots_ : network.upward_;
     steps.push_back({vertex.node, vertex.side});
     Node& node = network.nodes_[vertex.node];
-    if (std::holds_alternative<Line>(node.module)) {
+    if (node.module.ports() == Ports::line) {
       node.branches.resize(2);
       node.branches[vertex.side == Side::left ? 0 : 1] = vertex.connections.front();
       continue;

@@ -38,8 +38,7 @@ class Planner {
   void check_ports() {
     for (int i = 0; i < count(); ++i) {
       const auto [in, out] = ports_of(i);
-      const Module& m = nodes_[i].module;
-      const bool junction = std::holds_alternative<Junction>(m);
+      const bool junction = nodes_[i].module.ports() == Ports::junction;
       if (junction && in + out < 2) fail(i, "joins fewer than two ports");
       if (junction) continue;
       if (is_one_port_at(i) && in + out != 1) {
@@ -77,9 +76,9 @@ class Planner {
   void find_sizes() {
     int joints = 0;
     for (const Node& node : nodes_) {
-      int own = 0;
-      if (const auto* m = std::get_if<PumaJoints>(&node.module)) own = m->size();
-      if (const auto* m = std::get_if<Limits>(&node.module)) own = m->size();
+      const bool of_joints =
+          node.traits.left == Space::joints || node.traits.right == Space::joints;
+      const int own = of_joints ? node.module->size() : 0;
       if (own > 0 && joints > 0 && own != joints) {
         throw SetupError("'" + node.name + "' has " + std::to_string(own) +
                          " joints, a module before it " + std::to_string(joints));
@@ -120,8 +119,7 @@ class Planner {
     throw SetupError("module '" + nodes_[node].name + "' " + what);
   }
   [[nodiscard]] bool is_one_port_at(int node) const {
-    return std::visit([](const auto& m) { return is_one_port<std::decay_t<decltype(m)>>; },
-                      nodes_[node].module);
+    return nodes_[node].module.ports() == Ports::one;
   }
   [[nodiscard]] std::pair<int, int> ports_of(int node) const {
     int in = 0;
@@ -159,7 +157,7 @@ class Planner {
 
   void make_vertices() {
     for (int i = 0; i < count(); ++i) {
-      if (!std::holds_alternative<Line>(nodes_[i].module)) {
+      if (nodes_[i].module.ports() != Ports::line) {
         vertices_.push_back({i, Side::left, {}, -1, false});
         for (int c = 0; c < static_cast<int>(connections_.size()); ++c) {
           const bool here = connections_[c].left_node == i || connections_[c].right_node == i;
@@ -186,7 +184,7 @@ class Planner {
       if (!vertices_[v].reached && vertices_[v].connections.size() == 1) return v;
     }
     for (int v = 0; v < n; ++v) {
-      if (!vertices_[v].reached) fail_loop(v);
+      if (!vertices_[v].reached) fail_loop();
     }
     return -1;
   }
@@ -203,7 +201,7 @@ class Planner {
     for (const int c : vertices_[v].connections) {
       if (c == vertices_[v].toward_root) continue;
       const int next = across(c, v);
-      if (vertices_[next].reached) fail_loop(next);
+      if (vertices_[next].reached) fail_loop();
       vertices_[next].reached = true;
       vertices_[next].toward_root = c;
       const int left = connections_[c].left_node;
@@ -212,7 +210,7 @@ class Planner {
     }
   }
   // Names the modules that have connections on at least two sides after all ends are cut off.
-  [[noreturn]] void fail_loop(int /*somewhere*/) const {
+  [[noreturn]] void fail_loop() const {
     std::vector<int> degree;
     for (const Vertex& v : vertices_) degree.push_back(static_cast<int>(v.connections.size()));
     for (std::size_t round = 0; round < vertices_.size(); ++round) {

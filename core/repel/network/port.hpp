@@ -14,6 +14,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
 
 namespace repel::network {
@@ -54,6 +55,27 @@ enum class Space {
       return "any";
   }
 }
+
+/// The two ports of a two-port. Networks are written from left, the operator, to right, the robot.
+enum class Side { left, right };
+
+/// Which forces of the world model a module brings into the network.
+enum class Walls {
+  none,
+  tool,   ///< those on the tool
+  links,  ///< those on the links of the arm
+};
+
+/// What a module is to the network that it stands in.
+struct Traits {
+  Space left = Space::any;     ///< of its left port
+  Space right = Space::any;    ///< of its right port
+  bool measures_flow = false;  ///< decides its own flow: it must be the root, and the only one
+  bool needs_flow = false;     ///< nonlinear: needs a flow that the root has measured
+  bool keeps_flow = false;     ///< what is measured on one side is known on the other
+  Walls walls = Walls::none;   ///< what it takes from the world model
+  bool passive = true;         ///< gives no more energy than it took and was supplied with
+};
 
 /// Effort and flow of one port in one tick, both into the element.
 template <int N>
@@ -96,5 +118,12 @@ template <int N>
 [[nodiscard]] inline Wrench to_wrench(const Vec<any_size>& six) noexcept {
   return {six.head<3>(), six.segment<3>(3)};
 }
+
+namespace detail {
+/// [s] up to an hour
+inline double checked_period(double period) {
+  return checked("period", period, 1e-9, 3600.0, "s");
+}
+}  // namespace detail
 
 }  // namespace repel::network

@@ -2,8 +2,8 @@
 /// PUMA_JOINTS: the robot at the end of the network, of any arm.
 #pragma once
 
-#include <repel/network/one_ports.hpp>
-#include <repel/network/two_port.hpp>
+#include <repel/network/equivalent.hpp>
+#include <repel/network/signals.hpp>
 
 namespace repel::network {
 
@@ -65,7 +65,6 @@ class PumaJoints {
             static_cast<int>(checked("number of joints", joints, 1, most_joints, "")))),
         effort_(flow_) {}
 
-  void prepare(double period) { (void)detail::checked_period(period); }
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
 
   void read(const Signals& signals) noexcept {

@@ -2,7 +2,6 @@
 /// PUMA_KIN: from the space of the tool to that of the joints, of any arm.
 #pragma once
 
-#include <repel/network/one_ports.hpp>
 #include <repel/network/two_port.hpp>
 
 namespace repel::network {
@@ -16,7 +15,6 @@ class PumaKin {
  public:
   static constexpr Traits traits{.left = Space::tool, .right = Space::joints, .keeps_flow = true};
 
-  void prepare(double period) { (void)detail::checked_period(period); }
   void face(Side root) noexcept { root_ = root; }
   void read(const Signals& signals) noexcept { jacobian_ = signals.jacobian; }
 

@@ -4,7 +4,6 @@
 
 #include <array>
 
-#include <repel/network/one_ports.hpp>
 #include <repel/network/two_port.hpp>
 
 namespace repel::network {
@@ -60,7 +59,6 @@ class Relief {
       inverse_stiffness_[i] = k > 0.0 ? 1.0 / k : 0.0;
     }
   }
-  void face(Side /*root*/) noexcept {}
   void read(const Signals& signals) noexcept {
     if (options_.frame == ReliefFrame::tool) turn_ = signals.X_WT.linear();
     if (signals.at_rest) wave_.setZero();

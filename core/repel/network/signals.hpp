@@ -6,6 +6,9 @@
 
 namespace repel::network {
 
+/// Six rows, linear then angular, world axes; a column for each joint. In storage of fixed size.
+using Jacobian = Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints>;
+
 /// What the operator's hands do in one tick.
 struct HandInput {
   Twist ball;                        ///< [m/s, rad/s] raw rates of the force ball, world axes
@@ -16,11 +19,10 @@ struct HandInput {
 /// The state of arm, world and hands at the beginning of a tick. All numbers are finite: the loop
 /// keeps the last sound ones where an input fails.
 struct Signals {
-  Vec<any_size> joints;      ///< q [rad], [m]
-  Vec<any_size> rates;       ///< [rad/s], [m/s] the measured flow
-  Vec<any_size> mean_rates;  ///< [rad/s], [m/s] (q - last q) / elapsed
-  Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints>
-      jacobian;                  ///< tool, world axes
+  Vec<any_size> joints;          ///< q [rad], [m]
+  Vec<any_size> rates;           ///< [rad/s], [m/s] the measured flow
+  Vec<any_size> mean_rates;      ///< [rad/s], [m/s] (q - last q) / elapsed
+  Jacobian jacobian;             ///< of the tool
   Pose X_WT = Pose::Identity();  ///< [m]
   Wrench walls;               ///< [N, N m] of the world model on the tool, about its origin, in W
   Vec<any_size> arm_torques;  ///< [N m], [N] of the world model on the links, sum of J^T F

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <repel/network/one_ports.hpp>
-#include <repel/network/two_port.hpp>
+#include <repel/network/equivalent.hpp>
+#include <repel/network/signals.hpp>
 
 namespace repel::network {
 

@@ -1,43 +1,11 @@
 /// @file
-/// The two-port concept and the transformer.
+/// What two-ports are made of: transformers and sources in series.
 #pragma once
-
-#include <concepts>
 
 #include <repel/network/equivalent.hpp>
 #include <repel/network/signals.hpp>
 
 namespace repel::network {
-
-/// The two ports of a two-port. Networks are written from left, the operator, to right, the robot.
-enum class Side { left, right };
-
-/// What a module is to the network that it stands in.
-struct Traits {
-  Space left = Space::any;     ///< of its left port
-  Space right = Space::any;    ///< of its right port
-  bool measures_flow = false;  ///< decides its own flow: it must be the root, and the only one
-  bool needs_flow = false;     ///< nonlinear: needs a flow that the root has measured
-  bool keeps_flow = false;     ///< what is measured on one side is known on the other
-  bool passive = true;         ///< gives no more energy than it took and was supplied with
-};
-
-/// A two-port stands between what lies behind it, away from the root, and the root. Each tick it
-/// first shows the root side what it makes of what is behind it; then, the root being solved, it
-/// turns effort and flow of its root-side port into those of the other. Nothing here throws,
-/// allocates or waits, `prepare` excepted.
-template <class T>
-concept TwoPort = requires(T module, const Equivalent<any_size>& behind,
-                           Equivalent<any_size>& shown, const PortState<any_size>& at_root,
-                           PortState<any_size>& at_leaf, double period) {
-  { T::traits } -> std::convertible_to<const Traits&>;
-  module.prepare(period);    // [s]; may throw SetupError
-  module.face(Side::right);  // where the root is
-  { module.reflected(behind, shown) }
-  noexcept->std::same_as<bool>;  // false: cannot be shown
-  { module.incident(at_root, behind, at_leaf) }
-  noexcept;
-};
 
 /// A lossless connection of two spaces: v_A = V v_B and f_B = F' f_A, with V = F unless a power
 /// factor is declared. Of the two matrices the same values serve both ways in one tick.

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include <repel/base/layout.hpp>
@@ -17,6 +16,7 @@
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/scene/module_kinds.hpp>
 #include <repel/schedule/pair_block.hpp>
 #include <repel/world/arm.hpp>
 
@@ -74,31 +74,12 @@ struct Budget {
   std::int64_t max_age = repel::Budget{}.max_age;  ///< [ticks] beyond it an answer expires
 };
 
-/// A spring, damper or mass between a junction and the ground.
-struct Element {
-  enum class Kind { spring, damper, mass };
-  Kind kind = Kind::damper;
-  network::Space space = network::Space::tool;  ///< tool or lever
-  double linear = 0.0;                          ///< [N/m], [N s/m] or [kg]; of a tool
-  double angular = 0.0;                         ///< [N m/rad], [N m s/rad] or [kg m^2]
-};
-
-/// Modules that need nothing, or only what is known of the arm.
-struct Ground {};
-struct Kinematic {};
-struct Joints {};
-struct Tap {};
-
 /// One entry of the network.
-struct Module {
+struct Module : ReadModule {
   std::string name;
-  network::To to;  ///< what it says; the next one when it says nothing
-  std::variant<network::TorqueArmOptions, network::MultiplexOptions, network::SpaceballOptions,
-               network::ReliefOptions, network::Kbb2Options, network::ObstacleOptions,
-               network::ArmObstacleOptions, Ground, Kinematic, network::JointLimits, Tap, Joints,
-               network::Common, network::LineOptions, Element>
-      options;
-  int line = 0;  ///< of the file
+  std::string kind;  ///< the word after `module:`
+  network::To to;    ///< what it says; the next one when it says nothing
+  int line = 0;      ///< of the file
 };
 
 struct Network {
@@ -147,10 +128,12 @@ struct Scene : Station {
 
 /// Reads the scene file at `path`. Throws SetupError, naming file, line, value and what is allowed,
 /// for anything that is not exactly as scenes/README.md states it.
-[[nodiscard]] Scene load(const std::string& path);
+/// @param kinds of module that the file can name
+[[nodiscard]] Scene load(const std::string& path, const ModuleKinds& kinds = {});
 
 /// The same for text; `file` is the name that errors give and that paths are relative to.
-[[nodiscard]] Scene parse(std::string_view yaml, const std::string& file);
+[[nodiscard]] Scene parse(std::string_view yaml, const std::string& file,
+                          const ModuleKinds& kinds = {});
 
 /// The network of a station of the scene for its arm, ready for a period of 1 / `rate_hz`.
 /// @throws SetupError naming the file and the modules when it cannot be built

@@ -1,0 +1,278 @@
+#include <repel/scene/module_kinds.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/network/modules.hpp>
+
+#include "yaml.hpp"
+
+namespace repel::scene {
+namespace {
+
+using Keys = std::initializer_list<std::string_view>;
+
+constexpr std::string_view common_keys[] = {"module", "name", "to"};
+
+/// The map of one entry, with the keys that every module has and those of this one.
+void allow(const Map& map, Keys keys) {
+  std::vector<std::string_view> all(std::begin(common_keys), std::end(common_keys));
+  all.insert(all.end(), keys.begin(), keys.end());
+  map.allow(all);
+}
+
+template <class M, class Options>
+network::Module make(const Options& options) {
+  return M(options);
+}
+
+/// A module that needs nothing of the arm.
+template <class Options>
+ReadModule made_of(const Options& options, network::Module (*from)(const Options&)) {
+  return {options, [=](const ArmModel& /*arm*/) { return from(options); }};
+}
+
+ReadModule torque_arm_of(const Map& map) {
+  allow(map, {"inertia", "friction", "hand_stiffness", "hand_damping", "torque_limit"});
+  network::TorqueArmOptions options;
+  map.read("inertia", {unit::inertia, 1e-6, 1e3}, options.inertia);
+  map.read("friction", {unit::angular_damping, 0.0, 1e3}, options.friction);
+  map.read("hand_stiffness", {unit::angular_stiffness, 0.0, 1e5}, options.hand_stiffness);
+  map.read("hand_damping", {unit::angular_damping, 0.0, 1e4}, options.hand_damping);
+  map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
+  return made_of(options, make<network::TorqueArm>);
+}
+
+ReadModule multiplex_of(const Map& map) {
+  allow(map, {"velocity_scale", "force_scale", "turning_time"});
+  network::MultiplexOptions options;
+  map.read("velocity_scale", {unit::length_per_angle, 1e-6, 100.0}, options.velocity_scale);
+  options.force_scale = options.velocity_scale;  // lossless unless the file says otherwise
+  map.read("force_scale", {unit::length, 1e-6, 100.0}, options.force_scale);
+  map.read("turning_time", {unit::time, 0.0, 100.0}, options.turning_time);
+  return made_of(options, make<network::Multiplex>);
+}
+
+ReadModule spaceball_of(const Map& map) {
+  allow(map,
+        {"dead_band", "saturation", "angular_dead_band", "angular_saturation", "time_constant"});
+  network::SpaceballOptions options;
+  map.read("dead_band", {unit::speed, 0.0, 10.0}, options.dead_band);
+  map.read("saturation", {unit::speed, 0.0, 10.0}, options.saturation);
+  map.read("angular_dead_band", {unit::angular_speed, 0.0, 100.0}, options.angular_dead_band);
+  map.read("angular_saturation", {unit::angular_speed, 0.0, 100.0}, options.angular_saturation);
+  map.read("time_constant", {unit::time, 0.0, 100.0}, options.time_constant);
+  return made_of(options, make<network::Spaceball>);
+}
+
+ReadModule relief_of(const Map& map) {
+  allow(map,
+        {"compliant", "frame", "stiffness", "damping", "angular_stiffness", "angular_damping"});
+  network::ReliefOptions options;
+  constexpr std::string_view words[] = {"x", "y", "z", "rx", "ry", "rz"};
+  if (const Value* list = map.find("compliant")) {
+    for (const Value& entry : list->list()) {
+      const std::string word = entry.word_of({"x", "y", "z", "rx", "ry", "rz"});
+      options.compliant[std::find(std::begin(words), std::end(words), word) - words] = true;
+    }
+  }
+  if (const Value* frame = map.find("frame")) {
+    const bool world = frame->word_of({"world", "tool"}) == "world";
+    options.frame = world ? network::ReliefFrame::world : network::ReliefFrame::tool;
+  }
+  map.read("stiffness", {unit::stiffness, 0.0, 1e7}, options.stiffness);
+  map.read("damping", {unit::damping, 0.0, 1e6}, options.damping);
+  map.read("angular_stiffness", {unit::angular_stiffness, 0.0, 1e6}, options.angular_stiffness);
+  map.read("angular_damping", {unit::angular_damping, 0.0, 1e6}, options.angular_damping);
+  return made_of(options, make<network::Relief>);
+}
+
+ReadModule kbb2_of(const Map& map) {
+  allow(map, {"stiffness", "damping", "shunt", "force_limit", "angular_stiffness",
+              "angular_damping", "angular_shunt", "torque_limit"});
+  network::Kbb2Options options;
+  map.read("stiffness", {unit::stiffness, 1e-3, 1e7}, options.stiffness);
+  map.read("damping", {unit::damping, 0.0, 1e6}, options.damping);
+  map.read("shunt", {unit::damping, 0.0, 1e6}, options.shunt);
+  map.read("force_limit", {unit::force, 0.0, 1e6}, options.force_limit);
+  map.read("angular_stiffness", {unit::angular_stiffness, 1e-3, 1e6}, options.angular_stiffness);
+  map.read("angular_damping", {unit::angular_damping, 0.0, 1e6}, options.angular_damping);
+  map.read("angular_shunt", {unit::angular_damping, 0.0, 1e6}, options.angular_shunt);
+  map.read("torque_limit", {unit::torque, 0.0, 1e6}, options.torque_limit);
+  return made_of(options, make<network::Kbb2>);
+}
+
+ReadModule arm_obstacle_of(const Map& map) {
+  allow(map, {"most_energy", "most_damping"});
+  network::ArmObstacleOptions options;
+  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.most_energy);
+  map.read("most_damping", {unit::angular_damping, 0.0, 1e6}, options.most_damping);
+  return made_of(options, make<network::ArmObstacle>);
+}
+
+ReadModule obstacle_of(const Map& map) {
+  allow(map, {"gain_check", "most_energy", "most_damping"});
+  network::ObstacleOptions options;
+  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.passivity.most_energy);
+  map.read("most_damping", {unit::damping, 0.0, 1e6}, options.passivity.most_damping);
+  return made_of(options, make<network::Obstacle>);
+}
+
+ReadModule limits_of(const Map& map) {
+  allow(map, {"range", "stiffness", "damping"});
+  network::JointLimits law;
+  map.read("range", {unit::angle, 1e-6, 1e3}, law.range);
+  map.read("stiffness", {unit::angular_stiffness, 0.0, 1e6}, law.stiffness);
+  map.read("damping", {unit::angular_damping, 0.0, 1e6}, law.damping);
+  return {law, [law](const ArmModel& arm) {
+            std::vector<network::JointRange> ranges;
+            for (const ArmLink& link : arm.links) ranges.push_back({link.lower, link.upper});
+            return network::Limits(law, ranges);
+          }};
+}
+
+ReadModule line_of(const Map& map) {
+  allow(map,
+        {"kind", "impedance", "angular_impedance", "delay", "jitter", "loss", "seed", "buffer"});
+  network::LineOptions options;
+  if (const Value* kind = map.find("kind")) {
+    const bool waves = kind->word_of({"waves", "force_velocity"}) == "waves";
+    options.kind = waves ? network::LineKind::waves : network::LineKind::force_velocity;
+  }
+  map.read("impedance", {unit::damping, 1e-6, 1e6}, options.impedance);
+  map.read("angular_impedance", {unit::angular_damping, 1e-6, 1e6}, options.angular_impedance);
+  map.read("delay", {unit::time, 0.0, 10.0}, options.channel.delay);
+  map.read("jitter", {unit::time, 0.0, 10.0}, options.channel.jitter);
+  map.read("buffer", {unit::time, 0.0, 10.0}, options.buffer);
+  map.read("loss", {unit::share, 0.0, 1.0}, options.channel.loss);
+  if (const Value* seed = map.find("seed")) {
+    options.channel.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
+  }
+  return made_of(options, make<network::Line>);
+}
+
+Element element_of(const Map& map, Element::Kind kind) {
+  const bool mass = kind == Element::Kind::mass;
+  const bool spring = kind == Element::Kind::spring;
+  const std::string_view linear = mass ? "mass" : spring ? "stiffness" : "damping";
+  const std::string_view angular = mass     ? "inertia"
+                                   : spring ? "angular_stiffness"
+                                            : "angular_damping";
+  Element element{.kind = kind};
+  allow(map, {"space", linear, angular});
+  if (const Value* space = map.find("space")) {
+    const bool lever = space->word_of({"tool", "lever"}) == "lever";
+    element.space = lever ? network::Space::lever : network::Space::tool;
+  }
+  const bool tool = element.space == network::Space::tool;
+  if (!tool) allow(map, {"space", angular});
+  const auto pick = [&](Units of_mass, Units of_spring, Units of_damper) {
+    return mass ? of_mass : spring ? of_spring : of_damper;
+  };
+  const Units linear_units = pick(unit::mass, unit::stiffness, unit::damping);
+  const Units angular_units = pick(unit::inertia, unit::angular_stiffness, unit::angular_damping);
+  if (tool) element.linear = map.at(linear).number({linear_units, 1e-9, 1e7});
+  element.angular = map.at(angular).number({angular_units, 1e-9, 1e7});
+  return element;
+}
+
+network::Module element_from(const Element& e) {
+  using network::any_size;
+  const int size = e.space == network::Space::tool ? 6 : 1;
+  network::Mat<any_size> gain = network::Mat<any_size>::Identity(size, size) * e.angular;
+  if (size == 6) gain.topLeftCorner<3, 3>() = e.linear * Mat3::Identity();
+  if (e.kind == Element::Kind::spring) return network::Spring<any_size>(gain);
+  if (e.kind == Element::Kind::mass) return network::Mass<any_size>(gain);
+  return network::Damper<any_size>(gain);
+}
+template <Element::Kind kind>
+ReadModule read_element(const Map& map) {
+  return made_of(element_of(map, kind), element_from);
+}
+
+ReadModule junction_of(const Map& map) {
+  allow(map, {"common"});
+  const Value* common = map.find("common");
+  const bool effort = common && common->word_of({"flow", "effort"}) == "effort";
+  return made_of(effort ? network::Common::effort : network::Common::flow,
+                 make<network::Junction>);
+}
+
+/// Modules that take no option.
+template <class M>
+ReadModule plain_of(const Map& map) {
+  allow(map, {});
+  return {{}, [](const ArmModel& /*arm*/) { return M(); }};
+}
+
+ReadModule ground_of(const Map& map) {
+  using network::any_size;
+  allow(map, {});
+  return {{}, [](const ArmModel& /*arm*/) {
+            return network::FlowSource<any_size>(network::Vec<any_size>::Zero(6));
+          }};
+}
+
+ReadModule joints_of(const Map& map) {
+  allow(map, {});
+  return {{}, [](const ArmModel& arm) {
+            return network::PumaJoints(static_cast<int>(arm.links.size()));
+          }};
+}
+
+}  // namespace
+
+double ModuleEntry::number(std::string_view key, std::string_view unit, double low, double high,
+                           double otherwise) const {
+  asked_.emplace_back(key);
+  const Units units = unit::of_dimension(unit);
+  map_.read(key, {units, low, high}, otherwise);
+  return otherwise;
+}
+
+std::string ModuleEntry::word(std::string_view key,
+                              std::initializer_list<std::string_view> words) const {
+  asked_.emplace_back(key);
+  const Value* value = map_.find(key);
+  return value == nullptr ? std::string(*words.begin()) : value->word_of(words);
+}
+
+void ModuleEntry::finish() const {
+  std::vector<std::string_view> all(std::begin(common_keys), std::end(common_keys));
+  all.insert(all.end(), asked_.begin(), asked_.end());
+  map_.allow(all);
+}
+
+ModuleKinds::ModuleKinds() {
+  const std::pair<const char*, ReadModule (*)(const Map&)> own[] = {
+      {"torque_arm", torque_arm_of},
+      {"multiplex", multiplex_of},
+      {"spaceball", spaceball_of},
+      {"relief", relief_of},
+      {"kbb2", kbb2_of},
+      {"obstacle", obstacle_of},
+      {"puma_kin", plain_of<network::PumaKin>},
+      {"arm_obstacle", arm_obstacle_of},
+      {"limits", limits_of},
+      {"visual", plain_of<network::Visual>},
+      {"puma_joints", joints_of},
+      {"ground", ground_of},
+      {"line", line_of},
+      {"junction", junction_of},
+      {"spring", read_element<Element::Kind::spring>},
+      {"damper", read_element<Element::Kind::damper>},
+      {"mass", read_element<Element::Kind::mass>}};
+  for (const auto& [word, read] : own) {
+    insert(word, [read = read](const ModuleEntry& entry) { return read(entry.map()); });
+  }
+}
+
+void ModuleKinds::insert(const std::string& word, Read read) {
+  if (!kinds_.emplace(word, std::move(read)).second) {
+    throw SetupError("there is a module '" + word + "' already; allowed: another word");
+  }
+  words_.push_back(word);
+}
+
+}  // namespace repel::scene

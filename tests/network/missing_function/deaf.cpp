@@ -1,0 +1,17 @@
+// A matched one-port that does not take its wave.
+#include <repel/network/module.hpp>
+
+using namespace repel::network;
+
+class Deaf {
+ public:
+  [[nodiscard]] const Mat<1>& resistance() const noexcept { return R_; }
+  [[nodiscard]] Vec<1> reflected() const noexcept { return Vec<1>::Zero(); }
+
+ private:
+  Mat<1> R_ = Mat<1>::Ones();
+};
+
+Module module_of_its_own() {
+  return Deaf();
+}

@@ -1,0 +1,10 @@
+// What has nothing of a module.
+#include <repel/network/module.hpp>
+
+using namespace repel::network;
+
+struct Nothing {};
+
+Module module_of_its_own() {
+  return Nothing();
+}

@@ -1,0 +1,15 @@
+// A two-port that never turns the state of the root into that behind it.
+#include <repel/network/module.hpp>
+
+using namespace repel::network;
+
+struct OneWay {
+  bool reflected(const Equivalent<any_size>& behind, Equivalent<any_size>& shown) noexcept {
+    shown = behind;
+    return true;
+  }
+};
+
+Module module_of_its_own() {
+  return OneWay();
+}
