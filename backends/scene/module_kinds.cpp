@@ -29,8 +29,9 @@ network::Module make(const Options& options) {
 
 /// A module that needs nothing of the arm.
 template <class Options>
-ReadModule made_of(const Options& options, network::Module (*from)(const Options&)) {
-  return {options, [=](const ArmModel& /*arm*/) { return from(options); }};
+ReadModule made_of(const Options& options, network::Module (*from)(const Options&),
+                   network::Walls walls = network::Walls::none) {
+  return {options, [=](const ArmModel& /*arm*/) { return from(options); }, walls};
 }
 
 ReadModule torque_arm_of(const Map& map) {
@@ -108,7 +109,7 @@ ReadModule arm_obstacle_of(const Map& map) {
   network::ArmObstacleOptions options;
   map.read("most_energy", {unit::energy, 0.0, 1e6}, options.most_energy);
   map.read("most_damping", {unit::angular_damping, 0.0, 1e6}, options.most_damping);
-  return made_of(options, make<network::ArmObstacle>);
+  return made_of(options, make<network::ArmObstacle>, network::ArmObstacle::traits.walls);
 }
 
 ReadModule obstacle_of(const Map& map) {
@@ -116,7 +117,7 @@ ReadModule obstacle_of(const Map& map) {
   network::ObstacleOptions options;
   map.read("most_energy", {unit::energy, 0.0, 1e6}, options.passivity.most_energy);
   map.read("most_damping", {unit::damping, 0.0, 1e6}, options.passivity.most_damping);
-  return made_of(options, make<network::Obstacle>);
+  return made_of(options, make<network::Obstacle>, network::Obstacle::traits.walls);
 }
 
 ReadModule limits_of(const Map& map) {
@@ -195,8 +196,7 @@ ReadModule junction_of(const Map& map) {
   allow(map, {"common"});
   const Value* common = map.find("common");
   const bool effort = common && common->word_of({"flow", "effort"}) == "effort";
-  return made_of(effort ? network::Common::effort : network::Common::flow,
-                 make<network::Junction>);
+  return made_of(effort ? network::Common::effort : network::Common::flow, make<network::Junction>);
 }
 
 /// Modules that take no option.

@@ -66,11 +66,11 @@ int line_of_named(const std::vector<Module>& modules, const std::string& text) {
   return line;
 }
 
-/// True when the network has a module of this kind.
-bool has_module(const Station& station, std::string_view kind) {
+/// True when the network has a module that brings these walls to the arm.
+bool brings(const Station& station, network::Walls walls) {
   const auto& modules = station.network.modules;
   return std::any_of(modules.begin(), modules.end(),
-                     [&](const Module& m) { return m.kind == kind; });
+                     [&](const Module& m) { return m.walls == walls; });
 }
 
 }  // namespace
@@ -91,13 +91,14 @@ Network detail::network_of(const Value* value, const ModuleKinds& kinds) {
 }
 
 bool feels_links(const Station& station) {
-  return has_module(station, "arm_obstacle");
+  return brings(station, network::Walls::links);
 }
 
 network::Network build_network(const Scene& scene, const Station& station, const ArmModel& arm,
                                double rate_hz) {
   const auto& modules = station.network.modules;
-  if (!(scene.obstacles.empty() && scene.partners.empty()) && !has_module(station, "obstacle")) {
+  if (!(scene.obstacles.empty() && scene.partners.empty()) &&
+      !brings(station, network::Walls::tool)) {
     throw SetupError("network: there are obstacles and no module 'obstacle' through which they act",
                      scene.file);
   }

@@ -60,6 +60,7 @@ using MakeModule = std::function<network::Module(const ArmModel&)>;
 struct ReadModule {
   std::any options;  ///< of the type that its constructor takes
   MakeModule make;
+  network::Walls walls = network::Walls::none;  ///< that it brings to the arm, as its traits say
 };
 
 /// The kinds of module by the word after `module:`. It begins with those of scenes/README.md; a
@@ -88,7 +89,8 @@ class ModuleKinds {
       } else {
         const network::Module module(result);
         return ReadModule{{},
-                          [module](const ArmModel& /*arm*/) { return network::Module(module); }};
+                          [module](const ArmModel& /*arm*/) { return network::Module(module); },
+                          module->traits().walls};
       }
     });
   }
