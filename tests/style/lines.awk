@@ -43,6 +43,8 @@ FNR == 1 {
   last_file = FILENAME
   is_header = FILENAME ~ /\.hpp$/
   is_code = FILENAME !~ /\.(md|urdf|yaml)$/
+  is_page = FILENAME ~ /\.md$/ && FILENAME !~ /^\.\/bench\/results\//  # which programs write
+  is_fenced = 0
   is_core = FILENAME ~ /^\.\/core\//
   is_library = FILENAME ~ /^\.\/(core|robots|backends)\//
   own_room = is_core ? room_of(FILENAME) : 0
@@ -56,6 +58,10 @@ FNR == 1 {
   gsub(/[\200-\277]/, "", columns)  # the rest of a character in UTF-8
 }
 is_code && length(columns) > 100 { breach("line-length", "over 100 columns") }
+is_page && /^ *```/ { is_fenced = !is_fenced }
+is_page && !is_fenced && !/^(\||    )/ && length(columns) > 100 {
+  breach("line-length", "a line of text over 100 columns")
+}
 is_header && FNR == 301 { breach("header-length", "over 300 lines") }
 $0 ~ open_work { breach("open-work", "finish it, or leave it out") }
 $0 ~ machine_path { breach("machine-path", "a path of one machine") }
