@@ -1,9 +1,9 @@
 /// @file
-/// What one query and one tick cost: pairs of boxes and hulls, cold and warm, and the tick of 4
-/// tool parts against 8 obstacles, with every pair near and with most of them skipped.
+/// Cost of one query and one tick: pairs of boxes and hulls, cold and warm, and the tick of 4 tool
+/// parts against 8 obstacles, with every pair near and with most of them skipped.
 ///
-/// Warm means solved one tick earlier, then moved 0.5 mm and 0.1 degree. Answers are checked before
-/// anything is timed: cold and warm must agree, and the bracket must hold both.
+/// Warm means solved one tick earlier, then moved by 0.5 mm and 0.1 degree. Answers are checked
+/// before the timing: cold and warm must agree, and the bracket must contain both.
 
 #include <benchmark/benchmark.h>
 
@@ -31,7 +31,7 @@ Mat3 turn(Rng& rng, double angle) {
   return Eigen::AngleAxisd(angle, direction(rng)).toRotationMatrix();
 }
 
-/// Vertices 0 asks for a box, else a hull of that many points on a sphere.
+/// `vertices` 0: a box, else a hull of that many points on a sphere.
 Shape random_shape(Rng& rng, std::int64_t vertices) {
   if (vertices == 0) {
     return Shape::box({uniform(rng, 0.1, 0.5), uniform(rng, 0.1, 0.5), uniform(rng, 0.1, 0.5)});
@@ -41,7 +41,7 @@ Shape random_shape(Rng& rng, std::int64_t vertices) {
   return Shape::hull(points, {.levels = 1});
 }
 
-/// A pair of shapes, apart, at two poses of B one tick from each other.
+/// A pair of separated shapes, at two poses of B one tick apart.
 struct Case {
   Shape A, B;
   Pose X_WA = Pose::Identity();
@@ -65,7 +65,7 @@ std::vector<Case> cases(std::int64_t vertices) {
   return all;
 }
 
-/// Solves every case cold and warm; false when they disagree.
+/// Solves every case cold and warm; false if they disagree.
 bool answers_hold(std::vector<Case>& all) {
   for (Case& c : all) {
     (void)separation(c.A, c.X_WA, c.B, c.X_WB[1], {}, c.warm);

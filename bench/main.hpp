@@ -1,6 +1,6 @@
 /// @file
-/// What every benchmark program has in common: `--json FILE`, and what the file says about the
-/// machine and the build.
+/// Common code of all benchmark programs: `--json FILE`, and the description of machine and build
+/// in that file.
 #pragma once
 
 #include <string>
@@ -10,22 +10,22 @@
 
 namespace repel::bench {
 
-/// The machine and the build, in words.
+/// Description of the machine and the build.
 struct Build {
-  std::string machine;   ///< model of the processor, number of them
+  std::string machine;   ///< model and number of processors
   std::string compiler;  ///< name and version
-  std::string flags;     ///< that the program was compiled with
-  std::string simd;      ///< widest vector registers that were compiled for
+  std::string flags;     ///< compiler flags of this program
+  std::string simd;      ///< widest SIMD extension compiled for
   std::string commit;    ///< "unknown" outside a git checkout
 };
 [[nodiscard]] Build this_build();
 
-/// Hands the arguments to Google Benchmark, `--json FILE` as its own output flags, and adds
-/// this_build() to what it writes. Returns what it did not know, the name of the program first.
+/// Passes the arguments to Google Benchmark, `--json FILE` as its own output flags, and adds
+/// this_build() to the output. Returns the arguments it did not recognize, after the program name.
 [[nodiscard]] std::vector<std::string> initialize(int argc, char** argv);
 
-/// A whole main function: initialize, run, report. `--help` prints `about` and Google Benchmark's
-/// own flags. Returns the exit code: 2 for an argument nobody knows.
+/// A complete main function: initialize, run, report. `--help` prints `about` and Google
+/// Benchmark's own flags. Returns the exit code: 2 for an unknown argument.
 [[nodiscard]] int run_benchmarks(int argc, char** argv, const char* about);
 
 }  // namespace repel::bench

@@ -1,5 +1,5 @@
 /// @file
-/// A benchmark that is made of parts: each measures, checks what it measured and makes a table.
+/// A benchmark made of parts: each measures, checks its measurements and makes a table.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@
 namespace repel::bench {
 
 struct Options {
-  bool quick = false;      ///< fewer and shorter runs: a look, not a result
-  std::uint64_t seed = 1;  ///< of what is drawn at random, 0 to 1e9
+  bool quick = false;      ///< fewer and shorter runs, for a preview
+  std::uint64_t seed = 1;  ///< seed of the random numbers, 0 to 1e9
 };
 
 using Json = nlohmann::ordered_json;
 
-/// What a part has measured.
+/// The results of a part.
 struct Result {
   std::string title;
   std::vector<std::string> columns{};     ///< with units; the keys of the rows in the file
-  std::vector<std::vector<Json>> rows{};  ///< numbers, words, true and false, or null: not earned
-  std::vector<std::string> notes{};       ///< a sentence each, below the table
-  Json series = Json::object();           ///< curves for the plots, in the file alone
-  std::string failure{};                  ///< the row that is wrong and why; empty: none is
+  std::vector<std::vector<Json>> rows{};  ///< numbers, text, booleans, or null where a check failed
+  std::vector<std::string> notes{};       ///< one sentence each, below the table
+  Json series = Json::object();           ///< curves for the plots, in the file only
+  std::string failure{};                  ///< the first wrong row and why; empty: none
 
-  /// Keeps the first failure, of the row that begins with `words`.
+  /// Keeps only the first failure, with the row that begins with `words`.
   void fail(const std::string& words, const std::string& why) {
     if (failure.empty() && !why.empty()) failure = words + ": " + why;
   }
@@ -45,9 +45,9 @@ struct Program {
   const char* name;
   const char* about;          ///< one sentence
   std::span<const Part> all;  ///< in the order in which they run
-  const char* seeded;         ///< what the seed is of
-  const char* footer;         ///< of the help: what the figures are
-  const char* scheduler;      ///< what the file says of the clock
+  const char* seeded;         ///< meaning of the seed
+  const char* footer;         ///< of the help: what the figures mean
+  const char* scheduler;      ///< scheduler entry in the file
 };
 
 /// The command line of such a program.
@@ -57,11 +57,11 @@ struct PartArguments {
   std::string json;
 };
 
-/// Tells the options of `program`, which write to `arguments`.
+/// Registers the options of `program`, which write to `arguments`.
 void describe(CLI::App& app, PartArguments& arguments, const Program& program);
 
-/// Runs the parts asked for, prints their tables and writes the file. Returns the exit status: 1
-/// when a result is wrong.
+/// Runs the selected parts, prints their tables and writes the file. Returns the exit status: 1 if
+/// a result is wrong.
 [[nodiscard]] int run(const PartArguments& arguments, const Program& program);
 
 /// Shows on stderr how many rows of a part are done.

@@ -1,4 +1,5 @@
-// A lever drives a slider into a wall 20 mm away, over a line of 50 ms: what the hand feels.
+// A lever drives a slider into a wall 20 mm away through a channel with 50 ms delay. Prints the
+// torque that the operator feels at the lever.
 #include <cstdio>
 
 #include <repel/repel.hpp>
@@ -11,7 +12,7 @@ int main() {
   line.channel.delay = 0.05;  // [s]
   line.impedance = 100.0;     // [N s/m]
   Kbb2Options coupling;
-  coupling.damping = line.impedance;  // what the line brings, the coupling takes
+  coupling.damping = line.impedance;  // matches the wave impedance of the line
   Network network = Plan()
                         .add("torque_arm", TorqueArm())
                         .add("multiplex", Multiplex())

@@ -1,5 +1,5 @@
-// A network module of one's own: a pool of honey below z = 0.5 m, in which the tool is heavy to
-// move. It stands in a network built here, and in one that a scene file lists by name.
+// A custom network module: viscous drag on the tool below z = 0.5 m, as in a pool of honey. It is
+// used in a network built here, and in one that a scene file describes by module name.
 #include <cstdio>
 
 #include <repel/repel.hpp>
@@ -18,13 +18,13 @@ class Honey {
     const double depth = 0.5 - signals.X_WT.translation().z();
     drag_.diagonal().head<3>().setConstant(depth > 0.0 ? damping_ : 0.0);
   }
-  // Towards the root, here the robot: what is behind this module, and the drag on the same flow.
+  // Towards the root (the robot): the equivalent of the subtree behind, plus the drag impedance.
   bool reflected(const Equivalent<any_size>& behind, Equivalent<any_size>& shown) noexcept {
     shown = behind;
     shown.add_impedance(drag_, Vec<any_size>::Zero(6));
     return true;
   }
-  // And back: the flow is that of the root, the drag has taken its part of the effort.
+  // Back towards the leaves: the flow of the root; the drag has taken its share of the effort.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     at_leaf.flow = at_root.flow;
@@ -36,7 +36,8 @@ class Honey {
   Mat<any_size> drag_ = Mat<any_size>::Zero(6, 6);
 };
 
-// Six sliding and turning joints of 2 kg and 0.1 kg m^2, and an operator who asks for 50 mm/s down.
+// Three sliding joints of 2 kg and three rotating ones of 0.1 kg m^2; the operator commands 50 mm/s
+// downwards. Returns the descent after one second [m].
 double depth_after_a_second(Network network, double period) {
   constexpr double mass[] = {2.0, 2.0, 2.0, 0.1, 0.1, 0.1};
   Signals s;

@@ -59,7 +59,7 @@ class Clients:
             try:
                 client.send(data)
             except BlockingIOError:
-                pass  # as the daemon does: who does not read misses it
+                pass  # like the daemon: a client that does not read loses events
             except OSError:
                 self.sockets.remove(client)
                 client.close()

@@ -22,7 +22,7 @@ namespace repel::detail {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool reserves_address_space = true;  // terabytes of it
+constexpr bool reserves_address_space = true;  // terabytes of address space
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 constexpr bool reserves_address_space = true;
@@ -58,7 +58,7 @@ void write_all(int to, std::string_view bytes) {
   }
 }
 
-/// The end of a pipe.
+/// One end of a pipe; closes it at destruction.
 class End {
  public:
   explicit End(int file) : file_(file) {}
@@ -75,7 +75,8 @@ class End {
   int file_;
 };
 
-/// Its answer: a sign, how long it is, and its bytes.
+/// Runs `work` in the child and writes the result to `to`: a status byte, the length (64 bit), the
+/// bytes.
 [[noreturn]] void work_as_child(const std::function<std::string()>& work, const ChildLimits& limits,
                                 std::size_t memory, int to) {
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGALRM}) {
@@ -84,7 +85,8 @@ class End {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<std::size_t>(limits.seconds));
   if (!reserves_address_space) limit(RLIMIT_AS, memory);
-  // A lock that another thread held for ever is not waited for: what sleeps uses no processor time.
+  // A lock that another thread held at the fork is never released: a deadlock uses no processor
+  // time.
   alarm(static_cast<unsigned>(10 * limits.seconds + 50));
   std::string answer;
   char sign = failed;

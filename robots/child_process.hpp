@@ -1,5 +1,5 @@
 /// @file
-/// Work on files of strangers by libraries that may crash on them or never end.
+/// Runs work on untrusted files in a child process, since libraries may crash on them or never end.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,16 @@
 
 namespace repel::detail {
 
-/// What a child may use.
+/// Resource limits of the child.
 struct ChildLimits {
   int seconds = 1;                              ///< [s] of processor time
-  std::size_t memory = std::size_t{256} << 20;  ///< [byte] beside what this process has
+  std::size_t memory = std::size_t{256} << 20;  ///< [byte] in addition to that of this process
 };
 
-/// What `work` returns, done in a copy of this process that ends with it, so that neither a crash
-/// nor a loop of it does harm. Set-up only: it forks.
-/// @throws SetupError with the words of the one that `work` throws, or saying how it ended
+/// Runs `work` in a forked copy of this process and returns its result, so that a crash or an
+/// endless loop does no harm. Set-up only: it forks.
+/// @throws SetupError with the message of the exception that `work` throws, or saying how the child
+///   ended
 [[nodiscard]] std::string result_of_child(const std::function<std::string()>& work,
                                           const ChildLimits& limits);
 

@@ -101,7 +101,7 @@ struct ReferenceArm::Impl {
     }
   }
 
-  /// What moves the state: its velocity and its acceleration.
+  /// Time derivative of the state: velocity and acceleration.
   State rate(const State& x) {
     dynamics.inertia(span_of(x.q), M);
     dynamics.bias(span_of(x.q), span_of(x.v), span_of(bias));
@@ -137,9 +137,10 @@ struct ReferenceArm::Impl {
             at.v + h / 6.0 * (k1.v + 2.0 * k2.v + 2.0 * k3.v + k4.v)};
   }
 
-  // Semi-implicit Euler under dry friction f, brakes among it, without motors:
+  // Semi-implicit Euler with dry friction f, that of the brakes included, and no motor torque:
   //     (M + h B) v' = M v + h (f - c),   |f_i| <= F_i,   f_i = -F_i sign(v'_i) unless v'_i = 0.
-  // The search begins where every joint stands, and so holds the arm without any error.
+  // The search starts from the friction that stops every joint; if that is within the bounds, the
+  // arm is held without any error.
   State slowed(double h) {
     dynamics.inertia(span_of(at.q), M);
     dynamics.bias(span_of(at.q), span_of(at.v), span_of(bias));
@@ -153,10 +154,10 @@ struct ReferenceArm::Impl {
     return {at.q + h * v, v};
   }
 
-  /// Finds the friction by projected Gauss-Seidel, from `f`, and the velocity `v` that it leaves.
+  /// Finds the friction by projected Gauss-Seidel, starting from `f`, and updates the velocity `v`.
   void oppose(const Eigen::MatrixXd& W, Vector f, double h, Vector& v) const {
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      double change = 0.0;  // [rad/s] largest
+      double change = 0.0;  // [rad/s] largest in this sweep
       for (Eigen::Index i = 0; i < f.size(); ++i) {
         const double stopping = f[i] - v[i] / (h * W(i, i));
         const double added = std::clamp(stopping, -most_held[i], most_held[i]) - f[i];

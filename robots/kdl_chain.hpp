@@ -1,5 +1,5 @@
 /// @file
-/// An ArmModel as an Orocos KDL chain, in the frame of its base.
+/// Converts an ArmModel to an Orocos KDL chain, in the frame of its base.
 #pragma once
 
 #include <kdl/chain.hpp>
@@ -53,7 +53,7 @@ inline void require_usable(const ArmLink& link) {
   checked(axis_length, link.axis_J.norm(), 1.0 - 1e-9, 1.0 + 1e-9, "");
 }
 
-/// Throws SetupError when the arm has no link or a value is not finite.
+/// @throws SetupError if the arm has no link or a value is not finite
 inline KDL::Chain chain_of(const ArmModel& arm) {
   if (arm.links.empty()) throw SetupError("arm '" + arm.name + "' has no link; allowed: 1 or more");
   if (!is_finite(arm.X_WB) || !is_finite(arm.X_LT) || !is_finite(arm.gravity_W)) {

@@ -72,12 +72,12 @@ void Kinematics::update(std::span<const double> q) noexcept {
   impl_->place_links();
 }
 
-const Pose& Kinematics::X_WL(int link) const noexcept {
+Pose Kinematics::X_WL(int link) const noexcept {
   assert(link >= -1 && link < links());
   return impl_->X_WL[static_cast<std::size_t>(link) + 1U];
 }
 
-const Pose& Kinematics::X_WT() const noexcept {
+Pose Kinematics::X_WT() const noexcept {
   return impl_->X_WT;
 }
 

@@ -36,9 +36,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int deepest_package = 4;  // folders below a package path
+constexpr int deepest_package = 4;  // levels of folders below a package path that are searched
 
-/// True when `folder` is called `package`, or its package.xml is.
+/// Whether the folder has the name `package`, or its package.xml gives that name.
 bool is_package(const fs::path& folder, const std::string& package) {
   if (folder.filename() == package) return true;
   tinyxml2::XMLDocument manifest;
@@ -53,7 +53,7 @@ bool is_package(const fs::path& folder, const std::string& package) {
   return name && name->GetText() && name->GetText() == package;
 }
 
-/// The file in the package at `folder`, if that is the package and has it.
+/// The file `rest` in `folder`, if that is the package and has the file.
 std::optional<fs::path> in_package(const fs::path& folder, const std::string& package,
                                    const fs::path& rest) {
   std::error_code error;
@@ -77,7 +77,7 @@ std::optional<fs::path> below(const fs::path& top, const std::string& package,
   return std::nullopt;
 }
 
-/// In the folders above the description, and beside them.
+/// Searches the folders above the description, and in each one a subfolder with the package's name.
 std::optional<fs::path> above(const fs::path& file, const std::string& package,
                               const fs::path& rest) {
   std::error_code error;
@@ -124,7 +124,7 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
     }
   }
   if (auto found = above(folders.file, package, path)) return *found;
-  for (const std::string& top : folders.package_paths) {  // a package in a folder of another name
+  for (const std::string& top : folders.package_paths) {  // a package whose folder has another name
     if (fs::is_regular_file(top / path, error)) return top / path;
   }
   fail_to_find(uri, folders);
@@ -155,9 +155,9 @@ const std::vector<Vec3>& MeshReader::hull(const std::string& uri, const Vec3& sc
 #ifdef REPEL_HAS_ASSIMP
 namespace {
 
-constexpr std::size_t most_points = 10000;  // that a hull may have
+constexpr std::size_t most_points = 10000;  // maximum of a hull
 
-/// Every vertex of a scene, where the nodes above put it.
+/// Collects every vertex of a scene, transformed by its nodes.
 // NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
 void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
             std::vector<aiVector3D>& out) {
@@ -176,7 +176,7 @@ void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
   }
 }
 
-/// hull_of_mesh() here and now; errors go without the name of the file.
+/// hull_of_mesh() in this process; errors do not name the file.
 std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -193,7 +193,7 @@ std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
     if (!is_finite(points.back())) throw SetupError("has a corner that is not finite");
   }
   if (points.empty()) throw SetupError("holds no corner");
-  // What lies in one plane has no facets: all of its points stay.
+  // A planar set has no facets: all of its points stay.
   const std::vector<Facet> facets = hull_facets(points);
   if (!facets.empty()) points = hull_corners(points, facets);
   if (points.size() > most_points) {

@@ -1,5 +1,5 @@
 /// @file
-/// Finds and reads the mesh files that a robot description names.
+/// Finds and reads the mesh files of a robot description.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +14,30 @@
 
 namespace repel::detail {
 
-/// Where files are looked for.
+/// Where mesh files are searched.
 struct MeshFolders {
   std::filesystem::path file;              ///< the description itself
   std::vector<std::string> package_paths;  ///< see UrdfOptions
 };
 
-/// The file behind `uri`: package://NAME/PATH, model://NAME/PATH, file://PATH or a path from the
-/// folder of the description. Throws SetupError that says where it was looked for.
+/// Resolves `uri`: package://NAME/PATH, model://NAME/PATH, file://PATH or a path relative to the
+/// folder of the description.
+/// @throws SetupError saying where it was searched
 [[nodiscard]] std::filesystem::path find_mesh(const std::string& uri, const MeshFolders& folders);
 
-/// The corners of the convex hull of all triangles in a mesh file [m], scaled axis by axis. A unit
-/// the file states is heeded, an up direction is not, as everywhere in ROS. The file is read in a
-/// process of its own: what crashes the reader, or takes more memory or time than input_limits
-/// allows, is refused. Throws SetupError.
+/// The vertices of the convex hull of all triangles in a mesh file [m], scaled per axis. A unit
+/// given in the file is applied, an up direction is ignored, as everywhere in ROS. The file is read
+/// in a child process.
+/// @throws SetupError also if the reader crashes or exceeds the memory or time of input_limits
 [[nodiscard]] std::vector<Vec3> hull_of_mesh(const std::filesystem::path& path, const Vec3& scale);
 
-/// Reads the meshes of one description, all of them together within input_limits.
+/// Reads the meshes of one description, within the total limits of input_limits.
 class MeshReader {
  public:
   explicit MeshReader(MeshFolders folders) : folders_(std::move(folders)) {}
 
-  /// hull_of_mesh() of the file behind `uri`; of the same file at the same scale it is read once.
-  /// Throws SetupError.
+  /// hull_of_mesh() of the file behind `uri`; each combination of file and scale is read once.
+  /// @throws SetupError
   [[nodiscard]] const std::vector<Vec3>& hull(const std::string& uri, const Vec3& scale);
 
  private:

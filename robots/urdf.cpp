@@ -27,12 +27,12 @@ Pose from_urdf(const urdf::Pose& X) {
   return result;
 }
 
-/// Inertia of a mass about the origin, at `p` from it.
+/// Inertia about the origin of a point mass at `p`.
 Mat3 point_inertia(double mass, const Vec3& p) {
   return mass * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
 }
 
-/// Adds a body with its own mass, centre and inertia to those of the link it is fixed to.
+/// Adds mass, centre of mass and inertia of a body to those of the link it is fixed to.
 void add_body(const urdf::Inertial& body, const Pose& X_LN, ArmLink& link) {
   const double total = link.mass + body.mass;
   const Pose X_LC = X_LN * from_urdf(body.origin);
@@ -40,7 +40,7 @@ void add_body(const urdf::Inertial& body, const Pose& X_LN, ArmLink& link) {
   I << body.ixx, body.ixy, body.ixz,  //
       body.ixy, body.iyy, body.iyz,   //
       body.ixz, body.iyz, body.izz;
-  // Without any mass the centre has no meaning, and the inertia counts all the same.
+  // Without any mass the centre is undefined, but the inertia still counts.
   const Vec3 centre = total > 0.0
                           ? Vec3((link.mass * link.p_LC + body.mass * X_LC.translation()) / total)
                           : X_LC.translation();
@@ -51,7 +51,7 @@ void add_body(const urdf::Inertial& body, const Pose& X_LN, ArmLink& link) {
   link.mass = total;
 }
 
-/// A part of every kind but a mesh.
+/// Converts any geometry except a mesh.
 RobotPart simple_part(const urdf::Geometry& geometry, bool is_capsule) {
   RobotPart part;
   if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
@@ -68,7 +68,7 @@ RobotPart simple_part(const urdf::Geometry& geometry, bool is_capsule) {
   return part;
 }
 
-/// Walks a parsed model from its root outward and gathers links and parts.
+/// Traverses a parsed model from its root outward and collects links and parts.
 class ArmBuilder {
  public:
   ArmBuilder(const detail::UrdfDocument& document, const urdf::ModelInterface& model,
@@ -104,12 +104,12 @@ class ArmBuilder {
     }
   }
 
-  /// The link with the most moving joints above it; of several the first by name, the root before
-  /// all. Each link is looked at once.
+  /// The link with the most moving joints above it; among equals the root, else the first by name.
+  /// Visits each link once.
   urdf::LinkConstSharedPtr farthest(const urdf::ModelInterface& model) const {
     struct Reached {
       urdf::LinkConstSharedPtr link;
-      int joints;  ///< above it that move
+      int joints;  ///< moving joints above it
     };
     Reached best{model.getRoot(), 0};
     std::vector<Reached> open{best};
@@ -125,7 +125,7 @@ class ArmBuilder {
     return best.link;
   }
 
-  /// The links from the root to the chosen tip, or else to one with the most moving joints above.
+  /// Finds the links from the root to the chosen tip, or to the farthest link.
   void find_chain(const urdf::ModelInterface& model) {
     urdf::LinkConstSharedPtr end =
         options_.tip.empty() ? farthest(model) : model.getLink(options_.tip);
@@ -133,14 +133,15 @@ class ArmBuilder {
     for (; end; end = end->getParent()) chain_.insert(end->name);
   }
 
-  /// Adds `node`, fixed to arm link `link` at `X_LN`, and all beyond it.
+  /// Adds `node`, fixed to arm link `link` at `X_LN`, and its subtree.
   // NOLINTNEXTLINE(misc-no-recursion): the tree is no deeper than UrdfDocument allows
   void add(const urdf::Link& node, int link, const Pose& X_LN) {
     if (link >= 0 && node.inertial) add_body(*node.inertial, X_LN, robot_.arm.links.back());
     robot_.links.push_back({node.name, node.inertial ? node.inertial->mass : 0.0, link, X_LN});
     if (link >= 0 && node.child_links.empty()) robot_.tips.push_back(node.name);
     add_parts(node, link, X_LN);
-    // The rest of the chain comes last, so that `links.back()` is still this link for its branches.
+    // The rest of the chain comes last, so that `links.back()` is still this link for its side
+    // branches.
     for (const bool in_chain : {false, true}) {
       for (const auto& child : node.child_links) {
         if (chain_.contains(child->name) == in_chain) add_child(*child, link, X_LN);
@@ -176,7 +177,7 @@ class ArmBuilder {
     const bool endless = joint.type == urdf::Joint::CONTINUOUS;
     link.lower = endless ? -std::numeric_limits<double>::infinity() : joint.limits->lower;
     link.upper = endless ? std::numeric_limits<double>::infinity() : joint.limits->upper;
-    const double unlimited = std::numeric_limits<double>::infinity();  // where none is asked for
+    const double unlimited = std::numeric_limits<double>::infinity();  // if the file gives no limit
     link.velocity_limit = joint.limits ? joint.limits->velocity : unlimited;
     link.effort_limit = joint.limits ? joint.limits->effort : unlimited;
     link.viscous_friction = joint.dynamics ? joint.dynamics->damping : 0.0;
@@ -220,7 +221,7 @@ class ArmBuilder {
     }
   }
 
-  /// The tool frame: of the chosen tip, of the only one on the last moving link, or of that link.
+  /// Sets the tool frame: the chosen tip, the only tip on the last moving link, or that link.
   void choose_tool() {
     const int last = static_cast<int>(robot_.arm.links.size()) - 1;
     const std::set<std::string> all_tips(robot_.tips.begin(), robot_.tips.end());

@@ -15,7 +15,7 @@ namespace {
 
 using Element = tinyxml2::XMLElement;
 
-/// What an attribute that holds numbers may hold.
+/// Number of values and their range in a numeric attribute.
 struct NumberRule {
   std::string_view element, attribute;
   std::size_t count;
@@ -52,7 +52,7 @@ constexpr NumberRule number_rules[] = {
     {"drake:gear_ratio", "value", 1, -1e6, 1e6, true, ""},
 };
 
-/// The numbers of a white-space separated list, or nothing when any of it is not a number.
+/// The numbers of a white-space separated list; none if any of it is not a number.
 std::optional<std::vector<double>> numbers_in(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
   std::vector<double> numbers;
@@ -112,7 +112,7 @@ const char* kind_in_urdf(const urdf::Geometry& geometry) {
   return "";
 }
 
-/// The value of a number attribute that has passed its rule.
+/// The `value` attribute of an element that has passed its rule; `otherwise` without an element.
 double number_of(const Element* element, double otherwise) {
   return element ? numbers_in(text_of(element, "value"))->front() : otherwise;
 }
@@ -131,7 +131,7 @@ std::string text_of_description(const std::string& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (!error && bytes > most_description_bytes) refuse_size(bytes, path);
-  std::string text(most_description_bytes + 1, '\0');  // a pipe does not say how much it has
+  std::string text(most_description_bytes + 1, '\0');  // the size of a pipe is not known in advance
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) throw SetupError("cannot be read", path);
   text.resize(static_cast<std::size_t>(stream.gcount()));
@@ -214,9 +214,9 @@ void UrdfDocument::require_tree() const {
   require_reached(text_of(root, "name"), children);
 }
 
-/// Every link is below the root, and not too far: from the root outward, each link once.
+/// Checks by traversal from the root that every link is reachable from it and not too deep.
 void UrdfDocument::require_reached(const std::string& root, const Tree& children) const {
-  std::map<std::string, std::size_t> depth;  // of the links that were reached
+  std::map<std::string, std::size_t> depth;  // of the links reached
   std::vector<std::string> open;
   if (links_.contains(root)) {
     depth[root] = 0;
@@ -282,7 +282,7 @@ const Element* UrdfDocument::shape_of(const Element& collision, const std::strin
 // NOLINTNEXTLINE(misc-no-recursion): a file is a tree, read once at set-up
 void UrdfDocument::check_numbers(const Element& element, const std::string& owner) const {
   const std::string_view name = element.Name();
-  if (name == "visual") return;  // never read
+  if (name == "visual") return;  // not used
   for (const NumberRule& rule : number_rules) {
     if (rule.element != name) continue;
     const std::string attribute(rule.attribute);
@@ -300,7 +300,7 @@ void UrdfDocument::check_numbers(const Element& element, const std::string& owne
   }
 }
 
-// urdfdom compares each attribute of an element with all before it.
+// Limits the number of attributes, because urdfdom compares each one with all before it.
 // NOLINTNEXTLINE(misc-no-recursion): tinyxml2 reads no more than 500 elements in each other
 void UrdfDocument::require_modest(const Element& element, Counts& counts) const {
   const auto require_at_most = [&](std::size_t count, std::size_t most, const std::string& what) {

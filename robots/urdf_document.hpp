@@ -1,6 +1,6 @@
 /// @file
-/// The XML behind a URDF file: what urdfdom drops, accepts blindly or has no word for is looked at
-/// here, where lines are known.
+/// The XML behind a URDF file. Checks, with line numbers, what urdfdom drops, accepts unchecked or
+/// does not support.
 #pragma once
 
 #include <map>
@@ -13,48 +13,48 @@
 
 namespace repel::detail {
 
-/// What a robot description may have at most: several times what any robot has, little enough for
-/// urdfdom, which takes down a chain link by link on the stack.
+/// Limits of a robot description: several times the size of any real robot, yet small enough for
+/// urdfdom, which destroys a chain recursively on the stack.
 inline constexpr std::size_t most_description_bytes = std::size_t{16} << 20;
 inline constexpr std::size_t most_urdf_links = 4096;
 inline constexpr std::size_t most_urdf_depth = 512;  ///< joints between the root and a link
 
-/// The text of the URDF or SRDF file at `path`. Throws SetupError when it cannot be read or has
-/// more than `most_description_bytes`, of which no more is read than that.
+/// The text of the URDF or SRDF file at `path`. Reads at most one byte beyond the limit.
+/// @throws SetupError if it cannot be read or has more than `most_description_bytes`
 [[nodiscard]] std::string text_of_description(const std::string& path);
 
-/// A URDF text that has passed every check that can be made on the text alone.
+/// A URDF text that has passed all checks that need only the text.
 class UrdfDocument {
  public:
   using Element = tinyxml2::XMLElement;
 
-  /// Throws SetupError when the text is not XML, has more bytes or links than allowed above or a
-  /// deeper tree of them, a number is malformed, not finite or out of range,
-  /// a joint lacks a limit or cannot be one of a serial arm, or two links or joints share a name.
-  /// What the joints in `held` do is of no concern.
+  /// @throws SetupError if the text is not XML, exceeds the limits above on bytes, links or depth,
+  ///   a number is malformed, not finite or out of range, a joint lacks a limit or cannot be part
+  ///   of a serial arm, or two links or joints share a name. Types and limits of the joints in
+  ///   `held` are not checked.
   UrdfDocument(std::string_view text, std::string file, const std::vector<std::string>& held = {});
 
-  /// The text for urdfdom, which knows no capsule: each stands there as the cylinder inside it.
+  /// The text for urdfdom, which does not support capsules: each is replaced by a cylinder.
   [[nodiscard]] std::string text_for_urdfdom() const;
 
-  /// Throws SetupError naming the first collision element that is not in `model`.
+  /// @throws SetupError naming the first collision element that is missing in `model`
   void require_all_collisions(const urdf::ModelInterface& model) const;
 
-  /// True when the collision element `index` of `link` is a capsule in the file.
+  /// Whether collision element `index` of `link` is a capsule in the file.
   [[nodiscard]] bool is_capsule(const std::string& link, std::size_t index) const;
 
-  /// Motor and gear inertia seen at `joint` [kg m^2] or [kg]: of its transmission, the Drake
-  /// elements rotor_inertia * gear_ratio^2; 0 when there is none.
+  /// Motor and gear inertia reflected to `joint` [kg m^2] or [kg]: the Drake elements rotor_inertia
+  /// * gear_ratio^2 of its transmission; 0 without any.
   [[nodiscard]] double rotor_inertia(const std::string& joint) const;
 
-  /// Throws SetupError at the line of the link or joint called `name`, or of its collision `index`.
+  /// @throws SetupError at the line of the link or joint called `name`, or of its collision `index`
   [[noreturn]] void fail_at_link(const std::string& name, const std::string& what) const;
   [[noreturn]] void fail_at_joint(const std::string& name, const std::string& what) const;
   [[noreturn]] void fail_at_collision(const std::string& link, std::size_t index,
                                       const std::string& what) const;
 
  private:
-  /// So far, in the order of the file.
+  /// Running counts, in the order of the file.
   struct Counts {
     std::size_t elements = 0;
     std::size_t collisions = 0;
@@ -78,7 +78,7 @@ class UrdfDocument {
   std::map<std::string, const Element*> links_;
   std::map<std::string, const Element*> joints_;
   std::map<std::string, std::vector<const Element*>> shapes_;  // of collisions, by link
-  std::map<std::string, const Element*> actuators_;  // by joint: of its first transmission with one
+  std::map<std::string, const Element*> actuators_;  // by joint: its first transmission with one
 };
 
 }  // namespace repel::detail

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""results.py SCENE.yaml LOG.csv REPORT.json RESULT.json PAGE.md: of the report of a run, RESULT
-keeps what is the same in every run, and PAGE gets it as tables, between its two marks."""
+"""results.py SCENE.yaml LOG.csv REPORT.json RESULT.json PAGE.md: writes the part of the report that
+is the same in every run to RESULT, and as tables into PAGE, between its two marks."""
 
 import json
 import re
 import sys
+import textwrap
 
 from draw import phases_of, read_run
 
@@ -33,24 +34,26 @@ def mm(metres):
 
 
 def summary(result):
-    """One line for the whole run."""
+    """A paragraph on the whole run."""
     if result["pairs"] == 0:
         yield f"{result['ticks']} ticks at {result['rate_hz']:g} Hz, no pairs, no virtual force."
         return
     said = sorted({bit for arm in [result, *result["partners"]] for bit in arm["status_ticks"]})
     peak = max(arm["peak_force_n"] for arm in [result, *result["partners"]])
     deepest = result["deepest_m"]
-    yield (f"{result['ticks']} ticks at {result['rate_hz']:g} Hz, {result['pairs']} pairs. "
-           f"Nearest {mm(result['nearest_m'])} mm ({result['nearest_pair']}), deepest intrusion "
-           f"{mm(deepest) if deepest else 0} mm.\nPeak virtual force on a tool {peak:.0f} N. "
-           f"Said: {', '.join(f'`{bit}`' for bit in said) or 'nothing'}.")
+    nearest = result["nearest_pair"].replace(" - ", "` to `")
+    text = (f"{result['ticks']} ticks at {result['rate_hz']:g} Hz, {result['pairs']} pairs. "
+            f"Least distance {mm(result['nearest_m'])} mm (`{nearest}`), deepest intrusion "
+            f"{mm(deepest) if deepest else 0} mm. Peak virtual force on a tool {peak:.0f} N. "
+            f"Status bits: {', '.join(f'`{bit}`' for bit in said) or 'none'}.")
+    yield textwrap.fill(text, 100, break_on_hyphens=False)
 
 
 def obstacle_table(result):
     felt = [o for o in result["obstacles"] if o["peak_force_n"] >= FELT]
     if not felt:
         return
-    yield "| obstacle | peak [N] | nearest [mm] | deepest [mm] | hardest on |"
+    yield "| obstacle | peak [N] | least distance [mm] | deepest [mm] | largest force on |"
     yield "|---|---|---|---|---|"
     for o in sorted(felt, key=lambda o: -o["peak_force_n"]):
         deepest = mm(o["deepest_m"]) if o["deepest_m"] else 0
@@ -71,11 +74,11 @@ def concerns(arm, partners, pair):
 
 
 def phase_table(arm, partners):
-    """What the operator of an arm does, and the hardest push in that time, where the arm is one of
-    the pair that is pushed hardest in the whole cell."""
+    """What the operator of an arm does, and the largest force in that time, if the arm is one of
+    the pair with the largest force in the whole cell."""
     if arm.prefix or partners:
         yield f"The operator of `{arm.prefix[:-1]}`:\n" if arm.prefix else "The first operator:\n"
-    yield "| | until [s] | what the operator does | device | hardest push |"
+    yield "| | until [s] | what the operator does | device | largest force |"
     yield "|---|---|---|---|---|"
     for number, phase, ticks in phases_of(arm.entry, arm.log):
         row = max(ticks, key=lambda row: (concerns(arm, partners, row["hardest_pair"]),

@@ -44,7 +44,8 @@ bool is_virtual_machine() {
   return false;
 }
 
-/// A limit of the user's is raised for the next login; root is refused only in a container.
+/// For a user: raise the limit, effective from the next login. For root, a refusal means that the
+/// container lacks the capability.
 Advice raise(const Surroundings& s, const std::string& refused, const std::string& limit,
              const std::string& value, const std::string& container) {
   if (s.root) return {refused + " to root: this is a container without the right", container};

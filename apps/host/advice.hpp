@@ -1,5 +1,5 @@
 /// @file
-/// What would make a machine a better host, each with the command to run.
+/// What would improve the real-time behaviour of a machine, each with the command to run.
 #pragma once
 
 #include <string>
@@ -9,22 +9,22 @@
 
 namespace repel::host {
 
-/// What advice depends on beside a trial.
+/// What advice depends on, apart from a trial.
 struct Surroundings {
   bool preempt_rt = false;             ///< the kernel is fully preemptible
-  std::vector<std::string> governors;  ///< that scale the frequency of processors, each once
+  std::vector<std::string> governors;  ///< cpufreq governors in use, each once
   bool virtual_machine = false;
   bool root = false;
-  bool can_stay_awake = false;  ///< there is a /dev/cpu_dma_latency to ask
+  bool can_stay_awake = false;  ///< /dev/cpu_dma_latency exists
 };
 [[nodiscard]] Surroundings look_around();
 
 struct Advice {
   std::string finding;
-  std::string command;  ///< that mends it
+  std::string command;  ///< that fixes it
 };
 
-/// Only what applies.
+/// Only the advice that applies here.
 [[nodiscard]] std::vector<Advice> advise(const Surroundings& surroundings, const Trial& trial);
 
 }  // namespace repel::host

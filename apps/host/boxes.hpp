@@ -1,5 +1,5 @@
 /// @file
-/// A tick that stands for those of a scene: the paper's count of pairs, all of them near.
+/// A synthetic tick with the load of a scene: the paper's number of pairs, all within range.
 #pragma once
 
 #include <cmath>
@@ -12,14 +12,14 @@
 
 namespace repel::host {
 
-/// Four boxes on a tool that wanders between eight boxes around it, within range of all 32 pairs.
+/// Four boxes on a tool that moves among eight boxes around it; all 32 pairs stay within range.
 class Boxes {
  public:
   Boxes() : tool_(world_.add_body("tool")), coprocessor_(build(world_, tool_), {}) {}
   Boxes(const Boxes&) = delete;
   Boxes& operator=(const Boxes&) = delete;
 
-  /// Moves the tool to where it is at `time` [s] and evaluates every pair.
+  /// Moves the tool to its position at `time` [s] and evaluates every pair.
   const TickRecord& tick(double time) noexcept {
     Pose X = Pose::Identity();
     X.translation() = 0.05 * Vec3(std::sin(time), std::sin(1.3 * time), std::sin(1.7 * time));
@@ -31,7 +31,7 @@ class Boxes {
     record_.pairs = forces.totals;
     return record_;
   }
-  /// Does the work of a tick without its effect.
+  /// Exercises the code and data of a tick without changing any state, to keep the caches warm.
   void rehearse() noexcept { coprocessor_.rehearse(); }
 
   [[nodiscard]] int pairs() const noexcept { return static_cast<int>(world_.pairs().size()); }

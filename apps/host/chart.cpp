@@ -21,10 +21,10 @@ constexpr double bottom = 24.0;
 constexpr double top = 8.0;
 constexpr std::size_t columns = 690;
 
-/// From values to places, linear.
+/// Linear map from values to coordinates in the drawing.
 struct Axis {
   double low, high;    ///< values
-  double first, last;  ///< places of the two
+  double first, last;  ///< their coordinates
 
   [[nodiscard]] double operator()(double value) const {
     return first + (value - low) / (high - low) * (last - first);
@@ -56,15 +56,15 @@ std::string label(double x, double y, const char* anchor, const std::string& tex
          "'>" + escaped(text) + "</text>";
 }
 
-/// The class of a colour; put together so, since gcc 12 takes a sum that begins with a literal for
-/// an overlap (gcc bug 105651).
+/// The CSS class of a colour. Built by +=, because gcc 12 falsely warns of an overlap when a sum
+/// begins with a literal (gcc bug 105651).
 std::string class_of(std::size_t colour) {
   std::string name = "c";
   name += std::to_string(colour % 6);
   return name;
 }
 
-/// One step of a path: M to go there, L to draw a line there.
+/// One step of an SVG path: M to move, L to draw a line.
 std::string step_to(char how, double x, double y) {
   std::string text(1, how);
   text += number(x);
@@ -95,7 +95,7 @@ std::string figure(const std::string& title, const std::string& legend_html,
          number(height) + "'>" + drawing + "</svg></figure>\n";
 }
 
-/// The least and the greatest of a curve in each column; empty ones are not finite.
+/// Minimum and maximum of a curve in each column; not finite for columns without a sample.
 struct Band {
   std::vector<double> least, most;
 
@@ -104,14 +104,14 @@ struct Band {
         most(least.size(), -std::numeric_limits<double>::infinity()) {
     for (std::size_t i = 0; i < samples; ++i) {
       const double value = curve.value(i);
-      if (!(std::abs(value) < 1e300)) continue;  // nor what no axis can hold
+      if (!(std::abs(value) < 1e300)) continue;  // also skips values too large for an axis
       const std::size_t column = i * least.size() / samples;
       least[column] = std::min(least[column], value);
       most[column] = std::max(most[column], value);
     }
   }
 
-  /// Up and down through every column that has a value.
+  /// A path through maximum and minimum of every column; columns without a value leave a gap.
   [[nodiscard]] std::string path(const Axis& y, std::size_t colour) const {
     std::string d;
     bool pen_up = true;
@@ -130,7 +130,7 @@ struct Band {
   }
 };
 
-/// The values that all bands and lines lie between, a little wider; never empty.
+/// The range of all bands and lines, with a small margin; never empty.
 Axis value_axis(const Chart& chart, const std::vector<Band>& bands) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
@@ -199,7 +199,7 @@ std::string to_html(const PercentileChart& chart) {
   }
   if (!(low < high)) low = 0.5 * std::max(high, 1.0);
   const Axis y{std::floor(std::log10(low)), std::log10(high) + 0.1, height - bottom, top};
-  // Each decade of what is left beyond the share is as wide as the next.
+  // Logarithmic in 1 - share: each decade of the remaining tail has the same width.
   const auto decades = [](double share) { return -std::log10(std::max(1.0 - share, 1e-5)); };
   const Axis x{decades(0.5), 5.0, left, width};
   std::string drawing = label(4.0, top + 8.0, "start", "us");

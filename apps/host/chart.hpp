@@ -1,5 +1,5 @@
 /// @file
-/// Curves as SVG, for pages that people read.
+/// Curves as SVG for HTML pages.
 #pragma once
 
 #include <cstddef>
@@ -9,26 +9,26 @@
 
 namespace repel::host {
 
-/// A curve of a chart: a name, and a value for each sample; those that are not finite leave a gap.
+/// A curve of a chart: a name, and a value for each sample. Values that are not finite leave a gap.
 struct Curve {
   std::string name;
   std::function<double(std::size_t)> value;
 };
 
-/// What a chart shows. Horizontal is time, the same for all curves.
+/// The content of a chart. The horizontal axis is time, shared by all curves.
 struct Chart {
   std::string title;
   std::string unit{};       ///< of the values
   std::size_t samples = 0;  ///< of each curve
   double duration = 0.0;    ///< [s] from the first sample to the last
   std::vector<Curve> curves{};
-  std::vector<double> lines{};  ///< values to mark by a line across
-  std::vector<double> marks{};  ///< [s] times to mark, as where a phase begins
+  std::vector<double> lines{};  ///< values marked by a horizontal line
+  std::vector<double> marks{};  ///< [s] times marked by a vertical line, such as phase starts
 };
 
-/// The chart as an element <figure> with its title and legend. Curves are drawn as the band between
-/// their least and greatest value in each column, so that no peak is lost however long they are.
-/// Colours are the classes c0, c1, ... of the page.
+/// The chart as a <figure> element with title and legend. Each curve is drawn as the band between
+/// its minimum and maximum in each column, so that no peak is lost however many samples there are.
+/// The colours are the CSS classes c0, c1, ... of the page.
 [[nodiscard]] std::string to_html(const Chart& chart);
 
 /// A duration that a share of all samples does not exceed.
@@ -37,7 +37,8 @@ struct Percentile {
   double us = 0.0;     ///< [us]
 };
 
-/// Curves of percentiles, from the half to the last sample in 10^5, against a logarithmic duration.
+/// Percentile curves, from the median to the share 1 - 10^-5, against the duration on a logarithmic
+/// axis.
 struct PercentileChart {
   std::string title;
   struct Line {
@@ -45,7 +46,7 @@ struct PercentileChart {
     std::vector<Percentile> points;
   };
   std::vector<Line> lines;
-  double deadline_us = 0.0;  ///< marked by a line across
+  double deadline_us = 0.0;  ///< marked by a horizontal line
 };
 
 [[nodiscard]] std::string to_html(const PercentileChart& chart);

@@ -14,15 +14,15 @@
 namespace repel::host {
 namespace {
 
-// A signal handler has nothing else to write to.
+// Globals, because a signal handler has no other way to pass on what happened.
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<bool> interrupted{false};
 std::atomic<bool> insisted{false};
 std::atomic<std::int64_t> first_signal_ns{0};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// Of SIGINT, SIGTERM and SIGHUP. `timeout` sends its signal twice at once, a terminal that is
-/// closed its SIGHUP.
+/// Handles SIGINT, SIGTERM and SIGHUP. Signals within 0.1 s of the first count as the same request:
+/// `timeout` sends its signal twice in a row, a terminal that closes sends SIGHUP as well.
 void note_signal(int signal) {
   constexpr std::int64_t same_wish_ns = 100'000'000;
   const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch().count();
@@ -36,7 +36,7 @@ void note_signal(int signal) {
   }
 }
 
-/// A round number as people write it, without an exponent.
+/// A number in fixed notation, without an exponent.
 std::string in_full(double value) {
   char digits[32];
   const auto end =

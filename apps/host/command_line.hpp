@@ -1,5 +1,5 @@
 /// @file
-/// What the command lines of the programs have in common.
+/// Shared command line handling of the programs.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,27 +13,29 @@
 
 namespace repel::host {
 
-/// A number between two others. CLI::Range lets NaN pass.
+/// Accepts a number from `low` to `high`. Unlike CLI::Range, it rejects NaN.
 [[nodiscard]] CLI::Validator between(double low, double high);
 
-/// Becomes true when the user or the system asks the program to end (SIGINT, SIGTERM, SIGHUP), from
-/// the first call on. A SIGHUP that is ignored, as by nohup, stays so.
+/// Installs handlers for SIGINT, SIGTERM and SIGHUP; the result becomes true at the first such
+/// signal. A SIGHUP that is ignored, as under nohup, stays ignored.
 [[nodiscard]] const std::atomic<bool>& interruption();
 
-/// Becomes true when that is asked for again by SIGINT or SIGTERM, 0.1 s later or more: what comes
-/// at once is the same wish, sent to the program and to its group. After that a signal kills.
+/// Becomes true at a second SIGINT or SIGTERM at least 0.1 s after the first signal; an earlier one
+/// is the same request, sent to the program and to its process group. After that, the next one
+/// kills the program.
 [[nodiscard]] const std::atomic<bool>& insistence();
 
-/// A file for output, opened before the run so that a long one is not made in vain, and in its
-/// place when it is closed: see PartFile. Without a path none is wanted.
+/// An output file. It is opened before the run, so that a long run does not fail at its end, and
+/// moved into its place by close(); see PartFile. An empty path means no output.
 class Output {
  public:
-  /// @throws SetupError where it cannot be written
+  /// @throws SetupError if the file cannot be written
   explicit Output(const std::string& path);
   [[nodiscard]] bool wanted() const { return !path_.empty(); }
-  /// To be written to without a pause: what the system says of a failure is taken at close().
+  /// The stream, to be written to and closed without other system calls in between: close() takes
+  /// the reason of a failure from errno.
   [[nodiscard]] std::ostream& stream();
-  /// @throws SetupError where it could not be written whole
+  /// @throws SetupError if not everything could be written
   void close();
 
  private:
@@ -44,16 +46,18 @@ class Output {
   std::ofstream file_;
 };
 
-/// Whether all that was printed to stdout has arrived. A reader that left a pipe had enough: true.
+/// Whether everything printed to stdout was written. True as well when stdout is a pipe whose
+/// reader has exited.
 [[nodiscard]] bool has_printed();
 
-/// A whole main function, which a reader that leaves its pipe does not end. Returns the exit
-/// status: that of `run`, 0 for --help, 2 for bad usage, `failure` after printing what is thrown.
-/// @param describe tells the options, which write to the arguments
+/// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so that a reader
+/// that exits does not end the program. Returns the exit status: that of `run`, 0 for --help, 2 for
+/// bad usage, `failure` after printing the message of an exception.
+/// @param describe declares the options, which write to the arguments
 template <class Arguments>
 [[nodiscard]] int start(int argc, char** argv, const char* name, const char* about, int failure,
                         void (*describe)(CLI::App&, Arguments&), int (*run)(const Arguments&)) {
-  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves does not end what goes on
+  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that exits must not end the run
   try {
     Arguments arguments;
     CLI::App app(about, name);

@@ -1,13 +1,13 @@
 /// @file
-/// Numbers in reports for people.
+/// Formats numbers for text reports.
 #pragma once
 
 #include <string>
 
 namespace repel::host {
 
-/// `value` with so many decimals; with an exponent from a thousand million on, and "not finite"
-/// where it is no number to be printed. A zero has no sign.
+/// `value` with this number of decimals; with an exponent from 1e9 on, "not finite" for infinity
+/// and NaN. A zero has no sign.
 [[nodiscard]] std::string figure(double value, int decimals);
 
 }  // namespace repel::host

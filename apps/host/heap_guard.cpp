@@ -14,7 +14,7 @@
 namespace repel::host {
 namespace {
 
-// What malloc does to them has no place to be passed through.
+// Globals, because malloc has no parameter through which to pass them.
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 thread_local int guarded = 0;
 std::atomic<std::int64_t> counted{0};
@@ -44,7 +44,7 @@ std::int64_t HeapGuard::allocations() noexcept {
 }  // namespace repel::host
 
 #if REPEL_COUNTS_HEAP
-// The C library's own functions, under the names it keeps for replacements like these.
+// glibc's own functions, under the names it reserves for replacements of malloc.
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 extern "C" {
 void* __libc_malloc(std::size_t size);

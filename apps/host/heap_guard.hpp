@@ -1,12 +1,13 @@
 /// @file
-/// Counts what the tick takes from the heap. The answer must be nothing.
+/// Counts the heap allocations of the tick. The count must be zero.
 #pragma once
 
 #include <cstdint>
 
 namespace repel::host {
 
-/// While one lives, every malloc, calloc, realloc and aligned allocation of its thread is counted.
+/// While an instance exists, every malloc, calloc, realloc and aligned allocation of its thread is
+/// counted.
 class HeapGuard {
  public:
   HeapGuard() noexcept;
@@ -14,10 +15,11 @@ class HeapGuard {
   HeapGuard(const HeapGuard&) = delete;
   HeapGuard& operator=(const HeapGuard&) = delete;
 
-  /// Counts the calling thread from here to its end; for threads that do nothing but ticks.
+  /// Counts the allocations of the calling thread from here to its end; for threads that only run
+  /// ticks.
   static void watch_this_thread() noexcept;
-  /// Allocations seen under guard in the whole program; -1 where they cannot be counted (another
-  /// allocator, such as a sanitizer's, is in place).
+  /// Allocations counted in the whole program; -1 where they cannot be counted (another allocator,
+  /// such as a sanitizer's, is in place).
   [[nodiscard]] static std::int64_t allocations() noexcept;
 };
 

@@ -41,13 +41,14 @@ const Hiccups& HiccupWatch::stop() {
 
 void HiccupWatch::watch(const std::stop_token& stop) noexcept {
   constexpr std::chrono::milliseconds between_rests{9};
-  // Asked before the clock: a tick that ends in between has met what comes after the reading.
+  // Read before the clock, so that a tick that ends between the two reads still counts as affected
+  // by what follows the reading.
   std::int64_t done = ended_.load(std::memory_order_acquire);
   nanoseconds last = steady_now();
   nanoseconds rest_at = last + between_rests;
   reads_.store(true, std::memory_order_release);
   for (bool last_round = false; !last_round;) {
-    last_round = stop.stop_requested();  // a hiccup may last until now
+    last_round = stop.stop_requested();  // one more round: a hiccup may be in progress
     const std::int64_t next_done = ended_.load(std::memory_order_acquire);
     const nanoseconds reading = steady_now();
     hiccups_.add(last, reading, done, until_.load(std::memory_order_acquire));

@@ -1,5 +1,5 @@
 /// @file
-/// What the machine does to a program that only reads the clock.
+/// Measures the interruptions that the machine inflicts on a thread that only reads the clock.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@
 
 namespace repel::host {
 
-/// Gaps of more than 10 us between two readings of the clock while ticks ran, and how many ticks
-/// met one between the time they were due and their end. Of a gap that began earlier or ends later
-/// the part in between counts.
+/// Counts the gaps of more than 10 us between two readings of the clock while ticks ran, and the
+/// ticks that met such a gap between their due time and their end. Of a gap that began before the
+/// ticks or ends after them, only the part within counts.
 class Hiccups {
  public:
   using nanoseconds = std::chrono::nanoseconds;
@@ -27,12 +27,12 @@ class Hiccups {
   static constexpr std::array<int, 10> edges_us{10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000};
 
   Hiccups() = default;
-  /// @param beat of the ticks; time before the first one is due does not count
+  /// @param beat schedule of the ticks; time before the first one is due does not count
   explicit Hiccups(const Beat& beat) : beat_(beat) {}
 
-  /// Takes the time between two readings that follow each other.
-  /// @param done how many ticks had ended at the first reading
-  /// @param until the ticks were over; time after it does not count
+  /// Records the interval between two consecutive readings.
+  /// @param done number of ticks that had ended at the first reading
+  /// @param until end of the ticks; time after it does not count
   void add(nanoseconds first, nanoseconds second, std::int64_t done, nanoseconds until) noexcept;
 
   [[nodiscard]] const std::array<std::int64_t, edges_us.size()>& bins() const { return bins_; }
@@ -41,7 +41,7 @@ class Hiccups {
   [[nodiscard]] nanoseconds longest() const { return longest_; }
   /// Ticks that met a hiccup, each counted once.
   [[nodiscard]] std::int64_t ticks() const { return ticks_; }
-  /// How long the clock was read while ticks ran, hiccups included.
+  /// Total time during which the clock was read while ticks ran, hiccups included.
   [[nodiscard]] nanoseconds watched() const { return watched_; }
 
  private:
@@ -49,31 +49,31 @@ class Hiccups {
   std::array<std::int64_t, edges_us.size()> bins_{};
   std::int64_t count_ = 0;
   std::int64_t ticks_ = 0;
-  std::int64_t judged_ = 0;  ///< ticks up to here met a hiccup or had ended before it
+  std::int64_t judged_ = 0;  ///< ticks up to this one are counted, or had ended before a hiccup
   nanoseconds total_{0};
   nanoseconds longest_{0};
   nanoseconds watched_{0};
 };
 
-/// A thread that reads the clock in a loop, from construction on. It has the scheduling class of
-/// the ticks where that is granted, and then rests for a millisecond in ten: a thread of real-time
-/// priority that never sleeps would starve the kernel's own.
+/// A thread that reads the clock in a loop from construction on. Where it is granted the real-time
+/// class of the ticks, it sleeps 1 ms in every 10 ms: a real-time thread that never sleeps would
+/// starve kernel threads.
 class HiccupWatch {
  public:
   using nanoseconds = std::chrono::nanoseconds;
 
-  /// Returns once it reads.
-  /// @param processors it may run on
+  /// Returns once the thread has started reading.
+  /// @param processors the thread may run on
   HiccupWatch(const std::vector<int>& processors, const Beat& beat);
 
-  /// The ticks up to this one, counted from 1, have ended. Wait-free.
+  /// Reports that the ticks up to this one, counted from 1, have ended. Wait-free.
   void ended(std::int64_t tick) noexcept { ended_.store(tick, std::memory_order_release); }
-  /// No tick follows; what is read from now on does not count beyond `time`. Wait-free.
+  /// Reports that no tick follows; readings beyond `time` do not count. Wait-free.
   void close(nanoseconds time) noexcept { until_.store(time, std::memory_order_release); }
 
-  /// Ends the thread; what it saw.
+  /// Ends the thread and returns what it measured.
   [[nodiscard]] const Hiccups& stop();
-  /// Of SCHED_FIFO; 0: refused. Known after stop().
+  /// SCHED_FIFO priority of the thread; 0: refused. Valid after stop().
   [[nodiscard]] int priority() const noexcept { return priority_; }
 
  private:
@@ -81,7 +81,7 @@ class HiccupWatch {
 
   Hiccups hiccups_;
   int priority_ = 0;
-  // Each is written by another thread than its neighbours.
+  // On separate cache lines, since different threads write them.
   alignas(64) std::atomic<bool> reads_{false};
   alignas(64) std::atomic<std::int64_t> ended_{0};
   std::atomic<nanoseconds> until_{nanoseconds::max()};

@@ -31,8 +31,9 @@ bool make_fifo(int level) noexcept {
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
 }
 
-/// Keeps idle processors from sleeping deeply for as long as the program runs: a tick that begins
-/// on a processor just woken is several times slower. The kernel holds it while the file is open.
+/// Keeps idle processors out of deep sleep states while the program runs: a tick on a processor
+/// that has just woken is several times slower. The kernel honours the request while the file is
+/// open.
 bool stay_awake() noexcept {
   static const bool granted = [] {
     const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);

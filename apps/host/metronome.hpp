@@ -1,5 +1,5 @@
 /// @file
-/// The beat of a loop that runs by the clock.
+/// Wakes a loop periodically by the steady clock.
 #pragma once
 
 #include <time.h>
@@ -11,13 +11,13 @@
 
 namespace repel::host {
 
-/// The time of the steady clock, which no one sets.
+/// The time of the steady (monotonic) clock.
 [[nodiscard]] inline std::chrono::nanoseconds steady_now() noexcept {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::steady_clock::now().time_since_epoch());
 }
 
-/// When ticks are due: at a first time of the steady clock and once a period from there.
+/// The schedule of the ticks: the first at a given time of the steady clock, then one per period.
 struct Beat {
   using nanoseconds = std::chrono::nanoseconds;
 
@@ -25,31 +25,31 @@ struct Beat {
   nanoseconds period{1};
   std::int64_t ticks = std::numeric_limits<std::int64_t>::max();
 
-  /// How many ticks are due before `time`.
+  /// Number of ticks that are due before `time`.
   [[nodiscard]] std::int64_t due_before(nanoseconds time) const noexcept {
     if (time <= first) return 0;
     return std::min(ticks, (time - first - nanoseconds(1)) / period + 1);
   }
 };
 
-/// Wakes the loop at every beat: sleeps, then spins the last stretch, because a sleep alone
-/// overshoots and a spin alone is throttled by the scheduler.
+/// Wakes the loop at every due time: sleeps first, then spins for the rest. A sleep alone
+/// overshoots; a spin alone is throttled by the scheduler.
 class Metronome {
  public:
   using nanoseconds = std::chrono::nanoseconds;
 
-  /// The first tick is due a period from now.
+  /// The first tick is due one period from now.
   explicit Metronome(nanoseconds period)
       : Metronome(Beat{steady_now() + period, period}, longest_spin) {}
-  /// @param spin how long before a tick is due the sleep ends, at most a quarter of the period;
-  ///   0: sleeps only
+  /// @param spin the sleep ends this long before a tick is due, at most a quarter of the period; 0:
+  ///   sleep only
   Metronome(const Beat& beat, nanoseconds spin)
       : period_(beat.period), spin_(std::min(spin, beat.period / 4)), due_(beat.first) {}
 
   static constexpr nanoseconds longest_spin{150000};
 
-  /// Returns once the next tick is due, and how late that is. While there is time after the sleep,
-  /// `rehearse` is called again and again: it keeps the processor as it should find the tick.
+  /// Returns once the next tick is due, and by how much it is late. After the sleep, `rehearse` is
+  /// called repeatedly while time remains, to keep the caches warm for the tick.
   template <class Rehearse>
   nanoseconds wait(Rehearse&& rehearse) {
     const nanoseconds sleep_until = due_ - spin_;
@@ -64,8 +64,8 @@ class Metronome {
     return late;
   }
 
-  /// Gives up the ticks that were missed if the next is overdue by `patience` or more; returns how
-  /// many. With less they are made up for, one right after the other.
+  /// Skips the missed ticks if the next one is overdue by `patience` or more, and returns their
+  /// number. If less overdue, they are run back to back.
   std::int64_t catch_up(nanoseconds patience = std::chrono::seconds(1)) {
     const nanoseconds behind = steady_now() - due_;
     if (behind < std::max(patience, period_)) return 0;

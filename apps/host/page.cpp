@@ -40,7 +40,6 @@ std::string with_unit(double value, const char* unit) {
   return std::isfinite(value) ? number(value) + " " + unit : "-";
 }
 
-/// Rows of cells; the first row is the head, columns before `names` are text.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t names) {
   std::string html = "<table>";
   for (std::size_t row = 0; row < rows.size(); ++row) {

@@ -1,5 +1,5 @@
 /// @file
-/// Pages that programs write for people: each one file that needs nothing beside itself.
+/// Builds self-contained HTML pages (reports).
 #pragma once
 
 #include <ostream>
@@ -13,29 +13,31 @@
 
 namespace repel::host::page {
 
-/// `text` with the characters replaced that mean something in HTML.
+/// `text` with the special characters of HTML escaped.
 [[nodiscard]] std::string escaped(const std::string& text);
 
-/// A number of four digits; "-" for one that is not finite.
+/// A number with four significant digits; "-" if not finite.
 [[nodiscard]] std::string number(double value);
 
-/// The same and its unit; "-" for one that is not finite.
+/// The same with its unit; "-" if not finite.
 [[nodiscard]] std::string with_unit(double value, const char* unit);
 
-/// Rows of cells, which are escaped; the first row is the head, columns before `names` are text.
+/// An HTML table; cells are escaped, the first row is the header, the first `names` columns are
+/// text.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows,
                                 std::size_t names);
 
-/// One fact among others between <dl class='tiles'> and </dl>.
+/// A name and its value, as an entry of <dl class='tiles'>.
 [[nodiscard]] std::string tile(const std::string& name, const std::string& value);
 
-/// From the half to the last sample in 10^5, for a PercentileChart.
+/// From the median to the share 1 - 10^-5, for a PercentileChart.
 [[nodiscard]] std::vector<Percentile> percentiles(const DurationHistogram& times);
 
-/// Where it ran, as a paragraph.
+/// The machine, as a paragraph.
 [[nodiscard]] std::string where(const Machine& machine);
 
-/// Everything before the content, with the title as the first heading, and everything after it.
+/// begin() writes everything before the content, with the title as the first heading; end()
+/// everything after it.
 void begin(const std::string& title, std::ostream& out);
 void end(std::ostream& out);
 

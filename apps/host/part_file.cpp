@@ -26,13 +26,14 @@ bool is_below(const fs::path& path, const char* folder) {
          *std::next(path.begin()) == folder;
 }
 
-/// Where a regular file of that name stands, or would; nothing where it is to be written directly.
+/// The path of the regular file of that name, existing or not, with links resolved; none if it is
+/// to be written directly (device, pipe, /dev, /proc).
 std::optional<fs::path> place_of(const std::string& path) {
   constexpr int most_links = 40;  // as the kernel allows
   std::error_code error;
   fs::path at = fs::absolute(path, error);
   for (int i = 0; i < most_links; ++i) {
-    // What stands there may be shared with an open file, /dev/stdout for example.
+    // Such a path may refer to an open file description, such as /dev/stdout.
     if (is_below(at, "dev") || is_below(at, "proc")) return std::nullopt;
     if (!fs::is_symlink(fs::symlink_status(at, error))) break;
     at = at.parent_path() / fs::read_symlink(at, error);
@@ -42,7 +43,7 @@ std::optional<fs::path> place_of(const std::string& path) {
   return error ? at : folder / at.filename();
 }
 
-/// Opens the first of PLACE.part, PLACE.2.part and so on that does not exist; returns its name.
+/// Creates the first of PLACE.part, PLACE.2.part and so on that does not exist; returns its name.
 std::string make_part(const std::string& place, const std::string& path) {
   constexpr int most_parts = 100;
   struct stat now {};
@@ -65,7 +66,7 @@ std::string make_part(const std::string& place, const std::string& path) {
                    path);
 }
 
-/// Whether both names lead to one file, which need not exist yet.
+/// Whether both names refer to the same regular file, which need not exist yet.
 bool is_same(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::exists(a, error) && !fs::is_regular_file(a, error)) return false;
@@ -91,7 +92,7 @@ PartFile::~PartFile() {
 void PartFile::put_in_place() {
   if (!is_beside() || is_kept_) return;
   is_kept_ = true;
-  // Some file systems find out only now that there is no room.
+  // Some file systems report a full disk only at fsync.
   const int file = open(part_.c_str(), O_RDONLY | O_CLOEXEC);
   const bool is_on_disk = file >= 0 && fsync(file) == 0;
   const int error = errno;
@@ -109,7 +110,7 @@ void require_apart(const std::vector<NamedFile>& read, const std::vector<NamedFi
     if (file.path.empty()) continue;
     for (const NamedFile& other : taken) {
       if (other.path.empty()) continue;
-      // While they are written they have other names.
+      // While being written they have the suffix ".part".
       if (!is_same(file.path, other.path) && !is_same(file.path + ".part", other.path) &&
           !is_same(file.path, other.path + ".part")) {
         continue;

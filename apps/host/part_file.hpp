@@ -1,5 +1,5 @@
 /// @file
-/// Files that stand in their place only when they are whole.
+/// Output files that replace their target only when they are complete.
 #pragma once
 
 #include <string>
@@ -7,32 +7,32 @@
 
 namespace repel::host {
 
-/// A file that is written beside its place, in the same folder, and moved there when it is whole:
-/// what stood there before is there until then. It is called PATH.part while it is written, or
-/// PATH.2.part and so on where that is taken; a kill leaves it behind. A device, a pipe or what a
-/// path leads to through /dev or /proc has no such place and is written directly. Links are
-/// followed and stay.
+/// A file that is written under a temporary name in the folder of its target and renamed to the
+/// target when it is complete; an existing target stays until then. The temporary name is
+/// PATH.part, or PATH.2.part and so on where that exists; it is left behind if the process is
+/// killed. A device, a pipe, or a path through /dev or /proc is written directly. Symbolic links
+/// are followed and kept.
 class PartFile {
  public:
-  /// Makes the file, empty. Nothing for an empty path.
-  /// @throws SetupError where it, or what stands in its place, cannot be written
+  /// Creates the file, empty. Does nothing for an empty path.
+  /// @throws SetupError if it, or its target, cannot be written
   explicit PartFile(const std::string& path);
 
-  /// Removes it, unless it was put in its place or kept.
+  /// Removes it, unless it was moved to its target or kept.
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  /// What is to be opened for writing.
+  /// The name to open for writing.
   [[nodiscard]] const std::string& name() const { return part_; }
-  /// False where it is written directly.
+  /// False if the target is written directly.
   [[nodiscard]] bool is_beside() const { return part_ != place_; }
 
-  /// Moves it into its place, once it is written and closed.
-  /// @throws SetupError where the disk or the folder does not take it; it is kept then
+  /// Renames it to its target. Call once it is written and closed.
+  /// @throws SetupError if it cannot be written to disk or renamed; it is kept then
   void put_in_place();
 
-  /// Leaves it where it is: not whole, but worth reading.
+  /// Keeps the temporary file: incomplete, but worth reading.
   void keep() { is_kept_ = true; }
 
  private:
@@ -41,14 +41,14 @@ class PartFile {
   bool is_kept_ = false;
 };
 
-/// A file that a program is told to read or to write, and what it calls it.
+/// A file that a program reads or writes, and its name in messages.
 struct NamedFile {
   std::string what;  ///< "the scene file", "--report"
   std::string path;  ///< empty: none
 };
 
-/// @throws SetupError where a file to write is one of those to read, or of those to write before
-/// it, by whatever name or link. Devices and pipes may be written by several.
+/// @throws SetupError if a file to write is the same, by whatever name or link, as one to read or
+///   an earlier one to write. Devices and pipes may be written by several.
 void require_apart(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
 }  // namespace repel::host

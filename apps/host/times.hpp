@@ -1,5 +1,5 @@
 /// @file
-/// What the reports of programs have in common, for people and for programs.
+/// Shared parts of the reports, as text and JSON.
 #pragma once
 
 #include <cstdio>
@@ -20,26 +20,27 @@ namespace repel::host {
 [[nodiscard]] nlohmann::ordered_json to_json(const DeadlineMonitor& deadline,
                                              std::int64_t skipped_ticks);
 
-/// The status bits that were set, with the ticks in which they were.
+/// For each status bit that was set: the number of ticks in which it was.
 [[nodiscard]] nlohmann::ordered_json status_ticks(const RunTotals& totals);
 
-/// What the pairs of a world did. @param pairs how many there are
+/// Statistics of the pairs of a world.
+///
+/// @param pairs how many there are
 [[nodiscard]] nlohmann::ordered_json to_json(const RunTotals& totals, int pairs);
 
-/// The mean of a sum over ticks; 0 without any.
+/// `sum` divided by the number of ticks; 0 without ticks.
 [[nodiscard]] double per_tick(const RunTotals& totals, std::int64_t sum);
 
-/// A count that some machines cannot take: null where it is negative.
+/// A count that is not available on some machines: null if negative.
 [[nodiscard]] nlohmann::ordered_json known(std::int64_t count);
 
-/// Writes a report. A byte that is not UTF-8 does not cost it, nor a number that is not finite,
-/// which becomes null.
+/// Writes a report. Bytes that are not UTF-8 are replaced; numbers that are not finite become null.
 void write(const nlohmann::ordered_json& report, std::ostream& file);
 
 /// Prints how many pairs were near and evaluated, in one line.
 void print_pairs(const RunTotals& totals, int pairs, std::FILE* out);
 
-/// Prints what the tick took from the heap, in one line.
+/// Prints the number of heap allocations in the tick, in one line.
 void print_allocations(std::int64_t count, std::FILE* out);
 
 /// Prints p50, p99, p99.9 and the maximum in one line; "none" without a sample.

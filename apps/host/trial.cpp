@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// What the kernel counts of all processors since it was started, in its own unit.
+/// Kernel counters of all processors since boot, in the kernel's unit.
 struct ProcessorTime {
   double stolen = 0.0;
   double total = 0.0;
@@ -42,10 +42,10 @@ double stolen_share(const ProcessorTime& before, const ProcessorTime& after) {
   return total > 0.0 ? (after.stolen - before.stolen) / total : 0.0;
 }
 
-/// Ticks in the calling thread until the time is over. Returns when that was.
+/// Runs ticks in the calling thread until their number is reached or `stop`. Returns the end time.
 nanoseconds tick_by_the_clock(Trial& trial, Boxes& boxes, const Beat& beat, HiccupWatch* watch,
                               const std::atomic<bool>& stop, Mailbox<TrialProgress>& progress) {
-  // Pages and caches are those of a program that has been running.
+  // Warm up: fault in pages and fill caches, as in a program that has been running.
   for (int i = 0; i < 100; ++i) boxes.tick(0.0);
   const std::int64_t allocations = HeapGuard::allocations();
   Metronome metronome(beat, trial.options.rehearse ? Metronome::longest_spin : nanoseconds(0));
@@ -74,13 +74,14 @@ nanoseconds tick_by_the_clock(Trial& trial, Boxes& boxes, const Beat& beat, Hicc
   return over;
 }
 
-/// How much of `span` was watched, 0 to 1. The watch learns of its end a moment later.
+/// Fraction of `span` that was watched, 0 to 1. Clamped, since the watch learns of the end slightly
+/// later.
 double share(nanoseconds watched, nanoseconds span) {
   if (span <= nanoseconds(0)) return 0.0;
   return std::min(1.0, static_cast<double>(watched.count()) / static_cast<double>(span.count()));
 }
 
-/// The beat of a trial. It leaves the threads time to start.
+/// The schedule of a trial. The first tick is due in 100 ms, so that the threads can start.
 Beat beat_of(const TrialOptions& options) {
   const nanoseconds period(std::llround(1e9 / options.rate_hz));
   const std::int64_t ticks = std::llround(options.seconds * options.rate_hz);

@@ -15,7 +15,7 @@ double in_us(std::chrono::nanoseconds time) {
   return 1e-3 * static_cast<double>(time.count());
 }
 
-/// What a thread that watches for hiccups is, in words.
+/// The scheduling class of the HiccupWatch thread, as text.
 std::string watcher(const Trial& t) {
   return t.hiccup_priority > 0 ? "SCHED_FIFO " + std::to_string(t.hiccup_priority) : "SCHED_OTHER";
 }

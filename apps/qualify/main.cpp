@@ -1,5 +1,5 @@
 /// @file
-/// Says whether this machine can hold a rate.
+/// Determines whether this machine can hold a tick rate.
 
 #include <repel/base/setup_error.hpp>
 

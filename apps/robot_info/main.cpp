@@ -1,5 +1,5 @@
 /// @file
-/// Shows what a robot description holds once it is read: joints, links, convex parts and tips.
+/// Shows the content of a robot description: joints, links, convex parts and tips.
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ const char* kind_of(const RobotPart& part) {
   return "";
 }
 
-/// Corners of what has some; round parts have none.
+/// Number of corners; 0 for round parts.
 std::size_t vertices_of(const RobotPart& part) {
   return part.kind == PartKind::box ? 8 : part.points.size();
 }
@@ -117,7 +117,7 @@ void print(const Robot& robot, const std::vector<Tip>& tips) {
   }
 }
 
-/// Numbers of a matrix row by row; null for what is not finite, which JSON cannot say.
+/// The entries of a matrix row by row; null if not finite, which JSON cannot represent.
 template <class Matrix>
 Json numbers(const Matrix& m) {
   Json list = Json::array();

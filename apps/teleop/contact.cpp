@@ -4,15 +4,15 @@
 
 namespace repel::teleop {
 
-std::vector<ContactPart> contact_parts(const scene::Scene& scene, const scene::Station& station,
+std::vector<ContactPart> contact_parts(const scene::Scene& scene, const scene::ArmSetup& setup,
                                        const Robot& robot) {
   std::vector<ContactPart> parts;
   const int last = static_cast<int>(robot.arm.links.size()) - 1;
-  for (const scene::Part& part : station.tool) {
+  for (const scene::Part& part : setup.tool) {
     parts.push_back({part.name, last, part.shape, robot.arm.X_LT * part.X_BP});
   }
   for (const RobotPart& part : robot.parts) {
-    if (part.link < 0) continue;  // the base moves no more than the obstacles
+    if (part.link < 0) continue;  // the base is fixed, as the obstacles are
     parts.push_back({part.name, part.link, shape_of(part), part.X_LP});
   }
   for (const scene::Obstacle& obstacle : scene.obstacles) {

@@ -1,5 +1,5 @@
 /// @file
-/// What can touch in a scene.
+/// The parts of a scene that can collide physically.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,11 @@
 
 namespace repel::teleop {
 
-/// The tool of `station`, all parts of the moving links of its `robot`, and the obstacles of
-/// `scene` that are not passable.
-/// @throws SetupError naming an obstacle that moves: those of simulated arms stand
+/// The tool of `setup`, all parts of the moving links of its `robot`, and the obstacles of `scene`
+/// that are not passable.
+/// @throws SetupError naming an obstacle that moves: the back ends simulate fixed obstacles only
 [[nodiscard]] std::vector<ContactPart> contact_parts(const scene::Scene& scene,
-                                                     const scene::Station& station,
+                                                     const scene::ArmSetup& setup,
                                                      const Robot& robot);
 
 }  // namespace repel::teleop

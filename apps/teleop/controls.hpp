@@ -1,5 +1,5 @@
 /// @file
-/// What those who look on can do to a run: drive it, pause it, begin anew.
+/// User control of a run: drive the arm, pause, step, restart, seek.
 #pragma once
 
 #include <atomic>
@@ -10,28 +10,28 @@
 
 namespace repel::teleop {
 
-/// Who has the controls.
+/// The source of the operator's commands.
 enum class Driver { script, nobody, page, device };
 
-/// What the one at the controls says, in the words of a rate-controlled master.
-struct Grip {
+/// Command of the current driver, in the terms of a rate-controlled master.
+struct DriverInput {
   Driver driver = Driver::script;
   Twist rates;                       ///< [m/s, rad/s] of the tool
-  bool in_tool = false;              ///< the axes of the rates are those of the tool, not the world
-  double lever_rate = 0.0;           ///< [rad/s] at which the hand leads the lever
-  Vec3 direction_W = Vec3::UnitX();  ///< unit: the way the lever drives the tool
+  bool in_tool = false;              ///< the rates are in tool axes, not world axes
+  double lever_rate = 0.0;           ///< [rad/s] commanded motion of the lever
+  Vec3 direction_W = Vec3::UnitX();  ///< unit: direction in which the lever drives the tool
 };
 
-/// Between the loop and one other thread, without a lock: that thread writes, the loop reads.
+/// Lock-free interface between the loop, which reads, and one other thread, which writes.
 struct Controls {
-  Mailbox<Grip> grip{Grip{}};  ///< a post says that the driver is there
+  Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
   std::atomic<bool> paused{false};
-  std::atomic<std::int64_t> steps{0};  ///< ticks to make all the same while paused
-  std::atomic<bool> restart{false};    ///< end this run and begin another
-  bool may_restart = true;             ///< not in the middle of a log; stands from set-up on
-  bool over_device = false;            ///< a page may take them from a device; as above
-  std::atomic<double> seek{-1.0};      ///< [s] of a replay: go there; negative: nowhere
-  std::atomic<double> speed{1.0};      ///< of a replay, against the clock
+  std::atomic<std::int64_t> steps{0};  ///< single ticks to run while paused
+  std::atomic<bool> restart{false};    ///< end this run and start another
+  bool may_restart = true;             ///< false while a log is written; constant after set-up
+  bool over_device = false;            ///< a page may override a device; constant after set-up
+  std::atomic<double> seek{-1.0};      ///< [s] replay: time to jump to; negative: none
+  std::atomic<double> speed{1.0};      ///< replay: factor on real time
 };
 
 }  // namespace repel::teleop

@@ -1,5 +1,5 @@
 /// @file
-/// The master that a person holds, by its name on the command line.
+/// Opens the input device of the operator, by its name on the command line.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@ class DeviceLink;
 namespace repel::teleop {
 
 struct Device {
-  std::string name;  ///< for people; empty: none
+  std::string name;  ///< display name; empty: none
   std::shared_ptr<devices::DeviceLink> link;
 };
 
-/// What is wrong with the name of a device; empty: nothing.
+/// What is wrong with a device name; empty: nothing.
 [[nodiscard]] std::string device_complaint(const std::string& text);
 
-/// "spacenav", the mouse behind spacenavd, or "evdev:PATH", a motorised lever of the kernel.
-/// @throws SetupError when it is not there, naming what to do
+/// "spacenav", the six-axis mouse behind spacenavd, or "evdev:PATH", a motorised lever.
+/// @throws SetupError if it is not available, saying what to do
 [[nodiscard]] Device open_device(const std::string& text);
 
 }  // namespace repel::teleop

@@ -1,5 +1,5 @@
 /// @file
-/// How a run ends that is asked to stop.
+/// Ends a run safely after a request to stop.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,19 @@
 
 namespace repel::teleop {
 
-/// Lets a run go on, without its operators, until the fail-safe has faded the forces of all arms.
+/// Continues a run with its operators at rest until the fail-safe has faded the forces of all arms.
 class FadeOut {
  public:
-  /// [s] of scene time after which it ends whatever the forces are; one tick at least.
+  /// [s] of scene time after which the run ends whatever the forces are; at least one tick.
   static constexpr double longest = 0.5;
 
-  /// @param stop begins it
-  /// @param at_once ends the run without it; null: never
+  /// @param stop request that starts the fade-out
+  /// @param at_once request to end the run without it; null: never
   FadeOut(const std::atomic<bool>& stop, const std::atomic<bool>* at_once, double period) noexcept
       : stop_(stop), at_once_(at_once), period_(period) {}
 
-  /// Asked before each tick: true when it is not to be made.
-  /// @param last what the arms did in the tick before; empty before the first
+  /// To be called before each tick; true if that tick must not run.
+  /// @param last records of the arms in the tick before; empty before the first
   [[nodiscard]] bool is_over(std::span<const TickRecord* const> last) noexcept {
     if (!stop_) return false;
     const bool is_last = has_begun_ && left_ <= 0.0;
@@ -33,7 +33,7 @@ class FadeOut {
            std::all_of(last.begin(), last.end(), is_faded);
   }
 
-  /// The operators are to let go.
+  /// The operators must be at rest from now on.
   [[nodiscard]] bool has_begun() const noexcept { return has_begun_; }
 
  private:

@@ -39,7 +39,7 @@ std::string tiles(const RunResult& r) {
   return html + "</dl>\n";
 }
 
-/// A chart of all records of the first arm, with a mark where each phase begins.
+/// A chart over all records of the first arm, with a mark at the start of each phase.
 host::Chart chart_of(const RunResult& r, const std::string& title, const std::string& unit) {
   const std::vector<TickRecord>& records = r.arms.front().records;
   host::Chart chart{.title = title, .unit = unit, .samples = records.size()};
@@ -63,7 +63,8 @@ std::string charts_of_the_world(const RunResult& r) {
   return to_html(distance) + to_html(pairs);
 }
 
-/// The passive modules whose ledgers get fullest, as many as there are colours, in their order.
+/// The passive modules with the largest ledger magnitudes, as many as there are colours, in the
+/// order of the network.
 std::vector<std::size_t> fullest(const ArmResult& arm) {
   constexpr std::size_t colours = 6;
   std::vector<std::size_t> modules;
@@ -119,7 +120,7 @@ std::string phase_name(const RunResult& r, std::int32_t phase) {
   return i < r.scene.script.size() ? r.scene.script[i].name : "script over";
 }
 
-/// To the moments of those ticks, in the live view of the recording.
+/// Links to those ticks in the live view of the recording.
 std::string links_to_replay(const RunResult& r, const std::vector<std::size_t>& ticks) {
   if (!r.options.log.ends_with(".mcap")) {
     return "<p class='soft'>With --log FILE.mcap the replay can be opened at each of them.</p>\n";
@@ -137,7 +138,7 @@ std::string links_to_replay(const RunResult& r, const std::vector<std::size_t>& 
   return html + "</p>\n";
 }
 
-/// The ticks that took longest, with what happened in them.
+/// Table of the slowest ticks.
 std::string slowest(const RunResult& r) {
   const std::vector<TickRecord>& k = r.arms.front().records;
   std::vector<std::size_t> order(k.size());

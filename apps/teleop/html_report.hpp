@@ -1,5 +1,5 @@
 /// @file
-/// The report of a run as a page for people.
+/// The report of a run as an HTML page.
 #pragma once
 
 #include <iosfwd>
@@ -8,9 +8,9 @@
 
 namespace repel::teleop {
 
-/// Writes one page that needs nothing beside itself: what the run came to, curves of distance,
-/// force, energy and pairs over time, percentiles of time, the slowest ticks, what every obstacle
-/// and module did, the machine, the scene. Of a run that kept its records.
+/// Writes a self-contained page: key figures, curves of distance, force, energy and pairs over
+/// time, percentiles of time, the slowest ticks, tables of obstacles and modules, the machine, the
+/// scene. Requires a run with RunOptions::keep_records.
 void write_html(const RunResult& result, std::ostream& out);
 
 }  // namespace repel::teleop

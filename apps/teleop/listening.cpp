@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t least_secret = 16;
 constexpr std::size_t most_secret = 256;
 
-/// Without the name of an interface behind it: fe80::1%eth0.
+/// The address without a zone index such as %eth0 in fe80::1%eth0.
 std::string bare(const std::string& address) {
   return address.substr(0, address.find('%'));
 }
@@ -36,7 +36,7 @@ std::string without_end(std::string line) {
   return line;
 }
 
-/// What is wrong with a secret, which is not shown.
+/// What is wrong with a secret; never shows the secret.
 std::string secret_complaint(const std::string& secret) {
   const bool plain =
       std::all_of(secret.begin(), secret.end(), [](char c) { return c > ' ' && c <= '~'; });
@@ -48,7 +48,7 @@ std::string secret_complaint(const std::string& secret) {
 
 std::string read_secret(SessionOptions& session) {
   if (!session.secret_env.empty()) {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): at the beginning, before there is another thread
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): at the start, before there is another thread
     const char* value = std::getenv(session.secret_env.c_str());
     if (value == nullptr) return "--secret-env: " + session.secret_env + " is not set";
     session.secret = value;
@@ -72,7 +72,7 @@ std::string read_secret(SessionOptions& session) {
   return {};
 }
 
-/// Addresses of this machine that others reach, as they stand in a URL.
+/// Addresses of this machine that others can reach, as written in a URL.
 std::vector<std::string> names_of(bool v6_too) {
   std::vector<std::string> names;
   ifaddrs* first = nullptr;
@@ -86,7 +86,7 @@ std::vector<std::string> names_of(bool v6_too) {
       names.emplace_back(inet_ntop(AF_INET, &v4->sin_addr, text, sizeof text));
     } else if (v6_too && each->ifa_addr->sa_family == AF_INET6) {
       const auto* v6 = reinterpret_cast<const sockaddr_in6*>(each->ifa_addr);
-      if (IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) continue;  // no browser opens such a one
+      if (IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) continue;  // browsers refuse such ones
       names.push_back("[" + std::string(inet_ntop(AF_INET6, &v6->sin6_addr, text, sizeof text)) +
                       "]");
     }

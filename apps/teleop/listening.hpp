@@ -1,5 +1,5 @@
 /// @file
-/// Where the live view listens, and what whoever opens it must know.
+/// The network address of the live view.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 namespace repel::teleop {
 
 struct Place {
-  std::string address;  ///< in numbers, without brackets
+  std::string address;  ///< numeric, without brackets
   std::uint16_t port = 0;
 };
 
-/// Of ADDRESS:PORT, an address of IPv6 in brackets; none if that is not what it says.
+/// Parses ADDRESS:PORT, an IPv6 address in brackets; none if malformed.
 [[nodiscard]] std::optional<Place> place_of(const std::string& listen);
 
-/// Whether only programs of this machine reach it.
+/// Whether only programs on this machine can reach it.
 [[nodiscard]] bool is_loopback(const Place& place);
 
-/// Says on stderr where the view is, and what one who opens it needs besides.
-/// @param url on this machine
+/// Prints on stderr the URL of the view, and what else is needed to open it.
+/// @param url as seen from this machine
 void announce(const SessionOptions& session, const std::string& url);
 
 }  // namespace repel::teleop

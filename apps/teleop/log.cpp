@@ -17,7 +17,7 @@
 namespace repel::teleop {
 namespace {
 
-/// As one cell: in quotes where it is asked for or the text needs them, inner ones doubled.
+/// A CSV cell: quoted if requested or if the text requires it, with inner quotes doubled.
 std::string cell_of(const std::string& text, bool in_quotes = false) {
   if (!in_quotes && text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string cell(1, '"');
@@ -25,7 +25,7 @@ std::string cell_of(const std::string& text, bool in_quotes = false) {
   return cell += '"';
 }
 
-/// The columns that every arm has.
+/// Writes the names of the columns that every arm has.
 void write_names(const ArmHeading& arm, std::ostream& file) {
   const std::string prefix = arm.prefix();
   const auto write = [&](const std::string& name, const std::string& more = {},
@@ -92,12 +92,12 @@ class CsvLog final : public TickLog {
   [[nodiscard]] std::string trouble() const override { return trouble_; }
 
  private:
-  /// Nothing for none.
+  /// Empty for an invalid id.
   [[nodiscard]] std::string name(PairId pair) const {
     if (!pair.valid()) return {};
     return cell_of(heading_.pairs[static_cast<std::size_t>(pair.index)], true);
   }
-  /// Keeps what the operating system says of the first failure.
+  /// Keeps the operating system's message of the first failure.
   void look() {
     if (file_ || !trouble_.empty()) return;
     const int error = errno;
@@ -127,7 +127,7 @@ LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log,
         using Clock = std::chrono::steady_clock;
         auto flushed = Clock::now();
         for (;;) {
-          const bool last = stop.stop_requested();  // and then what is left
+          const bool last = stop.stop_requested();  // one more round for the remaining ticks
           write_all();
           if (last) return;
           if (Clock::now() - flushed > std::chrono::milliseconds(500)) {
@@ -146,7 +146,7 @@ void LogThread::write_all() {
   }
 }
 
-/// What the log throws, and what it says of its file, ends the writing and not the run.
+/// An exception or an error of the log ends the writing, not the run.
 template <class Work>
 void LogThread::attempt(const Work& work) noexcept {
   if (is_lost_) return;
@@ -164,7 +164,7 @@ std::int64_t LogThread::close() {
   thread_ = {};
   const std::int64_t lacking = ticks_.dropped() + unwritten_;
   if (is_lost_) {
-    (void)complaint_of([&] { log_.close(lacking); });  // as far as it goes
+    (void)complaint_of([&] { log_.close(lacking); });  // best effort
   } else {
     attempt([&] { log_.close(lacking); });
   }

@@ -1,5 +1,5 @@
 /// @file
-/// Logs of every tick, written by a thread of their own.
+/// Logs of every tick, written by a separate thread.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@
 
 namespace repel::teleop {
 
-/// A file that gets every tick. Not for the tick itself: it takes heap and makes system calls.
-/// Trouble while writing does not throw: it stays in trouble().
+/// A file to which every tick is written. Not to be called in the tick: it allocates and makes
+/// system calls. Write errors do not throw; trouble() reports them.
 class TickLog {
  public:
   virtual void write(const Snapshot& tick) = 0;
-  /// What was written so far survives the program.
+  /// Passes everything written so far to the operating system.
   virtual void flush() = 0;
-  /// Ends the file.
+  /// Completes the file.
   virtual void close(std::int64_t dropped) = 0;
-  /// Why the file cannot become whole, with its name; empty: nothing is lost so far.
+  /// Why the file is incomplete, with its name; empty: nothing is lost so far.
   [[nodiscard]] virtual std::string trouble() const = 0;
 
   TickLog() = default;
@@ -32,22 +32,22 @@ class TickLog {
   virtual ~TickLog() = default;
 };
 
-/// A row for every tick, a column for every number, units in the names: CSV as of RFC 4180, but for
-/// lines that end in a line feed alone.
-/// @throws SetupError when the file cannot be written
+/// One row per tick, one column per number, with units in the column names: CSV as of RFC 4180,
+/// except that lines end in a line feed alone.
+/// @throws SetupError if the file cannot be written
 [[nodiscard]] std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading);
 
-/// Takes ticks out of the tap and writes them. Never delays the loop: what the thread is too slow
-/// for is dropped and counted by the tap. With a file that cannot be written, or a log that throws,
-/// the run goes on, and what comes after is counted as dropped.
+/// Takes ticks out of the tap and writes them. Never delays the loop: ticks for which it is too
+/// slow are dropped and counted by the tap. If the file cannot be written or the log throws, the
+/// run continues, and later ticks count as dropped.
 class LogThread {
  public:
-  /// Both must live as long as it does.
-  /// @param on_trouble called once, from the thread, as soon as the file cannot become whole
+  /// `ticks` and `log` must outlive this object.
+  /// @param on_trouble called once, from the thread, as soon as the file is known to be incomplete
   LogThread(Ring<Snapshot>& ticks, TickLog& log,
             std::function<void(const std::string&)> on_trouble);
 
-  /// Writes what is left and ends the file; returns how many ticks were dropped.
+  /// Writes the remaining ticks and completes the file; returns how many ticks were dropped.
   std::int64_t close();
 
  private:
@@ -59,7 +59,7 @@ class LogThread {
   Ring<Snapshot>& ticks_;
   TickLog& log_;
   std::function<void(const std::string&)> on_trouble_;
-  bool is_lost_ = false;        ///< nothing more need be written
+  bool is_lost_ = false;        ///< writing has failed; nothing more is written
   std::int64_t unwritten_ = 0;  ///< ticks since then
   std::jthread thread_;
 };

@@ -1,5 +1,5 @@
 /// @file
-/// Runs a scene: an operator drives a simulated arm through a world of virtual walls.
+/// Runs a scene: an operator drives a simulated arm among virtual walls.
 
 #include <unistd.h>
 
@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "arm_backend.hpp"
 #include "budget.hpp"
 #include "command_line.hpp"
 #include "device.hpp"
@@ -24,7 +25,7 @@ using namespace repel;
 
 struct Arguments {
   std::string scene = "anderson_4x8";
-  bool has_seconds = false;  ///< they were given
+  bool has_seconds = false;  ///< --seconds was given
   double rate_hz = 0.0;      ///< 0: the scene's own
   int threads = -1;          ///< -1: the scene's own
   teleop::RunOptions run;
@@ -35,19 +36,19 @@ struct Arguments {
   std::string log;
 };
 
-/// Folders beside the source this was built in, and where it was installed.
+/// Folders in the source tree this was built in, and in the installation.
 std::vector<fs::path> folders_of(const char* in_source, const char* installed) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
   return {program / "../../.." / in_source, program / "../share/repel" / installed};
 }
 
-/// In which a scene is looked for by name.
+/// Where scenes are searched by name.
 std::vector<fs::path> scene_folders() {
   return folders_of("scenes", "scenes");
 }
 
-/// Of the files of the live view; the first if there is none.
+/// Where the files of the live view are; the first candidate if none exists.
 std::string page_folder() {
   const std::vector<fs::path> folders = folders_of("backends/visual/page", "page");
   std::error_code error;
@@ -83,7 +84,7 @@ std::string find_scene(const std::string& name) {
                    name.empty() ? "''" : name);
 }
 
-/// Who may open the live view, and what a page may do.
+/// Options on access to the live view.
 void describe_pages(CLI::App& app, Arguments& a, CLI::Option* view) {
   CLI::Option* file =
       app.add_option("--secret", a.session.secret_file,
@@ -105,7 +106,7 @@ void describe_pages(CLI::App& app, Arguments& a, CLI::Option* view) {
       ->excludes(only);
 }
 
-/// Below the options of --help.
+/// Text below the options of --help.
 std::string footer() {
   return "Scenes:" + scene_list() +
          "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
@@ -118,6 +119,16 @@ std::string footer() {
          "once.\n\n"
          "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
          "4 it ran, but a file or the output could not be written whole.";
+}
+
+/// The names of the simulated arms that satisfy `wanted`.
+template <class Wanted>
+std::vector<std::string> backend_names(const Wanted& wanted) {
+  std::vector<std::string> names;
+  for (const teleop::ArmBackend& backend : teleop::arm_backends()) {
+    if (wanted(backend)) names.emplace_back(backend.name);
+  }
+  return names;
 }
 
 void describe(CLI::App& app, Arguments& a) {
@@ -138,16 +149,20 @@ void describe(CLI::App& app, Arguments& a) {
          "Simulated arm: bullet or ode (dynamics, gravity, friction, stops), reference (the "
          "same without stops, by a higher order, slow) or ideal (free joints)")
       ->capture_default_str()
-      ->check(CLI::IsMember({"bullet", "ode", "reference", "ideal"}));
+      ->check(CLI::IsMember(backend_names([](const auto&) { return true; })));
   app.add_flag("--contact", a.run.contact,
                "Of bullet and ode: obstacles that are not passable stop the arm by themselves, "
                "too, where no virtual force does it first");
   app.final_callback([&a] {
     const std::string insecure = teleop::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);
-    if (!a.run.contact || a.run.backend == "bullet" || a.run.backend == "ode") return;
-    throw CLI::ValidationError(
-        "--contact", "backend " + a.run.backend + " knows no contact; allowed: bullet, ode");
+    if (!a.run.contact || teleop::arm_backend(a.run.backend).has_contact) return;
+    const auto knows_contact = [](const teleop::ArmBackend& backend) {
+      return backend.has_contact;
+    };
+    throw CLI::ValidationError("--contact",
+                               "backend " + a.run.backend + " knows no contact; allowed: " +
+                                   CLI::detail::join(backend_names(knows_contact), ", "));
   });
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
@@ -185,8 +200,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.footer(footer());
 }
 
-/// One line that is written over on a terminal, and a line every five seconds elsewhere.
-/// @param after what there is when no phase of the script is played
+/// One status line, overwritten in place on a terminal; elsewhere a line every five seconds.
+/// @param after text shown while no phase of the script is played
 void show(const scene::Scene& scene, const teleop::Progress& p, const char* after, bool fast,
           bool terminal) {
   static double next = 0.0;
@@ -201,7 +216,7 @@ void show(const scene::Scene& scene, const teleop::Progress& p, const char* afte
                to_text(p.status).c_str(), terminal ? "\033[K" : "\n");
 }
 
-/// The scene that was asked for, or the one that was recorded, and how to run it.
+/// The scene or recording to run, and how to run it.
 struct Work {
   scene::Scene scene;
   teleop::RunOptions options;
@@ -228,7 +243,7 @@ Work work_of(const Arguments& arguments) {
   return work;
 }
 
-/// Throws SetupError where a file to be written is one that is read, or another that is written.
+/// @throws SetupError if a file to write is also read, or written twice
 void require_files_apart(const Arguments& arguments, const Work& work) {
   std::vector<host::NamedFile> read{{"the scene file", work.scene.file},
                                     {"the recording", arguments.replay}};
@@ -237,12 +252,12 @@ void require_files_apart(const Arguments& arguments, const Work& work) {
     read.push_back({"the robot's srdf file", robot.srdf});
   };
   add(work.scene.robot);
-  for (const scene::Partner& partner : work.scene.partners) add(partner.robot);
+  for (const scene::OtherArm& partner : work.scene.partners) add(partner.robot);
   host::require_apart(
       read, {{"--log", arguments.log}, {"--report", arguments.report}, {"--html", arguments.html}});
 }
 
-/// Writes a file of a run that is over. False, and said on stderr, where it is not whole.
+/// Writes a report file after the run. On failure prints it on stderr and returns false.
 template <class Write>
 bool wrote(host::Output& file, const teleop::RunResult& result, Write&& write) {
   if (!file.wanted()) return true;

@@ -44,7 +44,7 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
                  {"direction", to_json(command.hand.direction_W)},
                  {"sound", command.sound},
                  {"silent_for_s", command.silent_for}};
-  if ((k.status & status::blind) != 0U) {  // what is no number is null
+  if ((k.status & status::blind) != 0U) {  // numbers that are not finite become null
     inputs["q_read"] = first_of(k.q_read, joints);
     inputs["v_read"] = first_of(k.v_read, joints);
   }
@@ -70,7 +70,7 @@ class McapLog final : public TickLog {
           const RunOptions& options)
       : path_(path), heading_(heading), writer_(path, {.profile = mcap::profile}) {
     using std::chrono::system_clock;
-    // Replays of a run that is not by the clock are to be the same file, bit for bit.
+    // Without a start time, repetitions of a run that is not in real time give identical files.
     if (!options.fast) {
       begin_ns_ = static_cast<std::uint64_t>(
           std::chrono::nanoseconds(system_clock::now().time_since_epoch()).count());
@@ -78,7 +78,7 @@ class McapLog final : public TickLog {
     writer_.add_metadata(mcap::run_metadata, metadata_of(scene, options));
     writer_.attach(mcap::scene_attachment, "application/yaml", read_file(scene.file), begin_ns_);
     attach_robot(scene.robot);
-    for (const scene::Partner& partner : scene.partners) attach_robot(partner.robot);
+    for (const scene::OtherArm& partner : scene.partners) attach_robot(partner.robot);
     inputs_ = add(mcap::inputs);
     forces_ = add(mcap::forces);
     separations_ = add(mcap::separations);
@@ -184,7 +184,7 @@ class McapLog final : public TickLog {
 
   [[nodiscard]] Json transforms_of(const Snapshot& tick) const {
     Json transforms = Json::array();
-    for (std::size_t i = 1; i < tick.X_WB.size(); ++i) {  // the first is the world
+    for (std::size_t i = 1; i < tick.X_WB.size(); ++i) {  // body 0 is the world
       const Vec3 p = tick.X_WB[i].translation();
       const Eigen::Quaterniond q(tick.X_WB[i].linear());
       transforms.push_back(

@@ -1,5 +1,5 @@
 /// @file
-/// Runs as MCAP files: written tick by tick, read to be gone through again.
+/// Runs as MCAP files: written tick by tick, read for replay.
 #pragma once
 
 #include <functional>
@@ -11,17 +11,16 @@
 
 namespace repel::teleop {
 
-/// A file that `load_recording`, Foxglove and the `mcap` package read; docs/recording.md has its
-/// channels. It holds the scene and the robots as well.
-/// @throws SetupError when the file cannot be written
+/// A file for `load_recording`, Foxglove and the `mcap` package; docs/recording.md has its
+/// channels. It contains the scene and the robots too.
+/// @throws SetupError if the file cannot be written
 [[nodiscard]] std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                                 const scene::Scene& scene,
                                                 const RunOptions& options);
 
-/// Reads such a file. What comes after a tick that is missing cannot be gone through again and is
-/// left out.
-/// @param find gives the path of the scene of that name, beside which its robots are
-/// @throws SetupError for a file that is no such recording, and when a robot is not as it was
+/// Reads such a file, up to the first missing tick: what follows cannot be replayed.
+/// @param find returns the path of the scene of that name, in whose folder its robots are
+/// @throws SetupError if the file is no such recording, or a robot file has changed since
 [[nodiscard]] Recording load_recording(const std::string& path,
                                        const std::function<std::string(const std::string&)>& find);
 

@@ -1,5 +1,5 @@
 /// @file
-/// What the channels of a recording are called, and what their messages are.
+/// Names and message schemas of the channels of a recording.
 #pragma once
 
 namespace repel::teleop::mcap {
@@ -15,7 +15,7 @@ inline constexpr const char* run_metadata = "repel run";
 inline constexpr const char* end_metadata = "repel end";
 inline constexpr const char* scene_attachment = "scene.yaml";
 
-/// What went into the tick: what a replay needs.
+/// The inputs of the tick: what a replay needs.
 inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
   "title": "repel.Inputs", "type": "object",
   "description": "What a tick has read. SI units, radians, world axes.",
@@ -82,7 +82,7 @@ inline constexpr Channel timing{"/timing", "repel.Timing", R"({
     "compute_us": {"type": "number", "description": "of the tick"},
     "late_us": {"type": "number", "description": "how long after it was due it began"}}})"};
 
-/// Known to Foxglove by its name.
+/// A schema that Foxglove knows by name.
 inline constexpr Channel poses{"/poses", "foxglove.FrameTransforms", R"({
   "title": "foxglove.FrameTransforms", "type": "object",
   "description": "Poses of the bodies in the world.",

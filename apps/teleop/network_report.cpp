@@ -8,7 +8,7 @@ namespace {
 using host::figure;
 using nlohmann::ordered_json;
 
-/// Why a module's ledger may fall below zero; empty for one that claims it never does.
+/// Remark on a module whose ledger may fall below zero; empty for one that claims to be passive.
 const char* outside_of_claim(const ModuleResult& m) {
   return m.passive ? "" : "   (the robot: takes and gives)";
 }

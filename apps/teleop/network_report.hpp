@@ -1,5 +1,5 @@
 /// @file
-/// What the network of a run did: energy ledgers, warnings, its own cost.
+/// Reports on the networks of a run: energy ledgers and computing time.
 #pragma once
 
 #include <cstdio>
@@ -9,8 +9,7 @@
 
 namespace repel::teleop {
 
-/// Prints one line for each module of each arm, the cost of the networks and what the gain check
-/// had to say.
+/// Prints the computing time of the networks and one line for each module of each arm.
 void print_network(const RunResult& result, std::FILE* out);
 
 /// The modules of one network as JSON.

@@ -1,5 +1,5 @@
 /// @file
-/// Between two ticks: waits until the next is due, or until those at the controls want it.
+/// Waits for the start of the next tick: by the clock, at once, or as the user controls it.
 #pragma once
 
 #include <atomic>
@@ -12,54 +12,56 @@
 
 namespace repel::teleop {
 
-/// How ticks follow each other.
-enum class Beating {
-  by_the_clock,  ///< each when it is due, the metronome's business
-  at_once,       ///< as fast as it goes
-  shown,         ///< a replay that is looked at: by the clock, at the speed of the controls
+/// Timing of the ticks.
+enum class Pacing {
+  by_the_clock,  ///< each when it is due, in real time
+  at_once,       ///< as fast as possible
+  shown,         ///< a replay in the live view: in real time, scaled by the speed of the controls
 };
 
 class Pace {
  public:
   using nanoseconds = std::chrono::nanoseconds;
 
-  /// @param controls null: nobody pauses, steps or seeks
-  Pace(Beating beating, nanoseconds period, Controls* controls)
-      : beating_(beating), period_(period), controls_(controls), metronome_(period) {}
+  /// @param controls null: no pause, step or seek
+  Pace(Pacing pacing, nanoseconds period, Controls* controls)
+      : pacing_(pacing), period_(period), controls_(controls), metronome_(period) {}
 
-  /// Returns when the tick of that scene time [s] is to begin: how late it is by the clock.
+  /// Returns when the tick of scene time `time` [s] is to start, and by how much it is late by the
+  /// clock.
   /// @param on_pause called whenever a pause begins
   template <class Rehearse, class OnPause = void (*)()>
   nanoseconds wait(
       double time, const std::atomic<bool>& stop, Rehearse&& rehearse, OnPause&& on_pause = [] {}) {
     has_arrived_ = false;
     if (controls_ != nullptr && pause(stop, on_pause)) return nanoseconds(0);
-    if (beating_ == Beating::by_the_clock) return metronome_.wait(rehearse);
-    if (beating_ == Beating::shown) linger(time, stop);
+    if (pacing_ == Pacing::by_the_clock) return metronome_.wait(rehearse);
+    if (pacing_ == Pacing::shown) linger(time, stop);
     return nanoseconds(0);
   }
 
-  /// Before a tick that comes late: gives up those that were due more than `patience` ago; an arm
-  /// went on without them. Returns how many. What is late by less is made up for, one tick right
-  /// after the other.
+  /// Before a late tick: skips the missed ticks if the next one is overdue by 50 ms or more, and
+  /// returns how many. If less overdue, they are run back to back. The arm keeps moving in skipped
+  /// ticks.
   std::int64_t catch_up() {
     constexpr std::chrono::milliseconds patience(50);
-    return beating_ == Beating::by_the_clock ? metronome_.catch_up(patience) : 0;
+    return pacing_ == Pacing::by_the_clock ? metronome_.catch_up(patience) : 0;
   }
 
-  /// For how long those at the controls have held the run in all: no time of the loop.
+  /// Total time for which the user has paused the run; does not count as time of the loop.
   [[nodiscard]] nanoseconds paused_for() const { return paused_for_; }
 
-  /// The ticks made so far are to be forgotten: `time` [s] is the next one's.
+  /// The run must start over: on a restart, or on a seek to before `time` [s], that of the next
+  /// tick.
   [[nodiscard]] bool begins_anew(double time) const {
     if (controls_ == nullptr) return false;
     const double seek = controls_->seek;
     return controls_->restart || (seek >= 0.0 && time - seek >= in_seconds(period_));
   }
-  /// The tick that was waited for last is the one that was to be gone to.
+  /// The last tick waited for is the target of a seek.
   [[nodiscard]] bool has_arrived() const { return has_arrived_; }
 
-  /// At the end of a replay that is looked at: returns when it is to begin anew, or to end.
+  /// At the end of a replay in the live view: returns on a restart, a seek or `stop`.
   void rest(const std::atomic<bool>& stop) const {
     while (controls_ != nullptr && !stop && !controls_->restart && controls_->seek < 0.0) nap();
   }
@@ -70,7 +72,7 @@ class Pace {
   static double in_seconds(nanoseconds time) { return 1e-9 * static_cast<double>(time.count()); }
   static void nap() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
 
-  /// While paused. True for a tick that is made all the same.
+  /// Waits while paused. True if a single step is to be run.
   template <class OnPause>
   bool pause(const std::atomic<bool>& stop, OnPause&& on_pause) {
     bool is_shown = false;
@@ -86,12 +88,12 @@ class Pace {
     return false;
   }
 
-  /// Returns when the pause is over, or with true when a tick is to be made in it.
+  /// Returns false when the pause is over, true when a single step is to be run during it.
   template <class OnPause>
   bool sit_out(const std::atomic<bool>& stop, OnPause&& on_pause, bool& is_shown) {
     while (controls_->paused && !stop && !controls_->restart && controls_->seek < 0.0) {
       held_ = true;
-      // The other side may take them back at the same time.
+      // The other thread may reset `steps` at the same time.
       std::int64_t steps = controls_->steps;
       if (steps > 0) {
         if (!controls_->steps.compare_exchange_strong(steps, steps - 1)) continue;
@@ -108,7 +110,7 @@ class Pace {
     const double seek = controls_->seek;
     if (seek >= 0.0) {
       const double ahead = time - seek;
-      if (ahead < -rounding || begins_anew(time)) return;  // on the way, or to be gone back to
+      if (ahead < -rounding || begins_anew(time)) return;  // not reached yet, or already past
       controls_->seek = -1.0;
       has_arrived_ = true;
       base_ = {};
@@ -129,15 +131,15 @@ class Pace {
     }
   }
 
-  Beating beating_;
+  Pacing pacing_;
   nanoseconds period_;
   Controls* controls_;
   host::Metronome metronome_;
-  std::chrono::steady_clock::time_point base_;  ///< of a replay: when `base_time_` was
+  std::chrono::steady_clock::time_point base_;  ///< replay: clock time of `base_time_`
   double base_time_ = 0.0;                      ///< [s]
   double speed_ = 1.0;
   nanoseconds paused_for_{0};
-  bool held_ = false;  ///< the clock went on without it
+  bool held_ = false;  ///< ticks were missed during a pause: the metronome must restart
   bool has_arrived_ = false;
 };
 

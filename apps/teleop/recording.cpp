@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 using record::McapReader;
 
-/// Reads values of one message; what is missing or of another kind is an error of the file.
+/// Reads the values of one message; a missing value or a wrong type is an error in the file.
 class Fields {
  public:
   Fields(const Json& json, const std::string& file) : json_(json), file_(file) {}
@@ -33,7 +33,7 @@ class Fields {
     if (!json_.is_array() || i >= json_.size()) bad("an entry");
     return {json_[i], file_};
   }
-  /// null stands for what is no number.
+  /// NaN for null.
   [[nodiscard]] double number() const {
     if (json_.is_null()) return std::numeric_limits<double>::quiet_NaN();
     if (!json_.is_number()) bad("a number");
@@ -72,7 +72,7 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   arm.at("v").read(k.v);
   k.q_read = k.q;
   k.v_read = k.v;
-  // Only where they were not believed.
+  // Present only if the readings were rejected.
   if (arm.has("q_read")) arm.at("q_read").read(k.q_read);
   if (arm.has("v_read")) arm.at("v_read").read(k.v_read);
   if (arm.has("elapsed_ticks")) {
@@ -95,7 +95,7 @@ void read_forces(const Fields& arm, TickRecord& k) {
   arm.at("torques").read(k.torques);
 }
 
-/// The ticks as they come: each is whole when all three of its messages are there.
+/// Assembles ticks from messages: a tick is complete when all three of its messages have been read.
 class Ticks {
  public:
   Ticks(Recording& recording, std::size_t arms) : recording_(recording) {
@@ -105,7 +105,7 @@ class Ticks {
   void add(const std::string& topic, const Json& json) {
     const Fields message(json, recording_.file);
     if (topic == mcap::inputs.topic) return begin(message);
-    if (open_ && message.at("tick").integer() != tick_) open_ = false;  // its messages are cut off
+    if (open_ && message.at("tick").integer() != tick_) open_ = false;  // its rest is missing
     if (!open_) return;
     if (topic == mcap::forces.topic) {
       for (std::size_t i = 0; i < records_.size(); ++i) {
@@ -212,7 +212,7 @@ void read_scene(const McapReader& reader, const std::string& recorded,
   recording.scene = scene::parse(attachment(reader, mcap::scene_attachment, recording.file), path);
   int robots = 0;
   require_same_robot(reader, robots++, recording.scene.robot.urdf, recording.file);
-  for (const scene::Partner& partner : recording.scene.partners) {
+  for (const scene::OtherArm& partner : recording.scene.partners) {
     require_same_robot(reader, robots++, partner.robot.urdf, recording.file);
   }
 }

@@ -1,5 +1,5 @@
 /// @file
-/// A run that was recorded: what went into each of its ticks, and what came out.
+/// A recorded run: the inputs and outputs of each tick.
 #pragma once
 
 #include <algorithm>
@@ -18,31 +18,28 @@ namespace repel::teleop {
 struct Recording {
   std::string file;
   scene::Scene scene;                         ///< the one that was recorded
-  RunOptions options;                         ///< with which it ran
-  std::vector<std::vector<TickRecord>> arms;  ///< by arm: its ticks
+  RunOptions options;                         ///< of the recorded run
+  std::vector<std::vector<TickRecord>> arms;  ///< the ticks of each arm
   std::vector<TickTimes> times;               ///< of each tick
-  std::int64_t missing = 0;                   ///< ticks that were dropped while it was recorded
-  std::string not_whole;                      ///< why it ends early; empty: it does not
+  std::int64_t missing = 0;                   ///< ticks dropped while recording
+  std::string not_whole;                      ///< why the file is incomplete; empty: it is complete
 
   [[nodiscard]] std::size_t ticks() const { return times.size(); }
 };
 
-/// An arm that is where a recording says, whatever it is told.
-class RecordedArm {
+/// An arm that reports the recorded state and ignores torques.
+class RecordedArm final : public TorqueDrivenArm {
  public:
   explicit RecordedArm(const TickRecord& first) : now_(&first) {}
 
-  /// What it reads from now on; must stand.
+  /// From now on reports the state of `now`, which must stay valid.
   void follow(const TickRecord& now) noexcept { now_ = &now; }
 
-  void set_torques(std::span<const double> /*torques*/) noexcept {}
-  void step(double /*period*/) noexcept {}
-  void read_positions(std::span<double> q) const noexcept { read(now_->q_read, q); }
-  void read_velocities(std::span<double> v) const noexcept { read(now_->v_read, v); }
-  void enable() noexcept {}
-  void stop() noexcept {}
-  void engage_brakes(bool /*on*/) noexcept {}
-  [[nodiscard]] ArmState state() const noexcept {
+  void set_torques(std::span<const double> /*torques*/) noexcept override {}
+  void step(double /*period*/) noexcept override {}
+  void read_positions(std::span<double> q) const noexcept override { read(now_->q_read, q); }
+  void read_velocities(std::span<double> v) const noexcept override { read(now_->v_read, v); }
+  [[nodiscard]] ArmState state() const noexcept override {
     const bool stopped = (now_->status & status::arm_stopped) != 0U;
     return stopped ? ArmState::stopped : ArmState::enabled;
   }

@@ -1,5 +1,5 @@
 /// @file
-/// Going through a recording again: what is compared, and what the clock is said to be.
+/// Support for replays: comparison with the recording, and the clock of the ticks.
 #pragma once
 
 #include <chrono>
@@ -9,19 +9,19 @@
 
 namespace repel::teleop {
 
-/// Compares what came out of a tick with what was recorded of it, bit for bit: the virtual force,
-/// the force of the operator's side, the lever, the torques and the gain of every arm.
+/// Compares the results of a tick with the recorded ones: the virtual force, the coupling force and
+/// the torques of every arm bit for bit, the lever torque and the gain by value.
 void compare(const Recording& recording, std::size_t tick,
              std::span<const TickRecord* const> records, ReplayReport& report);
 
-/// What the clock is said to be in runs that do not go by it: regular, or as it was recorded.
+/// The clock of runs that are not in real time: regular, or as it was recorded.
 class RegularClock {
  public:
   /// @param recording null: none
   RegularClock(const Recording* recording, std::chrono::nanoseconds period)
       : recording_(recording), period_(period) {}
 
-  /// The time that a tick is told, one after the other. A clock that stood still did so again.
+  /// The time of the next tick. Reproduces recorded clock faults, as nanoseconds::min().
   [[nodiscard]] std::chrono::nanoseconds next(std::size_t tick) noexcept;
 
  private:

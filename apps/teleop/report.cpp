@@ -14,7 +14,7 @@ namespace {
 using host::figure;
 using nlohmann::ordered_json;
 
-/// The obstacles that pushed, hardest first.
+/// The obstacles that exerted a force, largest first.
 void print_obstacles(const RunResult& r, std::FILE* out) {
   constexpr std::size_t most = 10;
   std::vector<ObstacleResult> touched;
@@ -37,7 +37,7 @@ void print_line(const char* name, const std::string& text, std::FILE* out) {
   std::fprintf(out, "  %-22s %s\n", name, text.c_str());
 }
 
-/// What a tick must not do, and how often it was interrupted.
+/// Operations that a tick must not make, and how often it was interrupted.
 void print_counts(const RunResult& r, std::FILE* out) {
   const auto print = [out](const char* name, std::int64_t count, const char* instead) {
     std::fprintf(out, "  %-22s %s\n", name, count < 0 ? instead : std::to_string(count).c_str());
@@ -50,7 +50,7 @@ void print_counts(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.involuntary_switches_in_tick));
 }
 
-/// What an arm touched, where it can touch anything.
+/// Physical contacts of an arm; null without --contact.
 ordered_json contact_to_json(const RunResult& r, const ArmResult& arm) {
   if (!r.options.contact) return nullptr;
   return {{"steps", arm.contact.steps}, {"deepest_m", arm.contact.deepest}};
@@ -71,7 +71,7 @@ void print_contact(const RunResult& r, std::FILE* out) {
   }
 }
 
-/// Ticks in each stop.
+/// Number of ticks in each stop state.
 ordered_json stop_ticks(const RunTotals& totals) {
   ordered_json ticks;
   for (const Stop stop : {Stop::running, Stop::holding, Stop::braking, Stop::released}) {
@@ -80,7 +80,7 @@ ordered_json stop_ticks(const RunTotals& totals) {
   return ticks;
 }
 
-/// Partners with what their arms did; the arm of the scene itself has the report's own keys.
+/// Results of the partners; those of the arm of the scene itself are top-level keys of the report.
 ordered_json partner_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
   for (std::size_t i = 1; i < r.arms.size(); ++i) {
@@ -95,7 +95,7 @@ ordered_json partner_list(const RunResult& r) {
   return list;
 }
 
-/// The stops an arm made, where it made any.
+/// The stop states that an arm was in, if any.
 void print_stops(const ArmResult& arm, std::FILE* out) {
   const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
   for (const Stop stop : {Stop::holding, Stop::braking, Stop::released}) {
@@ -106,7 +106,7 @@ void print_stops(const ArmResult& arm, std::FILE* out) {
   }
 }
 
-/// The status bits that were set for an arm, and for how long.
+/// The status bits that were set for an arm, and the number of ticks.
 void print_status(const ArmResult& arm, std::FILE* out) {
   const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
   for (unsigned bit = 0; bit < 32; ++bit) {
@@ -117,7 +117,7 @@ void print_status(const ArmResult& arm, std::FILE* out) {
   }
 }
 
-/// Every obstacle; its nearest is null while its pairs have never been asked.
+/// Every obstacle; its nearest distance is null if none of its pairs was ever evaluated.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
   for (const ObstacleResult& o : r.obstacles) {
@@ -131,7 +131,7 @@ ordered_json obstacle_list(const RunResult& r) {
   return list;
 }
 
-/// The counted budget, and how much of such work this machine does.
+/// The counted budget, and how many support pairs this machine computes.
 void print_work(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  support pairs          %.2f per tick, most %lld in one\n",
                host::per_tick(r.totals(), r.totals().iterations),
@@ -149,7 +149,7 @@ void print_work(const RunResult& r, std::FILE* out) {
                here, 1e3 / r.options.rate_hz, here / static_cast<double>(units));
 }
 
-/// What the run did without, in one paragraph.
+/// What the run did not evaluate or use, in one paragraph.
 void print_skipped(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  skipped                %.2f of %d pairs per tick",
                r.pairs - host::per_tick(r.totals(), r.totals().near), r.pairs);
@@ -188,7 +188,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                static_cast<double>(t.ticks) / r.options.rate_hz, r.options.backend.c_str(),
                r.threads, r.options.fast ? ", not by the clock" : "",
                r.interrupted ? ", interrupted" : "");
-  // First what to know before the rest is read.
+  // The most important facts first.
   if (!r.log_trouble.empty()) print_line("log is not whole", r.log_trouble, out);
   for (const std::string& warning : r.warnings) print_line("warning", warning, out);
   host::print_times("compute of the tick", r.deadline.compute(), out);
@@ -268,7 +268,7 @@ void write_json(const RunResult& r, std::ostream& file) {
                          {"ticks", r.totals().ticks},       {"interrupted", r.interrupted}};
   report["warnings"] = r.warnings;
   report.update(host::to_json(r.deadline, r.skipped_ticks));
-  if (r.options.fast) {  // without a clock nothing is early or late
+  if (r.options.fast) {  // lateness is undefined without real time
     for (const char* key : {"deadline_misses", "success_rate_last_100", "success_rate_lowest"}) {
       report[key] = nullptr;
     }

@@ -1,5 +1,5 @@
 /// @file
-/// What a run leaves behind: a table for people, JSON for programs.
+/// The report of a run, as text and as JSON.
 #pragma once
 
 #include <cstdio>
@@ -9,10 +9,10 @@
 
 namespace repel::teleop {
 
-/// Prints the table to `out`.
+/// Prints the report as text.
 void print_report(const RunResult& result, std::FILE* out);
 
-/// Prints how the replay of a recording compares with it.
+/// Prints how a replay compares with its recording.
 void print_replay(const Recording& recording, const RunResult& result, std::FILE* out);
 
 /// Writes the report as JSON.

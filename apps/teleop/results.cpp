@@ -9,7 +9,7 @@
 
 namespace repel::teleop {
 
-// Pairs are laid out obstacle by obstacle, with every part of tools and arms in turn.
+// Pairs are ordered by obstacle, and within it by part of the tools and arms.
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result) {
   RunTotals& totals = result.arms.front().totals;
   PartId last;
@@ -20,7 +20,7 @@ void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& r
     if (result.options.keep_records) result.pair_names.push_back(name_of(world, {i}));
     const PairExtremes extremes = coprocessor.extremes_of({i});
     totals.deepest = std::max(totals.deepest, extremes.deepest);
-    // Also of evaluations before the first tick; not finite while nothing was near.
+    // Includes evaluations before the first tick; not finite if nothing was near.
     if (std::isfinite(extremes.nearest) && extremes.nearest <= totals.nearest) {
       totals.nearest = extremes.nearest;
       result.nearest_pair = name_of(world, {i});

@@ -1,5 +1,5 @@
 /// @file
-/// What is left of a run when it is over.
+/// Collects results at the end of a run.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,11 @@
 
 namespace repel::teleop {
 
-/// What every obstacle did, and the nearest pair of all. Once `coprocessor` has stopped.
+/// Collects the extremes of every obstacle, and the nearest pair of all. Call once `coprocessor`
+/// has stopped.
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result);
 
-/// What every module did, in the order of the network.
+/// The results of every module, in the order of the network.
 [[nodiscard]] std::vector<ModuleResult> module_results(const network::Network& network);
 
 }  // namespace repel::teleop

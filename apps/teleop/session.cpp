@@ -10,22 +10,21 @@
 
 #include <repel/network/spaceball.hpp>
 
-#include "cell.hpp"
 #include "listening.hpp"
 #include "log.hpp"
 #include "mcap_log.hpp"
 #include "part_file.hpp"
 #ifdef REPEL_TELEOP_VISUAL
-#include "live_show.hpp"
+#include "live_view.hpp"
 #endif
 
 namespace repel::teleop {
 namespace {
 
-/// Ticks that the log may be behind: some seconds of them.
+/// How many ticks the log may lag behind: a few seconds.
 constexpr std::size_t log_room = 2048;
 
-/// The log of a run: its file, what writes it, and the thread that does.
+/// The log of a run: file, format and writing thread.
 class RunLog {
  public:
   RunLog(Tap& tap, const Heading& heading, const scene::Scene& scene, const RunOptions& options)
@@ -34,7 +33,7 @@ class RunLog {
                                             : csv_log(part_.name(), heading)),
         thread_(tap.log(), *log_, [this](const std::string& trouble) { note(trouble); }) {}
 
-  /// Ends the file and puts it in its place, or leaves what there is of it where it is.
+  /// Completes the file and moves it to its target, or keeps the incomplete temporary file.
   void close(RunResult& result) {
     result.log_dropped = thread_.close();
     if (trouble_.empty()) {
@@ -50,7 +49,7 @@ class RunLog {
   }
 
  private:
-  /// On a line of its own, behind what is written over on a terminal.
+  /// Printed on a new line; clears the status line on a terminal.
   void note(const std::string& trouble) {
     trouble_ = trouble;
     const char* before = isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";
@@ -58,23 +57,23 @@ class RunLog {
                  trouble.c_str());
   }
 
-  std::string trouble_;  ///< written by the thread, read when it has ended
+  std::string trouble_;  ///< written by the thread, read after it has ended
   host::PartFile part_;
   std::unique_ptr<TickLog> log_;
   LogThread thread_;
 };
 
 #ifdef REPEL_TELEOP_VISUAL
-visual::Cast cast_of(const scene::Scene& scene, const RunOptions& options, const Heading& heading,
-                     const Recording* recording) {
-  visual::Cast cast;
-  cast.scene = scene.name;
-  cast.rate_hz = options.rate_hz;
-  cast.replay = recording != nullptr;
-  cast.duration = cast.replay ? options.seconds : 0.0;
+visual::SceneInfo scene_info_of(const scene::Scene& scene, const RunOptions& options,
+                                const Heading& heading, const Recording* recording) {
+  visual::SceneInfo info;
+  info.scene = scene.name;
+  info.rate_hz = options.rate_hz;
+  info.replay = recording != nullptr;
+  info.duration = info.replay ? options.seconds : 0.0;
   for (std::size_t i = 0; i < heading.arms.size(); ++i) {
     const ArmHeading& arm = heading.arms[i];
-    visual::ArmCast& added = cast.arms.emplace_back();
+    visual::ArmInfo& added = info.arms.emplace_back();
     added.name = arm.name;
     added.tool = arm.tool;
     added.links = arm.links;
@@ -83,26 +82,26 @@ visual::Cast cast_of(const scene::Scene& scene, const RunOptions& options, const
     }
     added.modules = arm.modules;
     added.phases = arm.phases;
-    for (const network::Phase& phase : scene.station(i).script) {
+    for (const network::Phase& phase : scene.arm_setup(i).script) {
       const double rate = std::abs(phase.lever_rate);
       if (rate > added.max_lever_rate) added.max_lever_rate = rate;
     }
-    for (const scene::Module& module : scene.station(i).network.modules) {
+    for (const scene::Module& module : scene.arm_setup(i).network.modules) {
       const auto* ball = std::any_cast<network::SpaceballOptions>(&module.options);
       if (ball == nullptr) continue;
       added.max_speed = ball->saturation;
       added.max_turn = ball->angular_saturation;
     }
   }
-  return cast;
+  return info;
 }
 
-/// The server and what it shows, for as long as it exists.
+/// The live view and its server, for as long as this object exists.
 class View {
  public:
-  View(const visual::Cast& cast, const World& world, Tap& tap, Controls& controls,
+  View(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
        const SessionOptions& session, const std::string& device)
-      : show_(cast, world, tap, controls, device,
+      : show_(info, world, tap, controls, device,
               !session.view_only && (device.empty() || session.page_drives)),
         server_(options_of(session), visual::load_assets(session.page), show_) {
     announce(session, server_.url());
@@ -118,7 +117,7 @@ class View {
     return options;
   }
 
-  LiveShow show_;
+  LiveView show_;
   visual::Server server_;
 };
 #endif
@@ -130,40 +129,37 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
                       const std::atomic<bool>& stop, const std::atomic<bool>& at_once,
                       const std::function<void(const Progress&)>& show) {
   const Device device = open_device(session.device);
-  if (!session.view && options.log.empty()) {
-    return run(scene, options, {nullptr, nullptr, device.link.get(), recording, &at_once}, stop,
-               show);
-  }
-  const scene::Scene ready = as_run(scene, options);
-  const Cell cell(ready, options.backend != "ideal");
-  if (recording == nullptr) cell.require_clear_start(ready);  // before anyone looks on
-  const Heading heading = heading_of(ready, cell, options.rate_hz);
+  std::unique_ptr<PreparedRun> prepared = prepare(scene, options, recording);
+  Attachments attached{nullptr, nullptr, device.link.get(), recording, &at_once};
+  if (!session.view && options.log.empty()) return run(*prepared, attached, stop, show);
+  const Heading heading = heading_of(prepared->scene, prepared->cell);
   TapOptions tap_options;
   tap_options.arms = static_cast<int>(heading.arms.size());
   tap_options.log = options.log.empty() ? 0 : log_room;
-  Tap tap(cell.world, tap_options);
+  Tap tap(prepared->cell.world(), tap_options);
+  attached.tap = &tap;
   Controls controls;
   controls.may_restart = options.log.empty();
   controls.over_device = session.page_drives;
-  Company company{&tap, nullptr, device.link.get(), recording, &at_once};
   std::optional<RunLog> log;
   if (!options.log.empty()) log.emplace(tap, heading, scene, options);
 #ifdef REPEL_TELEOP_VISUAL
   std::optional<View> view;
   if (session.view) {
-    company.controls = &controls;
-    view.emplace(cast_of(ready, options, heading, recording), cell.world, tap, controls, session,
-                 device.name);
+    attached.controls = &controls;
+    view.emplace(scene_info_of(prepared->scene, options, heading, recording),
+                 prepared->cell.world(), tap, controls, session, device.name);
   }
 #else
   if (session.view) {
     throw SetupError("the live view is not built in; to have it: apt-get install libboost-dev");
   }
 #endif
-  RunResult result = run(scene, options, company, stop, show);
+  RunResult result = run(*prepared, attached, stop, show);
   while (result.begins_anew) {
     controls.restart = false;
-    result = run(scene, options, company, stop, show);
+    prepared = prepare(scene, options, recording);
+    result = run(*prepared, attached, stop, show);
   }
   if (log) log->close(result);
   return result;

@@ -1,5 +1,5 @@
 /// @file
-/// A run with all that is around it: a live view, a log, another run when the page asks for one.
+/// A run with its live view and log, repeated when a page requests a restart.
 #pragma once
 
 #include <atomic>
@@ -13,28 +13,30 @@ namespace repel::teleop {
 struct SessionOptions {
   bool view = false;
   std::string listen = "127.0.0.1:8448";  ///< ADDRESS:PORT of the live view
-  std::string page;                       ///< folder of its files
-  std::string device;                     ///< that drives; empty: none
-  std::string secret_file;                ///< whose first line a page must present; empty: none
-  std::string secret_env;                 ///< name of the variable that has it instead
-  std::string secret;                     ///< itself, once settle_secret has read it
-  bool view_only = false;                 ///< pages look on
-  bool page_drives = false;               ///< pages may take the controls from the device
+  std::string page;                       ///< folder of the files of the page
+  std::string device;                     ///< input device; empty: none
+  std::string secret_file;   ///< its first line is the secret that a page must present; empty: none
+  std::string secret_env;    ///< environment variable with the secret, instead
+  std::string secret;        ///< the secret, once settle_secret has read it
+  bool view_only = false;    ///< pages may only watch
+  bool page_drives = false;  ///< pages may override the device
 };
 
 /// What is wrong with ADDRESS:PORT; empty: nothing.
 [[nodiscard]] std::string listen_complaint(const std::string& listen);
 
-/// Reads the secret from where the options say. What is wrong with it, or with listening without
-/// one where other machines reach the view; empty: nothing.
+/// Reads the secret from the file or variable of the options. Returns what is wrong with it, or
+/// that listening on an address reachable from other machines requires one; empty: nothing.
 [[nodiscard]] std::string settle_secret(SessionOptions& session);
 
-/// Runs the scene, or what was recorded of it, until it is over or `stop`; with a view, as often as
-/// the page asks for it. The last run is reported. Says on stderr where the view is, and at once
-/// when the log cannot be written on. The log stands in its place when it is whole: see PartFile.
+/// Runs the scene, or replays the recording, until it is over or `stop`; with a view, repeats it as
+/// often as a page requests. Returns the result of the last run. Prints on stderr the URL of the
+/// view, and any failure of the log as soon as it occurs. A complete log is moved to its target:
+/// see PartFile.
 /// @param recording null: none
-/// @param stop fades the forces and ends the run, `at_once` without that
-/// @throws SetupError for a scene that cannot be built, a file or an address that cannot be had
+/// @param stop fades the forces and ends the run
+/// @param at_once ends the run without fading
+/// @throws SetupError if the scene cannot be built, or a file or an address is not available
 [[nodiscard]] RunResult run_session(const scene::Scene& scene, const RunOptions& options,
                                     const SessionOptions& session, const Recording* recording,
                                     const std::atomic<bool>& stop, const std::atomic<bool>& at_once,

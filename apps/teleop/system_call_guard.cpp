@@ -21,7 +21,7 @@ namespace {
 constexpr unsigned char let_pass = 0;
 constexpr unsigned char hand_over = 1;
 
-// What the kernel and a signal handler read has no place to be passed through.
+// Globals, because the kernel and a signal handler take no parameters.
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 thread_local volatile unsigned char selector = let_pass;
 thread_local bool armed = false;
@@ -30,7 +30,7 @@ std::atomic<std::int64_t> counted{0};
 std::atomic<bool> refused{REPEL_COUNTS_SYSTEM_CALLS == 0};
 // NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// The end of a thread is not part of a tick.
+/// Ends the watch before the thread exits, since its exit is not part of a tick.
 struct EndOfWatch {
   EndOfWatch() = default;
   EndOfWatch(const EndOfWatch&) = delete;
@@ -45,7 +45,7 @@ bool is_pause(long number) noexcept {
          (pauses == Pauses::naps && number == SYS_clock_nanosleep);
 }
 
-/// Called by the kernel in place of a system call, with the registers that were to make it.
+/// SIGSYS handler, called instead of a system call, with the registers of the call.
 void on_system_call(int /*signal*/, siginfo_t* /*info*/, void* context) noexcept {
   selector = let_pass;
   greg_t* registers = static_cast<ucontext_t*>(context)->uc_mcontext.gregs;
@@ -60,16 +60,17 @@ void on_system_call(int /*signal*/, siginfo_t* /*info*/, void* context) noexcept
   }
   counted.fetch_add(1, std::memory_order_relaxed);
   constexpr int length_of_instruction = 2;
-  registers[REG_RIP] -= length_of_instruction;  // made again on return, and let pass
+  registers[REG_RIP] -= length_of_instruction;  // repeats the call on return, and lets it through
 }
 
-/// The code that ends a signal handler: its one system call must get through. Null on failure.
+/// Installs the handler. Returns the address of the signal restorer, whose own system call must be
+/// let through (rt_sigreturn); null on failure.
 void* install_handler() noexcept {
   struct sigaction action = {};
   action.sa_sigaction = on_system_call;
   action.sa_flags = SA_SIGINFO;
   if (sigaction(SIGSYS, &action, nullptr) != 0) return nullptr;
-  struct {  // as the kernel keeps it
+  struct {  // layout of the kernel's sigaction
     void* handler = nullptr;
     unsigned long flags = 0;
     void* restorer = nullptr;

@@ -1,5 +1,5 @@
 /// @file
-/// Counts the page faults and context switches of the tick. It must cause neither.
+/// Counts the page faults and context switches of the tick. Both counts should be zero.
 #pragma once
 
 #include <sys/resource.h>
@@ -8,23 +8,23 @@
 
 namespace repel::teleop {
 
-/// Asks the kernel what the calling thread did between begin() and end(), summed over all ticks.
-/// Both are system calls: for just before and just after the time that is measured.
+/// Reads the kernel's counters of the calling thread at begin() and end(), and sums the differences
+/// over all ticks. Both make a system call: call them just before and just after the measured time.
 class TickUsage {
  public:
-  /// Locks what memory the program has by now, without which the kernel may take any page away.
-  /// Later memory stays as it is: where little may be locked, asking for it must not fail.
+  /// Locks all memory that the program has now; otherwise the kernel may evict any page. Memory
+  /// allocated later is not locked: where the limit is low, allocating it must not fail.
   TickUsage() noexcept;
 
   void begin() noexcept;
   void end() noexcept;
 
-  /// Minor and major page faults; -1 where memory cannot be locked, so that they are not the
-  /// tick's.
+  /// Minor and major page faults; -1 if memory could not be locked, since faults then need not be
+  /// caused by the tick.
   [[nodiscard]] std::int64_t page_faults() const noexcept;
-  /// How often the thread gave up the processor.
+  /// How often the thread yielded the processor.
   [[nodiscard]] std::int64_t voluntary_switches() const noexcept { return voluntary_; }
-  /// How often it was taken away: the machine's, not the tick's.
+  /// How often it was preempted: caused by the machine, not by the tick.
   [[nodiscard]] std::int64_t involuntary_switches() const noexcept { return involuntary_; }
 
  private:

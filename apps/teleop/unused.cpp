@@ -6,25 +6,25 @@
 namespace repel::teleop {
 namespace {
 
-/// True when `holds` is true of the scene's own station or of a partner's.
-bool any_station(const scene::Scene& scene,
-                 const std::function<bool(const scene::Station&)>& holds) {
+/// Whether `holds` is true of the scene's own setup or of a partner's.
+bool any_setup(const scene::Scene& scene,
+               const std::function<bool(const scene::ArmSetup&)>& holds) {
   return holds(scene) || std::any_of(scene.partners.begin(), scene.partners.end(), holds);
 }
 
-/// True when some link of the arm is kept off the obstacles.
-bool has_links(const scene::Station& station) {
-  return scene::feels_links(station) && (!station.robot.links || !station.robot.links->empty());
+/// Whether the walls apply to any link of the arm.
+bool has_links(const scene::ArmSetup& setup) {
+  return scene::feels_links(setup) && (!setup.robot.links || !setup.robot.links->empty());
 }
 
 bool has_master(const scene::Scene& scene, network::Master master) {
-  return any_station(scene, [master](const scene::Station& station) {
-    return std::any_of(station.script.begin(), station.script.end(),
+  return any_setup(scene, [master](const scene::ArmSetup& setup) {
+    return std::any_of(setup.script.begin(), setup.script.end(),
                        [&](const network::Phase& phase) { return phase.master == master; });
   });
 }
 
-/// Threads that would find no block of pairs to work on are not begun.
+/// Threads for which there is no block of pairs are not started.
 std::string unused_threads(const RunResult& r) {
   if (r.threads == 0) return "coprocessor threads";
   const int unused = r.options.threads - r.threads;
@@ -45,8 +45,8 @@ std::vector<std::string> unused_parts(const RunResult& r) {
       r.pairs > 0 ? "" : "distance queries",
       r.totals().nearest > 0.0 ? "reduction levels" : "",
       passable ? "" : "passable bodies",
-      any_station(r.scene, has_links) ? "" : "links of the arm",
-      any_station(r.scene, [](const auto& s) { return s.robot.self_law.has_value(); })
+      any_setup(r.scene, has_links) ? "" : "links of the arm",
+      any_setup(r.scene, [](const auto& s) { return s.robot.self_law.has_value(); })
           ? ""
           : "pairs within an arm",
       has_master(r.scene, network::Master::torque_arm) ? "" : "torque arm",

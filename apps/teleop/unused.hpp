@@ -1,5 +1,5 @@
 /// @file
-/// What of the program a run does without.
+/// Lists the parts of the program that a run does not use.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace repel::teleop {
 
-/// The parts that were not built or never ran, because neither scene nor options use them.
+/// The parts that were not built or never ran, because neither the scene nor the options use them.
 [[nodiscard]] std::vector<std::string> unused_parts(const RunResult& result);
 
 }  // namespace repel::teleop

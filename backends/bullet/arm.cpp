@@ -39,11 +39,11 @@ struct Arm::Simulation {
   int links;
   detail::ImplicitJoints joints;
   std::unique_ptr<btMultiBody> body;
-  std::unique_ptr<detail::Contacts> contacts;  // none without parts
+  std::unique_ptr<detail::Contacts> contacts;  // null without parts
   ArmFaults faults;
-  Eigen::VectorXd torque, no_torque, q, v, a;  // as set; zero; state; acceleration
+  Eigen::VectorXd torque, no_torque, q, v, a;  // command; zero; state; acceleration
   Eigen::MatrixXd M_inverse;
-  // Bullet's scratch memory; spatial vectors have 6 entries for the base, then the joints.
+  // Bullet's scratch memory; generalized vectors have 6 entries for the base, then one per joint.
   btAlignedObjectArray<btScalar> scalars;
   btAlignedObjectArray<btVector3> vectors;
   btAlignedObjectArray<btMatrix3x3> matrices;
@@ -71,7 +71,7 @@ Arm::Simulation::Simulation(const ArmModel& given, const ArmOptions& options,
   for (const ArmLink& link : model.links) start.push_back(std::clamp(0.0, link.lower, link.upper));
   reset(start, {});
   require_inertia_at_every_joint();
-  sub_step(1e-3);  // the first step sizes Bullet's scratch memory
+  sub_step(1e-3);  // the first step allocates Bullet's scratch memory
   reset(start, {});
 }
 
@@ -106,8 +106,8 @@ void Arm::Simulation::load(const Eigen::VectorXd& joint_torque) noexcept {
   }
 }
 
-// a = M^-1 (u - c) by the articulated-body algorithm, and M^-1 column by column from what that
-// leaves behind: the accelerations that a unit torque at one joint adds.
+// a = M^-1 (u - c) by the articulated-body algorithm. Then M^-1 column by column, from the factors
+// that the algorithm leaves: the acceleration change due to a unit torque at one joint.
 void Arm::Simulation::find_free_acceleration() noexcept {
   body->computeAccelerationsArticulatedBodyAlgorithmMultiDof(0.0, scalars, vectors, matrices, false,
                                                              false, false);
@@ -124,19 +124,19 @@ void Arm::Simulation::require_inertia_at_every_joint() {
   load(torque);
   find_free_acceleration();
   for (int i = 0; i < links; ++i) {
-    if (M_inverse(i, i) > 0.0) continue;  // Bullet answers 0 for a joint that moves no mass
+    if (M_inverse(i, i) > 0.0) continue;  // Bullet returns 0 for a joint that moves no mass
     throw SetupError("joint '" + model.links[static_cast<std::size_t>(i)].joint_name +
                      "' moves no mass; give its link a mass or an inertia about the joint axis");
   }
 }
 
-// Bullet's own world is left out: it integrates only what its articulated-body algorithm answers,
-// so D and f would have to go back in as torques. That costs a second run of the algorithm and
+// Bullet's own world is not used: it integrates only the result of its articulated-body algorithm,
+// so D and f would have to be fed back as torques. That costs a second run of the algorithm and
 // multiplies the rounding error of a by D / M.
 void Arm::Simulation::sub_step(double h) noexcept {
   if (drive.advance(h)) torque.setZero();
   const bool braked = drive.braked();
-  load(joints.linearize(q, v, braked ? no_torque : torque, h));  // weight and joint torque
+  load(joints.linearize(q, v, braked ? no_torque : torque, h));  // gravity and joint torque
   find_free_acceleration();                                      // -> a, M^-1
   if (contacts) contacts->find(q);
   joints.solve(M_inverse, a, v, h, braked, contacts.get());  // -> a with rotors, stops and friction

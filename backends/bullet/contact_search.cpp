@@ -5,7 +5,7 @@
 namespace repel::bullet::detail {
 namespace {
 
-/// [m] By which Bullet rounds the edges of boxes and cylinders, within their faces.
+/// [m] Bullet's collision margin of boxes and cylinders; it rounds their edges, within their faces.
 constexpr double rounding = 1e-4;
 
 std::unique_ptr<btCollisionShape> hull_of(const Convex& polytope) {
@@ -51,7 +51,7 @@ btDefaultCollisionConstructionInfo small_pools() {
   return info;
 }
 
-/// Notes what Bullet finds between one link and one obstacle.
+/// Collects the contact points that Bullet finds between one link and one obstacle.
 struct Notes : btCollisionWorld::ContactResultCallback {
   Notes(int on, std::vector<Touch>& to) : link(on), touches(to) {}
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,

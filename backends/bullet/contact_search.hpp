@@ -1,5 +1,5 @@
 /// @file
-/// Where the links of an arm touch obstacles, found by Bullet.
+/// Finds contacts between the links of an arm and obstacles, using Bullet.
 #pragma once
 
 #include <btBulletCollisionCommon.h>
@@ -12,36 +12,36 @@
 
 namespace repel::bullet::detail {
 
-/// A point at which a link reaches into an obstacle.
+/// A contact point at which a link penetrates an obstacle.
 struct Touch {
   int link = 0;
   Vec3 p_W{0, 0, 0};    ///< [m]
-  Vec3 out_W{0, 0, 0};  ///< unit, out of the obstacle
-  double depth = 0.0;   ///< [m] above 0
+  Vec3 out_W{0, 0, 0};  ///< unit, outward normal of the obstacle
+  double depth = 0.0;   ///< [m] penetration depth, > 0
 };
 
-/// The shapes of an arm and of its obstacles. What it answers depends on the poses alone: nothing
-/// is kept from one search to the next.
+/// The shapes of an arm and of its obstacles. Stateless: the result depends on the poses alone.
 class ContactSearch {
  public:
-  /// More points than these at a time are not looked at.
+  /// Maximum number of contact points; further ones are ignored.
   static constexpr std::size_t most_touches = 32;
 
-  /// @throws SetupError naming the part that is out of range or a box or cylinder without thickness
+  /// @throws SetupError naming the part that is out of range, or a box or cylinder without
+  ///   thickness
   ContactSearch(const ArmModel& model, std::span<const ContactPart> parts);
 
-  /// The points of contact with the links at `X_WL`. Cost: a comparison of boxes for each pair, and
-  /// Bullet's query for those whose boxes meet.
+  /// The contact points with the links at `X_WL`. Cost: a bounding-box test for each pair of link
+  /// part and obstacle, and a Bullet query for each pair whose boxes overlap.
   std::span<const Touch> find(std::span<const Pose> X_WL) noexcept;
 
  private:
-  /// A shape where it is.
+  /// A shape and its current pose.
   struct Solid {
     int link = -1;
     Pose X_LP = Pose::Identity();
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btCollisionObject> object;
-    btVector3 low, high;  // [m] of its box along the axes of the world
+    btVector3 low, high;  // [m] axis-aligned bounding box in the world
     void place(const Pose& X_WP);
   };
 

@@ -6,7 +6,7 @@
 
 namespace repel::bullet::detail {
 
-constexpr int kRows = 3;  // of a touch
+constexpr int kRows = 3;  // per contact point
 
 Contacts::Contacts(const ArmModel& model, const SimulationOptions& options,
                    std::span<const ContactPart> parts)
@@ -43,7 +43,7 @@ void Contacts::find(const Eigen::VectorXd& q) noexcept {
   touching_ = touching_ || !touches_.empty();
 }
 
-/// The torques at the joints of a unit force along `direction_W` at `p_W` on `link`.
+/// Sets a column of J: the joint torques of a unit force along `direction_W` at `p_W` on `link`.
 void Contacts::set_row(int row, int link, const Vec3& p_W, const Vec3& direction_W) noexcept {
   J_.col(row).setZero();
   for (int i = 0; i <= link; ++i) {

@@ -1,5 +1,5 @@
 /// @file
-/// Contacts of an arm as forces that are solved together with its joints.
+/// Contact forces of an arm, solved together with its joints.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,13 +12,14 @@
 
 namespace repel::bullet::detail {
 
-/// A point of contact is a spring K and a damper C along the way out of the obstacle, taken
-/// implicitly. With x the depth, J the row that makes the speed at which the bodies part of v, and
-/// v' = v + h a after a sub-step of h seconds:
+/// A contact point is a spring K and a damper C along the outward normal of the obstacle,
+/// integrated implicitly. With x the penetration depth, J the row that maps v to the separation
+/// speed, and v' = v + h a after a sub-step of h seconds:
 ///
 ///     f = K (x - h J v') - C J v' >= 0,   that is   J v' + f / (C + h K) = K x / (C + h K)
 ///
-/// and C along two directions across it, with a force of at most the friction's share of f. Both
+/// and a damper C along two tangential directions, with a force bounded by friction coefficient
+/// times f. Both terms are linear in a, so no stiffness makes a sub-step unstable.
 /// terms are linear in a, so no stiffness makes a sub-step unstable.
 class Contacts {
  public:
@@ -26,31 +27,31 @@ class Contacts {
   Contacts(const ArmModel& model, const SimulationOptions& options,
            std::span<const ContactPart> parts);
 
-  /// Finds the points of contact at `q` [rad] or [m].
+  /// Finds the contact points at `q` [rad] or [m].
   void find(const Eigen::VectorXd& q) noexcept;
 
-  /// Begins a sub-step of `h` [s] from `v` without forces, where the joints answer a torque by
-  /// `W` = (M + D)^-1.
+  /// Starts a sub-step of `h` [s] from velocity `v` with zero contact forces.
+  /// @param W response of the joints to a torque, (M + D)^-1
   void begin(const Eigen::MatrixXd& W, const Eigen::VectorXd& v, double h) noexcept;
 
-  /// Corrects every force once, one after the other, and `a` with them. Returns the largest change
-  /// of a speed [m/s].
+  /// One Gauss-Seidel sweep over all forces, which also updates `a`. Returns the largest change of
+  /// a speed [m/s].
   double sweep(Eigen::VectorXd& a) noexcept;
 
-  /// Ends a step: counts it if one of its sub-steps had a contact.
+  /// Ends a step: counts it if any of its sub-steps had a contact.
   void end_step() noexcept;
 
-  /// Nothing was touched yet.
+  /// Clears contacts and report.
   void forget() noexcept;
 
   [[nodiscard]] ContactReport report() const noexcept { return report_; }
 
  private:
-  /// One direction of one point.
+  /// One direction of one contact point.
   struct Row {
     double speed = 0.0;     // [m/s] J v
-    double target = 0.0;    // [m/s] K x / (C + h K); 0 across
-    double softness = 0.0;  // [m/(N s)] 1 / (C + h K); 1 / C across
+    double target = 0.0;    // [m/s] K x / (C + h K); 0 for tangential rows
+    double softness = 0.0;  // [m/(N s)] 1 / (C + h K); 1 / C for tangential rows
     double gain = 0.0;      // [m/(N s)] h J W J^T
     double force = 0.0;     // [N]
   };
@@ -65,7 +66,7 @@ class Contacts {
   std::vector<Pose> X_WL_;
   std::vector<Vec3> axis_W_;
   std::span<const Touch> touches_;
-  std::vector<Row> rows_;         // three for each touch: out, and two across
+  std::vector<Row> rows_;         // three for each contact point: normal, and two tangential
   Eigen::MatrixXd J_, response_;  // a column for each row: J^T and W J^T
   double h_ = 0.0;
   ContactReport report_;

@@ -7,7 +7,7 @@ namespace repel::bullet::detail {
 namespace {
 
 constexpr int kFrictionSweeps = 100;
-constexpr double kSettled = 1e-14;  // [rad/s] largest change of a sweep that ends the search
+constexpr double kSettled = 1e-14;  // [rad/s] the search ends when no change in a sweep exceeds it
 
 Eigen::VectorXd gathered(const ArmModel& model, double ArmLink::*field) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(model.links.size()));
@@ -47,7 +47,7 @@ const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const double next = q[i] + h * v[i];
     const double beyond = next - std::clamp(next, lower_[i], upper_[i]);
-    // On the way out a damper would hold the joint back: a stop damps on the way in only.
+    // A stop damps inward motion only; on the way out a damper would hold the joint back.
     const double damping = viscous_[i] + (beyond * v[i] > 0.0 ? stop_damping_ : 0.0);
     const double stiffness = beyond == 0.0 ? 0.0 : stop_stiffness_;
     diagonal_[i] = rotor_inertia_[i] + h * damping + h * h * stiffness;
@@ -81,9 +81,9 @@ void ImplicitJoints::add_diagonal(Eigen::MatrixXd& W, Eigen::VectorXd& a) noexce
   }
 }
 
-// Begins the search with the torques that bring every joint to rest, W f = -(v / h + a), cut to
-// the bounds. Where none is cut they are the answer; sweeps alone would come near it slowly where
-// a heavy joint carries light ones, and a braked arm would creep.
+// Initial guess: the torques that bring every joint to rest, W f = -(v / h + a), clamped to the
+// bounds. If none is clamped, they are the solution; sweeps alone converge slowly where a heavy
+// joint carries light ones, and a braked arm would creep.
 void ImplicitJoints::stand(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const Eigen::VectorXd& v,
                            double h) noexcept {
   factor_.compute(W);
@@ -94,10 +94,10 @@ void ImplicitJoints::stand(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const E
   a.noalias() += W * friction_;
 }
 
-// The friction torques f are those within +-F that leave the least kinetic energy at the end of
-// the sub-step. One joint at a time (projected Gauss-Seidel): with W = (M + D)^-1 the torque that
-// brings v' = v + h a to rest changes f_i by -v'_i / (h W_ii); it is cut to the bounds. Forces of
-// contact take their turn in the same sweeps.
+// The friction torques f are those within +-F that minimize the kinetic energy at the end of the
+// sub-step. Projected Gauss-Seidel, one joint at a time: with W = (M + D)^-1, the torque that
+// brings v' = v + h a to rest changes f_i by -v'_i / (h W_ii); it is clamped to the bounds. Contact
+// forces are updated in the same sweeps.
 void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
                                    const Eigen::VectorXd& v, double h,
                                    Contacts* contacts) noexcept {

@@ -10,12 +10,12 @@
 
 namespace repel::bullet::detail {
 
-/// What an articulated-body algorithm leaves out at the joints, taken implicitly.
+/// The joint effects that an articulated-body algorithm omits, integrated implicitly.
 ///
 /// With M the inertia matrix of the links, c(q, v) the Coriolis, centrifugal and gravity torques, R
-/// the rotor inertias, B the viscous friction, K and C stiffness and damping of the stops that are
-/// touched, e how far the joint would be beyond its stop after h, and f the Coulomb friction, the
-/// acceleration a over a sub-step of h seconds solves
+/// the rotor inertias, B the viscous friction, K and C stiffness and damping of the active stops, e
+/// the predicted penetration of a stop after h at constant velocity, and f the Coulomb friction,
+/// the acceleration a over a sub-step of h seconds solves
 ///
 ///     M a + c = tau - R a - B v' - C v' - K (e + h^2 a) + f,        v' = v + h a
 ///
@@ -23,20 +23,20 @@ namespace repel::bullet::detail {
 ///
 ///     (M + D) a = u - c + f,   |f_i| <= F_i,   f_i = -F_i sign(v'_i) unless v'_i = 0.
 ///
-/// D is positive, so no stiffness or friction makes a step unstable. R is in it exactly. A brake
-/// that is on adds its torque to F.
+/// D is positive, so no stiffness or friction makes a step unstable. R enters exactly. An engaged
+/// brake adds its torque to F.
 class ImplicitJoints {
  public:
   ImplicitJoints(const ArmModel& model, const ArmOptions& options);
 
-  /// Fixes D and u for one sub-step of `h` [s]. Returns u, the torque the engine is to apply when
-  /// asked for its free acceleration M^-1 (u - c).
+  /// Computes D and u for one sub-step of `h` [s]. Returns u, the torque to apply when the engine
+  /// computes its free acceleration M^-1 (u - c).
   const Eigen::VectorXd& linearize(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                    const Eigen::VectorXd& torque, double h) noexcept;
 
-  /// Turns `a`, the free acceleration, into the acceleration, and `M_inverse` into (M + D)^-1.
-  /// @param braked true when the brakes are on
-  /// @param contacts what is found to touch; null for an arm that touches nothing
+  /// Replaces the free acceleration `a` by the acceleration, and `M_inverse` by (M + D)^-1.
+  /// @param braked true if the brakes are on
+  /// @param contacts current contact points; null for an arm without contact
   void solve(Eigen::MatrixXd& M_inverse, Eigen::VectorXd& a, const Eigen::VectorXd& v, double h,
              bool braked, Contacts* contacts) noexcept;
 

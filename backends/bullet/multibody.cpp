@@ -38,7 +38,7 @@ btTransform to_bullet(const Pose& X) {
 
 void require_double_precision() {
   static_assert(sizeof(btScalar) == sizeof(double), "build against pkg-config bullet-float64");
-  // A number no float can hold must survive a round trip through the library.
+  // A number that a float cannot hold must survive a round trip through the library.
   const double value = 1.0 + 1e-12;
   btMultiBody body(1, 0.0, {0, 0, 0}, true, false);
   body.setupPrismatic(0, 1.0, {1, 1, 1}, -1, {0, 0, 0, 1}, {0, 0, 1}, {0, 0, 0}, {0, 0, 0}, true);
@@ -52,7 +52,7 @@ void require_double_precision() {
 std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model) {
   const int links = static_cast<int>(model.links.size());
   auto body = std::make_unique<btMultiBody>(links, 0.0, btVector3(0, 0, 0), true, false);
-  Pose X_PA = Pose::Identity();  // A: Bullet's frame of the parent
+  Pose X_PA = Pose::Identity();  // A: Bullet's frame of the parent link
   for (int i = 0; i < links; ++i) {
     const ArmLink& link = model.links[static_cast<std::size_t>(i)];
     const auto [X_LB, moments] = principal_frame(link);
@@ -71,8 +71,8 @@ std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model) {
     X_PA = X_LB;
   }
   body->finalizeMultiDof();
-  // Bullet damps by 4 % unless told not to. Its clamp of speeds at 100 rad/s and its putting to
-  // sleep are at work only in its world, which is not used.
+  // Bullet damps by 4 % by default. Its clamp of speeds at 100 rad/s and its deactivation of bodies
+  // at rest apply only in its world, which is not used.
   body->setLinearDamping(0.0);
   body->setAngularDamping(0.0);
   return body;

@@ -1,5 +1,5 @@
 /// @file
-/// From an ArmModel to Bullet's articulated body.
+/// Converts an ArmModel to Bullet's articulated body.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@ namespace repel::bullet::detail {
 /// `X` in Bullet's type.
 [[nodiscard]] btTransform to_bullet(const Pose& X);
 
-/// Throws SetupError unless the Bullet library that was loaded computes in double precision.
+/// @throws SetupError unless the loaded Bullet library was built in double precision
 void require_double_precision();
 
-/// The articulated body of `model`, at zero, without Bullet's own damping.
+/// The articulated body of `model`, with all joints at zero and without Bullet's own damping.
 [[nodiscard]] std::unique_ptr<btMultiBody> make_multibody(const ArmModel& model);
 
 }  // namespace repel::bullet::detail

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int most_level = 32767;  // of ff_constant_effect::level
 
-/// A set of flags as the kernel fills it in.
+/// A bit set in the layout of the kernel.
 template <int count>
 class Bits {
  public:
@@ -40,7 +40,7 @@ class Bits {
   throw SetupError(text);
 }
 
-/// An ioctl that has to work.
+/// An ioctl; throws SetupError if it fails.
 void demand(EvdevPort& port, unsigned long request, void* argument, const std::string& name,
             std::string_view what) {
   const int result = port.control(request, argument);
@@ -48,7 +48,7 @@ void demand(EvdevPort& port, unsigned long request, void* argument, const std::s
   fail(name, {what, " is refused: ", std::generic_category().message(-result)});
 }
 
-/// What the device can show; nothing when it shows no forces.
+/// The force effects that the device supports; empty if it has no force feedback.
 Bits<FF_CNT> forces_of(EvdevPort& port, const std::string& name) {
   Bits<EV_CNT> types;
   Bits<FF_CNT> forces;
@@ -97,7 +97,7 @@ void check(const EvdevLeverOptions& options) {
   checked("length of the direction", options.direction_W.norm(), 1e-6, 1e6, "m");
 }
 
-/// What the kernel and the options say of the axis.
+/// The scale of the axis, from the kernel and the options.
 LeverScale scale_of(EvdevPort* port, const EvdevLeverOptions& options, const std::string& name) {
   if (port == nullptr) throw SetupError("an EvdevLever needs an open device");
   check(options);
@@ -136,17 +136,17 @@ EvdevLever::EvdevLever(std::unique_ptr<EvdevPort> port, const std::string& name,
       motion_(scale_of(port_.get(), options, name)),
       clutch_(options.clutch) {
   options_.direction_W.normalize();
-  effect_.id = -1;  // none yet; the kernel chooses
+  effect_.id = -1;  // none yet; the kernel assigns one
   int clock = CLOCK_MONOTONIC;
   demand(*port_, EVIOCSCLOCKID, &clock, name_, "the monotonic clock for its time stamps");
   read_state();
   if (lost_) fail(name_, {why_lost_});
-  // A button that is down already is no press: the clutch starts released.
+  // A button that is already down does not count as a press: the clutch starts released.
   clutch_.reset();
   clutch_down_ = false;
   const Bits<FF_CNT> forces = forces_of(*port_, name_);
   if (forces.has(FF_GAIN)) tell(FF_GAIN, static_cast<int>(std::lround(0xFFFF * options.gain)));
-  // A spring of its own would be felt as a wall.
+  // A built-in centering spring would feel like a wall.
   if (forces.has(FF_AUTOCENTER)) tell(FF_AUTOCENTER, 0);
   effect_.type = FF_CONSTANT;
   effect_.direction = options.reverse_torque ? 0xC000 : 0x4000;
@@ -184,7 +184,7 @@ Measured EvdevLever::read(std::chrono::milliseconds wait) noexcept {
   if (result.clutch) {
     result.lever_rate = motion_.rate(options_.now());
   } else {
-    set_level(0);  // what a hand does not lead shall not push it
+    set_level(0);  // no torque on a lever that the operator does not control
   }
   return result;
 }
@@ -196,7 +196,7 @@ void EvdevLever::servo_cf(double lever_torque, const Wrench& /*tool_force*/) noe
 }
 
 void EvdevLever::take_bytes() noexcept {
-  constexpr int most_pieces = 16;  // 1024 events: a device that floods does not keep the caller
+  constexpr int most_pieces = 16;  // 1024 events: bounds the time when a device floods
   std::array<std::byte, 64 * EvdevParser::event_size> bytes;
   for (int piece = 0; piece < most_pieces && !lost_; ++piece) {
     const long count = port_->read(bytes);
@@ -225,8 +225,7 @@ void EvdevLever::take(const EvdevEvent& event) noexcept {
   }
 }
 
-/// Asks for the position of the lever and of the button, at the beginning and after events were
-/// lost.
+/// Reads the position of the lever and of the button, at the start and after events were lost.
 void EvdevLever::read_state() noexcept {
   input_absinfo info{};
   Bits<KEY_CNT> keys;
@@ -249,7 +248,7 @@ void EvdevLever::set_level(int level) noexcept {
   if (port_->control(EVIOCSFF, &effect_) < 0) lose("the device does not take a force any more");
 }
 
-/// Writes one event to the device: plays or stops an effect, sets gain or auto-centering.
+/// Writes one event to the device: starts or stops an effect, sets gain or auto-centering.
 void EvdevLever::tell(int code, int value) noexcept {
   input_event event{};
   event.type = EV_FF;
@@ -261,7 +260,7 @@ void EvdevLever::tell(int code, int value) noexcept {
 
 void EvdevLever::lose(const char* why) noexcept {
   if (lost_) return;
-  if (effect_.id >= 0) {  // if it is there after all, it shall not push
+  if (effect_.id >= 0) {  // in case it still works, it must not push
     effect_.u.constant.level = 0;
     (void)port_->control(EVIOCSFF, &effect_);
     (void)port_->control_number(EVIOCRMFF, effect_.id);

@@ -16,7 +16,7 @@
 namespace repel::devices {
 namespace {
 
-/// -errno in place of -1.
+/// Returns -errno in place of -1.
 template <class Result>
 Result told(Result result) noexcept {
   return result < 0 ? static_cast<Result>(-errno) : result;

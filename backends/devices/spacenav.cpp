@@ -17,15 +17,15 @@ namespace {
 
 constexpr std::chrono::milliseconds longest_wait{1000};
 
-/// Waits for at most `wait` for something to happen on `fd`; with -1 just for that time.
+/// Waits for at most `wait` for input on `fd`; with -1 for exactly that time.
 void wait_for(int fd, std::chrono::milliseconds wait) noexcept {
   pollfd watched{fd, POLLIN, 0};
   const auto bounded = std::clamp(wait, std::chrono::milliseconds(0), longest_wait);
   (void)::poll(&watched, 1, static_cast<int>(bounded.count()));
 }
 
-/// A socket connected to `path`; none and `error` set when there is no daemon. Never waits: a
-/// local socket connects at once or not at all.
+/// A socket connected to `path`; on failure none, and `error` is set. Never blocks: a local socket
+/// connects at once or not at all.
 detail::Descriptor connected_to(const std::string& path, int& error) noexcept {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -116,7 +116,7 @@ void Spacenav::connect_anew() noexcept {
 }
 
 void Spacenav::take_bytes() noexcept {
-  constexpr int most_pieces = 16;  // 512 events: a daemon that floods does not keep the caller
+  constexpr int most_pieces = 16;  // 512 events: bounds the time when a daemon floods
   std::array<std::byte, 1024> bytes;
   for (int piece = 0; piece < most_pieces; ++piece) {
     const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -165,7 +165,7 @@ Measured Spacenav::measured() const noexcept {
   result.why = result.clutch ? "" : "the clutch is released";
   const bool moves = result.clutch && !(held_.linear.isZero(0.0) && held_.angular.isZero(0.0));
   if (!moves) return result;
-  // A hand that holds still is not silent: the daemon is asked to repeat, see docs/devices.md.
+  // A hand that holds still is not silent if spacenavd repeats events, as docs/devices.md requires.
   result.silent = in_seconds(options_.now() - heard_at_) > options_.stale_after;
   if (result.silent) {
     result.why = "spacenavd does not renew the motion";

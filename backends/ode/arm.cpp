@@ -22,7 +22,7 @@ static_assert(sizeof(dReal) == sizeof(double), "build against an ODE in double p
 
 constexpr double most_torque = 1e9;  // [N m] or [N]
 
-// The share of a joint's error that a sub-step takes back; all of it would ring.
+// Fraction of a joint's position error that a sub-step corrects; all of it would cause oscillation.
 constexpr double error_reduction = 0.8;
 
 ArmModel validated(const ArmModel& model, const ArmOptions& options) {
@@ -37,7 +37,7 @@ ArmModel validated(const ArmModel& model, const ArmOptions& options) {
   return model;
 }
 
-/// ODE keeps what all worlds share until the program ends.
+/// Initialises ODE once; its global data stay until the program ends.
 void begin_ode() {
   static const bool begun = dInitODE2(0) != 0;
   if (!begun) throw SetupError("the Open Dynamics Engine cannot be initialised");
@@ -74,14 +74,14 @@ struct Arm::Simulation {
     return model.links[i].type == JointType::revolute;
   }
 
-  /// Bodies and joints where all joints are at zero, which is where ODE reads zero.
+  /// Creates bodies and joints with all joints at zero, since ODE takes that pose as joint zero.
   void build();
-  /// Puts every body where the joints put it, moving as they do.
+  /// Sets pose and velocity of every body from the joint positions and rates.
   void place() noexcept;
   void reset(std::span<const double> at, std::span<const double> moving);
   void sub_step(double h) noexcept;
   void resist(std::size_t i, double h) noexcept;
-  /// Dry friction from now on that of the joints, with `braked` that of their brakes as well.
+  /// Sets the dry friction of the joints; `braked` adds that of the brakes.
   void engage(bool braked) noexcept;
   void read_state() noexcept;
   [[nodiscard]] double parted() const noexcept;
@@ -96,8 +96,8 @@ struct Arm::Simulation {
   std::vector<double> torque, q, v, last_q;
   std::vector<dBodyID> body;  // at the centre of mass, with the axes of the link
   std::vector<dJointID> joint;
-  std::vector<dJointID> friction;  // a motor that brings its joint to rest with limited force
-  bool engaged = false;            // the brakes are in that force
+  std::vector<dJointID> friction;  // a velocity motor at zero speed with limited force
+  bool engaged = false;            // the brakes are included in that limit
   std::optional<detail::Contacts> contacts;
   ArmFaults faults;
 };
@@ -175,17 +175,17 @@ void Arm::Simulation::reset(std::span<const double> at, std::span<const double> 
   if (contacts) contacts->forget();
 }
 
-// What opposes a joint is linear in its next speed v' and so one motor with a soft constraint:
+// What opposes a joint is linear in its next speed v', hence one motor with a soft constraint:
 //     force = (R / h) v - K e - G v',   G = R / h + B + C + h K
-// of the rotor R, viscous friction B, and beyond a stop, by e, its spring K and damper C. ODE
-// solves v' + CFM force = Vel: CFM = 1 / G, Vel = ((R / h) v - K e) / G.
+// with rotor inertia R, viscous friction B, and for a penetration e of a stop its spring K and
+// damper C. ODE solves v' + CFM force = Vel: CFM = 1 / G, Vel = ((R / h) v - K e) / G.
 void Arm::Simulation::resist(std::size_t i, double h) noexcept {
   const ArmLink& link = model.links[i];
   const double next = q[i] + h * v[i];
   const bool beyond = next < link.lower || next > link.upper;
   const double e = q[i] - std::clamp(next, link.lower, link.upper);
   const double stiffness = beyond ? options.stop_stiffness : 0.0;
-  // On the way out a damper would hold the joint back: a stop damps on the way in only.
+  // A stop damps inward motion only; on the way out a damper would hold the joint back.
   const bool inward = beyond && (next > link.upper ? v[i] > 0.0 : v[i] < 0.0);
   const double damping = link.viscous_friction + (inward ? options.stop_damping : 0.0);
   const double G = link.rotor_inertia / h + damping + h * stiffness;
@@ -221,7 +221,7 @@ void Arm::Simulation::sub_step(double h) noexcept {
   read_state();
   double sum = 0.0;
   for (std::size_t i = 0; i < q.size(); ++i) sum += std::abs(q[i]) + std::abs(v[i]);
-  if (sum < 1e12) return;  // and so no NaN
+  if (sum < 1e12) return;  // also false for NaN
   faults.state = true;
   q = last_q;
   std::fill(v.begin(), v.end(), 0.0);
@@ -254,7 +254,7 @@ double Arm::Simulation::parted() const noexcept {
     }
     const dReal* p = dBodyGetPosition(body[i]);
     most = std::max(most, (X_WL * link.p_LC - Vec3(p[0], p[1], p[2])).norm());
-    const dReal* r = dBodyGetQuaternion(body[i]);  // the next link hangs on this one where it is
+    const dReal* r = dBodyGetQuaternion(body[i]);  // the next link hangs on the actual pose
     X_WL.linear() = Eigen::Quaterniond(r[0], r[1], r[2], r[3]).toRotationMatrix();
     X_WL.translation() = Vec3(p[0], p[1], p[2]) - X_WL.linear() * link.p_LC;
   }

@@ -6,7 +6,7 @@
 namespace repel::ode::detail {
 namespace {
 
-constexpr int most_points = 8;  // of a pair
+constexpr int most_points = 8;  // per pair
 
 dxGeom* geometry_of(const ContactPart& part) {
   const Level& level = part.shape.level(0);
@@ -69,15 +69,15 @@ Contacts::Contacts(dWorldID world, const ArmModel& model, const SimulationOption
   surface_.mode =
       dContactSoftERP | dContactSoftCFM | dContactSlip1 | dContactSlip2 | dContactApprox1;
   surface_.mu = options.contact_friction;
-  // Faces that lie on each other touch in more points than they can slide in ways: without the
-  // damper their friction would have no single answer.
+  // Two faces in contact have more contact points than sliding directions: without the damper their
+  // friction forces would not be unique.
   surface_.slip1 = surface_.slip2 = 1.0 / options.contact_damping;
 }
 
-// A spring K and damper C at the depth x, which grows by -h v' in the sub-step, with v' the speed
-// at which the bodies part: force = K (x - h v') - C v'. In ODE's words v' + CFM force = ERP x / h.
+// A spring K and damper C at the penetration depth x, which changes by -h v' in the sub-step, with
+// v' the separation speed: force = K (x - h v') - C v'. In ODE's form: v' + CFM force = ERP x / h.
 void Contacts::find(double h) noexcept {
-  // Each thread that collides needs memory of its own, and a step may be on any.
+  // ODE needs collision memory in each calling thread, and a step may run in any thread.
   (void)dAllocateODEDataForThread(dAllocateFlagCollisionData);
   const double damping = options_.contact_damping + h * options_.contact_stiffness;
   surface_.soft_cfm = 1.0 / damping;

@@ -1,5 +1,6 @@
 /// @file
-/// Where the links of an arm touch obstacles, as contact joints of the Open Dynamics Engine.
+/// Contacts between the links of an arm and obstacles, as contact joints of the Open Dynamics
+/// Engine.
 #pragma once
 
 #include <ode/ode.h>
@@ -12,24 +13,24 @@
 
 namespace repel::ode::detail {
 
-/// The geometries of an arm and of its obstacles. A point of contact is a spring and damper taken
-/// implicitly, as bodies and joints are; it never pulls, and the same damper slides with dry
-/// friction along the surface.
+/// The geometries of an arm and of its obstacles. A contact point is a spring and damper,
+/// integrated implicitly with the bodies and joints; it never pulls. The same damper acts along the
+/// surface, limited by dry friction.
 class Contacts {
  public:
-  /// @param body one for each link of `model`, at its centre of mass; they outlive this
-  /// @throws SetupError naming the part that ODE cannot collide or that is out of range
+  /// @param body one for each link of `model`, at its centre of mass; they must outlive this object
+  /// @throws SetupError naming the part that ODE does not support or that is out of range
   Contacts(dWorldID world, const ArmModel& model, const SimulationOptions& options,
            std::span<const dBodyID> body, std::span<const ContactPart> parts);
 
-  /// Puts a joint at every point of contact, for one sub-step of `h` [s], in place of those of the
-  /// last one.
+  /// Creates a contact joint at every contact point, for one sub-step of `h` [s], and removes those
+  /// of the last one.
   void find(double h) noexcept;
 
-  /// Ends a step: counts it if one of its sub-steps had a contact.
+  /// Ends a step: counts it if any of its sub-steps had a contact.
   void end_step() noexcept;
 
-  /// Nothing was touched yet.
+  /// Clears contacts and report.
   void forget() noexcept;
 
   [[nodiscard]] ContactReport report() const noexcept { return report_; }

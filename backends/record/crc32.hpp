@@ -9,7 +9,8 @@
 
 namespace repel::record::detail {
 
-/// Row k has the remainder of every byte that k zero bytes follow, for eight bytes in one step.
+/// Row k holds the remainder of each byte followed by k zero bytes, to process eight bytes per
+/// step.
 using Crc32Table = std::array<std::array<std::uint32_t, 256>, 8>;
 
 [[nodiscard]] constexpr Crc32Table crc32_table() {
@@ -30,8 +31,8 @@ using Crc32Table = std::array<std::array<std::uint32_t, 256>, 8>;
 
 inline constexpr Crc32Table crc32_rows = crc32_table();
 
-/// The CRC of `bytes`; with the CRC of what stands before them as `before`, that of both together.
-/// Cost: less than a nanosecond for a byte.
+/// The CRC of `bytes`; given the CRC of the preceding bytes as `before`, that of both together.
+/// Cost: less than a nanosecond per byte.
 [[nodiscard]] constexpr std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0) {
   const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
   std::uint32_t crc = ~before;

@@ -1,6 +1,5 @@
 /// @file
-/// The fields of one record, in their order. Lengths are compared with what is there before any
-/// byte is taken.
+/// Reads the fields of one record in order. Checks every length against the remaining bytes first.
 #pragma once
 
 #include <concepts>
@@ -16,15 +15,15 @@ namespace repel::record::detail {
 
 class Fields {
  public:
-  /// @param bytes what is left of the record
-  /// @param offset where that stands in the file
+  /// @param bytes rest of the record
+  /// @param offset its position in the file
   Fields(const Source& source, std::string_view bytes, std::uint64_t offset)
       : source_(source), left_(bytes), offset_(offset) {}
 
   [[nodiscard]] std::uint64_t offset() const noexcept { return offset_; }
   [[nodiscard]] std::string_view left() const noexcept { return left_; }
 
-  /// @throws SetupError naming the place of the field when the record ends before the field does
+  /// @throws SetupError naming the position of the field if it exceeds its record
   template <std::unsigned_integral T>
   [[nodiscard]] T number() {
     std::uint64_t value = 0;
@@ -35,13 +34,13 @@ class Fields {
     return static_cast<T>(value);
   }
 
-  /// So many bytes. Throws as number() does, as do the following.
+  /// The next `count` bytes. Throws as number() does, as do the following functions.
   [[nodiscard]] std::string_view take(std::uint64_t count);
-  /// With four bytes of length before them.
+  /// A string with a length prefix of four bytes.
   [[nodiscard]] std::string_view text() { return take(number<std::uint32_t>()); }
-  /// With eight bytes of length before them.
+  /// A string with a length prefix of eight bytes.
   [[nodiscard]] std::string_view long_text() { return take(number<std::uint64_t>()); }
-  /// With four bytes of length, in bytes, before the pairs.
+  /// Key-value pairs with a length prefix of four bytes, in bytes.
   [[nodiscard]] std::map<std::string, std::string> map();
 
  private:

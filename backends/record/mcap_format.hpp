@@ -1,6 +1,6 @@
 /// @file
-/// What writer and reader of MCAP files share: record types, limits, and values as bytes.
-/// The format: https://mcap.dev/spec
+/// Shared by writer and reader of MCAP files: record types, limits, and serialisation. The format:
+/// https://mcap.dev/spec
 #pragma once
 
 #include <concepts>
@@ -14,10 +14,10 @@ namespace repel::record::detail {
 
 using namespace std::string_view_literals;
 
-/// A file begins and ends with it.
+/// The first and last bytes of a file.
 inline constexpr std::string_view magic = "\x89MCAP0\r\n"sv;
 
-/// The first byte of a record; eight with the length of its content follow.
+/// Record type, the first byte of a record; eight bytes with the length of its content follow.
 enum class Op : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -39,7 +39,7 @@ enum class Op : std::uint8_t {
 inline constexpr std::size_t prefix_bytes = 9;  ///< record type and length
 inline constexpr std::size_t footer_bytes = 20;
 
-/// Where a record stands in a file.
+/// Position of a record in a file.
 struct Record {
   Op op{};
   std::uint64_t offset = 0;  // of its first byte
@@ -50,17 +50,17 @@ struct Record {
 };
 
 inline constexpr std::uint64_t mebibyte = 1U << 20;
-/// Of the content of any record that the reader takes.
+/// Maximum content of any record that the reader accepts.
 inline constexpr std::uint64_t largest_record = 256 * mebibyte;
-/// Of schemas, channels, attachments and metadata that the reader keeps in memory, together.
+/// Maximum total of schemas, channels, attachments and metadata that the reader keeps in memory.
 inline constexpr std::uint64_t largest_kept = 1024 * mebibyte;
-// The writer's limits are such that no chunk is larger than the reader's.
+// The writer's limits ensure that no chunk exceeds the reader's limit.
 inline constexpr std::uint64_t largest_message = 64 * mebibyte;
 inline constexpr std::uint64_t largest_chunk_limit = 64 * mebibyte;
 inline constexpr std::uint64_t largest_description = 16 * mebibyte;  ///< schema, channel, metadata
 inline constexpr std::uint64_t largest_attachment = 255 * mebibyte;
 
-/// Appends `value`, its lowest byte first.
+/// Appends `value` in little-endian order.
 template <std::unsigned_integral T>
 void put(std::string& out, T value) {
   for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -68,13 +68,13 @@ void put(std::string& out, T value) {
   }
 }
 
-/// Appends four bytes of length and `text`.
+/// Appends `text` with a length prefix of four bytes.
 inline void put_text(std::string& out, std::string_view text) {
   put(out, static_cast<std::uint32_t>(text.size()));
   out += text;
 }
 
-/// Appends four bytes of length, in bytes, and the pairs of `map`.
+/// Appends the pairs of `map` with a length prefix of four bytes, in bytes.
 inline void put_map(std::string& out, const std::map<std::string, std::string>& map) {
   std::string pairs;
   for (const auto& [key, value] : map) {
@@ -84,7 +84,7 @@ inline void put_map(std::string& out, const std::map<std::string, std::string>& 
   put_text(out, pairs);
 }
 
-/// Appends a record that holds what stands in `content`.
+/// Appends a record with this content.
 inline void put_record(std::string& out, Op op, std::string_view content) {
   out.push_back(static_cast<char>(op));
   put(out, std::uint64_t{content.size()});

@@ -23,12 +23,12 @@ using detail::Source;
 
 namespace {
 
-/// What stands before the records of a chunk.
+/// The fields before the records of a chunk.
 struct ChunkHead {
-  std::uint64_t size = 0;  // [bytes] of the records without compression
-  std::uint32_t crc = 0;   // of them; 0: none
+  std::uint64_t size = 0;  // [bytes] of the uncompressed records
+  std::uint32_t crc = 0;   // of these records; 0: none
   std::string_view compression;
-  std::uint64_t length = 0;  // [bytes] of the records as they stand in the file
+  std::uint64_t length = 0;  // [bytes] of the records as stored in the file
 };
 
 std::string name_of(Op op) {
@@ -51,7 +51,7 @@ std::string hex(std::uint32_t value) {
   return text;
 }
 
-/// 0 stands for a CRC that the writer left out.
+/// A CRC of 0 means that the writer omitted it.
 void check_crc(const Source& source, std::uint64_t offset, const char* what, std::uint32_t found,
                std::uint32_t computed) {
   if (found == 0 || found == computed) return;
@@ -107,7 +107,7 @@ struct McapReader::State {
   void finish();
 
   Source source;
-  std::string buffer;  // the record in hand
+  std::string buffer;  // the current record
 
   std::string profile;
   std::string library;
@@ -115,18 +115,18 @@ struct McapReader::State {
   std::map<std::uint16_t, McapChannel> channels;
   std::vector<McapAttachment> attachments;
   std::vector<McapMetadata> metadata;
-  std::uint64_t kept = 0;            // [bytes] about, by the above
-  std::uint64_t end_of_data = 0;     // behind the last record that can have messages
-  std::optional<Record> cut_chunk;   // begins at the end of data
-  std::uint64_t summary_from = 0;    // behind the record that ends the data
-  std::uint32_t data_crc = 0;        // of everything before the end of data; 0: none
-  std::string why;                   // the file is not whole
-  std::optional<SetupError> damage;  // found when opening, behind everything that was taken
+  std::uint64_t kept = 0;            // [bytes] estimate of the memory used by the above
+  std::uint64_t end_of_data = 0;     // end of the last record that can contain messages
+  std::optional<Record> cut_chunk;   // truncated chunk; begins at end_of_data
+  std::uint64_t summary_from = 0;    // end of the data-end record
+  std::uint32_t data_crc = 0;        // of everything before the data-end record; 0: none
+  std::string why;                   // why the file is incomplete
+  std::optional<SetupError> damage;  // found when opening, after everything that was read
 
-  std::uint64_t at = detail::magic.size();  // next record
+  std::uint64_t at = detail::magic.size();  // position of the next record
   std::uint32_t crc = 0;                    // of everything before it
-  std::string_view chunk;                   // records left of the chunk in hand
-  std::uint64_t chunk_at = 0;               // where they stand in the file
+  std::string_view chunk;                   // remaining records of the current chunk
+  std::uint64_t chunk_at = 0;               // their position in the file
   bool chunk_is_cut = false;
   bool finished = false;
 };
@@ -141,7 +141,7 @@ void McapReader::State::read_all_but_messages() {
   }
 }
 
-/// False when the file is cut off before its first record has ended.
+/// False if the file is truncated before the end of its first record.
 bool McapReader::State::begins_as_mcap() {
   buffer.resize(std::min<std::uint64_t>(source.size(), detail::magic.size()));
   source.read(0, buffer);
@@ -172,7 +172,7 @@ void McapReader::State::cut(const std::string& what) {
   why += what;
 }
 
-/// None when the file ends before it does; `why` says so then.
+/// The record at `offset`; none, and `why` set, if the file ends before the record does.
 std::optional<Record> McapReader::State::record_at(std::uint64_t offset) {
   const std::uint64_t left = source.size() - offset;
   if (left < detail::prefix_bytes) {
@@ -184,7 +184,7 @@ std::optional<Record> McapReader::State::record_at(std::uint64_t offset) {
   Fields prefix(source, buffer, offset);
   Record record{.op = static_cast<Op>(prefix.number<std::uint8_t>()), .offset = offset};
   record.length = prefix.number<std::uint64_t>();
-  if (record.op == Op{}) {  // what a file system may leave behind when the power fails
+  if (record.op == Op{}) {  // as file systems may leave after a power failure
     why = source.name() + ": no record at byte " + std::to_string(offset);
     why += ", only zeros";
     return std::nullopt;
@@ -207,7 +207,7 @@ void McapReader::State::load(const Record& record) {
   source.read(record.content(), buffer);
 }
 
-/// Walks over all records behind the header. Leaves `why` when the file ends too early.
+/// Visits all records after the header. Sets `why` if the file is truncated.
 void McapReader::State::survey() {
   bool in_data = true;
   std::uint64_t offset = end_of_data;
@@ -218,7 +218,7 @@ void McapReader::State::survey() {
     try {
       take(*record);
     } catch (const SetupError& error) {
-      note_damage(error);  // what stands behind it can be read all the same
+      note_damage(error);  // what follows can still be read
     }
     if (record->op == Op::footer) return;
     in_data = in_data && record->op != Op::data_end;
@@ -227,7 +227,7 @@ void McapReader::State::survey() {
   }
 }
 
-/// Anything but messages.
+/// Reads a record of any type except messages.
 void McapReader::State::take(const Record& record) {
   const bool wanted = record.op == Op::schema || record.op == Op::channel ||
                       record.op == Op::attachment || record.op == Op::metadata ||
@@ -247,16 +247,16 @@ void McapReader::State::take(const Record& record) {
   if (record.op == Op::footer) take_footer(record, content);
 }
 
-/// The first counts.
+/// Keeps the first error.
 void McapReader::State::note_damage(const SetupError& error) {
   if (damage) return;
   damage = error;
   why = error.what();
 }
 
-/// Counts what stays in memory.
+/// Accounts for memory that stays in use.
 void McapReader::State::keep(std::uint64_t bytes, std::uint64_t offset) {
-  kept += bytes + 256;  // what the smallest entry takes beside its text
+  kept += bytes + 256;  // overhead of the smallest entry
   if (kept <= detail::largest_kept) return;
   source.fail(offset,
               "schemas, channels, attachments and metadata need more memory than allowed, " +
@@ -275,7 +275,7 @@ void McapReader::State::take_schema(Fields content) {
   schema.name = content.text();
   schema.encoding = content.text();
   schema.data = content.text();
-  if (id == 0) return;  // such a record is to be ignored
+  if (id == 0) return;  // invalid id: to be ignored by the specification
   const auto known = schemas.find(id);
   if (known == schemas.end()) {
     keep(content.offset() - offset, offset);
@@ -299,7 +299,7 @@ void McapReader::State::take_channel(Fields content) {
   }
   const auto known = channels.find(id);
   if (known == channels.end()) {
-    keep((content.offset() - offset) * 16, offset);  // a small entry of a map takes so much more
+    keep((content.offset() - offset) * 16, offset);  // estimated overhead of small map entries
     channels.emplace(id, std::move(channel));
   } else if (known->second != channel) {
     source.fail(offset,
@@ -337,10 +337,10 @@ void McapReader::State::take_footer(const Record& footer, Fields content) {
                                    " bytes; allowed: " + std::to_string(detail::footer_bytes));
   }
   const auto start = content.number<std::uint64_t>();
-  (void)content.take(8);  // where the table of contents of the summary stands
+  (void)content.take(8);  // position of the summary offset section
   const std::uint64_t covered_end = content.offset();
   const auto found = content.number<std::uint32_t>();
-  const std::uint64_t summary = start == 0 ? footer.offset : start;  // 0: there is none
+  const std::uint64_t summary = start == 0 ? footer.offset : start;  // 0: no summary
   if (summary < summary_from || summary > footer.offset) {
     source.fail(footer.content(), "the summary is said to begin at byte " + std::to_string(start) +
                                       "; allowed: " + std::to_string(summary_from) + " to " +
@@ -350,7 +350,7 @@ void McapReader::State::take_footer(const Record& footer, Fields content) {
   check_crc(source, summary, "the summary", found, crc_of(summary, covered_end, 0));
 }
 
-/// What stands behind the footer.
+/// Checks the bytes after the footer.
 void McapReader::State::check_ending(std::uint64_t offset) {
   std::string ending(std::min<std::uint64_t>(source.size() - offset, detail::magic.size()), ' ');
   source.read(offset, ending);
@@ -364,7 +364,7 @@ void McapReader::State::check_ending(std::uint64_t offset) {
               std::to_string(behind) + " bytes behind the end; allowed: none");
 }
 
-/// Of the bytes of the file in [from, to), and those before when `before` is their CRC.
+/// CRC of the bytes [from, to) of the file, continuing from `before`.
 std::uint32_t McapReader::State::crc_of(std::uint64_t from, std::uint64_t to,
                                         std::uint32_t before) {
   constexpr std::uint64_t block = 65536;
@@ -394,7 +394,7 @@ bool McapReader::State::next(McapMessage& message) {
   }
 }
 
-/// The next record of the file: true when it is a message.
+/// Processes the next record of the file; true if it is a message.
 bool McapReader::State::take_record(McapMessage& message) {
   const std::uint64_t offset = at;
   if (offset == detail::magic.size()) crc = detail::crc32(detail::magic);
@@ -405,7 +405,7 @@ bool McapReader::State::take_record(McapMessage& message) {
     if (data_crc != 0) crc = crc_of(offset, at, crc);
     return false;
   }
-  if (data_crc != 0) crc = detail::crc32(buffer, crc);  // its first bytes
+  if (data_crc != 0) crc = detail::crc32(buffer, crc);  // type and length
   load(*record);
   if (data_crc != 0) crc = detail::crc32(buffer, crc);
   if (record->op == Op::chunk) {
@@ -440,7 +440,7 @@ void McapReader::State::open_chunk(const Record& record) {
   chunk_is_cut = false;
 }
 
-/// What is there of the last chunk of a file that was cut off within it.
+/// Opens what is left of the truncated last chunk.
 void McapReader::State::open_cut_chunk() {
   const Record record = *cut_chunk;
   buffer.resize(source.size() - record.content());
@@ -450,7 +450,7 @@ void McapReader::State::open_cut_chunk() {
   try {
     head = chunk_head(content);
   } catch (const SetupError&) {
-    return;  // not even that is there
+    return;  // even the chunk header is truncated
   }
   check_compression(head, record.offset);
   chunk = content.left();
@@ -458,7 +458,7 @@ void McapReader::State::open_cut_chunk() {
   chunk_is_cut = true;
 }
 
-/// Walks on in the chunk: true when it comes to a message.
+/// Advances in the chunk; true if it reaches a message.
 bool McapReader::State::next_of_chunk(McapMessage& message) {
   try {
     while (!chunk.empty()) {
@@ -478,7 +478,7 @@ bool McapReader::State::next_of_chunk(McapMessage& message) {
     }
   } catch (const SetupError&) {
     chunk = {};
-    if (!chunk_is_cut) throw;  // where a file is cut off, an incomplete record is no surprise
+    if (!chunk_is_cut) throw;  // expected at the end of a truncated chunk
   }
   return false;
 }
@@ -498,7 +498,7 @@ void McapReader::State::take_message(Fields content, McapMessage& message) const
   message = taken;
 }
 
-/// Says what is damaged, if anything is.
+/// Throws if the file is damaged.
 void McapReader::State::finish() {
   finished = true;
   check_crc(source, end_of_data, "everything before", data_crc, crc);

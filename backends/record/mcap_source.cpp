@@ -17,7 +17,7 @@ Source::Source(std::unique_ptr<std::streambuf> bytes, std::string name, std::uin
 
 Source Source::file(const std::string& path) {
   std::error_code error;
-  // A folder and a pipe can be opened as well, and then read nothing or wait.
+  // Directories and pipes can be opened too, but then read nothing or block.
   const bool regular = std::filesystem::is_regular_file(path, error);
   if (error) throw SetupError("cannot be read: " + error.message(), path);
   if (!regular) throw SetupError("is no regular file; allowed: an MCAP file", path);
@@ -39,7 +39,7 @@ Source Source::memory(std::string bytes, std::string name) {
 void Source::read(std::uint64_t offset, std::string& out) {
   std::streamsize count = -1;
   try {
-    // A seek throws away what the buffer has, so records that follow each other do without.
+    // A seek discards the buffer, so it is avoided for consecutive records.
     const bool there = at_ == offset || bytes_->pubseekpos(static_cast<std::streamoff>(offset),
                                                            std::ios::in) != std::streamoff{-1};
     if (there) count = bytes_->sgetn(out.data(), static_cast<std::streamsize>(out.size()));

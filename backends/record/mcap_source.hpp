@@ -1,5 +1,5 @@
 /// @file
-/// The bytes of a file, or of memory, by their place.
+/// Random access to the bytes of a file or of memory.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace repel::record::detail {
 
-/// Reads at any place; nothing is read that lies behind the end the file had when it was opened.
+/// Never reads beyond the size that the file had when it was opened.
 class Source {
  public:
-  /// @throws SetupError when `path` is not a file that can be read
+  /// @throws SetupError if `path` is no readable file
   [[nodiscard]] static Source file(const std::string& path);
-  /// `name` stands for the path in errors.
+  /// `name` replaces the path in errors.
   [[nodiscard]] static Source memory(std::string bytes, std::string name);
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Fills `out` with the bytes from `offset` on; its size stays. The caller has compared both with
-  /// size() before.
-  /// @throws SetupError when the operating system does not give them
+  /// Fills `out`, without resizing it, with the bytes from `offset` on. The caller must check both
+  /// against size().
+  /// @throws SetupError on a read error
   void read(std::uint64_t offset, std::string& out);
 
   /// "at byte OFFSET: WHAT" as an error of this file.

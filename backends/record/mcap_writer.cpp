@@ -22,7 +22,7 @@ using detail::put_text;
 
 constexpr std::size_t most_ids = 65535;
 
-/// What the operating system says of the last failure.
+/// The operating system's message of the last failure.
 std::string system_words() {
   return std::generic_category().message(errno);
 }
@@ -52,7 +52,7 @@ std::string too_large(std::string_view name, std::uint64_t bytes, std::uint64_t 
   return what;
 }
 
-/// Throws SetupError when the id after `count` others does not exist or its record is too large.
+/// @throws SetupError if there are `count` = 65535 others already, or the record is too large
 void check_description(std::string_view name, std::size_t count, std::size_t bytes,
                        const std::string& path) {
   if (count >= most_ids) {
@@ -66,7 +66,7 @@ void check_description(std::string_view name, std::size_t count, std::size_t byt
   }
 }
 
-/// Records of one type in the summary, and the entry that says where they are.
+/// Records of one type in the summary, for the summary offset section.
 struct SummaryGroup {
   Op op;
   std::string_view records;
@@ -79,7 +79,7 @@ McapWriter::McapWriter(const std::string& path, const McapOptions& options)
   check_options(options, path);
   file_.reset(std::fopen(path.c_str(), "wb"));
   if (!file_) throw SetupError("cannot be opened for writing: " + system_words(), path);
-  // Chunks are collected here; what is pushed shall not wait in a second buffer.
+  // Chunks are buffered here; a second buffer would only delay them.
   (void)std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   push(header_record(options));
   if (failed()) throw SetupError(std::exchange(error_, {}));
@@ -88,13 +88,13 @@ McapWriter::McapWriter(const std::string& path, const McapOptions& options)
 McapWriter::~McapWriter() {
   try {
     close();
-  } catch (const std::exception&) {  // no memory for the summary: the chunks are there
+  } catch (const std::exception&) {  // out of memory for the summary: the chunks are written
     file_.reset();
   }
 }
 
 void McapWriter::fail(std::string_view what) {
-  if (failed()) return;  // what comes after the first error follows from it
+  if (failed()) return;  // later errors are consequences of the first
   error_ = path_;
   error_ += ": ";
   error_ += what;
@@ -108,7 +108,7 @@ void McapWriter::push(std::string_view bytes) {
     std::string what = "cannot write " + std::to_string(bytes.size()) + " bytes at byte ";
     what += std::to_string(offset_) + ": " + system_words();
     fail(what);
-    file_.reset();  // behind a torn record nothing could be read
+    file_.reset();  // nothing after an incomplete record could be read
     return;
   }
   offset_ += bytes.size();
@@ -171,7 +171,7 @@ void McapWriter::attach(std::string_view name, std::string_view media_type, std:
   }
   std::string content;
   put(content, time_ns);
-  put(content, std::uint64_t{0});  // when it was made is not known
+  put(content, std::uint64_t{0});  // creation time: unknown
   put_text(content, name);
   put_text(content, media_type);
   put(content, std::uint64_t{bytes.size()});
@@ -227,7 +227,7 @@ void McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint6
   if (data.size() > detail::largest_message) {
     return fail(too_large(of.topic, data.size(), detail::largest_message));
   }
-  // Measured both ways, since times need not grow.
+  // Covers both directions, since times need not increase.
   const std::uint64_t span = std::max(chunk_last_ns_, time_ns) - std::min(chunk_first_ns_, time_ns);
   if (!chunk_.empty() && span >= options_.chunk_ns) finish_chunk();
   if (chunk_.empty()) chunk_first_ns_ = chunk_last_ns_ = time_ns;
@@ -267,7 +267,7 @@ void McapWriter::finish_chunk() {
   buffer_ += chunk_;
   const std::uint64_t chunk_length = buffer_.size();
 
-  std::string places;  // of the index of each channel
+  std::string places;  // positions of the message indices by channel
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     std::string& index = channels_[i].index;
     if (index.empty()) continue;
@@ -346,7 +346,7 @@ std::string McapWriter::summary() const {
   const std::uint64_t places_start = start + bytes.size();
   bytes += places;
 
-  // The CRC covers the footer as well, up to itself.
+  // The CRC also covers the footer up to the CRC field.
   bytes.push_back(static_cast<char>(Op::footer));
   put(bytes, std::uint64_t{detail::footer_bytes});
   put(bytes, start);

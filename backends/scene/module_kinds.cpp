@@ -15,7 +15,7 @@ using Keys = std::initializer_list<std::string_view>;
 
 constexpr std::string_view common_keys[] = {"module", "name", "to"};
 
-/// The map of one entry, with the keys that every module has and those of this one.
+/// Allows the keys that every module has and those of this one.
 void allow(const Map& map, Keys keys) {
   std::vector<std::string_view> all(std::begin(common_keys), std::end(common_keys));
   all.insert(all.end(), keys.begin(), keys.end());
@@ -27,7 +27,7 @@ network::Module make(const Options& options) {
   return M(options);
 }
 
-/// A module that needs nothing of the arm.
+/// A module that does not depend on the arm.
 template <class Options>
 ReadModule made_of(const Options& options, network::Module (*from)(const Options&),
                    network::Walls walls = network::Walls::none) {
@@ -199,7 +199,7 @@ ReadModule junction_of(const Map& map) {
   return made_of(effort ? network::Common::effort : network::Common::flow, make<network::Junction>);
 }
 
-/// Modules that take no option.
+/// A module without options.
 template <class M>
 ReadModule plain_of(const Map& map) {
   allow(map, {});

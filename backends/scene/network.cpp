@@ -9,7 +9,7 @@
 namespace repel::scene {
 namespace {
 
-/// Those of the paper's Figure 9, with their defaults, for the tool and the links of an arm.
+/// The modules of the paper's Figure 9, with their defaults, for the tool and the links of an arm.
 constexpr std::string_view default_modules[] = {
     "torque_arm", "multiplex",    "spaceball", "relief", "kbb2",       "obstacle",
     "puma_kin",   "arm_obstacle", "limits",    "visual", "puma_joints"};
@@ -35,7 +35,7 @@ Module module_of(const Value& value, const ModuleKinds& kinds) {
   return module;
 }
 
-/// What is to be done about walls that are too stiff, which the obstacle module says.
+/// Reads the reaction to walls that are too stiff, given with the obstacle module.
 void read_gain_check(const Value& module, Network& network) {
   const Map map(module);
   if (const Value* check = map.find("gain_check")) {
@@ -53,7 +53,7 @@ Network listed_in(const Value& list, const ModuleKinds& kinds) {
   return network;
 }
 
-/// Line of the module that is named first in `text`; 0 when none is.
+/// Line of the module whose name occurs first in `text`; 0 if none does.
 int line_of_named(const std::vector<Module>& modules, const std::string& text) {
   std::size_t first = std::string::npos;
   int line = 0;
@@ -66,9 +66,9 @@ int line_of_named(const std::vector<Module>& modules, const std::string& text) {
   return line;
 }
 
-/// True when the network has a module that brings these walls to the arm.
-bool brings(const Station& station, network::Walls walls) {
-  const auto& modules = station.network.modules;
+/// Whether the network has a module that applies these walls to the arm.
+bool brings(const ArmSetup& setup, network::Walls walls) {
+  const auto& modules = setup.network.modules;
   return std::any_of(modules.begin(), modules.end(),
                      [&](const Module& m) { return m.walls == walls; });
 }
@@ -90,20 +90,19 @@ Network detail::network_of(const Value* value, const ModuleKinds& kinds) {
   return network;
 }
 
-bool feels_links(const Station& station) {
-  return brings(station, network::Walls::links);
+bool feels_links(const ArmSetup& setup) {
+  return brings(setup, network::Walls::links);
 }
 
-network::Network build_network(const Scene& scene, const Station& station, const ArmModel& arm,
-                               double rate_hz) {
-  const auto& modules = station.network.modules;
+network::Plan plan_network(const Scene& scene, const ArmSetup& setup, const ArmModel& arm) {
+  const auto& modules = setup.network.modules;
   if (!(scene.obstacles.empty() && scene.partners.empty()) &&
-      !brings(station, network::Walls::tool)) {
+      !brings(setup, network::Walls::tool)) {
     throw SetupError("network: there are obstacles and no module 'obstacle' through which they act",
                      scene.file);
   }
-  const auto& links = station.robot.links;
-  if (links && !links->empty() && !feels_links(station)) {
+  const auto& links = setup.robot.links;
+  if (links && !links->empty() && !feels_links(setup)) {
     throw SetupError(
         "robot: there are links to keep off the obstacles and no module 'arm_obstacle' in the "
         "network through which they feel them",
@@ -114,11 +113,31 @@ network::Network build_network(const Scene& scene, const Station& station, const
     for (const Module& module : modules) {
       plan.add(module.name, module.make(arm), module.to);
     }
+  } catch (const SetupError& error) {
+    throw located(scene, SetupError(std::string("network: ") + error.what()));
+  }
+  return plan;
+}
+
+network::Network build_network(const Scene& scene, const ArmSetup& setup, const ArmModel& arm,
+                               double rate_hz) {
+  const network::Plan plan = plan_network(scene, setup, arm);
+  try {
     return plan.build(1.0 / rate_hz);
   } catch (const SetupError& error) {
-    const std::string what = std::string("network: ") + error.what();
-    throw SetupError(what, scene.file, line_of_named(modules, what));
+    throw located(scene, SetupError(std::string("network: ") + error.what()));
   }
+}
+
+SetupError located(const Scene& scene, const SetupError& error) {
+  const std::string what = error.what();
+  if (!error.file().empty()) return error;
+  int line = 0;
+  for (std::size_t i = 0; i <= scene.partners.size() && line == 0; ++i) {
+    if (what.starts_with("network: "))
+      line = line_of_named(scene.arm_setup(i).network.modules, what);
+  }
+  return SetupError(what, scene.file, line);
 }
 
 }  // namespace repel::scene

@@ -1,5 +1,5 @@
 /// @file
-/// The `network` of a scene file.
+/// Reads the `network` of a scene file.
 #pragma once
 
 #include <repel/scene/scene.hpp>
@@ -8,8 +8,7 @@
 
 namespace repel::scene::detail {
 
-/// The modules that `value` lists; those of the paper's Figure 9, with their defaults, when it is
-/// null.
+/// The modules listed in `value`; if null, those of the paper's Figure 9 with their defaults.
 [[nodiscard]] Network network_of(const Value* value, const ModuleKinds& kinds);
 
 }  // namespace repel::scene::detail

@@ -20,7 +20,7 @@ constexpr Rule angles{unit::angle, -1e3, 1e3};
 
 using Laws = std::map<std::string, ForceLaw>;
 
-/// Counts the points of all hulls of a scene, for each of which its reduction has to be paid.
+/// Limits the total number of hull points in a scene, since each costs time in the reduction.
 class HullPoints {
  public:
   void add(const Value& list, std::size_t points) {
@@ -34,7 +34,7 @@ class HullPoints {
   std::size_t sum_ = 0;
 };
 
-/// Rotations about the fixed x, then y, then z axis, as in URDF.
+/// Rotations about the fixed axes x, then y, then z, as in URDF.
 Pose pose_of(const Map& map) {
   Vec3 p = Vec3::Zero();
   Vec3 rpy = Vec3::Zero();
@@ -57,7 +57,7 @@ Pose pose_at(const Map& parent, std::string_view key) {
   return pose_of(map);
 }
 
-/// The keys of a shape of some `kind`.
+/// The size keys of a shape of this kind.
 std::vector<std::string_view> size_keys(std::string_view kind) {
   if (kind == "box") return {"size"};
   if (kind == "sphere") return {"radius"};
@@ -73,7 +73,7 @@ Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
     for (const Value& point : list.list(input_limits.values)) {
       points.push_back(point.vector(position));
     }
-    // A single hull of too many is left to the shape.
+    // A single hull that is too large is refused by the shape itself.
     if (points.size() <= input_limits.entries) counted.add(list, points.size());
     return Shape::hull(points);
   }
@@ -85,7 +85,7 @@ Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
   return Shape::cylinder(radius, half_length);
 }
 
-/// What a part of the tool and an obstacle have in common. `keys` are those it may have besides.
+/// Reads the keys common to tool parts and obstacles. `keys`: further keys that are allowed.
 Part part_of(const Value& value, const Map& map, std::span<const std::string_view> keys,
              HullPoints& counted) {
   std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
@@ -107,7 +107,7 @@ Part part_of(const Value& value, const Map& map, std::span<const std::string_vie
   }
 }
 
-/// Throws SetupError when `name` has been seen before.
+/// @throws SetupError if `name` is already in use
 void require_new(std::set<std::string>& names, const Map& map) {
   const Value& name = map.at("name");
   if (!names.insert(name.text()).second) name.fail_with_value("a name no other entry has");
@@ -170,13 +170,13 @@ const ForceLaw& law_called(const Laws& laws, const Map& map, std::string_view ke
   name->fail_with_value("a law under 'laws': " + defined);
 }
 
-std::optional<ObstacleMotion> motion_of(const Map& obstacle) {
+std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
   const Value* value = obstacle.find("motion");
   if (!value) return {};
   const Map map(*value);
   map.allow({"along", "duration"});
-  return ObstacleMotion{map.at("along").vector(position),
-                        map.at("duration").number({unit::time, 1e-3, 86400.0})};
+  return ReciprocatingMotion{map.at("along").vector(position),
+                             map.at("duration").number({unit::time, 1e-3, 86400.0})};
 }
 
 std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, HullPoints& counted) {
@@ -193,7 +193,7 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, HullPoi
   return obstacles;
 }
 
-/// The path of a file that is there; the scene's `file` is what it is relative to.
+/// The path of an existing file, relative to the scene's `file`.
 std::string path_of(const Value& value, const std::string& file) {
   const auto path = std::filesystem::path(file).parent_path() / value.text();
   std::error_code unused;
@@ -203,7 +203,7 @@ std::string path_of(const Value& value, const std::string& file) {
   return path.lexically_normal().string();
 }
 
-/// Angles, or a list of angles and of lengths for joints that slide.
+/// Angles, or a list of angles and, for prismatic joints, lengths.
 void read_start(const Value& value, RobotChoice& robot) {
   const auto add = [&](const Value& entry, const Rule& rule, JointType type) {
     for (const double q : entry.numbers(rule, 1, 64)) {
@@ -284,7 +284,7 @@ network::Script script_of(const Map& scene) {
   return script;
 }
 
-/// What the stations of a file have in common.
+/// Context shared by all arm setups of a file.
 struct Shared {
   const Laws& laws;
   const std::string& file;
@@ -292,22 +292,22 @@ struct Shared {
   HullPoints& counted;
 };
 
-void read_station(const Map& map, const Shared& shared, Station& station) {
-  station.robot = robot_of(map.at("robot"), shared.laws, shared.file);
-  station.tool = tool_of(map.at("tool"), shared.counted);
-  station.network = detail::network_of(map.find("network"), shared.kinds);
-  station.script = script_of(map);
+void read_station(const Map& map, const Shared& shared, ArmSetup& setup) {
+  setup.robot = robot_of(map.at("robot"), shared.laws, shared.file);
+  setup.tool = tool_of(map.at("tool"), shared.counted);
+  setup.network = detail::network_of(map.find("network"), shared.kinds);
+  setup.script = script_of(map);
 }
 
-std::vector<Partner> partners_of(const Map& scene, const Shared& shared) {
-  std::vector<Partner> partners;
+std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
+  std::vector<OtherArm> partners;
   const Value* value = scene.find("partners");
   if (!value) return partners;
   std::set<std::string> names;
   for (const Value& entry : value->list(static_cast<std::size_t>(Limits{}.bodies))) {
     const Map map(entry);
     map.allow({"name", "law", "robot", "tool", "network", "script"});
-    Partner& partner = partners.emplace_back();
+    OtherArm& partner = partners.emplace_back();
     partner.name = map.at("name").text();
     require_new(names, map);
     partner.law = law_called(shared.laws, map);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
 
-/// Takes the first word off `text`; empty at its end.
+/// Removes and returns the first word of `text`; empty at its end.
 std::string_view next_word(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
   const std::string_view word = text.substr(0, text.find_first_of(blanks));
@@ -50,7 +50,7 @@ std::optional<std::vector<double>> quantity(std::string_view text, Units units) 
     if (!value) break;
     values.push_back(*value);
   }
-  std::string name;  // words of the unit, one blank between them
+  std::string name;  // the words of the unit, separated by single blanks
   for (; !word.empty(); word = next_word(text)) {
     if (!name.empty()) name += ' ';
     name += word;

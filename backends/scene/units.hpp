@@ -1,5 +1,5 @@
 /// @file
-/// Numbers that carry their unit, as text.
+/// Parses numbers with units.
 #pragma once
 
 #include <numbers>
@@ -41,11 +41,13 @@ inline constexpr Unit energy[] = {{"J"}};
 inline constexpr Unit share[] = {{""}, {"%", 1, 100}};
 inline constexpr Unit length_per_angle[] = {{"m/rad"}, {"mm/rad", 1, 1000}};
 
-/// The units of the dimension that has one called `name`. @throws SetupError when none has
+/// All units of the dimension to which the unit `name` belongs.
+///
+/// @throws SetupError if there is no such unit
 [[nodiscard]] Units of_dimension(std::string_view name);
 }  // namespace unit
 
-/// What a value may be.
+/// Unit and range of a value.
 struct Rule {
   Units units;
   double low = 0.0;   ///< in the SI unit
@@ -53,11 +55,11 @@ struct Rule {
   bool may_be_nan = false;
 };
 
-/// The numbers `text` starts with, in SI units, when all the rest of it is one of `units`.
-/// Whatever the locale.
+/// The numbers at the start of `text`, in SI units; none unless the rest is one of `units`.
+/// Independent of the locale.
 [[nodiscard]] std::optional<std::vector<double>> quantity(std::string_view text, Units units);
 
-/// True when `value` may stand where `rule` is.
+/// Whether `value` satisfies `rule`.
 [[nodiscard]] bool obeys(double value, const Rule& rule);
 
 /// "0 to 10 m"

@@ -14,7 +14,7 @@ std::string in_quotes(std::string_view text) {
   return result.append(text).append(1, '\'');
 }
 
-/// "a, b, c"
+/// Joins words: "a, b, c".
 std::string listed(std::span<const std::string_view> words) {
   std::string text;
   for (const std::string_view word : words) {
@@ -24,7 +24,7 @@ std::string listed(std::span<const std::string_view> words) {
   return text;
 }
 
-/// Letters to insert, delete or replace to get from `a` to `b`.
+/// Levenshtein distance: insertions, deletions and replacements from `a` to `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -39,7 +39,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// What an error shows of a text.
+/// A text as shown in errors: quoted and truncated.
 std::string shown(const std::string& text) {
   constexpr std::size_t most = 200;
   return text.size() <= most

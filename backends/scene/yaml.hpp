@@ -1,5 +1,5 @@
 /// @file
-/// Strict access to YAML: every value knows its name and line, nothing is guessed, nothing skipped.
+/// Strict access to YAML: every value knows its name and line; nothing is guessed or ignored.
 #pragma once
 
 #include <functional>
@@ -22,21 +22,21 @@
 namespace repel::scene {
 
 /// One value of a file. Its functions throw SetupError, naming file, line, value and what is
-/// allowed, when it is not what is asked for.
+/// allowed, if it does not have the requested type or range.
 class Value {
  public:
   Value(const Node& node, std::string name, std::shared_ptr<const Document> document)
       : node_(&node), line_(node.line), name_(std::move(name)), document_(std::move(document)) {}
 
-  /// The only document of a text.
+  /// The root of the only document in a text.
   [[nodiscard]] static Value document(std::string_view yaml, const std::string& file);
 
-  /// Of the file, from 1.
+  /// Line in the file, from 1.
   [[nodiscard]] int line() const noexcept { return line_; }
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail_with_value(const std::string& allowed) const;
 
-  /// A scalar that is not empty.
+  /// A non-empty scalar.
   [[nodiscard]] std::string text() const;
   /// One of `words`.
   [[nodiscard]] std::string word_of(std::span<const std::string_view> words) const;
@@ -49,7 +49,7 @@ class Value {
   [[nodiscard]] std::vector<double> numbers(const Rule& rule, std::size_t least,
                                             std::size_t most) const;
   [[nodiscard]] bool is_list() const { return node_->kind == Node::Kind::list; }
-  /// The entries of a list of up to `most`.
+  /// The entries of a list with at most `most`.
   [[nodiscard]] std::vector<Value> list(std::size_t most = input_limits.entries) const;
 
  private:
@@ -57,29 +57,31 @@ class Value {
   [[nodiscard]] bool is_scalar() const { return node_->kind == Node::Kind::scalar; }
 
   const Node* node_;
-  int line_;  // of the key where the value is empty: such a value has no place of its own
+  int line_;  // of the key if the value is empty, since it then has no position
   std::string name_;
   std::shared_ptr<const Document> document_;
 };
 
-/// A map of a file, keys unique. A value is found in the logarithm of their number.
+/// A map of a file, with unique keys. Look-up takes logarithmic time.
 class Map {
  public:
-  /// Throws SetupError when it is none or has more entries than input_limits allows.
+  /// @throws SetupError if it is no map or has more entries than input_limits allows
   explicit Map(const Value& value);
 
-  /// Throws SetupError for a key that is not in `keys`, naming the nearest.
+  /// @throws SetupError for a key that is not in `keys`, suggesting the nearest
   void allow(std::span<const std::string_view> keys) const;
   void allow(std::initializer_list<std::string_view> keys) const {
     allow(std::span<const std::string_view>(keys.begin(), keys.size()));
   }
 
-  /// The value of `key`; throws SetupError when it is missing.
+  /// The value of `key`.
+  ///
+  /// @throws SetupError if it is missing
   [[nodiscard]] const Value& at(std::string_view key) const;
-  /// The value of `key`; null when it is missing.
+  /// The value of `key`; null if it is missing.
   [[nodiscard]] const Value* find(std::string_view key) const;
 
-  /// Sets `out` when `key` is there.
+  /// Sets `out` if `key` is present.
   void read(std::string_view key, const Rule& rule, double& out) const;
   void read(std::string_view key, const Rule& rule, Vec3& out) const;
   void read(std::string_view key, std::string& out) const;
@@ -91,7 +93,7 @@ class Map {
  private:
   Value self_;
   std::vector<std::pair<std::string, Value>> entries_;
-  std::map<std::string, std::size_t, std::less<>> index_;  // of the entries by their keys
+  std::map<std::string, std::size_t, std::less<>> index_;  // index of the entry by key
 };
 
 }  // namespace repel::scene

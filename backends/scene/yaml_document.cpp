@@ -25,7 +25,7 @@ std::string_view text_of(const yaml_char_t* text) {
   return text == nullptr ? std::string_view() : reinterpret_cast<const char*>(text);
 }
 
-/// libyaml, which allocates and fails as C does.
+/// RAII wrapper of the libyaml parser; throws on errors.
 class Events {
  public:
   Events(std::string_view text, const std::string& file) : text_(text), file_(file) {
@@ -40,7 +40,7 @@ class Events {
   Events(const Events&) = delete;
   Events& operator=(const Events&) = delete;
 
-  /// The next one; it stands until the next call.
+  /// The next event; valid until the next call.
   const yaml_event_t& next() {
     yaml_event_delete(&event_);
     if (yaml_parser_parse(&parser_, &event_) == 0) fail();
@@ -63,12 +63,12 @@ class Events {
   yaml_event_t event_{};
 };
 
-/// Puts the events of one document together.
+/// Builds the tree of one document from its events.
 class Builder {
  public:
   explicit Builder(Document& document) : document_(document) {}
 
-  /// False when the document has ended.
+  /// False at the end of the document.
   bool take(const yaml_event_t& event) {
     switch (event.type) {
       case YAML_SCALAR_EVENT:
@@ -149,7 +149,7 @@ class Builder {
     if (!open_.empty()) open_.back()->values += node.values - 1;
   }
 
-  /// Into the list or map it stands in, as one value.
+  /// Adds the node to the innermost open list or map, as one value.
   void attach(const Node& node) {
     if (open_.empty()) {
       document_.root = &node;
@@ -181,7 +181,7 @@ class Builder {
   std::size_t values_ = 0;
 };
 
-/// libyaml compares each %TAG directive with all before it.
+/// Limits %TAG directives, because libyaml compares each one with all before it.
 void require_few_directives(std::string_view text, const std::string& file) {
   std::size_t found = 0;
   for (std::size_t at = 0; at < text.size(); at = text.find_first_of("\r\n", at) + 1) {

@@ -1,5 +1,5 @@
 /// @file
-/// A text of YAML as a tree, read within the limits of input_limits.hpp whatever the text.
+/// Parses YAML text to a tree, within the limits of input_limits.hpp for any input.
 #pragma once
 
 #include <cstddef>
@@ -11,27 +11,28 @@
 
 namespace repel::scene {
 
-/// One value of a file as it stands there.
+/// One value of a file.
 struct Node {
   enum class Kind { empty, scalar, list, map };
 
   Kind kind = Kind::empty;
-  int line = 0;                       ///< of the file, from 1
+  int line = 0;                       ///< in the file, from 1
   std::string text;                   ///< of a scalar
-  std::vector<const Node*> children;  ///< of a list; of a map key and value in turn
-  std::size_t values = 1;             ///< itself and all in it, aliases written out
+  std::vector<const Node*> children;  ///< of a list; of a map, key and value alternately
+  std::size_t values = 1;             ///< itself and all values below it, with aliases expanded
 };
 
-/// The tree of a file. Values under an alias stand in it once.
+/// The tree of a file. Aliased nodes are stored once.
 struct Document {
   std::string file;
   const Node* root = nullptr;
   std::deque<Node> nodes;
 };
 
-/// Reads the only document of a text. Memory and time grow with the length of the text, up to the
-/// limits. Throws SetupError naming file and line when it is not YAML, empty, more than one
-/// document, or more than the limits allow.
+/// Reads the only document of a text. Memory and time are linear in the length of the text, up to
+/// the limits.
+/// @throws SetupError naming file and line, if it is not YAML, empty, has more than one document or
+///   exceeds the limits
 [[nodiscard]] std::shared_ptr<const Document> read_yaml(std::string_view text,
                                                         const std::string& file);
 

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty for a file that is no part of the page.
+/// Empty for a file that does not belong to the page.
 std::string media_type(const fs::path& file) {
   const std::string kind = file.extension().string();
   if (kind == ".html") return "text/html; charset=utf-8";

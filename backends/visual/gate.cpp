@@ -41,7 +41,7 @@ bool Gate::is_name(std::string_view name) const {
   if (name.starts_with('[') && name.ends_with(']')) {
     const std::string_view inside = name.substr(1, name.size() - 2);
     if (!is_made_of(inside, "0123456789abcdefABCDEF.:") || !address_.is_v6()) return false;
-    // A browser never names the interface of a link-local address.
+    // A browser never gives the zone index of a link-local address.
     const auto v6 = ip::make_address_v6(std::string(inside), error);
     return !error && v6.to_bytes() == address_.to_v6().to_bytes();
   }

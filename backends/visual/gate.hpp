@@ -1,5 +1,5 @@
 /// @file
-/// Who may talk to the server.
+/// Checks the Host and Origin headers of requests.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace repel::visual {
 
-/// The names under which a browser reaches us over one connection: the very address at our end of
-/// it, and localhost where that is of the loopback interface. A page of another site that has its
-/// name point here (DNS rebinding) comes with its own.
+/// The host names by which a browser can reach this server over one connection: the local address
+/// of that connection, and localhost if that is a loopback address. A page of another site whose
+/// name is made to resolve to this server (DNS rebinding) sends its own name.
 class Gate {
  public:
-  /// @param address in numbers, of our end of the connection; without brackets
+  /// @param address local address of the connection, numeric, without brackets
   Gate(const std::string& address, std::uint16_t port);
 
-  /// True for the `Host` of a request that was meant for this server. Browsers leave out port 80.
+  /// Whether the `Host` of a request means this server. Browsers omit port 80.
   [[nodiscard]] bool is_host(std::string_view host) const;
-  /// True for the `Origin` of the page that is served under that `Host`, and for no other.
+  /// Whether `Origin` is that of the page served under this `Host`.
   [[nodiscard]] static bool is_origin(std::string_view origin, std::string_view host);
 
  private:
@@ -30,7 +30,7 @@ class Gate {
   std::uint16_t port_;
 };
 
-/// The IPv4 address within an IPv6 one that stands for it; any other as it is.
+/// Converts an IPv4-mapped IPv6 address to IPv4; returns any other unchanged.
 [[nodiscard]] boost::asio::ip::address plain(const boost::asio::ip::address& address);
 
 }  // namespace repel::visual

@@ -1,6 +1,6 @@
 /// @file
-/// JSON written straight into a string: a picture is made sixty times a second beside the ticks,
-/// and what takes the processor's time or its cache there, slows them.
+/// Writes JSON directly into a string. A picture is made sixty times a second in parallel with the
+/// ticks, and its use of processor time and cache would slow them down.
 #pragma once
 
 #include <charconv>
@@ -13,8 +13,8 @@
 
 namespace repel::visual {
 
-/// Appends values with the commas between them. What is opened must be closed; names and text are
-/// taken to need no escapes.
+/// Appends values and the commas between them. Every open() needs a close(); names and text must
+/// not need escapes.
 class JsonText {
  public:
   JsonText& open(char bracket) {
@@ -36,7 +36,7 @@ class JsonText {
     first_ = true;
     return *this;
   }
-  /// A value that is JSON already.
+  /// A value that is already JSON.
   JsonText& json(std::string_view value) {
     separate();
     text_ += value;
@@ -47,8 +47,8 @@ class JsonText {
     char digits[24];
     return json({digits, std::to_chars(digits, digits + sizeof digits, value).ptr});
   }
-  /// To a micrometre, a microradian, a micronewton: what nobody can see would make half of the
-  /// text. null for what is not finite.
+  /// Rounded to 1e-6 (micrometre, microradian, micronewton): invisible digits would be half of the
+  /// text. null if not finite.
   JsonText& number(double value) {
     if (!std::isfinite(value)) return json("null");
     const double shown = std::round(1e6 * value) / 1e6;

@@ -1,5 +1,5 @@
 /// @file
-/// The connections that are not answered yet.
+/// Limits the number of connections that have not been answered yet.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,23 @@
 
 namespace repel::visual {
 
-/// From where somebody comes, as far as one can tell people apart: an address of IPv4, or the upper
-/// half of one of IPv6, of which everybody has the lower half to himself.
+/// The network of a client, to tell clients apart: an IPv4 address, or the upper half of an IPv6
+/// address, whose lower half each client can choose.
 [[nodiscard]] std::string network_of(const boost::asio::ip::address& address);
 
-/// Of one who waits. It is free again when the last reference to it is gone.
+/// The place of a waiting connection. It is free again when the last reference to it is gone.
 struct Seat {
-  std::string from;             ///< network_of
-  bool idle = true;             ///< has not said yet what is wanted
-  std::function<void()> leave;  ///< ends the connection
+  std::string from;             ///< see network_of
+  bool idle = true;             ///< has sent no request, or no secret, yet
+  std::function<void()> leave;  ///< closes the connection
 };
 
-/// So many may wait and no more, and yet a newcomer always gets a seat: the one who has said
-/// nothing for longest leaves, of those from where most of them come.
+/// Bounds the number of waiting connections, yet always admits a new one: if its network has too
+/// many, the oldest idle connection of that network is closed; if there are too many in all, that
+/// of the network with most connections. Without an idle one, the oldest.
 class Lobby {
  public:
-  /// @param most in all
+  /// @param most in total
   /// @param most_of_one from one network
   Lobby(std::size_t most, std::size_t most_of_one) : most_(most), most_of_one_(most_of_one) {}
 

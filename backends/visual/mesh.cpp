@@ -10,14 +10,15 @@
 namespace repel::visual {
 namespace {
 
-/// Over the sphere, so that the support map finds every corner of a box, and rims at even angles.
+/// Directions over the sphere such that the support map finds every corner of a box, and rims at
+/// regular angles.
 /// @param turns directions around the axis; a quarter as many from pole to pole
 std::vector<Vec3> directions(int turns) {
   std::vector<Vec3> all{{0, 0, 1}, {0, 0, -1}};
   const int rows = turns / 4;
   for (int row = 1; row < rows; ++row) {
     const double polar = std::numbers::pi * row / rows;
-    // Half a step off the axes, where a box has no single corner.
+    // Half a step off the axes, where the support point of a box is not unique.
     for (int turn = 0; turn < turns; ++turn) {
       const double around = 2.0 * std::numbers::pi * (turn + 0.5) / turns;
       all.emplace_back(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
@@ -32,7 +33,8 @@ void add_once(std::vector<Vec3>& points, const Vec3& p) {
   if (std::none_of(points.begin(), points.end(), is_same)) points.push_back(p);
 }
 
-/// The points of the set that the directions find, each carried outward by `radius`.
+/// The vertices of a polytope, else the support points in all directions, each moved outward by
+/// `radius`.
 std::vector<Vec3> outline(const Convex& set, double radius, int turns) {
   std::vector<Vec3> points;
   if (set.is_polytope() && set.kind() == Convex::Kind::polytope && radius == 0.0) {
@@ -47,8 +49,8 @@ std::vector<Vec3> outline(const Convex& set, double radius, int turns) {
   return points;
 }
 
-/// Those of the points in a plane that are corners of their outline, counter-clockwise by the axes
-/// of the plane: below from left to right, and above back again.
+/// The corners of the convex hull of points in a plane, counter-clockwise in the axes of the plane:
+/// the lower chain from left to right, then the upper chain back.
 std::vector<int> corners_of(const std::vector<Vec3>& points, const Vec3& x, const Vec3& y) {
   const auto at = [&](int i) {
     const Vec3& p = points[static_cast<std::size_t>(i)];
@@ -78,7 +80,7 @@ std::vector<int> corners_of(const std::vector<Vec3>& points, const Vec3& x, cons
   return corners;
 }
 
-/// Both sides of a flat set, as a fan from one corner; nothing for a line.
+/// Both sides of a planar set, as triangle fans; empty for a line.
 std::vector<std::array<int, 3>> fan(const std::vector<Vec3>& points) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
@@ -107,7 +109,7 @@ std::vector<std::array<int, 3>> fan(const std::vector<Vec3>& points) {
 
 Mesh mesh_of(const Shape& shape, int level) {
   const Level& chosen = shape.level(level);
-  // The core of the first level has its depth around it: a sphere is a point.
+  // The core of the first level is dilated by its depth: a sphere is a point with a radius.
   const bool is_first = level == 0;
   const std::vector<Vec3> points =
       outline(chosen.core, is_first ? chosen.depth : 0.0, is_first ? 48 : 24);

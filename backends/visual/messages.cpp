@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// To a micrometre, a microradian: what nobody can see would make half of the text.
+/// Rounds to 1e-6 (micrometre, microradian): invisible digits would be half of the text.
 double rounded(double value) {
   return std::round(1e6 * value) / 1e6;
 }
@@ -37,7 +37,7 @@ Json levels_of(const Shape& shape) {
     for (const auto& triangle : mesh.triangles) {
       for (const int vertex : triangle) triangles.push_back(vertex);
     }
-    // The depth of the first level is rounding, which its mesh has around it.
+    // The depth of the first level is its rounding radius, which its mesh includes.
     levels.push_back({{"depth_m", i == 0 ? 0.0 : rounded(shape.level(i).depth)},
                       {"vertices", std::move(vertices)},
                       {"triangles", std::move(triangles)}});
@@ -45,10 +45,10 @@ Json levels_of(const Shape& shape) {
   return levels;
 }
 
-/// Whose a body is: the number of the arm, and "tool", "link" or, of none, "obstacle".
-std::pair<int, const char*> owner_of(const Cast& cast, BodyId body) {
-  for (std::size_t i = 0; i < cast.arms.size(); ++i) {
-    const ArmCast& arm = cast.arms[i];
+/// The owner of a body: arm index and "tool" or "link"; for none, -1 and "obstacle".
+std::pair<int, const char*> owner_of(const SceneInfo& info, BodyId body) {
+  for (std::size_t i = 0; i < info.arms.size(); ++i) {
+    const ArmInfo& arm = info.arms[i];
     if (arm.tool == body) return {static_cast<int>(i), "tool"};
     if (std::count(arm.links.begin(), arm.links.end(), body) > 0)
       return {static_cast<int>(i), "link"};
@@ -56,7 +56,7 @@ std::pair<int, const char*> owner_of(const Cast& cast, BodyId body) {
   return {-1, "obstacle"};
 }
 
-/// What the laws of the pairs say of a part: how far it is felt, and if all of them let it pass.
+/// Adds the greatest range of the laws of a part's pairs, and `passable` of the last such pair.
 void add_laws(const World& world, std::int32_t part, Json& json) {
   double range = 0.0;
   bool passable = false;
@@ -84,14 +84,14 @@ void write(const NearPair& near, JsonText& out) {
   out.close('}');
 }
 
-void write(const ArmCast& cast, const TickRecord& k, JsonText& out) {
+void write(const ArmInfo& info, const TickRecord& k, JsonText& out) {
   out.open('{');
   out.name("force").vector(k.virtual_force.force).name("torque").vector(k.virtual_force.torque);
   out.name("coupling").vector(k.coupling.force).name("lever_nm").number(k.lever_torque);
   out.name("gain").number(k.gain).name("v").vector(k.v_WT).name("q").open('[');
-  for (std::size_t i = 0; i < cast.joints.size(); ++i) out.number(k.q[i]);
+  for (std::size_t i = 0; i < info.joints.size(); ++i) out.number(k.q[i]);
   out.close(']').name("energy_j").open('[');
-  for (std::size_t i = 0; i < cast.modules.size(); ++i) out.number(k.energy[i]);
+  for (std::size_t i = 0; i < info.modules.size(); ++i) out.number(k.energy[i]);
   out.close(']').close('}');
 }
 
@@ -103,7 +103,7 @@ void write(Status status, JsonText& out) {
   out.close(']');
 }
 
-/// One list of numbers: f of every sample.
+/// Writes an array of f(sample).
 template <class F>
 void write(const char* name, std::span<const TickSample> samples, const F& f, JsonText& out) {
   out.name(name).open('[');
@@ -129,13 +129,13 @@ void write(std::span<const TickSample> samples, JsonText& out) {
 
 }  // namespace
 
-std::string scene_message(const Cast& cast, const World& world) {
+std::string scene_message(const SceneInfo& info, const World& world) {
   Json bodies = Json::array();
   for (int i = 0; i < world.body_count(); ++i) bodies.push_back(world.body_name({i}));
   Json parts = Json::array();
   for (std::size_t i = 0; i < world.parts().size(); ++i) {
     const Part& part = world.parts()[i];
-    const auto [arm, group] = owner_of(cast, part.body);
+    const auto [arm, group] = owner_of(info, part.body);
     Json json{{"name", part.name}, {"body", part.body.index},    {"group", group},
               {"arm", arm},        {"pose", to_json(part.X_BP)}, {"levels", levels_of(part.shape)}};
     add_laws(world, static_cast<std::int32_t>(i), json);
@@ -146,7 +146,7 @@ std::string scene_message(const Cast& cast, const World& world) {
     pairs.push_back({pair.a.index, pair.b.index, pair.law.range});
   }
   Json arms = Json::array();
-  for (const ArmCast& arm : cast.arms) {
+  for (const ArmInfo& arm : info.arms) {
     arms.push_back({{"name", arm.name},
                     {"joints", arm.joints},
                     {"modules", arm.modules},
@@ -157,11 +157,11 @@ std::string scene_message(const Cast& cast, const World& world) {
   }
   return Json{{"type", "scene"},
               {"version", 1},
-              {"name", cast.scene},
-              {"rate_hz", cast.rate_hz},
-              {"period_us", 1e6 / cast.rate_hz},
-              {"mode", cast.replay ? "replay" : "live"},
-              {"duration_s", cast.duration},
+              {"name", info.scene},
+              {"rate_hz", info.rate_hz},
+              {"period_us", 1e6 / info.rate_hz},
+              {"mode", info.replay ? "replay" : "live"},
+              {"duration_s", info.duration},
               {"bodies", std::move(bodies)},
               {"parts", std::move(parts)},
               {"pairs", std::move(pairs)},
@@ -169,14 +169,14 @@ std::string scene_message(const Cast& cast, const World& world) {
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string frame_message(const Cast& cast, const World& world, const Snapshot& shot,
+std::string frame_message(const SceneInfo& info, const World& world, const Snapshot& shot,
                           std::span<const TickSample> recent, bool running) {
   const TickRecord& first = shot.arms.front();
   const auto phase = static_cast<std::size_t>(first.phase);
-  const std::vector<std::string>& phases = cast.arms.front().phases;
+  const std::vector<std::string>& phases = info.arms.front().phases;
   const std::string name = phase < phases.size() ? phases[phase] : "";
   Status status = 0;
-  for (std::size_t i = 0; i < cast.arms.size(); ++i) status |= shot.arms[i].status;
+  for (std::size_t i = 0; i < info.arms.size(); ++i) status |= shot.arms[i].status;
   JsonText out;
   out.open('{').name("type").json("\"frame\"").name("tick").integer(first.tick);
   out.name("time_s").number(first.time).name("running").boolean(running);
@@ -189,7 +189,7 @@ std::string frame_message(const Cast& cast, const World& world, const Snapshot& 
   out.close(']').name("pairs_omitted").integer(shot.pairs_omitted);
   out.name("near").integer(first.pairs.near).name("evaluated").integer(first.pairs.evaluated);
   out.name("of").integer(std::ssize(world.pairs())).name("arms").open('[');
-  for (std::size_t i = 0; i < cast.arms.size(); ++i) write(cast.arms[i], shot.arms[i], out);
+  for (std::size_t i = 0; i < info.arms.size(); ++i) write(info.arms[i], shot.arms[i], out);
   write(recent, out.close(']').name("recent"));
   out.close('}');
   return std::move(out).take();

@@ -5,7 +5,7 @@
 namespace repel::visual {
 namespace {
 
-constexpr std::uint64_t beyond = std::uint64_t{1} << 62U;  // nobody lives to see it
+constexpr std::uint64_t beyond = std::uint64_t{1} << 62U;  // never reached
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 /// @file
-/// A connection of which every frame that comes in is counted.
+/// A connection that counts the incoming WebSocket frames.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace repel::visual {
 
-/// Counts the frames of WebSocket in a stream of bytes: also pings, pongs and empty parts of
-/// messages, which a reader of messages never gets to see.
+/// Counts the WebSocket frames in a byte stream, including pings, pongs and empty fragments, which
+/// are not visible to a reader of messages.
 class FrameCounter {
  public:
-  /// How many frames begin in these bytes, which follow those of the last call.
+  /// The number of frames that start in these bytes, which continue those of the last call.
   [[nodiscard]] int count(std::string_view bytes) noexcept;
 
  private:
@@ -27,11 +27,11 @@ class FrameCounter {
   [[nodiscard]] std::uint64_t payload_size() const noexcept;
 
   std::array<unsigned char, 10> header_{};
-  std::size_t known_ = 0;   ///< bytes of the header
-  std::uint64_t skip_ = 0;  ///< bytes of mask and payload that are still to come
+  std::size_t known_ = 0;   ///< bytes of the header received
+  std::uint64_t skip_ = 0;  ///< remaining bytes of mask and payload
 };
 
-/// A layer between a WebSocket and its connection.
+/// A stream layer between a WebSocket and its connection.
 class MeteredStream {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
@@ -39,7 +39,7 @@ class MeteredStream {
 
   explicit MeteredStream(boost::beast::tcp_stream&& stream) : stream_(std::move(stream)) {}
 
-  /// Is told how many frames have come, before they are read.
+  /// Sets a callback for the number of incoming frames, called before they are read.
   void on_frames(std::function<void(int)> heard) { heard_ = std::move(heard); }
 
   [[nodiscard]] executor_type get_executor() noexcept { return stream_.get_executor(); }

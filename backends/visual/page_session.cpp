@@ -17,7 +17,7 @@ PageSession::PageSession(beast::tcp_stream&& stream, const ServerOptions& option
     : socket_(MeteredStream(std::move(stream))),
       messages_per_second_(options.messages_per_second),
       events_(std::move(events)) {
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has time limits of its own
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
   websocket::stream_base::timeout limits =
       websocket::stream_base::timeout::suggested(beast::role_type::server);
   limits.idle_timeout = std::chrono::seconds(10);
@@ -33,7 +33,7 @@ void PageSession::open(const Request& request) {
     if (error) return self->events_.failed();
     self->open_ = true;
     Error ignored;
-    // Pictures are small and late ones are worth nothing.
+    // Disable Nagle's algorithm: pictures are small, and late ones are useless.
     beast::get_lowest_layer(self->socket_)
         .socket()
         .set_option(boost::asio::ip::tcp::no_delay(true), ignored);
@@ -43,7 +43,7 @@ void PageSession::open(const Request& request) {
   });
 }
 
-// Each of these asks for the next when it is called back: from a new stack, not from its own.
+// Each handler starts the next operation asynchronously, not on its own stack.
 // NOLINTBEGIN(misc-no-recursion)
 void PageSession::read() {
   socket_.async_read(incoming_, [self = shared_from_this()](Error error, std::size_t bytes) {
@@ -53,11 +53,11 @@ void PageSession::read() {
 }
 
 void PageSession::hear(std::size_t bytes) {
-  if (flooding_ || closes_in_order_) return;  // its end is on its way
+  if (flooding_ || closes_in_order_) return;  // the connection is being closed
   const auto data = incoming_.cdata();
   events_.heard({static_cast<const char*>(data.data()), data.size()});
   incoming_.consume(bytes);
-  if (closing_) return end();  // by the answer, which was one too many
+  if (closing_) return end();  // the answer exceeded the send queue
   read();
 }
 // NOLINTEND(misc-no-recursion)
@@ -71,7 +71,7 @@ void PageSession::count(int frames) {
   heard_in_second_ += frames;
   if (flooding_ || heard_in_second_ <= messages_per_second_) return;
   flooding_ = true;
-  // Not from within the read that has found it.
+  // Posted, so as not to close from within the read that found it.
   boost::asio::post(socket_.get_executor(), [self = shared_from_this()] {
     self->close(websocket::close_code::policy_error);
   });
@@ -117,7 +117,7 @@ void PageSession::cut() {
 }
 
 void PageSession::end() {
-  cut();  // a message may still be on its way to a page that does not take it
+  cut();  // a write may still be pending to a page that does not read
   if (!std::exchange(open_, false)) return;
   events_.closed();
 }

@@ -1,5 +1,5 @@
 /// @file
-/// One page that is open: a WebSocket with its messages.
+/// The WebSocket connection of one open page.
 #pragma once
 
 #include <chrono>
@@ -22,27 +22,27 @@ namespace repel::visual {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
-/// Reads and writes by itself as long as it is referred to; all in the thread of the server.
+/// Keeps itself alive while operations are pending; runs entirely in the server's thread.
 class PageSession : public std::enable_shared_from_this<PageSession> {
  public:
   struct Events {
     std::function<void()> opened;
     std::function<void(std::string_view)> heard;
-    std::function<void()> closed;  ///< once, whatever has happened, if it has opened
-    std::function<void()> failed;  ///< it has not
+    std::function<void()> closed;  ///< exactly once if it was opened, for any reason
+    std::function<void()> failed;  ///< it could not be opened
   };
 
   PageSession(boost::beast::tcp_stream&& stream, const ServerOptions& options, Events events);
 
-  /// Answers the request that asked for a WebSocket.
+  /// Accepts the WebSocket upgrade request.
   void open(const Request& request);
-  /// Queues a message, or closes when too many wait already.
+  /// Queues a message, or cuts the connection if too many are waiting.
   void send(std::shared_ptr<const std::string> text);
-  /// Queues a picture, unless the last one is still on its way.
+  /// Queues a picture, unless the last one is still queued.
   void show(const std::shared_ptr<const std::string>& text);
-  /// Closes it in order, with a code that says why; nothing of it is heard any more.
+  /// Starts the closing handshake with a status code; further messages of the page are ignored.
   void close(boost::beast::websocket::close_code code);
-  /// Ends it at once.
+  /// Closes the connection immediately.
   void cut();
 
  private:
@@ -60,7 +60,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
   Events events_;
   boost::beast::flat_buffer incoming_;
   std::deque<std::shared_ptr<const std::string>> waiting_;  ///< the first is being written
-  const std::string* picture_ = nullptr;                    ///< among those that wait
+  const std::string* picture_ = nullptr;                    ///< the picture among those waiting
   std::chrono::steady_clock::time_point second_;
   int heard_in_second_ = 0;
   bool open_ = false;

@@ -5,7 +5,7 @@
 namespace repel::visual {
 
 bool is_same(std::string_view given, std::string_view secret) {
-  // Volatile: the compiler must not leave the loop at the first difference.
+  // Volatile, so that the compiler cannot exit the loop at the first difference.
   volatile unsigned char difference = given.size() == secret.size() ? 0 : 1;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const char expected = secret.empty() ? '\0' : secret[i % secret.size()];

@@ -1,5 +1,5 @@
 /// @file
-/// What whoever opens the page must know.
+/// Checks the secret that a page must present.
 #pragma once
 
 #include <chrono>
@@ -9,19 +9,18 @@
 
 namespace repel::visual {
 
-/// Judges what is presented as the secret, in a time that does not tell how much of it was right,
-/// and not as often as somebody who guesses would like: from one network five wrong ones, then one
-/// more every two seconds.
+/// Compares a presented secret in constant time and limits the rate of attempts: five wrong ones
+/// from one network, then one more every two seconds.
 class SecretKeeper {
  public:
   using Clock = std::chrono::steady_clock;
   enum class Verdict { right, wrong, too_many };
 
-  /// @param secret empty: none is wanted
+  /// @param secret empty: none is required
   explicit SecretKeeper(std::string secret) : secret_(std::move(secret)) {}
 
   [[nodiscard]] bool is_wanted() const { return !secret_.empty(); }
-  /// @param from network_of the one who presents it. After too many nothing is compared.
+  /// @param from network_of the client. If it has no attempts left, nothing is compared.
   [[nodiscard]] Verdict judge(std::string_view given, const std::string& from,
                               Clock::time_point now);
 
@@ -39,10 +38,10 @@ class SecretKeeper {
   void forget_the_longest_unheard();
 
   std::string secret_;
-  std::map<std::string, Tries> tries_;  ///< of those who were wrong
+  std::map<std::string, Tries> tries_;  ///< of networks with wrong attempts
 };
 
-/// Whether both are the same; how long it takes depends on the length of `given` alone.
+/// Whether both are equal; the time depends only on the length of `given`.
 [[nodiscard]] bool is_same(std::string_view given, std::string_view secret);
 
 }  // namespace repel::visual

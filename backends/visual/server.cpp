@@ -34,12 +34,12 @@ using Response = http::response<http::string_body>;
 using Clock = std::chrono::steady_clock;
 using beast::websocket::close_code;
 
-/// Nothing is loaded from elsewhere, nothing is shown inside another page.
+/// Only resources of this server, and no embedding in other pages.
 constexpr const char* policy =
     "default-src 'self'; connect-src 'self' ws:; img-src 'self' data: blob:; frame-ancestors "
     "'none'; base-uri 'none'; form-action 'none'";
 
-/// For those who have not presented the secret, or not the right one.
+/// Close codes for a missing or wrong secret, and for too many attempts.
 constexpr auto no_secret = static_cast<close_code>(4401);
 constexpr auto too_many_secrets = static_cast<close_code>(4429);
 constexpr const char* question = R"({"type":"secret"})";
@@ -48,7 +48,7 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// What a page presents: {"type": "secret", "secret": TEXT}.
+/// The secret in a message {"type": "secret", "secret": TEXT}.
 std::optional<std::string> secret_in(std::string_view text) {
   using Json = nlohmann::json;
   const Json message = Json::parse(text, nullptr, false);
@@ -60,7 +60,7 @@ std::optional<std::string> secret_in(std::string_view text) {
   return secret->get<std::string>();
 }
 
-/// Where a browser on this machine finds what listens there.
+/// The URL by which a browser on this machine reaches the endpoint.
 std::string url_of(const tcp::endpoint& place) {
   const asio::ip::address address = place.address();
   std::string name = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
@@ -72,7 +72,7 @@ std::string url_of(const tcp::endpoint& place) {
 
 class Server::Impl final : public Pages {
  public:
-  Impl(const ServerOptions& options, std::vector<Asset> assets, Show& show)
+  Impl(const ServerOptions& options, std::vector<Asset> assets, PageHandler& show)
       : options_(options),
         lobby_(static_cast<std::size_t>(options.visitors),
                static_cast<std::size_t>(options.visitors_of_one)),
@@ -80,13 +80,13 @@ class Server::Impl final : public Pages {
         acceptor_(listening(context_, options)),
         url_(url_of(acceptor_.local_endpoint())),
         show_(show),
-        beats_(context_) {
+        refreshes_(context_) {
     for (Asset& asset : assets) {
       std::string target = asset.target;
       assets_.emplace(std::move(target), std::move(asset));
     }
     accept();
-    beat();
+    refresh();
     thread_ = std::jthread([this] {
       (void)pthread_setname_np(pthread_self(), "repel view");
       while (!context_.stopped()) attempt([this] { context_.run(); });
@@ -113,7 +113,7 @@ class Server::Impl final : public Pages {
   [[nodiscard]] const std::string& url() const noexcept { return url_; }
 
  private:
-  /// A connection until it is answered or has become a page.
+  /// A connection until it has been answered or upgraded to a page.
   struct Visitor {
     explicit Visitor(tcp::socket&& socket) : stream(std::move(socket)) {
       parser.emplace();
@@ -158,7 +158,7 @@ class Server::Impl final : public Pages {
       if (!error) attempt([&] { receive(std::make_shared<Visitor>(std::move(socket))); });
       if (error == asio::error::operation_aborted) return;
       if (!error) return accept();
-      // Out of descriptors: not at once again.
+      // Out of file descriptors: retry after a pause.
       retry_.expires_after(std::chrono::milliseconds(100));
       retry_.async_wait([this](Error aborted) {
         if (!aborted) accept();
@@ -169,7 +169,7 @@ class Server::Impl final : public Pages {
   void receive(const Guest& guest) {
     Error error;
     const tcp::endpoint there = guest->stream.socket().remote_endpoint(error);
-    if (error) return;  // gone already
+    if (error) return;  // already closed
     const tcp::endpoint here = guest->stream.socket().local_endpoint(error);
     if (error) return;
     guest->gate.emplace(here.address().to_string(), here.port());
@@ -200,7 +200,7 @@ class Server::Impl final : public Pages {
     });
   }
 
-  /// Of an upgrade: ok if it may go on.
+  /// The response to a request; for a WebSocket upgrade, ok means that it may proceed.
   [[nodiscard]] Response response_to(const Request& request, const Gate& gate, bool is_page) const {
     const auto refuse = [&](http::status status, const char* why) {
       Response response{status, request.version()};
@@ -236,7 +236,7 @@ class Server::Impl final : public Pages {
 
   void open(const Guest& guest, const Request& request) {
     const int number = next_page_++;
-    // Every browser says of which page a WebSocket is.
+    // Browsers always send the Origin with a WebSocket request.
     const Role role = request.count(http::field::origin) > 0 ? Role::drives : Role::looks_on;
     PageSession::Events events;
     events.opened = [this, number, role] {
@@ -270,7 +270,7 @@ class Server::Impl final : public Pages {
     page->open(request);
   }
 
-  /// The first that a newcomer says.
+  /// Handles the first message of a page that must present the secret.
   void present(int number, std::string_view text) {
     const auto found = newcomers_.find(number);
     if (found == newcomers_.end()) return;
@@ -287,17 +287,17 @@ class Server::Impl final : public Pages {
     show_.opened(number, Role::drives, *this);
   }
 
-  void beat() {
+  void refresh() {
     const auto pace = std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(1.0 / options_.beats_per_second));
+        std::chrono::duration<double>(1.0 / options_.refresh_rate));
     std::optional<Clock::time_point> next;
-    attempt([&] { next = show_.next_beat(); });
-    beats_.expires_at(next.value_or(Clock::now() + pace));
-    beats_.async_wait([this](Error error) {
+    attempt([&] { next = show_.next_refresh(); });
+    refreshes_.expires_at(next.value_or(Clock::now() + pace));
+    refreshes_.async_wait([this](Error error) {
       if (error) return;
       send_away_the_late();
-      attempt([this] { show_.beat(*this); });
-      beat();
+      attempt([this] { show_.refresh(*this); });
+      refresh();
     });
   }
 
@@ -307,7 +307,7 @@ class Server::Impl final : public Pages {
     }
   }
 
-  /// The server goes on whatever is thrown, and says so once for as long as it is the same.
+  /// Runs `work`; prints an exception, unless it repeats the last one, and continues.
   template <class Work>
   void attempt(const Work& work) noexcept {
     const std::string why = complaint_of(work);
@@ -322,18 +322,18 @@ class Server::Impl final : public Pages {
   SecretKeeper secret_;
   tcp::acceptor acceptor_;
   std::string url_;
-  Show& show_;
+  PageHandler& show_;
   std::map<std::string, Asset> assets_;
   std::map<int, std::shared_ptr<PageSession>> pages_;
   std::map<int, Newcomer> newcomers_;
   int next_page_ = 1;
-  std::string complaint_;  // the last that was said
-  asio::steady_timer beats_;
+  std::string complaint_;  // the last one printed
+  asio::steady_timer refreshes_;
   asio::steady_timer retry_{context_};
   std::jthread thread_;
 };
 
-Server::Server(const ServerOptions& options, std::vector<Asset> assets, Show& show)
+Server::Server(const ServerOptions& options, std::vector<Asset> assets, PageHandler& show)
     : impl_(std::make_unique<Impl>(options, std::move(assets), show)) {}
 Server::~Server() = default;
 

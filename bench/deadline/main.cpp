@@ -1,6 +1,6 @@
 /// @file
-/// How ticks meet their deadlines on this machine, at several rates, beside what the machine does
-/// meanwhile to a thread that only reads the clock.
+/// How well ticks meet their deadlines on this machine, at several rates, compared with the jitter
+/// of a thread that only reads the clock.
 
 #include <cinttypes>
 

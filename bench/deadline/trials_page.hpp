@@ -1,5 +1,5 @@
 /// @file
-/// The trials as a page for people.
+/// The trials as an HTML page.
 #pragma once
 
 #include <ostream>
@@ -7,6 +7,6 @@
 
 #include "trial.hpp"
 
-/// Writes one page that needs nothing beside itself: a table of all rates, and for each the share
-/// of its ticks that took, and were, no longer than a time.
+/// Writes one self-contained page: a table of all rates, and for each rate the cumulative
+/// distributions of compute time and lateness of its ticks.
 void write_page(const std::vector<repel::host::Trial>& trials, std::ostream& out);

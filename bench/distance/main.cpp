@@ -1,6 +1,6 @@
 /// @file
-/// Distance queries side by side: ours and those of other libraries, on the same tasks, checked
-/// against exact answers before their time counts.
+/// Distance queries of repel and of other libraries compared on the same tasks; times count only if
+/// the answers agree with the exact ones.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ struct Options {
   double seconds = 0.0;
 };
 
-/// Throws std::invalid_argument for what is not known.
+/// Throws std::invalid_argument for an unknown name.
 Options parse(Arguments arguments) {
   Options options;
   options.tasks = split(arguments.value("--task", ""));
@@ -71,7 +71,7 @@ class Suite {
   [[nodiscard]] std::string tables() const {
     return comparison_table(compared_) + "\n" + sweep_table(swept_);
   }
-  /// True when one of our own answers is wrong.
+  /// True if an answer of repel is wrong.
   [[nodiscard]] bool is_wrong() const {
     const auto wrong = [](const auto& m) { return m->library().ours && m->verdict().wrong() > 0; };
     return std::any_of(compared_.begin(), compared_.end(), wrong);

@@ -9,7 +9,7 @@
 
 namespace repel::bench {
 
-/// As printf.
+/// Formats like printf.
 [[gnu::format(printf, 1, 2)]] inline std::string text(const char* format, ...) {
   char buffer[1024];
   va_list values;
@@ -19,7 +19,7 @@ namespace repel::bench {
   return buffer;
 }
 
-/// The first column is words; so are the others where `numbers` is false.
+/// The first column is text; so are the others if `numbers` is false.
 inline std::string heading(const std::vector<std::string>& columns, bool numbers = true) {
   std::string line = "|";
   std::string rule = "|";

@@ -15,7 +15,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// [s] What reading the clock twice costs, and is taken off every sample.
+/// [s] Cost of reading the clock twice, subtracted from every sample.
 double clock_cost() {
   static const double cost = [] {
     std::vector<double> readings(10001);
@@ -49,7 +49,7 @@ void Measurement::check() {
       ++verdict_.wrong_by_distance;
       continue;
     }
-    // The truth itself is rounded to double.
+    // The exact value itself is rounded to double.
     const double slack = 1e-15 * truth.size;
     const bool outside =
         answer.lower > truth.distance + slack || answer.upper < truth.distance - slack;
@@ -92,7 +92,7 @@ void Measurement::run(benchmark::State& state) {
     rival_ = library_.load(task_->task, tolerance_);
     check();
   }
-  rival_->run(task_->asks, start_);  // caches and warm starts as in the middle of a run
+  rival_->run(task_->asks, start_);  // Warm-up: caches and warm starts as in the middle of a run.
   for (auto _ : state) state.SetIterationTime(timed_pass());
   const Cost c = cost();
   state.counters["p50_ns"] = c.p50;

@@ -1,5 +1,5 @@
 /// @file
-/// One line of the table: a library on a task, checked first and timed after.
+/// One line of the table: a library on a task, checked first, then timed.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace repel::bench {
 
-/// A task with its exact answers, drawn when it is first needed.
+/// A task with its exact answers, computed on first use.
 struct CheckedTask {
   Task task;
   std::vector<Ask> asks;
@@ -23,28 +23,28 @@ struct CheckedTask {
   }
 };
 
-/// How the answers compare with the exact ones.
+/// Comparison of the answers with the exact ones.
 struct Verdict {
   int asked = 0;
-  int wrong_by_size = 0;        ///< off by more than 1e-6 of the larger solid
-  int wrong_by_distance = 0;    ///< off by more than 1e-6 of the distance itself
-  int missing = 0;              ///< no finite answer: wrong in both ways
-  int too_deep = 0;             ///< ours, where it claims never to be deeper than the truth
-  int outside = 0;              ///< the truth lies outside the bracket that was claimed
+  int wrong_by_size = 0;        ///< error above 1e-6 of the size of the larger solid
+  int wrong_by_distance = 0;    ///< error above 1e-6 of the distance itself
+  int missing = 0;              ///< no finite answer: counted as wrong in both ways
+  int too_deep = 0;             ///< repel only, where it claims never to exceed the true depth
+  int outside = 0;              ///< the exact value is outside the claimed bracket
   double worst_error = 0.0;     ///< [m]
   double worst_relative = 0.0;  ///< error / |distance|
   double median_relative = 0.0;
-  double high_relative = 0.0;  ///< only 5 % are larger
-  double median_share = 0.0;   ///< of the exact distance, in what was answered
-  double low_share = 0.0;      ///< only 5 % are smaller
+  double high_relative = 0.0;  ///< 95 % quantile
+  double median_share = 0.0;   ///< answered distance divided by the exact one
+  double low_share = 0.0;      ///< 5 % quantile
 
-  /// Answers that earn no time.
+  /// Number of wrong answers; if not 0, the table shows no time.
   [[nodiscard]] int wrong() const {
     return std::max({wrong_by_size, wrong_by_distance, outside, too_deep});
   }
 };
 
-/// Percentiles of what one question costs, over batches of different questions [ns].
+/// Percentiles of the cost of one query, over batches of different queries [ns].
 struct Cost {
   double p50 = 0.0;
   double p99 = 0.0;
@@ -59,7 +59,7 @@ class Measurement {
       : library_(library), task_(std::move(task)), start_(start), tolerance_(tolerance) {}
 
   /// Runs the whole task once per iteration. The first call loads the library and checks every
-  /// answer; throws what the library throws.
+  /// answer; passes on exceptions of the library.
   void run(benchmark::State& state);
 
   [[nodiscard]] const Library& library() const { return library_; }
@@ -67,7 +67,7 @@ class Measurement {
   [[nodiscard]] Start start() const { return start_; }
   [[nodiscard]] double tolerance() const { return tolerance_; }
   [[nodiscard]] const Verdict& verdict() const { return verdict_; }
-  /// Of all samples so far.
+  /// Over all samples so far.
   [[nodiscard]] Cost cost() const;
 
  private:
@@ -80,7 +80,7 @@ class Measurement {
   double tolerance_;
   std::unique_ptr<Rival> rival_;
   Verdict verdict_;
-  std::vector<double> samples_;  ///< [ns] a question
+  std::vector<double> samples_;  ///< [ns] per query
 };
 
 }  // namespace repel::bench

@@ -14,8 +14,8 @@ namespace repel::bench {
 
 namespace {
 
-/// Progress goes to stderr and the table comes at the end; the file gets, of the repetitions of a
-/// measurement, the last, whose percentiles are over all.
+/// Prints progress to stderr; the table follows at the end. The file gets the last repetition of
+/// each measurement, whose percentiles are over all repetitions.
 class Progress final : public benchmark::BenchmarkReporter {
  public:
   explicit Progress(std::size_t count) : count_(static_cast<int>(count)) {}
@@ -124,12 +124,12 @@ int start(int argc, char** argv, const char* about,
   });
   try {
     std::vector<char*> arguments(argv, argv + argc);
-    // Whatever disturbs the machine meanwhile hits all libraries alike.
+    // Interleaved, so that disturbances of the machine affect all libraries alike.
     std::string interleaved = "--benchmark_enable_random_interleaving=true";
     arguments.insert(arguments.begin() + 1, interleaved.data());
     const int code = run(Arguments(initialize(argc + 1, arguments.data())), to_file);
     std::fflush(nullptr);
-    // FCL and Coal each bring their own octomap, and the destructors of the two collide.
+    // FCL and Coal each link their own octomap, whose destructors collide at exit.
     std::quick_exit(code);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

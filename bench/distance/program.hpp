@@ -1,5 +1,5 @@
 /// @file
-/// What the programs that measure libraries side by side have in common.
+/// Common code of the programs that compare libraries.
 #pragma once
 
 #include <functional>
@@ -10,18 +10,19 @@
 
 namespace repel::bench {
 
-/// The words of a command line, taken out one by one.
+/// The arguments of a command line, removed one by one as they are read.
 class Arguments {
  public:
-  /// The name of the program comes first and does not count.
+  /// The first argument, the program name, is skipped.
   explicit Arguments(const std::vector<std::string>& words)
       : words_(words.begin() + 1, words.end()) {}
 
-  /// Whether `flag` was given.
+  /// Removes `flag`; true if it was given.
   [[nodiscard]] bool has(const std::string& flag);
-  /// What follows `flag`, else `otherwise`. Throws std::invalid_argument where nothing follows.
+  /// The value after `flag`, else `otherwise`. Throws std::invalid_argument if the value is
+  /// missing.
   [[nodiscard]] std::string value(const std::string& flag, const std::string& otherwise);
-  /// Throws std::invalid_argument when a word is left.
+  /// Throws std::invalid_argument if an argument is left.
   void end() const;
 
  private:
@@ -31,26 +32,26 @@ class Arguments {
 /// The parts of a list "a,b,c".
 [[nodiscard]] std::vector<std::string> split(const std::string& names);
 
-/// True for every name where none was chosen.
+/// True if `name` is in `chosen`, or `chosen` is empty.
 [[nodiscard]] bool is_chosen(const std::vector<std::string>& chosen, const std::string& name);
 
-/// Throws std::invalid_argument for a name that is not among those known.
+/// Throws std::invalid_argument for an unknown name.
 void check_names(const char* what, const std::vector<std::string>& names,
                  const std::vector<std::string>& known);
 
-/// Registers what is to be measured in ten repetitions of `seconds` together.
+/// Registers a benchmark with ten repetitions that take `seconds` together.
 void enlist(const std::string& title, double seconds,
             const std::function<void(benchmark::State&)>& run);
 
-/// Runs the `count` repeated benchmarks that were enlisted, progress on stderr, the last
-/// repetition of each into the file. False when one of them failed.
+/// Runs the `count` registered benchmarks, with progress on stderr, and writes the last repetition
+/// of each to the file. Returns false if one of them failed.
 [[nodiscard]] bool run_enlisted(std::size_t count, bool to_file);
 
-/// The machine, the compiler, the flags and the commit, in one line.
+/// Machine, compiler, flags and commit, in one line.
 [[nodiscard]] std::string build_line();
 
-/// A whole main function: sorts the libraries, takes out what Google Benchmark knows, and ends the
-/// process with the code that `run` returns, or 2 for what it throws.
+/// A complete main function: sorts the libraries, extracts the arguments of Google Benchmark, and
+/// ends the process with the exit code that `run` returns, or 2 if it throws.
 int start(int argc, char** argv, const char* about,
           int (*run)(const Arguments& arguments, bool to_file));
 

@@ -1,5 +1,5 @@
 /// @file
-/// What a library must offer to be measured, and the list of those that were built.
+/// The interface of a measured library, and the list of the libraries in this build.
 #pragma once
 
 #include <functional>
@@ -16,16 +16,16 @@
 
 namespace repel::bench {
 
-/// Whether a query may use what the last one on the same pair has left.
+/// Whether a query may use state from the last query on the same pair.
 enum class Start : bool { cold, warm };
 
-/// An answer as the checks want it, converted outside the time that counts.
+/// An answer in the form the checks need, converted outside the timed section.
 struct Answer {
-  double distance = 0.0;  ///< [m] > 0 the gap, < 0 minus the depth of the overlap
-  /// [m] What is claimed about the true value; infinite where nothing is.
+  double distance = 0.0;  ///< [m] > 0 the gap, < 0 minus the penetration depth
+  /// [m] The claimed bounds of the true value; infinite if none are claimed.
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  /// Unit, moving A along it takes A away from B; not finite where the library gives none.
+  /// Unit vector; translating A along it separates A from B. Not finite if the library gives none.
   Vec3 extraction_W = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
@@ -33,42 +33,43 @@ struct Answer {
 class Rival {
  public:
   virtual ~Rival() = default;
-  /// Asks one after the other; nothing but this is timed.
+  /// Executes the queries one after the other; only this function is timed.
   virtual void run(std::span<const Ask> asks, Start start) = 0;
-  /// The same question with its answer.
+  /// The same query, with its answer.
   virtual Answer answer(const Ask& ask, Start start) = 0;
 };
 
-/// What to know about a library before loading a task.
+/// The description of a library, known before a task is loaded.
 struct Library {
   std::string name;
   std::string version;
-  std::string settings;    ///< the setting measured, and why
-  double tolerance = 0.0;  ///< of that setting, in the library's own terms
-  bool sweeps = true;      ///< has a tolerance that run time against error can be swept over
-  bool warms = true;       ///< keeps something from tick to tick; else warm is the same as cold
-  bool gaps = true;        ///< answers pairs that are apart
-  bool depths = true;      ///< answers pairs that overlap
-  /// True when the depth is exact by claim; else ours is checked against its own bracket, and
-  /// those of others are not checked.
+  std::string settings;    ///< the settings used, and why
+  double tolerance = 0.0;  ///< of these settings, in the library's own terms
+  bool sweeps = true;      ///< has a tolerance for a sweep of run time against error
+  bool warms = true;       ///< keeps state from tick to tick; otherwise warm is the same as cold
+  bool gaps = true;        ///< supports pairs that are apart
+  bool depths = true;      ///< supports pairs that overlap
+  /// True if the depth is claimed to be exact. Otherwise repel's is checked against its own
+  /// bracket, and that of others is not checked.
   bool exact_depths = true;
   bool ours = false;
   std::function<std::unique_ptr<Rival>(const Task&, double tolerance)> load;
 
-  /// Something is claimed about depths that the exact ones can disprove.
+  /// Some claim about depths can be checked against the exact ones.
   [[nodiscard]] bool is_checked_in_overlap() const { return depths && (exact_depths || ours); }
 };
 
-/// All libraries of this build, ours first, then by name.
+/// All libraries of this build: repel first, then by name.
 [[nodiscard]] std::vector<Library>& libraries();
 
-/// Puts a library on the list when the program starts.
+/// Registers a library at program start.
 struct Enlisted {
   explicit Enlisted(Library library) { libraries().push_back(std::move(library)); }
 };
 
-/// Turns an engine into a Rival: `cold(ask)` and `warm(ask)` return the library's own result, and
-/// `read(result)` converts it. The calls are resolved here, so the timed loop holds nothing else.
+/// Adapts an engine to a Rival: `cold(ask)` and `warm(ask)` return the library's own result, and
+/// `read(result)` converts it. The calls are resolved at compile time, so the timed loop contains
+/// nothing else.
 template <class Engine>
 class Adapter final : public Rival {
  public:

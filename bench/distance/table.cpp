@@ -12,7 +12,7 @@ const char* to_text(Start start) {
   return start == Start::warm ? "warm" : "cold";
 }
 
-/// The names in the order in which they come up, each once.
+/// The names in order of first appearance, each once.
 template <class Name>
 std::vector<std::string> each_once(const Measurements& all, Name&& name) {
   std::vector<std::string> names;
@@ -38,7 +38,7 @@ const Measurement* find(const Measurements& all, const std::string& task, Start 
   return nullptr;
 }
 
-/// The median, or, where answers are wrong, how many are: such a time is not earned.
+/// The median time, or the number of wrong answers if there are any: then no time is shown.
 std::string cell(const Measurement* m) {
   if (m == nullptr) return "";
   const double p50 = m->cost().p50;
@@ -59,7 +59,7 @@ std::string settings_of(const Measurements& all) {
   return out;
 }
 
-/// Calls `row(task, start)` for every task, cold and warm, that was measured.
+/// Calls `row(task, start)` for every measured task, cold and warm.
 template <class Row>
 void for_each_row(const Measurements& all, Row&& row) {
   const std::vector<std::string> libraries = library_names(all);
@@ -88,7 +88,7 @@ std::string medians(const Measurements& all) {
   return out;
 }
 
-/// How many times the median of ours each rival takes.
+/// The median time of each rival divided by that of repel.
 std::string ratios(const Measurements& all) {
   std::vector<std::string> libraries = library_names(all);
   std::erase(libraries, "repel");

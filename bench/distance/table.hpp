@@ -12,11 +12,11 @@ namespace repel::bench {
 
 using Measurements = std::vector<std::unique_ptr<Measurement>>;
 
-/// How the libraries were set; what each task costs (median) with wrong answers marked; how many
-/// times faster ours is; all percentiles and errors.
+/// The settings of the libraries; the median cost of each task, with wrong answers marked; the
+/// speed-up of repel; all percentiles and errors.
 [[nodiscard]] std::string comparison_table(const Measurements& all);
 
-/// Time against error, tolerance by tolerance.
+/// Run time against error, for each tolerance.
 [[nodiscard]] std::string sweep_table(const Measurements& all);
 
 }  // namespace repel::bench

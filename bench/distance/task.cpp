@@ -17,19 +17,20 @@ namespace {
 using families::random_pose;
 using families::Rng;
 
-/// [m] and [rad] a tool moves in one tick of a millisecond.
+/// [m] and [rad] Motion of a tool in one tick of a millisecond.
 constexpr double tick_travel = 5e-4;
 constexpr double tick_turn = 0.1 * M_PI / 180.0;
 
-/// MuJoCo keeps the vertices of meshes as floats: with vertices that are floats nobody is blamed
-/// for rounding them.
+/// Rounds the vertices to floats, as MuJoCo stores those of meshes, so that no library is charged
+/// with the rounding error.
 Solid in_floats(Solid s) {
   if (s.box) return s;
   for (Vec3& v : s.vertices) v = v.cast<float>().cast<double>();
   return s;
 }
 
-/// Adds a pair that is tick_travel on at the second tick; moves there until `holds` accepts.
+/// Adds a pair whose B moves by tick_travel until the second tick; redraws that motion until
+/// `holds` accepts it.
 void add_pair(Task& task, Rng& rng, const families::Pair& p,
               const std::function<bool(const Pose&)>& holds) {
   Pose X_WB = p.X_WB;
@@ -50,7 +51,7 @@ bool is_apart(const families::Pair& p, const Pose& X_WB) {
   return exact_gap(p.A, p.X_WA, p.B, X_WB) > 1e-5;
 }
 
-/// Pairs drawn by `draw` until `count` of them are more than `least` [m] apart.
+/// Pairs drawn by `draw`, until `count` of them are more than `least` [m] apart.
 Task apart_task(int count, std::uint64_t seed, double least,
                 const std::function<families::Pair(Rng&)>& draw) {
   Task task;
@@ -63,7 +64,7 @@ Task apart_task(int count, std::uint64_t seed, double least,
   return task;
 }
 
-/// Pairs at random poses, near to one size apart.
+/// Pairs at random poses, about one size apart.
 Task size_task(int vertices, int count) {
   return apart_task(count, 100 + vertices, 1e-3, [=](Rng& rng) {
     families::Pair p;
@@ -75,21 +76,21 @@ Task size_task(int vertices, int count) {
   });
 }
 
-/// Pairs of a family on which distance code fails, 0.1 mm to 1 m apart.
+/// Pairs of a family that is difficult for distance algorithms, 0.1 mm to 1 m apart.
 Task family_task(const std::string& family, int count) {
   return apart_task(count, 200, 5e-5, [=](Rng& rng) {
     return families::draw_apart(family, rng, families::log_uniform(rng, 1e-4, 1.0));
   });
 }
 
-/// True when every pair of the task is apart with its tool and obstacles at these poses.
+/// True if all pairs of the task are apart at these poses of tool and obstacles.
 bool all_apart(const Task& task, const std::vector<Pose>& X_W) {
   return std::all_of(task.pairs.begin(), task.pairs.end(), [&](const Pair& p) {
     return exact_gap(task.solids[p.a], X_W[p.a], task.solids[p.b], X_W[p.b]) > 1e-3;
   });
 }
 
-/// A tool of rigidly joined parts (the first solids) drifts on, turning away where it would hit.
+/// A tool of rigidly joined parts (the first solids) drifts, and turns away where it would collide.
 void wander(Task& task, Rng& rng, std::size_t parts, std::size_t ticks) {
   Vec3 heading = families::direction(rng);
   Vec3 axis = families::direction(rng);
@@ -111,7 +112,7 @@ void wander(Task& task, Rng& rng, std::size_t parts, std::size_t ticks) {
   }
 }
 
-/// 4 parts of a tool among 8 obstacles, boxes and hulls of 8 to 16 vertices, every pair.
+/// 4 tool parts and 8 obstacles, boxes and hulls of 8 to 16 vertices, all pairs.
 Task tick_task(std::size_t ticks) {
   constexpr std::size_t parts = 4;
   constexpr std::size_t obstacles = 8;

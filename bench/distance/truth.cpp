@@ -15,14 +15,14 @@ using families::Solid;
 using oracle::Point;
 using oracle::Real;
 
-/// The vertices of a solid that may decide, not all of a thousand.
+/// Working set of vertices of a solid that determine the result, to avoid using all of a thousand.
 class Deciding {
  public:
   Deciding(const Solid& solid, const Pose& X_W) : solid_(solid), X_W_(X_W) {}
 
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
 
-  /// Adds the vertex farthest along n; false when it is there already.
+  /// Adds the vertex farthest along n; false if it is already included.
   bool add_farthest(const Point& n) {
     int best = 0;
     Real farthest = along(0, n);
@@ -61,7 +61,7 @@ double exact_gap(const Solid& A, const Pose& X_WA, const Solid& B, const Pose& X
   Point n{};  // from B to A
   for (int i = 0; i < 3; ++i) n.x[i] = X_WA.translation()[i] - X_WB.translation()[i];
   double distance = 0.0;
-  // Ends when no vertex lies farther along the normal than those that decided: it is then proven.
+  // Ends when no vertex is farther along the normal than those included: this proves the result.
   while (a.add_farthest(negated(n)) | b.add_farthest(n)) {
     const auto found = oracle::distance(a.vertices(), X_WA, b.vertices(), X_WB);
     if (!found) throw std::runtime_error("the oracle could not prove a distance");

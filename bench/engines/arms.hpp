@@ -1,5 +1,5 @@
 /// @file
-/// The engines, each behind the same calls, and the arms they move.
+/// The engines behind a common interface, and the arms they simulate.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace repel::engines {
 
 constexpr double period = 2.5e-3;  ///< [s] of a step
 
-/// A TorqueDrivenArm of any engine: a virtual call is nothing beside a step.
+/// A TorqueDrivenArm of any engine; the virtual call costs next to nothing compared with a step.
 class SimulatedArm {
  public:
   virtual ~SimulatedArm() = default;
@@ -33,23 +33,24 @@ struct Engine {
   std::unique_ptr<SimulatedArm> (*make)(const ArmModel& model, int substeps);
 };
 
-/// The order in which tables have them; the reference is the last.
+/// In the order of the tables; the reference is last.
 [[nodiscard]] const std::array<Engine, 3>& engines();
 [[nodiscard]] const Engine& reference();
 
-/// A rod of 2 kg that hangs down at zero, its centre of mass 0.5 m from the axis; no friction.
+/// A rod of 2 kg, hanging down at zero, centre of mass 0.5 m from the axis; no friction.
 [[nodiscard]] ArmModel pendulum();
-/// [rad/s] of the pendulum in the limit of small swings.
+/// [rad/s] angular frequency of the pendulum in the limit of small swings.
 [[nodiscard]] double pendulum_frequency();
-/// Corke's PUMA 560 without stops, which the reference arm has not, and without dry friction, by
-/// which it creeps.
+/// Corke's PUMA 560 without joint stops, which the reference arm lacks, and without dry friction,
+/// which makes it creep.
 [[nodiscard]] ArmModel puma();
-/// Armstrong's PUMA 560, without stops and friction, with the gravity of 9.8 m/s^2 of his paper.
+/// Armstrong's PUMA 560, without joint stops and friction, with the gravity of that paper, 9.8
+/// m/s^2.
 [[nodiscard]] ArmModel armstrong_puma();
 /// Its first three links, under 9.81 m/s^2.
 [[nodiscard]] ArmModel three_links();
 
-/// Energy [J] of an arm, by KDL, whatever engine moves it.
+/// Energy [J] of an arm, computed by KDL for every engine.
 class Energy {
  public:
   explicit Energy(const ArmModel& arm);

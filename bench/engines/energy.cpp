@@ -1,4 +1,4 @@
-// Arms without friction or torques: their energy should stay.
+// Energy drift of arms without friction and torques, whose energy should be constant.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@ namespace repel::engines {
 namespace {
 
 constexpr int ticks_per_second = 400;
-constexpr double reference_error = 1e-9;  // of its energy in a second, at most
+constexpr double reference_error = 1e-9;  // relative energy drift in 1 s, upper limit
 
 struct Fall {
   std::string name;
@@ -20,7 +20,7 @@ struct Fall {
   std::vector<double> start;  // [rad], at rest
 };
 
-/// Energy [J] after each tick; the kinetic one by itself as well.
+/// Energy [J] after each tick; the kinetic energy also separately.
 struct Course {
   std::vector<double> total, kinetic;
 };
@@ -39,17 +39,17 @@ Course course_of(const Engine& engine, const Fall& fall, int substeps, int secon
   return course;
 }
 
-/// The furthest the energy has been from the first [J] until `seconds`.
+/// Largest deviation of the energy from its initial value [J] until `seconds`.
 double furthest(const std::vector<double>& total, int seconds) {
   double most = 0.0;
   for (int tick = 0; tick <= seconds * ticks_per_second; ++tick) {
     const double off = std::abs(total[static_cast<std::size_t>(tick)] - total.front());
-    if (!(off <= most)) most = off;  // NaN too
+    if (!(off <= most)) most = off;  // also true for NaN
   }
   return most;
 }
 
-/// What has been gained in the mean of the last ten seconds, or of all when there are fewer [J].
+/// Energy gained, as a mean over the last ten seconds, or over all if the run is shorter [J].
 double gained(const std::vector<double>& total) {
   const std::size_t count = std::min(total.size(), std::size_t{10} * ticks_per_second);
   double sum = 0.0;
@@ -87,8 +87,9 @@ Result energy(const Options& options) {
   Result result{
       .title = "Energy of arms without friction",
       .columns = {"arm", "engine", "sub-steps"},
-      .notes = {"Shares of the greatest kinetic energy of the reference arm. `off` is the furthest "
-                "from the energy at the start, `gained` the mean of the last 10 s above it."}};
+      .notes = {
+          "Relative to the greatest kinetic energy of the reference arm. `off` is the greatest "
+          "deviation from the initial energy, `gained` the mean deviation over the last 10 s."}};
   for (const int until : untils) {
     result.columns.push_back("off until " + std::to_string(until) + " s");
   }

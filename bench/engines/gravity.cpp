@@ -1,5 +1,5 @@
-// What holds a PUMA still, engine by engine, against the gravity constants that Armstrong, Khatib
-// and Burdick published (ICRA 1986).
+// The torques that hold a PUMA still, for each engine, compared with the gravity constants that
+// Armstrong, Khatib and Burdick published (ICRA 1986).
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -16,15 +16,16 @@ namespace repel::engines {
 namespace {
 
 constexpr int links = 6;
-constexpr double moment = 1e-4;  // [s] of free fall from rest: too short to turn far
+constexpr double moment =
+    1e-4;  // [s] of free fall from rest: too short for the joint angles to change much
 using Torques = Eigen::Matrix<double, links, 1>;
 using Constants = Eigen::Matrix<double, 5, 1>;
 
 const Constants published = (Constants() << -37.2, -8.44, 1.02, 0.249, -0.0282).finished();
-/// One in the last digit that is published [N m]: they were computed from rounded numbers.
+/// One unit in the last published digit [N m]: the constants were computed from rounded numbers.
 const Constants last_digit = (Constants() << 0.1, 0.01, 0.01, 0.001, 0.0001).finished();
 
-/// What stands beside each constant in the torque of each joint.
+/// The factor of each constant in the torque of each joint.
 Eigen::Matrix<double, links, 5> formula(std::span<const double> q) {
   const double s2 = std::sin(q[1]), c2 = std::cos(q[1]);
   const double s23 = std::sin(q[1] + q[2]), c23 = std::cos(q[1] + q[2]);
@@ -40,7 +41,7 @@ Eigen::Matrix<double, links, 5> formula(std::span<const double> q) {
   return out;
 }
 
-/// [rad/s^2] with which `arm` starts from rest under `torques`.
+/// Joint accelerations [rad/s^2] of `arm` from rest under `torques`.
 Torques acceleration(SimulatedArm& arm, std::span<const double> q, const Torques& torques) {
   arm.reset(q, {});
   arm.set_torques({torques.data(), links});
@@ -49,8 +50,8 @@ Torques acceleration(SimulatedArm& arm, std::span<const double> q, const Torques
   return Eigen::Map<const Torques>(v.data()) / moment;
 }
 
-/// The torques under which the arm does not move, by how it answers to none and to one N m at each
-/// joint: no inertia is known beforehand.
+/// The torques that hold the arm still, identified from its response to zero torque and to 1 N m at
+/// each joint: the inertia need not be known.
 Torques holding_torques(SimulatedArm& arm, std::span<const double> q) {
   const Torques free = acceleration(arm, q, Torques::Zero());
   Eigen::Matrix<double, links, links> answer;
@@ -71,8 +72,8 @@ std::vector<std::vector<double>> random_poses(std::size_t count, std::uint64_t s
 }
 
 struct Held {
-  Constants constants;      // that fit the torques best [N m]
-  double from_kdl = 0.0;    // the furthest a torque is from KDL's [N m]
+  Constants constants;      // best fit to the torques [N m]
+  double from_kdl = 0.0;    // largest deviation of a torque from KDL's [N m]
   double from_paper = 0.0;  // and from the published formula [N m]
 };
 
@@ -106,10 +107,10 @@ Result gravity(const Options& options) {
   Result result{.title = "Torques that hold a PUMA 560",
                 .columns = {"engine", "g1 [N m]", "g2 [N m]", "g3 [N m]", "g4 [N m]", "g5 [N m]",
                             "furthest from the published [N m]", "from KDL [N m]"},
-                .notes = {bench::text("Armstrong's set at %zu random poses, no friction. The "
-                                      "torques come from the accelerations alone with which an "
-                                      "engine answers; the constants are their best fit.",
-                                      poses.size())}};
+                .notes = {bench::text(
+                    "Armstrong's set at %zu random poses, no friction. The torques are computed "
+                    "from an engine's accelerations; the constants are their best fit.",
+                    poses.size())}};
   const auto add = [&](const std::string& name, const Constants& g, const Json& from_paper,
                        const Json& from_kdl) {
     result.rows.push_back({name, g[0], g[1], g[2], g[3], g[4], from_paper, from_kdl});

@@ -1,5 +1,5 @@
 /// @file
-/// How fast and how right the simulated arms are, engine by engine.
+/// Speed and accuracy of the simulated arms, engine by engine.
 
 #include <array>
 

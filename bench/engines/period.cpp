@@ -1,4 +1,4 @@
-// How long a pendulum takes for a swing, against the complete elliptic integral.
+// Period of a pendulum compared with the complete elliptic integral.
 
 #include <cmath>
 
@@ -11,9 +11,9 @@ namespace repel::engines {
 namespace {
 
 constexpr int swings = 20;
-constexpr double reference_error = 1e-9;  // of the period, at most
+constexpr double reference_error = 1e-9;  // relative error of the period, upper limit
 
-/// Where the cubic through both ends of a step, with their velocities, is zero: a share of it.
+/// The zero of the cubic Hermite interpolant of a step, as a fraction of the step.
 double crossing(double q0, double v0, double q1, double v1) {
   const double d0 = period * v0;
   const double d1 = period * v1;
@@ -29,8 +29,8 @@ double crossing(double q0, double v0, double q1, double v1) {
   return low;
 }
 
-/// [s] of a swing, the mean of 20 between crossings of the vertical in one direction; NaN when it
-/// does not swing.
+/// Period of a swing [s], averaged over 20 between crossings of the vertical in one direction; NaN
+/// if it does not swing.
 double measured_period(SimulatedArm& arm, double amplitude, double expected) {
   arm.reset(std::vector{amplitude}, {});
   double q0 = amplitude;
@@ -78,8 +78,8 @@ Result swing_period(const Options& /*options*/) {
   Result result{
       .title = "Period of a pendulum",
       .columns = {"amplitude [deg]", "engine", "sub-steps", "exact [s]", "relative error"},
-      .notes = {bench::text("The mean of %d swings from rest, less the exact period, as a share of "
-                            "it; exact is 4 K(sin(amplitude / 2)) / omega.",
+      .notes = {bench::text("The relative error of the mean period of %d swings from rest; the "
+                            "exact period is 4 K(sin(amplitude / 2)) / omega.",
                             swings)}};
   for (const double degrees : {5.0, 120.0}) measure(degrees, result);
   return result;

@@ -1,5 +1,5 @@
-// The same motion by every engine, in ever more sub-steps: how long a step takes and how far off
-// the joints are.
+// The same motion simulated by every engine with an increasing number of sub-steps: time per step
+// and error of the joint positions.
 
 #include <algorithm>
 #include <chrono>
@@ -15,10 +15,12 @@ namespace repel::engines {
 
 namespace {
 
-constexpr int ticks = 400;          // a second
-constexpr int true_substeps = 128;  // of the reference that the others are measured against
-constexpr double converged = 1e-9;  // [rad] by which half of them may change it
-constexpr double least_gain = 1.5;  // in error for twice the sub-steps; a first order has 2
+constexpr int ticks = 400;  // 1 s
+constexpr int true_substeps =
+    128;  // of the reference solution against which the others are compared
+constexpr double converged = 1e-9;  // [rad] tolerance for its change when its sub-steps are halved
+constexpr double least_gain =
+    1.5;  // error ratio when the sub-steps are doubled; a first-order method has 2
 
 using Motion = std::vector<std::vector<double>>;  // joint positions [rad], tick by tick
 
@@ -53,19 +55,19 @@ Motion motion_of(SimulatedArm& arm, const Workload& workload) {
   return motion;
 }
 
-/// The greatest difference of a joint at any tick [rad].
+/// Largest difference of a joint position at any tick [rad].
 double apart(const Motion& a, const Motion& b) {
   double most = 0.0;
   for (std::size_t tick = 0; tick < a.size(); ++tick) {
     for (std::size_t i = 0; i < a[tick].size(); ++i) {
       const double error = std::abs(a[tick][i] - b[tick][i]);
-      if (!(error <= most)) most = error;  // NaN too
+      if (!(error <= most)) most = error;  // also true for NaN
     }
   }
   return most;
 }
 
-/// An engine with so many sub-steps on one workload.
+/// One engine with one number of sub-steps on one workload.
 struct Run {
   const Engine& engine;
   int substeps;
@@ -89,7 +91,8 @@ std::size_t repetitions_of(const Options& options) {
   return options.quick ? 3 : 51;
 }
 
-/// All runs in turn, in another order each time: what disturbs the machine hits all alike.
+/// Interleaves all runs, in a different order each time, so that disturbances of the machine affect
+/// all alike.
 void time_all(std::vector<Run>& runs, const Workload& workload, const Options& options) {
   std::mt19937_64 random(options.seed);
   std::vector<std::size_t> order(runs.size());
@@ -105,7 +108,7 @@ void time_all(std::vector<Run>& runs, const Workload& workload, const Options& o
   for (Run& run : runs) std::sort(run.step_times.begin(), run.step_times.end());
 }
 
-/// Every engine with every number of sub-steps and its error, not yet timed.
+/// Every engine with every number of sub-steps, with its error, not timed yet.
 std::vector<Run> runs_of(const Workload& workload, const Motion& truth, const Options& options) {
   std::vector<Run> runs;
   for (const Engine& engine : engines()) {
@@ -117,15 +120,15 @@ std::vector<Run> runs_of(const Workload& workload, const Motion& truth, const Op
   return runs;
 }
 
-/// What is wrong with `run`, whose engine had the error `before` [rad] with half the sub-steps,
-/// where the truth is known to `doubt` [rad].
+/// The fault of `run`, or an empty string. `before` [rad]: error of its engine with half the
+/// sub-steps; `doubt` [rad]: uncertainty of the reference.
 std::string complaint(const Run& run, double before, double doubt) {
   if (!(doubt < converged)) return "the reference has not converged";
   if (run.error < converged || run.error < before / least_gain) return "";
   return "the error does not fall with the sub-steps";
 }
 
-/// A run with a complaint has earned no time.
+/// A run with a complaint gets no time in the table.
 void add_row(const Workload& workload, const Run& run, const std::string& why, Result& result) {
   const auto earned = [&](double time) { return why.empty() ? Json(1e6 * time) : Json(); };
   const std::string& engine = run.engine.name;
@@ -142,8 +145,9 @@ void measure(const Workload& workload, const Options& options, Result& result) {
   };
   const Motion truth = reference_in(true_substeps);
   const double doubt = apart(truth, reference_in(true_substeps / 2));
-  result.notes.push_back(bench::text("%s: half the sub-steps change the truth by %.1e mrad.",
-                                     workload.name.c_str(), 1e3 * doubt));
+  result.notes.push_back(
+      bench::text("%s: with half the sub-steps the reference changes by %.1e mrad.",
+                  workload.name.c_str(), 1e3 * doubt));
   std::vector<Run> runs = runs_of(workload, truth, options);
   time_all(runs, workload, options);
   double before = INFINITY;
@@ -160,11 +164,11 @@ Result sweep(const Options& options) {
   Result result{
       .title = "Run time against error",
       .columns = {"arm", "engine", "sub-steps", "error [mrad]", "step [us]", "fastest step [us]"},
-      .notes = {bench::text("A second in steps of 2.5 ms. The error is the greatest of a joint at "
-                            "any step, against the reference arm in %d sub-steps; the time of a "
-                            "step is the median and the least of %zu such seconds. " REPEL_ENGINES
-                            ".",
-                            true_substeps, repetitions_of(options))}};
+      .notes = {
+          bench::text("A second in steps of 2.5 ms. The error is the greatest of any joint at any "
+                      "step, against the reference arm with %d sub-steps; the time of a step is "
+                      "the median and the minimum of %zu such seconds. " REPEL_ENGINES ".",
+                      true_substeps, repetitions_of(options))}};
   measure(puma_under_slow_torques(), options, result);
   measure(free_pendulum(), options, result);
   return result;

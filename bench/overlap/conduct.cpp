@@ -17,13 +17,13 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// [rad] Not a number where a direction is missing.
+/// Angle [rad]; NaN if a direction is missing.
 double angle(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Asks a library that may abort the process, as FCL does where its own assertions fail, mostly in
-/// shallow overlap. What the library held at that moment is lost.
+/// Queries a library that may abort the process, as FCL does when its own assertions fail, mostly
+/// in shallow overlap. Memory the library held at the abort is leaked.
 class Guarded {
  public:
   explicit Guarded(std::unique_ptr<Rival> rival) : rival_(std::move(rival)) {
@@ -33,7 +33,7 @@ class Guarded {
   Guarded& operator=(const Guarded&) = delete;
   ~Guarded() { std::signal(SIGABRT, SIG_DFL); }
 
-  /// Not a number where the library aborts.
+  /// The distance is NaN if the library aborts.
   Answer answer(const Ask& ask) {
     if (sigsetjmp(before_, 1) != 0) return {.distance = std::nan("")};
     return rival_->answer(ask, Start::warm);

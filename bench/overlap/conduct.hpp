@@ -1,28 +1,29 @@
 /// @file
-/// How the answers of a library behave while one solid moves into and through the other.
+/// Continuity of the answers of a library while one solid moves into and through the other.
 #pragma once
 
 #include "measurement.hpp"
 
 namespace repel::bench {
 
-/// What the largest step of the answers is, and how deep an overlap goes unnoticed.
+/// Largest steps of the answers, and the dead zone: the depth of overlap that goes undetected.
 struct Conduct {
-  /// [m] The greatest true depth answered by less than a hundredth of it, pair by pair.
+  /// [m] Dead zone of a pair: largest true depth for which the answer is below 1 % of it.
   double median_dead_zone = 0.0;
   double worst_dead_zone = 0.0;
-  double excess = 0.0;  ///< [m] largest change of the value in a step, less the motion of the step
+  double excess = 0.0;  ///< [m] largest change of the value in a step minus the motion of the step
   Ask steepest;         ///< the step of that change
   double turn = 0.0;    ///< [rad] largest change of the direction in a step
-  double median_turn = 0.0;  ///< [rad] of the largest on each way
-  /// Of ours: pressed not finite, too deep or outside its bracket; on its way through not finite.
+  double median_turn = 0.0;  ///< [rad] median over the paths of the largest change on each
+  /// repel only: on presses answers not finite, too deep or outside their bracket; on sweeps not
+  /// finite.
   int wrong = 0;
 
-  /// A distance changes no faster than the solids move; rounding is 1e-15 of them.
+  /// The distance cannot change faster than the solids move; rounding is 1e-15 of their size.
   [[nodiscard]] bool jumps() const { return excess > 1e-12; }
 };
 
-/// Asks the library along both, warm, step by step.
+/// Queries the library along both motions, with warm start, step by step.
 [[nodiscard]] Conduct conduct_of(const Library& library, const CheckedTask& presses,
                                  const Task& sweeps);
 

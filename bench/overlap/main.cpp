@@ -1,6 +1,6 @@
 /// @file
-/// Overlap side by side: what a depth costs, how near it is to the exact one, and how it behaves
-/// while one solid moves through the other.
+/// Overlap queries of several libraries compared: cost of a depth query, its error against the
+/// exact depth, and its continuity while one solid moves through the other.
 
 #include <cstdio>
 #include <stdexcept>
@@ -32,7 +32,7 @@ struct Options {
   double seconds = 0.0;
 };
 
-/// Throws std::invalid_argument for what is not known.
+/// Throws std::invalid_argument for an unknown name.
 Options parse(Arguments arguments) {
   Options options;
   options.rivals = split(arguments.value("--rival", ""));
@@ -43,7 +43,7 @@ Options parse(Arguments arguments) {
   return options;
 }
 
-/// The same solids for all.
+/// The same solids for all libraries.
 class Input {
  public:
   Input(const std::string& name, int vertices, bool quick)
@@ -71,7 +71,7 @@ class Input {
   Task sweeps_;
 };
 
-/// What the file says of a row beside its times.
+/// The fields of a row in the file other than its times.
 void count(const Conduct& conduct, benchmark::State& state) {
   state.counters["median_dead_zone_m"] = conduct.median_dead_zone;
   state.counters["worst_dead_zone_m"] = conduct.worst_dead_zone;

@@ -11,7 +11,7 @@ namespace {
 
 using families::Rng;
 
-/// The way of A past or through B, which stands in the origin.
+/// The path of A past or through B, which is at the origin.
 struct Way {
   Solid A, B;
   Mat3 R_WA, R_WB;
@@ -19,7 +19,7 @@ struct Way {
   Vec3 aside;             ///< [m] normal to it
   double whole_turn = 0;  ///< [rad] about the line `along` through the origin
 
-  /// `s` [m] before its middle, `share` of the way gone.
+  /// The pose `s` [m] before the middle of the path; `share` is the fraction of the path covered.
   [[nodiscard]] Pose X_WA(double s, double share) const {
     const Eigen::AngleAxisd turn(share * whole_turn, along);
     Pose X = Pose::Identity();
@@ -43,7 +43,7 @@ Way draw_way(Rng& rng, int vertices) {
   return way;
 }
 
-/// [m] How far before the middle of its way A comes into contact.
+/// [m] Distance before the middle of its path at which A comes into contact.
 double contact(const Way& way) {
   double meets = 0.0;
   double apart = 2.0;
@@ -54,7 +54,7 @@ double contact(const Way& way) {
   return apart;
 }
 
-/// Adds the pair; `X_WA(tick)` is where A is.
+/// Adds the pair; `X_WA(tick)` is the pose of A.
 template <class Where>
 void add_pair(Task& task, const Way& way, Where&& X_WA) {
   task.pairs.push_back({task.solids.size(), task.solids.size() + 1});

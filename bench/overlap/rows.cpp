@@ -23,9 +23,9 @@ std::string line(const Row& row) {
          text(" %.2g | %.1f | %.1f |\n", 1e3 * c.excess, degrees * c.median_turn, degrees * c.turn);
 }
 
-/// Of the libraries beside ours, each once.
+/// The libraries other than repel, each once.
 std::string versions(const Rows& rows) {
-  std::string out = "Set as for distances:";
+  std::string out = "Settings as for distances:";
   for (const Row& row : rows) {
     if (row.library.ours || row.warm->task().name != rows.front().warm->task().name) continue;
     out += " " + row.library.name + " " + row.library.version + ";";

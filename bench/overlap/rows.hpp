@@ -22,10 +22,10 @@ struct Row {
 };
 using Rows = std::vector<Row>;
 
-/// Input by input: times, errors, wrong answers, dead zones and jumps.
+/// For each input: times, errors, wrong answers, dead zones and jumps.
 [[nodiscard]] std::string overlap_table(const Rows& rows);
 
-/// What is wrong with ours, a line each: wrong answers, and a value that jumps.
+/// The faults of repel, a line each: wrong answers, and values that jump.
 [[nodiscard]] std::string faults(const Rows& rows);
 
 }  // namespace repel::bench

@@ -1,5 +1,5 @@
 /// @file
-/// Ours: every way `separation` measures an overlap.
+/// The settings of repel: every method by which `separation` measures an overlap.
 
 #include "rivals/repel.hpp"
 

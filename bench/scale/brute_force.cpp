@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <repel/schedule/pair_worker.hpp>
+#include <repel/pairs/pair_partition.hpp>
 
 namespace repel::scale {
 
@@ -23,13 +23,14 @@ BruteForce::BruteForce(const Scene& scene)
     s.x[s.count] = centre.x();
     s.y[s.count] = centre.y();
     s.z[s.count] = centre.z();
-    // Larger than what single precision rounds off within 20 m.
+    // Larger than the rounding error of single precision within 20 m.
     s.radius[s.count] = static_cast<float>(part.shape.reach() + scene.law().range + 2e-5);
     ++s.count;
   }
-  // Forces are added up in the order of the coprocessor, so that sums can be equal to the last bit.
+  // Forces are summed in the order of the coprocessor, so that sums can be bitwise equal.
   on_body_of_.resize(
-      detail::PairWorker::blocks_of(scene.setting().pairs, scene.setting().most_threads), on_body_);
+      detail::PairPartition::blocks_of(scene.setting().pairs, scene.setting().most_threads),
+      on_body_);
 }
 
 void BruteForce::place(std::span<const Placement> placements) {
@@ -39,7 +40,7 @@ void BruteForce::place(std::span<const Placement> placements) {
   }
 }
 
-/// Calls `found(pair)` for those whose spheres are within range, until it says false.
+/// Calls `found(pair)` for those whose spheres are within range, until it returns false.
 template <class Found>
 void BruteForce::look(Found&& found) {
   for (int i = 0; i < scene_.tool_parts(); ++i) {
@@ -80,7 +81,7 @@ void BruteForce::push(std::int32_t pair, const Separation& s) {
   const double distance = s.lower > 0.0 ? s.lower : s.distance;
   const Vec3 f = scene_.law()(distance, s.extraction_W.dot(v)) * s.extraction_W;
   std::vector<Wrench>& on_body =
-      on_body_of_[detail::PairShare::block_of({pair}, static_cast<int>(on_body_of_.size()))];
+      on_body_of_[detail::PairPartition::block_of({pair}, static_cast<int>(on_body_of_.size()))];
   on_body[a] += wrench_of_force(f, p_AQ);
   on_body[b] += wrench_of_force(-f, p_BQ);
 }

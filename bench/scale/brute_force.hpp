@@ -1,5 +1,5 @@
 /// @file
-/// The answer, found the plain way: every pair is looked at, at every tick.
+/// Reference answer by brute force: every pair is tested at every tick.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,37 @@
 
 namespace repel::scale {
 
-/// Compares the spheres around both parts of every pair, one by one, and asks every pair whose
-/// spheres are within range, warm: in deep overlap the witness points are not the only ones, and
-/// from a cold start others may be found. It shares with the world model the query and the
-/// force law, and nothing that decides which pairs are asked.
+/// Compares the bounding spheres of both parts of every pair, one by one, and queries every pair
+/// whose spheres are within range, with a warm start: in deep overlap witness points are not
+/// unique, and a cold start may find others. Shares the query and the force law with the world
+/// model, but nothing that decides which pairs are queried.
 class BruteForce {
  public:
-  /// Keeps the scene as it stands now.
+  /// Copies the present state of the scene.
   explicit BruteForce(const Scene& scene);
 
-  /// The forces at that tick, and the pairs within range in their order.
+  /// The forces at that tick, and the pairs within range, sorted.
   void tick(std::span<const Placement> placements);
   [[nodiscard]] const std::vector<Wrench>& on_body() const { return on_body_; }
   [[nodiscard]] const std::vector<std::int32_t>& within() const { return within_; }
-  /// Of all ticks so far.
+  /// Over all ticks so far.
   [[nodiscard]] std::int64_t asked() const { return asked_; }
   [[nodiscard]] std::int64_t overlapping() const { return overlapping_; }
 
-  /// How many pairs are within range; `most` when there are more.
+  /// Number of pairs within range; `most` if there are more.
   [[nodiscard]] int count_near(std::span<const Placement> placements, int most);
 
  private:
   static constexpr int lane = 64;
   using Lane = Eigen::Array<float, lane, 1>;
 
-  /// The spheres of some obstacles of one body, in its frame.
+  /// The bounding spheres of some obstacles of one body, in its frame.
   struct Spheres {
     std::int32_t body = 0;
-    std::int32_t first = 0;  ///< obstacle; the others follow
+    std::int32_t first = 0;  ///< first obstacle; the others follow
     int count = 0;
     Lane x = Lane::Zero(), y = Lane::Zero(), z = Lane::Zero();
-    Lane radius = Lane::Zero();  ///< of the sphere, and the range
+    Lane radius = Lane::Zero();  ///< of the sphere, plus the range
   };
 
   void place(std::span<const Placement> placements);
@@ -56,11 +56,11 @@ class BruteForce {
   std::vector<Spheres> spheres_;
   std::vector<Pose> X_WB_;
   std::vector<Twist> V_WB_;
-  std::unordered_map<std::int32_t, WarmStart> warm_;  ///< of all pairs that were ever asked
+  std::unordered_map<std::int32_t, WarmStart> warm_;  ///< of all pairs queried so far
   std::vector<std::int32_t> found_;
   std::vector<std::int32_t> within_;
   std::vector<Wrench> on_body_;
-  std::vector<std::vector<Wrench>> on_body_of_;  ///< by block of the sum
+  std::vector<std::vector<Wrench>> on_body_of_;  ///< by block of the summation
   std::int64_t asked_ = 0;
   std::int64_t overlapping_ = 0;
 };

@@ -1,6 +1,6 @@
 /// @file
-/// What a tick of the world costs from 32 to 1 000 000 pairs, and that it finds what brute force
-/// finds.
+/// Cost of a tick of the world from 32 to 1 000 000 pairs, with its results checked against brute
+/// force.
 
 #include <algorithm>
 #include <cstdio>
@@ -63,7 +63,7 @@ long number(Arguments& arguments, const std::string& flag, long otherwise, long 
   return parsed;
 }
 
-/// Throws std::logic_error for what is not known.
+/// Throws std::logic_error for an unknown name.
 Options parse(Arguments arguments) {
   Options options;
   Setting& setting = options.setting;
@@ -108,7 +108,7 @@ Scenario measure_all(const Setting& setting, const std::vector<Way>& ways, doubl
   scenario.asked = truth.asked;
   const auto bodies = static_cast<std::size_t>(setting.bodies) + 1;
   for (const Run& run : scenario.runs) {
-    // What it claims to have evaluated is believed only where it is every pair.
+    // Serves as the reference only if it really evaluated every pair.
     if (run.way.every_pair && run.evaluated == setting.pairs) every_pair = &run.record;
   }
   for (Run& run : scenario.runs) {
@@ -185,7 +185,7 @@ int start(int argc, char** argv) {
   try {
     const int code = run(parse(arguments));
     std::fflush(nullptr);
-    // FCL and Coal each bring their own octomap, and the destructors of the two collide.
+    // FCL and Coal each link their own octomap, whose destructors collide at exit.
     std::quick_exit(code);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

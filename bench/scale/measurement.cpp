@@ -34,7 +34,7 @@ double percentile_of(std::vector<double> values, double share) {
   return *place;
 }
 
-/// Of this thread so far.
+/// Resource usage of this thread so far.
 struct rusage usage() {
   struct rusage now {};
   getrusage(RUSAGE_THREAD, &now);
@@ -58,7 +58,7 @@ bool bitwise(const Wrench& a, const Wrench& b) {
   return numbers(a) == numbers(b);
 }
 
-/// What counts as equal.
+/// The tolerance of the comparison.
 bool same(const Wrench& a, const Wrench& b) {
   return difference(a, b) <= 1e-9 * std::max({1.0, size(a), size(b)});
 }

@@ -1,5 +1,5 @@
 /// @file
-/// What is measured: ways to turn a motion into the pairs within range and what is known of them.
+/// The methods measured: each computes from a motion the pairs within range and data about them.
 #pragma once
 
 #include <cstdint>
@@ -13,40 +13,40 @@
 
 namespace repel::scale {
 
-/// What was found, tick by tick.
+/// The results, tick by tick.
 struct Record {
-  std::vector<Wrench> on_body;       ///< [tick * bodies + body]; empty where none are computed
-  std::vector<std::int32_t> within;  ///< the pairs within range, tick after tick, in order
-  std::vector<std::size_t> end;      ///< of each tick in `within`; empty where not known
+  std::vector<Wrench> on_body;  ///< [tick * bodies + body]; empty if the method computes no forces
+  std::vector<std::int32_t> within;  ///< the pairs within range, tick after tick, sorted
+  std::vector<std::size_t> end;      ///< end of each tick in `within`; empty if not known
 };
 
-/// One way, with a scene loaded.
+/// One method, with a scene loaded.
 class Method {
  public:
   virtual ~Method() = default;
-  /// Nothing but this is timed.
+  /// Only this function is timed.
   virtual void tick(std::int64_t tick, std::span<const Placement> placements) noexcept = 0;
-  /// Adds what the last tick has found.
+  /// Appends the results of the last tick.
   virtual void note(Record& record) const = 0;
-  /// Of the last tick.
+  /// Number of pairs evaluated in the last tick.
   [[nodiscard]] virtual int evaluated() const = 0;
 };
 
-/// A way by name.
+/// A method by name.
 struct Way {
   std::string name;
   std::string settings;
   int threads = 0;
   bool ours = false;
-  bool every_pair = false;  ///< evaluates all at every tick
+  bool every_pair = false;  ///< evaluates all pairs at every tick
   std::function<std::unique_ptr<Method>(const Scene&)> load;
 };
 
-/// Ours with so many threads.
+/// repel with that many threads.
 [[nodiscard]] Way ours(int threads);
-/// Ours, every pair at every tick.
+/// repel, evaluating every pair at every tick.
 [[nodiscard]] Way every_pair();
-/// The broad phases of the other libraries of this build.
+/// The broad phases of the other libraries in this build.
 [[nodiscard]] std::vector<Way>& rivals();
 
 }  // namespace repel::scale

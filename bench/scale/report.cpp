@@ -22,7 +22,7 @@ std::string quoted(const std::string& words) {
   return out + "\"";
 }
 
-/// The fields of an object, one a line.
+/// The fields of an object, one per line.
 class Object {
  public:
   explicit Object(int indent) : indent_(indent, ' ') {}
@@ -86,7 +86,7 @@ std::string small_json(const SmallRun& run) {
   return object.add("wrong", run.wrong).str();
 }
 
-/// The mean, or, where answers are wrong, how many are: such a time is not earned.
+/// The mean time, or the number of wrong answers if there are any: then no time is shown.
 std::string line(const Scenario& s, const Run& run) {
   const Check& check = run.check;
   std::string out = text("| %s | %d | %d | %.3g | %.4g |", run.way.name.c_str(), run.way.threads,

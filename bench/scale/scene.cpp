@@ -13,10 +13,10 @@ namespace {
 
 using families::Rng;
 
-constexpr int riders = 64;  // obstacles on a body that moves, at most
+constexpr int riders = 64;  // maximum number of obstacles on a moving body
 const BodyId tool{1};
 
-/// [m] radius of a tool of so many parts.
+/// [m] Radius of a tool with that many parts.
 double tool_radius(int parts) {
   return 0.06 * std::cbrt(parts);
 }
@@ -25,7 +25,7 @@ Vec3 in_ball(Rng& rng) {
   return std::cbrt(families::uniform(rng, 0.0, 1.0)) * families::direction(rng);
 }
 
-/// A box, or the hull of 16 points on the ellipsoid within.
+/// A box, or the hull of 16 points on its inscribed ellipsoid.
 Shape draw_shape(Rng& rng, bool box, double largest) {
   Vec3 half;
   for (double& h : half) h = families::log_uniform(rng, 0.005, largest);
@@ -50,9 +50,9 @@ int tool_parts_for(int pairs) {
 
 Path::Path(const Vec3& centre, double region, double speed, std::uint64_t seed) : centre_(centre) {
   Rng rng(seed);
-  constexpr double turn = 0.5;  // [rad] at most about each axis
+  constexpr double turn = 0.5;  // [rad] largest angle about each axis
   const double amplitude = region / waves;
-  // The root of the mean square over three axes of so many waves.
+  // Root mean square over three axes of that many waves.
   const double rate = speed / (amplitude * std::sqrt(1.5 * waves));
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < waves; ++i) {
@@ -101,7 +101,8 @@ Scene::Scene(const Setting& setting)
   steer();
 }
 
-/// All obstacles within `radius` [m], had they one body. In a small scene the bodies stray less.
+/// Spreads the obstacles over a ball of `radius` [m], on moving bodies over a smaller ball of equal
+/// density. In a small scene the bodies stray less.
 void Scene::spread(double radius) {
   for (int i = 0; i < obstacles(); ++i) {
     Part& part = parts_[tool_parts_ + i];

@@ -1,5 +1,5 @@
 /// @file
-/// A tool of many convex parts on its way among many obstacles: what a tick is measured on.
+/// The benchmark scene: a tool of many convex parts moving among many obstacles.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +10,29 @@
 
 namespace repel::scale {
 
-/// What is measured.
+/// The parameters of a scene.
 struct Setting {
   int pairs = 32;
-  double near = 3.0;  ///< pairs within range, in the mean over the ticks: what is aimed at
+  double near = 3.0;  ///< target for the mean number of pairs within range
   int ticks = 10000;
   int threads = 0;
-  int most_threads = 2;  ///< Limits::threads of the world; those of the sweep
-  int bodies = 2;        ///< that move: the tool, and bodies that carry obstacles
+  int most_threads = 2;  ///< Limits::threads of the world; also the largest of the sweep
+  int bodies = 2;        ///< moving bodies: the tool, and bodies that carry obstacles
   double speed = 0.28;   ///< [m/s] of the tool, root mean square
   std::uint64_t seed = 1;
 };
 
-/// Where a body is put at a tick.
+/// The pose of a body at a tick.
 struct Placement {
   BodyId body;
   Pose X_WB = Pose::Identity();
   Twist V_WB;
 };
 
-/// A smooth way in a bounded region: a sum of sines in each coordinate of position and rotation.
+/// A smooth path in a bounded region: a sum of sines in each coordinate of position and rotation.
 class Path {
  public:
-  /// @param region [m] it strays no farther from `centre` along an axis
+  /// @param region [m] largest deviation from `centre` along an axis
   /// @param speed [m/s] root mean square
   Path(const Vec3& centre, double region, double speed, std::uint64_t seed);
   [[nodiscard]] Pose at(double seconds) const;
@@ -49,27 +49,27 @@ class Path {
   Wave rotation_[3][waves];  ///< [rad] by axis of the rotation vector
 };
 
-/// How fast the tool moves.
+/// Speed statistics of the tool.
 struct Speed {
   double mean = 0.0;       ///< [m/s]
   double most = 0.0;       ///< [m/s]
   double most_turn = 0.0;  ///< [rad] in a tick
 };
 
-/// Every part of the tool makes a pair with every obstacle, tool part by tool part, until there are
-/// as many as asked. Most obstacles are fixed; up to 64 ride on each other body that moves, as near
-/// to each other as the fixed ones are.
+/// Pairs every tool part with every obstacle, tool part by tool part, up to the requested number of
+/// pairs. Most obstacles are fixed; up to 64 are carried by each other moving body, as closely
+/// spaced as the fixed ones.
 class Scene {
  public:
   static constexpr double period = 0.0025;  ///< [s] of a tick
   static constexpr double range = 0.03;     ///< [m] of the force
 
-  /// Draws the parts, then spreads the obstacles until the mean of the pairs within range is as
-  /// asked, as nearly as that goes.
+  /// Draws the parts, then scales the spread of the obstacles until the mean number of pairs within
+  /// range is as close to the target as possible.
   explicit Scene(const Setting& setting);
 
   [[nodiscard]] World world() const;
-  /// Of all bodies that move. Ticks count from 0.
+  /// Of all moving bodies. Ticks count from 0.
   [[nodiscard]] std::span<const Placement> placements(std::int64_t tick) const;
   [[nodiscard]] Speed speed() const;
 
@@ -92,10 +92,10 @@ class Scene {
   Setting setting_;
   ForceLaw law_{.range = range};
   int tool_parts_;
-  int riding_ = 0;  ///< obstacles on each body that moves
+  int riding_ = 0;  ///< obstacles on each moving body
   std::vector<Part> parts_;
   std::vector<Vec3> places_;  ///< of the obstacles, in a ball of radius 1
-  std::vector<Path> paths_;   ///< by body, the fixed one left out
+  std::vector<Path> paths_;   ///< by body, without the fixed one
   mutable std::vector<Placement> placements_;
 };
 

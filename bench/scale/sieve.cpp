@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <repel/schedule/pair_search.hpp>
+#include <repel/pairs/pair_search.hpp>
 
 namespace repel::scale {
 

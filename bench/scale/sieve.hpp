@@ -1,5 +1,5 @@
 /// @file
-/// The broad phase of another library, and our query on the pairs it lets through.
+/// The broad phase of another library, followed by repel's query on the pairs it reports.
 #pragma once
 
 #include <memory>
@@ -13,18 +13,18 @@
 
 namespace repel::scale {
 
-/// Boxes along the axes of the world, of tool parts and of obstacles.
+/// World-axis-aligned boxes of tool parts and of obstacles.
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
-  /// The box of a part is now this one. Parts as Scene::parts() counts them.
+  /// Updates the box of a part. Parts are numbered as in Scene::parts().
   virtual void move(int part, const Box& box) noexcept = 0;
-  /// All tool parts and obstacles whose boxes overlap, once each, into `found`.
+  /// Writes all pairs of tool part and obstacle whose boxes overlap into `found`, each once.
   virtual void find(std::vector<std::pair<int, int>>& found) noexcept = 0;
 };
 
-/// Boxes of the parts that moved go to the broad phase, larger by the range for tool parts, and
-/// the query, warm, to every pair whose boxes overlap.
+/// The boxes of the parts that moved go to the broad phase, enlarged by the range for tool parts;
+/// every pair whose boxes overlap is queried with a warm start.
 class Sieve final : public Method {
  public:
   using Maker = std::unique_ptr<BroadPhase> (*)(std::span<const Box> boxes, int tool_parts);
@@ -37,7 +37,7 @@ class Sieve final : public Method {
  private:
   struct Moving {
     int part;
-    Box box;  ///< [m] in its body
+    Box box;  ///< [m] in the frame of its body
   };
 
   void place(int part, const Pose& X_WB) noexcept;
@@ -57,7 +57,7 @@ class Sieve final : public Method {
   int evaluated_ = 0;
 };
 
-/// Puts a broad phase on the list when the program starts.
+/// Registers a broad phase at program start.
 struct Enlisted {
   Enlisted(const std::string& name, const std::string& settings, Sieve::Maker make);
 };

@@ -19,13 +19,13 @@ using Clock = std::chrono::steady_clock;
 constexpr int tool_parts = 4;
 constexpr int pairs = 32;
 
-/// Who is asked for a tick of the task.
+/// A method that executes a tick of the task.
 class Contender {
  public:
   explicit Contender(std::string who) { run_.who = std::move(who); }
   virtual ~Contender() = default;
   virtual void tick(std::size_t tick) = 0;
-  /// Of the last tick: how many distances are wrong.
+  /// Number of wrong distances of the last tick.
   [[nodiscard]] virtual int wrong(std::size_t tick) = 0;
   [[nodiscard]] virtual int evaluated() const { return pairs; }
   [[nodiscard]] virtual double range() const { return std::numeric_limits<double>::infinity(); }
@@ -137,7 +137,7 @@ class Theirs final : public Contender {
   std::unique_ptr<bench::Rival> rival_;
 };
 
-/// [m] below which `near` of the distances of a tick are, in the mean.
+/// [m] Distance below which, on average, `near` of the distances of a tick lie.
 double range_for(const bench::CheckedTask& task, double near) {
   std::vector<double> distances;
   for (const bench::Truth& truth : task.truths) distances.push_back(truth.distance);

@@ -1,4 +1,4 @@
-// A tilted tool is pushed against a plate and into a corner: the walls alone turn it.
+// A tilted tool is pressed against a plate and into a corner: the wall forces alone align it.
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,11 @@ struct Case {
   const char* obstacles;
   const char* start;  // a tilted tool
   const char* push;   // [mm/s]
-  int axes;           // that the plates determine: z, or all
-  bool relieved;      // RELIEF lets the tool turn
+  int axes;           // determined by the plates: z, or all
+  bool relieved;      // RELIEF allows the tool to turn
 };
 
-/// Greatest angle [deg] between an axis of the tool and the nearest axis of the plates.
+/// Largest angle [deg] between an axis of the tool and the nearest axis of the plates.
 double tilt_of(const Pose& X_WT, int axes) {
   double worst = 1.0;
   for (int i = 3 - axes; i < 3; ++i)
@@ -61,15 +61,14 @@ std::string network_of(bool relieved) {
 }  // namespace
 
 Result align(const Options& options) {
-  Result result{
-      .title = "A tilted tool pushed flat",
-      .columns = {"into", "RELIEF in rotation", "rate [Hz]", "tilt before [deg]",
-                  "tilt after [deg]", "flat after [s]", "mean force [N]", "chatter above 30 Hz [N]",
-                  "swing of the tilt [mdeg]"},
-      .notes = {"A cube of 80 mm. Tilt is the greatest angle between its axes and those of the "
-                "plates; it is flat, for good, at a tenth of the tilt before. Less than four "
-                "fifths turned, or "
-                "chatter over 2 % of the mean force, fails."}};
+  Result result{.title = "A tilted tool pushed flat",
+                .columns = {"into", "RELIEF in rotation", "rate [Hz]", "tilt before [deg]",
+                            "tilt after [deg]", "flat after [s]", "mean force [N]",
+                            "chatter above 30 Hz [N]", "swing of the tilt [mdeg]"},
+                .notes = {"A cube of 80 mm. Tilt is the greatest angle between its axes and those "
+                          "of the plates. It counts as flat from when the tilt stays below a tenth "
+                          "of the initial one. A row fails if less than four fifths of the tilt is "
+                          "removed, or the chatter exceeds 2 % of the mean force."}};
   std::size_t done = 0;
   const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
   for (const Case& each : cases) {

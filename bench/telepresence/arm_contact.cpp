@@ -1,4 +1,4 @@
-// The arm is driven into a table at various angles and leans on it.
+// The arm is driven into a table at various angles and presses on it.
 
 #include <cmath>
 
@@ -14,10 +14,10 @@ constexpr double speed = 0.06;  // [m/s] of the operator's command
 
 struct Contact {
   double peak = 0.0;  // [N]
-  int losses = 0;     // times that contact was lost after it was made
+  int losses = 0;     // number of contact losses after first contact
   Trace force;        // [N] along the normal
   Trace height;       // [m]
-  Trace along;        // [m] on the table
+  Trace along;        // [m] along the table
   ArmEnd end;
 };
 
@@ -50,15 +50,13 @@ Contact lean(double angle_deg, double rate_hz, double seconds) {
 }  // namespace
 
 Result contact(const Options& options) {
-  Result result{
-      .title = "The arm driven into a table",
-      .columns = {"rate [Hz]", "angle to the normal [deg]", "greatest force [N]", "mean force [N]",
-                  "chatter above 30 Hz [N]", "swing of the height [um]", "slides [mm/s]",
-                  "contact lost"},
-      .notes = {
-          "The operator commands 60 mm/s all the time; KBB2 lets it drag on at 120 N. Figures "
-          "are of the last second. Lost contact, or chatter over 1 % of the mean force, "
-          "fails."}};
+  Result result{.title = "The arm driven into a table",
+                .columns = {"rate [Hz]", "angle to the normal [deg]", "greatest force [N]",
+                            "mean force [N]", "chatter above 30 Hz [N]", "swing of the height [um]",
+                            "slides [mm/s]", "contact lost"},
+                .notes = {"The operator commands 60 mm/s all the time; KBB2 saturates at 120 N. "
+                          "Figures are of the last second. A row fails if contact is lost, or the "
+                          "chatter exceeds 1 % of the mean force."}};
   result.fail("rms_above", check_rms_above());
   const std::vector<double> rates =
       options.quick ? std::vector{400.0} : std::vector{400.0, 1000.0, 4000.0};

@@ -1,4 +1,4 @@
-// The operator drives the arm where a joint ends, and goes on pushing.
+// The operator drives the arm to a joint limit and keeps pushing.
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +30,10 @@ constexpr Case cases[] = {
 };
 
 struct Pushed {
-  std::size_t joint = 0;  // that is nearest to an end, at last
-  double margin = 0.0;    // least that was left of its range [rad]
-  double torque = 0.0;    // of LIMITS on it, mean of the last second [N m]
-  Trace felt;             // by the lever [N m]
+  std::size_t joint = 0;  // the joint nearest to a limit at the end
+  double margin = 0.0;    // least distance to its limit [rad]
+  double torque = 0.0;    // of LIMITS on it, mean over the last second [N m]
+  Trace felt;             // torque at the lever [N m]
   Trace angle;            // [rad]
   ArmEnd end;
 };
@@ -80,14 +80,13 @@ Pushed push(const Case& each, double rate_hz) {
 }  // namespace
 
 Result joint_limits(const Options& options) {
-  Result result{
-      .title = "A joint at its end",
-      .columns = {"pushed", "rate [Hz]", "joint", "least margin [deg]", "torque of LIMITS [N m]",
-                  "torque at the lever [N m]", "its chatter above 30 Hz [mN m]",
-                  "swing of the joint [mdeg]"},
-      .notes = {
-          "The operator drives that joint to its end and goes on for 6 s; figures are of the last "
-          "second. A joint that reaches its stop, or that LIMITS do not hold, fails."}};
+  Result result{.title = "A joint at its end",
+                .columns = {"pushed", "rate [Hz]", "joint", "least margin [deg]",
+                            "torque of LIMITS [N m]", "torque at the lever [N m]",
+                            "its chatter above 30 Hz [mN m]", "swing of the joint [mdeg]"},
+                .notes = {"The operator drives that joint to its limit and keeps pushing for 6 s; "
+                          "figures are of the last second. A row fails if the joint reaches its "
+                          "mechanical stop, or LIMITS do not hold it."}};
   std::size_t done = 0;
   const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
   constexpr double degree = M_PI / 180.0;

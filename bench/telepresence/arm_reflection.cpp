@@ -1,4 +1,4 @@
-// What runs back over a line when the hand stops: with and without the shunt of KBB2.
+// Wave reflections on a line after the hand stops, with and without the shunt of KBB2.
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@ namespace repel::telepresence {
 namespace {
 
 constexpr double impedance = 300.0;  // Z of the line [N s/m]
-constexpr double moving = 1.0;       // [s] that the hand leads the lever
+constexpr double moving = 1.0;       // [s] duration of the hand motion
 
-/// How much the torque at the lever [N m] changes in each round trip after the hand has stopped.
+/// Change of the torque at the lever [N m] in each round trip after the hand has stopped.
 std::vector<double> echoes(const std::string& coupling, double delay, std::uint64_t seed,
                            ArmEnd& end) {
   ArmScene scene{
@@ -25,7 +25,7 @@ std::vector<double> echoes(const std::string& coupling, double delay, std::uint6
       coupling;
   scene.script = "{name: lead, device: torque_arm, duration: " + to_text(moving) +
                  " s, direction: 0 0 -1, lever: 0.8 rad/s}";
-  // The line holds a wave back for two ticks more.
+  // The line adds two ticks to the delay.
   const double round = 2.0 * (delay + 2.0 / scene.rate_hz);
   std::vector<double> most(5, -INFINITY);
   std::vector<double> least(5, INFINITY);
@@ -49,12 +49,11 @@ std::string kbb2(double shunt) {
 }  // namespace
 
 Result reflection(const Options& options) {
-  Result result{
-      .title = "What a line brings back",
-      .columns = {"delay [ms]", "coupling", "at the stop [N m]", "1st echo [N m]", "2nd echo [N m]",
-                  "3rd echo [N m]", "4th echo [N m]"},
-      .notes = {"How much the torque at the lever changes in each round trip after the hand, which "
-                "led the arm through free space, stops. Z is 300 N s/m."}};
+  Result result{.title = "What a line brings back",
+                .columns = {"delay [ms]", "coupling", "at the stop [N m]", "1st echo [N m]",
+                            "2nd echo [N m]", "3rd echo [N m]", "4th echo [N m]"},
+                .notes = {"Change of the torque at the lever in each round trip after the hand, "
+                          "which led the arm through free space, stops. Z is 300 N s/m."}};
   std::size_t done = 0;
   for (const double delay : {0.05, 0.1}) {
     for (const auto& [name, coupling] :

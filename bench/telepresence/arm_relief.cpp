@@ -1,4 +1,4 @@
-// Compliance along chosen directions: how stiff the way to a wall is.
+// Compliance along chosen directions: the stiffness between the command and a wall.
 
 #include <cmath>
 
@@ -17,7 +17,7 @@ struct Case {
   double stiffness;  // of RELIEF [N/m]
   const char* into;
   Vec3 direction;
-  bool gives_way;  // RELIEF does, in that direction
+  bool gives_way;  // RELIEF is compliant in that direction
 };
 const Case cases[] = {
     {"none", 500.0, "table", {0, 0, -1}, false}, {"z", 500.0, "table", {0, 0, -1}, true},
@@ -26,18 +26,18 @@ const Case cases[] = {
     {"y", 500.0, "side", {0, 1, 0}, true},
 };
 
-/// Spring of RELIEF and spring K of KBB2, one after the other [N/m].
+/// Series connection of the spring of RELIEF and the spring K of KBB2 [N/m].
 double expected(const Case& each) {
   return 1.0 / (1.0 / coupling + (each.gives_way ? 1.0 / each.stiffness : 0.0));
 }
 
-/// Force on the tool from the operator's side, and how far the tool lags behind the command.
+/// Force of the coupling on the tool, and lag of the tool behind the command.
 struct Mark {
   double force = NAN;  // [N]
   double lag = NAN;    // [m]
 };
 
-/// Rise of that force with the lag, while the table's own rises from 10 to 40 N [N/m].
+/// Slope of that force over the lag while the wall force rises from 10 to 40 N [N/m].
 double measured(const Case& each, double rate_hz, std::string& complaint) {
   ArmScene scene{
       .tool = "{name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}",
@@ -76,9 +76,9 @@ Result relief(const Options& options) {
       .columns = {"compliant", "its stiffness [N/m]", "pressed into", "rate [Hz]", "measured [N/m]",
                   "expected [N/m]", "off"},
       .notes = {
-          "Rise of the operator's force on the tool with its lag behind the command, which goes "
-          "on at 5 mm/s, while the force of the wall rises from 10 to 40 N. Expected: RELIEF "
-          "and KBB2 as springs one after the other; more than a tenth off fails."}};
+          "Slope of the operator's force on the tool against its lag behind the command, which "
+          "moves at 5 mm/s, while the force of the wall rises from 10 to 40 N. Expected: RELIEF "
+          "and KBB2 as springs in series; a row fails if it is off by more than a tenth."}};
   std::size_t done = 0;
   const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
   for (const Case& each : cases) {

@@ -6,9 +6,10 @@
 #include <numeric>
 
 #include <repel/bullet/arm.hpp>
-#include <repel/loop/tick.hpp>
+#include <repel/cell/arm_port.hpp>
+#include <repel/cell/cell.hpp>
 
-#include "cell.hpp"
+#include "describe.hpp"
 #include "spectrum.hpp"
 
 namespace repel::telepresence {
@@ -43,34 +44,30 @@ std::string complaint_of(const network::Network& network, bool finite) {
 ArmEnd run_arm(const ArmScene& scene, double seconds,
                const std::function<void(const ArmTick&)>& each) {
   const scene::Scene parsed = scene::parse(text_of(scene), "scene");
-  teleop::Cell cell(parsed, true);
-  const ArmModel& model = cell.arm().robot.arm;
+  teleop::DescribedScene described = teleop::describe(parsed, scene.rate_hz);
+  described.cell.coprocessor.lock_step = true;
+  Cell cell(std::move(described.cell));
+  const ArmModel& model = cell.description().arms.front().model;
   bullet::Arm arm(model);
-  arm.reset(cell.arm().start);
-  const std::chrono::nanoseconds period(std::llround(1e9 / scene.rate_hz));
-  CoprocessorOptions in_lock_step;
-  in_lock_step.period = period;
-  in_lock_step.lock_step = true;
-  Coprocessor coprocessor(cell.world, in_lock_step);
-  network::ScriptedOperator the_operator(parsed.script);
-  Kinematics& kinematics = cell.arm().kinematics;
-  Teleoperator teleoperator(model, arm, kinematics, cell.world, cell.arm().tool, coprocessor,
-                            the_operator,
-                            scene::build_network(parsed, parsed, model, scene.rate_hz), period);
-  std::vector<double> q(model.links.size());
+  arm.reset(parsed.robot.start);
+  ArmPort port(arm, model.links.size());
+  network::ScriptedOperator hands(parsed.script);
   RunTotals totals;
   bool finite = true;
   const auto ticks = std::llround(seconds * scene.rate_hz);
   for (std::int64_t k = 1; k <= ticks; ++k) {
-    const TickRecord& record = teleoperator.tick(k * period);
-    arm.read_positions(q);
-    each({record, kinematics.X_WT(), q, teleoperator.network()});
+    const ArmReadings readings = port.read();
+    cell.sense({&readings, 1}, k * cell.period());
+    const Teleoperator& control = cell.control(0);
+    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const TickRecord& record = *cell.act({&command, 1}).front();
+    port.apply(record);
+    each({record, control.X_WT(), readings.q, control.network()});
     arm.step(1.0 / scene.rate_hz);
     totals.add(record);
     finite = finite && std::isfinite(record.coupling.force.norm() + record.lever_torque);
   }
-  coprocessor.stop();
-  ArmEnd end{.complaint = complaint_of(teleoperator.network(), finite),
+  ArmEnd end{.complaint = complaint_of(cell.control(0).network(), finite),
              .status_ticks = totals.status_ticks};
   for (const ArmLink& link : model.links) end.ranges.push_back({link.lower, link.upper});
   return end;
@@ -86,7 +83,7 @@ double Trace::mean() const {
   return std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(last.size());
 }
 
-// The slope of the line with the least squares.
+// Slope of the least-squares line.
 double Trace::drift() const {
   const std::span<const double> last = last_second();
   const auto n = static_cast<double>(last.size());

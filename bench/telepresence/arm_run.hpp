@@ -1,5 +1,5 @@
 /// @file
-/// The PUMA 560, simulated by Bullet, in a scene: tick after tick, without the clock.
+/// The PUMA 560, simulated by Bullet, in a scene: tick after tick, not in real time.
 #pragma once
 
 #include <functional>
@@ -13,24 +13,25 @@
 
 namespace repel::telepresence {
 
-/// What a scene of this benchmark is made of. Texts are YAML, as scenes/README.md has it.
+/// The parts of a benchmark scene. Texts are YAML as described in scenes/README.md.
 struct ArmScene {
   std::string tool;       ///< the parts of the tool, whose frame is 100 mm beyond the flange
   std::string obstacles;  ///< their law is `wall`
-  /// The modules before the tool: the masters and what couples them.
+  /// The modules before the tool: the masters and their coupling.
   std::string network = free_coupling;
   std::string script{};
   std::string start = "0 45 -180 0 -45 0 deg";  ///< the tool points down, at 0.60 -0.15 0.48 m
   double rate_hz = 400.0;
 
-  /// That of the default scene: firm along, soft enough in rotation for a face to turn flat.
+  /// The coupling of the default scene: stiff in translation, and soft enough in rotation that a
+  /// face can align with a wall.
   static constexpr const char* free_coupling =
       "{module: torque_arm}, {module: multiplex}, {module: spaceball}, {module: kbb2, stiffness: 3 "
       "N/mm, damping: 300 N s/m, force_limit: 120 N, angular_stiffness: 30 N m/rad, "
       "angular_damping: 4 N m s/rad, torque_limit: 15 N m}";
 };
 
-/// One tick as it was.
+/// The state at one tick.
 struct ArmTick {
   const TickRecord& record;
   const Pose& X_WT;           ///< [m]
@@ -38,30 +39,30 @@ struct ArmTick {
   const network::Network& network;
 };
 
-/// What came of a run as a whole.
+/// The results of a whole run.
 struct ArmEnd {
-  std::string complaint;                        ///< of ledgers and forces; empty: all is well
+  std::string complaint;                        ///< fault of ledgers or forces; empty: none
   std::vector<network::JointRange> ranges{};    ///< [rad] of the joints
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
 };
 
 /// Runs `seconds` of the scene.
-/// @throws SetupError when the scene cannot be taken
+/// @throws SetupError if the scene is invalid
 ArmEnd run_arm(const ArmScene& scene, double seconds,
                const std::function<void(const ArmTick&)>& each);
 
-/// A signal over the ticks of a run, and figures of its last second.
+/// A signal over the ticks of a run, with statistics of its last second.
 struct Trace {
   std::vector<double> samples{};
   double rate_hz = 400.0;
 
   [[nodiscard]] std::span<const double> last_second() const;
   [[nodiscard]] double mean() const;
-  /// Greatest less least, without its mean slope: a creep is no swing.
+  /// Peak to peak after subtraction of the mean slope, so that drift does not count.
   [[nodiscard]] double swing() const;
-  /// How much it changes in a second, by its mean slope.
+  /// Change per second, by the mean slope.
   [[nodiscard]] double drift() const;
-  /// Root mean square of what is above 30 Hz, where a force is felt as roughness.
+  /// Root mean square of the content above 30 Hz, where a force is felt as roughness.
   [[nodiscard]] double chatter() const;
 };
 

@@ -1,4 +1,5 @@
-// A hand drives the slider into a hard wall over a line, three strokes, and then holds it there.
+// Over a delayed line, a hand drives the slider into a hard wall, three strokes, and then holds it
+// there.
 
 #include <algorithm>
 #include <array>
@@ -12,11 +13,12 @@ namespace repel::telepresence {
 namespace {
 
 constexpr double strokes_hz = 1.25;
-constexpr double reach = 0.10;        // [m] of the hand, 50 mm beyond the wall
-constexpr double hold_from = 2.8;     // [s] when the fourth stroke has come to its end
-constexpr double swing_limit = 10.0;  // [mm] of the lever in the last second of a stable run
+constexpr double reach = 0.10;     // [m] amplitude of the hand, 50 mm beyond the wall
+constexpr double hold_from = 2.8;  // [s] end of the fourth stroke
+constexpr double swing_limit =
+    10.0;  // [mm] limit for the swing of the lever in the last second of a stable run
 
-/// Speed [m/s] at which the hand leads.
+/// Velocity of the hand [m/s].
 double hand_speed(double time) {
   const double omega = 2.0 * M_PI * strokes_hz;
   return time < hold_from ? 0.5 * reach * omega * std::sin(omega * time) : 0.0;
@@ -24,10 +26,11 @@ double hand_speed(double time) {
 
 struct Run {
   std::vector<Sample> samples;
-  double tracking_mm = 0.0, tracking_n = 0.0;  // RMS against the other end, as late as the line
-  double made = 0.0;                           // [J]
-  double swing_mm = 0.0;                       // of the lever in the last second
-  double jump = 0.0;  // [N] greatest change of the hand's force in a tick, last three seconds
+  double tracking_mm = 0.0,
+         tracking_n = 0.0;  // RMS error relative to the other end, delayed by the line
+  double made = 0.0;        // [J] energy generated
+  double swing_mm = 0.0;    // of the lever in the last second
+  double jump = 0.0;        // [N] largest change of the hand force per tick, last three seconds
   std::string complaint;
 
   [[nodiscard]] double peak(double Sample::*force) const {
@@ -69,7 +72,7 @@ Run run(const RigOptions& options, double seconds) {
   return run;
 }
 
-/// The forces of the run for the plot, of every 5 ms the greatest.
+/// The force curves for the plot: the maximum of every 5 ms.
 Json curve(const Run& run, double rate_hz) {
   const auto stride = static_cast<std::size_t>(std::llround(0.005 * rate_hz));
   Json times = Json::array();

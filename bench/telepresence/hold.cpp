@@ -1,4 +1,4 @@
-// The hand leans on a hard wall and keeps still; what still moves is the limit cycle.
+// The hand presses on a hard wall without moving; the remaining motion is the limit cycle.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double push = 20.0;     // [N]
 constexpr double damping = 5.0;   // [N s/m] of the wall
-constexpr double audible = 30.0;  // [Hz] from which a change of force is chatter
+constexpr double audible = 30.0;  // [Hz] a force above this frequency is chatter
 
 struct Held {
   double swing_um = 0.0;  // of the slider, peak to peak
@@ -24,7 +24,7 @@ struct Held {
   std::string complaint;
 };
 
-/// The last second of `seconds`.
+/// Statistics of the last second of `seconds`.
 Held held(const RigOptions& options, double seconds) {
   Rig rig(options);
   const auto ticks = std::llround(seconds * options.rate_hz);

@@ -1,5 +1,5 @@
 /// @file
-/// What an operator feels through the network, and how stiff and how far away a wall may be.
+/// Transparency of the network, and the limits of wall stiffness and delay.
 
 #include "part.hpp"
 

@@ -21,7 +21,7 @@ using bench::Result;
 [[nodiscard]] Result transparency(const Options& options);
 [[nodiscard]] Result zwidth(const Options& options);
 [[nodiscard]] Result hold(const Options& options);
-// On the simulated arm; only where it is built.
+// These need the simulated arm.
 [[nodiscard]] Result contact(const Options& options);
 [[nodiscard]] Result align(const Options& options);
 [[nodiscard]] Result relief(const Options& options);

@@ -1,5 +1,5 @@
 /// @file
-/// A hand, a network and a slider before a wall: what the parts measure on.
+/// The test rig of the parts: a hand, a network, and a slider in front of a wall.
 #pragma once
 
 #include <string>
@@ -12,36 +12,36 @@
 
 namespace repel::telepresence {
 
-/// How hand and slider are joined.
+/// The connection between hand and slider.
 enum class Way {
   direct,  ///< the coupling alone
-  waves,   ///< a line of waves
-  plain,   ///< a line that carries velocity one way and force the other
+  waves,   ///< a line of wave variables
+  plain,   ///< a line that transmits velocity one way and force the other
 };
 
 [[nodiscard]] const char* name_of(Way way);
 
-/// A wall of stiffness K [N/m] and damping [N s/m] that is linear from 1 N on: the force law with a
+/// A wall of stiffness K [N/m] and damping [N s/m] that is linear above 1 N: the force law with a
 /// range of 2 N / K.
 [[nodiscard]] ForceLaw stiff_wall(double stiffness, double damping);
 
 struct RigOptions {
   double rate_hz = 1000.0;
   Way way = Way::direct;
-  network::ChannelOptions channel{};         ///< of a line
-  double buffer = -1.0;                      ///< [s] of a line of waves; below zero: its default
+  network::ChannelOptions channel{};         ///< of the line
+  double buffer = -1.0;                      ///< [s] of a line of waves; negative: its default
   ForceLaw wall = stiff_wall(50000.0, 5.0);  ///< on the slider
   double wall_at = 0.05;                     ///< [m] the slider starts at 0
-  double resolution = 0.0;                   ///< [m] of the slider's position as measured
+  double resolution = 0.0;                   ///< [m] quantization of the measured slider position
   SliderOptions slider{};                    ///< the arm
-  static constexpr double hand_mass = 1.5;   ///< [kg] with the lever in it
+  static constexpr double hand_mass = 1.5;   ///< [kg] including the lever
   static constexpr double hand_stiffness = 400;   ///< [N/m]
   static constexpr double hand_damping = 20.0;    ///< [N s/m]
   static constexpr double force_limit = 150.0;    ///< [N] of the coupling and of the lever's motor
   static constexpr double line_impedance = 40.0;  ///< Z and the shunt B2 at its end [N s/m]
 };
 
-/// What a tick has shown.
+/// The state at one tick.
 struct Sample {
   double lever = 0.0;        ///< [m] position of hand and lever
   double lever_speed = 0.0;  ///< [m/s] of the same
@@ -50,24 +50,24 @@ struct Sample {
   double wall = 0.0;         ///< [N] of the wall on the slider, out of it
 };
 
-/// The modules between hand and joints as `Plan` builds them: TORQUE ARM of one metre per radian,
-/// MULTIPLEX, perhaps LINE, KBB2, OBSTACLE, PUMA_KIN, PUMA_JOINTS; behind them a slider whose force
-/// is held from tick to tick.
+/// The modules between hand and joints as built by `Plan`: TORQUE ARM of one metre per radian,
+/// MULTIPLEX, optionally LINE, KBB2, OBSTACLE, PUMA_KIN, PUMA_JOINTS; then a slider whose force is
+/// held between ticks.
 class Rig {
  public:
   explicit Rig(const RigOptions& options);
 
-  /// One tick, the hand leading at `hand_speed` [m/s].
+  /// One tick with the hand moving at `hand_speed` [m/s].
   Sample tick(double hand_speed);
   [[nodiscard]] double period() const { return signals_.period; }  ///< [s]
-  /// [s] that the line waits for late packets; 0 without one of waves.
+  /// [s] How long the line waits for late packets; 0 without a line of waves.
   [[nodiscard]] double buffer() const;
-  /// [s] from one end of the line to the other; 0 without one.
+  /// [s] One-way delay of the line; 0 without one.
   [[nodiscard]] double transit() const;
-  /// The lowest energy of the line's ledger [J], below zero where it made energy; 0 without one.
+  /// The lowest energy in the line's ledger [J], negative if it generated energy; 0 without a line.
   [[nodiscard]] double least_of_line() const;
-  /// What is wrong: a tick not solved, a number that is not finite, a passive module that gave more
-  /// than it took by over 1e-9 of what passed. Empty when nothing is.
+  /// The fault, or empty: a tick not solved, a number that is not finite, or a passive module that
+  /// delivered more energy than it absorbed, by over 1e-9 of the energy passed.
   [[nodiscard]] std::string complaint() const;
 
  private:

@@ -1,12 +1,12 @@
 /// @file
-/// A slider that is simulated without error: the device of all parts.
+/// A slider simulated exactly: the device of all parts.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace repel::telepresence {
 
-/// A mass on a viscous guide, and perhaps a hand that holds it by a spring and a damper.
+/// A mass on a viscous guide, optionally held by a hand through a spring and a damper.
 struct SliderOptions {
   double mass = 2.0;            ///< m [kg]
   double friction = 30.0;       ///< b [N s/m]
@@ -14,18 +14,19 @@ struct SliderOptions {
   double hand_damping = 0.0;    ///< [N s/m]
 };
 
-/// Between two ticks the force is held, the hand moves at one speed, and the rest is linear:
+/// Between two ticks the force is constant, the hand moves at constant speed, and the dynamics are
+/// linear:
 ///
 ///     m dv/dt = F - b v + k_h (x_h - x) + c_h (v_h - v)
 ///
-/// One matrix exponential of that, made at set-up, is the motion over a period, exactly.
+/// The matrix exponential of this system, computed at set-up, gives the exact motion over a period.
 class Slider {
  public:
   /// @param period [s]
   Slider(const SliderOptions& options, double period)
       : transition_(exponential(period * motion(options))) {}
 
-  /// One period under `force` [N], the hand going at `hand_speed` [m/s].
+  /// One period under `force` [N] with the hand moving at `hand_speed` [m/s].
   void move(double force, double hand_speed = 0.0) {
     state_(3) = force;
     state_(4) = hand_speed;
@@ -46,7 +47,7 @@ class Slider {
     A(2, 4) = 1.0;
     return A;
   }
-  // By Taylor's series of a small part, squared.
+  // Scaling and squaring with a Taylor series.
   static Matrix exponential(const Matrix& A) {
     const Matrix part = A / 1024.0;
     Matrix sum = Matrix::Identity();

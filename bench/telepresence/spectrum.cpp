@@ -15,7 +15,7 @@ double rms_above(std::span<const double> samples, double rate_hz, double above_h
   const double mean = std::accumulate(samples.begin(), samples.end(), 0.0) / n;
   std::vector<double> windowed;
   double power = 0.0;   // of all lines
-  double window = 0.0;  // its mean square, times n
+  double window = 0.0;  // mean square of the window, times n
   for (const double sample : samples) {
     const auto i = static_cast<double>(windowed.size());
     const double hann = 0.5 - 0.5 * std::cos(2.0 * M_PI * i / n);

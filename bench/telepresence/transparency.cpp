@@ -1,5 +1,5 @@
-// The hand leads in a sine, in free motion or while it leans on the wall; what it feels is the
-// quotient of effort and flow at the port of the lever.
+// Transparency: the hand excites the lever with a sine, in free motion or while pressing on the
+// wall; the displayed impedance is the ratio of effort and flow at the port of the lever.
 
 #include <cmath>
 #include <complex>
@@ -13,9 +13,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double push = 20.0;          // [N] with which the hand leans on the wall
-constexpr double sine = 5.0;           // [N] of the sine, were the lever held still
-constexpr double rate_hz = 2000.0;     // of the ticks
+constexpr double push = 20.0;          // [N] force of the hand on the wall
+constexpr double sine = 5.0;           // [N] amplitude of the sine, if the lever were held still
+constexpr double rate_hz = 2000.0;     // tick rate
 constexpr double stiffness = 50000.0;  // [N/m] of the wall
 constexpr double damping = 5.0;        // [N s/m] of the wall
 
@@ -34,7 +34,7 @@ struct Felt {
   std::string complaint;
 };
 
-/// What the slider and its surroundings are by themselves [N s/m].
+/// Impedance of the slider and its environment alone [N s/m].
 Complex truth(const Setting& setting, double hz) {
   const Complex s(0.0, 2.0 * M_PI * hz);
   const SliderOptions slider;
@@ -42,7 +42,7 @@ Complex truth(const Setting& setting, double hz) {
   return setting.contact ? free + damping + stiffness / s : free;
 }
 
-/// The first `settling` seconds, in which the hand goes up to the wall, are not counted.
+/// The first `settling` seconds, in which the hand approaches the wall, are not evaluated.
 Felt feel(const Setting& setting, double hz, double settling) {
   RigOptions options{.rate_hz = rate_hz, .way = setting.way};
   options.channel.delay = 1e-3 * setting.delay_ms;
@@ -89,8 +89,10 @@ double decibels(double ratio) {
 Result transparency(const Options& options) {
   Result result{.title = "Transparency: the impedance the operator feels"};
   result.columns = {"contact and way"};
-  result.notes = {"2 kHz; the truth is the slider alone, at the wall with 50 kN/m and 5 N s/m."};
-  const std::vector<double> shown{0.5, 2.0, 10.0, 30.0};  // [Hz] in the table
+  result.notes = {
+      "2 kHz; the true impedance is that of the slider alone, in contact with a wall of 50 kN/m "
+      "and 5 N s/m."};
+  const std::vector<double> shown{0.5, 2.0, 10.0, 30.0};  // [Hz] rows of the table
   for (const double hz : shown) {
     const std::string at = " at " + to_text(hz) + " Hz ";
     result.columns.insert(result.columns.end(), {"felt" + at + "[N s/m]", "phase" + at + "[deg]",
@@ -98,7 +100,7 @@ Result transparency(const Options& options) {
   }
   std::vector<double> all = shown;
   for (int i = 0; i < (options.quick ? 0 : 60); ++i) {
-    all.push_back(0.2 * std::pow(10.0, 0.04 * i));  // to 46 Hz
+    all.push_back(0.2 * std::pow(10.0, 0.04 * i));  // up to 46 Hz
   }
   std::size_t done = 0;
   for (const Setting& setting : settings()) {

@@ -1,5 +1,5 @@
-// A hand drives a device into a sampled wall, and the wall is made stiffer until it no longer comes
-// to rest.
+// Z-width: a hand drives a device into a sampled wall, whose stiffness is increased until the
+// device no longer comes to rest.
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,10 @@ namespace {
 
 constexpr SliderOptions device{
     .mass = 1.0, .friction = 20.0, .hand_stiffness = 300.0, .hand_damping = 5.0};
-constexpr double approach = 0.03;  // [m] from which the hand comes
-constexpr double push = 15.0;      // [N] with which it ends in the wall
-constexpr double rest = 10e-6;     // [m] of motion from peak to peak that counts as rest
-constexpr double stiffest = 1e7;   // [N/m] that is tried
+constexpr double approach = 0.03;  // [m] start of the hand before the wall
+constexpr double push = 15.0;      // [N] final force on the wall
+constexpr double rest = 10e-6;     // [m] peak-to-peak motion that counts as rest
+constexpr double stiffest = 1e7;   // [N/m] upper limit of the search
 
 struct Setting {
   double rate_hz = 1000.0;
@@ -28,7 +28,7 @@ struct Setting {
   bool controlled = false;
 };
 
-/// A device before a wall, with what samples it.
+/// A device in front of a wall, with its sampling.
 class Hit {
  public:
   explicit Hit(const Setting& setting, double stiffness)
@@ -37,7 +37,7 @@ class Hit {
         wall_(stiff_wall(stiffness, setting.damping)),
         slider_(device, period_) {}
 
-  /// One tick, the hand going at `hand_speed` [m/s]. The position at its beginning [m].
+  /// One tick with the hand moving at `hand_speed` [m/s]. Returns the position at its start [m].
   double tick(double hand_speed) {
     const double x = slider_.position();
     const double v = slider_.speed();
@@ -60,8 +60,8 @@ class Hit {
   network::PassivityController<1> controller_{{}, One::Ones()};
 };
 
-/// What still moves in the last of 30 s after a hit at `speed` [m/s], peak to peak [m], or in the
-/// first second in which there is next to nothing.
+/// Peak-to-peak motion [m] in the last of 30 s after a hit at `speed` [m/s], or in the first second
+/// with almost no motion.
 double swing_after(const Setting& s, double stiffness, double speed) {
   Hit hit(s, stiffness);
   const auto driven = std::llround((approach + push / device.hand_stiffness) / speed * s.rate_hz);
@@ -92,7 +92,8 @@ bool holds(const Setting& s, double stiffness) {
   return worst_swing(s, stiffness) < rest;
 }
 
-/// [N/m] below which every wall that was tried is held: steps of a tenth, then bisection to 0.1 %.
+/// [N/m] Stiffness up to which every wall tried is stable: steps of a tenth, then bisection to 0.1
+/// %.
 double greatest(const Setting& s) {
   double held = 1000.0;
   if (!holds(s, held)) return 0.0;

@@ -1,21 +1,21 @@
 /// @file
-/// A page of the live view without a browser: takes every picture and looks at its tick.
+/// A headless client of the live view: receives every frame and reads its tick.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
 
-/// Connects to the live view; waits for it for some seconds.
+/// Connects to the live view; retries for some seconds.
 class Client {
  public:
-  /// @throws std::exception if nobody answers
+  /// @throws std::exception if there is no answer
   explicit Client(std::uint16_t port);
   ~Client();
 
-  /// Waits for the next picture and returns its tick.
+  /// Waits for the next frame and returns its tick.
   [[nodiscard]] std::int64_t next();
-  /// The bytes that have come so far.
+  /// Number of bytes received so far.
   [[nodiscard]] std::int64_t bytes() const { return bytes_; }
 
  private:

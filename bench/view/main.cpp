@@ -1,6 +1,6 @@
 /// @file
-/// What an open page of the live view costs the tick: one run by the clock, in which a page is open
-/// and not open by turns.
+/// Cost of an open live-view page for the tick: one real-time run with the page alternately open
+/// and closed.
 
 #include <algorithm>
 #include <cstdio>
@@ -51,15 +51,16 @@ struct Turn {
   bool open;
 };
 
-/// Opens and closes the page by turns until the run is over, and says which ticks fell in which.
+/// Opens and closes the page alternately until the run is over; returns which ticks fell in which
+/// phase.
 std::vector<Turn> take_turns(const Arguments& a, double rate_hz, const std::atomic<bool>& over,
                              std::int64_t& bytes) {
-  constexpr std::int64_t margin = 40;  // the page opens and closes in these
+  constexpr std::int64_t margin = 40;  // [ticks] excluded at each change
   std::vector<Turn> turns;
   const auto length = static_cast<std::int64_t>(a.turn * rate_hz);
   try {
     std::int64_t closed_from = -1;
-    std::this_thread::sleep_for(std::chrono::seconds(2));  // until the arm is held
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // until the arm holds still
     while (!over) {
       Client page(a.port);
       const std::int64_t first = page.next();
@@ -73,7 +74,7 @@ std::vector<Turn> take_turns(const Arguments& a, double rate_hz, const std::atom
       std::this_thread::sleep_for(std::chrono::duration<double>(a.turn));
     }
   } catch (const std::exception&) {
-    // The run has ended in the middle of a turn, which does not count.
+    // The run ended in the middle of a phase, which does not count.
   }
   return turns;
 }
@@ -92,7 +93,7 @@ struct Summary {
 int run(const Arguments& arguments) {
   host::Output json(arguments.json);
   scene::Scene scene = scene::load(arguments.scene);
-  // The tool is pressed on the table and held there: every tick has the same work.
+  // The tool is pressed on the table and held there, so that every tick has the same work.
   scene.script.resize(std::min<std::size_t>(2, scene.script.size()));
   teleop::RunOptions options;
   options.rate_hz = scene.rate_hz;
@@ -122,7 +123,8 @@ int run(const Arguments& arguments) {
                                    result.times[static_cast<std::size_t>(i)].compute.count()));
     }
   }
-  // Without a push there was less to do, and without a turn of either kind there is no ratio.
+  // Without a contact force there was less to do, and without a phase of each kind there is no
+  // ratio.
   if (open.us.empty() || closed.us.empty() || !(result.totals().peak_force > 1.0)) {
     throw SetupError(
         "nothing to compare: the arm was not pressed, or a page never opened and closed");

@@ -14,12 +14,14 @@
 #include <repel/base/status.hpp>
 #include <repel/base/text_file.hpp>
 #include <repel/base/types.hpp>
+#include <repel/cell/arm_port.hpp>
+#include <repel/cell/cell.hpp>
 #include <repel/distance/gjk.hpp>
 #include <repel/force/law.hpp>
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
 #include <repel/loop/gain_check.hpp>
-#include <repel/loop/shuttle.hpp>
+#include <repel/loop/reciprocating_motion.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/clean_stiffness.hpp>
@@ -31,6 +33,7 @@
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
+#include <repel/world/arm_kinematics.hpp>
 #include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>

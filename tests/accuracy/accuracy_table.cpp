@@ -1,5 +1,5 @@
-// Measures the accuracy of every pair of kinds of shapes against references in 113 bits, holds it
-// against what is promised, and writes or checks the page that states it.
+// Measures the accuracy for every pair of shape kinds against 113-bit references, compares it with
+// the guaranteed limits, and writes or checks the page that states it.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -21,11 +21,11 @@ constexpr std::array<double, 4> gaps{1.0, 1e-3, 1e-6, 1e-9};  // [m]
 constexpr const char* worst_case_heading = "\n## Worst case";
 constexpr int specimens = 4;  // of each kind
 
-/// What is promised of every pair of kinds at every gap.
+/// The guaranteed limits for every pair of kinds at every gap.
 struct Promise {
-  double absolute;  ///< error over the larger size
-  double relative;  ///< error over the distance
-  double width;     ///< of the bracket over the larger size
+  double absolute;  ///< error relative to the larger size
+  double relative;  ///< error relative to the distance
+  double width;     ///< width of the bracket relative to the larger size
 };
 constexpr Promise promise{2e-14, 2e-6, 1e-13};
 
@@ -35,7 +35,7 @@ std::string text(const char* format, double value) {
   return buffer;
 }
 
-/// The pairs of kinds, each with a cell for every gap and one in overlap.
+/// The pairs of kinds, each with one cell for every gap and one for overlap.
 struct Table {
   struct Row {
     std::string a, b;
@@ -72,7 +72,7 @@ struct Table {
     return row;
   }
 
-  /// How many promises are broken; each is said.
+  /// Number of violated limits; each is printed.
   [[nodiscard]] int broken() const {
     int count = 0;
     const auto keep = [&](const Row& row, const char* what, double measured, double allowed) {
@@ -94,7 +94,7 @@ struct Table {
     return count;
   }
 
-  /// One line for each pair of kinds; `print` makes the text of a cell.
+  /// One line for each pair of kinds; `print` formats a cell.
   template <class Print>
   [[nodiscard]] std::string section(const std::string& title, Print&& print) const {
     std::string page = "\n## " + title + "\n\n| shapes | 1 m | 1 mm | 1 um | 1 nm |\n";
@@ -110,8 +110,8 @@ struct Table {
   [[nodiscard]] std::string overlap_section() const {
     std::string page =
         "\n## In deep overlap\n\n"
-        "The distance is the intrusion distance of the reduction, with the default number of "
-        "levels (hulls: 4).\nIt is compared with the least overlap found over many directions.\n\n"
+        "The distance is the intrusion distance of the default measure. It is compared with the\n"
+        "least overlap found over many directions.\n\n"
         "| shapes | share of the depth, median | least | widest bracket, of the larger size | "
         "iterations |\n|---|---|---|---|---|\n";
     for (const Row& row : rows) {
@@ -125,7 +125,7 @@ struct Table {
   }
 };
 
-/// The part of the page that a run must find again.
+/// The part of the page that a run must reproduce.
 std::string promised() {
   return "| shapes | gaps from | error, of the larger size | error, of the distance | width of the "
          "bracket, of the larger size |\n|---|---|---|---|---|\n| all | " +
@@ -136,24 +136,23 @@ std::string promised() {
 std::string page_of(const Table& table, int samples) {
   std::string page =
       "# Accuracy\n\n"
-      "Written by `accuracy_table --write docs/accuracy.md`; the tests measure it again and "
-      "compare "
-      "it with the\npromises. The size of a shape is the distance of its farthest point from its "
-      "origin, here 0.3 to 1 m.\nReferences are minimised with 113 bits and certified by their "
+      "Measured errors of `separation` for every pair of shapes. `accuracy_table --write\n"
+      "docs/accuracy.md` writes this page; the tests repeat the measurement and compare it with\n"
+      "the guarantees. The size of a shape is the distance of its farthest point from its origin,\n"
+      "here 0.3 to 1 m. Reference distances are computed with 113 bits and certified by their\n"
       "duality gap.\n\n"
-      "## What is promised\n\nThe true distance lies in the bracket, always. Beyond that:\n\n";
+      "## Guarantees\n\nThe true distance always lies in the bracket. In addition:\n\n";
   page += promised();
-  page += "\nBelow is the worst of " + std::to_string(samples) +
-          " poses for each entry: a third of them at any attitude, a third with the\naxes of one "
-          "shape along those of the other, a third within 1e-12 to 1e-3 rad of that. Columns are "
-          "gaps.\n";
+  page += "\nEach entry below is the worst of " + std::to_string(samples) +
+          " poses: a third of them at random attitudes, a third with the\naxes of the two shapes "
+          "aligned, a third within 1e-12 to 1e-3 rad of that. Columns are gaps.\n";
   page += table.section("Error over the larger size",
                         [](const Cell& c) { return text("%.1e", c.absolute); });
   page += table.section("Error over the distance",
                         [](const Cell& c) { return text("%.1e", c.relative); });
   page += table.section("Width of the bracket over the larger size",
                         [](const Cell& c) { return text("%.1e", c.width); });
-  page += table.section("Iterations from a cold start: median / most", [](const Cell& c) {
+  page += table.section("Iterations from a cold start: median / maximum", [](const Cell& c) {
     return std::to_string(median(c.iterations)) + " / " + std::to_string(c.most_iterations());
   });
   return page + table.overlap_section();
@@ -180,7 +179,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!write.empty()) {
-    // What other programs found stands behind the tables and stays.
+    // The text after the tables, written by other programs, is kept.
     const std::string kept = content(write);
     const std::size_t behind = kept.find(worst_case_heading);
     std::ofstream(write) << page_of(table, static_cast<int>(samples))

@@ -1,6 +1,6 @@
 /// @file
-/// Pairs that make the distance work hard, and the search for harder ones: random restarts and
-/// hill climbing on shapes and poses.
+/// Search for worst-case pairs of the distance query: random restarts and hill climbing on shapes
+/// and poses.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace repel::accuracy {
 
-/// A shape as a few numbers, so that a pose found can be written down.
+/// A shape given by a few numbers, so that a case can be written down.
 struct Recipe {
   const char* kind;  ///< "box", "capsule", "cylinder" or the number of vertices of a hull
   double x, y, z;    ///< [m] half extents; radius and half length are x and z
@@ -71,7 +71,7 @@ inline bool is_hull(const Recipe& r) {
   return r.kind[0] >= '0' && r.kind[0] <= '9';
 }
 
-/// Sizes from a needle's to a metre. Vertices of hulls stay within a factor of 30.
+/// Sizes from that of a needle to a metre. Vertices of hulls stay within a factor of 30.
 inline Recipe draw(const char* kind, Rng& rng) {
   Recipe r{kind, 1.0, 1.0, 1.0, static_cast<unsigned>(rng() % 100000)};
   const double least = is_hull(r) ? 0.03 : 1e-5;
@@ -81,7 +81,7 @@ inline Recipe draw(const char* kind, Rng& rng) {
   return r;
 }
 
-/// Moves B to a gap of 1e-9 to 1 m, or now and then into overlap.
+/// Moves B to a gap of 1e-9 to 1 m, or occasionally into overlap.
 inline void set_gap(Duel& duel, const Specimen& A, const Specimen& B, Rng& rng) {
   const Pose X_AB = duel.X_AB();
   const Separation s = separation(A.shape, Pose::Identity(), B.shape, X_AB);
@@ -90,7 +90,7 @@ inline void set_gap(Duel& duel, const Specimen& A, const Specimen& B, Rng& rng) 
   duel.set(X_AB.linear(), X_AB.translation() + (s.distance - gap) * s.extraction_W);
 }
 
-/// What one answer costs, from nothing or from the answer 0.5 mm and 0.1 degree away.
+/// Cost of one answer, from a cold start or warm from a pose 0.5 mm and 0.1 degree away.
 inline Separation solve(const Duel& duel, const Specimen& A, const Specimen& B, bool warm) {
   const Pose X_AB = duel.X_AB();
   WarmStart start;
@@ -103,7 +103,8 @@ inline Separation solve(const Duel& duel, const Specimen& A, const Specimen& B, 
   return separation(A.shape, Pose::Identity(), B.shape, X_AB, {}, start);
 }
 
-/// Climbs for `tries` answers from a random start; keeps the pair that cost most in `worst`.
+/// Hill climbing for `tries` answers from a random start; stores the most expensive pair in
+/// `worst`.
 inline void climb(const char* kind_a, const char* kind_b, bool warm, int tries, Rng& rng,
                   Duel& worst, int& most) {
   Duel here{draw(kind_a, rng), draw(kind_b, rng), {}, {}};

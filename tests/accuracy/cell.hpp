@@ -11,13 +11,13 @@
 
 namespace repel::accuracy {
 
-/// What was measured; lengths over the larger size of the two shapes.
+/// Measured values; lengths are relative to the larger size of the two shapes.
 struct Cell {
   double absolute = 0.0;       ///< worst error
-  double relative = 0.0;       ///< worst error over the distance
+  double relative = 0.0;       ///< worst error relative to the distance
   double width = 0.0;          ///< widest bracket
-  double least_share = 1e300;  ///< in overlap: the least distance over the depth
-  int misses = 0;              ///< answers with the wrong sign, or a bracket that misses the truth
+  double least_share = 1e300;  ///< in overlap: least ratio of the answer to the depth
+  int misses = 0;  ///< answers with a wrong sign, or a bracket that excludes the exact value
   std::vector<int> iterations;
   std::vector<double> shares;
 
@@ -32,7 +32,7 @@ T median(std::vector<T> values) {
   return values[values.size() / 2];
 }
 
-/// Any attitude, the axes of one along those of the other, or nearly so.
+/// Random orientations; or the axes of one parallel, or nearly so, to those of the other.
 inline void turn(Pose& X_WA, Pose& X_WB, int attitude, Rng& rng) {
   X_WA.linear() = families::rotation(rng);
   X_WB.linear() = families::rotation(rng);
@@ -67,7 +67,7 @@ inline void add_apart(Cell& cell, const Specimen& A, const Specimen& B, double g
   cell.iterations.push_back(s.iterations);
 }
 
-/// Adds a pose with the centres nearer than half the smaller size.
+/// Adds a pose with the centres closer than half the smaller size.
 inline void add_overlapping(Cell& cell, const Specimen& A, const Specimen& B, Rng& rng) {
   Pose X_WA = Pose::Identity();
   Pose X_WB = Pose::Identity();
@@ -77,7 +77,7 @@ inline void add_overlapping(Cell& cell, const Specimen& A, const Specimen& B, Rn
   const PosedPair pair(A, X_WA, B, X_WB);
   const Separation s = separation(A.shape, X_WA, B.shape, X_WB);
   const double depth = pair.depth_by_search(s.extraction_W, rng);
-  if (depth <= 0.0) return;  // only by chance: a thin hull beside the other
+  if (depth <= 0.0) return;  // rare: a thin hull beside the other
   const double size = std::max(A.size, B.size);
   cell.width = std::max(cell.width, (s.upper - s.lower) / size);
   cell.shares.push_back(-s.distance / depth);

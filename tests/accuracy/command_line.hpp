@@ -1,5 +1,5 @@
 /// @file
-/// The command line of the programs beside: numbers behind names, and --help.
+/// Command-line parsing of the programs in this folder: options with a number, and --help.
 #pragma once
 
 #include <cstdio>
@@ -12,7 +12,7 @@ namespace repel::accuracy {
 
 /// One option that takes a value.
 struct Option {
-  const char* name;  ///< with its dashes
+  const char* name;  ///< including its dashes
   const char* help;
   double* number = nullptr;
   std::string* text = nullptr;
@@ -29,7 +29,7 @@ inline void print_help(const char* what, const std::vector<Option>& options) {
   }
 }
 
-/// Reads the options; ends the program on --help (status 0) and on what it does not know (2).
+/// Parses the options; ends the program on --help (status 0) and on an unknown argument (2).
 inline void read_command_line(int argc, char** argv, const char* what,
                               const std::vector<Option>& options) {
   for (int i = 1; i < argc; ++i) {

@@ -1,6 +1,6 @@
 /// @file
-/// Pairs that `worst_case --seconds 20 --seed 2` found hard once: two of each pair of kinds, the
-/// first cold, the second warm.
+/// Hard pairs found by `worst_case --seconds 20 --seed 2`: two for each pair of kinds, the first
+/// for a cold start, the second for a warm start.
 #pragma once
 
 #include <accuracy/adversary.hpp>

@@ -1,5 +1,5 @@
-// Random pairs of polytopes, apart and in overlap, family by family, each against the exact truth.
-// Ends with 1 when a single law was broken once.
+// Random pairs of polytopes, apart and in overlap, family by family, each compared with the exact
+// answer. Exit status 1 if any invariant was violated.
 #include <atomic>
 #include <cinttypes>
 #include <cstdio>
@@ -13,11 +13,11 @@
 namespace repel::accuracy {
 namespace {
 
-/// Shapes are built once for so many pairs: a hull takes longer to build than to ask about.
+/// Number of pairs per shape: building a hull takes longer than a query.
 constexpr int pairs_of_a_group = 20;
-/// Every so-manyth pair is asked for its invariances as well.
+/// Interval of the pairs whose invariances are checked as well.
 constexpr int invariances_every = 5;
-constexpr int reports = 5;  ///< broken laws printed in full
+constexpr int reports = 5;  ///< number of violations printed in full
 
 struct Run {
   long groups = 0;
@@ -49,9 +49,9 @@ void report(Run& run, long group, int index, const families::Pair& p, double tru
   print_pose("X_WB", p.X_WB);
 }
 
-/// Poses of the family: a gap of 1e-9 to 1 m, or of every eight pairs one up to 0.3 m in overlap
-/// and one with the centres nearer than the smaller size. Returns whether overlap is likely. Where
-/// the family will not come apart, it stays in the overlap it was drawn with.
+/// Poses of the family: a gap of 1e-9 to 1 m; of every eight pairs one up to 0.3 m in overlap and
+/// one with the centres closer than the smaller size. Returns whether overlap is likely. If the
+/// family cannot be separated, it stays in the overlap it was drawn with.
 bool place(const std::string& family, int index, families::Pair& p, const Body& A, const Body& B,
            Rng& rng) {
   const bool shallow = index % 8 == 3;

@@ -1,7 +1,7 @@
 /// @file
-/// One shape of each kind with its support map in 113 bits, and what is true of a posed pair of
-/// them: the distance between proven bounds, and in overlap how far along a direction is the way
-/// out.
+/// One shape of each kind with its 113-bit support map, and reference values of a posed pair of
+/// them: the distance between proven bounds, and in overlap the separating translation along a
+/// direction.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using families::Rng;
 using oracle::Point;
 using oracle::Real;
 
-/// A shape and the formula of its support map: a polytope or a set of rings around the z axis, and
-/// a ball around each of its points.
+/// A shape and the formula of its support map: a core (a polytope, or a set of rings around the z
+/// axis) swept by a ball.
 struct Specimen {
   /// A circle around the z axis; of radius 0 it is a point.
   struct Ring {
@@ -33,7 +33,7 @@ struct Specimen {
   std::string kind;
   Shape shape;
   std::vector<Vec3> vertices;  ///< [m] of a polytope, rounded or not
-  std::vector<Ring> rings;     ///< where there are no vertices
+  std::vector<Ring> rings;     ///< used if there are no vertices
   double ball = 0.0;           ///< [m] radius of the ball
   double size = 0.0;           ///< [m] farthest point from the origin
 
@@ -48,7 +48,7 @@ struct Specimen {
     }
     return best;
   }
-  /// [m] how far the shape reaches along the unit `d`, in double.
+  /// [m] Support value along the unit vector `d`, in double.
   [[nodiscard]] double reach_along(const Vec3& d) const {
     double reach = -1e300;
     for (const Vec3& v : vertices) reach = std::max(reach, v.dot(d));
@@ -104,7 +104,8 @@ class PosedPair {
         cores_(A.vertices, X_WA, B.vertices, X_WB),
         offset_(oracle::exact(X_WB.translation()) - oracle::exact(X_WA.translation())) {}
 
-  /// The distance while the cores are apart; its lower bound is minus the balls where they meet.
+  /// The distance while the cores are apart; if they intersect, the lower bound is minus the ball
+  /// radii.
   [[nodiscard]] oracle::Bracket distance() {
     const Real balls = Real(A_.ball) + Real(B_.ball);
     const auto support = [this](const Point& x) {
@@ -118,14 +119,16 @@ class PosedPair {
     return found;
   }
 
-  /// [m] how far A must move along the unit `n` to leave B behind: an upper bound of the depth.
+  /// [m] Translation of A along the unit vector `n` that separates it from B: an upper bound of the
+  /// depth.
   [[nodiscard]] double overlap_along(const Vec3& n) const {
     const Vec3 between = X_WB_.translation() - X_WA_.translation();
     return n.dot(between) + B_.reach_along(X_WB_.linear().transpose() * n) +
            A_.reach_along(-(X_WA_.linear().transpose() * n));
   }
 
-  /// [m] The least overlap found, from directions all around and `hint`: no less than the depth.
+  /// [m] The least overlap found over directions all around and `hint`: an upper bound of the
+  /// depth.
   [[nodiscard]] double depth_by_search(const Vec3& hint, Rng& rng) const {
     std::vector<std::pair<double, Vec3>> starts{{overlap_along(hint), hint}};
     for (int i = 0; i < 300; ++i) {
@@ -146,7 +149,7 @@ class PosedPair {
     return oracle::rotated(X, s.farthest_on_rings(oracle::rotated_back(X, d))) + offset;
   }
 
-  /// Random steps around the best direction, shorter whenever a few have not helped.
+  /// Random search around the best direction; the step is reduced after a few failures.
   [[nodiscard]] double descend(std::pair<double, Vec3> best, Rng& rng) const {
     for (double step = 0.1; step > 1e-7; step *= 0.6) {
       for (int i = 0; i < 8; ++i) {

@@ -1,5 +1,5 @@
 /// @file
-/// What the long comparison counts: for every law, how often it was asked and how often broken.
+/// Statistics of the long comparison: for every invariant, how often it was checked and violated.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ enum class Law {
 };
 inline constexpr int law_count = 12;
 
-/// One line for each law, in their order.
+/// One line for each invariant, in the order of the enumeration.
 inline constexpr std::array<const char*, law_count> law_names{
     "the sign is right",
     "the bracket holds the truth and the distance",
@@ -40,7 +40,7 @@ inline constexpr std::array<const char*, law_count> law_names{
     "the oracle proved its answer",
 };
 
-/// Sums and maxima only: merging does not depend on which thread did what.
+/// Sums and maxima only, so that merging does not depend on the distribution over threads.
 struct Tally {
   std::array<long, law_count> asked{};
   std::array<long, law_count> broken{};
@@ -48,15 +48,15 @@ struct Tally {
   long answers = 0;
   long apart = 0;
   long overlapping = 0;
-  long below_micrometre = 0;  ///< of those apart
+  long below_micrometre = 0;  ///< of the separated pairs
   long extended = 0;          ///< decided in extended precision
   long most_iterations = 0;
-  double worst_absolute = 0.0;  ///< error over the larger size
-  double worst_relative = 0.0;  ///< error over the distance
-  double worst_on_shape = 0.0;  ///< [1] of the size
-  double worst_between = 0.0;   ///< [1] of the size
+  double worst_absolute = 0.0;  ///< error relative to the larger size
+  double worst_relative = 0.0;  ///< error relative to the distance
+  double worst_on_shape = 0.0;  ///< [1] relative to the size
+  double worst_between = 0.0;   ///< [1] relative to the size
 
-  /// Counts one question; returns whether the law held.
+  /// Counts one check; returns whether the invariant held.
   bool ask(Law law, bool held) {
     ++asked[static_cast<int>(law)];
     broken[static_cast<int>(law)] += held ? 0 : 1;

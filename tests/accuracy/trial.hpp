@@ -1,5 +1,5 @@
 /// @file
-/// One pair of posed polytopes, its truth, and all that an answer about it owes.
+/// One pair of posed polytopes, its exact answer, and all invariants that an answer must satisfy.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@ using families::Rng;
 using families::Solid;
 using oracle::Real;
 
-/// A polytope as the library holds it and as the oracle does.
+/// A polytope in the types of the library and of the oracle.
 struct Body {
   oracle::Polytope features;
   Shape shape;
-  Shape repeated;  ///< the same with its vertices shuffled and every other one twice
+  Shape repeated;  ///< the same with shuffled vertices, every other one duplicated
   double size;     ///< [m]
 
-  // Two levels of reduction: only how deep an overlap is depends on them, not what bounds it.
+  // Two levels of reduction: they affect the measured depth of an overlap, not its bounds.
   Body(const Solid& s, Rng& rng)
       : features(s.vertices),
         shape(s.box ? Shape::box(s.half_extents) : Shape::hull(s.vertices, {.levels = 2})),
@@ -41,7 +41,7 @@ struct Body {
   }
 };
 
-/// How far `p_WQ` lies outside the polytope [m]; not positive inside.
+/// Distance of `p_WQ` outside the polytope [m]; not positive inside.
 inline double outside_by(const Body& body, const Pose& X_WB, const Vec3& p_WQ) {
   const Vec3 q = X_WB.linear().transpose() * (p_WQ - X_WB.translation());
   if (body.features.closed()) return body.features.outside_by(q);
@@ -55,7 +55,7 @@ class Trial {
   Trial(const Body& A, const Pose& X_WA, const Body& B, const Pose& X_WB, Tally& tally)
       : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), tally_(tally), size_(std::max(A.size, B.size)) {}
 
-  /// Asks the oracle; false when it fell silent.
+  /// Queries the oracle; false if it has no proven answer.
   bool find_truth(bool expect_overlap) {
     if (expect_overlap && solid()) truth_ = -depth();
     if (!(truth_ < 0)) {
@@ -70,7 +70,7 @@ class Trial {
     return true;
   }
 
-  /// What every answer owes, cold and warm from a pose 0.5 mm and 0.1 degree away.
+  /// Invariants of every answer, cold and warm from a pose 0.5 mm and 0.1 degree away.
   void ask_cold_and_warm(Rng& rng) {
     cold_ = separation(A_.shape, X_WA_, B_.shape, X_WB_);
     check(cold_);
@@ -81,20 +81,20 @@ class Trial {
     if (truth_ > 0 && in_extended_precision()) ++tally_.extended;
   }
 
-  /// Swapped, carried away together, and built from shuffled and repeated vertices.
+  /// Arguments swapped, both moved together, and shapes with shuffled and duplicated vertices.
   void ask_invariances(Rng& rng) {
     const Separation swapped = separation(B_.shape, X_WB_, A_.shape, X_WA_);
     check_bracket(swapped);
     ask(Law::swapped, same(swapped.distance, rounding()));
     const Separation repeated = separation(A_.repeated, X_WA_, B_.repeated, X_WB_);
     check_bracket(repeated);
-    // In overlap other levels find another depth.
+    // In overlap, other levels give another depth.
     ask(Law::reordered, truth_ < 0 || same(repeated.distance, rounding()));
     Pose X = Pose::Identity();
     X.linear() = families::rotation(rng);
     X.translation() = families::log_uniform(rng, 1.0, 1e3) * families::direction(rng);
     const Separation moved = separation(A_.shape, X * X_WA_, B_.shape, X * X_WB_);
-    // Far out a pose has coarser steps: 1.1e-13 m at 1 km.
+    // Far from the origin the resolution of a pose is coarser: 1.1e-13 m at 1 km.
     const double step = 1e-14 * (1e3 + X_WA_.translation().norm() + size_);
     ask(Law::moved, same(moved.distance, step));
   }
@@ -103,7 +103,7 @@ class Trial {
   [[nodiscard]] double truth() const { return static_cast<double>(truth_); }
 
  private:
-  /// With one solid the difference is solid, and its facets come from the features of both.
+  /// With one solid the Minkowski difference is solid, and its facets come from features of both.
   [[nodiscard]] bool solid() const { return A_.features.closed() || B_.features.closed(); }
   [[nodiscard]] Real depth() const {
     return oracle::penetration_depth(A_.features, X_WA_, B_.features, X_WB_);
@@ -120,7 +120,7 @@ class Trial {
     return tally_.ask(law, held);
   }
 
-  /// The core's own word on how it was decided.
+  /// How the core reports that it was decided.
   [[nodiscard]] bool in_extended_precision() const {
     WarmStart cold;
     return gap_between(A_.shape.level(0).core, X_WA_, B_.shape.level(0).core, X_WB_, {}, cold)
@@ -169,7 +169,7 @@ class Trial {
       ask(Law::along_normal, unit && beside <= 1e-9);
       tally_.worst_between = std::max(tally_.worst_between, beside);
     } else {
-      // Where a pair of levels that meets decides, the levels of its witnesses are farther apart.
+      // If intersecting levels decide, the levels of the witness points are farther apart.
       const double along = between.dot(s.extraction_W);
       ask(Law::along_normal, unit && along >= s.distance - 1e-9 * size_);
     }

@@ -1,4 +1,4 @@
-// Searches for the pair of shapes that takes the most iterations, and publishes it.
+// Searches for the pair of shapes that needs the most iterations, and publishes it.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -12,7 +12,7 @@
 namespace repel::accuracy {
 namespace {
 
-/// Two kinds, and the most that was ever needed for them.
+/// Two kinds, and the largest number of iterations found for them.
 struct Bout {
   const char* a;
   const char* b;
@@ -40,7 +40,7 @@ void search(Bout& bout, double seconds, Rng& rng) {
   }
 }
 
-/// Everything from the heading on is ours; the tables before it stay.
+/// Replaces everything from the heading on; the tables before it are kept.
 void publish(const std::string& file, const std::string& section) {
   std::ifstream in(file);
   std::string page(std::istreambuf_iterator<char>(in), {});
@@ -68,13 +68,13 @@ int main(int argc, char** argv) {
                              {"cylinder", "cylinder"}}};
   Rng rng(static_cast<std::uint64_t>(seed));
   std::string section =
-      "\n## Worst case\n\nThe most iterations a search has made `separation` need: random restarts "
-      "and hill climbing on sizes,\nattitudes and positions, gaps of 1 nm to 1 m and overlap. Warm "
-      "means solved 0.5 mm and 0.1 degree away\njust before. The cap is 256 in each precision. "
-      "`worst_case --seconds " +
+      "\n## Worst case\n\nThe largest number of iterations of `separation` that an adversarial "
+      "search has found, by\nrandom restarts and hill climbing over sizes, attitudes and "
+      "positions, with gaps of 1 nm to\n1 m and overlap. Warm means started from the result for a "
+      "pose 0.5 mm and 0.1 degree away.\nThe cap is 256 in each precision. `worst_case --seconds " +
       std::to_string(static_cast<long>(seconds)) + " --seed " +
       std::to_string(static_cast<long>(seed)) +
-      " --write docs/accuracy.md`\nsearches again.\n\n| shapes | cold | warm | answers |\n"
+      " --write docs/accuracy.md`\nrepeats the search.\n\n| shapes | cold | warm | answers |\n"
       "|---|---|---|---|\n";
   bool under_cap = true;
   for (Bout& bout : bouts) {

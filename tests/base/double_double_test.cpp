@@ -1,4 +1,5 @@
-// Every operation against 113-bit arithmetic, which has 7 bits more than is promised.
+// Every operation compared with 113-bit arithmetic, which has 7 bits more than the guaranteed
+// precision.
 #include <repel/base/double_double.hpp>
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ DoubleDouble random_value(Rng& rng) {
   return DoubleDouble::sum(hi, hi * families::uniform(rng, -1.0, 1.0) * 0x1p-54);
 }
 
-/// The error of `result` as a share of `scale`, below 2^-98 or the test fails.
+/// The error of `result` relative to `scale`; the test fails unless it is below 2^-98.
 void expect_right(DoubleDouble result, Real truth, Real scale) {
   const Real error = magnitude(real(result) - truth);
   EXPECT_LE(static_cast<double>(error / scale), 0x1p-98);
@@ -61,7 +62,7 @@ TEST(DoubleDouble, ADifferenceOfCloseValuesIsRightRelativeToItself) {
   for (int i = 0; i < 20000; ++i) {
     const DoubleDouble a = random_value(rng);
     const DoubleDouble b = DoubleDouble::sum(a.hi, a.hi * families::log_uniform(rng, 1e-16, 1e-3));
-    // Part by part: the two low parts may lie below the 113 bits of the whole.
+    // Part by part: the sum of the low parts may be below the 113-bit resolution of the whole.
     const Real truth = (Real(a.hi) - Real(b.hi)) + (Real(a.lo) - Real(b.lo));
     if (truth == 0) continue;
     ASSERT_LE(static_cast<double>(magnitude((real(a - b) - truth) / truth)), 0x1p-98)

@@ -1,4 +1,4 @@
-// The limits of what is read fit what may be built of it.
+// The limits of input files are consistent with the capacities of what is built from them.
 #include <gtest/gtest.h>
 
 #include <repel/base/input_limits.hpp>

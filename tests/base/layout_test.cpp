@@ -1,4 +1,4 @@
-// That a program and a library of another layout do not link is tried by package/check.sh.
+// package/check.sh tests that a program does not link with a library of a different memory layout.
 #include <gtest/gtest.h>
 
 #include <type_traits>

@@ -1,5 +1,5 @@
-// One writer thread and one reader thread, as in the tick; under the thread sanitizer the payload,
-// which is not atomic, also shows that the hand-over orders memory.
+// One writer thread and one reader thread, as in the tick. The payload is not atomic, so that the
+// thread sanitizer also verifies the memory ordering of the exchange.
 #include <repel/base/mailbox.hpp>
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ TEST(Mailbox, WritingGoesOnWhileTheReaderHoldsAValue) {
 TEST(Mailbox, ValuesAreNeverTornAndNeverRunBackwards) {
   constexpr int enough = 2000;
   Mailbox<Payload> box(Payload{});
-  // Relaxed, so that nothing but the mailbox orders the memory of the two threads.
+  // Relaxed, so that only the mailbox orders memory between the two threads.
   std::atomic<int> taken{0};
   std::atomic<long> last_posted{0};
   std::thread writer([&] {

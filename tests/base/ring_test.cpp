@@ -1,5 +1,5 @@
-// One writer thread and one reader thread; the payload is not atomic, so that the thread sanitizer
-// sees whether the hand-over orders memory.
+// One writer thread and one reader thread. The payload is not atomic, so that the thread sanitizer
+// verifies the memory ordering of the exchange.
 #include <repel/base/ring.hpp>
 
 #include <gtest/gtest.h>
@@ -64,7 +64,8 @@ TEST(Ring, BetweenThreadsEveryValueArrivesWholeOrIsCounted) {
   std::thread writer([&] {
     for (long i = 1; i <= last; ++i) {
       ring.draft().fill(i);
-      while (!ring.post() && i == last) std::this_thread::yield();  // the reader waits for this one
+      while (!ring.post() && i == last)
+        std::this_thread::yield();  // the reader waits for the last one
     }
   });
   long newest = 0;
@@ -80,7 +81,7 @@ TEST(Ring, BetweenThreadsEveryValueArrivesWholeOrIsCounted) {
     ring.pop();
   }
   writer.join();
-  EXPECT_GE(seen + ring.dropped(), last);  // more by the attempts at the last one
+  EXPECT_GE(seen + ring.dropped(), last);  // failed attempts to post the last one count as well
   EXPECT_GT(seen, 64);
 }
 

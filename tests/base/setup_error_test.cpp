@@ -72,7 +72,7 @@ struct Commas : std::numpunct<char> {
 TEST(ToText, IsTheSameInEveryLocale) {
   const std::locale before = std::locale::global(std::locale(std::locale(), new Commas));
   const std::string c_locale = std::setlocale(LC_NUMERIC, nullptr);
-  std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // has no effect where it is not installed
+  std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // no effect if not installed
   EXPECT_EQ(to_text(1234.5), "1234.5");
   EXPECT_EQ(to_text(6.4425033420486075, 4), "6.443");
   EXPECT_EQ(to_text(123456.0, 4), "123500");

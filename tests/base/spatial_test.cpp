@@ -1,4 +1,4 @@
-// Laws of twists and wrenches on random samples, not single numbers.
+// Identities of twists and wrenches on random samples.
 #include <repel/base/spatial.hpp>
 
 #include <gtest/gtest.h>

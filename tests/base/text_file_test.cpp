@@ -1,4 +1,4 @@
-// A file is read whole or refused, and never more of it than is allowed.
+// A file is read completely or refused, and never beyond the allowed size.
 #include <gtest/gtest.h>
 
 #include <string>

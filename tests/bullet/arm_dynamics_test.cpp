@@ -1,5 +1,5 @@
-// The free motion of the simulated arm against mechanics worked out without an engine: closed forms
-// for one and two links, and conservation of energy, which holds for any chain.
+// The free motion of the simulated arm compared with analytical mechanics: closed forms for one and
+// two links, and conservation of energy, which holds for any chain.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace repel::bullet::test {
 namespace arm_dynamics_test {
 
-/// The arm without friction and stops: what is left conserves energy.
+/// The arm without friction and stops, which conserves energy.
 ArmModel without_losses(ArmModel model) {
   for (ArmLink& link : model.links) {
     link.viscous_friction = link.coulomb_friction = 0.0;
@@ -43,7 +43,7 @@ double measured_period(Arm& arm, double period, int swings) {
 
 TEST(BulletArmDynamics, PendulumSwingsWithThePeriodOfTheEllipticIntegral) {
   const ArmModel model = pendulum();
-  const double amplitude = 1.0;  // far from small, so that linear theory would be wrong by 6 %
+  const double amplitude = 1.0;  // large: linear theory would be wrong by 6 %
   const double m = 2.0, l = 0.5, inertia = 0.03 + m * l * l;
   // T = 4 K(sin(A / 2)) / w = 2 pi / (w AGM(1, cos(A / 2)))
   double larger = 1.0, smaller = std::cos(amplitude / 2);
@@ -77,8 +77,8 @@ TEST(BulletArmDynamics, PendulumNeitherGainsNorLosesEnergyOverAMinute) {
   const double late = largest_over(4000);
   RecordProperty("relative_ripple", std::to_string((early - start) / start));
   RecordProperty("relative_drift", std::to_string((late - early) / start));
-  EXPECT_NEAR(early, start, 2e-3 * start);  // the scheme ripples once a swing ...
-  EXPECT_NEAR(late, early, 1e-6 * start);   // ... and comes back
+  EXPECT_NEAR(early, start, 2e-3 * start);  // the scheme oscillates once per swing ...
+  EXPECT_NEAR(late, early, 1e-6 * start);   // ... and returns
 }
 
 struct TwoLink {
@@ -86,7 +86,7 @@ struct TwoLink {
   double r1 = 0.4, r2 = 0.15;  // rotor inertias
   double g = 9.81;
 
-  /// Both axes along y, both links along -z at zero, so q = 0 hangs.
+  /// Both axes along y, both links along -z at zero, so that the arm hangs down at q = 0.
   [[nodiscard]] ArmModel model() const {
     ArmModel arm;
     arm.name = "two links";
@@ -99,7 +99,8 @@ struct TwoLink {
     return arm;
   }
 
-  /// From L = T - V with T, V written in the angles; textbook closed form, rotors on the diagonal.
+  /// From L = T - V with T, V as functions of the angles; textbook closed form, rotors on the
+  /// diagonal.
   [[nodiscard]] Eigen::Vector2d acceleration(const std::vector<double>& q,
                                              const std::vector<double>& v,
                                              const std::vector<double>& tau) const {
@@ -153,8 +154,8 @@ TEST(BulletArmDynamics, FirstOrderInTheSubStepTheEnergyOfASixLinkArmStays) {
   const double coarse = error_after_a_second(4);
   const double fine = error_after_a_second(16);
   RecordProperty("largest_energy_error_J", std::to_string(coarse));
-  EXPECT_LT(coarse, 0.5);                // of about 60 J that change hands
-  EXPECT_NEAR(coarse / fine, 4.0, 0.5);  // so the equations are right and only the step is coarse
+  EXPECT_LT(coarse, 0.5);                // of about 60 J exchanged
+  EXPECT_NEAR(coarse / fine, 4.0, 0.5);  // second order: equations correct, only the step is coarse
 }
 
 TEST(BulletArmDynamics, TorquesThatBalanceGravityHoldTheArmStill) {
@@ -167,7 +168,7 @@ TEST(BulletArmDynamics, TorquesThatBalanceGravityHoldTheArmStill) {
   for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(positions(arm)[i], q[i], 1e-8) << i;
   arm.set_torques(std::vector(6, 0.0));
   arm.step(0.1);
-  EXPECT_GT(std::abs(positions(arm)[1] - q[1]), 1e-3);  // it was the torques that held it
+  EXPECT_GT(std::abs(positions(arm)[1] - q[1]), 1e-3);  // so the torques held it
 }
 
 TEST(BulletArmDynamics, TurningTheBaseAndGravityTogetherChangesNothing) {
@@ -194,7 +195,7 @@ TEST(BulletArmDynamics, ARotatedBaseAloneChangesWhatGravityDoes) {
   model.X_WB.linear() = Eigen::AngleAxisd(1.0, Vec3::UnitX()).toRotationMatrix();
   Arm arm(model);
   const std::vector q{0.3, 0.8, -0.5, 0.4, 0.9, -0.2};
-  EXPECT_GT(std::abs(holding_torques(model, q)[0]), 1.0);  // upright, joint 1 feels no weight
+  EXPECT_GT(std::abs(holding_torques(model, q)[0]), 1.0);  // upright, joint 1 has no gravity torque
   arm.reset(q);
   arm.set_torques(holding_torques(model, q));
   for (int tick = 0; tick < 400; ++tick) arm.step(1.0 / 400);
@@ -220,7 +221,7 @@ TEST(BulletArmDynamics, APrismaticJointFallsFreelyAndCarriesWhatFollows) {
   Arm arm(model, {.substeps = 1});
   const std::vector<double> held =
       accelerations(arm, {0.2, 0.0}, {0.0, 0.0}, {5.0 * 9.81 + 13.0, 0.0});
-  EXPECT_NEAR(held[0], 13.0 / (3.0 + 2.0 + 1.5), 1e-8);  // hanging straight, nothing turns
+  EXPECT_NEAR(held[0], 13.0 / (3.0 + 2.0 + 1.5), 1e-8);  // hanging straight down: no rotation
   EXPECT_NEAR(held[1], 0.0, 1e-8);
   arm.reset(std::vector{0.0, 0.0});
   for (int tick = 0; tick < 400; ++tick) arm.step(1.0 / 400);

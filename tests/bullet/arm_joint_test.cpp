@@ -93,7 +93,7 @@ TEST(BulletArmJoint, AStopTakesEnergyAndLetsGo) {
   arm.reset(std::vector{0.5});
   arm.set_torques(std::vector{-0.01});
   for (int tick = 0; tick < 400; ++tick) arm.step(1.0 / 400);
-  EXPECT_NEAR(positions(arm)[0], 0.5 - 0.5 * 0.01 / 0.5, 1e-4);  // no pull back
+  EXPECT_NEAR(positions(arm)[0], 0.5 - 0.5 * 0.01 / 0.5, 1e-4);  // no restoring force
 }
 
 TEST(BulletArmJoint, TheStopOfOneJointStandsWhileTheOthersSwing) {

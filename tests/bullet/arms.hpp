@@ -1,5 +1,5 @@
 /// @file
-/// What the tests of this folder move.
+/// The arms used by the tests of this folder.
 #pragma once
 
 #include <repel/bullet/arm.hpp>

@@ -1,4 +1,4 @@
-// Physical contact in the Bullet arm: what stands in its way stops it.
+// Physical contact in the Bullet arm: obstacles stop it.
 #include "simulated/contacts.hpp"
 
 #include <gtest/gtest.h>

@@ -9,7 +9,6 @@
 namespace repel {
 namespace ideal_arm_test {
 
-static_assert(TorqueDrivenArm<IdealArm>);
 static_assert(noexcept(std::declval<IdealArm&>().step(0.0)));
 
 TEST(IdealArm, EachJointAnswersItsOwnTorqueOverItsOwnInertia) {
@@ -21,7 +20,8 @@ TEST(IdealArm, EachJointAnswersItsOwnTorqueOverItsOwnInertia) {
   arm.read_velocities(v);
   EXPECT_NEAR(v[0], 1.5, 1e-12);
   EXPECT_NEAR(v[1], -2.0, 1e-12);
-  EXPECT_NEAR(q[0], 0.5 * 1.5, 0.5 * 1.5 / 400 + 1e-12);  // half a step ahead, the scheme's share
+  EXPECT_NEAR(q[0], 0.5 * 1.5,
+              0.5 * 1.5 / 400 + 1e-12);  // half a step ahead, an error of the scheme
   EXPECT_NEAR(q[1], 0.5 * -2.0, 0.5 * 2.0 / 400 + 1e-12);
 }
 

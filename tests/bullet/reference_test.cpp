@@ -1,4 +1,4 @@
-// The Bullet arm against the equations of motion solved to a high order.
+// The Bullet arm compared with a high-order solution of the equations of motion.
 #include <gtest/gtest.h>
 
 #include <repel/robots/dynamics.hpp>

@@ -1,4 +1,4 @@
-// The clutch: what the button means.
+// The clutch: semantics of the button.
 #include <repel/devices/clutch.hpp>
 
 #include <gtest/gtest.h>

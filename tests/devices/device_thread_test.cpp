@@ -1,5 +1,4 @@
-// The thread between a device and the tick. Times in real seconds are upper bounds that a hang
-// would pass, nothing else.
+// The thread between a device and the tick. Times in real seconds are only timeouts against hangs.
 #include <repel/devices/device_thread.hpp>
 
 #include <gtest/gtest.h>
@@ -16,13 +15,13 @@ namespace device_thread_test {
 
 using std::chrono::milliseconds;
 
-/// What a Probe has seen; it outlives the probe.
+/// Observations of a Probe; outlives it.
 struct Notes {
   std::atomic<int> readings{0};
   std::atomic<double> torque{0.0};
   std::atomic<int> shown{0};
-  std::atomic<bool> hangs{false};     // from now on
-  std::atomic<bool> is_stuck{false};  // it does
+  std::atomic<bool> hangs{false};     // from now on, every read hangs
+  std::atomic<bool> is_stuck{false};  // a read hangs now
   std::atomic<bool> ended{false};
   char thread_name[16] = {};
 };
@@ -59,7 +58,7 @@ class Probe {
   Notes& notes_;
 };
 
-/// Asks again and again until it holds; false when it never does.
+/// Polls until the condition holds; false on timeout.
 template <class Condition>
 bool eventually(const Condition& holds) {
   for (int i = 0; i < 10000; ++i) {
@@ -78,7 +77,7 @@ TEST(DeviceThread, PostsReadingsThatCountUp) {
     ASSERT_TRUE(eventually([&] { return thread.measured(0.0).count > before; }));
     const Measured& m = thread.measured(0.0);
     EXPECT_EQ(m.operating_state, OperatingState::enabled);
-    EXPECT_EQ(m.measured_cv.linear.x(), static_cast<double>(m.count));  // whole, not torn
+    EXPECT_EQ(m.measured_cv.linear.x(), static_cast<double>(m.count));  // consistent, not torn
     before = m.count;
     ++taken;
   }

@@ -1,5 +1,5 @@
-// The lever against a stand-in for the kernel: rates from angles, levels from torques, and no force
-// where it has no business.
+// The lever with a fake evdev device: rates from angles, effect levels from torques, and no force
+// when it is not allowed.
 #include <repel/devices/evdev_lever.hpp>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds now{0};
 
-/// A wheel of 2 rad over 2000 counts whose motor gives 2 N m.
+/// A wheel of 2 rad over 2000 counts with a motor of 2 N m.
 class Lever : public ::testing::Test {
  protected:
   void open(const EvdevLeverOptions& changed = {}) {
@@ -38,7 +38,7 @@ class Lever : public ::testing::Test {
       EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
     }
   }
-  /// Turns at 2 rad/s for a fifth of a second.
+  /// Turns at 2 rad/s for 0.2 s.
   Measured turned() {
     for (int i = 1; i <= 100; ++i) {
       FakeClock::pass(0.002);
@@ -98,7 +98,7 @@ TEST_F(Lever, AsksAgainWhenTheKernelHasDroppedEvents) {
   open();
   EXPECT_GT(turned().lever_rate, 1.9);
   wheel_->say(EV_SYN, SYN_DROPPED, 0);
-  wheel_->say(EV_ABS, ABS_X, -900);  // the tail of a report whose head is lost
+  wheel_->say(EV_ABS, ABS_X, -900);  // the tail of a report whose head was lost
   wheel_->say(EV_SYN, SYN_REPORT, 0);
   wheel_->axis.value = 700;
   const Measured m = lever_->read(now);
@@ -135,7 +135,7 @@ TEST_F(Lever, TheLevelFollowsTheTorqueAndIsCut) {
 }
 
 TEST_F(Lever, AReleasedClutchIsRestAndNoForce) {
-  wheel_->button_down = true;  // down before: no press
+  wheel_->button_down = true;  // down from the start: not a press
   open({.clutch = ClutchPolicy::hold});
   Measured m = turned();
   EXPECT_EQ(m.operating_state, OperatingState::paused);

@@ -1,4 +1,4 @@
-// The events of the kernel out of pieces of any size.
+// Parsing of kernel events from fragments of any size.
 #include <repel/devices/evdev_parser.hpp>
 
 #include <gtest/gtest.h>

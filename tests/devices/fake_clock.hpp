@@ -1,5 +1,5 @@
 /// @file
-/// A clock that a test turns by hand.
+/// A clock that the test advances manually.
 #pragma once
 
 #include <atomic>
@@ -7,7 +7,7 @@
 
 namespace repel::devices {
 
-/// Starts at a day, so that no device takes it for the beginning of time.
+/// Starts at one day, so that no device confuses it with the epoch.
 struct FakeClock {
   static inline std::atomic<std::chrono::nanoseconds::rep> time{86400LL * 1000000000};
 

@@ -1,6 +1,5 @@
 /// @file
-/// A stand-in for the kernel's side of an input device: it answers the questions a lever asks and
-/// writes down what it is told.
+/// A fake evdev device: answers the ioctls of the lever and records what is written to it.
 #pragma once
 
 #include <linux/input.h>
@@ -19,7 +18,7 @@
 
 namespace repel::devices {
 
-/// The device itself; it outlives the port that the lever owns.
+/// The fake device; must outlive the port that the lever owns.
 struct FakeWheel {
   input_absinfo axis{
       .value = 0, .minimum = -1000, .maximum = 1000, .fuzz = 0, .flat = 0, .resolution = 0};
@@ -30,11 +29,11 @@ struct FakeWheel {
   bool button_down = false;
   bool gone = false;
 
-  std::vector<std::byte> waiting;  // to be read
+  std::vector<std::byte> waiting;  // unread input
   std::vector<int> levels;         // one for each EVIOCSFF
   std::vector<input_event> told;   // written by the lever
   int clock = -1;
-  int erased = -1;  // id of the effect
+  int erased = -1;  // id of the erased effect
 
   [[nodiscard]] int level() const { return levels.empty() ? 0 : levels.back(); }
 

@@ -1,5 +1,5 @@
 /// @file
-/// A stand-in for spacenavd that says what a test tells it, and when.
+/// A fake spacenavd whose messages the test controls.
 #pragma once
 
 #include <sys/socket.h>
@@ -18,7 +18,7 @@
 
 namespace repel::devices {
 
-/// A folder of its own, gone at the end.
+/// A temporary directory, removed by the destructor.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -52,7 +52,7 @@ inline Packet release(std::int32_t button) {
   return {2, button, 0, 0, 0, 0, 0, 0};
 }
 
-/// Listens from the beginning; what connects waits in the queue of the kernel until `accept`.
+/// Listens from construction; connections wait in the backlog until `accept`.
 class FakeSpacenavd {
  public:
   explicit FakeSpacenavd(const std::string& path) : path_(path) {
@@ -76,7 +76,7 @@ class FakeSpacenavd {
     if (sent != static_cast<ssize_t>(bytes.size())) throw std::runtime_error("nobody listens");
   }
 
-  /// What the client has said, if anything.
+  /// The bytes sent by the client, if any.
   [[nodiscard]] std::vector<std::byte> heard() const {
     std::vector<std::byte> bytes(256);
     const ssize_t count = ::recv(client_, bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -84,7 +84,7 @@ class FakeSpacenavd {
     return bytes;
   }
 
-  /// As if killed; the socket is removed so that the next one can listen.
+  /// Simulates a kill; removes the socket so that the next instance can listen.
   void die() {
     if (client_ >= 0) ::close(client_);
     if (listener_ >= 0) ::close(listener_);

@@ -24,7 +24,7 @@ TEST(LeverMotion, TheAngleIsTheFullRangeOverTheCounts) {
   EXPECT_DOUBLE_EQ(lever.angle(), 1.0);
   lever.place(-500, nanoseconds(0));
   EXPECT_DOUBLE_EQ(lever.angle(), -0.5);
-  lever.place(5000, nanoseconds(0));  // beyond what the kernel stated
+  lever.place(5000, nanoseconds(0));  // beyond the range stated by the kernel
   EXPECT_DOUBLE_EQ(lever.angle(), 1.0);
   EXPECT_EQ(lever.rate(nanoseconds(0)), 0.0);
 }

@@ -1,4 +1,4 @@
-// The laws of the shaping curve, for random options; and what set-up refuses.
+// Properties of the shaping curve for random options, and the options refused at set-up.
 #include <repel/devices/shaping.hpp>
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(Shaping, HasNoStepAtTheEdgeOfTheDeadBand) {
 
 TEST(Shaping, GivesTheScaleAtFullTravelOnTheAxesTheMapNames) {
   const Shaping shaping({.full_travel = 350.0, .linear_scale = 0.2, .angular_scale = 0.8});
-  // spacenavd: x right, y up, z forward; ours: x forward, y left, z up.
+  // spacenavd: x right, y up, z forward; repel: x forward, y left, z up.
   const Twist right = shaping.twist(std::array<double, 6>{350, 0, 0, 0, 0, 0});
   EXPECT_TRUE(right.linear.isApprox(Vec3(0.0, -0.2, 0.0)));
   const Twist up = shaping.twist(std::array<double, 6>{0, 350, 0, 0, 0, 0});

@@ -1,4 +1,4 @@
-// The events of spacenavd out of pieces of any size; and what is no event.
+// Parsing of spacenavd events from fragments of any size, and of invalid data.
 #include <repel/devices/spacenav_parser.hpp>
 
 #include <gtest/gtest.h>

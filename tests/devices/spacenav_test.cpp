@@ -1,5 +1,5 @@
-// The six-axis mouse against a stand-in for its daemon: nothing but whole events moves anything,
-// and whatever fails ends in rest.
+// The six-axis mouse with a fake daemon: only complete events cause motion, and every failure
+// results in rest.
 #include <repel/devices/spacenav.hpp>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace spacenav_test {
 
 using std::chrono::milliseconds;
 
-/// Straight: a count of 100 is 1 m/s or 1 rad/s, axis by axis.
+/// Linear: a count of 100 is 1 m/s or 1 rad/s, axis by axis.
 SpacenavOptions plain(const std::string& path) {
   SpacenavOptions options;
   options.path = path;
@@ -28,7 +28,7 @@ SpacenavOptions plain(const std::string& path) {
   return options;
 }
 
-/// A daemon and a device that is connected to it.
+/// A daemon and a device connected to it.
 class ConnectedSpacenav : public ::testing::Test {
  protected:
   explicit ConnectedSpacenav(ClutchPolicy clutch = ClutchPolicy::always)
@@ -41,7 +41,7 @@ class ConnectedSpacenav : public ::testing::Test {
     daemon_.accept();
   }
 
-  /// Local sockets hand over at once: what was sent is there.
+  /// Local sockets transfer at once: data that was sent can be read.
   Measured after(const Packet& packet) {
     daemon_.send(packet);
     return read();
@@ -175,7 +175,7 @@ TEST_F(ConnectedSpacenav, ADaemonThatDiesIsAFaultAtOnceAndIsFoundAgainAtRest) {
   FakeClock::pass(1.1);
   expect_fault(read());
   FakeSpacenavd next(folder_.socket());
-  expect_fault(read());  // it looks once a second only
+  expect_fault(read());  // it reconnects only once a second
   FakeClock::pass(1.1);
   const Measured back = read();
   EXPECT_EQ(back.operating_state, OperatingState::enabled);

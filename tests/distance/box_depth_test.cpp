@@ -27,7 +27,7 @@ TEST(BoxDepth, AcrossAFaceIsToThatFace) {
   EXPECT_GE(depth.upper, depth.value);
   EXPECT_TRUE(depth.closed);
   expect_point(depth.n_W, Vec3::UnitX());
-  // In the face of A, below the middle of that of B.
+  // On the face of A, below the centre of that of B.
   EXPECT_NEAR(depth.p_AQa_W.x(), 1.0, 1e-14);
   EXPECT_NEAR(depth.p_AQa_W.y(), 0.0, 0.5);
 }

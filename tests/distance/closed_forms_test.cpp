@@ -1,5 +1,5 @@
-// Shapes whose distance can be written down, against what is written down: one table of the
-// accuracy promised, one list of placements per pair of kinds.
+// Shapes whose distance has a closed form: one table of guaranteed accuracies, one list of
+// placements per pair of kinds.
 #include <repel/reduction/separation.hpp>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using families::Rng;
 
 constexpr unsigned seed = 1993;
 
-/// One placement of one pair of shapes and the distance it has [m], negative in overlap.
+/// One placement of one pair of shapes and its distance [m], negative in overlap.
 struct Case {
   std::string what;
   Shape A;
@@ -250,8 +250,8 @@ Cases cylinder_rectangle() {
            3.0 - 1.5 * std::sqrt(0.5)}};
 }
 
-/// The accuracy promised: the largest error, against the reach of both shapes and the way between
-/// their origins.
+/// The guaranteed accuracy: the largest error relative to the size of both shapes plus the distance
+/// of their origins.
 struct Promise {
   const char* pair;
   Cases (*cases)();
@@ -286,7 +286,7 @@ double size_of(const Case& c) {
   return c.A.reach() + c.B.reach() + (c.X_WA.translation() - c.X_WB.translation()).norm();
 }
 
-/// The value, the bracket around it, and witnesses and direction that go with it.
+/// Checks the value, its bracket, and the consistency of witness points and direction.
 void expect_true(const Separation& s, const Case& c, double tolerance) {
   EXPECT_NEAR(s.distance, c.distance, tolerance);
   EXPECT_LE(s.lower, c.distance + tolerance);
@@ -336,7 +336,7 @@ TEST_P(ClosedForm, IsMetWithAAndBSwapped) {
   });
 }
 
-// The poses of the moved pair are themselves rounded: a few units in the last place of its size.
+// The poses of the moved pair are rounded themselves: a few units in the last place of its size.
 TEST_P(ClosedForm, IsMetAfterARigidMotionOfBoth) {
   for_cases([](const Case& c, double tolerance) {
     Rng rng(seed);
@@ -351,7 +351,7 @@ TEST_P(ClosedForm, IsMetAfterARigidMotionOfBoth) {
   });
 }
 
-/// Solves the case from what 50 nearby poses leave behind.
+/// Solves the case with warm starts from 50 nearby poses.
 template <class Law>
 void for_warm_starts(const Case& c, Law&& law) {
   Rng rng(seed);
@@ -388,15 +388,16 @@ TEST(ClosedForms, ConcentricSpheresAreAsDeepAsBothRadii) {
   EXPECT_NEAR(s.extraction_W.norm(), 1.0, 1e-14);
 }
 
-// When every level met, both witnesses once were the origin of A and their product was 0.
+// Regression: when all levels intersected, both witness points were the origin of A and their
+// product was 0.
 TEST(ClosedForms, WitnessesOfConcentricSpheresAreTheDistanceApart) {
   const Separation s = separation(Shape::sphere(0.25), home, Shape::sphere(0.5), home);
   EXPECT_EQ(s.distance, -0.75);
   EXPECT_NEAR((s.p_WA - s.p_WB).dot(s.extraction_W), s.distance, 1e-15);
 }
 
-// The names of points on a cylinder are angles to 1e-8: a warm start from them once stalled with a
-// bracket of 1e-9 to 1e-8 m.
+// Regression: the ids of points on a cylinder are angles to 1e-8, and a warm start from them
+// stalled with a bracket of 1e-9 to 1e-8 m.
 TEST(ClosedForms, ParallelCylindersAreRightFromTheWarmStartOfANearbyPose) {
   const Shape A = Shape::cylinder(0.5, 1.0);
   const Shape B = Shape::cylinder(0.25, 0.75);

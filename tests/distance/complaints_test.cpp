@@ -1,7 +1,7 @@
-// What users of neighbouring libraries reported against distance and overlap of two convex shapes,
-// one test each, named after the public tracker and the number of the report. The situations are
-// rebuilt from the reports; the truth comes from closed forms, from the oracle in 113 bits or from
-// the 15 axes of two boxes.
+// Defects that users of other libraries reported for distance and overlap of two convex shapes, one
+// test each, named after the public tracker and the number of the report. The situations are
+// rebuilt from the reports; reference values are from closed forms, the 113-bit oracle or the 15
+// axes of two boxes.
 #include <repel/reduction/separation.hpp>
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ std::string nth(int i) {
   return families::of_seed(seed, "pair", i);
 }
 
-/// Whatever the shapes do: numbers, a direction, an ordered bracket.
+/// Invariants for any shapes: finite numbers, a direction, an ordered bracket.
 void expect_sound(const Separation& s) {
   EXPECT_NE(s.end, QueryEnd::bad_input);
   EXPECT_TRUE(std::isfinite(s.distance));
@@ -64,7 +64,7 @@ void expect_sound(const Separation& s) {
   EXPECT_LE(s.distance, s.upper);
 }
 
-/// A pair of boxes that may or may not overlap, and how deep it does [m], negative when apart.
+/// A pair of boxes that may overlap, and its depth [m], negative when apart.
 struct Boxes {
   Vec3 half_a, half_b;
   Pose X_WA, X_WB;
@@ -83,7 +83,8 @@ struct Boxes {
   }
 };
 
-// FCL: in the diagonal case the normal was not unit, and normal and depth were off by sqrt 3.
+// FCL: in the diagonal case the normal was not a unit vector, and normal and depth were off by sqrt
+// 3.
 TEST(Complaint, Fcl545DiagonalCaseHasUnitNormalAndRightDepth) {
   const Vec3 diagonal = Vec3::Ones().normalized();
   for (const double gap : {0.25, 1e-3, -1e-3, -0.1}) {
@@ -98,7 +99,7 @@ TEST(Complaint, Fcl545DiagonalCaseHasUnitNormalAndRightDepth) {
   }
 }
 
-// libccd: wrong answers once one body was 25 times the size of the other.
+// libccd: wrong answers if one body was 25 times the size of the other.
 TEST(Complaint, Libccd17SizeRatioOf25) {
   Rng rng(seed);
   for (int i = 0; i < 200; ++i) {
@@ -113,7 +114,7 @@ TEST(Complaint, Libccd17SizeRatioOf25) {
   }
 }
 
-// libccd: the direction was NaN for cubes aligned with each other.
+// libccd: the direction was NaN for mutually aligned cubes.
 TEST(Complaint, Libccd25AlignedCubesHaveADirection) {
   for (const double z : {3.0, 1.0 + 1e-9, 1.0, 1.0 - 1e-9, 0.5, 1e-9, 0.0}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -127,7 +128,7 @@ TEST(Complaint, Libccd25AlignedCubesHaveADirection) {
   }
 }
 
-// libccd, FCL: loops without a bound; box against box never returned.
+// libccd, FCL: unbounded loops; box against box never returned.
 TEST(Complaint, Fcl578BoxBoxReturns) {
   Rng rng(seed);
   int worst = 0;
@@ -147,19 +148,20 @@ TEST(Complaint, Fcl578BoxBoxReturns) {
   EXPECT_LE(worst, 150) << "seed " << seed;
 }
 
-// libccd: a loop without a bound.
+// libccd: an unbounded loop.
 TEST(Complaint, Libccd7TheCapOnIterationsIsKept) {
   Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
     const Boxes boxes(rng);
     for (const int cap : {1, 3, 10}) {
-      // As many again in extended precision, and the axes tried where nothing else gives a way out.
+      // The same number again in extended precision, plus the axes tested as the fallback for the
+      // extraction direction.
       EXPECT_LE(boxes.solve({.iterations = cap}).iterations, 2 * cap + 16) << nth(i);
     }
   }
 }
 
-// FCL: out of iterations, the solver returned what it had as if it were the answer.
+// FCL: out of iterations, the solver returned its intermediate state as the answer.
 TEST(Complaint, Fcl366IterationLimitIsNotAnAnswer) {
   Rng rng(seed);
   int spent = 0;
@@ -180,7 +182,7 @@ TEST(Complaint, Fcl366IterationLimitIsNotAnAnswer) {
   EXPECT_GT(spent, 100) << "seed " << seed;
 }
 
-// FCL: a simplex of points on one line led to NaN.
+// FCL: a collinear simplex led to NaN.
 TEST(Complaint, Fcl293CollinearSimplex) {
   const std::vector<Vec3> beads{{-1, 0, 0}, {-0.5, 0, 0}, {0, 0, 0}, {0.25, 0, 0}, {1, 0, 0}};
   const Shape line = Shape::hull(beads);
@@ -229,7 +231,7 @@ TEST(Complaint, Fcl382WitnessPointsAreInTheWorld) {
   EXPECT_LE((s.extraction_W - Vec3::UnitZ()).norm(), 1e-15);
 }
 
-// FCL: assertions failed in the depth search when shapes just kissed.
+// FCL: assertions failed in the depth search for shapes that just touch.
 TEST(Complaint, Fcl493KissingContact) {
   const Shape ball = Shape::sphere(0.5);
   const Shape can = Shape::cylinder(0.5, 0.5);
@@ -307,7 +309,7 @@ TEST(Complaint, Coal604Tolerance1e6) {
   }
 }
 
-// Coal: no convergence near contact.
+// Coal: no convergence close to contact.
 TEST(Complaint, Coal37NearContact) {
   Rng rng(seed);
   for (int i = 0; i < 300; ++i) {
@@ -320,7 +322,7 @@ TEST(Complaint, Coal37NearContact) {
   }
 }
 
-// openGJK: 2 of 10 000 pairs reported apart though they met, off by tens of centimetres.
+// openGJK: 2 of 10 000 pairs reported apart although they overlap, off by tens of centimetres.
 TEST(Complaint, OpenGjk13NoFalseNegatives) {
   Rng rng(seed);
   int meeting = 0;
@@ -353,7 +355,7 @@ TEST(Complaint, OpenGjk41LargeCoordinates) {
   EXPECT_NEAR(separation(huge, home, huge, at({2e6 + 0.5, 1e5, 1e5})).distance, 0.5, 1e-8);
 }
 
-// Bullet: digits cancelled far from the world's origin.
+// Bullet: cancellation far from the world's origin.
 TEST(Complaint, Bullet2157FarFromOrigin) {
   Rng rng(seed);
   for (int i = 0; i < 200; ++i) {
@@ -365,7 +367,7 @@ TEST(Complaint, Bullet2157FarFromOrigin) {
   }
 }
 
-// Bullet: a positive distance for shapes that penetrate.
+// Bullet: a positive distance for overlapping shapes.
 TEST(Complaint, Bullet1623PositiveDistanceWhilePenetrating) {
   Rng rng(seed);
   int overlapping = 0;
@@ -384,7 +386,7 @@ TEST(Complaint, Bullet1623PositiveDistanceWhilePenetrating) {
   EXPECT_GT(overlapping, 900) << "seed " << seed;
 }
 
-// Bullet: a margin of 0.04 hidden in every shape swallowed small bodies.
+// Bullet: a margin of 0.04 hidden in every shape exceeded the size of small bodies.
 TEST(Complaint, Bullet2584NoHiddenMargin) {
   for (const double size : {1.0, 1e-3, 1e-6, 1e-9}) {
     const Shape box = Shape::box(Vec3::Constant(size));
@@ -414,7 +416,8 @@ TEST(Complaint, Bullet889NormalDoesNotFlip) {
   }
 }
 
-// MuJoCo: distance exactly 0 for 103 of 3000 separated pairs. A separating plane proves the truth.
+// MuJoCo: distance exactly 0 for 103 of 3000 separated pairs. A separating plane proves that they
+// are.
 TEST(Complaint, Mujoco3383NeverZeroWhenSeparated) {
   Rng rng(seed);
   for (int i = 0; i < 3000;) {
@@ -448,13 +451,13 @@ TEST(Complaint, Mujoco1784NeverNegativeWhenSeparated) {
   }
 }
 
-// mujoco_warp: the result depended on where in the world the pair was.
+// mujoco_warp: the result depended on the place of the pair in the world.
 TEST(Complaint, MujocoWarp1613TranslationInvariance) {
   Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
     SCOPED_TRACE(nth(i));
     Boxes boxes(rng);
-    // Multiples of 2^-20 stay exact when moved by whole metres.
+    // Multiples of 2^-20 remain exact when translated by whole metres.
     for (Pose* X : {&boxes.X_WA, &boxes.X_WB}) {
       X->translation() = (X->translation() * 0x1p20).array().round().matrix() * 0x1p-20;
     }
@@ -470,7 +473,8 @@ TEST(Complaint, MujocoWarp1613TranslationInvariance) {
   }
 }
 
-// FCL, moveit2: on parallel faces the nearest point jumps; the distance and the normal must not.
+// FCL, moveit2: between parallel faces the nearest point jumps; the distance and the normal must
+// not.
 TEST(Complaint, Fcl393ParallelFacesDistanceDoesNotJump) {
   WarmStart warm;
   double before = 0.0;
@@ -488,7 +492,7 @@ TEST(Complaint, Fcl393ParallelFacesDistanceDoesNotJump) {
   }
 }
 
-// moveit2: jitter near objects. The signed distance moves no more than the shape does.
+// moveit2: jitter near objects. The signed distance must change no faster than the shape moves.
 TEST(Complaint, Moveit2108SmallMotionsMakeSmallChanges) {
   Rng rng(seed);
   for (int i = 0; i < 2000; ++i) {
@@ -501,7 +505,7 @@ TEST(Complaint, Moveit2108SmallMotionsMakeSmallChanges) {
   }
 }
 
-// Drake: every other call on the same pair gave a different answer.
+// Drake: alternate calls on the same pair gave different answers.
 TEST(Complaint, Drake10286AlternateCallsAgree) {
   Rng rng(seed);
   for (int i = 0; i < 200; ++i) {
@@ -520,7 +524,7 @@ TEST(Complaint, Drake10286AlternateCallsAgree) {
   }
 }
 
-// tesseract: state kept from earlier queries stopped later contacts from being found.
+// tesseract: state from earlier queries prevented later contacts from being found.
 TEST(Complaint, Tesseract626WhatOneQueryLeavesDoesNotSpoilTheNext) {
   Rng rng(seed);
   WarmStart warm;
@@ -533,7 +537,7 @@ TEST(Complaint, Tesseract626WhatOneQueryLeavesDoesNotSpoilTheNext) {
   }
 }
 
-// FCL: the normal was zero or ambiguous, above all at contact and for concentric shapes.
+// FCL: the normal was zero or ambiguous, mostly at contact and for concentric shapes.
 TEST(Complaint, Fcl8NormalNeverZero) {
   const std::vector<Shape> shapes{cube,
                                   Shape::sphere(0.5),
@@ -565,7 +569,7 @@ TEST(Complaint, Drake14789GradientAtContactIsFinite) {
   }
 }
 
-// trajopt: the gradient handed out was not the derivative of the distance.
+// trajopt: the returned gradient was not the derivative of the distance.
 TEST(Complaint, Trajopt588GradientIsTheDerivative) {
   Rng rng(seed);
   const std::vector<Shape> shapes{cube, Shape::sphere(0.3), Shape::capsule(0.1, 0.4),
@@ -591,7 +595,8 @@ TEST(Complaint, Trajopt588GradientIsTheDerivative) {
   }
 }
 
-// openGJK: NaN out of nowhere. What is not finite is refused, and nothing is claimed about it.
+// openGJK: unexplained NaN. Input that is not finite must be refused, and the answer must bound
+// nothing.
 TEST(Complaint, OpenGjk52NanIsRefused) {
   for (const double bad : {std::nan(""), infinite, -infinite}) {
     const Separation s = separation(cube, at({bad, 0, 0}), cube, home);

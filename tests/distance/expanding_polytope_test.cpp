@@ -39,7 +39,7 @@ TEST(ExpandingPolytope, FindsTheDepthOfBoxes) {
 }
 
 TEST(ExpandingPolytope, WithManyCornersEndsWithATrueBracket) {
-  // Near the centre of two balls of 2000 corners all faces are nearly as near as each other.
+  // Near the centre of two balls of 2000 corners all faces are almost equally near.
   Rng rng(seed);
   const Convex A = Convex::polytope(families::cloud(rng, 2000, 0.5).vertices);
   const Convex B = Convex::polytope(families::cloud(rng, 2000, 0.5).vertices);

@@ -16,7 +16,7 @@ using families::Rng;
 
 constexpr unsigned seed = 3307;
 
-/// As many pairs as there are lanes, each with the feature of a search.
+/// As many pairs as there are lanes, each with the feature found by a search.
 struct Group {
   std::vector<Convex> A, B;
   std::vector<Pose> X_WA, X_WB;
@@ -65,7 +65,7 @@ TEST(FeatureLanes, ProvesWhatTheProofOfOnePairProves) {
   int proven = 0, refused = 0, disputed = 0;
   for (int i = 0; i < 2000; ++i) {
     Group group(rng, families::uniform(rng, 0.8, 2.0));
-    // Some have moved so far that another feature is nearer now.
+    // Some have moved so far that another feature is the nearest now.
     for (Pose& X_WA : group.X_WA) {
       if (i % 3 == 0) X_WA.linear() = families::small_rotation(rng, 0.5) * X_WA.linear();
     }
@@ -97,7 +97,7 @@ TEST(FeatureLanes, ProvesWhatTheProofOfOnePairProves) {
   }
   EXPECT_GT(proven, 1000);
   EXPECT_GT(refused, 200);
-  EXPECT_LE(disputed, (proven + refused) / 1000);  // where rounding decides
+  EXPECT_LE(disputed, (proven + refused) / 1000);  // decided by rounding
 }
 
 TEST(FeatureLanes, AnyContentOfAWarmStartAndAnyPoseIsSafe) {

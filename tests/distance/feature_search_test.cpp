@@ -14,7 +14,7 @@ using families::Rng;
 
 constexpr unsigned seed = 5821;
 
-/// The search's own answer, or nothing when it leaves the pair to the careful one.
+/// The answer of the search alone, or nothing if it leaves the pair to the full algorithm.
 std::optional<Gap> searched(const Pair& p, const QueryOptions& options = {}) {
   const Convex A = families::convex(p.A);
   const Convex B = families::convex(p.B);

@@ -37,7 +37,7 @@ TEST(Feature, TheFootIsWhereTheSpanIsSeenAtRightAngles) {
     const detail::Feature f = random_feature(rng, 1 + i % 3);
     const detail::Foot foot = detail::foot_on(f);
     EXPECT_NEAR(sum(foot.weights), 1.0, 1e-14);
-    // A thin face multiplies the rounding of its weights.
+    // A thin face amplifies the rounding errors of its weights.
     EXPECT_LE(to_vec3(f.mean(f.w, foot.weights) - foot.v).norm(), 1e-9);
     for (int k = 1; k < f.size; ++k) EXPECT_NEAR(dot(foot.v, f.w[k] - f.w[0]), 0.0, 1e-9);
   }
@@ -63,7 +63,8 @@ TEST(Feature, WhatWasNearestIsConfirmedAndNothingElse) {
     Gap gap;
     confirmed += detail::still_nearest(posed(A, B, p), warm, {}, endless, gap) ? 1 : 0;
     EXPECT_NEAR(gap.distance, truth, 2e-14 * families::size(p));
-    // Any other corner instead of the first is not the answer, and is not taken for it.
+    // With any other corner instead of the first, the feature is not the answer and must not be
+    // accepted.
     WarmStart other = warm;
     other.a[0] = (warm.a[0] + 1 + i % 7) % 8;
     if (detail::still_nearest(posed(A, B, p), other, {}, endless, gap)) {
@@ -101,7 +102,8 @@ TEST(Feature, ConfirmsNothingThatIsNotFinite) {
   }
 }
 
-// Shares of the corners, by Cramer's rule in 113 bits, all positive: the origin is between them.
+// Barycentric coordinates by Cramer's rule in 113 bits, all positive: the simplex contains the
+// origin.
 bool surrounds(const std::array<Vec3, 4>& w) {
   using oracle::Real;
   const auto volume = [](const Vec3& p, const Vec3& q, const Vec3& r) {

@@ -1,5 +1,5 @@
-// The distance against an oracle in 113-bit arithmetic that certifies itself, over families of
-// pairs on which such algorithms fail, and laws that hold without any reference.
+// The distance compared with a self-certifying 113-bit oracle, over families of pairs that are
+// difficult for such algorithms, and properties that need no reference.
 #include <repel/distance/gjk.hpp>
 
 #include <gtest/gtest.h>
@@ -26,12 +26,12 @@ using oracle::Real;
 
 constexpr unsigned seed = 1988;
 
-/// The exact distance minus `bound`, without rounding either first.
+/// The exact distance minus `bound`, with neither rounded first.
 double above(const oracle::Truth& truth, double bound) {
   return static_cast<double>(truth.distance - Real(bound));
 }
 
-/// What every answer owes: the sign, the bracket, the accuracy, the witnesses.
+/// Invariants of every answer: sign, bracket, accuracy, witness points.
 void expect_true(const Gap& gap, const oracle::Truth& truth, double size) {
   const double error = std::abs(above(truth, gap.distance));
   ASSERT_FALSE(gap.meets) << "a false collision";
@@ -165,9 +165,9 @@ TEST_P(Family, IsFarApartOnlyWhenItIs) {
   EXPECT_GT(far, 100);
 }
 
-// The poses carry the body 1 km away, where a double has steps of 1.1e-13 m: three coordinates of
-// two bodies and nine entries of a rotation are rounded there. The algorithm itself adds nothing,
-// which IsRightCold shows on the family ten km away.
+// The poses move the body 1 km away, where doubles are 1.1e-13 m apart: three coordinates of two
+// bodies and nine entries of a rotation are rounded there. The algorithm itself adds no error, as
+// IsRightCold shows with the family 10 km away.
 TEST_P(Family, ARigidMotionOfBothBodiesChangesNothingButRounding) {
   for_pairs(150, [](const Pair& p, Rng& rng) {
     Pose X = Pose::Identity();
@@ -199,7 +199,7 @@ TEST_P(Family, AnyWarmStartGivesTheAnswerOfAColdOne) {
 
 TEST_P(Family, OverlapIsFoundWhenThePolytopesShareABall) {
   for_pairs(150, [&](Pair p, Rng& rng) {
-    // The centre of B is inside A by half its thickness at least.
+    // The centre of B is inside A by at least half its thickness.
     p.A = families::box(p.A.box ? p.A.half_extents : Vec3(0.3, 0.4, 0.5));
     p.B = families::box(p.B.box ? p.B.half_extents : Vec3(0.1, 0.8, 0.2));
     p.X_WB.translation() =
@@ -219,8 +219,8 @@ TEST(Gjk, ADefaultGapClaimsNothing) {
   EXPECT_FALSE(gap.meets);
 }
 
-// Near-parallel faces leave triangles so thin that the point nearest to the origin lies 4e-14 off
-// their plane, while the witness points stay on the boxes.
+// Near-parallel faces give triangles so thin that the point nearest to the origin is 4e-14 off
+// their plane, while the witness points are on the boxes.
 TEST(Gjk, AThinTriangleDoesNotShiftTheDistance) {
   Rng rng(7);
   for (int i = 0; i < 1500; ++i) {

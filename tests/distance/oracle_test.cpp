@@ -1,5 +1,5 @@
-// The oracles against each other: pairs of features, Wolfe's algorithm and separating axes have
-// nothing in common but their 113 bits. What they agree on is what the other tests compare with.
+// The oracles compared with each other: pairs of features, Wolfe's algorithm and separating axes
+// share only the 113-bit arithmetic. Their common results are the references of the other tests.
 #include <support/oracle.hpp>
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(Oracle, FeaturesAndWolfeAgreeOnTheGap) {
       EXPECT_LE(static_cast<double>(off), 1e-20 * families::size(pair.p));
     }
   }
-  // The rest may fall back, but the fast way must be the rule.
+  // The rest may use the fallback, but the fast method must be the rule.
   EXPECT_GT(by_features, pairs * 99 / 100);
 }
 
@@ -75,8 +75,8 @@ TEST(Oracle, NoPairOfFeaturesIsProvenNearestInOverlap) {
   }
 }
 
-// Moved out by its depth along the right axis, a pair touches; moved by less along any, it does not
-// come free.
+// Translated by its depth along the right axis, a pair touches; translated by less along any axis,
+// it still overlaps.
 TEST(Oracle, TheDepthIsTheShortestWayOut) {
   Rng rng(seed);
   int solid = 0;

@@ -1,4 +1,4 @@
-// The projection of the origin onto a simplex, against 113-bit arithmetic.
+// The projection of the origin onto a simplex, compared with 113-bit arithmetic.
 #include <repel/distance/simplex.hpp>
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ DifferencePoint<T> point(const Vec3& w, std::uint32_t name) {
   return p;
 }
 
-/// Three random points of four, or four of five, are on one side of the origin.
+/// Three of four, or four of five, random points are on one side of the origin.
 std::vector<Vec3> random_points(Rng& rng, int count) {
   const Vec3 centre = families::uniform(rng, 0.0, 1.5) * families::direction(rng);
   std::vector<Vec3> points;

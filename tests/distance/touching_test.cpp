@@ -1,5 +1,5 @@
-// Contact that doubles can represent exactly: coordinates are dyadic and rotations are the 24 of
-// the cube, so the distance is 0 and not a rounding of it.
+// Contacts that are exact in doubles: coordinates are dyadic and rotations are the 24 of the cube,
+// so the distance is exactly 0.
 #include <repel/reduction/separation.hpp>
 
 #include <gtest/gtest.h>
@@ -13,12 +13,12 @@
 namespace repel {
 namespace touching_test {
 
-/// B touches A, and leaves it along the world's z axis.
+/// B touches A, and separates from it along the world's z axis.
 struct Contact {
   std::string name;
   Shape A, B;
   Vec3 p_AB;          ///< [m]
-  bool solid = true;  ///< moved the other way, B enters A
+  bool solid = true;  ///< moved the other way, B penetrates A
 };
 
 std::vector<Vec3> box(const Vec3& h) {
@@ -42,7 +42,7 @@ std::vector<Vec3> roof() {
   return {{0, 1, 0.5},     {0, -1, 0.5},    {0.5, 1, -0.5},
           {0.5, -1, -0.5}, {-0.5, 1, -0.5}, {-0.5, -1, -0.5}};
 }
-/// Touches what lies below in one vertex, off its middle.
+/// Touches what is below it at one vertex, off its centre.
 std::vector<Vec3> tipped_hull() {
   return {{0.125, -0.25, -0.75},
           {0.5, 0.375, 0.25},
@@ -87,7 +87,7 @@ const std::vector<Contact>& contacts() {
   return all;
 }
 
-/// The rotations that take the axes to the axes: exact in doubles, and so are products with them.
+/// The rotations that permute the axes: exact in doubles, as are products with them.
 std::vector<Mat3> right_angle_turns() {
   std::vector<Mat3> turns;
   for (int i = 0; i < 3; ++i) {
@@ -105,7 +105,7 @@ std::vector<Mat3> right_angle_turns() {
   return turns;
 }
 
-/// The contact in the frame of A turned by `R`, B raised by `rise` [m].
+/// The contact in the frame of A rotated by `R`, with B raised by `rise` [m].
 struct Placed {
   const Shape& A;
   const Shape& B;
@@ -121,7 +121,7 @@ struct Placed {
   [[nodiscard]] Separation solve() const { return separation(A, X_WA, B, X_WB); }
 };
 
-/// [m] one unit in the last place of the height of B, or of half a metre if that is more.
+/// [m] One unit in the last place of the height of B, or of 0.5 m if that is larger.
 double ulp(const Contact& c) {
   const double z = std::max(std::abs(c.p_AB.z()), 0.5);
   return std::nextafter(z, std::numeric_limits<double>::infinity()) - z;
@@ -233,7 +233,7 @@ TEST(Touching, BoxesThatShareAFaceTouchWhateverTheirTurn) {
   }
 }
 
-// A radius is subtracted, not searched for: here the difference is exact.
+// A radius is subtracted, not found by iteration: here the difference is exact.
 TEST(Touching, RoundedShapesTouchExactly) {
   const Shape box = Shape::box({0.5, 0.75, 0.25});
   const Shape ball = Shape::sphere(0.5);

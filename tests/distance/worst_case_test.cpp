@@ -1,5 +1,5 @@
-// The hardest pairs that a search has found: the cap holds, and a query stopped at any iteration
-// has told the truth.
+// The hardest pairs found by a search: the iteration limit holds, and a query stopped at any
+// iteration returns valid bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>

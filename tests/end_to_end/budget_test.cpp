@@ -1,15 +1,15 @@
-// What becomes of forces and reports when the pairs near are too many for the budget.
+// Forces and reports when there are more near pairs than the budget covers.
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
 namespace budget_test {
 
-/// What a run left behind.
+/// The results of a run.
 struct Outcome {
   Ending ending;
   nlohmann::json report;
   std::string log;
-  double most_near = 0.0;  ///< pairs in one tick
+  double most_near = 0.0;  ///< largest number of pairs in one tick
 };
 
 Outcome run_of(const std::string& arguments) {
@@ -35,7 +35,7 @@ bool has_status(const Outcome& run, const char* name) {
   return run.report.at("status_ticks").contains(name);
 }
 
-/// Four tool parts among 80 little blocks, all within range: 320 pairs, of several blocks.
+/// Four tool parts among 80 small blocks, all within range: 320 pairs, of several blocks.
 std::string crowd(const std::string& budget) {
   std::string text = "name: crowd\n" + robot_text();
   for (const char* part : {"a", "b", "c"}) {
@@ -52,7 +52,7 @@ std::string crowd(const std::string& budget) {
   return text + push_text();
 }
 
-/// The crowd on a tenth of what all its pairs take.
+/// The scene with a tenth of the budget that all its pairs need.
 Outcome overload(const std::string& budget, const std::string& options = "") {
   const Folder folder;
   const std::string scene = quoted(folder.with("crowd.yaml", crowd(budget))) + " --seconds 1 ";
@@ -73,7 +73,7 @@ TEST(Budget, TenTimesTooManyPairsAreStaleWithinTheBoundOnTheirAge) {
   const double answered = run.report.at("pairs_evaluated_per_tick");
   EXPECT_GT(answered, 0.0);
   EXPECT_GT(run.report.at("oldest_age_ticks"), 0);
-  // Half of what is answered goes round; the answers of a tick are not all equally dear.
+  // Half of the evaluations are round-robin; their costs within a tick differ.
   EXPECT_LT(run.report.at("oldest_age_ticks"), 2.0 * 2.0 * 320.0 / answered);
   for (const char* words : {"oldest answer", "given too much", "status stale_pairs"}) {
     EXPECT_TRUE(run.ending.says(words)) << words << '\n' << run.ending;
@@ -114,7 +114,7 @@ TEST(Budget, OneSupportPairIsEnoughToRunEveryScene) {
   }
 }
 
-// 24 s are the whole script.
+// 24 s is the length of the script.
 TEST(Budget, EveryPairOfTheDefaultSceneJustFitsThatOfTheI860) {
   const std::string scene = "anderson_4x8 --tool-alone --every-pair --seconds 24 --budget ";
   const Outcome fits = run_of(scene + "i860");

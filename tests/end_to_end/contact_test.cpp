@@ -1,4 +1,4 @@
-// Walls of the engines themselves behind the virtual ones: who comes first.
+// Physical walls of the engines behind the virtual walls: which of them acts first.
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
@@ -12,7 +12,7 @@ std::string default_scene() {
   return text.replace(text.find(folder), folder.size(), REPEL_SOURCE "/robots");
 }
 
-/// The deepest [m] that the tool was in a solid obstacle, by the distances of the tick.
+/// The largest penetration [m] of the tool into a solid obstacle, by the distances of the ticks.
 double deepest_in_a_solid(const json& report) {
   double deepest = 0.0;
   for (const json& obstacle : report.at("obstacles")) {

@@ -1,4 +1,4 @@
-// What the tick must not do, counted in every tick of every scene.
+// Operations that are forbidden in the tick, counted in every tick of every scene.
 #include <gtest/gtest.h>
 
 #include <repel/scene/scene.hpp>
@@ -21,8 +21,8 @@ nlohmann::json counted(const std::string& arguments) {
   return report_of(folder / "report.json");
 }
 
-/// What a tick causes it causes every time. The kernel may move a locked page or hold a thread up
-/// once, so these two get three runs in which to be nothing.
+/// Effects caused by the tick recur in every run. The kernel may once move a locked page or suspend
+/// a thread, so these two counts must be zero in one of three runs.
 bool is_at_rest(const nlohmann::json& report) {
   for (const char* key : {"page_faults_in_tick", "voluntary_context_switches_in_tick"}) {
     if (!report.at(key).is_null() && report.at(key) != 0) return false;
@@ -48,7 +48,7 @@ void expect_nothing_in_tick(const std::string& arguments) {
               report.at("ticks").dump().c_str());
 }
 
-/// What is counted, whether it can be here, and if not why.
+/// A count, whether it is available here, and if not, why.
 struct Count {
   std::string key;
   bool possible;
@@ -56,7 +56,7 @@ struct Count {
   std::string disturbance;  ///< of disturbance.cpp
 };
 std::vector<Count> counts() {
-  (void)clock_in_the_kernel();  // which tells whether system calls can be counted
+  (void)clock_in_the_kernel();  // this tells whether system calls can be counted
   const auto report = counted("empty --fast --seconds 0.1");
   return {{"allocations_in_tick", HeapGuard::allocations() >= 0, "a sanitizer owns malloc",
            "allocation"},

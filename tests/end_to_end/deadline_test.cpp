@@ -56,7 +56,7 @@ TEST(Deadline, BadUsageEndsWithTwoAndSaysWhy) {
   }
 }
 
-// At once: the run that was asked for takes four minutes.
+// It ends at once: the run that was requested takes four minutes.
 TEST(Deadline, FileThatCannotBeWrittenEndsWithOneAndNamesThePath) {
   const Ending ending = deadline("--json /no/such/folder/file");
   EXPECT_EQ(ending.status, 1) << ending;

@@ -1,5 +1,5 @@
-// Loaded into teleop before the C library (LD_PRELOAD), this does in a function that every tick
-// calls what a tick must not do. Which, says the variable REPEL_DISTURBANCE.
+// Loaded into teleop with LD_PRELOAD, this replaces a function called by every tick with one that
+// performs an operation forbidden in a tick. REPEL_DISTURBANCE selects the operation.
 #include <sys/mman.h>
 #include <time.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// How a run ends when something goes wrong around it: a full disk, a reader that leaves, a signal,
-// a kill, a name that is taken.
+// How a run ends under external errors: a full disk, a reader that disconnects, a signal, a kill, a
+// file name that is already used.
 #include <sys/mount.h>
 #include <sys/stat.h>
 
@@ -17,14 +17,14 @@
 namespace repel::test {
 namespace ending_test {
 
-/// Runs a line of shell in which $T is the program; its stdin is empty.
+/// Runs a shell command in which $T is the program; its stdin is empty.
 Ending shell(const std::string& line) {
   const Folder folder;
   const std::string script = folder.with("run.sh", "T=" + quoted(REPEL_TELEOP) + "\n" + line);
   return run_program("/bin/bash", quoted(script));
 }
 
-/// The names in a folder, in order.
+/// The names in a folder, sorted.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -36,7 +36,7 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 using Names = std::vector<std::string>;
 
-/// A file may have so many KiB; a longer one fails as on a full disk, but with "File too large".
+/// Limits the file size in KiB; a longer file fails as on a full disk, but with "File too large".
 std::string within(int kilobytes) {
   return "trap '' XFSZ; ulimit -f " + std::to_string(kilobytes) + "; ";
 }
@@ -65,7 +65,7 @@ TEST(Ending, LogThatCannotBeWrittenOnIsSaidAndCostsNeitherRunNorReport) {
   }
 }
 
-/// A file system of 256 KiB, where this may be made.
+/// A file system of 256 KiB, if it can be mounted here.
 class SmallDisk {
  public:
   SmallDisk() { is_mounted_ = mount("none", path().c_str(), "tmpfs", 0, "size=256k") == 0; }
@@ -88,7 +88,7 @@ TEST(Ending, FullDiskIsSaidWhileItRunsAndTheReportComesToAnotherDisk) {
   if (!disk.is_mounted()) GTEST_SKIP() << "no file system may be mounted here";
   const Folder folder;
   for (const std::string name : {"run.csv", "run.mcap"}) {
-    // By the clock: what is said is there before the run is over.
+    // In real time: output must arrive before the run is over.
     const Ending ending =
         shell("$T anderson_4x8 --seconds 4 --log " + quoted(disk / name) + " --report " +
               quoted(folder / "report.json") + " 2>" + quoted(folder / "said") +
@@ -142,7 +142,7 @@ TEST(Ending, ReaderThatLeavesEndsNothing) {
   EXPECT_EQ(columns_of(folder / "run.csv").at("tick").size(), 600U);
 }
 
-/// Expects a log whose forces are faded at its end, within half a second and not at once.
+/// Expects a log whose forces fade out at its end, within half a second and not abruptly.
 void expect_faded(const std::string& path) {
   const std::vector<double> gain = columns_of(path).at("gain");
   ASSERT_GT(gain.size(), 25U);
@@ -172,7 +172,7 @@ TEST(Ending, EverySignalFadesTheForcesAndWritesTheReport) {
   }
 }
 
-// As when the clock does not matter, and what was recorded of the end is gone through as well.
+// The end is as in a run that is not in real time, and the recorded end is replayed as well.
 TEST(Ending, RunThatFadedReplaysBitForBit) {
   for (const std::string clock : {"", " --fast"}) {
     const Folder folder;
@@ -190,7 +190,7 @@ TEST(Ending, RunThatFadedReplaysBitForBit) {
   }
 }
 
-// `timeout` sends its signal twice at once, and a terminal that is closed does so, too.
+// `timeout` sends its signal twice at once, as does a closing terminal.
 TEST(Ending, SecondSignalEndsAtOnceUnlessItIsTheSameWish) {
   const std::atomic<bool>& asked = host::interruption();
   const std::atomic<bool>& asked_again = host::insistence();

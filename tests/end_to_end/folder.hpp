@@ -1,5 +1,5 @@
 /// @file
-/// A folder for the files of one test.
+/// A temporary directory for the files of one test.
 #pragma once
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ inline std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A folder of its own for one test, removed with it.
+/// A temporary directory for one test, removed by the destructor.
 class Folder {
  public:
   Folder() {
@@ -36,7 +36,7 @@ class Folder {
   [[nodiscard]] std::string operator/(const std::string& name) const {
     return (path_ / name).string();
   }
-  /// Writes a file into the folder and returns its path.
+  /// Writes a file into the directory and returns its path.
   [[nodiscard]] std::string with(const std::string& name, const std::string& text) const {
     std::ofstream(path_ / name, std::ios::binary) << text;
     return *this / name;

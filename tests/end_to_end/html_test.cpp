@@ -1,4 +1,4 @@
-// The page of a run: whole, by itself, and with what the run did.
+// The HTML page of a run: well-formed, self-contained, and with the data of the run.
 #include <regex>
 
 #include <chart.hpp>
@@ -9,14 +9,14 @@
 namespace repel::test {
 namespace html_test {
 
-/// How often `part` is in `text`.
+/// Number of occurrences of `part` in `text`.
 int count_of(const std::string& text, const std::string& part) {
   int count = 0;
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
   return count;
 }
 
-/// Every element that is opened is closed, in the right order; empty when so.
+/// Checks that all elements are closed in the right order; empty if so.
 std::string unbalanced(const std::string& html) {
   const std::regex tag("<(/?)([a-z0-9]+)([^>]*)>");
   std::vector<std::string> open;

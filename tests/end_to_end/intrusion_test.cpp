@@ -1,6 +1,8 @@
-// No part of an arm goes deeper into an obstacle than the report says: every scene again, from the
-// joints in its log, by Wolfe's algorithm with 113 bits in place of the library's own distance.
-#include <cell.hpp>
+// No part of an arm is deeper in an obstacle than the report states: every scene is recomputed from
+// the joints in its log by Wolfe's algorithm with 113 bits, not by the library's own distance.
+#include <describe.hpp>
+#include <repel/cell/cell.hpp>
+#include <repel/robots/kinematics.hpp>
 #include <support/wolfe.hpp>
 
 #include "end_to_end/teleop.hpp"
@@ -13,7 +15,7 @@ using nlohmann::json;
 using oracle::Point;
 using oracle::Real;
 
-/// A part where it is.
+/// A part at its pose.
 struct PlacedPart {
   const Shape& shape;
   Pose X_WP;
@@ -22,11 +24,11 @@ struct PlacedPart {
     const Vec3 d = X_WP.linear().transpose() * d_W;
     return X_WP * to_vec3(shape.level(0).core.support(Vec<double>(d)).p);
   }
-  /// By which the shape is rounder than its core [m].
+  /// Radius by which the shape is rounded beyond its core [m].
   [[nodiscard]] double rounding() const { return shape.level(0).depth; }
 };
 
-/// The distance of two parts, never more than the truth [m]; 0 when their cores meet.
+/// A lower bound of the distance of two parts [m]; 0 if their cores intersect.
 double distance_below(const PlacedPart& a, const PlacedPart& b) {
   const auto support = [&](const Point& x) {
     const oracle::Rough d = oracle::rough(x);
@@ -39,7 +41,7 @@ double distance_below(const PlacedPart& a, const PlacedPart& b) {
   return static_cast<double>(bracket.lower) - a.rounding() - b.rounding();
 }
 
-/// How far one of them must be moved at most for the two to part [m].
+/// Upper bound of the translation that separates the two [m].
 double depth_above(const PlacedPart& a, const PlacedPart& b, families::Rng& rng) {
   double least = 1e9;
   const auto try_along = [&](const Vec3& n) {
@@ -56,50 +58,53 @@ double depth_above(const PlacedPart& a, const PlacedPart& b, families::Rng& rng)
   return least;
 }
 
-/// A scene with the bodies where the log says they were.
+/// A scene with the bodies at the poses of the log.
 class Replay {
  public:
   explicit Replay(const scene::Scene& scene, const Columns& log)
-      : scene_(scene), log_(log), cell_(scene, true) {}
+      : log_(log), cell_(teleop::describe(scene, scene.rate_hz).cell), world_(cell_.world()) {
+    for (const ArmDescription& arm : cell_.description().arms) kinematics_.emplace_back(arm.model);
+  }
 
-  [[nodiscard]] const World& world() const { return cell_.world; }
+  [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] PlacedPart placed(PartId id) const {
-    const Part& part = cell_.world.part(id);
-    const BodyState& body = cell_.world.motion().bodies[static_cast<std::size_t>(part.body.index)];
+    const Part& part = world_.part(id);
+    const BodyState& body = world_.motion().bodies[static_cast<std::size_t>(part.body.index)];
     return {part.shape, body.X_WB * part.X_BP};
   }
 
   void go_to(std::size_t row) {
-    for (const Shuttle& shuttle : cell_.shuttles) {
-      ASSERT_TRUE(shuttle.place(cell_.world, log_.at("time_s")[row]));
+    for (const MovingBody& moving : cell_.moving()) {
+      ASSERT_TRUE(moving.place(world_, log_.at("time_s")[row]));
     }
-    for (std::size_t i = 0; i < cell_.arms.size(); ++i) {
-      const std::string prefix = i == 0 ? "" : scene_.partners[i - 1].name + "/";
-      place(cell_.arms[i], prefix, row);
-    }
+    for (std::size_t i = 0; i < cell_.arms(); ++i) place(i, row);
   }
 
  private:
-  void place(teleop::Manipulator& arm, const std::string& prefix, std::size_t row) {
+  void place(std::size_t i, std::size_t row) {
+    const ArmDescription& arm = cell_.description().arms[i];
+    const std::string prefix = arm.name.empty() ? "" : arm.name + "/";
     std::vector<double> q;
-    for (std::size_t joint = 0; joint < arm.start.size(); ++joint) {
-      const bool turns = arm.robot.arm.links[joint].type == JointType::revolute;
-      const std::string name = prefix + "q" + std::to_string(joint + 1) + (turns ? "_rad" : "_m");
+    for (const ArmLink& link : arm.model.links) {
+      const bool turns = link.type == JointType::revolute;
+      const std::string name =
+          prefix + "q" + std::to_string(q.size() + 1) + (turns ? "_rad" : "_m");
       q.push_back(log_.at(name)[row]);
     }
-    arm.kinematics.update(q);
-    ASSERT_TRUE(cell_.world.place(arm.tool, arm.kinematics.X_WT(), {}));
-    for (const LinkBody& link : arm.links) {
-      ASSERT_TRUE(cell_.world.place(link.body, arm.kinematics.X_WL(link.link), {}));
+    kinematics_[i].update(q);
+    ASSERT_TRUE(world_.place(cell_.layout(i).tool, kinematics_[i].X_WT(), {}));
+    for (const LinkBody& link : cell_.layout(i).links) {
+      ASSERT_TRUE(world_.place(link.body, kinematics_[i].X_WL(link.link), {}));
     }
   }
 
-  const scene::Scene& scene_;
   const Columns& log_;
-  teleop::Cell cell_;
+  Cell cell_;
+  World world_;
+  std::vector<Kinematics> kinematics_;
 };
 
-/// What the report says of the intrusion into each obstacle [m].
+/// The intrusion into each obstacle according to the report [m].
 std::map<std::string, double> deepest_of(const json& report) {
   std::map<std::string, double> deepest;
   for (const json& obstacle : report.at("obstacles")) {

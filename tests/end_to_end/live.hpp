@@ -1,5 +1,5 @@
 /// @file
-/// The program with its live view, and a page that drives it.
+/// The program with its live view, and a page that controls it.
 #pragma once
 
 #include <fcntl.h>
@@ -24,7 +24,7 @@ namespace repel::test {
 
 using Json = nlohmann::json;
 
-/// A program that runs beside the test, and is ended with it at the latest.
+/// A child process, terminated by the destructor at the latest.
 class LiveTeleop {
  public:
   explicit LiveTeleop(std::vector<std::string> arguments,
@@ -54,12 +54,12 @@ class LiveTeleop {
     if (program_ > 0) (void)end_with(SIGKILL);
   }
 
-  /// Of the live view; 0: it said none.
+  /// Port of the live view; 0: none was reported.
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] bool runs() const { return program_ > 0 && ::kill(program_, 0) == 0; }
-  /// What it has said on stderr.
+  /// Its output on stderr so far.
   [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
-  /// Has it end as Ctrl-C does.
+  /// Interrupts it as Ctrl-C does.
   Ending interrupt() { return end_with(SIGINT); }
 
  private:
@@ -92,7 +92,7 @@ class LiveTeleop {
   std::uint16_t port_ = 0;
 };
 
-/// A page that reads what it is told.
+/// A page that parses the messages it receives.
 class LivePage {
  public:
   using Such = std::function<bool(const Json&)>;
@@ -102,8 +102,8 @@ class LivePage {
   }
 
   void say(const Json& message) { (void)page_.say(message.dump()); }
-  /// The first such message of that type; null when none comes. `meanwhile` is done again and
-  /// again, many times a second.
+  /// The first message of that type that fulfils the condition; null on timeout. `meanwhile` is
+  /// called repeatedly while waiting, many times a second.
   Json await(
       const std::string& type, const Such& such = [](const Json&) { return true; },
       const std::function<void()>& meanwhile = [] {}) {
@@ -118,7 +118,7 @@ class LivePage {
     ADD_FAILURE() << "no such " << type << " comes; closed with " << page_.close_code();
     return nullptr;
   }
-  /// Moves the hand until such a frame comes.
+  /// Moves the hand until such a frame arrives.
   Json drive(const Vec3& velocity, const Such& such) {
     const Json servo{{"type", "servo_cv"},
                      {"linear", {velocity.x(), velocity.y(), velocity.z()}},
@@ -131,7 +131,7 @@ class LivePage {
     say({{"type", "take"}});
     return await("operator", [](const Json& who) { return who.at("you") == true; });
   }
-  /// Why the message is refused.
+  /// The reason for which the message is refused.
   std::string refusal_of(const Json& message) {
     say(message);
     const Json answer = await("refused");
@@ -143,7 +143,7 @@ class LivePage {
   WebPage page_;
 };
 
-/// [N] of the virtual force on the tool of an arm of a frame.
+/// [N] Virtual force on the tool of an arm in a frame.
 inline double force_of(const Json& frame, std::size_t arm = 0) {
   double sum = 0.0;
   for (const Json& x : frame.at("arms")[arm].at("force")) sum += x.get<double>() * x.get<double>();

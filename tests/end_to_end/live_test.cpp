@@ -79,7 +79,7 @@ TEST(Live, OfTwoPagesOneDrives) {
 
 const std::string secret = "0f1e2d3c4b5a69788796a5b4c3d2e1f0";
 
-/// Opens a page that presents this.
+/// Opens a page that sends this secret.
 void present(LivePage& page, const std::string& text) {
   page.say({{"type", "secret"}, {"secret", text}});
 }
@@ -168,7 +168,7 @@ TEST(Live, ViewOnlyIsToLookOn) {
   EXPECT_NE(first.at("phase"), "") << "the script goes on";
 }
 
-// The page drives one of the two arms; the other goes on with its script.
+// The page controls one of the two arms; the other continues its script.
 TEST(Live, OfTwoArmsTheFirstIsDriven) {
   LiveTeleop program({"two_arms"});
   LivePage page(program);
@@ -183,7 +183,7 @@ TEST(Live, OfTwoArmsTheFirstIsDriven) {
   EXPECT_FALSE(later.is_null());
 }
 
-// First silent, with the forces gone; then free for another.
+// First silent, with the forces faded out; then available to another page.
 TEST(Live, WhoeverIsKilledAtTheControlsLosesThem) {
   LiveTeleop program({"anderson_4x8"});
   LivePage other(program);
@@ -208,7 +208,7 @@ TEST(Live, WhoeverIsKilledAtTheControlsLosesThem) {
   EXPECT_FALSE(again.is_null());
 }
 
-/// What a page must not do, on connections of its own.
+/// Misuse by a page, on connections of its own.
 void misbehave(const LiveTeleop& program, int round) {
   WebPage flood(program.port());
   for (int i = 0; i < 1000 && flood.say("{\"type\":\"take\"}x"); ++i) {
@@ -238,7 +238,7 @@ TEST(Live, FloodsAndGigabytesDoNotReachTheTick) {
     last = page.await("frame", [&](const Json& f) { return f.at("tick") > last.at("tick"); });
     ASSERT_FALSE(last.is_null());
   }
-  // The last picture that waits is up to a picture behind the clock.
+  // The last frame received is up to one frame behind the clock.
   const std::int64_t target = last.at("tick").get<std::int64_t>() + 800;
   last = page.await("frame", [&](const Json& f) { return f.at("tick") >= target; });
   ASSERT_FALSE(last.is_null());
@@ -255,7 +255,7 @@ TEST(Live, FloodsAndGigabytesDoNotReachTheTick) {
   for (const char* what : {"allocations_in_tick", "system_calls_in_tick"}) {
     EXPECT_TRUE(report.at(what).is_null() || report.at(what) == 0) << what << report.at(what);
   }
-  // Silent it is in its last ticks alone, when it lets go.
+  // It is silent only in its last ticks, when it releases control.
   EXPECT_LE(report.at("status_ticks").value("silent_device", 0), 200);
   for (const char* fault :
        {"bad_pose", "bad_command", "bad_joints", "clock_fault", "expired_pairs", "network_fault"}) {
@@ -266,11 +266,11 @@ TEST(Live, FloodsAndGigabytesDoNotReachTheTick) {
 TEST(Live, PausedItStandsAndAStepIsOneTick) {
   LiveTeleop program({"plates"});
   LivePage page(program);
-  ASSERT_FALSE(page.await("frame").is_null());  // before the first tick there is none
+  ASSERT_FALSE(page.await("frame").is_null());  // there is none before the first tick
   page.say({{"type", "pause"}});
   ASSERT_FALSE(
       page.await("frame", [](const Json& f) { return f.at("running") == false; }).is_null());
-  // The tick that was under way may still come; what stands is shown again and again.
+  // The running tick may still arrive; after that the same frame is repeated.
   std::int64_t tick = -1;
   const auto stands = [&](const Json& f) {
     const std::int64_t before = std::exchange(tick, f.at("tick").get<std::int64_t>());
@@ -310,7 +310,7 @@ TEST(Live, ARestartBeginsFromTheBeginningWithTheScript) {
   EXPECT_EQ(program.interrupt().status, 0);
 }
 
-/// Records a run that a page drives, until the tool has been on the table and off again.
+/// Records a run controlled by a page, until the tool has been on the table and off again.
 void record(const std::string& path) {
   LiveTeleop program({"anderson_4x8", "--log", path});
   LivePage page(program);

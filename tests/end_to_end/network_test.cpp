@@ -12,7 +12,7 @@ const json& module_of(const json& report, const std::string& name) {
   throw std::runtime_error("no module " + name);
 }
 
-/// The lowest ledger of a passive module, as a part of what passed through it.
+/// The lowest ledger of a passive module, relative to the energy that passed through it.
 double worst_deficit(const json& report) {
   double worst = 0.0;
   for (const json& module : report.at("modules")) {
@@ -93,15 +93,15 @@ TEST(NetworkOfAScene, SilentDeviceRampsTheForceToZero) {
              " --report " + quoted(folder / "report.json"));
   ASSERT_EQ(ending.status, 0) << ending;
   const json report = report_of(folder / "report.json");
-  EXPECT_EQ(report.at("status_ticks").at("silent_device"), 192);  // 500 ms less 20 ms
+  EXPECT_EQ(report.at("status_ticks").at("silent_device"), 192);  // 500 ms minus 20 ms
   const Columns log = columns_of(folder / "log.csv");
   expect_finite_forces(log);
   const auto& gain = log.at("gain");
   EXPECT_EQ(gain[400], 1.0);
-  EXPECT_EQ(gain[440], 0.0);  // 20 ms of patience and 50 ms of ramp later
+  EXPECT_EQ(gain[440], 0.0);  // after 20 ms of timeout and 50 ms of ramp
 }
 
-/// What a scene that must run leaves behind: its ledgers are kept and its forces finite.
+/// Runs a scene and checks it: no ledger is violated and all forces are finite.
 std::pair<json, Columns> ran(const Folder& folder, const std::string& scene, double seconds) {
   const Ending ending =
       teleop(quoted(scene) + " --fast --seconds " + std::to_string(seconds) + " --log " +
@@ -114,7 +114,7 @@ std::pair<json, Columns> ran(const Folder& folder, const std::string& scene, dou
   return {report, std::move(log)};
 }
 
-// The elbow is folded until it ends, and the hand goes on.
+// The elbow is folded up to its limit, and the hand continues.
 TEST(NetworkOfAScene, JointAtItsLimitHoldsAgainstTheOperatorAndIsFelt) {
   const Folder folder;
   std::string robot = robot_text();
@@ -133,13 +133,13 @@ TEST(NetworkOfAScene, JointAtItsLimitHoldsAgainstTheOperatorAndIsFelt) {
   const auto& torque = log.at("lever_torque_nm");
   const auto& x = log.at("x_m");
   const auto& gain = log.at("gain");
-  EXPECT_LT(torque[1999], -2.0);  // against the way it leads
+  EXPECT_LT(torque[1999], -2.0);  // opposite to its motion
   EXPECT_LT(std::abs(x[1999] - x[1799]), 0.2 * std::abs(x[200] - x[0])) << "the arm went on";
   EXPECT_GT(x.back(), x[1999] + 0.05) << "the arm did not come back";
   EXPECT_EQ(*std::min_element(gain.begin(), gain.end()), 1.0) << "a limit is no fault";
 }
 
-// A device that gives the most it can is followed as fast as the ball allows, and said to saturate.
+// A device at full deflection is followed as fast as the ball allows, and reported as saturated.
 TEST(NetworkOfAScene, SaturatedInputIsCutAndReported) {
   const Folder folder;
   const std::string scene = folder.with(
@@ -154,8 +154,8 @@ TEST(NetworkOfAScene, SaturatedInputIsCutAndReported) {
   for (std::size_t i = 1; i < 200; ++i) ASSERT_LT(std::abs(z[i] - z[i - 1]), 0.6 / 400.0) << i;
 }
 
-/// Largest virtual force in the last second of a minute of holding the tool on the table, over
-/// 100 ms and a channel that loses one packet in twenty; the report besides.
+/// Largest virtual force in the last second of a minute of holding the tool on the table, over 100
+/// ms and a channel that loses one packet in twenty; and the report.
 std::pair<double, json> held_over_a_line(const Folder& folder, const std::string& kind) {
   std::string text = text_of(REPEL_SOURCE "/scenes/delayed.yaml");
   const auto replace = [&](const std::string& from, const std::string& to) {

@@ -1,5 +1,5 @@
 /// @file
-/// Runs a program as a user would, and reads what it leaves behind.
+/// Runs a program as a user would, and reads its output.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 
 namespace repel::test {
 
-/// How a run of a program ended and what it said.
+/// Exit status and output of a run.
 struct Ending {
-  int status = -1;  ///< exit status; 128 + signal when it was killed
+  int status = -1;  ///< exit status; 128 + signal if it was killed
   std::string out;
   std::string err;
   [[nodiscard]] bool says(const std::string& words) const {
@@ -28,12 +28,12 @@ inline std::ostream& operator<<(std::ostream& stream, const Ending& ending) {
   return stream << "exit status " << ending.status << '\n' << ending.out << ending.err;
 }
 
-/// `word` as the shell takes it whole.
+/// `word`, quoted for the shell.
 inline std::string quoted(const std::string& word) {
   return std::string(1, '\'').append(word).append(1, '\'');
 }
 
-/// Runs `program` with `arguments`, as a shell splits them.
+/// Runs `program` with `arguments`, split by the shell.
 inline Ending run_program(const std::string& program, const std::string& arguments) {
   const Folder folder;
   const std::string command = quoted(program) + " " + arguments + " >" + quoted(folder / "out") +

@@ -142,7 +142,7 @@ TEST(Hiccups, TickThatMeetsTwoCountsOnce) {
   EXPECT_EQ(hiccups.ticks(), 2);
 }
 
-// The tick that runs when a hiccup begins has met it, however soon it ends.
+// The tick that runs when a hiccup begins counts as hit, however soon it ends.
 TEST(Hiccups, OneThatBeginsJustBeforeTheEndIsMet) {
   host::Hiccups hiccups = four_ticks();
   hiccups.add(4ms + 19us, 5ms, 3, 4ms + 20us);

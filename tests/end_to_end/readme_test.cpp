@@ -1,5 +1,5 @@
-// The first program of README.md is the first example, byte for byte, and prints what stands there.
-// Links of all pages are checked by tests/style/check.sh.
+// The first program of README.md is the first example, byte for byte, and prints the output given
+// there. Links of all pages are checked by tests/style/check.sh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace repel::test {
 namespace readme_test {
 
-/// What stands in `text` between two marks behind `from`.
+/// The text between two marks, after position `from`.
 std::string between(const std::string& text, const std::string& from, const std::string& to) {
   const auto begin = text.find(from);
   if (begin == std::string::npos) return {};
@@ -19,7 +19,7 @@ std::string between(const std::string& text, const std::string& from, const std:
   return text.substr(first, text.find(to, first) - first);
 }
 
-/// A block of README.md without the four blanks before its lines.
+/// A code block of README.md without its indentation of four blanks.
 std::string flush_left(const std::string& block) {
   std::istringstream lines(block);
   std::string text;
@@ -44,7 +44,8 @@ TEST(Readme, FirstProgramIsTheFirstExampleByteForByte) {
   EXPECT_EQ(readme.substr(code, end - code), program);
 }
 
-// It printed (-0 -0 1) for way out, on any compiler, where README has (0 0 1).
+// Regression: it printed (-0 -0 1) as the extraction direction, with any compiler, where README has
+// (0 0 1).
 TEST(Readme, FirstProgramPrintsWhatStandsThere) {
   const Folder folder;
   const std::string readme = text_of(REPEL_SOURCE "/README.md");

@@ -1,4 +1,4 @@
-// Runs that are recorded and gone through again, as a user does it.
+// Recording and replay of runs, as done by a user.
 #include <filesystem>
 #include <fstream>
 
@@ -16,7 +16,7 @@ void record(const std::string& arguments, const std::string& file) {
   ASSERT_EQ(ending.status, 0) << ending;
 }
 
-/// The "replay" of the report of going through the file again.
+/// The "replay" entry of the report of a replay of the file.
 nlohmann::json replay(const std::string& file, int status = 0) {
   const Folder folder;
   const Ending ending =
@@ -41,8 +41,8 @@ TEST(Recording, ReplayHasTheSameForcesBitForBit) {
   }
 }
 
-// A device that falls silent, a hand that gives no number, a budget that binds: all of it comes
-// again.
+// A device that stops sending, a hand that sends NaN, a budget that is exhausted: all are
+// reproduced.
 TEST(Recording, FaultsAndBudgetsComeAgain) {
   const Folder folder;
   const std::string file = folder / "run.mcap";
@@ -95,7 +95,7 @@ TEST(Recording, EveryChannelHasItsTicks) {
   EXPECT_EQ(poses.front().at("transforms").at(0).at("child_frame_id"), "tool");
 }
 
-// As after a crash: what is there can be gone through, and is said to be no whole.
+// As after a crash: the existing part can be replayed, and is reported as incomplete.
 TEST(Recording, FileThatIsCutOffReplaysUpToThere) {
   const Folder folder;
   const std::string file = folder / "run.mcap";
@@ -110,7 +110,7 @@ TEST(Recording, FileThatIsCutOffReplaysUpToThere) {
   EXPECT_EQ(result.at("same"), result.at("ticks"));
 }
 
-// Nobody has the time to end the file.
+// Killed: there is no time to finish the file.
 TEST(Recording, RunThatIsKilledLeavesAllButTheLastHalfSecond) {
   const Folder folder;
   const std::string file = folder / "run.mcap";
@@ -122,7 +122,7 @@ TEST(Recording, RunThatIsKilledLeavesAllButTheLastHalfSecond) {
   EXPECT_EQ(result.at("same"), result.at("ticks"));
 }
 
-/// Writes the recording again with `before` in its scene replaced by `after`.
+/// Copies the recording with `before` in its scene replaced by `after`.
 void rewrite(const std::string& from, const std::string& to, const std::string& before,
              const std::string& after) {
   record::McapReader reader(from);
@@ -146,7 +146,7 @@ void rewrite(const std::string& from, const std::string& to, const std::string& 
   }
 }
 
-// With another wall, what was recorded of the forces cannot come out.
+// With a different wall, the recorded forces cannot be reproduced.
 TEST(Recording, ReplayThatDiffersIsSaidAndCounted) {
   const Folder folder;
   const std::string file = folder / "run.mcap";

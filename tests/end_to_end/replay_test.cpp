@@ -20,7 +20,7 @@ TEST(Replay, SameBitsEveryTimeAndWithAnyNumberOfThreads) {
       if (first.empty()) first = text;
       EXPECT_TRUE(text == first) << backend << ", " << threads << " threads: another log";
     }
-    // Something happened that could have differed.
+    // Check that the run contains events that could have differed.
     const Columns last = columns_of(folder / "log.csv");
     double peak = 0.0;
     for (const double f : last.at("virtual_fz_n")) {
@@ -88,8 +88,8 @@ TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
   EXPECT_EQ(report.at("backend"), "bullet");
   EXPECT_EQ(report.at("rate_hz"), 400.0);
   EXPECT_EQ(report.at("ticks"), 400);
-  EXPECT_EQ(report.at("pairs"), 120);  // of 4 parts of the tool and 11 of the arm with 8
-  // null where a sanitizer's allocator is in place.
+  EXPECT_EQ(report.at("pairs"), 120);  // 4 parts of the tool and 11 of the arm with 8 obstacles
+  // null if a sanitizer's allocator is in use.
   const auto& allocations = report.at("allocations_in_tick");
   EXPECT_TRUE(allocations.is_null() || allocations == 0) << allocations;
 }

@@ -1,4 +1,4 @@
-// The program that shows what a robot description holds, as a user runs it.
+// The program that prints the contents of a robot description, as run by a user.
 #include "program.hpp"
 
 namespace repel::test {
@@ -31,7 +31,7 @@ TEST(RobotInfo, OfThePumaSaysWhatTheFileHolds) {
   for (const json& link : info.at("links")) parts += link.at("parts").size();
   EXPECT_GT(parts, 5U);
   EXPECT_EQ(parts, in_file);
-  // Standard Denavit-Hartenberg at zero: a2 + a3 outward, d3 aside, base and d4 + d6 high.
+  // Standard Denavit-Hartenberg at zero: a2 + a3 outward, d3 sideways, base and d4 + d6 upward.
   ASSERT_EQ(info.at("tips").size(), 1U);
   const json& tip = info.at("tips")[0];
   EXPECT_NEAR(tip.at("position")[0], 0.4318 + 0.0203, 1e-9) << tip;

@@ -56,7 +56,7 @@ TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
   }
 }
 
-/// Every tick of 20 s of the default scene, or nothing where that back end is not built in.
+/// Every tick of 20 s of the default scene; nothing if that back end is not built.
 Columns log_with(const Folder& folder, const std::string& backend) {
   const Ending ending =
       teleop("--fast --seconds 20 --backend " + backend + " --log " + quoted(folder / "log.csv"));
@@ -65,8 +65,8 @@ Columns log_with(const Folder& folder, const std::string& backend) {
   return columns_of(folder / "log.csv");
 }
 
-// Engines that share nothing but the model: what differs is the order of the step and how dry
-// friction holds.
+// Engines that share only the model: they differ in the integration scheme and in the treatment of
+// dry friction.
 TEST(Scene, TheEnginesAndTheReferenceArmFeelTheSameWalls) {
   const Folder folder;
   const Columns reference = log_with(folder, "reference");
@@ -125,7 +125,7 @@ TEST(Scene, OperatorThatSendsNoNumbersIsSaidAndForcesStayFinite) {
   EXPECT_EQ(log.at("gain")[479], 0.0);
 }
 
-/// Four tool parts among 2500 little blocks under the tool, all within range.
+/// Four tool parts among 2500 small blocks under the tool, all within range.
 std::string crowd() {
   std::string text = "name: crowd\n" + robot_text();
   for (const char* part : {"a", "b", "c"}) {

@@ -1,4 +1,4 @@
-// Every scene of the repository does what its reference report says, and has a page that shows it.
+// Every scene of the repository agrees with its reference report, and has a page that shows it.
 #include "end_to_end/teleop.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 const std::string scenes = REPEL_SOURCE "/scenes/";
 
-/// The names of all scenes, in order.
+/// The names of all scenes, sorted.
 std::set<std::string> names() {
   std::set<std::string> all;
   for (const auto& entry : fs::directory_iterator(scenes)) {
@@ -24,7 +24,7 @@ std::set<std::string> names() {
   return all;
 }
 
-/// What each element of a list, or each member of an object, is called.
+/// The names of the elements of a list, or the keys of an object.
 std::vector<std::string> names_in(const json& list) {
   std::vector<std::string> all;
   for (const auto& [key, value] : list.items()) {
@@ -33,7 +33,7 @@ std::vector<std::string> names_in(const json& list) {
   return all;
 }
 
-/// Rounding differs from machine to machine, and grows where the arm slides.
+/// Rounding differs between machines, and is amplified where the arm slides.
 void expect_near(const json& value, const json& reference, const char* key) {
   const json& is = value.at(key);
   const json& was = reference.at(key);
@@ -129,7 +129,7 @@ TEST(Scenes, DoWhatTheirReferenceReportsSay) {
   }
 }
 
-// A passable body may be entered; all else keeps its distance, whichever part of an arm comes near.
+// A passable body may be entered; all others keep their distance, from any part of an arm.
 TEST(Scenes, LetNothingBeTouchedThatMayNotBeEntered) {
   const std::set<std::string> passable = {"membrane", "crust"};
   for (const std::string& name : names()) {

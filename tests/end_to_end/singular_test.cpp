@@ -1,4 +1,4 @@
-// Through the singularities of a PUMA while walls push on tool and arm.
+// Motion through the singularities of a PUMA while walls act on tool and arm.
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
@@ -11,11 +11,11 @@ struct Way {
   const char* start;      ///< [deg]
   const char* obstacles;  ///< with the law of the table
   const char* script;
-  const char* joint;  ///< that passes through the singularity
-  double singular;    ///< [rad] there
+  const char* joint;  ///< the joint that passes through the singularity
+  double singular;    ///< [rad] its singular position
 };
 
-/// Runs a way and checks what must hold on all of them.
+/// Runs a path and checks the conditions common to all.
 void expect_bounded(const Way& way) {
   SCOPED_TRACE(way.name);
   const Folder folder;
@@ -68,7 +68,7 @@ TEST(Singular, WristGoesThroughItsOwnWhileATablePushesTheTool) {
        "q5_rad", 0.0});
 }
 
-// Stretched out: the hand pulls on and the upper arm lies on a shelf.
+// Stretched out: the hand keeps pulling and the upper arm rests on a shelf.
 TEST(Singular, ElbowGoesThroughItsOwnWhileAShelfHoldsTheUpperArm) {
   expect_bounded(
       {"elbow", "0 20 -135 0 -60 0",

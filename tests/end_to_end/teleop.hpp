@@ -1,5 +1,5 @@
 /// @file
-/// Runs the program teleop as a user would, and reads what it leaves behind.
+/// Runs the program teleop as a user would, and reads its output.
 #pragma once
 
 #include <charconv>
@@ -13,12 +13,12 @@
 
 namespace repel::test {
 
-/// Runs teleop with `arguments`, as a shell splits them.
+/// Runs teleop with `arguments`, split by the shell.
 inline Ending teleop(const std::string& arguments) {
   return run_program(REPEL_TELEOP, arguments);
 }
 
-/// A CSV file column by column.
+/// A CSV file by column.
 using Columns = std::map<std::string, std::vector<double>>;
 
 inline Columns columns_of(const std::string& path) {
@@ -42,7 +42,7 @@ inline Columns columns_of(const std::string& path) {
   return columns;
 }
 
-/// Every force and torque of a log.
+/// The columns of all forces and torques of a log.
 inline void expect_finite_forces(const Columns& log) {
   for (const char* column :
        {"virtual_fx_n", "virtual_fy_n", "virtual_fz_n", "virtual_tx_nm", "virtual_ty_nm",
@@ -51,8 +51,8 @@ inline void expect_finite_forces(const Columns& log) {
   }
 }
 
-/// The start of every scene written by a test: the robot of the repository. `links` are those that
-/// feel the walls, in the words of a scene; unless a test is of them, the tool alone.
+/// The first lines of every scene written by a test: the robot of the repository. `links` are the
+/// links on which the walls act, in scene syntax; by default only the tool.
 inline std::string robot_text(const std::string& urdf = REPEL_SOURCE "/robots/puma560.urdf",
                               const std::string& links = "  links: []\n") {
   return "robot:\n  urdf: " + urdf +
@@ -61,8 +61,8 @@ inline std::string robot_text(const std::string& urdf = REPEL_SOURCE "/robots/pu
          "  - {name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}\n";
 }
 
-/// A table just below the tool, no stiffer than the arm can render at 400 Hz, and a push against
-/// it.
+/// A table just below the tool, not stiffer than the arm can render at 400 Hz, and a script that
+/// presses on it.
 inline std::string table_text() {
   return "laws:\n  default: {range: 20 mm, surface_force: 40 N, damping: 1 N s/m}\n"
          "obstacles:\n"

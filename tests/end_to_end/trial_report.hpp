@@ -1,5 +1,5 @@
 /// @file
-/// What must hold of every report on ticks by the clock, on any machine.
+/// Conditions that every report of real-time trials must satisfy on any machine.
 #pragma once
 
 #include "end_to_end/program.hpp"
@@ -15,7 +15,7 @@ inline void expect_ordered(const nlohmann::json& times, const char* what) {
 
 inline void expect_hiccups(const nlohmann::json& report) {
   const nlohmann::json& hiccups = report.at("hiccups");
-  if (hiccups.is_null()) {  // one processor, which the ticks have
+  if (hiccups.is_null()) {  // a single processor, occupied by the ticks
     EXPECT_TRUE(report.at("ticks_with_hiccup").is_null());
     return;
   }
@@ -32,7 +32,7 @@ inline void expect_hiccups(const nlohmann::json& report) {
   EXPECT_LE(report.at("ticks_with_hiccup"), report.at("ticks"));
 }
 
-/// Every pair is asked in every tick, and the heap is left alone.
+/// Every pair is evaluated in every tick, without heap allocation.
 inline void expect_work(const nlohmann::json& report) {
   EXPECT_EQ(report.at("pairs"), 32);
   EXPECT_EQ(report.at("pairs_near_per_tick"), 32.0);
@@ -43,7 +43,7 @@ inline void expect_work(const nlohmann::json& report) {
   EXPECT_TRUE(allocations.is_null() || allocations == 0) << allocations;
 }
 
-/// @param ticks that were asked for: every one is run, however late
+/// @param ticks requested: all are run, even if late
 inline void expect_trial(const nlohmann::json& report, double rate_hz, std::int64_t ticks) {
   EXPECT_EQ(report.at("rate_hz"), rate_hz);
   EXPECT_EQ(report.at("ticks"), ticks);

@@ -1,4 +1,4 @@
-// The links of the arm feel the walls as the tool does.
+// Walls act on the links of the arm as on the tool.
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
@@ -6,7 +6,7 @@ namespace whole_arm_test {
 
 using nlohmann::json;
 
-/// A post beside the forearm, and a tool that is led past it with 100 mm/s.
+/// A post beside the forearm, and a tool that is moved past it at 100 mm/s.
 std::string scene_with(const std::string& network, const std::string& links = "") {
   return robot_text(REPEL_SOURCE "/robots/puma560.urdf", links) +
          "laws:\n  default: {range: 40 mm, surface_force: 40 N, damping: 1 N s/m}\n"
@@ -76,7 +76,7 @@ TEST(WholeArm, LinksThatAreNoneAreRefused) {
   EXPECT_TRUE(ending.says("'tail' is no moving link")) << ending;
 }
 
-/// A post where the forearm starts.
+/// A post at the start of the forearm.
 std::string inside_scene(const std::string& law, const std::string& more) {
   return robot_text(REPEL_SOURCE "/robots/puma560.urdf", "") + "laws: {default: " + law +
          "}\nobstacles: [{name: post, shape: capsule, radius: 20 mm, length: 0.6 m, "
@@ -120,8 +120,8 @@ TEST(WholeArm, AStartInsideWhatMayBeEnteredIsNoneToSpeakOf) {
   EXPECT_FALSE(ending.says("starts inside")) << ending;
 }
 
-/// An arm with a joint to spare, its elbow out to the side, a bar that comes 150 mm towards the
-/// elbow and goes back, and an operator who does nothing.
+/// A redundant arm with its elbow out to the side, a bar that moves 150 mm towards the elbow and
+/// back, and an idle operator.
 std::string elbow_scene() {
   return "robot:\n  urdf: " REPEL_SOURCE
          "/robots/long_reach.urdf\n"
@@ -139,8 +139,8 @@ std::string elbow_scene() {
          "  - {module: arm_obstacle}\n  - {module: limits}\n  - {module: puma_joints}\n";
 }
 
-// Seven joints and a tool with six freedoms: what pushes the elbow folds the arm, and the coupling
-// keeps the tool where it was.
+// Seven joints and a tool with six degrees of freedom: a force on the elbow folds the arm, and the
+// coupling keeps the tool in place.
 TEST(WholeArm, GivesWayAtItsElbowWhileTheToolStaysWhereTheArmHasAJointToSpare) {
   const Folder folder;
   const std::string scene = folder.with("elbow.yaml", elbow_scene());
@@ -163,7 +163,7 @@ TEST(WholeArm, GivesWayAtItsElbowWhileTheToolStaysWhereTheArmHasAJointToSpare) {
   EXPECT_LT(moved(elbow.size() - 1), 0.002) << "with the bar at rest";
 }
 
-// The obstacle that the partner's rod is, seen from the other arm, and the other way round.
+// The partner's rod as an obstacle, seen from the other arm, and vice versa.
 TEST(WholeArm, TwoArmsInOneCellKeepOffEachOther) {
   const Folder folder;
   const std::string tool =

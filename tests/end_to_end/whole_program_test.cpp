@@ -1,5 +1,5 @@
-// All threads of the program at once: workers, view, log and progress. With the thread sanitizer a
-// race ends it with a status of its own.
+// All threads of the program at once: workers, view, log and progress. The thread sanitizer makes a
+// data race an exit status of its own.
 #include "end_to_end/live.hpp"
 
 namespace repel::test {

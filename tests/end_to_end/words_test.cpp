@@ -1,5 +1,5 @@
-// What reports say, also of runs that are odd: every number is one, has a length that can be read,
-// and claims nothing that was not measured. Names are what they are.
+// The text of reports, also of unusual runs: every number is finite and of readable length, nothing
+// is reported that was not measured, and names are unchanged.
 #include <figure.hpp>
 #include <page.hpp>
 
@@ -27,7 +27,7 @@ struct Reported {
   nlohmann::json report;
 };
 
-/// Expects words and numbers that can be read, in the table and on the page.
+/// Expects readable words and numbers, in the table and on the page.
 void expect_readable(const Reported& run) {
   ASSERT_EQ(run.ending.status, 0) << run.ending;
   const std::string body = run.page.substr(0, run.page.find("The scene file"));
@@ -137,7 +137,7 @@ TEST(Words, HugeNumbersGetAnExponent) {
   }
 }
 
-/// The cells of the CSV text, row by row, as RFC 4180 has them.
+/// The cells of the CSV text, row by row, parsed according to RFC 4180.
 std::vector<std::vector<std::string>> cells_of(const std::string& text) {
   std::vector<std::vector<std::string>> rows(1);
   std::string cell;

@@ -9,7 +9,7 @@
 namespace repel::detail {
 namespace law_lanes_test {
 
-// The two must agree to the last bit, or a pair's force would jump when it moves into a lane.
+// The two must agree bitwise, or a pair's force would jump when it moves into a lane.
 TEST(LawLanes, AreTheLawsOneByOne) {
   constexpr unsigned seed = 41;
   families::Rng random(seed);
@@ -40,7 +40,7 @@ TEST(LawLanes, AreTheLawsOneByOne) {
   EXPECT_GT(capped, 100);
 }
 
-// One formula for numbers of every kind: in extended precision it is the same to the last digits.
+// One formula for all number types: in extended precision it agrees to the last digits.
 TEST(LawLanes, AreTheFormulaOfExtendedPrecision) {
   constexpr unsigned seed = 43;
   families::Rng random(seed);

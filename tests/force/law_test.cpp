@@ -35,7 +35,7 @@ TEST(ForceLaw, RisesFromZeroWithZeroSlopeAtTheRange) {
     EXPECT_EQ(law(law.range, 0.0), 0.0);
     EXPECT_EQ(law(2.0 * law.range, -1.0), 0.0);
     for (const double share : {1e-2, 1e-4, 1e-6}) {
-      // A force of second order in the distance to the range.
+      // A force of second order in the distance to the range limit.
       const double inside = law.spring(law.range * (1.0 - share));
       EXPECT_NEAR(inside, law.surface_force * share * share,
                   1e-9 * law.surface_force * share * share + 1e-15 * law.surface_force)
@@ -127,7 +127,7 @@ TEST(ForceLaw, SpringGivesBackOnAClosedPathWhatItTook) {
   }
 }
 
-// The spring is the slope of the potential: between two distances they differ by the work.
+// The spring force is the slope of the potential: the difference between two distances is the work.
 TEST(ForceLaw, PotentialIsTheWorkOfTheSpringUpToItsCeiling) {
   for (const double ceiling : {40.0, 100.0, 250.0, std::numeric_limits<double>::infinity()}) {
     const ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 0.0, .ceiling = ceiling};
@@ -158,7 +158,7 @@ TEST(ForceLaw, DamperOnlyTakesEnergy) {
   EXPECT_LT(work, -0.01);
 }
 
-/// Random passable laws, each of a pair that can be as deep as it says.
+/// Random passable laws, each of a pair that can be as deep as the law states.
 std::vector<ForceLaw> random_passable_laws(int count) {
   std::mt19937_64 random(seed);
   std::vector<ForceLaw> laws = random_laws(count);
@@ -200,7 +200,7 @@ TEST(ForceLaw, PassableHoldsItsCeilingUpToThePlateau) {
   EXPECT_NEAR(law(-0.045, 0.0), 2.5, 1e-12);
   law.plateau = 0.75;
   EXPECT_EQ(law(-0.045, 0.0), 5.0);
-  law.depth = 0.0;  // a sheet: the fall must be over at the surface
+  law.depth = 0.0;  // a sheet: the force must have fallen to zero at the surface
   EXPECT_EQ(law(0.0, 0.0), 0.0);
   EXPECT_EQ(law(5.0 / law.stiffness(), 0.0), 5.0);
 }

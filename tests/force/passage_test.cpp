@@ -22,7 +22,7 @@ constexpr ForceLaw membrane_law{
 constexpr ForceLaw tissue_law{
     .range = 0.015, .surface_force = 20.0, .damping = 20.0, .ceiling = 5.0, .passable = true};
 
-/// A fixed body around the origin, flat along z.
+/// A fixed body around the origin, thin along z.
 struct Body {
   const char* name;
   Shape shape;
@@ -53,7 +53,7 @@ const std::vector<Tool>& tools() {
   return all;
 }
 
-/// Where a tool begins, how it is turned, and the corners of its way [m].
+/// Start pose of a tool, and the corners of its path [m].
 struct Way {
   std::string name;
   Mat3 R = Mat3::Identity();
@@ -73,12 +73,12 @@ std::vector<Way> ways_through() {
   return ways;
 }
 
-/// What a slow passage feels like.
+/// Statistics of the force in a slow passage.
 struct Felt {
   double jump = 0.0;  ///< [N] largest change of the force from step to step
   double peak = 0.0;  ///< [N]
   double gain = 0.0;  ///< [J] work of the force on the tool
-  double flow = 0.0;  ///< [J] the same, with all taken positive
+  double flow = 0.0;  ///< [J] the same with absolute values
   Vec3 last{0, 0, 0};
 };
 
@@ -119,7 +119,7 @@ Felt felt(const Body& body, const Shape& tool, const Way& way, Measure measure, 
 
 constexpr Measure measures[] = {Measure::deepest_point, Measure::reduction};
 
-/// Calls `check(body, tool, way, measure)` for every way through every body.
+/// Calls `check(body, tool, path, measure)` for every path through every body.
 template <class Check>
 void for_all_passages(const Check& check) {
   for (const Body& body : bodies()) {
@@ -171,18 +171,19 @@ TEST(Passage, StraightThroughWithFlatSidesGivesBackAllItTook) {
   }
 }
 
-// A hull that is pointed before and flat behind gets in by another way than out.
+// A hull that is pointed in front and flat behind has different extraction directions on entry and
+// exit.
 TEST(Passage, NoWayThroughGivesMoreThanItTookAndFewTakeMuch) {
   for_all_passages([](const Body& body, const Shape& tool, const Way& way, Measure measure) {
     const Felt f = felt(body, tool, way, measure, 1e-4);
-    // By levels the distance has steps, and the depth is no concave function.
+    // With levels the distance has steps, and the depth is not a concave function.
     const bool by_levels = measure == Measure::reduction || tool.planes().empty();
     EXPECT_LE(f.gain, (by_levels ? 0.05 : 1e-3) * f.flow);
     EXPECT_GE(f.gain, -0.1 * f.flow);
   });
 }
 
-/// A closed way among random points in and around a body, from beyond its range and back.
+/// A closed path among random points in and around a body, starting and ending out of range.
 Way random_walk(Rng& random, const Vec3& half_extents) {
   Way way{"random", families::rotation(random), {{0.0, 0.0, 0.25}}};
   for (int i = 0; i < 12; ++i) {
@@ -255,7 +256,8 @@ TEST(Passage, NeverPullsAndDampsOnlyAsMuchAsItPushes) {
 TEST(Passage, SlopeIsThatOfTheDistance) {
   const Shape tool = Shape::box({0.01, 0.01, 0.03});
   const Shape plate = Shape::box({0.1, 0.1, 0.002});
-  // On an edge: once the plate is used up, a point of the edge deepens by its two sides.
+  // On an edge: once the plate's thickness is exhausted, the depth of a point grows only by its
+  // distance to the two sides of the edge.
   const Mat3 on_edge = Eigen::AngleAxisd(std::numbers::pi / 4.0, Vec3::UnitY()).matrix();
   const double to_edge = std::sqrt(0.5) * (0.01 + 0.03);
   const auto slope_at = [&](double height) {

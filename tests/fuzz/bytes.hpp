@@ -1,5 +1,5 @@
 /// @file
-/// Arbitrary bytes as numbers, among which the dangerous ones are common.
+/// Converts arbitrary bytes to numbers, with an increased share of dangerous values.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 
 namespace repel::fuzz {
 
-/// Ends the program when a contract is broken; the fuzzer keeps the input.
+/// Aborts when a contract is violated; the fuzzer keeps the input.
 inline void require(bool held, const char* contract) {
   if (held) return;
   std::fprintf(stderr, "broken contract: %s\n", contract);
   std::abort();
 }
 
-/// Reads until the bytes run out, and zeros after that.
+/// Reads until the bytes are used up; returns zeros after that.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -37,7 +37,7 @@ class Bytes {
     return value;
   }
 
-  /// One byte says how to read the number: as it stands, as one of a table, or as a plain length.
+  /// The first byte selects the encoding: raw bits, an entry of a table, or an ordinary length.
   double number() {
     using limits = std::numeric_limits<double>;
     static constexpr std::array<double, 16> special{0.0,
@@ -62,7 +62,7 @@ class Bytes {
     return length();
   }
 
-  /// Zero for lengths whose squares are denormal: no direction can be told from them.
+  /// Zero for lengths whose squares are denormal: they define no direction.
   static double with_digits(double x) {
     return std::abs(x) > 1e-165 && std::abs(x) < 1e-150 ? 0.0 : x;
   }
@@ -82,7 +82,7 @@ class Bytes {
     return {x, y, length()};
   }
 
-  /// Any numbers, a rigid pose at any place, or, most often, one near the origin.
+  /// Arbitrary numbers, a rigid pose anywhere, or, most often, a rigid pose near the origin.
   Pose pose() {
     Pose X = Pose::Identity();
     const auto kind = take<std::uint8_t>();

@@ -1,5 +1,6 @@
-// Any bytes, in pieces of any size: both parsers of the devices give the same events as in one
-// piece, none that is not sane, none once broken; and what follows from the events stays in range.
+// Arbitrary bytes in fragments of any size: both device parsers give the same events as without
+// fragmentation, only plausible ones, and none after an error; all values derived from them stay in
+// range.
 #include <repel/devices/evdev_parser.hpp>
 #include <repel/devices/lever_motion.hpp>
 #include <repel/devices/shaping.hpp>
@@ -19,7 +20,7 @@ namespace {
 using fuzz::Bytes;
 using fuzz::require;
 
-/// The bytes of a device: records that are almost sound, or anything at all.
+/// The bytes of a device: almost valid records, or arbitrary bytes.
 template <std::size_t size, class Dress>
 std::vector<std::byte> stream_of(Bytes& bytes, const Dress& dress) {
   const bool dressed = bytes.take<std::uint8_t>() < 224;
@@ -33,7 +34,7 @@ std::vector<std::byte> stream_of(Bytes& bytes, const Dress& dress) {
   return stream;
 }
 
-/// Every event of the stream, cut where `bytes` says, or not cut.
+/// All events of the stream, fragmented as `bytes` says, or not at all.
 template <class Parser, class Event>
 bool events_of(const std::vector<std::byte>& stream, Bytes* bytes, std::vector<Event>& events) {
   Parser parser;

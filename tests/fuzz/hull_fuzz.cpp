@@ -1,5 +1,5 @@
-// Any points: a hull that holds them and whose levels lie inside it as deep as they say, or
-// SetupError exactly when a point or an option is not allowed.
+// Arbitrary points: the result is a hull that contains them and whose levels are inside it by their
+// stated depths, or SetupError exactly if a point or an option is not allowed.
 #include <repel/reduction/shape.hpp>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool allowed(const std::vector<Vec3>& points, int levels) {
                      [&](const Vec3& p) { return is_finite(p) && holds(p); });
 }
 
-/// New points, and now and then one between or equal to earlier ones: flat, collinear, repeated.
+/// New points, sometimes equal to or between earlier ones: flat, collinear, duplicated.
 std::vector<Vec3> points_of(Bytes& bytes) {
   std::vector<Vec3> points(bytes.take<std::uint8_t>() % 24);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -43,7 +43,7 @@ double reach_along(const Convex& set, const Vec3& d) {
 }
 
 void check_along(const Shape& shape, const std::vector<Vec3>& points, const Vec3& d) {
-  // Squares of lengths below 1e-154 m have no digits left.
+  // Squares of lengths below 1e-154 m lose all digits.
   const double tolerance = 1e-9 * shape.reach() + 1e-150;
   const double outermost = reach_along(shape.level(0).core, d);
   for (const Vec3& p : points) require(p.dot(d) <= outermost + tolerance, "it holds its points");

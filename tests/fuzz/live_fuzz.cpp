@@ -1,6 +1,6 @@
-// Any messages from three pages, sound ones and others: never more than one page has the controls,
-// what the loop is told is finite and in range, and every answer is JSON.
-#include <live_show.hpp>
+// Arbitrary messages from three pages, valid and invalid: at most one page has control, all input
+// to the loop is finite and in range, and every answer is JSON.
+#include <live_view.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr int most_pages = 3;
 
-/// What the pages are told of who drives.
+/// The messages to the pages about the present operator.
 class ToldPages final : public visual::Pages {
  public:
   std::array<bool, most_pages + 1> open{};
@@ -42,7 +42,7 @@ class ToldPages final : public visual::Pages {
 
  private:
   void hear(const std::string& text, int page) {
-    if (text.size() > 600) return;  // of the scene, a picture, times: they do not follow from input
+    if (text.size() > 600) return;  // scene, frames and times, which do not depend on the input
     const Json message = Json::parse(text, nullptr, false);
     require(message.is_object() && message.contains("type"), "what is said is JSON");
     if (message["type"] == "refused") {
@@ -73,7 +73,7 @@ std::string vector_text(Bytes& bytes) {
   return text;
 }
 
-/// A message of a known type, perhaps with a wrong number; or with a wrong byte; or no message.
+/// A message of a known type, possibly with a wrong number or a wrong byte; or arbitrary bytes.
 std::string message_text(Bytes& bytes) {
   static constexpr std::array<const char*, 9> types{
       "take", "release", "servo_cv", "servo_lever", "pause", "resume", "step", "restart", "seek"};
@@ -110,24 +110,24 @@ struct Stage {
         pages_drive(bytes.take<std::uint8_t>() % 8 != 0),
         tool(world.add_body("tool")),
         tap(build(world, tool), {.pairs = 1, .samples = 2}),
-        show(cast(), world, tap, controls, device ? "a device" : "", pages_drive) {
+        show(info(), world, tap, controls, device ? "a device" : "", pages_drive) {
     controls.may_restart = bytes.take<std::uint8_t>() % 2 == 0;
   }
 
   static const World& build(World& world, BodyId tool) {
-    // As small as they can be: they are described for every input.
+    // As small as possible: they are described for every input.
     const std::array<Vec3, 1> point{Vec3::Zero()};
     const PartId tip = world.add_part(tool, "tip", Shape::hull(point));
     const PartId wall = world.add_part(World::fixed, "wall", Shape::hull(point));
     world.add_pair(tip, wall, {.range = 0.01});
     return world;
   }
-  [[nodiscard]] visual::Cast cast() const {
-    visual::Cast cast;
-    cast.replay = replay;
-    cast.duration = 10.0;
-    cast.arms.emplace_back().tool = tool;
-    return cast;
+  [[nodiscard]] visual::SceneInfo info() const {
+    visual::SceneInfo info;
+    info.replay = replay;
+    info.duration = 10.0;
+    info.arms.emplace_back().tool = tool;
+    return info;
   }
 
   bool replay;
@@ -138,36 +138,37 @@ struct Stage {
   Tap tap;
   Controls controls;
   ToldPages pages;
-  LiveShow show;
+  LiveView show;
 };
 
-bool moves(const Grip& grip) {
-  return !grip.rates.linear.isZero(0.0) || !grip.rates.angular.isZero(0.0) ||
-         grip.lever_rate != 0.0;
+bool moves(const DriverInput& input) {
+  return !input.rates.linear.isZero(0.0) || !input.rates.angular.isZero(0.0) ||
+         input.lever_rate != 0.0;
 }
 
-/// @param page that has just spoken; 0: none
+/// @param page the last sender; 0: none
 void check(Stage& stage, int page) {
   const auto& drives = stage.pages.drives;
   require(std::count(drives.begin(), drives.end(), true) <= 1, "one page drives");
   const bool is_driver = page != 0 && drives[static_cast<std::size_t>(page)];
-  if (stage.controls.grip.take()) {
-    const Grip& grip = stage.controls.grip.newest();
-    require(is_finite(grip.rates) && is_finite(grip.direction_W) && std::isfinite(grip.lever_rate),
-            "what is said to the loop is finite");
-    const visual::ArmCast arm;
+  if (stage.controls.input.take()) {
+    const DriverInput& input = stage.controls.input.newest();
+    require(
+        is_finite(input.rates) && is_finite(input.direction_W) && std::isfinite(input.lever_rate),
+        "what is said to the loop is finite");
+    const visual::ArmInfo arm;
     constexpr double rounding = 1.0 + 1e-12;
-    require(grip.rates.linear.norm() <= arm.max_speed * rounding &&
-                grip.rates.angular.norm() <= arm.max_turn * rounding &&
-                std::abs(grip.lever_rate) <= arm.max_lever_rate,
+    require(input.rates.linear.norm() <= arm.max_speed * rounding &&
+                input.rates.angular.norm() <= arm.max_turn * rounding &&
+                std::abs(input.lever_rate) <= arm.max_lever_rate,
             "and no faster than the master of the scene");
-    require(std::abs(grip.direction_W.norm() - 1.0) < 1e-9, "the direction is a unit");
-    require((grip.driver != Driver::page && !moves(grip)) || is_driver, "whoever drives said it");
-    require(grip.driver != Driver::page || (!stage.replay && stage.pages_drive),
+    require(std::abs(input.direction_W.norm() - 1.0) < 1e-9, "the direction is a unit");
+    require((input.driver != Driver::page && !moves(input)) || is_driver, "whoever drives said it");
+    require(input.driver != Driver::page || (!stage.replay && stage.pages_drive),
             "they can be driven");
     require(page == 0 || !stage.pages.looks_on[static_cast<std::size_t>(page)],
             "who looks on says nothing to the loop");
-    require(grip.driver != Driver::device || stage.device, "there is a device");
+    require(input.driver != Driver::device || stage.device, "there is a device");
   }
   const Controls& controls = stage.controls;
   require(controls.steps >= 0 && controls.steps <= 1000000, "steps are counted");
@@ -196,7 +197,7 @@ void run(Bytes& bytes) {
       pages.drives[static_cast<std::size_t>(page)] = false;
       stage.show.closed(page, pages);
     } else if (what < 32) {
-      stage.show.beat(pages);
+      stage.show.refresh(pages);
     } else {
       const int refusals = pages.refusals;
       stage.show.heard(page, message_text(bytes), pages);

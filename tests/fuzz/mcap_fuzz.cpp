@@ -1,5 +1,5 @@
-// Any bytes as an MCAP file, and records that begin well: read to the end without harm, or refused
-// by SetupError. Reading comes to an end, takes no byte twice, and loses nothing when repeated.
+// Arbitrary bytes as an MCAP file, and records with a valid beginning: read to the end safely, or
+// refused by SetupError. Reading terminates, uses no byte twice, and loses nothing when repeated.
 #include <repel/record/mcap_reader.hpp>
 
 #include <string>
@@ -58,14 +58,15 @@ void check_file(const std::string& bytes) {
     const Summed again = read_all(reader, bytes.size());
     require(again.messages >= first.messages && again.errors <= first.errors,
             "reading again loses nothing");
-    // A damaged file may describe a channel behind its messages: it is known the second time.
+    // A damaged file may describe a channel after its messages: it is known only in the second
+    // pass.
     if (reader.whole() && first.errors == 0) require(again == first, "and gives the same");
   } catch (const SetupError& error) {
     require(error.file() == "memory", "an error names the file");
   }
 }
 
-/// A record whose length is right more often than not, so that what is in it gets read.
+/// A record whose length is usually right, so that its contents are parsed.
 void put_record(std::string& file, Bytes& bytes, int depth) {
   const auto op = bytes.take<std::uint8_t>();
   std::string content;

@@ -1,6 +1,6 @@
 /// @file
-/// Changes a text as a hostile or careless hand would: words of its language at wrong places,
-/// pieces left out, doubled or swapped.
+/// Mutates a text as a hostile or careless author might: keywords in wrong places, pieces omitted,
+/// duplicated or swapped.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace repel::fuzz {
 
-/// `text` after 1 to 8 changes; `words` [not empty] are put in.
+/// `text` after 1 to 8 mutations; `words` [not empty] are inserted.
 inline std::string mutated(std::string text, std::mt19937_64& rng,
                            std::span<const std::string_view> words) {
   const auto below = [&](std::size_t count) { return count == 0 ? 0 : rng() % count; };

@@ -1,5 +1,5 @@
-// Any text as what a recording holds, or any bytes as its file: loaded, or refused by SetupError
-// that names a file. The parts of a text are parted by lines of %%: the words about the run, the
+// Arbitrary text as the contents of a recording, or arbitrary bytes as its file: loaded, or refused
+// by a SetupError that names a file. A text is divided by lines of %%: metadata of the run, the
 // scene, then messages that begin with the letter of their channel.
 #include <mcap_log.hpp>
 #include <mcap_names.hpp>

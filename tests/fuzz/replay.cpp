@@ -1,5 +1,5 @@
-// Runs a fuzz target without the fuzzer: on the files named, and on so many inputs at random, which
-// are changes of those files where there are any.
+// Runs a fuzz target without a fuzzer: on the given files, and on a number of random inputs, which
+// are mutations of those files if there are any.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace {
 
-// Signs and numbers of the languages that are read.
+// Tokens of the parsed languages.
 constexpr std::array<std::string_view, 24> words{
     ",", ":",  ": ",  "- ", "[",   "]",  "{",     "}",   "?",   "&a ",  "*a ",  "!",
     "|", "\"", "'\n", "#",  "\n ", "\t", "1e308", "nan", "<l>", "/>\n", "%%\n", "\xff"};

@@ -1,5 +1,5 @@
-// Any text as a scene: read, or refused by SetupError that names it, and its networks are built or
-// refused likewise. Seeds are the scenes of the repository, from whose folder it is run.
+// Arbitrary text as a scene: read, or refused by a SetupError that names the file; its networks are
+// built or refused likewise. Seeds are the scenes of the repository, from whose folder it is run.
 #include <repel/scene/scene.hpp>
 
 #include <cmath>
@@ -32,10 +32,10 @@ void check(const Scene& scene) {
     require(obstacle.law.range > 0.0, "a law has a range");
   }
   for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
-    const Station& station = scene.station(i);
-    require(station.robot.start.size() == station.robot.start_types.size(), "starts have kinds");
+    const ArmSetup& setup = scene.arm_setup(i);
+    require(setup.robot.start.size() == setup.robot.start_types.size(), "starts have kinds");
     try {
-      (void)build_network(scene, station, arm_with(station.robot.start.size()), scene.rate_hz);
+      (void)build_network(scene, setup, arm_with(setup.robot.start.size()), scene.rate_hz);
     } catch (const SetupError& error) {
       require(error.file() == scene.file, "an error names the file");
     }

@@ -1,5 +1,5 @@
-// Any shapes, poses, options and warm starts: every answer is a number with an ordered bracket, or
-// bad_input that claims nothing; answers to one question do not contradict each other.
+// Arbitrary shapes, poses, options and warm starts: every answer is finite with an ordered bracket,
+// or bad_input that bounds nothing; answers to the same query do not contradict each other.
 #include <repel/reduction/separation.hpp>
 
 #include <optional>

@@ -1,6 +1,6 @@
-// Any text as a robot description, as the file of a mesh it names, or as its SRDF file: read, or
-// refused by SetupError that names the file; and what is read can be moved. What it looks like
-// decides what a text is taken for.
+// Arbitrary text as a robot description, as the file of a mesh it names, or as its SRDF file: read,
+// or refused by a SetupError that names the file; a robot that was read can be moved. The role of a
+// text is chosen by its contents.
 #include <console_bridge/console.h>
 
 #include <array>
@@ -31,7 +31,7 @@ void check(const Robot& robot) {
   for (const RobotPart& part : robot.parts) {
     require(is_finite(part.X_LP), "a part is somewhere");
     for (const Vec3& p : part.points) require(is_finite(p), "a corner is somewhere");
-    if (part.points.size() > 200) continue;  // their reduction is another target's
+    if (part.points.size() > 200) continue;  // their reduction is tested by another target
     try {
       (void)shape_of(part);
     } catch (const SetupError&) {
@@ -58,7 +58,7 @@ std::string robot_with_mesh(const std::string& file) {
          "<child link='arm'/><axis xyz='0 0 1'/></joint></robot>";
 }
 
-/// The ending by which assimp knows a format, of those that robots use.
+/// The file extension by which assimp recognizes a format, of those used for robots.
 std::string ending_of(std::string_view text) {
   if (has(text, "COLLADA")) return "dae";
   if (has(text, "\nf ") || text.substr(0, 2) == "v ") return "obj";

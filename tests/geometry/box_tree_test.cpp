@@ -26,7 +26,7 @@ void expect_what_a_scan_finds(const std::vector<Box>& boxes, const Box& probe, d
     EXPECT_TRUE(found.insert(i).second) << "box " << i << " twice";
     const double truth = boxes[i].exteriorDistance(probe);
     EXPECT_LE(distance, truth);
-    // Single precision of the place, and the roundings of the distance.
+    // Single-precision coordinates, and the rounding of the distance.
     EXPECT_GE(distance, truth * (1.0 - 2e-6) - 1e-6 * (1.0 + boxes[i].center().norm()));
   });
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {

@@ -20,7 +20,7 @@ constexpr unsigned seed = 43;
 struct Sample {
   std::string name;
   Convex set;
-  std::vector<Vec3> points;  ///< [m] many points of the set, its extreme ones among them
+  std::vector<Vec3> points;  ///< [m] many points of the set, including its extreme points
 };
 
 Sample box_sample(Rng& rng, const std::string& name, const Vec3& h) {
@@ -111,7 +111,7 @@ TEST(Convex, ExtendedPrecisionFindsTheSameSupport) {
 TEST(Convex, TheNameOfASupportPointBringsItBack) {
   for (const Sample& sample : samples()) {
     SCOPED_TRACE(sample.name + ", seed " + std::to_string(seed));
-    // The angle on a rim is named in steps of about 1e-8.
+    // The ids of angles on a rim have a resolution of about 1e-8.
     const double tolerance = sample.set.vertex_count() == 0 ? 1e-7 : 0.0;
     for (const Vec3& d : directions()) {
       const Convex::Point p = sample.set.support(Vec<double>(d));

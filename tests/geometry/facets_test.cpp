@@ -19,7 +19,7 @@ using families::Rng;
 
 constexpr unsigned seed = 47;
 
-/// What makes a list of triangles the surface of the hull of `points`.
+/// Checks that a list of triangles is the surface of the hull of `points`.
 void expect_is_the_hull(const std::vector<Facet>& facets, const std::vector<Vec3>& points) {
   ASSERT_FALSE(facets.empty());
   double size = 0.0;
@@ -46,7 +46,7 @@ void expect_is_the_hull(const std::vector<Facet>& facets, const std::vector<Vec3
   EXPECT_EQ(static_cast<int>(corners.size()) - undirected + static_cast<int>(facets.size()), 2);
 }
 
-/// [m^3] by the divergence theorem, in 32 digits; right only when all facets are turned outward.
+/// [m^3] By the divergence theorem, in 32 digits; right only if all facets are oriented outward.
 double volume(const std::vector<Facet>& facets, const std::vector<Vec3>& points) {
   DoubleDouble six_times;
   const auto from_first = [&](int i) {
@@ -164,8 +164,8 @@ TEST(Facets, ACornerPushedIntoTheFaceBesideItSpoilsNothing) {
   }
 }
 
-/// Points of one of the kinds on which a hull with rounded decisions breaks: nearly in a plane,
-/// nearly on a line, on a lattice, in clusters, and some of them repeated.
+/// Points of a kind on which a hull with rounded decisions fails: nearly in a plane, nearly on a
+/// line, on a lattice, in clusters, some of them duplicated.
 std::vector<Vec3> thin_points(int kind, Rng& rng) {
   std::vector<Vec3> points;
   const int count = families::count_between(rng, 4, 24);
@@ -189,7 +189,7 @@ std::vector<Vec3> thin_points(int kind, Rng& rng) {
   return points;
 }
 
-/// [m] how far from their best plane the points are, at most.
+/// [m] Largest distance of the points from their best-fit plane.
 double thickness(const std::vector<Vec3>& points) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : points) mean += p / static_cast<double>(points.size());

@@ -20,7 +20,7 @@ struct Whole {
   std::int64_t x[3];
 };
 
-/// The sign for whole numbers below 2^38, whose determinant fits into 127 bits.
+/// The sign for integers below 2^38, whose determinant fits into 127 bits.
 int true_sign(const Whole& a, const Whole& b, const Whole& c, const Whole& p) {
   Wide u[3], v[3], w[3];
   for (int k = 0; k < 3; ++k) {
@@ -100,7 +100,7 @@ TEST(PlaneNormal, IsRightToTheLastBitsForTrianglesOfAnyThinness) {
   Rng rng(seed);
   for (int i = 0; i < 20000; ++i) {
     SCOPED_TRACE(families::of_seed(seed, "triangle", i));
-    // In the plane z = x / 4 + 1 with few enough bits that the corners lie in it exactly.
+    // In the plane z = x / 4 + 1, with few enough bits that the corners are exactly in it.
     const auto at = [&](double x, double y) { return Vec3(x, y, 0.25 * x + 1.0); };
     const double x = std::ldexp(std::round(families::uniform(rng, -1000, 1000)), -10);
     const double y = std::ldexp(std::round(families::uniform(rng, -1000, 1000)), -10);

@@ -44,7 +44,7 @@ TEST(Planes, OfABoxSayHowDeepAPointIs) {
   EXPECT_TRUE(Planes().empty());
 }
 
-// A box knows its nearest plane without looking at all; it must be the one a look finds.
+// A box finds its nearest plane without a scan; the result must be that of a scan.
 TEST(Planes, OfABoxAreNamedAsInTheList) {
   families::Rng rng(seed);
   for (int i = 0; i < 1000; ++i) {

@@ -18,7 +18,7 @@ using families::Rng;
 
 constexpr unsigned seed = 67;
 
-/// Decided exactly: no point is above any face, and neighbours agree on the edge they share.
+/// Checked exactly: no point is above any face, and neighbours agree on their common edge.
 void expect_is_convex_and_closed(const std::vector<QuickHull::Face>& faces,
                                  const std::vector<Vec3>& points) {
   ASSERT_GE(faces.size(), 4U);

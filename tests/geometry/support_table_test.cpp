@@ -17,7 +17,7 @@ using Points = std::vector<Vec3>;
 
 constexpr unsigned seed = 911;
 
-/// The first of the candidates with the largest product, in the precision of `d`.
+/// The first candidate with the largest dot product, in the precision of `d`.
 template <class T>
 std::uint32_t best_candidate(const SupportTable& table, const Points& vertices, const Vec<T>& d) {
   const Vec<double> rounded{static_cast<double>(d.x()), static_cast<double>(d.y()),
@@ -91,7 +91,7 @@ std::vector<Case> cases(Rng& rng) {
   return all;
 }
 
-/// Along differences of vertices, across them, nearly so, along axes, and at random.
+/// Along differences of vertices, perpendicular to them, nearly so, along axes, and random.
 std::vector<Vec3> directions(const Points& points, Rng& rng) {
   const auto any = [&] { return points[rng() % points.size()]; };
   std::vector<Vec3> all;

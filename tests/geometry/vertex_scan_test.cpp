@@ -70,7 +70,7 @@ TEST(VertexScan, GivesTiesToTheLowestIndexInBothPrecisions) {
 }
 
 TEST(VertexScan, NeverNamesThePadding) {
-  // The first vertex pads the arrays: when it is farthest, its copies are too.
+  // The first vertex pads the arrays: if it is the farthest, so are its copies.
   for (int count = 1; count <= 20; ++count) {
     std::vector<Vec3> vertices(count, Vec3(-1, 0, 0));
     vertices.front() = Vec3(1, 0, 0);
@@ -99,7 +99,7 @@ TEST(VertexScan, ExtendedPrecisionDecidesWhatDoubleCannot) {
   Rng rng(seed);
   int undecided_in_double = 0;
   for (int i = 0; i < 500; ++i) {
-    // Vertices in one plane but for a few ulps, seen along its normal.
+    // Vertices in one plane up to a few ulps, seen along its normal.
     const Vec3 n = families::direction(rng);
     std::vector<Vec3> vertices;
     for (int k = 0; k < 21; ++k) {

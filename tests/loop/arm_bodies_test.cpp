@@ -1,4 +1,4 @@
-// The links as bodies: their poses and twists, and the work of what pushes them.
+// The links as bodies: their poses and twists, and the work of the forces on them.
 #include <gtest/gtest.h>
 
 #include <repel/loop/arm_bodies.hpp>
@@ -13,16 +13,19 @@ using families::Rng;
 
 constexpr unsigned seed = 41;
 
-/// Two revolute joints, about z and then about the x axis half a metre further, and a slide.
-struct TurningKinematics {
-  void update(std::span<const double> q) noexcept {
+/// Two revolute joints, about z and then about the x axis half a metre further, and a prismatic
+/// joint.
+struct TurningKinematics : ArmKinematics {
+  void update(std::span<const double> q) noexcept override {
     X[0] = Pose(Eigen::AngleAxisd(q[0], Vec3::UnitZ()));
     X[1] = X[0] * Eigen::Translation3d(0.5, 0.1, 0.0) * Eigen::AngleAxisd(q[1], Vec3::UnitX());
     X[2] = X[1] * Eigen::Translation3d(0.0, 0.0, 0.3 + q[2]);
   }
-  [[nodiscard]] Pose X_WT() const noexcept { return X[2]; }
-  [[nodiscard]] Pose X_WL(int link) const noexcept { return X[static_cast<std::size_t>(link)]; }
-  void jacobian(int link, const Vec3& p_WQ, Eigen::Ref<Jacobian> J) const noexcept {
+  [[nodiscard]] Pose X_WT() const noexcept override { return X[2]; }
+  [[nodiscard]] Pose X_WL(int link) const noexcept override {
+    return X[static_cast<std::size_t>(link)];
+  }
+  void jacobian(int link, const Vec3& p_WQ, JacobianRef J) const noexcept override {
     J.setZero();
     J.col(0) << Vec3::UnitZ().cross(p_WQ), Vec3::UnitZ();
     if (link < 1) return;
@@ -30,11 +33,12 @@ struct TurningKinematics {
     J.col(1) << x.cross(p_WQ - X[1].translation()), x;
     if (link > 1) J.col(2) << X[1].linear().col(2), Vec3::Zero();
   }
-  void tool_jacobian(Eigen::Ref<Jacobian> J) const noexcept { jacobian(2, X[2].translation(), J); }
-  void gravity_torques(std::span<double> out) noexcept { std::fill(out.begin(), out.end(), 0.0); }
+  void tool_jacobian(JacobianRef J) const noexcept override { jacobian(2, X[2].translation(), J); }
+  void gravity_torques(std::span<double> out) noexcept override {
+    std::fill(out.begin(), out.end(), 0.0);
+  }
   std::array<Pose, 3> X;
 };
-static_assert(ArmKinematics<TurningKinematics>);
 
 Wrench drawn_wrench(Rng& rng) {
   const auto vector = [&] {
@@ -77,7 +81,8 @@ TEST(ArmBodies, TorquesDoTheWorkOfTheForcesOnEveryLink) {
   }
 }
 
-// Twists by differences of poses: the work above would not notice a Jacobian of another point.
+// Twists compared with differences of poses: the work above would not reveal a Jacobian of another
+// point.
 TEST(ArmBodies, TwistsAreThoseOfTheOriginsOfTheLinks) {
   World world;
   const BodyId last = world.add_body("last");

@@ -1,5 +1,5 @@
-/// How far the tool goes beyond a wall when something fails while it moves towards it: no further
-/// than without the fault, at several speeds and frictions, with brakes and without.
+/// Penetration of the tool into a wall when a fault occurs while it moves towards it: not more than
+/// without the fault, at several speeds and frictions, with and without brakes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr Fault every_fault[] = {
 constexpr double speeds[] = {0.05, 0.1, 0.25};         // [m/s]
 constexpr double frictions[] = {20.0, 5.0, 1.0, 0.1};  // [N s/m]
 
-/// Those that hide where the arm is, for as long as they last.
+/// Faults during which the position of the arm is unknown.
 bool lasts_and_blinds(Fault fault) {
   return fault == Fault::not_a_number || fault == Fault::frozen_frame ||
          fault == Fault::frozen_position || fault == Fault::frozen_encoder;
@@ -75,7 +75,7 @@ TEST(Fault, AFrozenEncoderAtRestIsNoticedAsSoonAsTheJointMustMove) {
   const FaultRun run = test::run_from_rest(Fault::frozen_encoder, 0.1, 1.0);
   EXPECT_NE(run.stop, Stop::running);
   EXPECT_LT(run.deepest, 0.0);
-  EXPECT_LT(run.way, 0.02);  // [m] that it moved unseen
+  EXPECT_LT(run.way, 0.02);  // [m] moved while the position was unknown
 }
 
 TEST(Fault, AReleasedArmWithoutBrakesStillCarriesItsWeightAndOneWithBrakesNeedNot) {
@@ -129,7 +129,7 @@ TEST(Fault, TorquesOfJointsWithoutAKnownLimitAreBounded) {
   EXPECT_LE(run.largest_force, 1000.0);
   const FaultRun infinite = test::run_into_wall<test::FaultySlider>(
       Fault::none, 0.1, 20.0, 0.0, std::numeric_limits<double>::infinity());
-  EXPECT_GT(infinite.deepest, -0.02);  // it drives
+  EXPECT_GT(infinite.deepest, -0.02);  // it moves
   EXPECT_LE(infinite.largest_force, 1000.0);
 }
 
@@ -138,7 +138,7 @@ TEST(Fault, TorquesChangeNoFasterThanStated) {
        {Fault::none, Fault::bad_command, Fault::not_a_number, Fault::frame_of_zeros}) {
     SCOPED_TRACE(test::name_of(fault));
     const FaultRun run = test::run_into_wall<test::FaultySlider>(fault, 0.25, 1.0, 0.0, 60.0);
-    EXPECT_LE(run.largest_change, 0.5 * 60.0 + 1e-9);  // in a tick of half the slew time
+    EXPECT_LE(run.largest_change, 0.5 * 60.0 + 1e-9);  // per tick, half the slew time
   }
 }
 

@@ -9,8 +9,9 @@
 namespace repel {
 namespace arm_inertia_test {
 
-/// A link of 2 kg that turns about z at the end of an arm of 0.5 m, and one of 1 kg 0.3 m further.
-struct TwoLinks {
+/// A link of 2 kg that rotates about z at the end of an arm of 0.5 m, and one of 1 kg 0.3 m
+/// further.
+struct TwoLinks : ArmKinematics {
   TwoLinks() {
     for (int i = 0; i < 2; ++i) {
       ArmLink link;
@@ -22,26 +23,27 @@ struct TwoLinks {
       model.links.push_back(link);
     }
   }
-  void update(std::span<const double> joints) noexcept { q = {joints[0], joints[1]}; }
-  [[nodiscard]] Pose X_WL(int link) const noexcept {
+  void update(std::span<const double> joints) noexcept override { q = {joints[0], joints[1]}; }
+  [[nodiscard]] Pose X_WL(int link) const noexcept override {
     Pose X = Pose(Eigen::AngleAxisd(q[0], Vec3::UnitZ()));
     if (link == 0) return X;
     X = X * model.links[1].X_PJ;
     return X * Eigen::AngleAxisd(q[1], Vec3::UnitZ());
   }
-  [[nodiscard]] Pose X_WT() const noexcept { return X_WL(1); }
-  void jacobian(int link, const Vec3& p_WQ,
-                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+  [[nodiscard]] Pose X_WT() const noexcept override { return X_WL(1); }
+  void jacobian(int link, const Vec3& p_WQ, JacobianRef J) const noexcept override {
     J.setZero();
     for (int i = 0; i <= link; ++i) {
       J.col(i).head<3>() = Vec3::UnitZ().cross(p_WQ - X_WL(i).translation());
       J.col(i).tail<3>() = Vec3::UnitZ();
     }
   }
-  void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+  void tool_jacobian(JacobianRef J) const noexcept override {
     jacobian(1, X_WT().translation(), J);
   }
-  void gravity_torques(std::span<double> out) noexcept { std::fill(out.begin(), out.end(), 0.0); }
+  void gravity_torques(std::span<double> out) noexcept override {
+    std::fill(out.begin(), out.end(), 0.0);
+  }
 
   ArmModel model;
   std::array<double, 2> q{};
@@ -70,11 +72,31 @@ TEST(ArmInertia, AJointOfWhichNoMassIsKnownMovesAHundredthOfItsEffort) {
   inertia.update(test::SliderKinematics());
   EXPECT_EQ(inertia.matrix()(0, 0), 5.0);
   EXPECT_EQ(inertia.matrix()(1, 1), 3.0);
+  EXPECT_EQ(inertia.missing(), 1);
   ArmInertia::Vector p;
   inertia.momenta({1.0, 2.0, 0.0}, p);
   EXPECT_EQ(p(0), 5.0);
   EXPECT_EQ(p(1), 6.0);
   EXPECT_EQ(p(2), 0.0);
+}
+
+/// An arm whose manufacturer provides the mass matrix.
+struct GivenMass : test::SliderKinematics {
+  [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override {
+    M << 3.0, 0.5, 0.0, 0.5, 2.0, 0.0, 0.0, 0.0, 1.0;
+    return true;
+  }
+};
+
+TEST(ArmInertia, IsWhatTheKinematicsSayItIsWhereTheySayIt) {
+  ArmModel model = test::slider_model(300.0);
+  for (ArmLink& link : model.links) link.mass = 100.0;
+  ArmInertia inertia(model);
+  inertia.update(GivenMass());
+  EXPECT_EQ(inertia.missing(), -1);
+  EXPECT_EQ(inertia.matrix()(0, 0), 3.0);
+  EXPECT_EQ(inertia.matrix()(0, 1), 0.5);
+  EXPECT_EQ(inertia.matrix()(2, 2), 1.0);
 }
 
 TEST(ArmInertia, AnEffortThatIsNotKnownIsBoundedByWhatTheJointCarries) {

@@ -1,5 +1,5 @@
 /// @file
-/// An arm of three sliding joints that fails in a stated way while it moves towards a wall.
+/// An arm of three prismatic joints with a chosen fault while it moves towards a wall.
 #pragma once
 
 #include <algorithm>
@@ -12,23 +12,23 @@
 
 namespace repel::test {
 
-/// What fails, from one tick on unless it is said to be once.
+/// The fault; permanent unless marked as occurring once.
 enum class Fault {
   none,
   silent_operator,
-  bad_command,      ///< no number
-  not_a_number,     ///< one position
-  never_a_number,   ///< from the beginning
+  bad_command,      ///< NaN in the command
+  not_a_number,     ///< one position is NaN
+  never_a_number,   ///< from the start
   frame_of_zeros,   ///< once
   frozen_frame,     ///< all positions and rates
   frozen_position,  ///< one; its rate is right
-  frozen_encoder,   ///< one position, and the rate that is made of it
+  frozen_encoder,   ///< one position, and the velocity derived from it
   jump,             ///< of one position by 0.1 m, once
   huge_position,    ///< 1e308 m, once
   huge_rate,        ///< -1e308 m/s, once
   bad_pose,         ///< of the kinematics
-  bad_gravity,      ///< torque that is no number, once
-  arm_stops,        ///< by itself, once
+  bad_gravity,      ///< gravity torque is NaN, once
+  arm_stops,        ///< on its own, once
   late_loop,        ///< no tick for 1.5 s, once
 };
 
@@ -41,9 +41,9 @@ inline const char* name_of(Fault fault) {
   return names[static_cast<std::size_t>(fault)];
 }
 
-/// Three masses on rails, one of which may carry a weight. `since` counts ticks from the fault on.
+/// Three masses on rails, one of which may carry a weight. `since` counts ticks since the fault.
 struct FaultySlider : SliderArm {
-  void read_positions(std::span<double> out) const noexcept {
+  void read_positions(std::span<double> out) const noexcept override {
     std::copy(q.begin(), q.end(), out.begin());
     if (fault == Fault::never_a_number) out[1] = std::numeric_limits<double>::quiet_NaN();
     if (since < 0) return;
@@ -55,7 +55,7 @@ struct FaultySlider : SliderArm {
     if (fault == Fault::jump) out[0] += 0.1;
     if (fault == Fault::huge_position) out[0] = 1e308;
   }
-  void read_velocities(std::span<double> out) const noexcept {
+  void read_velocities(std::span<double> out) const noexcept override {
     std::copy(v.begin(), v.end(), out.begin());
     if (since < 0) return;
     if (fault == Fault::frozen_frame) std::copy(frozen_v.begin(), frozen_v.end(), out.begin());
@@ -64,12 +64,12 @@ struct FaultySlider : SliderArm {
     if (fault == Fault::frame_of_zeros) std::fill(out.begin(), out.end(), 0.0);
     if (fault == Fault::huge_rate) out[0] = -1e308;
   }
-  void step(double period) noexcept {
+  void step(double period) noexcept override {
     force[2] -= weight;
     SliderArm::step(period);
     force[2] += weight;
   }
-  /// What is read is to be what it was in the tick before.
+  /// Keeps the readings of the previous tick.
   void begin_tick(int tick_since) noexcept {
     since = tick_since;
     if (since >= 0) return;
@@ -83,13 +83,13 @@ struct FaultySlider : SliderArm {
   std::array<double, 3> frozen_q{}, frozen_v{};
 };
 
-/// The same with a drive that stops by itself and brakes that hold at once.
+/// The same with a drive that stops on its own and brakes that hold at once.
 struct BrakedSlider : FaultySlider {
-  void enable() noexcept { state_ = ArmState::enabled; }
-  void stop() noexcept { state_ = ArmState::stopped; }
-  void engage_brakes(bool on) noexcept { brakes = on; }
-  [[nodiscard]] ArmState state() const noexcept { return state_; }
-  void step(double period) noexcept {
+  void enable() noexcept override { state_ = ArmState::enabled; }
+  void stop() noexcept override { state_ = ArmState::stopped; }
+  void engage_brakes(bool on) noexcept override { brakes = on; }
+  [[nodiscard]] ArmState state() const noexcept override { return state_; }
+  void step(double period) noexcept override {
     if (fault == Fault::arm_stops && since == 0) stop();
     if (brakes || state_ != ArmState::enabled) {
       v.fill(0.0);
@@ -102,9 +102,9 @@ struct BrakedSlider : FaultySlider {
   bool brakes = false;
 };
 
-/// Of a weight, and once of none that is a number.
+/// Gravity of a weight, and once NaN.
 struct WeighedKinematics : SliderKinematics {
-  void gravity_torques(std::span<double> out) noexcept {
+  void gravity_torques(std::span<double> out) noexcept override {
     std::fill(out.begin(), out.end(), 0.0);
     out[2] = no_number ? std::numeric_limits<double>::quiet_NaN() : weight;
   }
@@ -112,10 +112,10 @@ struct WeighedKinematics : SliderKinematics {
   bool no_number = false;
 };
 
-/// What a run came to, from the fault on. Lengths [m], forces [N].
+/// Results of a run, from the fault on. Lengths [m], forces [N].
 struct FaultRun {
-  double deepest = -1.0;  ///< of the ball beyond the face of the wall
-  double way = 0.0;       ///< of the ball from where it began
+  double deepest = -1.0;  ///< penetration of the ball into the wall
+  double way = 0.0;       ///< displacement of the ball from its start
   double top_speed = 0.0, speed_at_end = 0.0;
   double largest_force = 0.0, largest_change = 0.0;
   int noticed = -1;           ///< ticks from the fault to a stop; -1: none
@@ -126,7 +126,7 @@ struct FaultRun {
   TickRecord last;
 };
 
-/// Four seconds of a slider whose operator goes on, with the fault after `before` [s].
+/// Four seconds of a slider whose operator continues to move, with the fault after `before` [s].
 template <class Arm>
 FaultRun run_slider(Fault fault, network::Script script, double before, double friction,
                     double weight, double effort_limit) {
@@ -136,20 +136,26 @@ FaultRun run_slider(Fault fault, network::Script script, double before, double f
   arm.friction = friction;
   arm.fault = fault;
   arm.weight = weight;
-  WeighedKinematics kinematics;
+  CellDescription description;
+  description.gain_check = network::GainCheck::warning;
+  ArmDescription& sliders = description.arms.emplace_back();
+  sliders.model = model;
+  auto owned = std::make_unique<WeighedKinematics>();
+  WeighedKinematics& kinematics = *owned;
   kinematics.weight = weight;
-  World world;
-  const BodyId tool = world.add_body("tool");
-  const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.05));
+  sliders.kinematics = std::move(owned);
+  sliders.parts.push_back({"ball", Shape::sphere(0.05)});
+  sliders.network = sliders_network();
+  sliders.options.has_brakes = std::is_same_v<Arm, BrakedSlider>;
   Pose X_WB = Pose::Identity();
   X_WB.translation().x() = 0.3;
-  const PartId wall = world.add_part(World::fixed, "wall", Shape::box({0.1, 1.0, 1.0}), X_WB);
-  world.add_pair(ball, wall, {.range = 0.02, .surface_force = 100.0, .damping = 50.0});
-  Coprocessor coprocessor(world, {});
+  description.obstacles.push_back({"wall",
+                                   Shape::box({0.1, 1.0, 1.0}),
+                                   X_WB,
+                                   {.range = 0.02, .surface_force = 100.0, .damping = 50.0}});
+  Cell cell(std::move(description));
+  ArmPort port(arm, 3);
   network::ScriptedOperator hands(std::move(script));
-  Teleoperator<Arm, WeighedKinematics> teleoperator(
-      model, arm, kinematics, world, tool, coprocessor, hands, sliders_network(SliderCell::period),
-      SliderCell::period);
   const double period = 1e-9 * static_cast<double>(SliderCell::period.count());
   const int begins = static_cast<int>(std::lround(before / period));
   FaultRun run;
@@ -161,7 +167,12 @@ FaultRun run_slider(Fault fault, network::Script script, double before, double f
     kinematics.spoilt = fault == Fault::bad_pose && since >= 0;
     kinematics.no_number = fault == Fault::bad_gravity && since == 0;
     now += (fault == Fault::late_loop && since == 0 ? 600 : 1) * SliderCell::period;
-    run.last = teleoperator.tick(now);
+    const ArmReadings readings = port.read();
+    cell.sense({&readings, 1}, now);
+    const Teleoperator& control = cell.control(0);
+    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    run.last = *cell.act({&command, 1}).front();
+    port.apply(run.last);
     for (std::size_t i = 0; i < 3 && k > 0; ++i) {
       run.largest_change = std::max(run.largest_change, std::abs(arm.force[i] - sent[i]));
     }
@@ -184,15 +195,15 @@ FaultRun run_slider(Fault fault, network::Script script, double before, double f
   return run;
 }
 
-/// The operator leads the ball towards the wall, and into it unless something fails 40 mm before
-/// the ball touches its face, 20 mm before it feels it.
+/// The operator moves the ball towards the wall, and into it unless a fault occurs 40 mm before the
+/// ball touches its face, which is 20 mm before the force range.
 template <class Arm>
 FaultRun run_into_wall(Fault fault, double speed, double friction, double weight = 0.0,
                        double effort_limit = 1000.0) {
   const double before = 0.12 / speed;
   network::Script script = push(before, speed);
   network::Phase after = script.front();
-  after.duration = 0.05 / speed;  // as far as 10 mm behind the face
+  after.duration = 0.05 / speed;  // to 10 mm behind the face
   after.silent = fault == Fault::silent_operator;
   if (fault == Fault::bad_command) after.rates.linear.x() = std::nan("");
   if (after.silent || fault == Fault::bad_command) after.duration = 10.0;
@@ -200,7 +211,7 @@ FaultRun run_into_wall(Fault fault, double speed, double friction, double weight
   return run_slider<Arm>(fault, script, before, friction, weight, effort_limit);
 }
 
-/// The operator begins after the fault.
+/// The operator starts moving after the fault.
 inline FaultRun run_from_rest(Fault fault, double speed, double friction) {
   return run_slider<BrakedSlider>(fault, push(10.0, speed), 0.0, friction, 0.0, 1000.0);
 }

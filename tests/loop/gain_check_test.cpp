@@ -24,7 +24,7 @@ Jacobian rails() {
 
 TEST(GainCheck, DampingIsThatOfTheDirectionInWhichItIsLeast) {
   EXPECT_DOUBLE_EQ(damping_of({5.0, 3.0, 9.0}, rails()), 3.0);
-  // Two joints that share one direction give way together, like springs one after the other.
+  // Two joints with the same direction are compliant in series, like springs.
   Jacobian shared = rails();
   shared(0, 1) = 1.0;
   shared(1, 1) = 0.0;
@@ -34,11 +34,11 @@ TEST(GainCheck, DampingIsThatOfTheDirectionInWhichItIsLeast) {
 TEST(GainCheck, JointThatTurnsFreelyLeavesNoDamping) {
   EXPECT_EQ(damping_of({5.0, 0.0, 9.0}, rails()), 0.0);
   Jacobian unmoved = rails();
-  unmoved.col(1).setZero();  // a joint that does not move the tool does not count
+  unmoved.col(1).setZero();  // a joint that does not move the tool has no effect
   EXPECT_DOUBLE_EQ(damping_of({5.0, 0.0, 9.0}, unmoved), 5.0);
 }
 
-/// A ball and two walls, 4 and 10 kN/m, the damping of each 1 N s/m.
+/// A ball and two walls, 4 and 10 kN/m, with a damping of 1 N s/m each.
 World two_walls() {
   World world;
   const BodyId tool = world.add_body("tool");

@@ -36,8 +36,7 @@ TEST(JointSpeed, NeverGivesPowerThatWasNotAskedFor) {
 }
 
 TEST(JointSpeed, IsKeptByAnArmThatIsAskedToGoFasterAndTheStatusSaysSo) {
-  test::SliderCell cell(test::push(20.0, 0.25), {}, 1000.0, 0);
-  cell.model.links[0].velocity_limit = 0.2;
+  test::SliderCell cell(test::push(20.0, 0.25), {.velocity_limit = 0.2, .walls = 0});
   int said = 0;
   for (int tick = 0; tick < 1000; ++tick) {
     const TickRecord& record = cell.tick();

@@ -88,7 +88,7 @@ TEST(JointTorques, AreWithinTheEffortAndChangeNoFasterThanStated) {
   (void)bench.step();
   bench.network << 1e9, 0.0, 0.0;
   EXPECT_EQ(bench.step(), status::torque_limit | status::torque_rate);
-  EXPECT_EQ(bench.sent(), 50.0);  // half a slew time
+  EXPECT_EQ(bench.sent(), 50.0);  // half the slew time
   EXPECT_EQ(bench.step(), status::torque_limit);
   EXPECT_EQ(bench.sent(), 100.0);
   bench.network << -1e9, 0.0, 0.0;

@@ -13,21 +13,21 @@ namespace joint_watch_test {
 constexpr double period = 0.0025;
 constexpr unsigned seed = 311;
 
-/// Three sliders of 5 kg that move by the forces on them.
+/// Three sliders of 5 kg that move under the forces on them.
 struct Bench {
   explicit Bench(const JointWatchOptions& options = {})
       : model(test::slider_model(100.0)), watch(model, period, options), inertia(model) {
     inertia.update(test::SliderKinematics());
     net.setZero(3);
   }
-  /// A period of the motion.
+  /// One period of the motion.
   void move() {
     for (int i = 0; i < 3; ++i) {
       v[i] += period * (net(i) - 20.0 * v[i]) / 5.0;
       q[i] += period * v[i];
     }
   }
-  /// The same, and the reading after it.
+  /// The same, followed by a reading.
   Status step() {
     move();
     return read(q, v);
@@ -138,12 +138,12 @@ TEST(JointWatch, WhatMayBeReportedAgainCanBeStated) {
 TEST(JointWatch, AJointAtRestMayReportTheSameForEver) {
   Bench bench;
   bench.model.links[0].coulomb_friction = 10.0;
-  bench.net(0) = 10.0;  // its friction holds that
+  bench.net(0) = 10.0;  // balanced by its friction
   for (int tick = 0; tick < 4000; ++tick) ASSERT_EQ(bench.read(bench.q, bench.v), 0U);
 }
 
-// A wrist of little inertia and much friction stands within a period, at 100 Hz still where it was
-// read last.
+// A wrist of little inertia and much friction stops within a period, even at 100 Hz at the position
+// of the last reading.
 TEST(JointWatch, AJointThatItsFrictionStopsAtOnceIsBelieved) {
   Bench bench;
   bench.model.links[0].coulomb_friction = 400.0;

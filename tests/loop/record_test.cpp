@@ -29,7 +29,7 @@ TEST(Recorder, KeepsWhatItHasRoomForAndCountsTheRest) {
   EXPECT_EQ(recorder.records().size(), room);
   EXPECT_EQ(recorder.dropped(), 25 - static_cast<std::int64_t>(room));
   EXPECT_EQ(recorder.records().data(), memory);   // it has not grown
-  EXPECT_EQ(recorder.records().front().tick, 0);  // the first ones are those kept
+  EXPECT_EQ(recorder.records().front().tick, 0);  // the first records are kept
 }
 
 TEST(Recorder, WithoutRoomItOnlyCounts) {
@@ -57,7 +57,7 @@ TEST(RunTotals, AddUpAndKeepTheExtremes) {
   EXPECT_EQ(totals.status_ticks[0], 1);  // bad_pose
   EXPECT_EQ(totals.status_ticks[4], 2);  // stale_pairs
   EXPECT_EQ(totals.status_ticks[1], 0);
-  EXPECT_EQ(totals.workers.ticks, 3);  // they count since set-up themselves
+  EXPECT_EQ(totals.workers.ticks, 3);  // already counted since set-up
 }
 
 }  // namespace record_test

@@ -1,33 +1,37 @@
 /// @file
-/// The smallest cell there is: an arm of three sliding joints, a ball for a tool, walls of boxes.
+/// The smallest possible cell: an arm of three prismatic joints, a ball as the tool, boxes as
+/// walls.
 #pragma once
 
-#include <repel/loop/shuttle.hpp>
-#include <repel/loop/tick.hpp>
+#include <repel/cell/arm_port.hpp>
+#include <repel/cell/cell.hpp>
 #include <repel/network/modules.hpp>
 
 #include <array>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace repel::test {
 
-/// Three masses on rails along x, y and z. What it reports can be spoiled.
-struct SliderArm {
-  void set_torques(std::span<const double> torques) noexcept {
+/// Three masses on rails along x, y and z. Its readings can be corrupted.
+struct SliderArm : TorqueDrivenArm {
+  void set_torques(std::span<const double> torques) noexcept override {
     std::copy(torques.begin(), torques.end(), force.begin());
   }
-  void step(double period) noexcept {
+  void step(double period) noexcept override {
     for (int i = 0; i < 3; ++i) {
       v[i] = (v[i] + period * force[i] / mass) / (1.0 + period * friction / mass);
       q[i] += period * v[i];
     }
   }
-  void read_positions(std::span<double> out) const noexcept {
+  void read_positions(std::span<double> out) const noexcept override {
     std::copy(q.begin(), q.end(), out.begin());
     if (spoilt) out[1] = std::numeric_limits<double>::quiet_NaN();
   }
-  void read_velocities(std::span<double> out) const noexcept {
+  void read_velocities(std::span<double> out) const noexcept override {
     std::copy(v.begin(), v.end(), out.begin());
   }
 
@@ -39,29 +43,30 @@ struct SliderArm {
   std::array<double, 3> force{};  // [N]
 };
 
-/// The tool is where the sliders are; its pose can be spoiled.
-struct SliderKinematics {
-  void update(std::span<const double> q) noexcept {
+/// The tool is at the slider positions; its pose can be corrupted.
+struct SliderKinematics : ArmKinematics {
+  void update(std::span<const double> q) noexcept override {
     pose.translation() = Vec3(q[0], q[1], q[2]);
     if (spoilt) pose.translation().x() = std::numeric_limits<double>::quiet_NaN();
   }
-  [[nodiscard]] Pose X_WT() const noexcept { return pose; }
-  void tool_jacobian(Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+  [[nodiscard]] Pose X_WT() const noexcept override { return pose; }
+  void tool_jacobian(JacobianRef J) const noexcept override {
     J.setZero();
     J.topLeftCorner<3, 3>().setIdentity();
   }
-  /// Link i is carried by the rails 0 to i.
-  [[nodiscard]] Pose X_WL(int link) const noexcept {
+  /// Link i is carried by rails 0 to i.
+  [[nodiscard]] Pose X_WL(int link) const noexcept override {
     Pose X = Pose::Identity();
     X.translation().head(link + 1) = pose.translation().head(link + 1);
     return X;
   }
-  void jacobian(int link, const Vec3& /*p_WQ*/,
-                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> J) const noexcept {
+  void jacobian(int link, const Vec3& /*p_WQ*/, JacobianRef J) const noexcept override {
     J.setZero();
     for (int i = 0; i <= link; ++i) J(i, i) = 1.0;
   }
-  void gravity_torques(std::span<double> out) noexcept { std::fill(out.begin(), out.end(), 0.0); }
+  void gravity_torques(std::span<double> out) noexcept override {
+    std::fill(out.begin(), out.end(), 0.0);
+  }
 
   Pose pose = Pose::Identity();
   bool spoilt = false;
@@ -84,10 +89,9 @@ inline ArmModel slider_model(double effort_limit) {
   return model;
 }
 
-/// The paper's Figure 9 on three rails; the ball acts at once.
-inline network::Network sliders_network(std::chrono::nanoseconds period,
-                                        const network::Kbb2Options& coupling = {},
-                                        double ball_time = 0.0) {
+/// The network of Figure 9 of the paper on three rails; the ball acts without delay.
+inline network::Plan sliders_network(const network::Kbb2Options& coupling = {},
+                                     double ball_time = 0.0) {
   using namespace network;
   const std::vector<JointRange> rails(3, {-10.0, 10.0});
   return Plan()
@@ -100,63 +104,81 @@ inline network::Network sliders_network(std::chrono::nanoseconds period,
       .add("puma_kin", PumaKin())
       .add("limits", network::Limits({}, rails))
       .add("visual", Visual())
-      .add("puma_joints", PumaJoints(3))
-      .build(std::chrono::duration<double>(period).count());
+      .add("puma_joints", PumaJoints(3));
 }
 
-/// A ball of 50 mm that the script pushes to +x, against a wall whose face is at x = 0.2 m. Where
-/// there is a door, it stands 30 mm behind the ball and is the test's to move.
+/// The parameters of a run.
+struct SliderOptions {
+  CoprocessorOptions coprocessor{};
+  double effort_limit = 1000.0;  // [N]
+  double velocity_limit = 0.0;   // [m/s] of the first; 0: none
+  int walls = 1;                 // one behind the other, 1 mm apart
+  std::optional<ReciprocatingMotion> door{};
+};
+
+/// A ball of 50 mm that the script moves towards +x, against a wall with its face at x = 0.2 m. A
+/// door, if there is one, begins 30 mm behind the ball.
 struct SliderCell {
   static constexpr std::chrono::nanoseconds period{2500000};
 
-  explicit SliderCell(const network::Script& script, const CoprocessorOptions& options = {},
-                      double effort_limit = 1000.0, int walls = 1, bool with_door = false)
-      : model(slider_model(effort_limit)),
-        tool(world.add_body("tool")),
-        coprocessor(built(walls, with_door), options),
-        the_operator(script),
-        teleoperator(model, arm, kinematics, world, tool, coprocessor, the_operator,
-                     sliders_network(period), period) {}
+  explicit SliderCell(const network::Script& script, const SliderOptions& options = {})
+      : hands(script), cell(described(options)) {}
 
-  /// One tick by a clock that advances by `elapsed`, and one period of the arm.
-  const TickRecord& tick(std::chrono::nanoseconds elapsed = period) {
+  /// One tick with a clock that advances by `elapsed`.
+  const TickRecord& tick_alone(std::chrono::nanoseconds elapsed = period) noexcept {
     now += elapsed;
-    const TickRecord& record = teleoperator.tick(now);
+    const ArmReadings readings = port.read();
+    cell.sense({&readings, 1}, now);
+    const Teleoperator& control = cell.control(0);
+    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const TickRecord& record = *cell.act({&command, 1}).front();
+    port.apply(record);
+    return record;
+  }
+  /// The same, and simulates one period of the arm.
+  const TickRecord& tick(std::chrono::nanoseconds elapsed = period) noexcept {
+    const TickRecord& record = tick_alone(elapsed);
     arm.step(1e-9 * static_cast<double>(period.count()));
     return record;
   }
 
-  World& built(int walls, bool with_door) {
-    const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.05));
-    for (int i = 0; i < walls; ++i) {
+  CellDescription described(const SliderOptions& options) {
+    CellDescription description;
+    description.coprocessor = options.coprocessor;
+    description.gain_check = network::GainCheck::warning;
+    ArmDescription& sliders = description.arms.emplace_back();
+    sliders.model = slider_model(options.effort_limit);
+    sliders.model.links[0].velocity_limit = options.velocity_limit;
+    auto owned = std::make_unique<SliderKinematics>();
+    kinematics = owned.get();
+    sliders.kinematics = std::move(owned);
+    sliders.parts.push_back({"ball", Shape::sphere(0.05)});
+    sliders.network = sliders_network();
+    const ForceLaw law{.range = 0.02, .surface_force = 100.0, .damping = 50.0};
+    for (int i = 0; i < options.walls; ++i) {
       Pose X = Pose::Identity();
       X.translation() = Vec3(0.3, 0.0, 0.001 * i);
-      const PartId wall =
-          world.add_part(World::fixed, "wall " + std::to_string(i), Shape::box({0.1, 1.0, 1.0}), X);
-      world.add_pair(ball, wall, {.range = 0.02, .surface_force = 100.0, .damping = 50.0});
+      description.obstacles.push_back(
+          {"wall " + std::to_string(i), Shape::box({0.1, 1.0, 1.0}), X, law});
     }
-    if (with_door) {
-      door.X_WB.translation().x() = -0.13;
-      door.body = world.add_body("door", door.X_WB);
-      const PartId panel = world.add_part(door.body, "panel", Shape::box({0.05, 0.2, 0.2}));
-      world.add_pair(ball, panel, {.range = 0.02, .surface_force = 100.0, .damping = 50.0});
+    if (options.door) {
+      Pose X = Pose::Identity();
+      X.translation().x() = -0.13;
+      description.obstacles.push_back(
+          {"panel", Shape::box({0.05, 0.2, 0.2}), X, law, options.door});
     }
-    return world;
+    return description;
   }
 
-  ArmModel model;
   SliderArm arm;
-  SliderKinematics kinematics;
-  World world;
-  BodyId tool;
-  Shuttle door;
-  Coprocessor coprocessor;
-  network::ScriptedOperator the_operator;
-  Teleoperator<SliderArm, SliderKinematics> teleoperator;
+  ArmPort port{arm, 3};
+  network::ScriptedOperator hands;
+  SliderKinematics* kinematics = nullptr;
+  Cell cell;
   std::chrono::nanoseconds now{0};
 };
 
-/// `seconds` of pushing along x at `speed` [m/s].
+/// Moves along x at `speed` [m/s] for `seconds`.
 inline network::Script push(double seconds, double speed) {
   network::Phase phase;
   phase.name = "push";

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "schedule/boxes.hpp"
+#include "pairs/boxes.hpp"
 
 namespace repel {
 namespace tap_test {
@@ -51,7 +51,7 @@ TEST(Tap, ASnapshotHasTheTickWhole) {
   EXPECT_EQ(s.near().front().pair, bench.record.pairs.nearest_pair);
 }
 
-// The pairs that are left out are the farthest, and are counted.
+// The omitted pairs are the farthest ones, and are counted.
 TEST(Tap, WithoutRoomForAllTheNearestAreKept) {
   Bench all({.picture_period = 0ns});
   Bench few({.pairs = 3, .picture_period = 0ns});

@@ -19,12 +19,12 @@ bool is_finite_record(const TickRecord& record) {
          std::isfinite(record.lever_torque);
 }
 
-/// What is wrong; a coupling at its limit is not, where a wall holds the tool.
+/// The fault bits; saturation of the coupling is not a fault while a wall holds the tool.
 Status faults(const TickRecord& record) {
   return record.status & ~status::saturated;
 }
 
-/// [N] NaN when one of the forces is.
+/// [N] NaN if one of the forces is NaN.
 double largest_force(const SliderCell& cell) {
   const auto& f = cell.arm.force;
   const double sum = f[0] + f[1] + f[2];
@@ -36,7 +36,7 @@ TEST(Tick, MovesTheToolAsTheOperatorAsks) {
   for (int tick = 0; tick < 400; ++tick) (void)cell.tick();
   EXPECT_GT(cell.arm.q[0], 0.02);
   EXPECT_NEAR(cell.arm.q[1], 0.0, 1e-12);
-  EXPECT_NEAR(cell.arm.v[0], 0.048, 0.002);  // the rate less the dead band
+  EXPECT_NEAR(cell.arm.v[0], 0.048, 0.002);  // the rate minus the dead band
 }
 
 TEST(Tick, WallHoldsTheToolAndTheForcesBalance) {
@@ -47,8 +47,7 @@ TEST(Tick, WallHoldsTheToolAndTheForcesBalance) {
     ASSERT_EQ(faults(record), 0U) << to_text(record.status);
     ASSERT_EQ(record.gain, 1.0);
   }
-  // The coupling pushes with its 60 N and 120 N s/m at 0.098 m/s: less than the wall at its
-  // surface.
+  // The coupling exerts its 60 N and 120 N s/m at 0.098 m/s: less than the wall at its surface.
   EXPECT_LT(cell.arm.q[0], 0.15);
   EXPECT_GT(cell.arm.q[0], 0.13);
   EXPECT_LT(record.virtual_force.force.x(), -30.0);
@@ -70,16 +69,15 @@ TEST(Tick, RecordSaysWhichTickItIs) {
   }
 }
 
-/// Presses on the wall, spoils one input for 40 ticks, and follows the operator's force down,
-/// through the hold and up again. Meanwhile the tool goes no deeper, whatever was spoilt.
+/// Presses on the wall, corrupts one input for 40 ticks, and follows the operator's force through
+/// fall, hold and rise. Meanwhile the tool must not go deeper, for any corrupted input.
 void expect_stop(const char* name, Status bit, Stop stop,
                  const std::function<void(SliderCell&, bool)>& spoil,
                  std::chrono::nanoseconds elapsed = SliderCell::period) {
   SCOPED_TRACE(name);
   SliderCell cell(test::push(60.0, 0.1));
   for (int tick = 0; tick < 1600; ++tick) ASSERT_EQ(faults(cell.tick()), 0U);
-  ASSERT_GT(cell.teleoperator.tick(cell.now += SliderCell::period).virtual_force.force.norm(),
-            30.0);
+  ASSERT_GT(cell.tick_alone().virtual_force.force.norm(), 30.0);
   const double deepest = cell.arm.q[0];
 
   spoil(cell, true);
@@ -92,15 +90,15 @@ void expect_stop(const char* name, Status bit, Stop stop,
     ASSERT_EQ(record.stop, stop) << "tick " << tick << ": " << to_text(record.stop);
     ASSERT_TRUE(is_finite_record(record));
     ASSERT_LE(record.gain, gain);
-    ASSERT_LE(largest_force(cell), 200.0);  // more than walls and coupling can give here
+    ASSERT_LE(largest_force(cell), 200.0);  // more than walls and coupling can exert here
     ASSERT_LE(cell.arm.q[0], deepest + 1e-4);
-    // Where the joints are not known, brakes are asked for after 20 ms.
+    // If the joints are not known, brakes are requested after 20 ms.
     ASSERT_EQ(record.brakes, stop != Stop::holding && tick >= 8) << "tick " << tick;
   }
   EXPECT_EQ(record.gain, 0.0);
 
   spoil(cell, false);
-  if (elapsed < 0ns) cell.now += 10s;  // past the last good time
+  if (elapsed < 0ns) cell.now += 10s;  // beyond the last valid time
   int held = 0;
   for (; held < 400 && cell.tick().gain == 0.0; ++held) ASSERT_LE(cell.arm.q[0], deepest + 1e-4);
   EXPECT_NEAR(held * 0.0025, 0.25, 0.02);
@@ -115,7 +113,7 @@ void expect_stop(const char* name, Status bit, Stop stop,
   }
   EXPECT_EQ(last, 1.0);
   for (int tick = 0; tick < 2000; ++tick) (void)cell.tick();
-  EXPECT_GT(cell.tick().virtual_force.force.norm(), 30.0);  // he presses again
+  EXPECT_GT(cell.tick().virtual_force.force.norm(), 30.0);  // the operator presses again
 }
 
 TEST(Tick, JointsThatAreNotNumbersBrakeTheArmAndItComesBack) {
@@ -125,7 +123,7 @@ TEST(Tick, JointsThatAreNotNumbersBrakeTheArmAndItComesBack) {
 
 TEST(Tick, PoseThatIsNotANumberBrakesTheArmAndItComesBack) {
   expect_stop("pose", status::bad_pose, Stop::braking,
-              [](SliderCell& cell, bool spoilt) { cell.kinematics.spoilt = spoilt; });
+              [](SliderCell& cell, bool spoilt) { cell.kinematics->spoilt = spoilt; });
 }
 
 TEST(Tick, ClockThatStandsStillLetsTheOperatorGoAndHeComesBack) {
@@ -159,7 +157,7 @@ TEST(Tick, CommandThatIsNotANumberLetsTheOperatorGoAndTheWallStays) {
     ASSERT_LE(cell.arm.q[0], deepest);
   }
   EXPECT_EQ(gain, 0.0);
-  EXPECT_LT(cell.arm.q[0], deepest - 1e-3);  // the wall pushes him out meanwhile
+  EXPECT_LT(cell.arm.q[0], deepest - 1e-3);  // meanwhile the wall pushes the tool out
   for (int tick = 0; tick < 2000; ++tick) {
     const TickRecord& record = cell.tick();
     ASSERT_EQ(faults(record), 0U);
@@ -178,12 +176,12 @@ TEST(Tick, CouplingWindsNothingUpDuringAFault) {
   double largest = 0.0;
   for (int tick = 0; tick < 101; ++tick)
     largest = std::max(largest, cell.tick().coupling.force.norm());
-  // One period of motion and the damper: far from the limit of the spring.
+  // One period of motion and the damper: far below the limit of the spring.
   EXPECT_LT(largest, 30.0);
 }
 
 TEST(Tick, JointsGetNoMoreThanTheyCanGive) {
-  SliderCell cell(test::push(20.0, 0.2), {}, 8.0);
+  SliderCell cell(test::push(20.0, 0.2), {.effort_limit = 8.0});
   int limited = 0;
   for (int tick = 0; tick < 2000; ++tick) {
     const TickRecord& record = cell.tick();
@@ -202,7 +200,7 @@ TEST(Tick, JointsGetNoMoreThanTheyCanGive) {
 TEST(Tick, SmallestBudgetIsReportedAndStaysOnTheSafeSide) {
   CoprocessorOptions options;
   options.budget.work_units = 1;
-  SliderCell cell(test::push(20.0, 0.05), options, 1000.0, 40);
+  SliderCell cell(test::push(20.0, 0.05), {.coprocessor = options, .walls = 40});
   bool stale = false;
   int near_for = 0;  // ticks in which every wall has been near
   for (int tick = 0; tick < 3000; ++tick) {
@@ -224,7 +222,7 @@ TEST(Tick, SameBitsWithAnyNumberOfThreads) {
     CoprocessorOptions options;
     options.threads = threads;
     options.lock_step = true;
-    SliderCell cell(test::push(20.0, 0.1), options, 1000.0, 200);
+    SliderCell cell(test::push(20.0, 0.1), {.coprocessor = options, .walls = 200});
     std::vector<double> trace;
     for (int tick = 0; tick < 700; ++tick) {
       const TickRecord& record = cell.tick();
@@ -245,7 +243,7 @@ TEST(Tick, LateCoprocessorIsSaid) {
   CoprocessorOptions options;
   options.threads = 1;
   options.patience = 0ns;
-  SliderCell cell(test::push(60.0, 0.2), options, 1000.0, 4000);
+  SliderCell cell(test::push(60.0, 0.2), {.coprocessor = options, .walls = 4000});
   int late = 0;
   for (int tick = 0; tick < 2000; ++tick) {
     const TickRecord& record = cell.tick();

@@ -25,7 +25,7 @@ static_assert(detail::ports_of<FlowSource<any_size>>() == Ports::one);
 static_assert(detail::ports_of<Line>() == Ports::line);
 static_assert(detail::ports_of<Junction>() == Ports::junction);
 
-/// A one-port, shown and settled as a network does it: its energy is what the states say.
+/// A one-port, solved as in a network: its energy is that of the states.
 template <class M>
 void expect_settled(M module, int size) {
   Rng rng(seed);

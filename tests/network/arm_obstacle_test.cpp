@@ -1,4 +1,4 @@
-// Forces on the links become torques on the joints, and never more energy than went in.
+// Forces on the links become torques on the joints, without generating energy.
 #include <gtest/gtest.h>
 
 #include <repel/network/modules.hpp>

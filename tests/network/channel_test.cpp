@@ -93,7 +93,7 @@ TEST(Channel, EveryPacketIsLostOrOvertakenOrArrivesOnceAndInOrder) {
   }
 }
 
-// Packets far enough apart that none meets another.
+// Packets so far apart that they do not affect each other.
 TEST(Channel, JitterIsSpreadEvenlyAboveTheDelay) {
   Channel<int> channel = ready({.delay = 0.01, .jitter = 4 * period});
   std::array<int, 16> late{};

@@ -1,4 +1,4 @@
-// First: the text of a space must not hide that of a number.
+// Included first: the to_text of a space must not hide that of a number.
 #include <repel/network/port.hpp>
 
 #include <repel/network/clean_stiffness.hpp>
@@ -15,13 +15,13 @@ namespace clean_stiffness_test {
 constexpr double T = 0.0025;
 constexpr int parts = 20;  // of a period
 
-/// A wall f = K x + B (x - x of the last sample) / T, sampled, late by some parts of a period, and
-/// held. Both ways: whoever moves it never leaves it.
+/// A wall f = K x + B (x - x of the last sample) / T, sampled, delayed by some parts of a period,
+/// and held. Bilateral: contact is never lost.
 class Wall {
  public:
   Wall(double stiffness, double damping, int late)
       : K_(stiffness), B_(damping), under_way_(static_cast<std::size_t>(late), 0.0) {}
-  /// The force that acts against `x` in this part of a period.
+  /// The force against `x` in this part of a period.
   double at(int part, double x) {
     if (part % parts == 0) {
       asked_ = K_ * x + B_ * (part > 0 ? (x - last_) / T : 0.0);
@@ -39,8 +39,8 @@ class Wall {
   std::deque<double> under_way_;
 };
 
-/// What a hand that moves at 0.1 m/s, in and out again and again, gets out of wall and device [J].
-/// @param periods from one turn to the next
+/// Energy [J] that a hand moving back and forth at 0.1 m/s extracts from wall and device.
+/// @param periods from one reversal to the next
 double energy_won(const CleanStiffness& at, double stiffness, int periods) {
   const int late = static_cast<int>(std::lround(at.delay / T * parts));
   Wall wall(stiffness, at.wall_damping, late);
@@ -60,9 +60,9 @@ double energy_won(const CleanStiffness& at, double stiffness, int periods) {
 
 struct Case {
   double stiffness, wall_damping, delay;
-  int periods;  // the motion that wins most
+  int periods;  // the motion that extracts most
 };
-// A wall with a damping of its own gives most to a hand that turns at every sample.
+// A wall with damping of its own yields most to a hand that reverses at every sample.
 const std::vector<Case> cases{{1000.0, 0.0, 0.0, 1},       {1000.0, 0.0, 0.0, 1000},
                               {5000.0, 0.0, 0.0, 17},      {1000.0, -0.5, 0.0, 1000},
                               {1000.0, 3.0, 0.0, 1},       {1000.0, 0.0, T, 2000},
@@ -84,8 +84,7 @@ TEST(CleanStiffness, AHandWinsEnergyAboveTheLimitAndNoneBelow) {
   }
 }
 
-/// The largest swing of a mass of 0.2 kg on the wall, at the end as a part of that at the
-/// beginning.
+/// Largest amplitude of a mass of 0.2 kg on the wall at the end, relative to that at the beginning.
 double growth(const CleanStiffness& at, double stiffness) {
   constexpr double mass = 0.2;
   Wall wall(stiffness, at.wall_damping, static_cast<int>(std::lround(at.delay / T * parts)));
@@ -97,7 +96,8 @@ double growth(const CleanStiffness& at, double stiffness) {
   const double fade = std::exp(-at.device_damping / mass * dt);
   constexpr int all = 4000 * parts;
   for (int part = 0; part < all; ++part) {
-    const double end = -wall.at(part, x) / at.device_damping;  // where the rate would settle
+    const double end =
+        -wall.at(part, x) / at.device_damping;  // the rate to which it would converge
     x += end * dt + (v - end) * (1.0 - fade) * mass / at.device_damping;
     v = end + (v - end) * fade;
     if (part < all / 10) first = std::max(first, std::abs(x));

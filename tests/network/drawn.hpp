@@ -1,5 +1,5 @@
 /// @file
-/// Random gains and signals, and a cell of one module, for the tests of networks.
+/// Random gains and signals, and a network of one module, for the tests of networks.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,14 +27,14 @@ using State = network::PortState<any_size>;
 
 inline constexpr double period = 0.0025;
 
-/// Even in every number, up to `most`.
+/// Uniform in every component, up to `most`.
 inline Vector drawn_vector(Rng& rng, int size, double most) {
   Vector v(size);
   for (double& x : v) x = families::uniform(rng, -most, most);
   return v;
 }
-/// Symmetric, turned anyhow by mirrors, with eigenvalues from `low` to `high`; the first `zeros` of
-/// them are 0.
+/// Random symmetric matrix with eigenvalues from `low` to `high`, `zeros` of which are 0, and a
+/// random orthogonal basis from reflections.
 inline Matrix drawn_gain(Rng& rng, int size, double low, double high, int zeros = 0) {
   Matrix gain = Matrix::Zero(size, size);
   for (int i = zeros; i < size; ++i) gain(i, i) = families::log_uniform(rng, low, high);
@@ -46,7 +46,7 @@ inline Matrix drawn_gain(Rng& rng, int size, double low, double high, int zeros 
   return 0.5 * (gain + gain.transpose());
 }
 
-/// Symmetric and semidefinite, of whole numbers, so that it is singular to the last bit.
+/// Symmetric positive semidefinite integer matrix, so that it is exactly singular.
 inline Matrix drawn_singular(Rng& rng, int size) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::max(1, size - 1), size);
   if (size == 1) return rows;
@@ -54,8 +54,8 @@ inline Matrix drawn_singular(Rng& rng, int size) {
   return rows.transpose().lazyProduct(rows);
 }
 
-/// What an arm, a world and two hands without mercy do: everything moves at random, directions and
-/// frames jump, walls come and go, the Jacobian loses its rank, the fail-safe drops in.
+/// Worst-case inputs of arm, world and two hands: everything moves at random, directions and frames
+/// jump, walls appear and vanish, the Jacobian loses rank, the fail-safe engages.
 class DrawnSignals {
  public:
   DrawnSignals(Rng& rng, int joints) : rng_(rng) {
@@ -103,7 +103,7 @@ class DrawnSignals {
   int tick_ = 0;
 };
 
-/// What stands at the ends of a cell: a new one each tick, with nothing kept from the last.
+/// Random one-ports at the ends of the module: new in each tick, without memory.
 class DrawnEnds {
  public:
   DrawnEnds(Rng& rng, int size, double most_effort) : rng_(rng), most_effort_(most_effort) {
@@ -112,11 +112,11 @@ class DrawnEnds {
       slack_.push_back(drawn_gain(rng, size, 1e-2, 1e3, (size + 1) / 2));
     }
   }
-  /// Can be pushed and moved.
+  /// A positive definite impedance: it can also be given as an admittance.
   [[nodiscard]] Equivalent definite() { return of(definite_); }
-  /// Half of its directions are free: they only push.
+  /// A semidefinite impedance: a pure effort source in half of its directions.
   [[nodiscard]] Equivalent slack() { return of(slack_); }
-  /// A motion, whatever the effort.
+  /// A flow source, independent of the effort.
   [[nodiscard]] Equivalent moved(double most) {
     const auto size = static_cast<int>(definite_[0].rows());
     Equivalent end;
@@ -137,7 +137,7 @@ class DrawnEnds {
   std::vector<Matrix> definite_, slack_;
 };
 
-/// A two-port between what is behind it and what the root is, with its ledger.
+/// A two-port between leaf and root one-ports, with its ledger.
 template <class M>
 class Cell {
  public:
@@ -146,7 +146,7 @@ class Cell {
     if constexpr (requires { module.prepare(period); }) module.prepare(period);
   }
 
-  /// One tick; false when it cannot be solved.
+  /// One tick; false if it cannot be solved.
   [[nodiscard]] bool run(const network::Signals& signals, Equivalent behind,
                          const Equivalent& root) {
     if constexpr (requires { module.read(signals); }) module.read(signals);
@@ -166,7 +166,8 @@ class Cell {
     return true;
   }
 
-  /// How far the state behind the module is off what stands there, as a part of its terms.
+  /// Residual of the state behind the module in the equation of the one-port there, relative to its
+  /// terms.
   [[nodiscard]] double error_behind(const Equivalent& behind) const {
     const bool by_flow = behind.form == network::Form::impedance;
     const Vector answer = behind.matrix * (by_flow ? at_leaf.flow : at_leaf.effort);
@@ -186,7 +187,7 @@ class Cell {
     double supplied = 0.0;
     if constexpr (requires { module.left_weight(); }) weight = module.left_weight();
     if constexpr (requires { module.supplied(); }) supplied = module.supplied();
-    const bool leaf_is_left = at_leaf.effort.size() == 1;  // of a multiplex at the tool
+    const bool leaf_is_left = at_leaf.effort.size() == 1;  // for a multiplex at the tool
     const double in = (leaf_is_left ? 1.0 : weight) * at_root.power();
     const double out = (leaf_is_left ? weight : 1.0) * at_leaf.power();
     ledger.add(period * (in - out), period * (std::abs(in) + std::abs(out)), period * supplied);

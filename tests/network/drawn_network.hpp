@@ -13,7 +13,7 @@
 
 namespace repel::test {
 
-/// `left` - `module` - `right`. The root is the one-port at that side.
+/// `left` - `module` - `right`. The root is the one-port on that side.
 inline network::Network between(const network::Module& left, const network::Module& module,
                                 const network::Module& right, Side root) {
   network::Plan plan;
@@ -26,7 +26,7 @@ inline network::Network between(const network::Module& left, const network::Modu
   return plan.build(period);
 }
 
-/// Every module that claims it gave no more than it took.
+/// Every module that claims to be passive delivered no more energy than it absorbed.
 inline void expect_passive(const network::Network& network) {
   for (const network::Node& node : network.nodes()) {
     EXPECT_TRUE(std::isfinite(node.ledger.energy)) << node.name;
@@ -37,8 +37,8 @@ inline void expect_passive(const network::Network& network) {
   }
 }
 
-/// A plan that is drawn from the root outward: an arm of any number of joints with walls and limits
-/// before it, or a junction, or a one-port; and behind it chains, junctions, lines and couplings.
+/// A random plan, drawn from the root outward: as root an arm of any number of joints with walls
+/// and limits before it, or a junction, or a one-port; then chains, junctions, lines and couplings.
 class DrawnPlan {
  public:
   explicit DrawnPlan(Rng& rng) : rng_(rng) {
@@ -111,7 +111,7 @@ class DrawnPlan {
     grow(own, behind, depth);
   }
 
-  // What stands on the left of `to`.
+  // The module on the left of `to`.
   void grow(const std::string& to, network::Space at, int depth) {
     const bool tool = at == network::Space::tool;
     const int kind = depth > 0 && count_ < 20 ? families::count_between(rng_, 0, 9) : 9;
@@ -186,12 +186,12 @@ class DrawnPlan {
   int count_ = 0;
 };
 
-/// What every connection and every lossless module owes in one tick, whatever stands there.
+/// Invariants of every connection and every lossless module in one tick, for any one-ports.
 class Laws {
  public:
   explicit Laws(const network::Network& network) : network_(network) {}
 
-  /// Where they do not hold; empty when they do.
+  /// Describes the violations; empty if there are none.
   [[nodiscard]] std::string breach() const {
     for (const network::Connection& c : network_.connections()) {
       if (!holds_shown(c)) return c.left + " - " + c.right + " is off what it shows";
@@ -203,11 +203,11 @@ class Laws {
   }
 
  private:
-  // What is below a hundredth of a newton is left over from larger terms elsewhere in the network.
+  // Below a hundredth of a newton, values are residuals of larger terms elsewhere in the network.
   [[nodiscard]] static bool near(const Vector& a, const Vector& b, double scale) {
     return (a - b).norm() <= 1e-8 * (1e-2 + scale + a.norm() + b.norm());
   }
-  // Both sides have one state: it must lie on the line that the far side shows.
+  // Both sides have one state: it must satisfy the equivalent of the far side.
   [[nodiscard]] static bool holds_shown(const network::Connection& c) {
     const bool impedance = c.shown.form == network::Form::impedance;
     const Vector& given = impedance ? c.state.flow : c.state.effort;
@@ -245,7 +245,7 @@ class Laws {
       if (!same) return false;
       sum -= by_flow ? state.effort : state.flow;
       scale += (by_flow ? state.effort : state.flow).norm();
-      // Behind something stiff the effort is a small difference of large terms.
+      // Behind a stiff element the effort is a small difference of large terms.
       if ((branch.shown.form == network::Form::impedance) == by_flow) {
         scale += branch.shown.offset.norm();
       }

@@ -16,7 +16,8 @@ using test::Vector;
 constexpr unsigned seed = 77;
 constexpr int draws = families::draws(3000);
 
-/// Of size `n`; in one of three cases the matrix has `zeros` that are exact, up to rounding.
+/// Of size `n`; in one of three cases the matrix has `zeros` zero eigenvalues, exact up to
+/// rounding.
 Equivalent<any_size> drawn(Rng& rng, int n, Form form, int zeros) {
   Equivalent<any_size> some;
   some.form = form;
@@ -25,7 +26,7 @@ Equivalent<any_size> drawn(Rng& rng, int n, Form form, int zeros) {
   return some;
 }
 
-/// How far effort and flow are off the line that `of` is, as a part of its terms.
+/// Residual of effort and flow in the equation of `of`, relative to its terms.
 double off(const Equivalent<any_size>& of, const Vector& effort, const Vector& flow) {
   const bool impedance = of.form == Form::impedance;
   const Vector answer = of.matrix * (impedance ? flow : effort);
@@ -42,7 +43,7 @@ void expect_symmetric_semidefinite(const Matrix& matrix) {
 
 /// Effort and flow of `first` and of `second` at a junction of common flow (of common effort),
 /// where the sum of the efforts (flows) is `sum` and the junction shows `shown`: by brute force,
-/// all equations at once.
+/// solving all equations at once.
 void expect_joined(const Equivalent<any_size>& first, const Equivalent<any_size>& second,
                    bool common_flow, const Equivalent<any_size>& shown, const Vector& given) {
   const Eigen::Index n = first.offset.size();
@@ -62,7 +63,7 @@ void expect_joined(const Equivalent<any_size>& first, const Equivalent<any_size>
   const Eigen::Index added = common_flow ? 0 : n;
   A.block(2 * n, same, n, n) = I;
   A.block(2 * n, 2 * n + same, n, n) = -I;
-  // From outside: the common one, or the sum, whichever `shown` takes.
+  // From outside: the common quantity, or the sum, whichever `shown` takes.
   const bool takes_common = (shown.form == Form::impedance) == common_flow;
   A.block(3 * n, takes_common ? same : added, n, n) = I;
   if (!takes_common) A.block(3 * n, 2 * n + added, n, n) = I;
@@ -80,7 +81,7 @@ TEST(Equivalent, SumsAreWhatAllEquationsTogetherGive) {
     SCOPED_TRACE(families::of_seed(seed, "draw", i));
     const int n = families::count_between(rng, 1, 7);
     const Form form = i % 2 == 0 ? Form::impedance : Form::admittance;
-    // Free and rigid directions, of all kinds but those that insist on both sides.
+    // Free and rigid directions of all kinds, except pairs in which both sides prescribe the same.
     const auto first = drawn(rng, n, form, families::count_between(rng, 0, n));
     const Vector given = test::drawn_vector(rng, n, 3.0);
     const auto R = drawn(rng, n, Form::impedance, families::count_between(rng, 0, n));
@@ -122,7 +123,7 @@ TEST(Equivalent, SourcesAreElementsWithoutResistance) {
   }
 }
 
-// With effort and flow, and both forms, exchanged, every operation is the other one.
+// Duality: with effort and flow, and both forms, exchanged, every operation becomes the other.
 TEST(Equivalent, IsItsOwnDual) {
   Rng rng(seed);
   for (int i = 0; i < draws; ++i) {
@@ -174,7 +175,7 @@ TEST(Equivalent, RefusesAFormThatARigidOrFreeDirectionHasNot) {
   Rng rng(seed);
   for (int i = 0; i < 2 * draws; ++i) {
     const int n = families::count_between(rng, 1, 7);
-    // Singular to the last bit, or but for rounding.
+    // Singular exactly, or up to rounding.
     auto first = drawn(rng, n, i % 2 == 0 ? Form::impedance : Form::admittance,
                        families::count_between(rng, 1, n));
     if (i % 4 < 2) first.matrix = test::drawn_singular(rng, n);
@@ -188,7 +189,7 @@ TEST(Equivalent, RefusesAFormThatARigidOrFreeDirectionHasNot) {
   }
 }
 
-// Newtons and newton metres, metres and millimetres: what can be inverted does not depend on it.
+// Newtons and newton metres, metres and millimetres: invertibility must not depend on units.
 TEST(Equivalent, UnitsMakeNoDifferenceToWhatIsRefused) {
   Rng rng(seed);
   for (int i = 0; i < draws; ++i) {

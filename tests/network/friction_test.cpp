@@ -21,7 +21,7 @@ TEST(FrictionCompensation, NeverExceedsItsShareOfTheFriction) {
   }
 }
 
-// What is left of the friction always brakes: no joint is driven by its compensation.
+// The friction that remains always brakes: compensation never drives a joint.
 TEST(FrictionCompensation, LeavesFrictionThatBrakes) {
   families::Rng random(seed);
   const FrictionCompensation compensation;

@@ -19,7 +19,7 @@ Equivalent<any_size> drawn(Rng& rng, int n, bool by_flow, bool insisting) {
   const Form own = by_flow ? Form::impedance : Form::admittance;
   const Form other = by_flow ? Form::admittance : Form::impedance;
   branch.form = insisting || convertible ? other : own;
-  // A free direction is no trouble in the form that is wanted.
+  // A free direction is no problem in the requested form.
   const int zeros = convertible ? 0 : families::count_between(rng, 0, n - 1);
   branch.matrix = test::drawn_gain(rng, n, 1e-2, 1e2, zeros);
   if (insisting) branch.matrix = test::drawn_singular(rng, n);
@@ -27,8 +27,8 @@ Equivalent<any_size> drawn(Rng& rng, int n, bool by_flow, bool insisting) {
   return branch;
 }
 
-/// The offset and matrix of what all branches make, by brute force: unknowns are effort and flow of
-/// each and of the root; the flow at the root (the effort) is given as each unit vector in turn.
+/// The offset and matrix of all branches together, by brute force: unknowns are effort and flow of
+/// each branch and of the root; the flow (effort) at the root is set to each unit vector in turn.
 Vector answer(const std::vector<Equivalent<any_size>>& branches, bool by_flow, Form shown,
               const Vector& given) {
   const Eigen::Index n = given.size();
@@ -65,7 +65,8 @@ TEST(Junction, ShowsTheRootWhatAllBranchesMakeTogether) {
     const bool by_flow = i % 2 == 0;
     const int n = families::count_between(rng, 1, 6);
     const int count = families::count_between(rng, 2, 4);
-    const int insisting = families::count_between(rng, 0, 2 * count);  // one at most, at any place
+    const int insisting =
+        families::count_between(rng, 0, 2 * count);  // at most one fixed form, at any place
     const Junction junction(by_flow ? Common::flow : Common::effort);
     EXPECT_EQ(junction.common(), by_flow ? Common::flow : Common::effort);
     std::vector<Equivalent<any_size>> branches;
@@ -78,7 +79,7 @@ TEST(Junction, ShowsTheRootWhatAllBranchesMakeTogether) {
       } else {
         ASSERT_TRUE(junction.add(branch, sum));
       }
-      // Those that can are left in the form in which the junction settles them.
+      // Those that can are left in the form in which the junction solves them.
       const Form settled = by_flow ? Form::impedance : Form::admittance;
       EXPECT_EQ(branch.form == settled, k != insisting);
     }

@@ -30,7 +30,7 @@ Equivalent<any_size> moved(const Vector& flow) {
   source.set_admittance(Matrix::Zero(flow.size(), flow.size()), flow);
   return source;
 }
-/// Pushes the rest of the cell with `effort`.
+/// Applies `effort` to the rest of the network.
 Equivalent<any_size> push(const Vector& effort) {
   Equivalent<any_size> source;
   source.set_impedance(Matrix::Zero(effort.size(), effort.size()), -effort);
@@ -40,7 +40,7 @@ Vector one(double x) {
   return Vector::Constant(1, x);
 }
 
-// The limit is met all the time, and is where energy would be lost or won.
+// The limit is active all the time; it is where energy could be lost or gained.
 TEST(Kbb2, GivesBackWhatItsSpringHeldAtMost) {
   for (const Space space : {Space::lever, Space::tool}) {
     for (const Side root : {Side::left, Side::right}) {
@@ -114,7 +114,7 @@ TEST(Kbb2, SwingsWithAMassAtTheFrequencyOfTheBilinearRule) {
   const double M = 0.5;
   Mass<any_size> mass(M * Matrix::Identity(1, 1));
   mass.prepare(period);
-  mass.incident(one(4.0 * M / period));  // it moves to begin with
+  mass.incident(one(4.0 * M / period));  // initial velocity
   Cell cell(fitted({.stiffness = K, .damping = 0.0, .force_limit = no_limit}, Space::lever, 1),
             Side::right);
   int turns = 0;
@@ -168,7 +168,7 @@ TEST(Kbb2, LimitKeepsTheDirectionOfTheSpring) {
   for (int tick = 0; tick < 4000; ++tick) {
     ASSERT_TRUE(cell.run({}, moved(-ahead), moved(Vector::Zero(6))));
   }
-  Vector half = 0.5 * period * ahead;  // what the last tick added before the limit
+  Vector half = 0.5 * period * ahead;  // increment of the last tick before the limit
   half.head<3>() *= options.stiffness;
   half.tail<3>() *= options.angular_stiffness;
   const Vector spring = cell.at_root.effort - half;
@@ -176,7 +176,7 @@ TEST(Kbb2, LimitKeepsTheDirectionOfTheSpring) {
   EXPECT_LE((spring.tail<3>() - 8.0 * Vec3(0.0, 0.6, 0.8)).norm(), 1e-9);
 }
 
-// b = f - Z v of what the line sees; without the shunt all of it comes back.
+// b = f - Z v as seen by the line; without the shunt all of it is reflected.
 TEST(Kbb2, ShuntOfTheLinesImpedanceReflectsNothingWhenTheFarSideIsFree) {
   const Kbb2Options matched{.shunt = 20.0, .angular_shunt = 0.5};
   for (const Side free_side : {Side::left, Side::right}) {
@@ -188,7 +188,7 @@ TEST(Kbb2, ShuntOfTheLinesImpedanceReflectsNothingWhenTheFarSideIsFree) {
     const Vector Z = (Vector(6) << 20, 20, 20, 0.5, 0.5, 0.5).finished();
     if (free_side == Side::right) {
       EXPECT_LE((shown.matrix - Matrix(Z.asDiagonal())).norm(), 1e-12);
-    } else {  // the shunt stands on the left only
+    } else {  // the shunt is on the left only
       EXPECT_GT((shown.matrix - Matrix(Z.asDiagonal())).norm(), 1.0);
     }
     EXPECT_EQ(shown.offset.norm(), 0.0);

@@ -20,7 +20,7 @@ TEST(Ledger, AddsUpWhatWentInAndWhatWasSupplied) {
   EXPECT_EQ(ledger.deficit(), 0.0);
 }
 
-// What comes back later does not make good that it was below zero.
+// Energy absorbed later does not compensate an earlier negative balance.
 TEST(Ledger, DeficitIsTheLowestEverAsAPartOfWhatPassed) {
   Ledger ledger;
   ledger.add(-2.0, 2.0, 0.0);
@@ -34,7 +34,8 @@ TEST(Ledger, ModuleThroughWhichNothingPassedHasNoDeficit) {
   EXPECT_EQ(Ledger{}.deficit(), 0.0);
 }
 
-// A junction of a source and a rigid end once had a deficit of all that passed: 4.6e-15 J.
+// Regression: a junction of a source and a rigid end had a deficit of all the energy passed,
+// 4.6e-15 J.
 TEST(Ledger, RoundingWhereNextToNothingPassesIsNoDeficit) {
   Ledger ledger;
   ledger.add(-4.6e-15, 4.6e-15, 0.0);

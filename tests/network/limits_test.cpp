@@ -48,11 +48,11 @@ TEST(JointLimits, BeginAtZeroAndRiseWithTheSpring) {
   EXPECT_NEAR(limits(0.95, 0.0, -1.0, 1.0), -10.0, 1e-9);
   EXPECT_NEAR(limits(-1.0, 0.0, -1.0, 1.0), 20.0, 1e-9);
   EXPECT_NEAR(limits(1.05, 0.0, -1.0, 1.0), -30.0, 1e-9);
-  EXPECT_NEAR(limits(0.95, 0.5, -1.0, 1.0), -15.0, 1e-9);  // on the way out: damped
-  EXPECT_NEAR(limits(0.95, -2.0, -1.0, 1.0), 0.0, 1e-9);   // on the way back: never held
+  EXPECT_NEAR(limits(0.95, 0.5, -1.0, 1.0), -15.0, 1e-9);  // moving outward: damped
+  EXPECT_NEAR(limits(0.95, -2.0, -1.0, 1.0), 0.0, 1e-9);   // moving back: never resisted
 }
 
-/// Joints that swing through their ranges at will, with rates that are measured poorly.
+/// Joints that move arbitrarily through their ranges, with inaccurate rates.
 class Swinging {
  public:
   explicit Swinging(Rng& rng) : rng_(rng) {
@@ -90,7 +90,7 @@ TEST(Limits, PushInwardOnlyAndGiveNoMoreThanTheyTook) {
       none.set_impedance(test::Matrix::Zero(2, 2), Vector::Zero(2));
       ASSERT_TRUE(cell.run(signals, tick % 2 == 0 ? none : ends.definite(), measured));
       ASSERT_EQ(cell.at_root.flow, cell.at_leaf.flow);
-      if (tick % 2 != 0) continue;  // with nothing behind, the torque is that of the limits alone
+      if (tick % 2 != 0) continue;  // with no load behind, the torque is that of the limits alone
       const Vector torque = -cell.at_root.effort;
       for (int i = 0; i < 2; ++i) {
         const bool near_end =

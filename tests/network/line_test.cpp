@@ -32,7 +32,7 @@ Vector impedance_of(int size) {
   if (size == 6) Z.tail<3>().setConstant(0.5);
   return Z;
 }
-/// The state of an end, effort into the line, with `end` joined to it.
+/// The state of an end, effort into the line, with `end` connected to it.
 State joined(const Line& line, Side side, const Equivalent<any_size>& end) {
   Equivalent<any_size> sum;
   line.equivalent(side, sum);
@@ -117,8 +117,8 @@ TEST(Line, GivesNoMoreThanWasSentForAnyDelayJitterAndLoss) {
   expect_passive_with({.delay = 0.05, .jitter = 0.02, .loss = 0.1}, 6, ticks / 2);
 }
 
-/// What has come out on the right of waves `a` that go in on the left, for as long as they do and
-/// until all of them arrived.
+/// Sum of the waves received on the right while waves `a` are sent on the left, until all have
+/// arrived.
 template <class Wave>
 double played(Line& line, int ticks, Wave wave) {
   double sum = 0.0;
@@ -147,7 +147,7 @@ TEST(Line, TheSumOfTheWavesIsRecoveredWhereNothingIsLost) {
   EXPECT_NEAR(line.stored(), 0.0, 1e-6);
 }
 
-// Two waves in one tick take the energy of both only where they do not add up to more.
+// Two waves in one tick use up the energy of both only if their sum is not larger.
 TEST(Line, TheSumIsRecoveredAfterLossAsFarAsEnergyAllows) {
   for (const double loss : {0.1, 0.5}) {
     Rng rng(seed);
@@ -160,13 +160,13 @@ TEST(Line, TheSumIsRecoveredAfterLossAsFarAsEnergyAllows) {
       sent += a;
       return a;
     });
-    // Waves that were held back or lost for good would walk off by sqrt(ticks).
+    // Waves held back or lost for good would cause a drift of sqrt(ticks).
     EXPECT_NEAR(sum, sent, 0.3 * std::sqrt(ticks)) << "seed " << seed;
     EXPECT_GE(line.stored(), -1e-9);
   }
 }
 
-/// The wave that comes out on the right in this tick, while 5 goes in on the left.
+/// The wave received on the right in this tick, while 5 is sent on the left.
 double played_now(Line& line) {
   line.read({});
   Equivalent<any_size> shown;
@@ -176,8 +176,8 @@ double played_now(Line& line) {
   return -shown.offset(0);
 }
 
-// A jitter of 50 ms once took nearly all motion away: bursts that are played at once lose what
-// their energy does not cover, and the gaps before them are never made good.
+// Regression: a jitter of 50 ms suppressed nearly all motion, since bursts played at once lose what
+// their energy does not cover, and the gaps before them are never compensated.
 TEST(Line, BufferHidesTheJitterAndBridgesWhatIsLost) {
   Line late = ready({.channel = {.delay = 0.05, .jitter = 0.05}});
   for (int tick = 0; tick < families::draws(20000); ++tick) {
@@ -192,8 +192,8 @@ TEST(Line, BufferHidesTheJitterAndBridgesWhatIsLost) {
   EXPECT_GT(lossy.counts(Side::left).lost, families::draws(500));
 }
 
-// Three losses in a row are more than a buffer of two ticks bridges. What was missing then once
-// made the first of the waves after every later loss take the energy of the others.
+// Three losses in a row exceed a buffer of two ticks. Regression: the resulting deficit made the
+// first wave after every later loss use up the energy of the others.
 TEST(Line, AfterALossTooLongForTheBufferASteadyWaveIsSteadyAgain) {
   Line line = ready({.channel = {.delay = 0.05, .loss = 0.05, .seed = 3}, .buffer = 2.0 * period});
   int off = 0;
@@ -202,7 +202,7 @@ TEST(Line, AfterALossTooLongForTheBufferASteadyWaveIsSteadyAgain) {
     const double wave = played_now(line);
     off += tick >= 22 && std::abs(wave - 5.0) > 0.01 ? 1 : 0;
   }
-  // One in 8000 waves is lost with the two after it, and the next makes up for it.
+  // One in 8000 waves is lost together with the two after it, and the next compensates for it.
   EXPECT_GT(off, ticks / 16000);
   EXPECT_LE(off, ticks / 2000);
 }
@@ -216,7 +216,8 @@ TEST(Line, BufferBridgesLossesUnlessItIsSaidHowLongItIs) {
   EXPECT_LE(off, 2);
 }
 
-// A spring of 2000 N/m behind 50 ms, moved by hand: the plain line makes energy, the waves do not.
+// A spring of 2000 N/m behind 50 ms, moved by hand: the plain line generates energy, the wave line
+// does not.
 double energy_into(LineKind kind) {
   Line line = ready({.kind = kind, .channel = {.delay = 0.05}});
   Spring<any_size> spring(2000.0 * Matrix::Identity(1, 1));

@@ -21,7 +21,7 @@ const Matrix one = Matrix::Identity(1, 1);
 
 TEST(Module, ClaimsPassivityWhereItHasIt) {
   EXPECT_TRUE(detail::traits_of(TorqueArm()).passive);
-  EXPECT_TRUE(detail::traits_of(Spaceball()).passive);  // its own supply is counted
+  EXPECT_TRUE(detail::traits_of(Spaceball()).passive);  // its supply is accounted for
   EXPECT_TRUE(detail::traits_of(Spring<any_size>(one)).passive);
   EXPECT_TRUE(detail::traits_of(Obstacle()).passive);
   EXPECT_FALSE(detail::traits_of(PumaJoints(6)).passive);
@@ -57,7 +57,7 @@ TEST(Module, OnlyAMultiplexWeighsAndOnlyHandsSupply) {
   signals.hand.lever_rate = 1.0;
   for (int tick = 0; tick < 2000; ++tick) {
     arm.read(signals);
-    // Nothing at the motor: f = 0.
+    // No load at the motor: f = 0.
     detail::settle_one_port(arm, {Vector::Zero(1), -arm.reflected() / arm.resistance()(0)});
   }
   EXPECT_NEAR(Module(arm)->supplied(), 1.0, 1e-6);
@@ -77,8 +77,8 @@ TEST(Module, IsOneOfItsTypeAndItsCopiesAreTheirOwn) {
   EXPECT_GT(second.as<Spaceball>()->twist().linear.x(), 0.1);
 }
 
-/// A two-port that no header of the library knows, with no more than it must have: it halves what
-/// is behind it, as a lever of two arms does, so it passes all power on.
+/// A two-port unknown to the library's headers, with only the required functions: it halves what is
+/// behind it, like a two-arm lever, and so passes on all power.
 struct Lever {
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
   bool reflected(const Equivalent<any_size>& behind, Equivalent<any_size>& shown) noexcept {
@@ -119,7 +119,7 @@ TEST(Module, OfAnotherProgramStandsInANetworkLikeAnyOther) {
   EXPECT_NEAR(flow_behind(Spaceball()), 1.0, 1e-12);
 }
 
-/// A wall of its own in the space of joints, with the functions that are there for walls.
+/// A custom wall in the space of joints, with the functions for walls.
 struct Fence {
   static constexpr Traits traits{
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};

@@ -7,7 +7,7 @@
 namespace repel::network {
 namespace modules_test {
 
-// One header for a program that builds a network: whatever scenes/README.md names can be built.
+// One header is enough to build a network: every module in scenes/README.md can be built.
 TEST(Modules, BuildANetworkOfAllKindsWithThisHeaderAndAPlan) {
   const Mat<any_size> one = Mat<any_size>::Identity(1, 1);
   const Network network = Plan()

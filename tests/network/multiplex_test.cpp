@@ -92,8 +92,8 @@ TEST(Multiplex, FirstDirectionHoldsAtOnceAndTheNextIsApproached) {
   EXPECT_EQ(at_once.direction(), Vec3::UnitZ());
 }
 
-/// The largest step of the torque at a lever that is held while a force is on the tool and the
-/// direction is turned.
+/// The largest step of the torque at a fixed lever while a force acts on the tool and the direction
+/// is rotated.
 double largest_step(double T) {
   Multiplex multiplex({.turning_time = 0.05});
   multiplex.face(Side::left);
@@ -109,13 +109,13 @@ double largest_step(double T) {
     if (tick > 0) largest = std::max(largest, std::abs(shown.offset(0) - last));
     last = shown.offset(0);
   }
-  EXPECT_LT(last, 0.0);  // the other way, in the end
+  EXPECT_LT(last, 0.0);  // finally in the opposite direction
   return largest;
 }
 
 TEST(Multiplex, FeltEffortDoesNotJumpWhenTheDirectionDoes) {
   const double coarse = largest_step(0.0025);
-  EXPECT_LT(coarse, 0.11);  // 2 N m would be the jump
+  EXPECT_LT(coarse, 0.11);  // a jump would be 2 N m
   EXPECT_NEAR(largest_step(0.00025) / coarse, 0.1, 0.005);
   EXPECT_NEAR(largest_step(0.000025) / coarse, 0.01, 0.0005);
 }

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "network/drawn_network.hpp"
-// Counts every call to the heap in this program: it brings its own malloc.
+// Counts every heap call in this program, by defining its own malloc.
 #include "support/heap_counter.hpp"
 
 namespace repel::network {
@@ -19,7 +19,7 @@ using test::period;
 using test::Rng;
 using test::Vector;
 
-/// How many modules of each type of the library a test met.
+/// Number of modules met, for each type of the library.
 template <class... M>
 struct MetOf {
   std::array<int, sizeof...(M)> count{};
@@ -36,8 +36,8 @@ using Met = MetOf<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaK
                   Limits, Visual, PumaJoints, Junction, Line, Spring<any_size>, Mass<any_size>,
                   Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
 
-/// The ledgers of all modules together, sources and robot too: what goes in somewhere came out
-/// somewhere else. A multiplex with a power factor declares what it does not pass on.
+/// The sum of the ledgers of all modules, sources and robot included: energy into one comes out of
+/// another. A multiplex with a power factor declares the part it does not pass on.
 void expect_tellegen(const Network& network) {
   double sum = 0.0;
   double passed = 0.0;
@@ -98,7 +98,7 @@ TEST(Network, RandomTreesKeepThePowerBalanceOfEveryModule) {
   EXPECT_GT(facing_left, networks / 2);
 }
 
-/// Every kind of module in one network, in two parts.
+/// Every kind of module in one network of two parts.
 Plan of_everything() {
   const Matrix six = Matrix::Identity(6, 6);
   LineOptions late;
@@ -166,7 +166,7 @@ TEST(Network, SameSignalsGiveTheSameBits) {
   }
 }
 
-// The first branch has both forms and comes in the one in which the second insists.
+// The first branch supports both forms and is given the form required by the second.
 TEST(Network, JunctionSettlesEveryBranchWhicheverInsists) {
   const FlowSource<any_size> moved(Vector::Constant(6, 0.1));
   const std::array<bool, 6> all{true, true, true, true, true, true};
@@ -188,8 +188,8 @@ TEST(Network, JunctionSettlesEveryBranchWhicheverInsists) {
   EXPECT_GT(network.find("yielding")->ledger.passed, 1e-6);
 }
 
-// A direction of length zero leaves the lever nothing to push against. By then the other part, that
-// of 'end', is solved.
+// With a direction of length zero the lever has nothing to act on. By then the other part, that of
+// 'end', is solved.
 TEST(Network, SaysWhereItCouldNotGoOnAndMovesNoModule) {
   const Mass<any_size> mass(Matrix::Identity(6, 6));
   Network network = Plan()

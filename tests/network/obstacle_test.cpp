@@ -16,7 +16,7 @@ using test::Vector;
 
 constexpr unsigned seed = 23;
 
-/// Tool and joints are one, along x.
+/// Tool and joint coincide, along x.
 Signals along_x(double force, double rate, double mean_rate) {
   Signals signals;
   signals.joints = signals.rates = signals.mean_rates = Vector::Zero(1);
@@ -29,7 +29,7 @@ Signals along_x(double force, double rate, double mean_rate) {
   return signals;
 }
 
-// `draw` ticks with forces that know nothing of any motion: far worse than any wall.
+// `draw` ticks with forces independent of any motion: far worse than any wall.
 void push_at_random(const ObstacleOptions& options, int ticks) {
   Rng rng(seed);
   DrawnSignals drawn(rng, 6);
@@ -49,7 +49,7 @@ void push_at_random(const ObstacleOptions& options, int ticks) {
       continue;
     }
     ASSERT_LE(given, asked + rounding) << "tick " << tick << ", seed " << seed;
-    // On the way out it may push less, never hold; at no time does it pull where it pushed.
+    // On the way out it may push less, but never resist; it never pulls where it pushed.
     if (asked >= 0.0) {
       ASSERT_GE(given, -rounding) << "tick " << tick << ", seed " << seed;
     }
@@ -94,7 +94,7 @@ TEST(Obstacle, AddsItsForceOnTheSameFlowWithALedgerAboveZero) {
   }
 }
 
-// A wall that pushes back softer than it was pressed is let through as it is.
+// A wall that returns less force than on the way in is passed on unchanged.
 TEST(Obstacle, LeavesAWallThatTakesEnergyAlone) {
   Obstacle obstacle;
   for (int tick = 0; tick < 200; ++tick) {
@@ -118,7 +118,7 @@ TEST(Obstacle, HoldsAToolThatStartsInsideAWallAndDoesNotThrowItOut) {
   EXPECT_NEAR(obstacle.on_tool().force.x(), 0.0, 1e-12);
 }
 
-// The motion of a period is known when it is over: the wall has pushed on meanwhile.
+// The motion of a period is known only at its end; the wall has kept pushing meanwhile.
 TEST(Obstacle, TakesBackWhatSamplingGaveAsSoonAsItIsPressedAgain) {
   Obstacle obstacle({{.most_damping = 1e6}});
   obstacle.read(along_x(-10.0, 0.1, 0.1));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "network/drawn.hpp"
+#include "network/waves.hpp"
 
 namespace repel::network {
 namespace one_ports_test {
@@ -21,7 +22,8 @@ Vec<N> vec(Rng& rng, int size, double most) {
   return test::drawn_vector(rng, size, most);
 }
 
-/// Random waves into `element`; what went in, less what it holds, is `dissipated(state)` each tick.
+/// Random waves into `element`; energy absorbed minus energy stored must be `dissipated(state)` in
+/// each tick.
 template <int N, class Element, class Loss>
 void expect_balance(Element element, Rng& rng, int ticks, Loss loss) {
   if constexpr (requires { element.prepare(period); }) element.prepare(period);
@@ -32,7 +34,7 @@ void expect_balance(Element element, Rng& rng, int ticks, Loss loss) {
   for (int tick = 0; tick < ticks; ++tick) {
     const Vec<N> a = vec<N>(rng, size, 10.0);
     const Vec<N> b = element.reflected();
-    const PortState<N> state = state_of<N>(a, b, element.resistance());
+    const PortState<N> state = test::state_of<N>(a, b, element.resistance());
     element.incident(a);
     energy += period * state.power();
     passed += period * std::abs(state.power());
@@ -64,7 +66,7 @@ TEST(OnePorts, HoldTheirEnergyExactlyInEveryTick) {
   expect_balances<any_size>(16);
 }
 
-// A load that kept its spring stretched through a fault would kick when the force comes back.
+// A load that kept its spring stretched through a fault would kick when the force returns.
 TEST(OnePorts, LetGoOfWhatTheyHoldWhenTheForceIsGone) {
   Spring<6> spring(100.0 * Mat<6>::Identity());
   Mass<6> mass(2.0 * Mat<6>::Identity());
@@ -83,7 +85,7 @@ TEST(OnePorts, LetGoOfWhatTheyHoldWhenTheForceIsGone) {
   EXPECT_GT(hold_then(mass, false), 0.0);
 }
 
-/// Effort at the element and its flow, tick by tick, against the trapezoidal rule.
+/// Effort and flow of the element, tick by tick, compared with the trapezoidal rule.
 template <int N>
 void expect_trapezoidal(int size) {
   Rng rng(seed);
@@ -98,12 +100,12 @@ void expect_trapezoidal(int size) {
   Vec<N> velocity = Vec<N>::Zero(size);
   for (int tick = 0; tick < 1000; ++tick) {
     const Vec<N> a = vec<N>(rng, size, 10.0);
-    const PortState<N> at_spring = state_of<N>(a, spring.reflected(), spring.resistance());
+    const PortState<N> at_spring = test::state_of<N>(a, spring.reflected(), spring.resistance());
     spring.incident(a);
     const Vec<N> next_force = force + period * K.lazyProduct(at_spring.flow);
     ASSERT_LE((at_spring.effort - 0.5 * (force + next_force)).norm(), 1e-7) << "tick " << tick;
     force = next_force;
-    const PortState<N> at_mass = state_of<N>(a, mass.reflected(), mass.resistance());
+    const PortState<N> at_mass = test::state_of<N>(a, mass.reflected(), mass.resistance());
     mass.incident(a);
     const Vec<N> next_velocity =
         velocity + period * M.partialPivLu().solve(Eigen::VectorXd(at_mass.effort));
@@ -122,7 +124,7 @@ TEST(OnePorts, FollowTheTrapezoidalRule) {
   expect_trapezoidal<any_size>(5);
 }
 
-// The bilinear rule bends the frequency to 2 / T atan(w T / 2), and damps nothing.
+// The bilinear rule warps the frequency to 2 / T atan(w T / 2), and adds no damping.
 TEST(OnePorts, MassAndSpringSwingAtTheFrequencyOfTheBilinearRule) {
   for (const double T : {1e-4, 1e-3, 1e-2, 3e-2}) {
     const double K = 400.0;

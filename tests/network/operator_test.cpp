@@ -43,7 +43,7 @@ TEST(ScriptedOperator, PhasesLastExactlyTheirTicks) {
       ++all;
     }
     for (std::size_t i = 0; i < durations.size(); ++i) {
-      // A duration between two ticks goes to the nearer one.
+      // A duration between two ticks is rounded to the nearest one.
       EXPECT_NEAR(ticks[i], durations[i] * rate, 0.5 + 1e-9) << "phase " << i << " at " << rate;
       if (i != 2) {
         EXPECT_EQ(ticks[i], std::lround(durations[i] * rate)) << "phase " << i;

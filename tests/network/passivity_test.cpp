@@ -21,7 +21,7 @@ Vec<N> drawn(Rng& rng, double most) {
   return v;
 }
 
-/// Efforts and flows that know nothing of each other.
+/// Efforts and flows independent of each other.
 template <int N>
 void expect_accounts(const PassivityOptions& options, int ticks) {
   SCOPED_TRACE("size " + std::to_string(N) + ", seed " + std::to_string(seed));
@@ -46,7 +46,8 @@ void expect_accounts(const PassivityOptions& options, int ticks) {
     const double rounding = 1e-12 * (1.0 + std::abs(before));
     ASSERT_GE(damping, 0.0);
     ASSERT_GE(after, before - rounding);
-    // What pushes along the motion is not made to hold it back, nor is it where there is nothing.
+    // The correction never turns an effort along the motion into a resisting one, nor acts where
+    // there is no effort.
     if (before <= 0.0) {
       ASSERT_LE(after, rounding) << "tick " << tick;
     }
@@ -74,7 +75,7 @@ TEST(Passivity, DampsJustSoFarThatWhatIsThereIsSpent) {
   PassivityController<1> controller({.most_damping = 0.0}, one);
   EXPECT_EQ(controller.step(Vec<1>(10.0), Vec<1>(0.2), Vec<1>(0.2), period), 0.0);    // 2 W in
   EXPECT_EQ(controller.step(Vec<1>(10.0), Vec<1>(-0.1), Vec<1>(-0.1), period), 0.0);  // 1 W out
-  // 3 W out, of which there is 1.
+  // 3 W out, of which 1 W is available.
   const double damping = controller.step(Vec<1>(10.0), Vec<1>(-0.3), Vec<1>(-0.3), period);
   EXPECT_NEAR((10.0 - damping * 0.3) * 0.3, 1.0, 1e-12);
   EXPECT_NEAR(controller.report().dissipated, 2.0 * period, 1e-12);
@@ -93,7 +94,7 @@ TEST(Passivity, KeepsNoMoreThanTheMostEnergy) {
   EXPECT_NEAR(out, 0.1, 1e-9);
 }
 
-/// A mass that runs into a sampled wall; the speed at which it leaves, as a part of that before.
+/// A mass that hits a sampled wall; its speed after the impact relative to that before.
 double bounce(const PassivityOptions& options, double stiffness) {
   constexpr double mass = 0.5;
   PassivityController<1> controller(options, one);
@@ -116,17 +117,17 @@ TEST(Passivity, AWallThatIsSampledThrowsNothingBackFasterThanItCame) {
   const PassivityOptions off{.most_energy = 1e6, .most_damping = 0.0};
   for (const double stiffness : {300.0, 3000.0, 30000.0}) {
     const double with = bounce({}, stiffness);
-    if (stiffness < 1e4) {  // above, there is more than the most damping can take back
+    if (stiffness < 1e4) {  // above, the largest damping cannot absorb all the energy
       EXPECT_LE(with, 1.02) << stiffness;
     }
     EXPECT_GT(with, 0.0) << stiffness;
     EXPECT_LE(with, bounce(off, stiffness) + 1e-12) << stiffness;
   }
-  EXPECT_GT(bounce(off, 3000.0), 1.05);  // what sampling alone gives
+  EXPECT_GT(bounce(off, 3000.0), 1.05);  // energy gain by sampling alone
 }
 
-/// Energy [J] left of 0.5 J in a device that swings `per_tick` [rad] in a tick and presses a wall
-/// of 3 kN/m: exact between ticks, with the force held.
+/// Energy [J] left of 0.5 J in a device that oscillates with `per_tick` [rad] per tick and presses
+/// a wall of 3 kN/m: exact between ticks, with the force held.
 double ringing(const PassivityOptions& options, double per_tick) {
   constexpr double mass = 0.5;
   const double omega = per_tick / period;
@@ -151,7 +152,8 @@ double ringing(const PassivityOptions& options, double per_tick) {
   return 0.5 * mass * (v * v + omega * omega * x * x);
 }
 
-// It once took the energy that sampling had given out of the arm's own ringing, half a swing late.
+// Regression: it removed the energy gained by sampling from the arm's own ringing, half an
+// oscillation late.
 TEST(Passivity, ADeviceThatSwingsEveryTickIsNotDriven) {
   for (const double per_tick : {0.3, 1.0, 1.8, 2.2, 2.6, 3.0}) {
     const double without = ringing({.most_energy = 1e6, .most_damping = 0.0}, per_tick);
@@ -162,12 +164,12 @@ TEST(Passivity, ADeviceThatSwingsEveryTickIsNotDriven) {
 TEST(Passivity, WhatSamplingGaveIsTakenBackWithinTheMostDamping) {
   PassivityController<1> controller({.most_damping = 50.0}, one);
   (void)controller.step(Vec<1>(10.0), Vec<1>(0.0), Vec<1>(0.0), period);
-  // Held through a period in which it pushed the flow along.
+  // Held through a period in which it pushed along the flow.
   EXPECT_EQ(controller.step(Vec<1>(0.0), Vec<1>(-0.5), Vec<1>(-0.5), period), 0.0);
   EXPECT_NEAR(controller.report().owed, 10.0 * 0.5 * period, 1e-12);
   EXPECT_EQ(controller.step(Vec<1>(0.0), Vec<1>(0.5), Vec<1>(0.5), period), 0.0);  // let go
   EXPECT_NEAR(controller.report().owed, 10.0 * 0.5 * period, 1e-12);               // carried over
-  // Pressed again, little by little.
+  // Pressed again, gradually.
   EXPECT_EQ(controller.step(Vec<1>(1.0), Vec<1>(0.1), Vec<1>(0.1), period), 50.0);
   double owed = controller.report().owed;
   for (int tick = 0; tick < 20 && owed > 0.0; ++tick) {
@@ -183,7 +185,7 @@ TEST(Passivity, ResetForgetsWhatIsStoredAndNotWhatIsOwed) {
   (void)stored.step(Vec<1>(10.0), Vec<1>(0.2), Vec<1>(0.2), period);
   stored.reset();
   const double damping = stored.step(Vec<1>(10.0), Vec<1>(-0.1), Vec<1>(0.0), period);
-  EXPECT_NEAR(10.0 - damping * 0.1, 0.0, 1e-12);  // nothing left to give
+  EXPECT_NEAR(10.0 - damping * 0.1, 0.0, 1e-12);  // no energy left to deliver
 
   PassivityController<1> owing({}, one);
   (void)owing.step(Vec<1>(10.0), Vec<1>(0.0), Vec<1>(0.0), period);

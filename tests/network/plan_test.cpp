@@ -26,7 +26,7 @@ void expect_says(const std::string& text, const std::string& what) {
   EXPECT_NE(text.find(what), std::string::npos) << text;
 }
 
-/// From the torque arm to the robot, as the comment on Plan has it, with all that may stand there.
+/// From the torque arm to the robot as in the comment on Plan, with all optional modules.
 Plan figure_9() {
   return Plan()
       .add("torque_arm", TorqueArm())
@@ -77,7 +77,7 @@ TEST(Plan, BranchOfTheCommentEndsAtAJunction) {
 }
 
 // The lever follows the hand, the tool follows the lever through the coupling, and the arm, which
-// is held, feels a torque along the direction and nowhere else.
+// is fixed, gets a torque along the direction only.
 TEST(Plan, LeverDrivesTheArmOfFigure9) {
   Network network = figure_9().build(period);
   Signals signals = detail::neutral_signals(6, period);
@@ -88,7 +88,7 @@ TEST(Plan, LeverDrivesTheArmOfFigure9) {
   EXPECT_GT(torques(1), 1.0);
   for (const int still : {0, 2, 3, 4, 5}) EXPECT_NEAR(torques(still), 0.0, 1e-9);
   EXPECT_NEAR(network.find<TorqueArm>()->felt(), -0.1 * torques(1), 1e-9);
-  // From left to right, towards the robot: a push along y.
+  // From left to right, towards the robot: an effort along y.
   EXPECT_NEAR(network.connections().back().effort()(1), torques(1), 1e-12);
   signals.walls.force = Vec3(0.0, -7.0, 0.0);
   const double before = torques(1);
@@ -130,7 +130,7 @@ TEST(Plan, PeriodIsCheckedByTheModuleThatNeedsIt) {
   }
 }
 
-// The multiplex lets the tool move along one direction only, the arm moves it in all.
+// The multiplex lets the tool move along one direction only; the arm moves it in all.
 TEST(Plan, WhatInsistsOnBothSidesIsRefused) {
   const std::string rigid = complaint(Plan()
                                           .add("torque_arm", TorqueArm())

@@ -20,7 +20,7 @@ Limits limits(int joints) {
   return Limits({}, std::vector<JointRange>(static_cast<std::size_t>(joints), {-1.0, 1.0}));
 }
 
-/// What is wrong with a plan; empty when nothing is.
+/// The error message of a plan; empty if it is valid.
 std::string complaint(const Plan& plan) {
   try {
     (void)plan.build(period);
@@ -29,7 +29,7 @@ std::string complaint(const Plan& plan) {
   }
   return {};
 }
-/// Each in quotes, as an error gives a name.
+/// Each name in quotes, as in an error message.
 void expect_names(const std::string& text, std::initializer_list<const char*> named,
                   std::initializer_list<const char*> unnamed = {}) {
   EXPECT_NE(text, "");
@@ -75,7 +75,7 @@ TEST(Planner, SpacesHaveToFit) {
   expect_names(text, {"arm", "ball"}, {"mass"});
   expect_says(text, "lever");
   expect_says(text, "tool");
-  // Also through modules that take the space of their neighbour.
+  // Also through modules that adopt the space of their neighbour.
   const std::string through = complaint(Plan()
                                             .add("arm", TorqueArm())
                                             .add("kbb2", Kbb2())
@@ -139,7 +139,7 @@ TEST(Planner, NamesTheModulesOfADelayFreeLoopAndNoOther) {
                {"hand", "soft", "weight", "load"});
 }
 
-// The plan of a loop whose far junction has two ports is no loop once a line stands in it.
+// The same loop is valid once a line is part of it.
 TEST(Planner, LineCutsALoop) {
   EXPECT_EQ(complaint(ring(Line())), "");
 }
@@ -156,7 +156,8 @@ TEST(Planner, TwoMeasuredArmsInOnePartAreNamed) {
   Plan plan;
   plan.add("first", PumaJoints(6), "meeting").add("weight", mass(6), "meeting");
   plan.add("meeting", Junction()).add("limits", limits(6)).add("second", PumaJoints(6));
-  // Not that the limits have no flow of 'first': without the other arm they would have one.
+  // It must not report that the limits lack the flow of 'first': without the other arm they would
+  // have one.
   const std::string text = complaint(plan);
   expect_names(text, {"first", "second"}, {"weight", "meeting", "limits"});
   Plan parted;
@@ -169,7 +170,7 @@ TEST(Planner, NonlinearModuleNeedsAMeasuredFlow) {
       complaint(Plan().add("a", mass(6)).add("obstacle", Obstacle()).add("b", mass(6)));
   expect_names(text, {"obstacle", "b"}, {"a"});
   expect_says(text, "measured");
-  // A line between would show a flow of its own.
+  // A line in between would provide a flow of its own.
   Plan beyond;
   beyond.add("a", mass(6)).add("obstacle", Obstacle()).add("line", Line());
   beyond.add("kin", PumaKin()).add("robot", PumaJoints(6));

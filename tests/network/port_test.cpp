@@ -6,6 +6,7 @@
 #include <string>
 
 #include "network/drawn.hpp"
+#include "network/waves.hpp"
 
 namespace repel::network {
 namespace port_test {
@@ -30,7 +31,7 @@ void expect_waves(int size) {
     const Eigen::MatrixXd inverse = Eigen::MatrixXd(R).inverse();
     const double power = 0.25 * (a.dot(inverse * a) - b.dot(inverse * b));
     EXPECT_NEAR(power, state.power(), 1e-9 * (1.0 + a.dot(inverse * a)));
-    const PortState<N> back = state_of<N>(a, b, R);
+    const PortState<N> back = test::state_of<N>(a, b, R);
     EXPECT_LE((back.effort - state.effort).norm(), 1e-12 * (1.0 + a.norm() + b.norm()));
     EXPECT_LE((back.flow - state.flow).norm(), 1e-9 * (1.0 + state.flow.norm()));
   }
@@ -55,6 +56,17 @@ TEST(Port, SixNumbersAreLinearFirst) {
   EXPECT_EQ((PortState<any_size>{f, v}.power()), power(F, V));
   EXPECT_EQ(to_wrench(f).force, F.force);
   EXPECT_EQ(to_wrench(f).torque, F.torque);
+}
+
+TEST(Port, SumsAndMultiplesGoEntryByEntry) {
+  Rng rng(seed);
+  const Vec<any_size> a = test::drawn_vector(rng, 5, 10.0);
+  const Vec<any_size> b = test::drawn_vector(rng, 5, 10.0);
+  const Vec<any_size> c = product(-(2.0 * a + b), a - b * 3.0) / 7.0;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_DOUBLE_EQ(c(i), -(2.0 * a(i) + b(i)) * (a(i) - b(i) * 3.0) / 7.0);
+  }
+  EXPECT_EQ(three(a, 2), Vec3(a(2), a(3), a(4)));
 }
 
 TEST(Port, SpacesHaveNamesOfTheirOwn) {

@@ -13,11 +13,11 @@ using test::Vector;
 
 constexpr unsigned seed = 61;
 
-/// Joints that move for a minute, with rates that are off by a bias and by noise.
+/// Joints that move for a minute, with rates corrupted by a bias and noise.
 struct Tracked {
-  double most = 0.0;       ///< [rad] that the integral was away from the position, after a second
-  double most_rate = 0.0;  ///< [rad/s] that the flow was off the true rate
-  double turns = 0.0;      ///< [rad] that the joint went
+  double most = 0.0;       ///< [rad] largest deviation of the integral from the position, after 1 s
+  double most_rate = 0.0;  ///< [rad/s] largest deviation of the flow from the true rate
+  double turns = 0.0;      ///< [rad] total motion of the joint
 };
 Tracked track(double bias, double noise, unsigned of_seed, double T = period) {
   Rng rng(of_seed);
@@ -47,7 +47,7 @@ TEST(MeasuredFlow, IntegralStaysAtTheMeasuredPositionWhateverTheRateSays) {
   const Tracked exact = track(0.0, 0.0, seed);
   EXPECT_GT(exact.turns, 20.0);
   EXPECT_LE(exact.most, 1e-3);
-  // What a bias leaves is half the trim time of it, at any rate.
+  // The remaining error is half the trim time multiplied by the bias, at any rate.
   for (const double bias : {0.05, -0.2, 1.0}) {
     const Tracked biased = track(bias, 0.0, seed);
     EXPECT_LE(biased.most, exact.most + 5.5 * period * std::abs(bias)) << bias;

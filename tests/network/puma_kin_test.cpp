@@ -38,7 +38,8 @@ TEST(PumaKin, UsesOneJacobianBothWaysAndLosesNothing) {
         const auto& in_tool = right ? cell.at_leaf : cell.at_root;
         const auto& in_joints = right ? cell.at_root : cell.at_leaf;
         const auto& J = signals.jacobian;
-        // What a rounding of the root's flow makes of its effort comes back through what is shown.
+        // The effort caused by rounding of the root's flow is fed back through the shown
+        // equivalent.
         const double loop = right ? 1.0 : 1.0 + cell.shown.matrix.norm() * at.matrix.norm();
         ASSERT_LE((in_tool.flow - J * in_joints.flow).norm(),
                   1e-14 * loop * loop * (1.0 + in_tool.flow.norm()));
@@ -53,8 +54,8 @@ TEST(PumaKin, UsesOneJacobianBothWaysAndLosesNothing) {
   }
 }
 
-/// A Jacobian with a norm of one at most that has lost the direction `lost` of the tool, down to
-/// the last bit or nearly.
+/// A Jacobian with a norm of at most one that is rank-deficient in the direction `lost` of the
+/// tool, exactly or nearly.
 Signals near_singularity(Rng& rng, const Vec3& lost, double left) {
   Signals signals;
   const Vector rates = test::drawn_vector(rng, 6, 1.0);
@@ -83,7 +84,7 @@ TEST(PumaKin, NothingGrowsAtASingularity) {
       const auto& in_joints = right ? cell.at_root : cell.at_leaf;
       EXPECT_LE(in_joints.effort.norm(), most * in_tool.effort.norm() * (1.0 + 1e-9));
       EXPECT_LE(in_tool.flow.norm(), most * in_joints.flow.norm() * (1.0 + 1e-9));
-      // The lost direction is neither moved nor felt.
+      // The lost direction transmits neither motion nor force.
       EXPECT_LE(std::abs(lost.dot(in_tool.flow.head<3>())),
                 (left + 1e-9) * (1.0 + in_joints.flow.norm()));
       Vector felt = in_tool.effort;
@@ -94,7 +95,7 @@ TEST(PumaKin, NothingGrowsAtASingularity) {
   }
 }
 
-// A mass behind a singular arm keeps what it has in the lost direction.
+// A mass behind a singular arm keeps its momentum in the lost direction.
 TEST(PumaKin, SingularArmHoldsItsToolStill) {
   Rng rng(seed);
   Signals signals = near_singularity(rng, Vec3::UnitZ(), 0.0);

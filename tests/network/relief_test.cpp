@@ -28,14 +28,15 @@ Equivalent<any_size> ground() {
   at_rest.set_admittance(Matrix::Zero(6, 6), Vector::Zero(6));
   return at_rest;
 }
-/// Pushes the rest of the cell with `effort`.
+/// Applies `effort` to the rest of the network.
 Equivalent<any_size> push(const Vector& effort) {
   Equivalent<any_size> source;
   source.set_impedance(Matrix::Zero(6, 6), -effort);
   return source;
 }
 
-// The frame jumps anyhow between two ticks, and what stands at both ends is another in each.
+// The frame jumps arbitrarily between two ticks, and the one-ports at both ends are different in
+// each.
 TEST(Relief, GivesWayAlongItsDirectionsOnlyAndTurningAddsNoEnergy) {
   for (const auto frame : {ReliefFrame::tool, ReliefFrame::world}) {
     for (const Side root : {Side::left, Side::right}) {
@@ -69,7 +70,7 @@ TEST(Relief, GivesWayAlongItsDirectionsOnlyAndTurningAddsNoEnergy) {
   }
 }
 
-// A constant push from the root side; the far side is held.
+// A constant force from the root side; the far side is fixed.
 TEST(Relief, StretchesByForceOverStiffnessAndReturns) {
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   Signals signals;
@@ -119,7 +120,7 @@ TEST(Relief, PureDamperCreepsAndDoesNotReturn) {
   EXPECT_EQ(cell.module.stored(), 0.0);
 }
 
-// A spring that is stretched along the tool pulls along the tool, also after it has turned.
+// A spring stretched along the tool axis pulls along the tool axis also after it has rotated.
 TEST(Relief, StretchTurnsWithTheTool) {
   Cell cell(Relief({.compliant = {true, false, false, false, false, false}, .stiffness = 400.0}),
             Side::right);
@@ -130,7 +131,7 @@ TEST(Relief, StretchTurnsWithTheTool) {
   const double stored = cell.module.stored();
   signals.X_WT.linear() = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()).toRotationMatrix();
   ASSERT_TRUE(cell.run(signals, ground(), push(10.0 * Vector::Unit(6, 1))));
-  EXPECT_LE(cell.at_root.flow.norm(), 1e-9);  // the same push along the tool holds it
+  EXPECT_LE(cell.at_root.flow.norm(), 1e-9);  // the same force along the tool holds it
   EXPECT_NEAR(cell.module.stored(), stored, 1e-9);
 }
 

@@ -17,7 +17,7 @@ using test::Vector;
 constexpr unsigned seed = 66;
 const SpaceballOptions unfiltered{.time_constant = 0.0};
 
-/// The twist that a ball makes of raw rates.
+/// The twist that a ball generates from raw rates.
 Twist pressed(Spaceball& ball, const Twist& raw) {
   Signals signals;
   signals.hand.ball = raw;
@@ -54,7 +54,7 @@ TEST(Spaceball, AddsItsRatesUnderTheSameEffortAndAccountsForThem) {
   }
 }
 
-// The ball moves a tool to the right against a damper there.
+// The ball moves a tool on its right against a damper there.
 TEST(Spaceball, SuppliesThePowerThatItsMotionTakes) {
   Equivalent<any_size> damper;
   damper.set_impedance(10.0 * test::Matrix::Identity(6, 6), Vector::Zero(6));

@@ -13,12 +13,12 @@ using test::Rng;
 
 constexpr unsigned seed = 5;
 
-/// A lever with something at its motor.
+/// A lever with a load at its motor.
 struct Bench {
   explicit Bench(const TorqueArmOptions& options, double at = period) : lever(options), T(at) {
     lever.prepare(T);
   }
-  /// One tick: the hand leads at `hand`, behind the motor is f = `b` + `R` v.
+  /// One tick: the hand moves at `hand`, the load at the motor is f = `b` + `R` v.
   void tick(double hand, double R, double b) {
     Signals signals;
     signals.hand.lever_rate = hand;
@@ -31,7 +31,7 @@ struct Bench {
     const double in = port.power();
     ledger.add(T * in, T * std::abs(in), T * lever.supplied());
   }
-  /// The motor pushes with `torque`.
+  /// The motor exerts `torque`.
   void push(double hand, double torque) { tick(hand, 0.0, -torque); }
 
   TorqueArm lever;
@@ -54,7 +54,7 @@ TEST(TorqueArm, GivesNoMoreThanItTookAndTheHandSupplied) {
         const double R = tick % 5 == 0 ? 0.0 : families::log_uniform(rng, 1e-3, 1e3);
         bench.tick(families::uniform(rng, -2.0, 2.0), R, families::uniform(rng, -3.0, 3.0));
         saturated += bench.lever.saturated() ? 1 : 0;
-        // What the motor is asked for is never turned round, nor made larger.
+        // The motor effort is never reversed, nor increased.
         if (!bench.lever.saturated()) {
           ASSERT_NEAR(bench.lever.felt(), bench.port.effort(0),
                       1e-9 * (1.0 + std::abs(bench.port.effort(0))));
@@ -71,7 +71,7 @@ TEST(TorqueArm, GivesNoMoreThanItTookAndTheHandSupplied) {
   }
 }
 
-// a' with |a'| <= |a|: where the torque is over its limit still, a' went as far as it may.
+// a' with |a'| <= |a|: if the torque still exceeds its limit, a' has reached its bound.
 TEST(TorqueArm, MotorIsLimitedWhereverPassivityLetsIt) {
   Rng rng(seed);
   TorqueArm lever({.torque_limit = 1.0});

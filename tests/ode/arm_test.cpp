@@ -1,4 +1,4 @@
-// The ODE arm: its mechanics, its joints and what it promises beside them.
+// The ODE arm: its mechanics, its joints and its other properties.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,6 @@ namespace repel::ode {
 namespace arm_test {
 
 using namespace simulated;
-
-static_assert(TorqueDrivenArm<Arm>);
 
 constexpr double period = 1.0 / 400;
 

@@ -1,4 +1,4 @@
-// Physical contact in the ODE arm: what stands in its way stops it.
+// Physical contact in the ODE arm: obstacles stop it.
 #include <gtest/gtest.h>
 
 #include <repel/ode/arm.hpp>

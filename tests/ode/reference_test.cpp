@@ -1,4 +1,4 @@
-// The ODE arm against the equations of motion solved to a high order.
+// The ODE arm compared with a high-order solution of the equations of motion.
 #include <gtest/gtest.h>
 
 #include <repel/ode/arm.hpp>
@@ -14,7 +14,7 @@ namespace reference_test {
 
 using namespace simulated;
 
-/// Without stops, which the reference has not.
+/// Without stops, which the reference lacks.
 ArmModel free_puma() {
   ArmModel model = heavy_puma();
   for (ArmLink& link : model.links) {

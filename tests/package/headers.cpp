@@ -1,5 +1,5 @@
-// The headers of the parts that PARTS asks for. Nothing of them is called: including them is enough
-// for the linker to see whether program and parts were built alike.
+// The headers of the parts selected by PARTS. Including them is enough for the linker to check that
+// program and parts were built with compatible options.
 #ifdef PART_robots
 #include <repel/robots/dynamics.hpp>
 #include <repel/robots/kinematics.hpp>

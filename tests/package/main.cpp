@@ -1,4 +1,4 @@
-// A stranger's program: all of the core in two translation units that meet at link time.
+// An external program: all of the core in two translation units that are linked together.
 #include <cstdio>
 
 #include <repel/repel.hpp>

@@ -1,4 +1,5 @@
-// Does everything a tick must not do; symbols.sh must refuse this object for each of them.
+// Performs every operation forbidden in a tick; symbols.sh must reject this object for each of
+// them.
 #include <unistd.h>
 
 #include <cstdio>

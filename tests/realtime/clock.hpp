@@ -1,5 +1,6 @@
 /// @file
-/// Whether asking the time takes the kernel: then a tick that asks it makes system calls.
+/// Whether reading the clock is a system call on this machine: then a tick that reads it makes
+/// some.
 #pragma once
 
 #include <chrono>
@@ -10,8 +11,8 @@
 
 namespace repel::test {
 
-/// The clock source of this machine where reading the clock is a system call; else, and where that
-/// cannot be told, nothing.
+/// The clock source of this machine if reading the clock is a system call; empty otherwise, and if
+/// this cannot be determined.
 inline std::string clock_in_the_kernel() {
   using teleop::SystemCallGuard;
   SystemCallGuard::arm(teleop::Pauses::none);

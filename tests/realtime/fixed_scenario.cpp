@@ -1,6 +1,7 @@
-// Always the same ticks, for instructions.sh to count: the gripper of four parts among the eight
-// obstacles of scenes/anderson_4x8.yaml, pressed on the table, slid into the corner, through the
-// membrane and against the box. Each tick leaves one profile. Without valgrind it only runs.
+// A deterministic sequence of ticks for the instruction count of instructions.sh: the gripper of
+// four parts among the eight obstacles of scenes/anderson_4x8.yaml, pressed on the table, slid into
+// the corner, through the membrane and against the box. Each tick writes one profile. Without
+// valgrind it only runs.
 #include <valgrind/callgrind.h>
 
 #include <cstdio>
@@ -21,9 +22,9 @@ constexpr int version = __GNUC__;
 
 constexpr std::chrono::nanoseconds period{2500000};
 
-/// Three sliders with the tool pointing down; it leans as it goes, so that no pair rests.
+/// Three sliders with the tool pointing down; it tilts as it moves, so that no pair is static.
 struct LeaningKinematics : SliderKinematics {
-  void update(std::span<const double> q) noexcept {
+  void update(std::span<const double> q) noexcept override {
     SliderKinematics::update(q);
     const Eigen::AngleAxisd down_and_sideways(std::acos(-1.0) + 0.3 * (q[1] + 0.15), Vec3::UnitX());
     const Eigen::AngleAxisd forwards(0.3 * (q[0] - 0.6), Vec3::UnitY());
@@ -31,7 +32,7 @@ struct LeaningKinematics : SliderKinematics {
   }
 };
 
-/// Whole sizes [m], as in the scene file.
+/// Full sizes [m], as in the scene file.
 Shape box(double x, double y, double z) {
   return Shape::box(0.5 * Vec3(x, y, z));
 }
@@ -42,20 +43,18 @@ Pose at(double x, double y, double z) {
   return X;
 }
 
-const World& gripper_among_obstacles(World& world, BodyId tool) {
+void add_gripper_among_obstacles(CellDescription& cell) {
   const ForceLaw wall{.range = 0.02, .surface_force = 200.0, .damping = 100.0};
   const ForceLaw membrane{
       .range = 0.015, .surface_force = 60.0, .damping = 20.0, .ceiling = 12.0, .passable = true};
   const Shape finger = box(0.024, 0.022, 0.13);
-  const PartId parts[] = {
-      world.add_part(tool, "mount", Shape::cylinder(0.032, 0.045), at(0, 0, -0.105)),
-      world.add_part(tool, "palm", box(0.06, 0.12, 0.05), at(0, 0, -0.085)),
-      world.add_part(tool, "left finger", finger, at(0, 0.049, -0.045)),
-      world.add_part(tool, "right finger", finger, at(0, -0.049, -0.045))};
+  cell.arms.front().parts = {{"mount", Shape::cylinder(0.032, 0.045), at(0, 0, -0.105)},
+                             {"palm", box(0.06, 0.12, 0.05), at(0, 0, -0.085)},
+                             {"left finger", finger, at(0, 0.049, -0.045)},
+                             {"right finger", finger, at(0, -0.049, -0.045)}};
   const auto obstacle = [&](const char* name, const Shape& shape, const Pose& X,
                             const ForceLaw& law) {
-    const PartId id = world.add_part(World::fixed, name, shape, X);
-    for (const PartId part : parts) world.add_pair(part, id, law);
+    cell.obstacles.push_back({name, shape, X, law});
   };
   obstacle("table", box(0.7, 1.1, 0.06), at(0.66, -0.15, 0.325), wall);
   obstacle("corner floor", box(0.25, 0.18, 0.03), at(0.665, 0.03, 0.355), wall);
@@ -65,7 +64,6 @@ const World& gripper_among_obstacles(World& world, BodyId tool) {
   obstacle("cylinder", Shape::cylinder(0.04, 0.1), at(0.75, -0.14, 0.455), wall);
   obstacle("post", Shape::capsule(0.018, 0.125), at(0.46, -0.25, 0.478), wall);
   obstacle("membrane", box(0.16, 0.2, 0.004), at(0.62, -0.36, 0.438), membrane);
-  return world;
 }
 
 network::Script way() {
@@ -88,23 +86,20 @@ network::Script way() {
 }
 
 int run() {
-  World world;
-  const BodyId tool = world.add_body("tool");
-  gripper_among_obstacles(world, tool);
+  CellDescription description;
+  description.gain_check = network::GainCheck::warning;
+  description.coprocessor.budget.wall = std::chrono::seconds(1);  // so that the clock is read
+  ArmDescription& sliders = description.arms.emplace_back();
+  sliders.model = slider_model(1000.0);
+  sliders.kinematics = std::make_unique<LeaningKinematics>();
+  sliders.start = {0.6, -0.15, 0.45};
+  sliders.network = sliders_network({.stiffness = 3000.0, .damping = 300.0, .force_limit = 120.0});
+  add_gripper_among_obstacles(description);
+  Cell cell(std::move(description));
   SliderArm arm;
   arm.q = {0.6, -0.15, 0.45};
-  const ArmModel model = slider_model(1000.0);
-  LeaningKinematics kinematics;
-  const Pose start = (kinematics.update(arm.q), kinematics.X_WT());
-  world.place(tool, start, {});
-  CoprocessorOptions options;
-  options.budget.wall = std::chrono::seconds(1);  // so that the clock is asked as by the clock
-  Coprocessor coprocessor(world, options);
-  network::ScriptedOperator the_operator(way());
-  Teleoperator teleoperator(
-      model, arm, kinematics, world, tool, coprocessor, the_operator,
-      sliders_network(period, {.stiffness = 3000.0, .damping = 300.0, .force_limit = 120.0}),
-      period);
+  ArmPort port(arm, 3);
+  network::ScriptedOperator hands(way());
   double peak = 0.0;
   std::int64_t evaluated = 0;
   Status status = 0;
@@ -112,7 +107,12 @@ int run() {
   CALLGRIND_START_INSTRUMENTATION;
   for (int k = 1; k <= ticks; ++k) {
     CALLGRIND_ZERO_STATS;
-    const TickRecord& record = teleoperator.tick(k * period);
+    const ArmReadings readings = port.read();
+    cell.sense({&readings, 1}, k * period);
+    const Teleoperator& control = cell.control(0);
+    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const TickRecord& record = *cell.act({&command, 1}).front();
+    port.apply(record);
     CALLGRIND_DUMP_STATS;
     arm.step(1e-9 * static_cast<double>(period.count()));
     peak = std::max(peak, record.virtual_force.force.norm());

@@ -1,11 +1,11 @@
-// Counts every call to the heap in this program. A file of its own brings its own malloc.
+// Counts every heap call in this program. A separate program, since it defines its own malloc.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <new>
 
 #include "loop/slider.hpp"
-#include "schedule/boxes.hpp"
+#include "pairs/boxes.hpp"
 #include "support/heap_counter.hpp"
 
 namespace repel {
@@ -14,7 +14,7 @@ namespace heap_test {
 using test::calls;
 using test::watched;
 
-/// Every thread of the program is counted while it lives, and Eigen is told to refuse the heap.
+/// Counts all threads of the program during its lifetime, and makes Eigen refuse heap allocation.
 struct Watch {
   Watch() {
     Eigen::internal::set_is_malloc_allowed(false);
@@ -29,7 +29,7 @@ struct Watch {
 
 TEST(Heap, CounterSeesMallocFreeAndNew) {
   if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
-  // Through volatile pointers, so that the compiler cannot leave a pair of calls out.
+  // Through volatile pointers, so that the compiler cannot eliminate a pair of calls.
   calls = 0;
   watched = true;
   int* volatile by_new = new int(1);
@@ -48,10 +48,11 @@ TEST(Heap, TickTakesNothingFromIt) {
     CoprocessorOptions options;
     options.threads = threads;
     options.lock_step = true;
-    test::SliderCell cell(test::push(2.0, 0.1), options, 100.0, 200);
+    test::SliderCell cell(test::push(2.0, 0.1),
+                          {.coprocessor = options, .effort_limit = 100.0, .walls = 200});
     double peak = 0.0;
     for (int tick = 0; tick < 700; ++tick) {
-      cell.arm.spoilt = tick > 600 && tick < 610;  // the ways of a fault too
+      cell.arm.spoilt = tick > 600 && tick < 610;  // covers the code paths of a fault, too
       const Watch watch;
       peak = std::max(peak, cell.tick(tick == 650 ? std::chrono::nanoseconds(0) : cell.period)
                                 .virtual_force.force.norm());

@@ -1,5 +1,5 @@
-// The tick called from a function that promises never to block: RealtimeSanitizer ends this program
-// at the first call underneath it that might. Built and run by realtime_sanitizer.sh.
+// The tick called from a function declared nonblocking: RealtimeSanitizer aborts this program at
+// the first call in it that might block. Built and run by realtime_sanitizer.sh.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -9,7 +9,7 @@
 namespace repel::test {
 namespace {
 
-/// The one function that makes the promise; whatever it calls is held to it at run time.
+/// The only function declared nonblocking; everything it calls is checked at run time.
 double one_tick(SliderCell& cell, std::chrono::nanoseconds elapsed, bool break_the_promise) noexcept
     [[clang::nonblocking]] {
   if (break_the_promise) {
@@ -24,10 +24,10 @@ double run(int threads, bool break_the_promise) {
   options.threads = threads;
   options.patience = std::chrono::milliseconds(1);
   options.budget.wall = std::chrono::milliseconds(1);
-  SliderCell cell(push(2.0, 0.1), options, 100.0, 200);
+  SliderCell cell(push(2.0, 0.1), {.coprocessor = options, .effort_limit = 100.0, .walls = 200});
   double peak = 0.0;
   for (int tick = 0; tick < 700; ++tick) {
-    cell.arm.spoilt = tick > 600 && tick < 610;  // the ways of a fault too
+    cell.arm.spoilt = tick > 600 && tick < 610;  // covers the code paths of a fault, too
     const bool stuck = tick == 650;
     peak = std::max(peak, one_tick(cell, stuck ? std::chrono::nanoseconds(0) : SliderCell::period,
                                    break_the_promise));

@@ -1,6 +1,5 @@
-// In teleop_rtsan this stands in for the guard that counts what the tick takes from the heap: where
-// that one counts, RealtimeSanitizer watches. It ends the program at the first call that might
-// block.
+// In teleop_rtsan this replaces the guard that counts heap calls of the tick: in the guarded
+// sections RealtimeSanitizer aborts the program at the first call that might block.
 #include <time.h>
 
 #include <cstdlib>
@@ -23,7 +22,7 @@ namespace {
 
 thread_local bool is_worker = false;
 
-/// A worker's naps between ticks are no part of one.
+/// A worker's sleep between ticks is not part of a tick.
 struct Rest {
   Rest() noexcept { __rtsan_disable(); }
   ~Rest() { __rtsan_enable(); }
@@ -48,7 +47,8 @@ extern "C" int nanosleep(const timespec* time, timespec* left) {
   const Rest rest;
   return __interceptor_nanosleep(time, left);
 }
-// At its end a thread frees itself. What a worker frees besides, it must have taken: that is seen.
+// A thread frees its own memory at its end. Other memory freed by a worker must have been allocated
+// by it, which is detected.
 extern "C" void free(void* memory) {
   if (!is_worker) return __interceptor_free(memory);
   const Rest rest;

@@ -1,26 +1,29 @@
-// One tick and nothing else: what is set up is reached by reference, so that no set-up code comes
-// into this object. symbols.sh reads what it leaves undefined.
-#include <repel/loop/tick.hpp>
+// One tick only: objects are passed by reference, so that this object file contains no set-up code.
+// symbols.sh reads its undefined symbols.
+#include <repel/cell/cell.hpp>
 #include <repel/schedule/deadline.hpp>
 
 #include "loop/slider.hpp"
 
 namespace repel::test {
 
-using SliderTeleoperator = Teleoperator<SliderArm, SliderKinematics>;
-
-/// The tick with the pairs worked through in its own thread or by others.
-const TickRecord& one_tick(SliderTeleoperator& teleoperator,
+/// The tick, with the pairs evaluated in its own thread or by workers.
+const TickRecord& one_tick(Cell& cell, const ArmReadings& readings, const network::Command& hands,
                            std::chrono::nanoseconds now) noexcept {
-  return teleoperator.tick(now);
+  return cell.step(readings, hands, now);
 }
 
-/// What a thread of the coprocessor does in a tick.
-void one_answer(detail::PairWorker& worker, Mailbox<Motion>& inbox) noexcept {
+/// The kinematics of a test arm, called by the tick.
+void one_update(SliderKinematics& kinematics, std::span<const double> q) noexcept {
+  kinematics.update(q);
+}
+
+/// The work of a coprocessor thread in a tick.
+void one_answer(detail::WorkerShare& worker, Mailbox<Motion>& inbox) noexcept {
   if (inbox.take()) worker.run(inbox.newest());
 }
 
-/// What the loop around the tick adds.
+/// The additional work of the loop around the tick.
 void one_account(DeadlineMonitor& monitor, RunTotals& totals, const TickRecord& record) noexcept {
   monitor.record({}, {});
   totals.add(record);

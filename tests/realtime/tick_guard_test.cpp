@@ -1,5 +1,5 @@
-// The counters around the tick: that they see what they are for, and that the tick and the work of
-// the coprocessor's threads give them nothing to see.
+// The counters around the tick: they detect the forbidden operations, and they stay at zero for the
+// tick and for the work of the coprocessor's threads.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -10,8 +10,8 @@
 
 #include "heap_guard.hpp"
 #include "loop/slider.hpp"
+#include "pairs/boxes.hpp"
 #include "realtime/clock.hpp"
-#include "schedule/boxes.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
 
@@ -24,7 +24,7 @@ using teleop::Pauses;
 using teleop::SystemCallGuard;
 using teleop::TickUsage;
 
-/// How many of the program's guarded sections made a system call while `work` ran.
+/// Number of the program's guarded sections that made a system call while `work` ran.
 template <class Work>
 std::int64_t calls_of(Work&& work) {
   const std::int64_t before = SystemCallGuard::calls();
@@ -73,7 +73,7 @@ TEST_F(SystemCalls, ByWhichAThreadGivesWayAreCountedUnlessAllowed) {
     EXPECT_EQ(calls_of(yield), expected.yields);
     EXPECT_EQ(calls_of(nap), expected.naps);
   }
-  // What is allowed does not end the watch.
+  // Allowed calls do not end the monitoring.
   const auto nap_and_call = [] {
     const SystemCallGuard guard;
     const auto begin = std::chrono::steady_clock::now();
@@ -98,7 +98,7 @@ TEST_F(SystemCalls, OfAWatchedThreadAreCountedButNotThoseOfItsEnd) {
   }
 }
 
-/// The clock by which budgets and waits end must be answered without the kernel.
+/// Reading the clock used for budgets and timeouts must not be a system call.
 class SystemCallsOfTheTick : public SystemCalls {
  protected:
   void SetUp() override {
@@ -115,10 +115,11 @@ TEST_F(SystemCallsOfTheTick, AreNone) {
     CoprocessorOptions options;
     options.threads = threads;
     options.lock_step = true;
-    test::SliderCell cell(test::push(2.0, 0.1), options, 100.0, 200);
+    test::SliderCell cell(test::push(2.0, 0.1),
+                          {.coprocessor = options, .effort_limit = 100.0, .walls = 200});
     const std::int64_t counted = calls_of([&] {
       for (int tick = 0; tick < 700; ++tick) {
-        cell.arm.spoilt = tick > 600 && tick < 610;  // the ways of a fault too
+        cell.arm.spoilt = tick > 600 && tick < 610;  // covers the code paths of a fault, too
         const SystemCallGuard guard;
         cell.tick(tick == 650 ? 0ns : cell.period);
       }
@@ -130,13 +131,14 @@ TEST_F(SystemCallsOfTheTick, AreNone) {
 TEST_F(SystemCallsOfTheTick, AreNoneWhenItWaitsForThreadsByTheClock) {
   CoprocessorOptions options;
   options.threads = 2;
-  options.patience = 10us;  // a late answer is an answer too
+  options.patience = 10us;  // so that late answers occur, too
   options.on_thread_start = [](int) noexcept {
     SystemCallGuard::arm(Pauses::naps);
     SystemCallGuard::watch_this_thread();
   };
   const std::int64_t counted = calls_of([&] {
-    test::SliderCell cell(test::push(2.0, 0.1), options, 100.0, 200);
+    test::SliderCell cell(test::push(2.0, 0.1),
+                          {.coprocessor = options, .effort_limit = 100.0, .walls = 200});
     for (int tick = 0; tick < 100; ++tick) {
       const SystemCallGuard guard;
       cell.tick();
@@ -148,8 +150,8 @@ TEST_F(SystemCallsOfTheTick, AreNoneWhenItWaitsForThreadsByTheClock) {
 TEST_F(SystemCallsOfTheTick, AreNoneInTheWorkOfACoprocessorThreadWhateverItsBudget) {
   for (const Budget& budget : {Budget{}, Budget{.work_units = 30}, Budget{.wall = 10us}}) {
     test::Boxes boxes(4, 60, {.range = 0.1}, 3);
-    detail::PairWorker worker(boxes.world, std::make_shared<detail::PairIndex>(boxes.world), budget,
-                              0, 1);
+    detail::WorkerShare worker(boxes.world, std::make_shared<detail::PairIndex>(boxes.world),
+                               budget, 0, 1);
     worker.prime(boxes.world.motion());
     const std::int64_t counted = calls_of([&] {
       for (int tick = 0; tick < 200; ++tick) {
@@ -172,7 +174,7 @@ TEST(Usage, CountsAPageFault) {
   void* const page =
       mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(page, MAP_FAILED);
-  for (const int faults : {1, 0}) {  // the first touch, and another
+  for (const int faults : {1, 0}) {  // the first access, and another
     const std::int64_t before = usage.page_faults();
     usage.begin();
     *static_cast<volatile char*>(page) = 1;

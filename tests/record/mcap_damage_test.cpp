@@ -1,4 +1,4 @@
-// A file that was cut off gives everything that is complete; damage is noticed or does no harm.
+// A truncated file yields everything that is complete; damage is detected or harmless.
 #include <algorithm>
 #include <random>
 
@@ -20,7 +20,8 @@ using testing::small_recording;
 using testing::Taken;
 using testing::taken;
 
-/// How many messages a file of the first `length` bytes has in full, by the places of its records.
+/// Number of complete messages in the first `length` bytes of a file, by the offsets of its
+/// records.
 std::size_t complete_messages(const std::vector<RawRecord>& records, std::size_t length) {
   std::size_t count = 0;
   for (const RawRecord& record : records) {
@@ -67,13 +68,13 @@ TEST(McapDamage, ZerosBehindAFileAreNoMessages) {
   EXPECT_FALSE(all_messages(reader).empty());
 }
 
-/// What reading a damaged file gave.
+/// The result of reading a damaged file.
 struct Outcome {
-  bool noticed = false;  // an error, or it is not whole
+  bool noticed = false;  // an error, or reported as incomplete
   std::vector<Taken> messages;
 };
 
-/// Everything that can be had, going on behind every error.
+/// Reads everything possible, continuing after every error.
 Outcome read(const std::string& bytes) {
   Outcome outcome;
   try {

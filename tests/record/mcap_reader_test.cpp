@@ -1,5 +1,5 @@
-// What was written comes back, field by field; files of other writers can be read as far as they
-// are not compressed; what is no MCAP file is refused in words.
+// What was written is read back, field by field; files of other writers can be read if they are not
+// compressed; what is not an MCAP file is refused with a message.
 #include <repel/record/mcap_reader.hpp>
 
 #include <filesystem>
@@ -119,7 +119,7 @@ class Maker {
     return record(6, number(0, 16) + number(records.size(), 8) + number(slow_crc32(records), 4) +
                          text(compression) + number(records.size(), 8) + records);
   }
-  /// With neither summary nor CRC.
+  /// Without summary and CRC.
   [[nodiscard]] std::string finished() {
     record(15, number(0, 4)).record(2, number(0, 20));
     return bytes_ + magic;
@@ -247,7 +247,7 @@ TEST(McapReader, ARecordBeyondTheLimitIsRefusedBeforeMemoryIsTakenForIt) {
   bytes.push_back(6);
   put_number(bytes, size, 8);
   std::ofstream(scratch.path(), std::ios::binary) << bytes;
-  std::filesystem::resize_file(scratch.path(), size + 1000);  // holes take no space
+  std::filesystem::resize_file(scratch.path(), size + 1000);  // a sparse file: no disk space used
   try {
     McapReader reader(scratch.path());
     EXPECT_FALSE(reader.whole());

@@ -1,5 +1,5 @@
-// What is written is what the format asks for: every index points at what it names, every CRC is
-// that of its bytes, every count is right; and nothing fails without a word.
+// The output conforms to the format: every index points to what it names, every CRC is that of its
+// bytes, every count is right; and no failure is silent.
 #include <repel/record/mcap_writer.hpp>
 
 #include <sys/resource.h>
@@ -45,7 +45,7 @@ std::vector<RawRecord> of_type(int op, const std::vector<RawRecord>& records) {
   return found;
 }
 
-/// The records in a chunk without compression begin after 40 bytes.
+/// The records in an uncompressed chunk begin after 40 bytes.
 std::vector<RawRecord> records_in(const RawRecord& chunk) {
   return records_between(chunk.content.substr(40), 0, chunk.number(32, 8));
 }
@@ -230,7 +230,7 @@ TEST(McapWriter, AChunkEndsWhenTheTimeOfItsMessagesHasAdvanced) {
   const auto channel = writer.add_channel("t", 0, "json");
   for (std::uint64_t i = 0; i < 100; ++i) writer.write(channel, 0, i * 20 * ms, "{}");
   writer.close();
-  EXPECT_EQ(chunks_in(scratch.bytes()), 4U);  // 2 s in steps of 20 ms, half a second in each
+  EXPECT_EQ(chunks_in(scratch.bytes()), 4U);  // 2 s in steps of 20 ms, half a second per chunk
 }
 
 TEST(McapWriter, AChunkEndsAlsoWhenTimeRunsBackwards) {
@@ -300,7 +300,7 @@ TEST(McapWriter, AFullDiskIsRefusedWhenTheFileIsOpened) {
   }
 }
 
-/// Lets no file of this process grow beyond a size.
+/// Limits the size of all files of this process.
 class SizeLimit {
  public:
   explicit SizeLimit(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,5 +1,5 @@
 /// @file
-/// Small recordings, what is in them, and a look at their records that shares nothing with the
+/// Small recordings, their contents, and a parser of their records that is independent of the
 /// library.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace repel::record::testing {
 
-/// A path of its own, whose file is gone afterwards.
+/// A temporary file path; the file is removed by the destructor.
 class Scratch {
  public:
   Scratch() : path_(std::filesystem::temp_directory_path() / name()) {}
@@ -44,7 +44,7 @@ class Scratch {
   std::filesystem::path path_;
 };
 
-/// A message with bytes of its own.
+/// A message with its own copy of the bytes.
 struct Taken {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
@@ -64,8 +64,8 @@ inline std::vector<Taken> all_messages(McapReader& reader) {
   return messages;
 }
 
-/// So many random messages in two channels, one of them without a schema and used from the third
-/// message on, with an attachment and metadata among them. Returns the messages.
+/// Writes that many random messages in two channels, one of them without a schema and used from the
+/// third message on, with an attachment and metadata in between. Returns the messages.
 inline std::vector<Taken> write_recording(McapWriter& writer, int count, std::uint64_t seed) {
   std::mt19937_64 rng(seed);
   const auto schema = writer.add_schema("Tick", "jsonschema", R"({"type": "object"})");
@@ -100,7 +100,7 @@ inline Recording small_recording(std::uint64_t seed, int count = 40) {
   return result;
 }
 
-/// The number of `width` bytes at `at`, lowest first.
+/// The little-endian number of `width` bytes at `at`.
 inline std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t width) {
   std::uint64_t value = 0;
   for (std::size_t i = width; i > 0; --i) {
@@ -131,7 +131,7 @@ inline RawRecord record_at(std::string_view bytes, std::size_t offset) {
           bytes.substr(offset + 9, number_at(bytes, offset + 1, 8))};
 }
 
-/// All of them between `from` and `to`.
+/// All records between `from` and `to`.
 inline std::vector<RawRecord> records_between(std::string_view bytes, std::size_t from,
                                               std::size_t to) {
   std::vector<RawRecord> records;
@@ -146,7 +146,7 @@ inline std::vector<RawRecord> records_of(std::string_view file) {
   return records_between(file, 8, file.size() - 8);
 }
 
-/// Bit by bit, as its definition goes.
+/// CRC computed bit by bit from its definition.
 inline std::uint32_t slow_crc32(std::string_view bytes) {
   std::uint32_t crc = ~0U;
   for (const char c : bytes) {

@@ -5,7 +5,8 @@
 namespace repel::detail {
 namespace basis_roles_test {
 
-// Whichever rows are of B, each row eliminates a depth of its own side or is an equation of it.
+// For any assignment of the rows to A and B, each row eliminates a depth of its own side or is an
+// equation of it.
 TEST(BasisRoles, EveryRowHasOneRoleOnItsOwnSide) {
   constexpr auto all = all_basis_roles();
   for (unsigned of_b = 1; of_b < 31; ++of_b) {
@@ -28,7 +29,7 @@ TEST(BasisRoles, EveryRowHasOneRoleOnItsOwnSide) {
   }
 }
 
-// All five of one side say nothing of the other.
+// If all five are of one side, they do not determine the other.
 TEST(BasisRoles, RowsOfOneSideOnlyHaveNone) {
   constexpr auto all = all_basis_roles();
   EXPECT_EQ(all[0].base[0], all[0].base[1]);

@@ -1,5 +1,5 @@
-// The deepest common point, against a linear programming solver of another kind in 113 bits,
-// against finite differences and against what is exactly true of boxes.
+// The deepest common point compared with a different linear programming solver in 113 bits, with
+// finite differences, and with exact results for boxes.
 #include <repel/reduction/deepest_point.hpp>
 
 #include <gtest/gtest.h>
@@ -52,7 +52,8 @@ Posed random_pair(Rng& rng) {
   return pair;
 }
 
-/// The linear program around a common point, solved by the tableau; the depths are at least 0.
+/// The linear program about a common point, solved by the simplex tableau; the depths are at least
+/// 0.
 double oracle_depth(const Posed& pair, const Vec3& common_W) {
   oracle::LinearProgram program({0, 0, 0, 0, 0, 0, 1, 1});
   const auto add = [&](const Shape& shape, const Pose& X_W, bool is_a) {
@@ -83,7 +84,7 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   for (int i = 0; i < draws(3000); ++i) {
     SCOPED_TRACE(of_seed(seed, "pair", i));
     Posed pair = random_pair(rng);
-    // Planes nearly parallel: in double alone the answer would be off by 1e-8.
+    // Planes nearly parallel: with double precision alone the error would be 1e-8.
     if (i % 3 == 0) {
       const double angle = families::log_uniform(rng, 1e-13, 1e-3);
       pair.X_WB.linear() = families::small_rotation(rng, angle) * pair.X_WA.linear();
@@ -107,8 +108,8 @@ TEST(DeepestPoint, IsTheSolutionOfTheLinearProgram) {
   EXPECT_GT(overlapping, draws(1000));
 }
 
-// A pair that had just left an overlap was once proven apart in extended precision, and then by the
-// search for the gap again, which costs far less.
+// Regression: a pair that had just left an overlap was proven apart in extended precision, and then
+// again by the gap search, which is far cheaper.
 TEST(DeepestPoint, PairThatMayBeApartIsNotSolvedAtLength) {
   Rng rng(seed);
   int left = 0, at_length = 0;
@@ -181,7 +182,7 @@ TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
   int at_levels = 0;
   for (int i = 0; i < draws(500); ++i) {
     const Posed pair = random_pair(rng);
-    // Contact, too shallow for a deepest point, leaves such a warm start.
+    // A contact too shallow for a deepest point leaves such a warm start.
     WarmStart warm;
     (void)separation(pair.A, pair.X_WA, pair.B, pair.X_WB, {.measure = Measure::reduction}, warm);
     at_levels += warm.level_a != 0 || warm.level_b != 0 ? 1 : 0;
@@ -318,7 +319,7 @@ TEST(DeepestPoint, AnyContentOfAWarmStartIsSafe) {
     const Posed pair = random_pair(rng);
     WarmStart warm;
     for (std::size_t k = 0; k < 4; ++k) {
-      // Small names are those of planes, the others mostly of nothing.
+      // Small ids are those of planes, most others are invalid.
       const bool small = families::count_between(rng, 0, 1) == 1;
       warm.a[k] = static_cast<std::uint32_t>(small ? rng() % 12 | (rng() % 2) << 31U : rng());
       warm.b[k] = static_cast<std::uint32_t>(small ? rng() % 12 | (rng() % 2) << 31U : rng());
@@ -329,8 +330,8 @@ TEST(DeepestPoint, AnyContentOfAWarmStartIsSafe) {
   }
 }
 
-// The plane violated most, by rounding alone, was one that held already: exchanged with itself
-// until the pivots ran out, it left the answer to the levels, at 0.284 m.
+// Regression: the most violated plane, by rounding alone, was already in the basis. It was
+// exchanged with itself until the pivots ran out, so that the levels gave the answer, 0.284 m.
 TEST(DeepestPoint, APlaneThatHoldsDoesNotEnterAgain) {
   const Shape A = Shape::box({0x1.5c1c8e5fdddddp-3, 0x1.bc38fbfc8eb97p-3, 0x1.1bd1be26a8918p-2});
   const Shape B = Shape::box({0x1.10aba620079eap-3, 0x1.d54f612a6f202p-2, 0x1.d36c277c5a87p-4});
@@ -349,8 +350,8 @@ TEST(DeepestPoint, APlaneThatHoldsDoesNotEnterAgain) {
   EXPECT_LE(s.iterations, 60);
 }
 
-// The plane of a face of this sliver leaves its tip by a multiple of rounding: below all planes is
-// not yet inside, and the depth came out deeper than the way out is long.
+// Regression: the plane of a face of this sliver misses its tip by a multiple of rounding. A point
+// below all planes may still be outside, and the depth was larger than the extraction distance.
 TEST(DeepestPoint, InTheTipOfASliverIsNoDeeperThanTheWayOut) {
   const std::vector<Vec3> corners{
       {-0x1.9599f1ae36a33p-1, 0x1.050df068e691ep+2, -0x1.26c72d8604b02p-1},

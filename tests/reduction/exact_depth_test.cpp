@@ -1,4 +1,4 @@
-// The penetration depth as a measure, against the least overlap over all axes in 113 bits.
+// The penetration depth measure compared with the least overlap over all axes in 113 bits.
 #include <gtest/gtest.h>
 
 #include <string>

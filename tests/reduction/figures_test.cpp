@@ -1,4 +1,4 @@
-// What Figures 3, 5, 6 and 8 of Anderson 1993 show, as facts; docs/reduction.md has the pictures.
+// Quantitative checks of Figures 3, 5, 6 and 8 of Anderson 1993; docs/reduction.md has the plots.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace repel::figures {
 namespace figures_test {
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr int steps = 7700;  // one of them falls on contact, in every motion
+constexpr int steps = 7700;  // in every motion one of them is exactly contact
 
 std::vector<Sample> through(int levels) {
   return answers_along(through_a_rectangle(levels), Measure::reduction, steps);
@@ -24,7 +24,7 @@ std::vector<Sample> through_by_deepest_point() {
   return answers_along(through_a_rectangle(8), Measure::deepest_point, steps);
 }
 
-/// `swing` [deg] is how much the direction may come back from one sample to the next.
+/// `swing` [deg] is the largest reversal of the direction allowed between consecutive samples.
 void expect_turning_from_back_to_up(const std::vector<Sample>& samples, double swing = 1e-6) {
   EXPECT_NEAR(samples.front().direction(), 180.0, 1e-9);
   EXPECT_NEAR(samples.back().direction(), 90.0, 1e-9);
@@ -61,7 +61,7 @@ TEST(Figure3, ByLevelsTheWayOutTurnsFromBackOverAnAngleToUp) {
     expect_turning_from_back_to_up(straight);
     EXPECT_TRUE(has_an_angle_in_between(straight));
     const Motion turned = into_a_box(levels, 20.0 * degree);
-    // Where other levels begin to decide, the direction of a turned box may come back a little.
+    // When other levels become decisive, the direction of a rotated box may reverse a little.
     expect_turning_from_back_to_up(answers_along(turned, Measure::reduction, steps), 15.0);
   }
 }
@@ -69,7 +69,7 @@ TEST(Figure3, ByLevelsTheWayOutTurnsFromBackOverAnAngleToUp) {
 TEST(Figure3, ByDeepestPointTheWayOutTurnsFromBackToUp) {
   const auto straight = answers_along(into_a_box(8), Measure::deepest_point, steps);
   expect_turning_from_back_to_up(straight);
-  // All planes are those of the axes: there is no direction in between.
+  // All planes are normal to the axes: no intermediate direction is possible.
   EXPECT_FALSE(has_an_angle_in_between(straight));
   const auto turned = answers_along(into_a_box(8, 20.0 * degree), Measure::deepest_point, steps);
   expect_turning_from_back_to_up(turned);
@@ -138,7 +138,7 @@ TEST(Figure8, HeldPlatesStayParallelWhileTheWitnessPointRaces) {
     const Settled s = settled(Plates({.rate = rate, .held = true}).run(), rate);
     EXPECT_LT(s.tilt, 0.1 * degree);
     EXPECT_LT(s.pushed_tilt, 0.25 * degree);
-    EXPECT_GT(s.torque_jump, 1.0);  // what docs/reduction.md says of the plain witness point
+    EXPECT_GT(s.torque_jump, 1.0);  // stated in docs/reduction.md for the plain witness point
   }
 }
 

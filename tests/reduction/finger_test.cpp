@@ -1,5 +1,5 @@
-// A thin finger pressed far into a block: however deep it is, pressing on is felt, in every
-// measure.
+// A thin finger pressed deep into a block: at any depth, further motion increases the measured
+// depth, with every measure.
 #include <repel/reduction/separation.hpp>
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace finger_test {
 
 using Named = std::pair<std::string, Shape>;
 
-constexpr double radius = 0.0025;  ///< [m] half as thick as the finger
+constexpr double radius = 0.0025;  ///< [m] half the thickness of the finger
 constexpr double half_length = 0.05;
 const Vec3 half_block{0.15, 0.15, 0.12};
 
@@ -34,8 +34,8 @@ std::vector<Named> blocks(const ReductionOptions& options) {
           {"hull", Shape::hull(families::box(half_block).vertices, options)}};
 }
 
-/// Presses the finger, which leans by `lean` [rad], 5 cm into the block from above. The depth never
-/// decreases, never exceeds the travel, and grows by `share` of every 5 mm at least.
+/// Presses the finger, tilted by `lean` [rad], 5 cm into the block from above. The depth never
+/// decreases, never exceeds the travel, and grows by at least `share` of every 5 mm.
 void expect_felt(const Shape& finger, const Shape& block, const QueryOptions& options, double lean,
                  double share) {
   constexpr double step = 1e-4;
@@ -72,7 +72,7 @@ void expect_felt_by_all(const ReductionOptions& levels, Measure measure) {
     for (const auto& [block, B] : blocks(levels)) {
       SCOPED_TRACE(std::to_string(levels.levels) + " levels, " + finger + " into " + block);
       expect_felt(A, B, options, 0.0, 1.0 - 1e-9);
-      // The dead zone of the first level, which loses the corner that comes first, costs the most.
+      // The largest loss is the dead zone of the first level, which cuts off the leading corner.
       expect_felt(A, B, options, 0.1, 0.95);
       expect_felt(A, B, options, 0.3, 0.85);
     }
@@ -99,8 +99,8 @@ TEST(Finger, IsFeltAllTheWayByTheExactDepth) {
   expect_felt_by_all({}, Measure::exact);
 }
 
-// The levels of a cone draw its tip back by 40 mm for each millimetre of depth; docs/reduction.md
-// says so.
+// The levels of a cone retract its tip by 40 mm per millimetre of depth, as documented in
+// docs/reduction.md.
 TEST(Finger, ThatIsAConeIsFeltAllTheWayByTheDeepestPointAndLateByLevels) {
   const Shape cone = Shape::cone(radius, half_length, {.levels = 8});
   const Shape block = Shape::box(half_block, {.levels = 8});

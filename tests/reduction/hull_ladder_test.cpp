@@ -39,8 +39,8 @@ int distinct(const Points& points) {
   return static_cast<int>(found.size());
 }
 
-/// Directions among which are the normals of all facets of the hull: of every three points when
-/// there are few, which needs no hull code; else of hull_facets, checked against every point.
+/// Directions that include the normals of all facets of the hull: of all triples of points if there
+/// are few, which needs no hull code; otherwise of hull_facets, checked against every point.
 Points directions_across(const Points& points, Rng& rng) {
   Points directions;
   for (int i = 0; i < 200; ++i) directions.push_back(families::direction(rng));
@@ -64,8 +64,8 @@ Points directions_across(const Points& points, Rng& rng) {
   return directions;
 }
 
-/// A_i+1 + Ball(t) lies in A_i when no support value of it is larger, over the facet normals of
-/// A_i; and one that is larger along any direction at all disproves it.
+/// A_i+1 + Ball(t) is inside A_i if none of its support values is larger, over the facet normals of
+/// A_i; a larger value along any direction disproves it.
 void expect_is_a_ladder(const Ladder& ladder, const Points& points, Rng& rng) {
   ASSERT_FALSE(ladder.empty());
   double size = 0.0;
@@ -273,7 +273,7 @@ TEST(HullLadder, PointsThatAreNoCornersChangeNoLevel) {
   ASSERT_EQ(ladder.size(), plain.size());
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     EXPECT_EQ(vertices_of(ladder[i].core).size(), vertices_of(plain[i].core).size());
-    // The planes come in another order, and the projections onto them with them.
+    // The order of the planes differs, and so do the projections onto them.
     EXPECT_NEAR(ladder[i].depth, plain[i].depth, 0.01) << "seed " << seed << ", level " << i;
   }
 }
@@ -323,7 +323,7 @@ TEST(HullLadder, TenThousandPointsAreNestedAsDeepAsTheyClaim) {
   EXPECT_GE(ladder[1].core.vertex_count(), 900);
   EXPECT_LE(ladder[1].core.vertex_count(), 1014);
   EXPECT_GE(ladder.back().depth, 0.93) << "nearly a ball of radius 1";
-  // Level 1 against the facets of the surface, the others as all ladders are.
+  // Level 1 is compared with the facets of the surface, the others as for all ladders.
   const std::vector<Facet> facets = hull_facets(points);
   for (const Vec3& v : vertices_of(ladder[1].core)) {
     EXPECT_GE(detail::depth_in(facets, v), ladder[1].depth);

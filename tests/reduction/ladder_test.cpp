@@ -23,8 +23,8 @@ Vec3 extents(const Convex& core) {
   return {along(Vec3::UnitX()), along(Vec3::UnitY()), along(Vec3::UnitZ())};
 }
 
-/// What every ladder keeps. The room won is measured axis by axis, which for boxes and cylinders
-/// is all there is to A_i+1 + Ball(t) inside A_i.
+/// Invariants of every ladder. The erosion is measured axis by axis, which for boxes and cylinders
+/// is equivalent to A_i+1 + Ball(t) inside A_i.
 void expect_is_a_ladder(const Ladder& ladder) {
   ASSERT_FALSE(ladder.empty());
   EXPECT_EQ(ladder.back().core.vertex_count(), 1) << "the last level is no point";
@@ -122,7 +122,7 @@ TEST(Ladder, StepsAreSpacedAsAsked) {
   }
 }
 
-/// Two levels of a cube of half extent 1, the second one smaller by `step`.
+/// Two levels of a cube of half extent 1, the second reduced by `step`.
 Ladder two_levels(double step, double depth) {
   const Vec3 inner = Vec3::Constant(1.0 - step);
   return {{Convex::box(Vec3::Ones()), 0.0, 0.0}, {Convex::box(inner), depth, depth}};

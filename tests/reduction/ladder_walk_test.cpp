@@ -1,5 +1,5 @@
-// Laws of the signed distance in overlap. References: the 15 axes of two boxes in 113-bit
-// arithmetic, right everywhere; for cylinders dense directions, which bound the depth from above.
+// Properties of the signed distance in overlap. References: for boxes the 15 axes in 113-bit
+// arithmetic, which are exact; for cylinders dense directions, an upper bound of the depth.
 #include <repel/reduction/ladder_walk.hpp>
 
 #include <gtest/gtest.h>
@@ -73,8 +73,9 @@ TEST(SeparationInOverlap, BracketHoldsTheExactDepthAndTheSignIsRight) {
   EXPECT_LT(overlaps, 1500 * 8 / 10);
 }
 
-// Where the shapes meet and their next levels are apart by more than these have lost, the distance
-// stands still at 0. Eroded by t a box draws back by at most t sqrt(3), which bounds how deep.
+// If the shapes intersect and their next levels are farther apart than the sum of their depths, the
+// distance stays at 0. A box eroded by t retracts by at most t sqrt(3), which bounds the depth
+// there.
 TEST(SeparationInOverlap, IsZeroOnlyInOverlapShallowerThanTheFirstStep) {
   for (const int levels : {1, 8, 64}) {
     SCOPED_TRACE(of_seed(seed, "levels", levels));
@@ -161,7 +162,7 @@ TEST(SeparationInOverlap, MovingAByTheLowerBoundAlongTheExtractionSeparates) {
   }
 }
 
-/// [m] the least distance of `depth` to a sum of depths of two levels.
+/// [m] Difference between `depth` and the closest sum of depths of two levels.
 double from_a_pair_of_levels(const PosedBoxes& boxes, double depth) {
   double least = 1e300;
   for (int i = 0; i < boxes.A.levels(); ++i) {
@@ -173,8 +174,8 @@ double from_a_pair_of_levels(const PosedBoxes& boxes, double depth) {
   return least;
 }
 
-// The first pair of levels that is apart decides, or the last that meets does; then the distance
-// stands still at the depth of that pair and the witness points lie less deep.
+// The distance is determined by the first separated pair of levels, or by the last intersecting
+// pair; then it stays constant at the depth of that pair and the witness points are less deep.
 TEST(SeparationInOverlap, WitnessPointsAreTheDistanceApartUnlessItStandsStill) {
   Rng rng(seed);
   int decided_by_apart = 0;
@@ -201,7 +202,7 @@ TEST(SeparationInOverlap, WarmEqualsColdAlongSweeps) {
     SCOPED_TRACE(of_seed(seed, "sweep", i));
     PosedBoxes boxes = test::random_boxes(rng, 0.1, {.levels = 1 + i % 16});
     const Sweep sweep(boxes, rng);
-    const int steps = i % 2 == 0 ? 2000 : 20;  // a tool's motion, and leaps
+    const int steps = i % 2 == 0 ? 2000 : 20;  // a tool's motion, and jumps
     const Mat3 turn = families::small_rotation(rng, i % 2 == 0 ? 1e-3 : 0.2);
     WarmStart warm;
     for (int k = 0; k <= steps; ++k) {
@@ -294,7 +295,7 @@ TEST(SeparationInOverlap, AThinFingerPressedIntoABlockIsFeltAllTheWay) {
   }
 }
 
-/// [m] far point of a cylinder along the unit vector n, from its centre.
+/// [m] Far point of a cylinder along the unit vector n, from its centre.
 double cylinder_reach(double radius, double half_length, const Vec3& axis, const Vec3& n) {
   return half_length * std::abs(axis.dot(n)) + radius * axis.cross(n).norm();
 }
@@ -304,15 +305,15 @@ struct PosedCylinder {
   Pose X_WC = Pose::Identity();
 };
 
-/// [m] how far A must move along the unit vector n to leave B.
+/// [m] Translation of A along the unit vector n that separates it from B.
 double overlap(const PosedCylinder& A, const PosedCylinder& B, const Vec3& n) {
   return cylinder_reach(A.radius, A.half_length, A.X_WC.linear().col(2), n) +
          cylinder_reach(B.radius, B.half_length, B.X_WC.linear().col(2), n) -
          (A.X_WC.translation() - B.X_WC.translation()).dot(n);
 }
 
-/// [m] the penetration depth, at most a little too large: the least overlap over a spiral of
-/// directions, its best ones improved by random steps that shrink when they fail.
+/// [m] The penetration depth, slightly overestimated: the least overlap over a spiral of
+/// directions, the best ones refined by random steps that shrink when they fail.
 double sampled_depth(const PosedCylinder& A, const PosedCylinder& B, Rng& rng) {
   std::vector<std::pair<double, Vec3>> found;
   const auto add = [&](const Vec3& n) { found.emplace_back(overlap(A, B, n), n); };
@@ -363,7 +364,7 @@ TEST(SeparationInOverlap, CylindersLieInsideTheirBracket) {
     ++overlaps;
     const Separation s = separation(Shape::cylinder(A.radius, A.half_length), A.X_WC,
                                     Shape::cylinder(B.radius, B.half_length), B.X_WC);
-    // The overlap along any direction bounds the depth.
+    // The overlap along any direction is an upper bound of the depth.
     const double along = overlap(A, B, s.extraction_W);
     const double depth = std::min(sampled, along);
     EXPECT_NEAR(-s.lower, along, 1e-13);

@@ -1,5 +1,5 @@
-// Every level lies as deep inside its shape, and by its step inside its parent, as the ladder says:
-// shown with 113 bits and planes of the test's own.
+// Every level lies inside its shape by its depth, and inside its parent by its step, as the ladder
+// states: proven with 113 bits and independently computed planes.
 #include <repel/reduction/shape.hpp>
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ struct Plane {
   Point n;  ///< unit, outward
   Real offset = 0;
 
-  /// [m] of the vertex that is least deep below the plane; double says which ones it can be.
+  /// [m] Least depth of a vertex below the plane; candidates are selected in double.
   [[nodiscard]] Real least_depth(const Points& vertices) const {
     const auto roughly = [&](const Vec3& v) { return -dot(oracle::rough(n), oracle::rough(v)); };
     double least = infinite;
@@ -64,7 +64,7 @@ Plane plane_through(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {unit, dot(unit, exact(a))};
 }
 
-/// From the faces that the oracle finds by trying every three of a few vertices.
+/// From the faces that the oracle finds by testing all triples of a few vertices.
 std::vector<Plane> planes_of_few(const oracle::Polytope& hull) {
   EXPECT_TRUE(hull.closed());
   std::vector<Plane> planes;
@@ -75,8 +75,8 @@ std::vector<Plane> planes_of_few(const oracle::Polytope& hull) {
   return planes;
 }
 
-/// Through triangles that are proven to be the hull: no point is above one of them, and they close
-/// a surface. The vertices may crowd within rounding of each other.
+/// From triangles that are proven to be the hull: no point is above any of them, and they form a
+/// closed surface. The vertices may be within rounding of each other.
 std::vector<Plane> planes_of_many(const Points& points) {
   std::vector<Plane> planes;
   std::set<int> corners;
@@ -106,7 +106,7 @@ Points vertices_of(const Convex& core) {
   return vertices;
 }
 
-/// [m] of the vertex of the level that is least deep below any plane.
+/// [m] Least depth of a vertex of the level below any plane.
 Real least_depth(const std::vector<Plane>& planes, const Level& level) {
   Real least = infinite;
   const Points vertices = vertices_of(level.core);
@@ -179,7 +179,8 @@ Extents extents(const Convex& core) {
           -Real(along(-Vec3::UnitZ()).z())};
 }
 
-constexpr double rounding = 4e-15;  ///< of the reach, that depths of closed forms are right within
+constexpr double rounding =
+    4e-15;  ///< relative to the reach, accuracy of the depths of closed forms
 
 TEST(NestedLevels, OfBoxesAndCylindersLieAsDeepAsTheySay) {
   Rng rng(seed);

@@ -5,7 +5,7 @@
 namespace repel::detail {
 namespace plane_basis_test {
 
-/// A cube of half a metre and a smaller one that stands out of its upper face.
+/// A cube of half a metre and a smaller one that protrudes from its upper face.
 template <class T>
 struct Cubes {
   Planes planes_a = Planes::box({0.5, 0.5, 0.5});
@@ -28,7 +28,7 @@ TEST(PlaneBasis, SolvesItsEquations) {
   basis.add(1, 1);
   basis.add(1, 2);
   ASSERT_TRUE(basis.weigh());
-  // Four planes of the small cube meet where its lower face is 0.1 deep.
+  // Four planes of the small cube intersect where its lower face is 0.1 deep.
   EXPECT_NEAR(basis.point().x(), 0.0, 1e-15);
   EXPECT_NEAR(basis.point().y(), 0.0, 1e-15);
   EXPECT_NEAR(basis.point().z(), 0.55, 1e-15);
@@ -56,7 +56,7 @@ TEST(PlaneBasis, ExchangesUntilNothingIsViolated) {
   }
   EXPECT_GT(exchanges, 2);
   EXPECT_LT(exchanges, 30);
-  // The small cube is 0.05 deep in the large one; no point has more in both.
+  // The small cube is 0.05 deep in the large one; no point has a larger depth in both.
   EXPECT_NEAR(bound, 0.05, 1e-14);
 }
 

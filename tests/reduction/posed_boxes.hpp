@@ -1,5 +1,5 @@
 /// @file
-/// Two boxes somewhere in space, their shapes, and what is exactly true of them.
+/// Two boxes at random poses, their shapes, and their exact distance and depth.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct PosedBoxes {
   [[nodiscard]] double depth() const {
     return oracle::penetration_depth(half_a, X_WA, half_b, X_WB);
   }
-  /// [m] the exact signed distance; not a number when 113 bits could not prove it.
+  /// [m] The exact signed distance; NaN if 113-bit arithmetic could not prove it.
   [[nodiscard]] double truth() const {
     if (depth() > 0.0) return -depth();
     const auto found = oracle::distance(families::box(half_a).vertices, X_WA,
@@ -56,7 +56,7 @@ inline PosedBoxes random_boxes(Rng& rng, double reach, const ReductionOptions& o
   return boxes;
 }
 
-/// The same, in overlap.
+/// The same, overlapping.
 inline PosedBoxes overlapping_boxes(Rng& rng, const ReductionOptions& options = {}) {
   while (true) {
     const PosedBoxes boxes = random_boxes(rng, 1.5, options);
@@ -64,7 +64,7 @@ inline PosedBoxes overlapping_boxes(Rng& rng, const ReductionOptions& options = 
   }
 }
 
-/// A straight way through B, `steps` steps from one side of it to the other.
+/// A straight path through B, with `steps` steps from one side of it to the other.
 struct Sweep {
   Vec3 from, along;  ///< [m], unit
   double length;     ///< [m]

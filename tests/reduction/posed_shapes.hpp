@@ -1,5 +1,5 @@
 /// @file
-/// Two shapes at their poses, and what their signed distance owes along a way.
+/// Two shapes at their poses, and invariants of their signed distance along a path.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct PosedShapes {
   [[nodiscard]] double size() const { return A.reach() + B.reach(); }
 };
 
-/// Change of the distance when A moves by `h` [m] along each axis and against it, per metre.
+/// Change of the distance when A moves by `h` [m] in both directions along each axis, per metre.
 struct Quotients {
   Vec3 forward, backward;
 };
@@ -42,17 +42,16 @@ inline Quotients difference_quotients(PosedShapes pair, double h) {
   return q;
 }
 
-/// How many of the steps of sweeps ended in overlap, how many did not, and how many answers were
-/// not finished.
+/// Number of sweep steps that ended in overlap, that did not, and of unfinished answers.
 struct Steps {
   int inside = 0;
   int outside = 0;
   int cut_short = 0;
 };
 
-/// Moves A past or through B, about as far as both are large: warm equals cold, the distance
-/// changes no faster than A moves, and between three overlaps in a row it is convex, all to `error`
-/// [m].
+/// Moves A past or through B, over about the size of both. Checks: warm equals cold, the distance
+/// changes no faster than A moves, and over three overlapping steps in a row it is convex, all to
+/// `error` [m].
 inline void expect_smooth_sweep(PosedShapes pair, families::Rng& rng, double error, Steps& seen) {
   const Vec3 along = families::direction(rng);
   const Vec3 aside = 0.25 * pair.size() * families::direction(rng);

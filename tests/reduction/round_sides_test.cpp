@@ -1,5 +1,5 @@
-// The deepest common point where a side is round, against the exact depths of cylinders and cones,
-// against prisms by another solver and against finite differences.
+// The deepest common point for round sides, compared with the exact depths of cylinders and cones,
+// with prisms solved by another solver, and with finite differences.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,11 +22,11 @@ using oracle::Real;
 
 constexpr unsigned seed = 5153;
 
-/// A convex body whose depths are known: a cylinder, a cone or a box.
+/// A convex body whose depths have closed forms: a cylinder, a cone or a box.
 struct Body {
   enum class Kind : std::uint8_t { cylinder, cone, box };
   Kind kind = Kind::box;
-  Vec3 half = Vec3::Zero();  ///< [m] radius, radius and half length of the round ones
+  Vec3 half = Vec3::Zero();  ///< [m] of round ones: radius, radius and half length
 
   [[nodiscard]] Shape shape() const {
     if (kind == Kind::cylinder) return Shape::cylinder(half.x(), half.z());
@@ -82,7 +82,7 @@ struct Posed : test::PosedShapes {
   Posed(const Body& one, const Body& other)
       : PosedShapes{one.shape(), other.shape()}, a(one), b(other) {}
 
-  /// [m] the sum of the depths of a point, at least 0 each, or -1 outside of one
+  /// [m] Sum of the depths of a point, each at least 0, or -1 outside of one.
   [[nodiscard]] double depth(const Vec3& x) const {
     const double of_a = a.depth(X_WA.inverse() * x);
     const double of_b = b.depth(X_WB.inverse() * x);
@@ -100,7 +100,7 @@ Posed random_pair(Rng& rng) {
   return pair;
 }
 
-/// By the deepest point, not by levels that stand in for it.
+/// Measured by the deepest point, not by the fallback to levels.
 bool is_measured(const Separation& s, const WarmStart& warm) {
   return s.end == QueryEnd::converged && warm.level_a == WarmStart::deepest_point;
 }
@@ -168,7 +168,7 @@ TEST(RoundSides, AreThoseOfAPrismOfManySides) {
     add(pair.a, pair.X_WA, true);
     add(pair.b, pair.X_WB, false);
     const auto of_prisms = static_cast<double>(program.solve());
-    // The edges of a prism stand out by this.
+    // The edges of a prism protrude by this.
     const double out = pair.size() * (1.0 / std::cos(M_PI / sides) - 1.0);
     EXPECT_LE(-s.distance, of_prisms + 1e-9);
     EXPECT_GE(-s.distance, of_prisms - 2.0 * out);
@@ -234,7 +234,7 @@ TEST(RoundSides, OverlapOfANanometreIsOverlap) {
     const Separation apart = pair.separate();
     if (!(apart.distance > 1e-3)) continue;
     ++touching;
-    // The point of A that is nearest goes into B, towards its centre.
+    // The nearest point of A moves into B, towards its centre.
     const Pose X_WA = pair.X_WA;
     const Vec3 to_centre = pair.X_WB.translation() - apart.p_WB;
     for (const double depth : {1e-9, 1e-6}) {
@@ -269,7 +269,7 @@ TEST(RoundSides, TheBracketHoldsTheDepth) {
     const accuracy::PosedPair pair(one, X_WA, other, X_WB);
     const double depth = pair.depth_by_search(s.extraction_W, rng);
     EXPECT_GE(s.upper, -depth);
-    EXPECT_LE(s.lower, -depth + 1e-6);  // which the search does not find to the last digit
+    EXPECT_LE(s.lower, -depth + 1e-6);  // the search is not exact to the last digit
     EXPECT_GE(-s.distance, 0.3 * depth);
   }
   EXPECT_GT(overlapping, draws(50));

@@ -1,4 +1,4 @@
-// Counts every call to the heap in this program: it brings its own malloc.
+// Counts every heap call in this program, by defining its own malloc.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -57,7 +57,8 @@ TEST(SeparationHeap, AQueryTakesNothingFromIt) {
   EXPECT_LT(overlaps, total * 9 / 10);
 }
 
-/// What a shape holds when it is built is what it says, and no more than was announced.
+/// The memory of a shape after construction equals its own figure, and does not exceed the
+/// announced one.
 template <class Build>
 void expect_announced(std::size_t announced, Build build) {
   test::blocks_held = 0;
@@ -93,7 +94,7 @@ TEST(ShapeHeap, HoldsWhatWasAnnouncedAtMost) {
   }
 }
 
-/// Of kind 0 to 4: on a sphere, a needle, flat, a prism, two clusters within rounding.
+/// Of kind 0 to 4: on a sphere, a needle, flat, a prism, two clusters of near-coincident points.
 std::vector<Vec3> points_of_kind(int kind, int count, Rng& rng) {
   if (kind == 3) return families::prism(count / 2, 0.5, 0.2).vertices;
   std::vector<Vec3> points = families::cloud(rng, count, 0.5).vertices;

@@ -119,7 +119,8 @@ TEST(Separation, ACorruptedWarmStartGivesTheSameAnswer) {
   int overlaps = 0, total = 0;
   for (const Shape& A : shapes) {
     for (const Shape& B : shapes) {
-      // The support points of a rim are all different: GJK ends near the same answer, not in it.
+      // The support points of a rim are all different: GJK ends near the same answer, not exactly
+      // at it.
       const bool round = &A == &shapes[4] || &B == &shapes[4];
       for (int i = 0; i < 60; ++i, ++total) {
         SCOPED_TRACE(of_seed(seed, "pair", total));
@@ -128,7 +129,7 @@ TEST(Separation, ACorruptedWarmStartGivesTheSameAnswer) {
         for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(rng());
         WarmStart warm;
         std::memcpy(&warm, bytes, sizeof warm);
-        if (i % 2 == 0) {  // levels that exist
+        if (i % 2 == 0) {  // existing levels
           warm.level_a = static_cast<std::uint8_t>(warm.level_a % A.levels());
           warm.level_b = static_cast<std::uint8_t>(warm.level_b % B.levels());
         }

@@ -113,7 +113,7 @@ TEST(Shape, ReachIsTheFarthestPoint) {
   EXPECT_EQ(Shape::hull(std::vector<Vec3>{{0, 0, 1}, {0, -2, 0}, {1, 0, 0}}).reach(), 2.0);
 }
 
-// The closed forms below know nothing of support maps.
+// The closed forms below do not use support maps.
 
 /// [m] of the point from the box around the origin, 0 inside.
 double point_to_box(const Vec3& p, const Vec3& half_extents) {
@@ -125,7 +125,7 @@ double point_to_segment(const Vec3& p, double half_length) {
   return (p - Vec3(0, 0, std::clamp(p.z(), -half_length, half_length))).norm();
 }
 
-/// Right to a few 1e-15 of the size, within its own bracket, and the direction is the one given.
+/// Checks an accuracy of a few 1e-15 of the size, the bracket, and the given direction.
 void expect_exact(const Separation& s, double distance, double size) {
   EXPECT_NEAR(s.distance, distance, 1e-14 * size);
   EXPECT_LE(s.lower, distance + 2e-16 * size);
@@ -277,8 +277,8 @@ TEST(Shape, ASphereBesideACylinderIsExact) {
 /// [m] signed distance of `p` to the cone of `radius` whose apex is at +`half_length` on the z
 /// axis.
 double point_to_cone(const Vec3& p, double radius, double half_length) {
-  // In the half plane of the point and the axis: how far along the side from the apex, how far
-  // outside it, and how far below the base.
+  // In the half plane of the point and the axis: the coordinate along the side from the apex, the
+  // distance outside it, and that below the base.
   const double r = std::hypot(p.x(), p.y());
   const double side = std::hypot(radius, 2.0 * half_length);
   const double along = (radius * r - 2.0 * half_length * (p.z() - half_length)) / side;
@@ -321,8 +321,8 @@ TEST(Shape, APointBesideAConeHasTheDistanceOfItsClosedForm) {
   EXPECT_GT(overlaps, 100);
 }
 
-// Four support points of nearly parallel discs span a tetrahedron as flat as the angle between
-// them: in double its sides contradict each other, and the pair was once taken for touching.
+// Regression: four support points of nearly parallel discs span a tetrahedron as flat as the angle
+// between them. In double its sides are inconsistent, and the pair was taken for touching.
 TEST(Shape, NearlyParallelCylindersThatOverlapDeeplyAreNotTakenForTouching) {
   const Shape A = Shape::cylinder(0.5083071377448336, 0.31922020571532989);
   const Shape B = Shape::cylinder(0.40300994799098921, 0.27052640477070666);

@@ -22,7 +22,7 @@ TEST(WayOut, AShapeMovedByTheOverlapTouches) {
     const double overlap = detail::overlap_along(n, boxes.A, boxes.X_WA, boxes.B, boxes.X_WB);
     EXPECT_GE(overlap, boxes.depth() - 1e-14 * boxes.size());
     boxes.X_WA.translation() += overlap * n;
-    // A plane across n parts them now.
+    // A plane normal to n separates them now.
     EXPECT_NEAR(detail::overlap_along(n, boxes.A, boxes.X_WA, boxes.B, boxes.X_WB), 0.0,
                 1e-14 * boxes.size());
   }

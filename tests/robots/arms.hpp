@@ -1,5 +1,5 @@
 /// @file
-/// The arms these tests run on, and random joint angles for them.
+/// The arms used by these tests, and random joint positions for them.
 #pragma once
 
 #include <random>
@@ -14,7 +14,7 @@ namespace repel::test {
 inline const std::vector<std::string> puma_files = {"robots/puma560.urdf",
                                                     "robots/puma560_armstrong.urdf"};
 
-/// An arm with a sliding joint, skewed axes, and a base and tool away from the origin.
+/// An arm with a prismatic joint, skew axes, and base and tool away from the origin.
 inline ArmModel skewed_arm() {
   const Pose tilt(Eigen::Translation3d(0.1, -0.2, 0.3) *
                   Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, -1.0).normalized()));
@@ -45,7 +45,7 @@ inline std::vector<ArmModel> all_arms() {
   return arms;
 }
 
-/// Joint positions drawn evenly between the limits.
+/// Joint positions drawn uniformly between the limits.
 inline std::vector<double> random_joints(const ArmModel& arm, std::mt19937_64& random) {
   std::vector<double> q;
   for (const ArmLink& link : arm.links) {

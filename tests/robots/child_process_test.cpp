@@ -1,4 +1,4 @@
-// Work in a process of its own: its result comes back, its crash and its endlessness do not.
+// Work in a child process: its result is returned, its crash or endless loop is contained.
 #include "../../robots/child_process.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The equations of motion of the arms, against what is known without them.
+// The equations of motion of the arms compared with independently known results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ TEST(Dynamics, InertiaIsThatOfTheLinksMovingWithTheirJacobians) {
   }
 }
 
-// P. Corke, Robotics, Vision and Control: p560.inertia(qn), the motors among it.
+// P. Corke, Robotics, Vision and Control: p560.inertia(qn), motors included.
 TEST(Dynamics, StandardPumaHasTheInertiaOfTheToolbox) {
   const Eigen::MatrixXd M =
       inertia_of(load_arm("robots/puma560.urdf").arm, {0, pi / 4, pi, 0, pi / 4, 0});
@@ -63,11 +63,12 @@ TEST(Dynamics, StandardPumaHasTheInertiaOfTheToolbox) {
 }
 
 // B. Armstrong, O. Khatib and J. Burdick 1986: inertial constants of the explicit model [kg m^2]
-// and what they multiply. Two of the constants, and the sum of two more, follow from the published
-// masses and inertias only with other numbers for links 1 to 3 (docs/robots.md) and are not here.
+// and their factors. Two of the constants, and the sum of two more, follow from the published
+// masses and inertias only with other numbers for links 1 to 3 (docs/robots.md) and are not
+// checked.
 TEST(Dynamics, ArmstrongPumaHasThePublishedInertialConstants) {
   ArmModel arm = load_arm("robots/puma560_armstrong.urdf").arm;
-  for (ArmLink& link : arm.links) link.rotor_inertia = 0.0;  // published by themselves
+  for (ArmLink& link : arm.links) link.rotor_inertia = 0.0;  // published separately
   Dynamics dynamics(arm);
   Eigen::MatrixXd M(6, 6);
   std::mt19937_64 random(seed);
@@ -96,7 +97,7 @@ TEST(Dynamics, ArmstrongPumaHasThePublishedInertialConstants) {
   }
 }
 
-// The same, of what turns about the vertical: the lever of the forearm squared and its products.
+// The same for rotation about the vertical: the squared lever arm of the forearm and its products.
 TEST(Dynamics, ArmstrongPumaTurnsAboutTheVerticalWithThePublishedConstants) {
   ArmModel arm = load_arm("robots/puma560_armstrong.urdf").arm;
   Dynamics dynamics(arm);
@@ -123,7 +124,7 @@ TEST(Dynamics, ArmstrongPumaTurnsAboutTheVerticalWithThePublishedConstants) {
   EXPECT_NEAR(constants(6), -0.0110 + 0.00124, 0.001);
 }
 
-/// One link that turns about the horizontal axis y and hangs down at zero.
+/// One link that rotates about the horizontal axis y and hangs down at zero.
 ArmModel pendulum() {
   ArmModel arm;
   arm.name = "pendulum";
@@ -165,7 +166,7 @@ TEST(ReferenceArm, PendulumSwingsWithThePeriodOfTheEllipticIntegral) {
   EXPECT_NEAR(position(arm), amplitude, 1e-10);
 }
 
-/// Energy [J] of an arm: kinetic and of its weight.
+/// Energy [J] of an arm: kinetic plus gravitational.
 double energy_of(ReferenceArm& arm, const ArmModel& model) {
   Kinematics kinematics(model);
   std::vector<double> q(model.links.size());
@@ -179,7 +180,7 @@ double energy_of(ReferenceArm& arm, const ArmModel& model) {
   return energy;
 }
 
-// A factor of 16 for half the step is the fourth order.
+// Halving the step reduces the error by a factor of 16: fourth order.
 TEST(ReferenceArm, EnergyOfAFallingPumaStaysToTheFourthOrder) {
   ArmModel model = load_arm("robots/puma560_armstrong.urdf").arm;
   for (ArmLink& link : model.links) link.viscous_friction = link.coulomb_friction = 0.0;
@@ -227,8 +228,6 @@ TEST(ReferenceArm, RefusesWhatHasNoMotionAndLivesThroughBadInput) {
   for (int tick = 0; tick < 100; ++tick) arm.step(0.1);
   EXPECT_TRUE(std::isfinite(position(arm)));
 }
-
-static_assert(TorqueDrivenArm<ReferenceArm>);
 
 }  // namespace dynamics_test
 }  // namespace repel

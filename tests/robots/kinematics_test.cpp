@@ -1,4 +1,4 @@
-// Laws that hold for every arm: derivatives against differences of what was differentiated.
+// Identities that hold for every arm: derivatives compared with finite differences.
 #include <gtest/gtest.h>
 
 #include <repel/base/setup_error.hpp>
@@ -33,7 +33,7 @@ std::vector<double> moved(std::vector<double> q, int joint, double by) {
   return q;
 }
 
-/// Height of the arm's mass times its weight [J].
+/// Potential energy of the arm [J].
 double potential_energy(const ArmModel& arm, const Kinematics& kinematics) {
   double energy = 0.0;
   for (int i = 0; i < kinematics.links(); ++i) {

@@ -1,4 +1,5 @@
-// Meshes and descriptions that would eat the machine are refused with their number and the limit.
+// Meshes and descriptions that would exhaust memory or time are refused with their size and the
+// limit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,7 +43,7 @@ void expect_refused(const Folder& folder, const std::string& in_link, const std:
   }
 }
 
-// assimp 5.2.5 looks for the end of this header for ever; found by fuzzing.
+// assimp 5.2.5 loops for ever searching for the end of this header; found by fuzzing.
 TEST(MeshLimits, APlyFileWhoseHeaderDoesNotEndIsRefused) {
   if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
   const Folder folder;

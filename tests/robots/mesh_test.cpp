@@ -1,4 +1,4 @@
-// Collision meshes: where they are looked for, and what becomes of them.
+// Collision meshes: their search paths and their conversion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace mesh_test {
 using test::Folder;
 namespace fs = std::filesystem;
 
-/// A tetrahedron with a fifth corner inside it, as triangles.
+/// A tetrahedron with a fifth vertex inside it, as triangles.
 constexpr const char* obj =
     "v 0 0 0\nv 2 0 0\nv 0 3 0\nv 0 0 4\nv 0.1 0.1 0.1\n"
     "f 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\nf 1 2 5\n";
@@ -33,7 +33,7 @@ Robot load(const Folder& folder, const std::string& mesh, const UrdfOptions& opt
   return load_arm(folder.with("robot/urdf/r.urdf", urdf_with(mesh)), options);
 }
 
-/// What load() is refused with.
+/// The error message of load().
 std::string complaint(const Folder& folder, const std::string& mesh,
                       const UrdfOptions& options = {}) {
   try {

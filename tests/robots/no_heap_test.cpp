@@ -1,4 +1,4 @@
-// Counts every malloc of this program, those inside KDL and Eigen included.
+// Counts every malloc of this program, including those in KDL and Eigen.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,7 +9,7 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-// A sanitizer brings its own malloc; there the test below says that it was skipped.
+// A sanitizer has its own malloc; the test below is then skipped.
 #ifndef REPEL_SANITIZED
 extern "C" {
 void* __libc_malloc(std::size_t);

@@ -1,5 +1,4 @@
-// The two PUMA 560 files against the published tables and against numbers others published for
-// them.
+// The two PUMA 560 files compared with the published tables and with results published by others.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -81,7 +80,7 @@ Pose dh_step(const Set& set, std::size_t i, double q) {
   return set.modified ? Pose(twist * turn) : Pose(turn * twist);
 }
 
-/// Joint angles of the same pose of the machine in the modified set.
+/// Joint angles of the same pose of the robot in the modified set.
 Joints to_modified(Joints q) {
   q[1] -= pi;
   q[2] += pi;
@@ -167,7 +166,7 @@ TEST_P(Puma560, EveryLinkHasACollisionPart) {
   }
 }
 
-/// True when `p_WQ` lies in one of the parts of `link`.
+/// True if `p_WQ` is inside one of the parts of `link`.
 bool covers(const Robot& robot, const Kinematics& kinematics, int link, const Vec3& p_WQ) {
   for (const RobotPart& part : robot.parts) {
     if (part.link != link) continue;
@@ -180,7 +179,8 @@ bool covers(const Robot& robot, const Kinematics& kinematics, int link, const Ve
   return false;
 }
 
-// In the ready pose the upper arm stands straight up over the shoulder, the forearm over the elbow.
+// In the ready pose the upper arm points straight up above the shoulder, the forearm above the
+// elbow.
 TEST_P(Puma560, PartsSpanTheLinksFromJointToJoint) {
   Kinematics kinematics(robot.arm);
   const Joints ready = {0, pi / 2, -pi / 2, 0, 0, 0};

@@ -1,4 +1,4 @@
-// Which links a semantic description lets touch.
+// The pairs of links for which a semantic description disables collisions.
 #include <gtest/gtest.h>
 
 #include <repel/base/setup_error.hpp>

@@ -1,5 +1,5 @@
-// Files that are far larger than a robot: refused by number, at a cost that grows with the file
-// and not with its square. A chain of 16000 links once overflowed the stack after half a minute.
+// Files far larger than any robot: refused by number, at a cost linear in the file size, not
+// quadratic. Regression: a chain of 16000 links overflowed the stack after half a minute.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ std::string moving() {
          "<limit lower='-1' upper='1' velocity='1' effort='1'/></joint>\n";
 }
 
-/// Links in a row, each fixed to the one before it but for the first, which moves.
+/// Links in series, each fixed to the previous one, except for the first, which moves.
 std::string chain(int links) {
   std::string text = "<robot name='chain'>\n" + link(0) + link(1) + moving();
   for (int i = 2; i < links; ++i) text += link(i) + fixed(i - 1, i);
@@ -82,7 +82,7 @@ TEST(UrdfLimits, AsManyLinksAsAreAllowedAreReadAndOneMoreIsRefused) {
       << said;
 }
 
-// It once took 31 s and then the stack.
+// Regression: it took 31 s and then overflowed the stack.
 TEST(UrdfLimits, ChainOfSixteenThousandLinksIsRefused) {
   EXPECT_NE(refusal(chain(16000)).find("has 16000 links; allowed: up to 4096"), std::string::npos);
   EXPECT_NE(refusal(chain(4096)).find("the farthest 4095; allowed: up to 512"), std::string::npos);
@@ -93,12 +93,12 @@ TEST(UrdfLimits, HundredThousandLinksAreRefused) {
   EXPECT_NE(refusal(star(100000)).find("has 100000 links"), std::string::npos);
 }
 
-// Each of them was once walked to its end from every link.
+// Regression: each chain was traversed to its end from every link.
 TEST(UrdfLimits, LoopOfFourThousandLinksIsRefused) {
   std::string text = "<robot name='loop'>\n";
   for (int i = 0; i < 4000; ++i) text += link(i) + fixed(i, (i + 1) % 4000);
   EXPECT_NE(refusal(text + "</robot>").find("hangs in a loop of joints"), std::string::npos);
-  text += link(4000);  // and a root that none of them hangs on
+  text += link(4000);  // and a root to which none of them is connected
   const std::string said = refusal(text + "</robot>");
   EXPECT_NE(said.find("link 'l0' hangs in a loop of joints"), std::string::npos) << said;
 }
@@ -110,7 +110,7 @@ TEST(UrdfLimits, TwoRootsAreNamed) {
       << said;
 }
 
-// Its XML is what overflows a stack first, in any reader that goes down element by element.
+// Its XML is what overflows the stack first, in any recursive parser.
 TEST(UrdfLimits, ElementsInElementsAreRefused) {
   std::string text = "<robot name='deep'>\n";
   for (int i = 0; i < 200000; ++i) text += "<a>";
@@ -136,7 +136,7 @@ class Folder {
   std::string path_;
 };
 
-// The size is known before anything is read, and takes no place on the disk here.
+// The size is checked before anything is read; the sparse file uses no disk space.
 TEST(UrdfLimits, FileOfAGigabyteIsRefusedBeforeItIsRead) {
   const Folder folder;
   const std::string path = folder / "large.urdf";
@@ -152,7 +152,7 @@ TEST(UrdfLimits, PipeIsReadUpToTheLimitAndRefused) {
   const Folder folder;
   const std::string path = folder / "pipe.urdf";
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  (void)std::signal(SIGPIPE, SIG_IGN);  // what is not read any more is no reason to end
+  (void)std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end the test
   std::jthread writer([&path] {
     std::ofstream pipe(path);
     const std::string some(1 << 20, ' ');

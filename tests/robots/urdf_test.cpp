@@ -1,4 +1,4 @@
-// What the loader reads, and above all what it refuses: nothing of a file may be lost unsaid.
+// What the loader reads, and above all what it refuses: nothing of a file may be ignored silently.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::string with_shape(const std::string& shape) {
                    shape + "</geometry></collision>");
 }
 
-/// Expects a refusal whose message holds every one of `words` and stands at `line`.
+/// Expects an error message that contains all of `words` and gives `line`.
 void expect_refused(const std::string& urdf, int line, const std::vector<std::string>& words,
                     const UrdfOptions& options = {}) {
   try {
@@ -133,14 +133,14 @@ TEST(Urdf, RefusesAnInertiaNoBodyHas) {
                  3, {"link 'arm'", "principal moment of -0.99"});
 }
 
-// Makers leave them out; only a simulation needs them, and says so itself.
+// Manufacturers omit them; only a simulation needs them, and reports that itself.
 TEST(Urdf, AMovingLinkMayBeWithoutInertia) {
   const Robot light = parse_arm(one_joint(sphere));
   EXPECT_EQ(light.arm.links[0].mass, 0.0);
   EXPECT_EQ(light.links[1].mass, 0.0);
 }
 
-// It was once dropped where the mass is zero.
+// Regression: it was dropped if the mass is zero.
 TEST(Urdf, InertiaCountsWithoutMass) {
   const Robot read = parse_arm(one_joint(
       "<inertial><origin xyz='1 0 0'/><mass value='0'/><inertia ixx='1' ixy='0' ixz='0' iyy='2' "
@@ -159,7 +159,7 @@ TEST(Urdf, RefusesTextThatIsNoRobot) {
   EXPECT_THROW((void)load_arm("there/is/no.urdf"), SetupError);
 }
 
-// urdfdom names these on stderr only, or not at all.
+// urdfdom reports these on stderr only, or not at all.
 TEST(Urdf, RefusesLinksThatAreNoTree) {
   const std::string base_and_arm = link("base", "") + link("arm", inertial);
   expect_refused(robot(base_and_arm + joint("revolute", "base", "hand", limit)), 5,
@@ -211,7 +211,7 @@ TEST(Urdf, FixedJointsMergeMassCentreInertiaPartsAndTool) {
   EXPECT_EQ(merged.parts.back().X_LP.translation(), Vec3(0, 0, 1));
 }
 
-// A hand with two fingers whose second follows the first, as makers publish it.
+// A hand with two fingers, the second of which mimics the first, as published by manufacturers.
 TEST(Urdf, AHeldJointMayMimic) {
   const std::string hand =
       robot(link("base", "") + link("arm", inertial) + link("f1", "") + link("f2", "") +

@@ -12,7 +12,7 @@ namespace module_kinds_test {
 using network::any_size;
 using testing::base_scene;
 
-/// A wall of its own for the tool, which is there for its options.
+/// A custom wall for the tool, used for its options.
 struct Cushion {
   static constexpr network::Traits traits{.left = network::Space::tool,
                                           .right = network::Space::tool,
@@ -98,7 +98,7 @@ TEST(ModuleKinds, AWordStandsForOneModule) {
   EXPECT_EQ(kinds.words().back(), "pillow");
 }
 
-// A unit that nothing is measured in is a mistake of the program, said at once.
+// A unit for which no quantity exists is a programming error, reported at once.
 TEST(ModuleKinds, TheUnitIsOneThatFilesKnow) {
   ModuleKinds kinds;
   kinds.add("cushion", [](const ModuleEntry& entry) {

@@ -29,7 +29,7 @@ ArmModel two_joints() {
   return arm;
 }
 
-/// The message of what building the network of `modules` throws; empty when nothing is thrown.
+/// The message of the exception from building the network of `modules`; empty if none is thrown.
 std::string refusal(const std::string& modules) {
   try {
     const Scene scene = parsed(base_scene + "network:\n" + modules);
@@ -124,12 +124,12 @@ TEST(SceneNetwork, WhatCannotBeBuiltIsRefusedWithItsLine) {
   expect("  - {module: torque_arm}\n  - {module: torque_arm}\n" + slave, "two modules");
   expect("  - {module: torque_arm}\n  - {module: multiplex, to: nowhere}\n" + slave, "'nowhere'");
   expect("  - {module: torque_arm}\n" + slave, "one side is tool, the other lever");
-  // The wall would be felt through a spring whose far end nobody measures.
+  // The wall force would pass through a spring whose far end has no measured flow.
   expect(
       "  - {module: torque_arm}\n  - {module: multiplex}\n  - {module: obstacle}\n"
       "  - {module: kbb2}\n  - {module: puma_kin}\n  - {module: puma_joints}\n",
       "'obstacle' is a second nonlinear element");
-  // Two spring paths side by side.
+  // Two parallel spring paths.
   expect(
       "  - {module: ground}\n  - {module: junction, name: fork, to: [upper, lower]}\n"
       "  - {module: kbb2, name: upper, to: join}\n"

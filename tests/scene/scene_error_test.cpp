@@ -1,5 +1,4 @@
-// Whatever a scene file gets wrong is refused with the line it stands in, the value found and what
-// is allowed.
+// Every error in a scene file is reported with its line, the value found and the allowed values.
 #include <filesystem>
 #include <string>
 
@@ -15,7 +14,7 @@ using testing::base_scene;
 using testing::changed;
 using testing::parsed;
 
-/// `text` must be refused at `line`, in words that contain each of `words`.
+/// `text` must be refused at `line`, with a message that contains each of `words`.
 void expect_refused(const std::string& text, int line, std::initializer_list<std::string> words) {
   SCOPED_TRACE(text);
   try {

@@ -1,4 +1,4 @@
-// The scenes and the page on their format, as they stand in the repository.
+// The scenes of the repository and the page on their format.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -1,4 +1,5 @@
-// What would eat the machine is refused by SetupError with its number, the limit and its line.
+// Input that would exhaust memory or time is refused by SetupError with its size, the limit and its
+// line.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -16,7 +17,7 @@ using testing::base_scene;
 using testing::changed;
 using testing::parsed;
 
-/// What `text` is refused with; it must be at `line`.
+/// The error message for `text`; it must give `line`.
 std::string refusal(const std::string& text, int line) {
   try {
     (void)parsed(text);
@@ -58,7 +59,7 @@ std::string with_obstacles(std::size_t count) {
   return text;
 }
 
-// yaml-cpp 0.7 took 300 MB a second for ever.
+// yaml-cpp 0.7 allocated 300 MB a second without end.
 TEST(SceneLimits, ATextThatBeginsWithACommaIsNoYaml) {
   for (const std::string begin : {",", ",a", ", ", "]", "}", "?,", "- ,", "[,", "{,", ": ,"}) {
     SCOPED_TRACE(begin);
@@ -104,7 +105,7 @@ TEST(SceneLimits, ALongTextIsNotRepeatedInTheError) {
 }
 
 TEST(SceneLimits, ListsInListsAreRefusedAtTheirDepth) {
-  const std::size_t inner = input_limits.depth - 1;  // the scene is a map itself
+  const std::size_t inner = input_limits.depth - 1;  // the scene itself is a map
   expect_refused(base_scene + "name: " + std::string(inner, '[') + std::string(inner, ']') + "\n",
                  8, {"'name' is a list"});
   expect_refused(base_scene + "name: " + std::string(inner + 1, '[') + "\n", 8,
@@ -207,7 +208,7 @@ double seconds_to_parse(const std::string& text) {
   return least;
 }
 
-// 100 000 laws took more than two minutes: each was compared with all before it.
+// Regression: 100 000 laws took more than two minutes, since each was compared with all before it.
 TEST(SceneLimits, EightTimesTheLawsOrObstaclesTakeAboutEightTimesAsLong) {
   EXPECT_LT(seconds_to_parse(with_laws(9'600)), 32.0 * seconds_to_parse(with_laws(1'200)));
   EXPECT_LT(seconds_to_parse(with_obstacles(9'600)),

@@ -1,4 +1,4 @@
-// What a scene says, in SI units, and what it means when it says nothing.
+// The values of a scene in SI units, and the defaults of what it omits.
 #include <clocale>
 #include <cmath>
 #include <numbers>
@@ -108,7 +108,7 @@ TEST(SceneValue, APartnerIsAStationOfItsOwn) {
 
 TEST(SceneValue, RollPitchYawTurnAboutFixedAxesInThatOrder) {
   const Scene scene = parsed(changed("size: 1 2 3 m", "size: 1 2 3 m, rpy: 90 0 90 deg"));
-  // Roll takes y to z; yaw, about the fixed z, leaves it there. Roll leaves x, yaw takes it to y.
+  // Roll maps y to z; yaw, about the fixed z, leaves it there. Roll leaves x, yaw maps it to y.
   const Mat3 R = scene.obstacles[0].X_WP.linear();
   EXPECT_NEAR((R * Vec3::UnitY() - Vec3::UnitZ()).norm(), 0.0, 1e-15);
   EXPECT_NEAR((R * Vec3::UnitX() - Vec3::UnitY()).norm(), 0.0, 1e-15);
@@ -231,7 +231,7 @@ TEST(SceneValue, AnEmptyRoomIsAllowedWhenItSaysSo) {
 TEST(SceneValue, NumbersAreReadAlikeInEveryLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"}) {
-    if (std::setlocale(LC_ALL, name)) break;  // where none is installed, "C" is tested
+    if (std::setlocale(LC_ALL, name)) break;  // if none is installed, "C" is tested
   }
   EXPECT_EQ(law_with("range: 2.5 cm").range, 0.025);
   std::setlocale(LC_ALL, before.c_str());

@@ -1,5 +1,5 @@
 /// @file
-/// A small scene as lines of text, to be changed one line at a time.
+/// A small scene as lines of text, to be modified one line at a time.
 #pragma once
 
 #include <string>
@@ -18,18 +18,18 @@ inline const std::string base_scene =
     "obstacles:\n"
     "  - {name: wall, shape: box, size: 1 2 3 m}\n";
 
-/// `base_scene` with the first `old_text` in it replaced by `new_text`.
+/// `base_scene` with the first occurrence of `old_text` replaced by `new_text`.
 inline std::string changed(const std::string& old_text, const std::string& new_text) {
   std::string text = base_scene;
   return text.replace(text.find(old_text), old_text.size(), new_text);
 }
 
-/// Parses text as if it stood in a file in scenes/.
+/// Parses text as if it were a file in scenes/.
 inline Scene parsed(const std::string& text) {
   return parse(text, "scenes/test.yaml");
 }
 
-/// What the first module of the network is given.
+/// The options of the first module of the network.
 template <class Options>
 Options options(const Scene& scene) {
   return std::any_cast<Options>(scene.network.modules.front().options);

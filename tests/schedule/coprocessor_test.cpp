@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-#include "schedule/boxes.hpp"
+#include "pairs/boxes.hpp"
 
 namespace repel {
 namespace coprocessor_test {
@@ -103,7 +103,7 @@ TEST(Coprocessor, ForcesAreThoseOfADirectEvaluation) {
   }
 }
 
-/// How many pairs were evaluated in 250 ticks whose forces are compared with those of all pairs.
+/// Number of pairs evaluated in 250 ticks whose forces are compared with those of all pairs.
 std::int64_t expect_forces_of_all_pairs(int threads, const Limits& limits, bool crowded) {
   test::Crowd crowd(seed, limits);
   Coprocessor coprocessor(crowd.world, lock_step(threads));
@@ -130,7 +130,7 @@ std::int64_t expect_forces_of_all_pairs(int threads, const Limits& limits, bool 
   return evaluated;
 }
 
-// Several bodies that move, one against the other and against what is fixed.
+// Several moving bodies, against each other and against fixed ones.
 TEST(Coprocessor, SkippingPairsChangesNoForce) {
   const test::Crowd crowd(seed);
   const auto all = static_cast<std::int64_t>(250 * crowd.world.pairs().size());
@@ -139,15 +139,16 @@ TEST(Coprocessor, SkippingPairsChangesNoForce) {
   }
 }
 
-/// What there was in ticks whose forces with and without skipping were compared.
+/// Statistics of ticks whose forces with and without skipping were compared.
 struct Compared {
   std::int64_t evaluated = 0;
-  std::int64_t of = 0;      ///< pairs that were not skipped where none is
+  std::int64_t of = 0;      ///< pairs evaluated without skipping
   double deepest = 0.0;     ///< [m] least signed distance
   std::int64_t pushed = 0;  ///< ticks with a force
 };
 
-/// Adds the ticks of a motion, worked through twice. @param make builds the same model each time
+/// Compares the ticks of a motion, with and without skipping, bitwise. @param make builds the same
+/// model each time
 template <class Make>
 void expect_same_bits_with_every_pair(const Make& make, int threads, int ticks, Compared& sum) {
   auto model = make();
@@ -174,7 +175,7 @@ void expect_same_bits_with_every_pair(const Make& make, int threads, int ticks, 
   }
 }
 
-// What a pair is asked while it is out of range leaves no trace in its force.
+// How often a pair is evaluated out of range has no effect on its force.
 TEST(Coprocessor, SkippingChangesNoBit) {
   for (const int threads : {0, 2}) {
     Compared boxes, crowd;
@@ -215,15 +216,6 @@ TEST(Coprocessor, AnswersForEveryPairByItsId) {
   }
 }
 
-TEST(Coprocessor, RefusesMoreThreadsThanTheLimit) {
-  World world(Limits{.threads = 2});
-  CoprocessorOptions options;
-  for (const int threads : {-1, 3}) {
-    options.threads = threads;
-    EXPECT_THROW(Coprocessor(world, options), SetupError) << threads;
-  }
-}
-
 TEST(Coprocessor, WorldWithoutPairsGivesNoForce) {
   for (const int threads : {0, 2}) {
     World world;
@@ -238,29 +230,14 @@ TEST(Coprocessor, WorldWithoutPairsGivesNoForce) {
   }
 }
 
-std::atomic<unsigned> started{0};
-
-TEST(Coprocessor, CallsTheStartFunctionInEachWorker) {
-  started = 0;
-  World world;
-  CoprocessorOptions options = lock_step(3);
-  options.on_thread_start = [](int index) noexcept { started |= 1U << index; };
-  Coprocessor coprocessor(world, options);
-  const auto until = std::chrono::steady_clock::now() + 10s;
-  while (started != 7U && std::chrono::steady_clock::now() < until) {
-    std::this_thread::sleep_for(1ms);
-  }
-  EXPECT_EQ(started, 7U);
-}
-
-/// The same pairs worked through by threads and in the caller, on one motion.
+/// The same pairs evaluated by threads and by the caller, on one motion.
 struct Both {
   explicit Both(const CoprocessorOptions& options, int obstacles = 40)
       : boxes(4, obstacles, {.range = 0.2}, seed),
         here(boxes.world, lock_step(0)),
         there(boxes.world, options) {}
 
-  /// One tick; the forces must be those of its motion, whoever worked.
+  /// One tick; the forces must be those of its motion, whichever thread computed them.
   void tick() {
     boxes.move();
     const PairForces& expected = here.exchange();
@@ -289,7 +266,7 @@ bool comes_true(Condition&& condition) {
   return true;
 }
 
-/// Ticks until no worker is late.
+/// Runs ticks until no worker is late.
 template <class Cell>
 bool is_on_time(Cell& cell) {
   return comes_true([&] {
@@ -303,7 +280,7 @@ TEST(Coprocessor, WhoeverIsLateTheForcesAreThoseOfThisMotion) {
   options.threads = 1;
   options.patience = 0ns;
   Both both(options, 1000);
-  // No patience: four thousand pairs are not done between two statements.
+  // No patience: four thousand pairs cannot be evaluated between two statements.
   int late = 0;
   for (int tick = 0; tick < 20; ++tick) {
     both.tick();
@@ -328,7 +305,7 @@ TEST(Coprocessor, NoPatienceAndNoPeriodAreDefined) {
   }
 }
 
-/// Threads that report themselves, so that a signal can be sent to one.
+/// Threads that register themselves, so that a signal can be sent to one.
 struct Threads {
   static inline std::atomic<pthread_t> ids[2];
   static inline std::atomic<int> started{0};
@@ -358,7 +335,7 @@ struct Threads {
     };
     return options;
   }
-  /// Sends the signal to the last thread and waits until it is caught.
+  /// Sends the signal to the last thread and waits until it is handled.
   [[nodiscard]] static bool strike(int threads) {
     if (!comes_true([&] { return started == threads; })) return false;
     const int before = caught;
@@ -372,7 +349,7 @@ struct Threads {
     const timespec moment{0, 100000};
     while (held) nanosleep(&moment, nullptr);
   }
-  /// Ends this thread and nothing else, as if it had never been able to say so.
+  /// Ends this thread only, without any notification.
   static void leave(int /*signal*/) {
     ++caught;
     syscall(SYS_exit, 0);
@@ -382,8 +359,8 @@ struct Threads {
   struct sigaction before_ {};
 };
 
-/// Ticks during which the last worker cannot answer.
-void expect_stood_in_for(Both& both, int threads, int ticks) {
+/// Runs ticks during which the last worker cannot answer.
+void expect_late(Both& both, int threads, int ticks) {
   const std::int64_t before = both.there.workers().ticks;
   for (int k = 1; k <= ticks; ++k) {
     SCOPED_TRACE(families::of_seed(seed, "tick", k));
@@ -398,8 +375,8 @@ void expect_stood_in_for(Both& both, int threads, int ticks) {
   }
 }
 
-// Wherever the signal strikes: in the middle of a pair, in a mailbox, asleep.
-TEST(Coprocessor, StalledWorkerIsStoodInForUntilItGoesOn) {
+// At any point: in the middle of a pair, in a mailbox, asleep.
+TEST(Coprocessor, StalledWorkerHasASubstituteUntilItGoesOn) {
   for (const int threads : {1, 2}) {
     const Threads watched(&Threads::hold);
     Both both(Threads::options(threads));
@@ -408,7 +385,7 @@ TEST(Coprocessor, StalledWorkerIsStoodInForUntilItGoesOn) {
       EXPECT_EQ(both.there.workers().stood_in, 0);
       EXPECT_EQ(both.there.workers().silence, 0);
       ASSERT_TRUE(Threads::strike(threads));
-      expect_stood_in_for(both, threads, 10);
+      expect_late(both, threads, 10);
       Threads::held = false;
     }
     EXPECT_TRUE(is_on_time(both));
@@ -416,7 +393,7 @@ TEST(Coprocessor, StalledWorkerIsStoodInForUntilItGoesOn) {
   }
 }
 
-TEST(Coprocessor, KilledWorkerIsStoodInForFromThenOn) {
+TEST(Coprocessor, KilledWorkerHasASubstituteFromThenOn) {
 #ifdef REPEL_SANITIZED
   GTEST_SKIP() << "a sanitizer waits for every thread to say that it ends";
 #endif
@@ -425,8 +402,8 @@ TEST(Coprocessor, KilledWorkerIsStoodInForFromThenOn) {
     Both both(Threads::options(threads));
     ASSERT_TRUE(is_on_time(both));
     ASSERT_TRUE(Threads::strike(threads));
-    expect_stood_in_for(both, threads, 40);
-    // The others go on.
+    expect_late(both, threads, 40);
+    // The others continue.
     EXPECT_TRUE(comes_true([&] {
       both.tick();
       return both.there.workers().stood_in == 1;
@@ -439,7 +416,7 @@ TEST(Coprocessor, KilledWorkerIsStoodInForFromThenOn) {
   }
 }
 
-/// Ten times the pairs that the budget pays for.
+/// Ten times as many pairs as the budget covers.
 struct Overload {
   Overload(int threads, bool by_the_clock)
       : boxes(4, 64, {.range = 2.0}, seed),
@@ -467,8 +444,8 @@ struct Overload {
   PairTotals totals;
 };
 
-// A block of 64 pairs asks at least one of them in each tick.
-constexpr std::int64_t longest_wait = detail::PairShare::run;
+// A block of 64 pairs evaluates at least one of them in each tick.
+constexpr std::int64_t longest_wait = detail::PairPartition::run;
 
 TEST(Coprocessor, OverloadIsAnsweredInTurnAndEnds) {
   for (const int threads : {0, 2}) {
@@ -494,8 +471,8 @@ TEST(Coprocessor, OverloadIsAnsweredInTurnAndEnds) {
   }
 }
 
-// Neither a deputy that takes over nor a worker that comes back begins with answers of long ago,
-// widened by all the motion since.
+// Neither a substitute nor a worker that is in time again starts with outdated answers, whose
+// distances are reduced by all the motion since.
 TEST(Coprocessor, ChangingPlacesUnderOverloadBringsNoOldAnswers) {
   constexpr int ticks = 200;
   const Threads watched(&Threads::hold);
@@ -517,8 +494,8 @@ TEST(Coprocessor, ChangingPlacesUnderOverloadBringsNoOldAnswers) {
   EXPECT_LE(oldest, 2 * longest_wait) << "seed " << seed;
 }
 
-// Two bodies that move as one keep their distance, however far they leap. A worker that saw one of
-// them at another tick would report another distance.
+// Two bodies that move together keep their distance, however far they jump. A worker that saw them
+// at different ticks would report another distance.
 TEST(Coprocessor, WorkersNeverSeeAMixOfTwoTicks) {
   World world;
   const BodyId a = world.add_body("a");

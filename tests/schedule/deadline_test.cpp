@@ -17,7 +17,7 @@ constexpr unsigned seed = 400;
 TEST(DurationHistogram, PercentilesAreRightToOnePointSixPercent) {
   std::mt19937_64 random(seed);
   for (int run = 0; run < 30; ++run) {
-    // From fractions of a microsecond to a second, each run around another scale.
+    // From fractions of a microsecond to a second, on a different scale in each run.
     std::lognormal_distribution<double> durations(
         std::uniform_real_distribution<double>(std::log(200.0), std::log(1e8))(random), 1.5);
     DurationHistogram histogram;
@@ -70,7 +70,7 @@ TEST(DurationHistogram, EmptyOneAnswersZero) {
 
 TEST(DeadlineMonitor, MissesWhenLatenessAndComputeExceedThePeriod) {
   DeadlineMonitor monitor(1ms);
-  monitor.record(400us, 600us);  // just in time
+  monitor.record(400us, 600us);  // exactly on time
   EXPECT_EQ(monitor.misses(), 0);
   monitor.record(400us, 601us);
   monitor.record(0us, 2ms);

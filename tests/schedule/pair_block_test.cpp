@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "schedule/boxes.hpp"
+#include "pairs/boxes.hpp"
 
 namespace repel {
 namespace pair_block_test {
@@ -12,7 +12,7 @@ constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
 constexpr auto no_deadline = Clock::time_point::max();
 constexpr unsigned seed = 4008;
 
-/// One block that holds every pair of a small world, all of them candidates.
+/// One block that contains every pair of a small world, all of them candidates.
 struct Block {
   explicit Block(const World& the_world)
       : world(&the_world), poses(the_world), block(the_world, {}, pairs()) {
@@ -22,8 +22,8 @@ struct Block {
     block.end(0);
   }
   const PairForces& run(std::int64_t units = no_limit, Clock::time_point deadline = no_deadline) {
-    poses.begin();
-    block.begin(world->motion().tick);
+    poses.begin_tick();
+    block.begin_tick(world->motion().tick);
     block.run(world->motion(), poses, units, deadline);
     return block.forces();
   }
@@ -34,7 +34,7 @@ struct Block {
   detail::PairBlock block;
 };
 
-/// A tool and a wall, both free to move, that touch at one known point.
+/// A tool and a wall, both movable, that touch at one known point.
 struct TwoBodies {
   World world;
   BodyId a, b;
@@ -50,8 +50,8 @@ struct TwoBodies {
   }
 };
 
-/// Where two plates pierce each other the deepest points are many, and which of them is found
-/// depends on the last tick.
+/// If two plates intersect, the deepest point is not unique, and the one found depends on the last
+/// tick.
 bool has_one_deepest_point(const World& world, const detail::PairBlock& block) {
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
     const Separation now = test::separation_now(world, world.pair({i}));
@@ -90,7 +90,7 @@ TEST(PairBlock, ForcesEqualADirectEvaluationOfEveryPair) {
       peak = std::max(peak, forces.totals.peak_force);
     }
   }
-  // The sample means something: pairs pushed, and most visits were saved.
+  // The sample is meaningful: forces occurred, and most evaluations were skipped.
   EXPECT_GT(compared, 3 * 1500 * 9 / 10);
   EXPECT_GT(peak, 50.0);
   EXPECT_GT(skipped, 3 * 1500 * 32 / 2);
@@ -110,7 +110,7 @@ TEST(PairBlock, PassablePairIsPushedAsItsPassageSaysAndNeverJumps) {
   int pushed = 0;
   for (int tick = 0; tick < 4000; ++tick) {
     boxes.move();
-    // Held near the obstacle, and with no speed, which would only add damping.
+    // Kept near the obstacle, at rest, since a velocity would only add damping.
     const Vec3 p_BT_W = boxes.X_WT.translation() - X_WB.translation();
     boxes.X_WT.translation() = X_WB.translation() + std::min(1.0, 0.12 / p_BT_W.norm()) * p_BT_W;
     boxes.world.place(boxes.tool, boxes.X_WT, {});
@@ -153,13 +153,13 @@ TEST(PairBlock, PairsThatCannotBeInRangeCostNothing) {
     }
     evaluated += block.run().totals.evaluated;
   }
-  EXPECT_GT(evaluated, 0);  // and it is asked in time
+  EXPECT_GT(evaluated, 0);  // and it is evaluated in time
 }
 
 TEST(PairBlock, PairThatTurnsAboutWhereItIsNearestIsNotAsked) {
   World world;
   const BodyId tool = world.add_body("tool");
-  // The ball is at the origin of a body that reaches far: hardly anything of its turning moves it.
+  // The ball is at the origin of a large body: its rotation hardly moves the ball.
   const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.1));
   Pose out = Pose::Identity();
   out.translation().x() = 1.0;
@@ -225,7 +225,8 @@ TEST(PairBlock, ActionAndReactionCancelAboutACommonPoint) {
 TEST(PairBlock, StalePairsNeverClaimMoreDistanceThanThereIs) {
   int compared = 0;
   for (unsigned run = 0; run < 3; ++run) {
-    // In reach of everything, so that all pairs are near; at rest, so that force shows distance.
+    // Everything in range, so that all pairs are near; at rest, so that the force gives the
+    // distance.
     test::Boxes boxes(1, 1, {.range = 2.0, .surface_force = 100.0, .damping = 0.0}, seed + run);
     Block block(boxes.world);
     for (int tick = 0; tick < 600; ++tick) {
@@ -264,7 +265,7 @@ TEST(PairBlock, BudgetIsOverdrawnByOnePairAtMost) {
 }
 
 TEST(PairBlock, NoPairWaitsLongerThanTheBlockHasPairs) {
-  // With a single unit one pair is asked in each tick, in turn.
+  // With a budget of one unit one pair is evaluated in each tick, round-robin.
   test::Boxes boxes(4, 16, {.range = 2.0}, seed);
   Block block(boxes.world);
   block.run();
@@ -277,7 +278,7 @@ TEST(PairBlock, NoPairWaitsLongerThanTheBlockHasPairs) {
   EXPECT_GE(oldest, block.pairs() - 1);
 }
 
-// A pair that is asked is asked to the end: half an answer could be wrong by any amount.
+// An evaluation is never cut short: a partial answer could be wrong by any amount.
 TEST(PairBlock, AnswersUnderABudgetAreWholeAndNeverPushLessThanTheTruth) {
   for (unsigned run = 0; run < 20; ++run) {
     test::Boxes boxes(1, 1, {.range = 2.0, .surface_force = 100.0, .damping = 0.0}, seed + run);
@@ -308,7 +309,7 @@ TEST(PairBlock, DeadlineThatHasPassedLeavesEverythingStale) {
   EXPECT_TRUE(test::is_finite(forces));
 }
 
-// The pairs that find no slot push as all others do, and say so.
+// Pairs without a slot exert their force as all others do, and are reported.
 TEST(PairBlock, PairsWithoutASlotAreEvaluatedAllTheSame) {
   test::Boxes boxes(2, 4, {.range = 0.3}, seed);
   detail::PartPoses poses(boxes.world);
@@ -316,8 +317,8 @@ TEST(PairBlock, PairsWithoutASlotAreEvaluatedAllTheSame) {
   int pushed = 0;
   for (int tick = 0; tick < 300; ++tick) {
     boxes.move();
-    poses.begin();
-    block.begin(tick);
+    poses.begin_tick();
+    block.begin_tick(tick);
     int taken = 0;
     for (std::int32_t i = 0; i < 8; ++i) {
       taken += block.take({i}, 0, 0.0, boxes.world.motion(), poses) ? 1 : 0;
@@ -344,7 +345,7 @@ TEST(PairBlock, PairWithoutAnAnswerIsAskedWhateverTheBudget) {
   EXPECT_EQ(block.run(0).totals.stale, 4);
 }
 
-// A pair that leaves the list and comes back later goes on with what it has.
+// A pair that leaves the list and returns later continues with its history.
 TEST(PairBlock, PairOffTheListKeepsItsAnswer) {
   test::Boxes boxes(1, 2, {.range = 0.001}, seed);
   Block block(boxes.world);

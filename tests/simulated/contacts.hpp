@@ -1,5 +1,5 @@
 /// @file
-/// What every engine with physical contact must do, whatever it computes with.
+/// Tests for every engine with physical contact.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ inline ArmModel sledge() {
   return model;
 }
 
-/// Parts of a link that reach 0.1 m along x from its origin.
+/// Parts of a link that extend 0.1 m along x from its origin.
 inline std::vector<ContactPart> probes() {
   return {{"box", 0, Shape::box({0.1, 0.05, 0.03}), Pose::Identity()},
           {"sphere", 0, Shape::sphere(0.1), Pose::Identity()},
@@ -36,7 +36,7 @@ inline std::vector<ContactPart> probes() {
           {"cylinder", 0, Shape::cylinder(0.1, 0.2), Pose::Identity()}};
 }
 
-/// Pushes the sledge with 50 N, from 0.3 m/s, for two seconds, at what stops it at `stop` [m].
+/// Pushes the sledge with 50 N, from 0.3 m/s, for two seconds, against a stop at `stop` [m].
 template <class Arm>
 void expect_stop(const std::vector<ContactPart>& parts, double stop, const std::string& which) {
   Arm arm(sledge(), {}, parts);
@@ -56,14 +56,14 @@ void expect_stop(const std::vector<ContactPart>& parts, double stop, const std::
   EXPECT_EQ(arm.contact().deepest, 0.0) << which;
 }
 
-/// A box in the way of a sledge with `part`.
+/// A box in the path of a sledge with `part`.
 template <class Arm>
 void expect_a_box_stops(const ContactPart& part) {
   const ContactPart wall{"wall", -1, Shape::box({0.2, 0.5, 0.5}), at(0.5, 0, 0)};
   expect_stop<Arm>({part, wall}, 0.2, part.name);
 }
 
-/// The shape of `part` as an obstacle in the way of a capsule across it.
+/// The shape of `part` as an obstacle in the path of a transverse capsule.
 template <class Arm>
 void expect_it_stops_a_capsule(ContactPart part) {
   part.link = -1;
@@ -73,7 +73,7 @@ void expect_it_stops_a_capsule(ContactPart part) {
   expect_stop<Arm>({rod, part}, 0.38, part.name);
 }
 
-/// Forearm and hand of a PUMA, and a table that they fall on from `above_the_table`.
+/// Forearm and hand of a PUMA, and a table onto which they fall from `above_the_table`.
 inline std::vector<ContactPart> forearm_hand_and_table() {
   return {{"forearm", 2, Shape::capsule(0.05, 0.2), Pose::Identity()},
           {"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
@@ -83,7 +83,7 @@ inline std::vector<double> above_the_table() {
   return {0.0, 0.6, -0.6, 0.2, 0.3, 0.0};
 }
 
-/// Two arms that fall on the table move alike, to the last bit.
+/// Two arms that fall onto the table move bitwise alike.
 template <class Arm>
 void expect_the_same_again(const ArmModel& model) {
   Arm one(model, {}, forearm_hand_and_table());
@@ -98,7 +98,7 @@ void expect_the_same_again(const ArmModel& model) {
   EXPECT_EQ(one.contact().deepest, two.contact().deepest);
 }
 
-/// An arm that falls on the table comes to rest.
+/// An arm that falls onto the table comes to rest.
 template <class Arm>
 void expect_to_rest_on_a_table(const ArmModel& model) {
   Arm arm(model, {}, forearm_hand_and_table());
@@ -116,7 +116,7 @@ void expect_to_rest_on_a_table(const ArmModel& model) {
   EXPECT_FALSE(arm.faults().state);
 }
 
-/// Parts out of reach leave the motion as it is without them, to the last bit.
+/// Parts out of reach leave the motion bitwise unchanged.
 template <class Arm>
 void expect_untouched_the_same(const ArmModel& model) {
   const std::vector<ContactPart> parts{{"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},

@@ -1,5 +1,5 @@
 /// @file
-/// One motion of a PUMA on any engine, and how far two of them are apart.
+/// A motion of a PUMA that can be run on any engine, and the difference of two such motions.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace repel::simulated {
 
-/// Joint positions of a second under slow torques [rad], tick by tick.
+/// Joint positions [rad] over one second under slowly varying torques, tick by tick.
 template <class Simulated>
 std::vector<std::vector<double>> motion_of(Simulated arm) {
   arm.reset(std::vector{0.2, 0.9, 0.1, -0.3, 0.4, 0.5});
@@ -23,7 +23,7 @@ std::vector<std::vector<double>> motion_of(Simulated arm) {
   return positions;
 }
 
-/// The greatest difference [rad] of a joint in any tick.
+/// The largest difference [rad] of a joint at any tick.
 inline double apart(const std::vector<std::vector<double>>& a,
                     const std::vector<std::vector<double>>& b) {
   double most = 0.0;

@@ -1,12 +1,12 @@
 /// @file
-/// How often a random test draws.
+/// Number of draws of a random test.
 #pragma once
 
 namespace repel::families {
 
-/// `n`, or one in twenty of it under a sanitizer: it looks for faults of memory and arithmetic,
-/// which few draws show, and makes every draw ten times slower. For the draws of a test and for
-/// what it then expects of the sample.
+/// `n`, or a twentieth of it under a sanitizer: it looks for memory and arithmetic errors, which
+/// few draws reveal, and makes every draw ten times slower. Use it for the draws of a test and for
+/// the expected size of its samples.
 constexpr int draws(int n) {
 #ifdef REPEL_SANITIZED
   return n / 20;

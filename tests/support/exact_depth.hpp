@@ -1,8 +1,8 @@
 /// @file
-/// The exact penetration depth of two small polytopes: the least overlap over all axes that can
-/// separate them - the normals of faces and the cross products of edges (Gottschalk, Lin, Manocha
-/// 1996) - ranked in double, the best computed with 113 bits. What proves it is that no feature is
-/// missing, see Polytope::closed().
+/// The exact penetration depth of two small polytopes: the least overlap over all candidate
+/// separating axes - the face normals and the cross products of edges (Gottschalk, Lin, Manocha
+/// 1996) - ranked in double, the best recomputed with 113 bits. The proof requires that no feature
+/// is missing, see Polytope::closed().
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace repel::oracle {
 
-/// The axes of two posed polytopes.
+/// The candidate axes of two posed polytopes.
 class Axes {
  public:
   Axes(const Polytope& A, const Pose& X_WA, const Polytope& B, const Pose& X_WB)
@@ -27,7 +27,7 @@ class Axes {
     }
   }
 
-  /// [m] The overlap along the best axis; not positive when one separates the polytopes.
+  /// [m] The overlap along the best axis; not positive if an axis separates the polytopes.
   [[nodiscard]] Real least_overlap() {
     Real least = Real(1e300);
     for (const Axis& axis : axes_) {
@@ -42,10 +42,10 @@ class Axes {
   }
 
  private:
-  /// n is (q - p) x (s - r), p to s being vertices.
+  /// n is (q - p) x (s - r), where p, q, r and s are vertices.
   struct Axis {
     double overlap = 0.0;  ///< [m] in double
-    double doubt = 0.0;    ///< [m] what rounding can have done to it
+    double doubt = 0.0;    ///< [m] bound of its rounding error
     Placed* first = nullptr;
     Placed* second = nullptr;
     int p = 0, q = 0, r = 0, s = 0;
@@ -64,7 +64,7 @@ class Axes {
     const Rough n = cross(e, f);
     const double product = std::sqrt(dot(e, e) * dot(f, f));
     const double length = std::sqrt(dot(n, n));
-    // A facet between almost parallel edges is so thin that its neighbours decide as well.
+    // A facet between almost parallel edges is so thin that its neighbours are decisive, too.
     if (length < 1e-14 * product) return;
     double most_a = -1e300, least_a = 1e300, most_b = -1e300, least_b = 1e300;
     range(pair_.A, n, most_a, least_a);
@@ -90,12 +90,12 @@ class Axes {
   }
 
   PlacedPair pair_;
-  double limit_ = 1e300;  ///< [m] the best overlap is no larger
+  double limit_ = 1e300;  ///< [m] upper bound of the best overlap
   std::vector<Axis> axes_;
 };
 
-/// [m] positive in overlap; not positive when some axis separates the polytopes. At least one must
-/// be closed, the other may be flat.
+/// [m] Positive in overlap; not positive if an axis separates the polytopes. At least one must be
+/// closed; the other may be flat.
 inline Real penetration_depth(const Polytope& A, const Pose& X_WA, const Polytope& B,
                               const Pose& X_WB) {
   return Axes(A, X_WA, B, X_WB).least_overlap();

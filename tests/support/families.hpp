@@ -1,6 +1,6 @@
 /// @file
-/// Seeded pairs of polytopes, family by family, of the kinds on which distance code fails; and what
-/// every test that draws at random needs.
+/// Seeded families of pairs of polytopes that are difficult for distance algorithms, and common
+/// code of all randomized tests.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ inline double uniform(Rng& rng, double low, double high) {
 inline double log_uniform(Rng& rng, double low, double high) {
   return std::exp(uniform(rng, std::log(low), std::log(high)));
 }
-/// Names what was drawn, in the message of a failure.
+/// Describes the draw in failure messages.
 inline std::string of_seed(std::uint64_t seed, const char* what, int i) {
   return "seed " + std::to_string(seed) + ", " + what + " " + std::to_string(i);
 }
@@ -50,7 +50,7 @@ inline Mat3 rotation(Rng& rng) {
 inline Mat3 small_rotation(Rng& rng, double angle) {
   return Eigen::AngleAxisd(angle, direction(rng)).toRotationMatrix();
 }
-/// Turned anyhow, its origin `low` to `high` [m] away.
+/// A random orientation, with the origin `low` to `high` [m] away.
 inline Pose random_pose(Rng& rng, double low, double high) {
   Pose X = Pose::Identity();
   X.linear() = rotation(rng);
@@ -129,7 +129,7 @@ inline Pair draw_shapes(const std::string& family, Rng& rng) {
   return p;
 }
 
-/// From the origin, the vertex of `s` farthest along `n` when it is turned by `R`.
+/// The vertex of `s` farthest along `n` from the origin, when rotated by `R`.
 inline Vec3 top(const Solid& s, const Mat3& R, const Vec3& n) {
   Vec3 best = R * s.vertices[0];
   for (const Vec3& v : s.vertices) {
@@ -138,7 +138,7 @@ inline Vec3 top(const Solid& s, const Mat3& R, const Vec3& n) {
   return best;
 }
 
-/// Poses of the family for its shapes, the centres some way from each other; they may overlap.
+/// Poses of the family for its shapes, the centres some way apart; they may overlap.
 inline void draw_poses(const std::string& family, Pair& p, Rng& rng) {
   p.X_WA = p.X_WB = Pose::Identity();
   const Mat3 R = rotation(rng);

@@ -1,5 +1,5 @@
 /// @file
-/// Pairs that are a chosen gap apart, and the distance of the core beside the exact one.
+/// Pairs with a chosen gap, and the distance of the core next to the exact one.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline std::optional<oracle::Truth> truth(const Pair& p) {
   return oracle::distance(p.A.vertices, p.X_WA, p.B.vertices, p.X_WB);
 }
 
-/// [m] what absolute errors are measured against: the larger of the two.
+/// [m] Scale of absolute errors: the larger size of the two.
 inline double size(const Pair& p) {
   double largest = 0.0;
   for (const Vec3& v : p.A.vertices) largest = std::max(largest, v.norm());
@@ -34,8 +34,8 @@ inline Pair shifted(Pair p, const double (&n)[3], double step) {
   return p;
 }
 
-/// Moves B along the normal until the pair is about `gap` [m] apart, as near as the doubles of a
-/// pose allow, or in overlap where it is negative. Nothing when the pair of the family overlaps.
+/// Moves B along the normal until the gap of the pair is `gap` [m], as closely as the doubles of a
+/// pose allow; negative means overlap. Nothing if the pair of the family overlaps.
 inline std::optional<Pair> apart_by(const Pair& p, double gap) {
   const auto found = truth(p);
   if (!found || !(found->distance > 0)) return std::nullopt;
@@ -49,8 +49,8 @@ inline Pair draw_apart(const std::string& family, Rng& rng, double gap) {
   }
 }
 
-/// A seeded pair of the family, at most `depth` [m] deep. The ends of both are pushed into each
-/// other: where they are thin they may come out on the other side, so that is tried again.
+/// A seeded pair of the family, at most `depth` [m] deep. Their ends are pushed into each other; if
+/// thin, they may come out on the other side, in which case the draw is repeated.
 inline Pair draw_overlapping(const std::string& family, Rng& rng, double depth) {
   while (true) {
     const Pair p = draw_apart(family, rng, -depth);
@@ -59,7 +59,7 @@ inline Pair draw_overlapping(const std::string& family, Rng& rng, double depth) 
   }
 }
 
-/// As far as a tool moves in one tick: 0.5 mm and 0.1 degree.
+/// The motion of a tool in one tick: 0.5 mm and 0.1 degree.
 inline Pose moved_a_little(const Pose& X, Rng& rng) {
   Pose moved = X;
   moved.translation() += 5e-4 * direction(rng);

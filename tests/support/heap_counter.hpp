@@ -1,7 +1,7 @@
 /// @file
-/// Counts every call to the heap in the program that includes this, in one of its files only: it
-/// brings its own malloc. Calls are counted while `repel::test::watched` is set, and so are the
-/// blocks taken and not yet given back, and their bytes, which the heap rounds up.
+/// Counts every heap call of the program. Include it in exactly one of its files: it defines its
+/// own malloc. While `repel::test::watched` is set, it counts calls, blocks allocated and not
+/// freed, and their bytes, as rounded up by the heap.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
 /// @file
-/// A plain linear programming solver, to check others with: the simplex tableau with Bland's rule.
+/// A simple linear programming solver as a test reference: simplex tableau with Bland's rule.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace repel::oracle {
 
-/// max sum c_j x_j  with  sum a_ij x_j <= b_i,  x_j >= 0  and b_i >= 0, so that x = 0 is allowed to
-/// begin with. Must be bounded.
+/// max sum c_j x_j  with  sum a_ij x_j <= b_i,  x_j >= 0  and b_i >= 0, so that x = 0 is feasible
+/// as a start. Must be bounded.
 class LinearProgram {
  public:
   explicit LinearProgram(std::vector<Real> objective) : costs_(std::move(objective)) {}

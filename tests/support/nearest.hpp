@@ -1,6 +1,6 @@
 /// @file
 /// The point nearest to the origin on a segment, a triangle and a parallelogram, in double or with
-/// 113 bits. What is returned is a convex combination of the corners, whatever rounding does.
+/// 113 bits. The result is always a convex combination of the corners, regardless of rounding.
 #pragma once
 
 #include <support/quad.hpp>
@@ -38,7 +38,8 @@ Triple<T> nearest_on_triangle(const Triple<T>& p, const Triple<T>& q, const Trip
                 nearer(nearest_on_segment(q, r), nearest_on_segment(r, p)));
 }
 
-/// On p + s e + t f, s and t from 0 to 1, where the nearest point is inside; else some point of it.
+/// On p + s e + t f, s and t from 0 to 1, if the nearest point is inside; otherwise some point of
+/// it.
 template <class T>
 Triple<T> nearest_inside_parallelogram(const Triple<T>& p, const Triple<T>& e, const Triple<T>& f) {
   const Triple<T> n = cross(e, f);

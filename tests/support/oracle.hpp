@@ -1,7 +1,7 @@
 /// @file
-/// The exact distance of two small polytopes, by algorithms that share no code and no idea with the
-/// one under test: all pairs of features are ranked in double and the best are computed with 113
-/// bits. An answer is accepted only when its duality gap, with 113 bits, proves it.
+/// The exact distance of two small polytopes, by algorithms that share no code and no method with
+/// the one under test: all pairs of features are ranked in double and the best are recomputed with
+/// 113 bits. An answer is accepted only if its duality gap, with 113 bits, proves it.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace repel::oracle {
 
 struct Truth {
-  Real distance = 0;             ///< [m] 0 when the polytopes meet
+  Real distance = 0;             ///< [m] 0 if the polytopes intersect
   double normal[3] = {0, 0, 0};  ///< unit, from B to A
 };
 
@@ -28,8 +28,8 @@ inline Truth truth_at(const Point& v, Real size) {
   return {length, {n.x[0], n.x[1], n.x[2]}};
 }
 
-/// By Wolfe's minimum-norm point over all differences of vertices. Nothing when 113 bits could not
-/// prove it, which a test must treat as its own failure.
+/// By Wolfe's minimum-norm point over all differences of vertices. Nothing if 113-bit arithmetic
+/// could not prove it, which a test must treat as its own failure.
 inline std::optional<Truth> distance_by_wolfe(PlacedPair& pair) {
   const Point start = pair.support(pair.A.exact(0) - pair.B.exact(0));
   const Real size = pair.size();
@@ -50,7 +50,7 @@ class Features {
         R_WA_(X_WA.linear()),
         R_WB_(X_WB.linear()) {}
 
-  /// The exact distance of disjoint polytopes; nothing when no pair of features is proven nearest.
+  /// The exact distance of disjoint polytopes; nothing if no pair of features is proven nearest.
   std::optional<Truth> nearest_of_best() {
     rank();
     const std::size_t tried = std::min<std::size_t>(candidates_.size(), 12);
@@ -82,8 +82,8 @@ class Features {
     candidates_.push_back(c);
   }
 
-  /// All pairs of features that can be nearest as far as doubles can tell, the best first. What is
-  /// parallel or shares a vertex ties; any of them gives the same point.
+  /// All pairs of features that can be nearest within double precision, the best first. Parallel
+  /// features and those that share a vertex tie; any of them gives the same point.
   void rank() {
     vertices_and_faces(B_, R_WB_, pair_.B, pair_.A, false);
     vertices_and_faces(A_, R_WA_, pair_.A, pair_.B, true);
@@ -140,7 +140,7 @@ class Features {
     }
   }
 
-  /// Needed where one of the two has no face: a segment or a point.
+  /// Needed if one of the two has no face: a segment or a point.
   void vertices_and_edges(const Polytope& pointed, const Polytope& edged, bool edges_of_a) {
     if (!edged.faces().empty()) return;
     for (int i = 0; i < static_cast<int>(pointed.vertices().size()); ++i) {
@@ -173,12 +173,12 @@ class Features {
     return p;
   }
 
-  /// The duality gap: v is a point of A - B, and no other lies farther along -v.
+  /// The duality gap: v is a point of A - B, and no other point is farther along -v.
   bool proven(const Point& v) {
     const Real vv = dot(v, v);
     const Real gap = vv - (pair_.A.least(v) - pair_.B.most(v));
     const Real size = pair_.size();
-    // The distance is right to gap / |v|.
+    // The error of the distance is at most gap / |v|.
     return gap <= size * size * Real(1e-33) || gap * gap <= vv * size * size * Real(1e-48);
   }
 
@@ -186,12 +186,12 @@ class Features {
   const Polytope& B_;
   PlacedPair pair_;
   Mat3 R_WA_, R_WB_;
-  double limit_ = 1e300;  ///< [m^2] what is farther is not nearest
+  double limit_ = 1e300;  ///< [m^2] candidates beyond are not the nearest
   std::vector<Candidate> candidates_;
 };
 
-/// The distance of two polytopes; nothing when 113 bits could not prove it, which a test must treat
-/// as its own failure.
+/// The distance of two polytopes; nothing if 113-bit arithmetic could not prove it, which a test
+/// must treat as its own failure.
 inline std::optional<Truth> distance(const Polytope& A, const Pose& X_WA, const Polytope& B,
                                      const Pose& X_WB) {
   Features features(A, X_WA, B, X_WB);

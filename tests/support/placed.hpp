@@ -1,6 +1,6 @@
 /// @file
-/// Two sets of vertices in world axes around the origin of the first: in double at once, with 113
-/// bits where asked.
+/// Two sets of vertices in world axes, relative to the origin of the first: in double, and with 113
+/// bits on demand.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace repel::oracle {
 
-/// Vertices under a pose. The double of a coordinate is right to 1e-15 of `reach`.
+/// Vertices under a pose. The double coordinates are accurate to 1e-15 of `reach`.
 class Placed {
  public:
   Placed(const std::vector<Vec3>& vertices, const Pose& X, const Point& offset)
@@ -32,7 +32,7 @@ class Placed {
   [[nodiscard]] double reach() const { return reach_; }  ///< [m]
   [[nodiscard]] const Rough& rough(int i) const { return rough_[i]; }
 
-  /// R v + p for the doubles given.
+  /// R v + p, exact for the given doubles.
   [[nodiscard]] const Point& exact(int i) {
     if (!is_exact_[i]) {
       exact_[i] = rotated(X_, oracle::exact(vertices_[i])) + offset_;
@@ -41,8 +41,8 @@ class Placed {
     return exact_[i];
   }
 
-  /// The least product of `d` with a vertex, to 113 bits: only what is within the rounding of a
-  /// double from the least is computed again.
+  /// The least dot product of `d` with a vertex, to 113 bits: only candidates within double
+  /// rounding of the least are recomputed.
   [[nodiscard]] Real least(const Point& d) { return product(farthest(Real(-1) * d), d); }
   [[nodiscard]] Real most(const Point& d) { return product(farthest(d), d); }
 
@@ -72,7 +72,7 @@ class Placed {
   double reach_ = 0.0;
 };
 
-/// A and B around the origin of A.
+/// A and B relative to the origin of A.
 struct PlacedPair {
   Placed A, B;
 
@@ -81,7 +81,7 @@ struct PlacedPair {
       : A(a, X_WA, Point{}), B(b, X_WB, exact(X_WB.translation()) - exact(X_WA.translation())) {}
 
   [[nodiscard]] double size() const { return A.reach() + B.reach(); }  ///< [m]
-  /// The point of A - B with the least product with `x`.
+  /// The point of A - B with the least dot product with `x`.
   [[nodiscard]] Point support(const Point& x) {
     return A.exact(A.farthest(Real(-1) * x)) - B.exact(B.farthest(x));
   }

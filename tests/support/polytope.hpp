@@ -1,6 +1,6 @@
 /// @file
-/// The features of a small polytope: its faces and edges, found by trying all triples of vertices
-/// with an orientation test that 113 bits decide.
+/// The features of a small polytope: its faces and edges, found by testing all triples of vertices
+/// with an orientation test decided in 113 bits.
 #pragma once
 
 #include <algorithm>
@@ -20,11 +20,11 @@ struct Face {
   double offset = 0.0;       ///< [m] n.x of its corners
 };
 
-/// The convex hull of up to `most` vertices with all its features; of more, the vertices alone. A
-/// flat one has a face on either side; a segment has one edge; a point has neither.
+/// The convex hull of up to `most` vertices with all its features; of more vertices, only the
+/// vertices. A flat hull has a face on either side; a segment has one edge; a point has neither.
 class Polytope {
  public:
-  static constexpr std::size_t most = 32;  ///< more take too long
+  static constexpr std::size_t most = 32;  ///< the cost grows too fast beyond
 
   /// Repeated vertices count once.
   explicit Polytope(std::span<const Vec3> vertices) {
@@ -43,12 +43,12 @@ class Polytope {
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<std::array<int, 2>>& edges() const { return edges_; }
-  /// One edge of each set of parallel ones.
+  /// One edge of each set of parallel edges.
   [[nodiscard]] const std::vector<std::array<int, 2>>& directions() const { return directions_; }
   [[nodiscard]] double reach() const { return reach_; }  ///< [m] farthest vertex from the origin
 
-  /// True when the faces close a solid: every edge between two of them, and Euler's formula holds.
-  /// Then no face and no edge is missing.
+  /// True if the faces bound a solid: every edge is shared by two of them, and Euler's formula
+  /// holds. Then no face and no edge is missing.
   [[nodiscard]] bool closed() const {
     std::uint32_t used = 0;
     std::size_t sides = 0;
@@ -61,8 +61,8 @@ class Polytope {
            corners + static_cast<int>(faces_.size()) == static_cast<int>(edges_.size()) + 2;
   }
 
-  /// [m] how far `x`, in the frame of the polytope, lies outside the worst face plane; negative
-  /// inside. Without faces it means nothing.
+  /// [m] Distance of `x`, in the frame of the polytope, outside the worst face plane; negative
+  /// inside. Undefined without faces.
   [[nodiscard]] double outside_by(const Vec3& x) const {
     double worst = -1e300;
     for (const Face& f : faces_) worst = std::max(worst, f.n.dot(x) - f.offset);
@@ -72,7 +72,7 @@ class Polytope {
  private:
   [[nodiscard]] int count() const { return static_cast<int>(vertices_.size()); }
 
-  /// The sign of `value`, of which `scale` bounds the rounding; what is in doubt is computed anew.
+  /// The sign of `value`, whose rounding error is bounded by `scale`; recomputed if in doubt.
   static int sign(double value, double scale, auto&& exactly) {
     if (std::abs(value) > 1e-14 * scale) return value > 0.0 ? 1 : -1;
     const Real precise = exactly();
@@ -80,7 +80,7 @@ class Polytope {
     return precise > 0 ? 1 : -1;
   }
 
-  /// On which side of the plane of i, j, k the vertex l lies.
+  /// The side of the plane of i, j, k on which vertex l lies.
   [[nodiscard]] int side(int i, int j, int k, int l) const {
     const Vec3 e = vertices_[j] - vertices_[i];
     const Vec3 f = vertices_[k] - vertices_[i];
@@ -133,15 +133,15 @@ class Polytope {
     if (!below) add_face(in_plane, -n);
   }
 
-  /// Walks around the corners of the plane: the next one has no other to its right, and of several
-  /// on one line is the farthest.
+  /// Gift wrapping of the corners of the plane: the next corner has no other to its right, and is
+  /// the farthest of several on one line.
   void add_face(std::uint32_t in_plane, const Vec3& n) {
     Face face{{}, n, -1e300};
     int corner = -1;
     for (int l = 0; l < count(); ++l) {
       if ((in_plane >> l & 1U) == 0) continue;
       face.offset = std::max(face.offset, n.dot(vertices_[l]));
-      // The farthest from any point is a corner.
+      // The point farthest from any given point is a corner.
       if (corner < 0 || farther(l, corner)) corner = l;
     }
     while (std::find(face.corners.begin(), face.corners.end(), corner) == face.corners.end() &&

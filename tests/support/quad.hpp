@@ -1,5 +1,5 @@
 /// @file
-/// Arithmetic with 113 bits, for truths that tests compare with.
+/// 113-bit arithmetic for reference values of tests.
 #pragma once
 
 #include <cfloat>
@@ -27,7 +27,7 @@ inline Real square_root(Real x) {
   return root;
 }
 
-/// Three numbers in double or with 113 bits.
+/// A 3-vector in double or with 113 bits.
 template <class T>
 struct Triple {
   T x[3];
@@ -74,7 +74,7 @@ inline Point rotated(const Pose& X, const Point& v) {
   return p;
 }
 
-/// R'v: a direction carried into the frame of the body.
+/// R'v: a direction transformed to the frame of the body.
 inline Point rotated_back(const Pose& X, const Point& v) {
   Point p{};
   for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
 /// @file
-/// What speaks to a server of the live view as a browser would, and as none should: HTTP and
-/// WebSocket over plain sockets, so that anything can be sent.
+/// A client of the live-view server that behaves like a browser or violates the protocol: HTTP and
+/// WebSocket over plain sockets, so that arbitrary bytes can be sent.
 #pragma once
 
 #include <arpa/inet.h>
@@ -19,13 +19,13 @@
 
 namespace repel::test {
 
-/// Against hangs: no answer takes so long.
+/// Timeout of every wait, against hangs.
 inline constexpr std::chrono::seconds patience{60};
 
-/// A connection to a port of this machine.
+/// A connection to a local port.
 class Line {
  public:
-  /// @param room [byte] of what has come and was not read; 0: as the system likes
+  /// @param room [byte] receive buffer for unread data; 0: the default of the system
   explicit Line(std::uint16_t port, int room = 0) {
     file_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (room > 0) (void)::setsockopt(file_, SOL_SOCKET, SO_RCVBUF, &room, sizeof room);
@@ -37,7 +37,7 @@ class Line {
       throw std::runtime_error("nobody listens on port " + std::to_string(port));
     }
   }
-  /// Over IPv6; one that has ended where this machine has none.
+  /// Over IPv6; a closed connection if this machine has no IPv6.
   static Line over_ipv6(std::uint16_t port) {
     Line line;
     line.file_ = ::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -54,7 +54,7 @@ class Line {
   Line& operator=(const Line&) = delete;
   ~Line() { close(); }
 
-  /// False when the other side takes no more.
+  /// False if the peer accepts no more data.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       pollfd ready{file_, POLLOUT, 0};
@@ -65,7 +65,7 @@ class Line {
     }
     return true;
   }
-  /// What has come; empty when nothing comes for so long, or nothing will.
+  /// The received bytes; empty on timeout or at the end of the connection.
   std::string receive(std::chrono::milliseconds wait = patience) {
     std::string bytes(65536, '\0');
     pollfd ready{file_, POLLIN, 0};
@@ -77,22 +77,22 @@ class Line {
     bytes.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
     return bytes;
   }
-  /// Everything until the other side ends the connection.
+  /// All bytes until the peer closes the connection.
   std::string receive_all() {
     std::string all;
     for (std::string some = receive(); !some.empty(); some = receive()) all += some;
     return all;
   }
 
-  /// The other side has ended it.
+  /// The peer has closed the connection.
   [[nodiscard]] bool ended() const { return ended_; }
-  /// Sends no more; what comes can still be read.
+  /// Shuts down sending; receiving remains possible.
   void end_sending() const { (void)::shutdown(file_, SHUT_WR); }
   void close() {
     if (file_ >= 0) ::close(file_);
     file_ = -1;
   }
-  /// Ends it as a program that is killed does not even: with a reset.
+  /// Closes the connection with a TCP reset, which not even a killed program does.
   void reset() {
     const linger at_once{1, 0};
     (void)::setsockopt(file_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
@@ -107,12 +107,12 @@ class Line {
   bool ended_ = false;
 };
 
-/// A request, with the headers that a browser sends.
+/// An HTTP request with the headers that a browser sends.
 struct Ask {
   std::string method = "GET";
   std::string target = "/";
   std::string host{};  ///< empty: 127.0.0.1:PORT
-  std::string more{};  ///< further lines, each with its end
+  std::string more{};  ///< further header lines, each with its line end
 
   [[nodiscard]] std::string text(std::uint16_t port) const {
     std::string all = method;
@@ -128,7 +128,7 @@ struct Ask {
 };
 
 struct Answer {
-  int status = 0;  ///< 0: there was none
+  int status = 0;  ///< 0: no response
   std::string head;
   std::string body;
 
@@ -144,14 +144,14 @@ struct Answer {
   }
 };
 
-/// Asks once, on a connection of its own.
+/// Sends one request on a connection of its own.
 inline Answer ask(std::uint16_t port, const Ask& request) {
   Line line(port);
   (void)line.send(request.text(port));
   return Answer(line.receive_all());
 }
 
-/// The lines that ask for a WebSocket.
+/// The header lines of a WebSocket upgrade request.
 inline std::string upgrade_lines(const std::string& origin = "") {
   std::string lines = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n";
   lines += "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
@@ -159,7 +159,7 @@ inline std::string upgrade_lines(const std::string& origin = "") {
   return lines;
 }
 
-/// A frame of WebSocket, right or wrong.
+/// A WebSocket frame, valid or invalid.
 struct Frame {
   enum Kind : unsigned char { more = 0, text = 1, binary = 2, close = 8, ping = 9, pong = 10 };
 
@@ -167,7 +167,7 @@ struct Frame {
   std::string payload{};
   bool last = true;
   bool masked = true;
-  std::uint64_t announced = 0;  ///< length that it claims, where that is not the payload's
+  std::uint64_t announced = 0;  ///< length field, if different from the payload's
 
   [[nodiscard]] std::string bytes() const {
     static constexpr unsigned char key[4] = {0x12, 0xf4, 0x56, 0x78};
@@ -186,16 +186,16 @@ struct Frame {
   }
 };
 
-/// A page that is open. It reads only while it is asked for what has come.
+/// An open WebSocket client. It reads only during calls that receive.
 class WebPage {
  public:
-  /// As a browser opens it, which names the page that asks.
+  /// Opens it as a browser does, which sends the origin of the page.
   explicit WebPage(std::uint16_t port, const std::string& target = "/live", int room = 0)
       : WebPage(
             Line(port, room),
             Ask{"GET", target, "", upgrade_lines("http://127.0.0.1:" + std::to_string(port))}.text(
                 port)) {}
-  /// @param request that asks for the WebSocket
+  /// @param request the upgrade request
   WebPage(Line line, const std::string& request) : line_(std::move(line)) {
     (void)line_.send(request);
     std::size_t end = std::string::npos;
@@ -205,18 +205,18 @@ class WebPage {
     if (end != std::string::npos) come_.erase(0, end + 4);
   }
 
-  /// Of the answer to the handshake; 101: it is open.
+  /// Status of the handshake response; 101: open.
   [[nodiscard]] int status() const { return status_; }
-  /// With which the server closed it; 0: it has not.
+  /// Close code from the server; 0: not closed by it.
   [[nodiscard]] int close_code() const { return close_code_; }
-  /// Nothing more will come.
+  /// No more data will arrive.
   [[nodiscard]] bool ended() const { return line_.ended(); }
   Line& line() { return line_; }
 
   bool say(const std::string& text) { return send({Frame::text, text}); }
   bool send(const Frame& frame) { return line_.send(frame.bytes()); }
 
-  /// The next message, if one comes in time. Answers pings; ends with the connection.
+  /// The next message, if one arrives in time. Answers pings; ends with the connection.
   std::optional<std::string> next(std::chrono::milliseconds wait = patience) {
     const auto until = std::chrono::steady_clock::now() + wait;
     std::string message;
@@ -233,13 +233,13 @@ class WebPage {
       if (frame->last) return message;
     }
   }
-  /// Reads whatever comes until the server has ended it. Returns the code, 0 without one.
+  /// Reads all data until the server closes the connection. Returns the close code, 0 without one.
   int await_close() {
     while (next()) {
     }
     return close_code_;
   }
-  /// Closes in order.
+  /// Closes with a regular handshake.
   void close() {
     (void)send({Frame::close, std::string("\x03\xe8", 2)});
     (void)await_close();
@@ -257,7 +257,7 @@ class WebPage {
     (void)send({Frame::close, payload});
     line_.end_sending();
   }
-  /// The first frame of what has come, once it is whole.
+  /// The first frame of the received data, once it is complete.
   std::optional<Frame> cut() {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(come_[i]); };
     if (come_.size() < 2) return std::nullopt;
@@ -284,7 +284,7 @@ class WebPage {
   int close_code_ = 0;
 };
 
-/// The port of "http://127.0.0.1:8448/".
+/// The port of a URL such as "http://127.0.0.1:8448/".
 inline std::uint16_t port_of(const std::string& url) {
   return static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
 }

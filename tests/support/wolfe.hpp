@@ -1,6 +1,6 @@
 /// @file
 /// The point of a convex set nearest to the origin by Wolfe's algorithm (1976) in 113-bit
-/// arithmetic: from support points alone, with a bracket that proves itself.
+/// arithmetic: from support points alone, with a self-certifying bracket.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace repel::oracle {
 
-/// A distance between proven bounds; both are 0 when the set holds the origin.
+/// A distance between proven bounds; both are 0 if the set contains the origin.
 struct Bracket {
   Real lower = 0;   ///< [m]
   Real upper = 0;   ///< [m] length of a point of the set
   Point nearest{};  ///< [m] that point
 };
 
-/// Weights of the point nearest to the origin on the affine hull of the corral: w0 + E t with
-/// E = QR and R t = -Q'w0, E the differences to the first point. Gram and Schmidt, each step twice:
-/// normal equations would square the smallness of an angle. False when the corral is degenerate.
+/// Weights of the point nearest to the origin on the affine hull of the corral: w0 + E t with E =
+/// QR and R t = -Q'w0, E the differences to the first point. Gram-Schmidt with reorthogonalization,
+/// since normal equations would square the condition number. False if the corral is degenerate.
 inline bool affine_weights(const std::vector<Point>& corral, std::vector<Real>& weights) {
   const std::size_t n = corral.size() - 1;
   Point q[3];
@@ -49,7 +49,8 @@ inline bool affine_weights(const std::vector<Point>& corral, std::vector<Real>& 
   return true;
 }
 
-/// Points and weights of the corral, moved to the nearest point of its hull; false when stuck.
+/// Points and weights of the corral, moved to the nearest point of its hull; false if no progress
+/// is possible.
 inline bool move_to_nearest(std::vector<Point>& corral, std::vector<Real>& weights) {
   std::vector<Real> target;
   for (int minor = 0; minor < 20; ++minor) {
@@ -77,8 +78,9 @@ inline bool move_to_nearest(std::vector<Point>& corral, std::vector<Real>& weigh
   return true;
 }
 
-/// `support(x)` is the point of the set with the least product with x. Stops when the duality gap
-/// is relatively below `tolerance`, or 1e-32 of `size` [m] squared, or when 113 bits are exhausted.
+/// `support(x)` is the point of the set with the least dot product with x. Stops when the duality
+/// gap is relatively below `tolerance`, or below 1e-32 of `size` [m] squared, or at the limit of
+/// 113-bit precision.
 template <class Support>
 Bracket minimum_norm(Support&& support, const Point& start, Real size, Real tolerance = 1e-24) {
   std::vector<Point> corral{start};

@@ -1,5 +1,5 @@
 /// A PUMA whose operator, readings or loop fail while its tool moves towards a table: how far the
-/// tool gets, from several heights of the fault, against the same way without a fault.
+/// tool gets, for faults at several heights, compared with the same motion without a fault.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
-#include <repel/loop/tick.hpp>
+#include <repel/cell/arm_port.hpp>
+#include <repel/cell/cell.hpp>
+#include <repel/robots/kinematics.hpp>
 #ifdef REPEL_TELEOP_BULLET
 #include <repel/bullet/arm.hpp>
 #endif
 
-#include "cell.hpp"
+#include "describe.hpp"
 
 #ifdef REPEL_TELEOP_BULLET
 
@@ -24,7 +26,7 @@ enum class Fault {
   none,
   silent_operator,
   bad_command,
-  not_a_number,  ///< one position, for ever
+  not_a_number,  ///< one position, permanently
   all_not_numbers,
   frame_of_zeros,  ///< once
   jump,            ///< of the second joint by 0.1 rad, once
@@ -38,8 +40,8 @@ constexpr const char* names[] = {"none",         "silent operator", "bad command
                                  "jump",         "frozen frame",    "frozen encoder",
                                  "huge rate"};
 
-/// A simulated arm whose readings fail, from tick `begins` on.
-class FaultyArm {
+/// A simulated arm with corrupted readings from tick `begins` on.
+class FaultyArm final : public TorqueDrivenArm {
  public:
   FaultyArm(const ArmModel& model, Fault fault, int begins)
       : arm_(model), fault_(fault), begins_(begins), q_(model.links.size()), v_(q_) {}
@@ -51,9 +53,9 @@ class FaultyArm {
     arm_.read_positions(q_);
     arm_.read_velocities(v_);
   }
-  void set_torques(std::span<const double> torques) noexcept { arm_.set_torques(torques); }
-  void step(double period) noexcept { arm_.step(period); }
-  void read_positions(std::span<double> out) const noexcept {
+  void set_torques(std::span<const double> torques) noexcept override { arm_.set_torques(torques); }
+  void step(double period) noexcept override { arm_.step(period); }
+  void read_positions(std::span<double> out) const noexcept override {
     arm_.read_positions(out);
     if (since_ < 0) return;
     const double none = std::numeric_limits<double>::quiet_NaN();
@@ -64,7 +66,7 @@ class FaultyArm {
     if (fault_ == Fault::frame_of_zeros && since_ == 0) std::fill(out.begin(), out.end(), 0.0);
     if (fault_ == Fault::jump && since_ == 0) out[1] += 0.1;
   }
-  void read_velocities(std::span<double> out) const noexcept {
+  void read_velocities(std::span<double> out) const noexcept override {
     arm_.read_velocities(out);
     if (since_ < 0) return;
     if (fault_ == Fault::frozen_frame) std::copy(v_.begin(), v_.end(), out.begin());
@@ -72,11 +74,11 @@ class FaultyArm {
     if (fault_ == Fault::frame_of_zeros && since_ == 0) std::fill(out.begin(), out.end(), 0.0);
     if (fault_ == Fault::huge_rate && since_ == 0) out[2] = -1e308;
   }
-  void enable() noexcept { arm_.enable(); }
-  void stop() noexcept { arm_.stop(); }
-  void engage_brakes(bool on) noexcept { arm_.engage_brakes(on); }
-  [[nodiscard]] ArmState state() const noexcept { return arm_.state(); }
-  /// As it really is.
+  void enable() noexcept override { arm_.enable(); }
+  void stop() noexcept override { arm_.stop(); }
+  void engage_brakes(bool on) noexcept override { arm_.engage_brakes(on); }
+  [[nodiscard]] ArmState state() const noexcept override { return arm_.state(); }
+  /// The true state.
   [[nodiscard]] const bullet::Arm& truth() const noexcept { return arm_; }
 
  private:
@@ -88,14 +90,14 @@ class FaultyArm {
 };
 
 struct Descent {
-  double lowest = 1.0;                         ///< [m] of the tool, in truth
+  double lowest = 1.0;                         ///< [m] of the tool, true value
   double top_speed = 0.0, speed_at_end = 0.0;  ///< [m/s]
-  double way = 0.0;  ///< [m] down in the quarter of a second after the fault
-  int noticed = -1;  ///< ticks after the fault
+  double way = 0.0;                            ///< [m] downward in the 0.25 s after the fault
+  int noticed = -1;                            ///< ticks after the fault
   Stop stop = Stop::running;
   Status status = 0;
-  double torque = 0.0;  ///< greatest share of an effort limit
-  double change = 0.0;  ///< greatest in a tick, as a share of it
+  double torque = 0.0;  ///< largest, relative to the effort limit
+  double change = 0.0;  ///< largest in a tick, relative to it
 };
 
 std::string scene_text(double speed, Fault fault, double before) {
@@ -119,45 +121,44 @@ std::string scene_text(double speed, Fault fault, double before) {
          std::to_string(before) + " s, " + down + "}, {name: on, duration: 3 s, " + after + "}]\n";
 }
 
-/// [m] of the tool frame in truth.
-double height(const Manipulator& at, Kinematics& kinematics, const FaultyArm& arm) {
-  std::vector<double> q(at.start.size());
+/// [m] True position of the tool frame.
+double height(Kinematics& kinematics, const FaultyArm& arm) {
+  std::vector<double> q(static_cast<std::size_t>(kinematics.links()));
   arm.truth().read_positions(q);
   kinematics.update(q);
   return kinematics.X_WT().translation().z();
 }
 
-/// Down towards the table at `speed`; the fault comes when the operator has led for `before` [s].
-/// Without one he presses on.
+/// Down towards the table at `speed`; the fault occurs after the operator has moved for `before`
+/// [s]. Without a fault the operator continues to press.
 Descent run_down(Fault fault, double speed, double before) {
   scene::Scene parsed = scene::parse(scene_text(speed, fault, before), "scene");
   if (fault == Fault::bad_command) parsed.script.back().rates.linear.z() = std::nan("");
-  Cell cell(parsed, true);
-  const Manipulator& puma = cell.arm();
-  const ArmModel& model = puma.robot.arm;
-  const std::chrono::nanoseconds period(2500000);
+  DescribedScene described = describe(parsed, 400.0);
+  described.cell.coprocessor.lock_step = true;
+  Cell cell(std::move(described.cell));
+  const ArmModel& model = cell.description().arms.front().model;
   const int begins = static_cast<int>(std::lround(400.0 * before));
   FaultyArm arm(model, fault, begins);
-  arm.reset(puma.start);
-  CoprocessorOptions options;
-  options.period = period;
-  options.lock_step = true;
-  Coprocessor coprocessor(cell.world, options);
+  arm.reset(parsed.robot.start);
+  ArmPort port(arm, model.links.size());
   network::ScriptedOperator hands(parsed.script);
-  Teleoperator teleoperator(model, arm, cell.arm().kinematics, cell.world, puma.tool, coprocessor,
-                            hands, scene::build_network(parsed, parsed, model, 400.0), period,
-                            puma.links);
   Kinematics truth(model);
   Descent run;
   std::vector<double> sent(model.links.size());
-  double z = height(puma, truth, arm);
+  double z = height(truth, arm);
   double at_fault = z;
   for (int k = 0; k < begins + 800; ++k) {
     arm.begin_tick(k);
-    const TickRecord& record = teleoperator.tick((k + 1) * period);
+    const ArmReadings readings = port.read();
+    cell.sense({&readings, 1}, (k + 1) * cell.period());
+    const network::Command& command =
+        hands.step(cell.control(0).X_WT().linear(), cell.control(0).elapsed());
+    const TickRecord& record = *cell.act({&command, 1}).front();
+    port.apply(record);
     arm.step(0.0025);
     const double before_step = z;
-    z = height(puma, truth, arm);
+    z = height(truth, arm);
     run.lowest = std::min(run.lowest, z);
     run.speed_at_end = std::abs(z - before_step) * 400.0;
     run.top_speed = std::max(run.top_speed, run.speed_at_end);
@@ -189,7 +190,7 @@ TEST(ArmFault, NoFaultBringsThePumaDeeperThanItGoesWithoutOne) {
   for (const double speed : {0.1, 0.2, 0.25}) {
     const Descent without = run_down(Fault::none, speed, 0.2);
     ASSERT_EQ(without.stop, Stop::running) << to_text(without.status);
-    for (const double way : {0.02, 0.04, 0.055}) {  // [m] that it has gone when the fault comes
+    for (const double way : {0.02, 0.04, 0.055}) {  // [m] moved when the fault occurs
       for (int i = 1; i < static_cast<int>(std::size(names)); ++i) {
         const Fault fault = static_cast<Fault>(i);
         const Descent run = run_down(fault, speed, way / speed);
@@ -197,7 +198,8 @@ TEST(ArmFault, NoFaultBringsThePumaDeeperThanItGoesWithoutOne) {
                      std::to_string(way) + " m: lowest " + std::to_string(1e3 * run.lowest) +
                      " mm, without " + std::to_string(1e3 * without.lowest) + " mm, " +
                      to_text(run.status) + ", " + to_text(run.stop));
-        // An operator who is back presses on: there the last tenth of a millimetre is friction's.
+        // An operator that recovers continues to press: then the last tenth of a millimetre depends
+        // on friction.
         const bool comes_back =
             fault == Fault::frame_of_zeros || fault == Fault::jump || fault == Fault::huge_rate;
         EXPECT_GE(run.lowest, without.lowest - (comes_back ? 1e-3 : 1e-5));

@@ -1,4 +1,4 @@
-// A run that is asked to stop goes on until the forces are gone, and no longer than that.
+// A run that is asked to stop continues until the forces have faded out, and no longer.
 #include "fade_out.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,8 @@
 namespace repel::teleop {
 namespace fade_out_test {
 
-/// Two arms whose gains fall by so much a tick once the run is to end; counts the ticks made.
+/// Two arms whose gains decrease by a given amount per tick once the run is to end; counts the
+/// ticks.
 struct Bench {
   std::atomic<bool> stop{false};
   std::atomic<bool> at_once{false};

@@ -1,5 +1,5 @@
 /// @file
-/// A live view without a server: what is said to it and what it says.
+/// A live view without a server: the test sends and receives its messages directly.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,15 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "live_show.hpp"
-#include "schedule/boxes.hpp"
+#include "live_view.hpp"
+#include "pairs/boxes.hpp"
 #include "support/web_page.hpp"
 
 namespace repel::teleop {
 
 using Json = nlohmann::json;
 
-/// Keeps what is said to each page.
+/// Records the messages sent to each page.
 class FakePages final : public visual::Pages {
  public:
   void send(int page, std::string text) override { said_.emplace_back(page, Json::parse(text)); }
@@ -29,7 +29,7 @@ class FakePages final : public visual::Pages {
   [[nodiscard]] int count() const override { return open; }
 
   int open = 0;
-  /// What was said to a page, or to all, since the last time it was asked for.
+  /// The messages sent to a page, or to all, since the last call.
   std::vector<Json> heard_by(int page) {
     std::vector<Json> all;
     std::vector<std::pair<int, Json>> rest;
@@ -53,15 +53,15 @@ inline const Json* last_of(const std::vector<Json>& messages, const char* type) 
   return last;
 }
 
-inline visual::Cast cast_of(BodyId tool, bool replay) {
-  visual::Cast cast;
-  cast.scene = "stage";
-  cast.replay = replay;
-  cast.duration = replay ? 10.0 : 0.0;
-  visual::ArmCast& arm = cast.arms.emplace_back();
+inline visual::SceneInfo scene_info_of(BodyId tool, bool replay) {
+  visual::SceneInfo info;
+  info.scene = "stage";
+  info.replay = replay;
+  info.duration = replay ? 10.0 : 0.0;
+  visual::ArmInfo& arm = info.arms.emplace_back();
   arm.tool = tool;
   arm.joints = {"revolute"};
-  return cast;
+  return info;
 }
 
 /// A show with pages 1 to 3 open.
@@ -71,7 +71,7 @@ struct LiveStage {
   LiveStage(bool replay, const std::string& device, bool pages_drive)
       : boxes(2, 3, {.range = 0.02}, 7),
         tap(boxes.world),
-        show(cast_of(boxes.tool, replay), boxes.world, tap, controls, device, pages_drive) {
+        show(scene_info_of(boxes.tool, replay), boxes.world, tap, controls, device, pages_drive) {
     for (int page = 1; page <= 3; ++page) {
       ++pages.open;
       show.opened(page, visual::Role::drives, pages);
@@ -79,7 +79,7 @@ struct LiveStage {
     (void)pages.heard_by(1);
   }
 
-  /// Why the message was refused; empty: it was not.
+  /// The reason for which the message was refused; empty if it was accepted.
   std::string say(int page, const std::string& text) {
     (void)pages.heard_by(page);
     show.heard(page, text, pages);
@@ -91,15 +91,15 @@ struct LiveStage {
   }
   std::string say(int page, const Json& message) { return say(page, message.dump()); }
 
-  /// Something was said to the loop.
-  bool posted() { return controls.grip.take(); }
-  [[nodiscard]] const Grip& grip() const { return controls.grip.newest(); }
+  /// A message was passed to the control loop.
+  bool posted() { return controls.input.take(); }
+  [[nodiscard]] const DriverInput& input() const { return controls.input.newest(); }
 
-  /// Beats until the pages are told of such an operator; false when they are not for too long.
+  /// Refreshes until the pages are told of such an operator; false on timeout.
   bool until_told(const std::function<bool(const Json&)>& such) {
     const auto until = std::chrono::steady_clock::now() + test::patience;
     while (std::chrono::steady_clock::now() < until) {
-      show.beat(pages);
+      show.refresh(pages);
       for (const Json& message : pages.heard_by(3)) {
         if (message.at("type") == "operator" && such(message)) return true;
       }
@@ -112,7 +112,7 @@ struct LiveStage {
   Tap tap;
   Controls controls;
   FakePages pages;
-  LiveShow show;
+  LiveView show;
 };
 
 inline Json servo(double x, double y, double z, bool clutch = true) {

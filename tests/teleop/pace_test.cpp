@@ -12,12 +12,12 @@ using namespace std::chrono_literals;
 constexpr double period = 0.0025;
 constexpr auto tick_period = 2500us;
 
-/// A loop of ticks in a thread of its own, as teleop::run makes them.
+/// A loop of ticks in a thread of its own, like that of teleop::run.
 class Loop {
  public:
-  explicit Loop(Beating beating, std::int64_t ticks = 1'000'000'000)
-      : thread_([this, beating, ticks] {
-          Pace pace(beating, tick_period, &controls);
+  explicit Loop(Pacing pacing, std::int64_t ticks = 1'000'000'000)
+      : thread_([this, pacing, ticks] {
+          Pace pace(pacing, tick_period, &controls);
           for (std::int64_t k = 0; k < ticks && !stop_; ++k) {
             const double time = period * static_cast<double>(k);
             if (pace.begins_anew(time)) break;
@@ -27,7 +27,7 @@ class Loop {
             made_ = made_ + 1;
           }
           shown_ = at_.load();
-          if (beating == Beating::shown) pace.rest(stop_);
+          if (pacing == Pacing::shown) pace.rest(stop_);
           anew_ = !stop_ && pace.begins_anew(period * static_cast<double>(ticks));
           over_ = true;
         }) {}
@@ -40,9 +40,9 @@ class Loop {
     if (thread_.joinable()) thread_.join();
   }
 
-  [[nodiscard]] std::int64_t made() const { return made_; }    ///< ticks
-  [[nodiscard]] std::int64_t at() const { return at_; }        ///< number of the last
-  [[nodiscard]] std::int64_t shown() const { return shown_; }  ///< that a pause has shown
+  [[nodiscard]] std::int64_t made() const { return made_; }    ///< number of ticks executed
+  [[nodiscard]] std::int64_t at() const { return at_; }        ///< number of the last tick
+  [[nodiscard]] std::int64_t shown() const { return shown_; }  ///< tick shown by a pause
   [[nodiscard]] bool over() const { return over_; }
   [[nodiscard]] bool anew() const { return anew_; }
 
@@ -58,7 +58,7 @@ class Loop {
   std::jthread thread_;
 };
 
-/// Against hangs only.
+/// Only a timeout against hangs.
 bool eventually(const std::function<bool()>& holds) {
   const auto until = std::chrono::steady_clock::now() + 60s;
   while (!holds()) {
@@ -68,7 +68,7 @@ bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
-/// How many ticks were made once it stands still.
+/// Number of ticks executed once the loop is paused.
 std::int64_t still(const Loop& loop) {
   for (std::int64_t made = -1; made != loop.made();) {
     made = loop.made();
@@ -77,9 +77,9 @@ std::int64_t still(const Loop& loop) {
   return loop.made();
 }
 
-class PaceOfAny : public testing::TestWithParam<Beating> {};
+class PaceOfAny : public testing::TestWithParam<Pacing> {};
 INSTANTIATE_TEST_SUITE_P(, PaceOfAny,
-                         testing::Values(Beating::by_the_clock, Beating::at_once, Beating::shown));
+                         testing::Values(Pacing::by_the_clock, Pacing::at_once, Pacing::shown));
 
 TEST_P(PaceOfAny, PausedItStandsAndStepsAreCounted) {
   Loop loop(GetParam());
@@ -117,7 +117,7 @@ TEST_P(PaceOfAny, ItCanEndAndBeginAnewWhilePaused) {
 }
 
 TEST(Pace, WithoutControlsNobodyHoldsItUp) {
-  Pace pace(Beating::at_once, tick_period, nullptr);
+  Pace pace(Pacing::at_once, tick_period, nullptr);
   const std::atomic<bool> stop{false};
   for (int k = 0; k < 1000; ++k) {
     EXPECT_FALSE(pace.begins_anew(period * k));
@@ -127,9 +127,9 @@ TEST(Pace, WithoutControlsNobodyHoldsItUp) {
   pace.rest(stop);
 }
 
-// What is looked at goes by the clock once it is there, and through what lies before at once.
+// A seek runs at full speed up to the requested time, and in real time from there.
 TEST(Pace, SeekForwardGoesThereAndIsSeen) {
-  Loop loop(Beating::shown);
+  Loop loop(Pacing::shown);
   loop.controls.paused = true;
   (void)still(loop);
   loop.controls.seek = 100.0;
@@ -141,7 +141,7 @@ TEST(Pace, SeekForwardGoesThereAndIsSeen) {
 
 TEST(Pace, SeekBackBeginsAnew) {
   for (const bool paused : {false, true}) {
-    Loop loop(Beating::shown);
+    Loop loop(Pacing::shown);
     loop.controls.seek = 100.0;
     EXPECT_TRUE(eventually([&] { return loop.at() >= 40000; }));
     loop.controls.paused = paused;
@@ -154,7 +154,7 @@ TEST(Pace, SeekBackBeginsAnew) {
 }
 
 TEST(Pace, AtItsEndARecordingWaits) {
-  Loop loop(Beating::shown, 100);
+  Loop loop(Pacing::shown, 100);
   EXPECT_TRUE(eventually([&] { return loop.made() == 100; }));
   (void)still(loop);
   EXPECT_FALSE(loop.over());
@@ -164,7 +164,7 @@ TEST(Pace, AtItsEndARecordingWaits) {
 }
 
 TEST(Pace, SeekToTheLastTickIsTheEnd) {
-  Loop loop(Beating::shown, 100000);
+  Loop loop(Pacing::shown, 100000);
   loop.controls.seek = period * 99999;
   EXPECT_TRUE(eventually([&] { return loop.shown() == 99999; }));
   (void)still(loop);
@@ -172,10 +172,10 @@ TEST(Pace, SeekToTheLastTickIsTheEnd) {
   EXPECT_LT(loop.controls.seek, 0.0);
 }
 
-// A hundred times slower takes longer, whatever the machine; and the speed can change on the way.
+// A hundred times slower takes longer on any machine; and the speed can be changed during the run.
 TEST(Pace, SpeedIsAgainstTheClock) {
   const auto begin = std::chrono::steady_clock::now();
-  Loop loop(Beating::shown);
+  Loop loop(Pacing::shown);
   loop.controls.speed = 100.0;
   EXPECT_TRUE(eventually([&] { return loop.at() > 4000; }));
   loop.controls.speed = 0.01;

@@ -1,4 +1,4 @@
-// Whoever looks on changes nothing of what they look at.
+// Observers do not change the run they observe.
 #include "run.hpp"
 
 #include <gtest/gtest.h>
@@ -7,13 +7,12 @@
 #include <optional>
 #include <thread>
 
-#include "cell.hpp"
 #include "pace.hpp"
 
 namespace repel::teleop {
 namespace run_test {
 
-/// A scene with what it takes to run it, its tap if one is wanted.
+/// A scene with all that is needed to run it, and optionally a tap.
 struct Bench {
   Bench(const std::string& name, const std::string& backend, bool has_tap, std::size_t log = 0)
       : scene(scene::load(std::string(REPEL_SOURCE "/scenes/") + name + ".yaml")) {
@@ -21,24 +20,25 @@ struct Bench {
     options.keep_records = true;
     options.seconds = 1.5;
     options.backend = backend;
-    cell.emplace(as_run(scene, options), backend != "ideal");
+    prepared = prepare(scene, options);
     TapOptions tap_options;
-    tap_options.arms = static_cast<int>(cell->arms.size());
+    tap_options.arms = static_cast<int>(prepared->cell.arms());
     tap_options.picture_period = std::chrono::nanoseconds(0);
     tap_options.samples = 64;
     tap_options.log = log;
-    if (has_tap) tap.emplace(cell->world, tap_options);
+    if (has_tap) tap.emplace(prepared->cell.world(), tap_options);
   }
 
   RunResult run(Controls* controls = nullptr) {
     const std::atomic<bool> stop{false};
-    const Company company{tap ? &*tap : nullptr, controls, nullptr, nullptr};
-    return teleop::run(scene, options, company, stop, [](const Progress&) {});
+    const Attachments attached{tap ? &*tap : nullptr, controls, nullptr, nullptr};
+    prepared = prepare(scene, options);
+    return teleop::run(*prepared, attached, stop, [](const Progress&) {});
   }
 
   scene::Scene scene;
   RunOptions options;
-  std::optional<Cell> cell;
+  std::unique_ptr<PreparedRun> prepared;
   std::optional<Tap> tap;
 };
 
@@ -48,7 +48,7 @@ bool same_bits(const T& a, const T& b) {
          0;
 }
 
-/// All that can be repeated of a tick.
+/// All reproducible fields of a tick.
 bool same(const TickRecord& a, const TickRecord& b) {
   const auto same_twist = [](const Twist& s, const Twist& t) {
     return same_bits(s.linear, t.linear) && same_bits(s.angular, t.angular);
@@ -135,7 +135,7 @@ TEST_P(RunOf, LookingOnChangesNoBitOfIt) {
   }
 }
 
-// There are controls, but nobody takes them.
+// There are controls, but no page takes control.
 TEST_P(RunOf, ControlsThatNobodyTakesChangeNoBitOfIt) {
   const RunResult alone = Bench("plates", GetParam(), false).run();
   Controls controls;

@@ -1,16 +1,15 @@
-// Threads beside the loop that fail: it goes on without them.
+// Failing threads beside the loop: it continues without them.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "cell.hpp"
 #include "log.hpp"
 #include "run.hpp"
 
 namespace repel::teleop {
 namespace threads_test {
 
-/// Throws at a tick, and from then on.
+/// Throws at a given tick, and from then on.
 class FailingLog final : public TickLog {
  public:
   explicit FailingLog(std::int64_t at) : at_(at) {}
@@ -46,16 +45,16 @@ struct Stage {
 
 TEST(Threads, ALogThatThrowsEndsAndTheRunGoesOn) {
   Stage stage;
-  const Cell cell(as_run(stage.scene, stage.options), false);
+  const auto prepared = prepare(stage.scene, stage.options);
   TapOptions tap_options;
-  tap_options.arms = static_cast<int>(cell.arms.size());
+  tap_options.arms = static_cast<int>(prepared->cell.arms());
   tap_options.log = 64;
-  Tap tap(cell.world, tap_options);
+  Tap tap(prepared->cell.world(), tap_options);
   FailingLog log(10);
   std::string said;
   LogThread writing(tap.log(), log, [&](const std::string& trouble) { said += trouble; });
-  const RunResult result = run(stage.scene, stage.options, {&tap, nullptr, nullptr, nullptr},
-                               stage.stop, [](const Progress&) {});
+  const RunResult result =
+      run(*prepared, {&tap, nullptr, nullptr, nullptr}, stage.stop, [](const Progress&) {});
   const std::int64_t lacking = writing.close();
   EXPECT_EQ(said, "no words for it");
   EXPECT_GT(log.written, 0);
@@ -69,10 +68,11 @@ TEST(Threads, ProgressThatCannotBeShownDoesNotEndTheRun) {
   stage.options.seconds = 1.5;  // progress is shown every 0.2 s
   int shown = 0;
   testing::internal::CaptureStderr();
-  const RunResult result = run(stage.scene, stage.options, {}, stage.stop, [&](const Progress&) {
-    ++shown;
-    throw std::runtime_error("the terminal is gone");
-  });
+  const RunResult result =
+      run(*prepare(stage.scene, stage.options), {}, stage.stop, [&](const Progress&) {
+        ++shown;
+        throw std::runtime_error("the terminal is gone");
+      });
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(said, "Progress is not shown any more, the run goes on: the terminal is gone\n");
   EXPECT_EQ(shown, 1);

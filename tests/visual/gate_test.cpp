@@ -11,7 +11,7 @@ TEST(Gate, TheAddressAndLocalhostAreHosts) {
   EXPECT_TRUE(gate.is_host("localhost:8448"));
 }
 
-// A page of another site whose name points here, or nearly the right one.
+// A page of another site whose DNS name resolves to this machine, or a similar name.
 TEST(Gate, OtherHostsAreNot) {
   const Gate gate("127.0.0.1", 8448);
   for (const char* host : {"",
@@ -58,8 +58,8 @@ TEST(Gate, OneAddressOfANetworkIsReachedByItAlone) {
   }
 }
 
-// A server on all interfaces once took any address for its own: a page at another one with the same
-// port could drive.
+// Regression: a server on all interfaces accepted any address as its own, so that a page at another
+// address with the same port could take control.
 TEST(Gate, NoOtherAddressIsAHostForBeingInNumbers) {
   const Gate gate("10.0.0.7", 8448);
   for (const char* name : {"10.0.0.8", "8.8.8.8", "127.0.0.1", "[fe80::1]", "[2001:db8::1]"}) {
@@ -84,7 +84,7 @@ TEST(Gate, IPv6StandsInBrackets) {
   EXPECT_FALSE(global.is_host("localhost:8448"));
 }
 
-// One socket for both kinds of addresses gives those of IPv4 in the clothes of IPv6.
+// A dual-stack socket gives IPv4 addresses as IPv4-mapped IPv6 addresses.
 TEST(Gate, AnAddressOfIPv4ThatCameThroughIPv6IsStillItself) {
   const Gate gate("::ffff:127.0.0.1", 8448);
   EXPECT_TRUE(gate.is_host("127.0.0.1:8448"));
@@ -92,7 +92,7 @@ TEST(Gate, AnAddressOfIPv4ThatCameThroughIPv6IsStillItself) {
   EXPECT_FALSE(gate.is_host("127.0.0.2:8448"));
 }
 
-// Of http://127.0.0.1:80 a browser says 127.0.0.1.
+// For http://127.0.0.1:80 a browser sends 127.0.0.1.
 TEST(Gate, BrowsersLeaveOutPort80) {
   const Gate gate("127.0.0.1", 80);
   for (const char* host : {"127.0.0.1", "127.0.0.1:80", "localhost", "localhost:80"}) {

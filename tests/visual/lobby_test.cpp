@@ -7,7 +7,7 @@
 namespace repel::visual {
 namespace lobby_test {
 
-/// Newcomers, each by a number, and who had to leave.
+/// Newcomers, identified by numbers, and those that were evicted.
 struct Door {
   explicit Door(std::size_t most, std::size_t most_of_one) : lobby(most, most_of_one) {}
 

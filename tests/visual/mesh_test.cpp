@@ -38,7 +38,7 @@ std::vector<Specimen> specimens() {
           {"prism", Shape::hull(families::prism(7, 0.1, 0.2).vertices)}};
 }
 
-/// Nothing of these is thick, or they are not there at all.
+/// These have no thickness, or are empty.
 std::vector<Specimen> flat_specimens() {
   const std::vector<Vec3> polygon{{0.2, 0, 0},     {0, 0.1, 0}, {-0.2, 0, 0}, {0, -0.1, 0},
                                   {0.05, 0.01, 0}, {0, 0, 0},   {0.2, 0, 0}};
@@ -58,7 +58,7 @@ std::vector<Specimen> flat_specimens() {
           {"the same point", Shape::hull(std::vector<Vec3>(9, Vec3(1, 2, 3)))}};
 }
 
-/// [m] of the set that a mesh of this level stands for.
+/// [m] of the set that a mesh of this level represents.
 double support_value(const Shape& shape, int level, const Vec3& d) {
   const Level& chosen = shape.level(level);
   return chosen.core.support_value(Vec<double>(d)) + (level == 0 ? chosen.depth : 0.0);
@@ -70,7 +70,7 @@ double support_value(const Mesh& mesh, const Vec3& d) {
   return most;
 }
 
-/// Each edge has two triangles, which go along it in opposite directions.
+/// Each edge belongs to two triangles, with opposite directions.
 void expect_closed(const Mesh& mesh) {
   std::map<std::pair<int, int>, int> edges;
   for (const auto& t : mesh.triangles) {
@@ -92,7 +92,7 @@ Vec3 twice_area(const Mesh& mesh, const std::array<int, 3>& t) {
   return (at(1) - at(0)).cross(at(2) - at(0));
 }
 
-/// [m^3] inside; each triangle must turn its face away from the middle.
+/// [m^3] Enclosed volume; each triangle must face outward.
 double volume_inside(const Mesh& mesh) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : mesh.vertices) middle += p / static_cast<double>(mesh.vertices.size());
@@ -110,7 +110,7 @@ bool is_polytope(const Shape& shape, int level) {
   return shape.level(level).core.is_polytope() && (level > 0 || shape.level(0).depth == 0.0);
 }
 
-/// In every direction as far as the set; a little less far where that is curved.
+/// In every direction the extent equals that of the set, or slightly less where the set is curved.
 void expect_outline(const Mesh& mesh, const Shape& shape, int level) {
   families::Rng rng(seed);
   // The half diagonal of a patch of a sphere: 7.5 by 15 degrees, of 15 by 30 at other levels.
@@ -178,7 +178,7 @@ TEST(Mesh, RoundOnesHaveNearlyTheirVolume) {
   }
 }
 
-// Both sides, and each side covers the whole of it once.
+// Both sides, each of which covers the whole area once.
 TEST(Mesh, FlatSetsHaveTwoSidesAndThinnerOnesNone) {
   const std::map<std::string, double> areas{{"rectangle", 0.08},
                                             {"disc", 0.04 * 24 * std::sin(M_PI / 24)},
@@ -202,7 +202,7 @@ TEST(Mesh, FlatSetsHaveTwoSidesAndThinnerOnesNone) {
   }
 }
 
-// What is left of a cylinder that is wider than long is a disc at last, and then a point.
+// A cylinder that is wider than long is finally reduced to a disc, and then to a point.
 TEST(Mesh, ADiscThatIsLeftIsRoundAllAround) {
   const Shape shape = Shape::cylinder(0.3, 0.1);
   const Mesh mesh = mesh_of(shape, shape.levels() - 2);

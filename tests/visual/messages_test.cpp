@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A tool of two parts, a link, two obstacles, of which one lets pass; one arm.
+/// A tool of two parts, a link, two obstacles, one of them passable; one arm.
 struct Stage {
   explicit Stage(const std::string& name = "stage") {
     tool = world.add_body("tool");
@@ -27,8 +27,8 @@ struct Stage {
     world.add_pair(palm, wall, {.range = 0.02});
     world.add_pair(palm, gate, {.range = 0.01, .ceiling = 10.0, .passable = true});
     world.add_pair(ball, wall, {.range = 0.03});
-    cast.scene = name;
-    ArmCast& arm = cast.arms.emplace_back();
+    info.scene = name;
+    ArmInfo& arm = info.arms.emplace_back();
     arm.tool = tool;
     arm.links = {link};
     arm.joints = {"revolute", "prismatic"};
@@ -42,7 +42,7 @@ struct Stage {
   World world;
   BodyId tool;
   BodyId link;
-  Cast cast;
+  SceneInfo info;
   Snapshot shot;
 };
 
@@ -54,7 +54,7 @@ std::set<std::string> keys_of(const Json& object) {
 
 TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   const Stage stage;
-  const Json scene = Json::parse(scene_message(stage.cast, stage.world));
+  const Json scene = Json::parse(scene_message(stage.info, stage.world));
   EXPECT_EQ(keys_of(scene),
             (std::set<std::string>{"type", "version", "name", "rate_hz", "period_us", "mode",
                                    "duration_s", "bodies", "parts", "pairs", "arms"}));
@@ -106,7 +106,7 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
   stage.shot.pairs[0].force = 12.5;
   const TickSample samples[] = {{1233, 0.01, 2.0, {}}, {1234, infinite, 0.0, {}}};
   const Json frame =
-      Json::parse(frame_message(stage.cast, stage.world, stage.shot, samples, false));
+      Json::parse(frame_message(stage.info, stage.world, stage.shot, samples, false));
   EXPECT_EQ(keys_of(frame), (std::set<std::string>{"type", "tick", "time_s", "running", "phase",
                                                    "status", "bodies", "pairs", "pairs_omitted",
                                                    "near", "evaluated", "of", "arms", "recent"}));
@@ -135,7 +135,7 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
             (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us"}));
 }
 
-// A page that cannot read a message is blind when it matters most.
+// A page that cannot parse a message would fail when it is needed most.
 TEST(Messages, WhatIsNoNumberIsNull) {
   Stage stage;
   TickRecord& record = stage.shot.arms.front();
@@ -156,7 +156,7 @@ TEST(Messages, WhatIsNoNumberIsNull) {
     s.p_WA = s.p_WB = s.extraction_W = all;
     const TickSample sample{7, bad, bad, {}};
     const Json frame =
-        Json::parse(frame_message(stage.cast, stage.world, stage.shot, {&sample, 1}, true));
+        Json::parse(frame_message(stage.info, stage.world, stage.shot, {&sample, 1}, true));
     EXPECT_TRUE(frame.at("time_s").is_null());
     EXPECT_TRUE(frame.at("bodies")[1][0].is_null());
     for (const char* key : {"d", "lower", "upper", "f"}) {
@@ -185,11 +185,11 @@ TEST(Messages, AnyNameGivesTextThatCanBeRead) {
                {"\xed\xa0\x80", false}};
   for (const auto& [name, is_text] : names) {
     const Stage stage(name);
-    const Json scene = Json::parse(scene_message(stage.cast, stage.world));
+    const Json scene = Json::parse(scene_message(stage.info, stage.world));
     EXPECT_TRUE(scene.at("name").is_string());
     Stage shown(name);
     shown.shot.arms.front().phase = 1;
-    const Json frame = Json::parse(frame_message(shown.cast, shown.world, shown.shot, {}, true));
+    const Json frame = Json::parse(frame_message(shown.info, shown.world, shown.shot, {}, true));
     EXPECT_TRUE(frame.at("phase").is_string());
     if (!is_text) continue;
     EXPECT_EQ(scene.at("name"), name);
@@ -202,7 +202,7 @@ TEST(Messages, APhaseBeyondTheScriptHasNoName) {
   Stage stage;
   for (const std::int32_t phase : {-1, 2, std::numeric_limits<std::int32_t>::max()}) {
     stage.shot.arms.front().phase = phase;
-    const Json frame = Json::parse(frame_message(stage.cast, stage.world, stage.shot, {}, true));
+    const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
     EXPECT_EQ(frame.at("phase"), "");
   }
 }
@@ -223,7 +223,7 @@ TEST(Messages, TimingCountsEveryTickInOneBin) {
     EXPECT_EQ(sum, 81) << what;
   }
   EXPECT_EQ(message.at("ticks"), 81);
-  // Those with 100 ms or a day in them, which are 2 of 9 twice over.
+  // Those with 100 ms or a day as either time; 7 of the 9 values are shorter.
   EXPECT_EQ(message.at("misses"), 81 - 49);
   for (const char* key : {"p50", "p99", "max"}) {
     EXPECT_TRUE(message.at("compute_us").at(key).is_number());

@@ -21,7 +21,7 @@ TEST(FrameCounter, CountsWhatAReaderOfMessagesDoesNotSee) {
   EXPECT_EQ(counter.count(Frame{Frame::more, "bare", true, false}.bytes()), 1);
 }
 
-// However they are cut on their way.
+// Independent of fragmentation.
 TEST(FrameCounter, FramesOfAllSizesAreCountedOnceInWhateverPieces) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));

@@ -1,8 +1,8 @@
-// What the server answers to requests, right and wrong.
+// Responses of the server to valid and invalid requests.
 #include <repel/base/setup_error.hpp>
 
 #include "end_to_end/folder.hpp"
-#include "visual/fake_show.hpp"
+#include "visual/fake_page_handler.hpp"
 
 namespace repel::visual {
 namespace server_http_test {
@@ -51,7 +51,7 @@ TEST(ServerHttp, OtherMethodsAreRefused) {
   EXPECT_EQ(ask(stage.port, {"POST", "/live", "", upgrade}).status / 100, 4);
 }
 
-// A page of another site, whatever it has its name point to.
+// A page of another site, whatever its name resolves to.
 TEST(ServerHttp, OtherHostsAndOriginsAreForbidden) {
   const Stage stage;
   const std::string port = ":" + std::to_string(stage.port);
@@ -106,7 +106,7 @@ TEST(ServerHttp, GarbageIsNotAnsweredAndHarmsNobody) {
   stage.expect_alive();
 }
 
-// Of two hosts or two origins one would have been looked at.
+// Of two Host or Origin headers only one would have been checked.
 TEST(ServerHttp, ASecondHostOrOriginIsForbidden) {
   const Stage stage;
   const std::string own = "127.0.0.1:" + std::to_string(stage.port);
@@ -118,7 +118,7 @@ TEST(ServerHttp, ASecondHostOrOriginIsForbidden) {
   }
 }
 
-// On all interfaces too: only the address at this end of the connection is one of this server.
+// Also on all interfaces: only the local address of the connection is accepted.
 TEST(ServerHttp, OnAllInterfacesAForeignAddressIsForbidden) {
   for (const char* address : {"0.0.0.0", "::"}) {
     ServerOptions options;
@@ -164,7 +164,7 @@ TEST(ServerHttp, OverIPv6ItIsReachedByItsAddressInBrackets) {
   EXPECT_EQ(status({"GET", "/live", own, foreign}), 403);
 }
 
-// A hundred that say nothing, or half of something, hold up neither who is there nor who comes.
+// A hundred clients that send nothing, or half a request, block neither open pages nor new ones.
 TEST(ServerHttp, ManyThatSayNothingDoNotKeepANewPageOut) {
   ServerOptions options;
   options.patience = std::chrono::hours(1);
@@ -184,7 +184,7 @@ TEST(ServerHttp, ManyThatSayNothingDoNotKeepANewPageOut) {
   EXPECT_FALSE(silent.back().ended()) << "the newest has not";
 }
 
-// A handshake that comes byte by byte is not given more time with each.
+// A handshake that arrives byte by byte does not extend its timeout.
 TEST(ServerHttp, ASlowRequestIsGivenUpHoweverItGoesOn) {
   Stage stage;
   Line line(stage.port);
@@ -210,7 +210,7 @@ TEST(ServerHttp, APortInUseIsNamed) {
   Stage stage;
   ServerOptions options;
   options.port = stage.port;
-  FakeShow show;
+  FakePageHandler show;
   try {
     const Server second(options, {}, show);
     FAIL() << "two servers on one port";
@@ -222,7 +222,7 @@ TEST(ServerHttp, APortInUseIsNamed) {
 }
 
 TEST(ServerHttp, AnAddressThatIsNotOursIsNamed) {
-  FakeShow show;
+  FakePageHandler show;
   for (const char* address : {"192.0.2.1", "no address", "", "localhost"}) {
     ServerOptions options;
     options.address = address;

@@ -1,9 +1,9 @@
-// Pages that are open, and what one of them can do to the others: nothing.
+// Open pages must not affect each other.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
-#include "visual/fake_show.hpp"
+#include "visual/fake_page_handler.hpp"
 
 namespace repel::visual {
 namespace server_pages_test {
@@ -11,7 +11,7 @@ namespace server_pages_test {
 using test::Frame;
 using test::WebPage;
 
-/// [kB] that this program holds of the memory; 0 with a sanitizer, which keeps what is freed.
+/// [kB] Resident memory of this program; 0 with a sanitizer, which retains freed memory.
 long resident() {
 #ifdef REPEL_SANITIZED
   return 0;
@@ -52,10 +52,10 @@ TEST(ServerPages, AShowThatThrowsInTheThreadOfTheServerEndsNeitherTheProgramNorT
     WebPage page(stage.port);
     EXPECT_EQ(page.next(), "welcome");
     stage.show.throws = true;
-    const std::int64_t before = stage.show.beats();
+    const std::int64_t before = stage.show.refreshes();
     EXPECT_TRUE(page.say("hello"));
     EXPECT_TRUE(eventually([&] { return stage.show.count("hello") == 1; }));
-    EXPECT_TRUE(eventually([&] { return stage.show.beats() > before + 3; }));
+    EXPECT_TRUE(eventually([&] { return stage.show.refreshes() > before + 3; }));
     stage.show.throws = false;
     stage.expect_pictures(page, 3);
     stage.expect_alive();
@@ -85,7 +85,7 @@ TEST(ServerPages, NoMoreThanEightAreOpen) {
   EXPECT_TRUE(eventually([&] { return WebPage(stage.port).status() == 101; }));
 }
 
-/// Whatever `misuse` does, its page is cut off with one of `codes` and another goes on.
+/// For any `misuse`, its page is closed with one of `codes` and another continues.
 void expect_cut_off(const std::vector<int>& codes, const std::function<void(WebPage&)>& misuse) {
   Stage stage;
   WebPage other(stage.port);
@@ -108,7 +108,7 @@ TEST(ServerPages, AMessageThatIsTooLongCutsItOff) {
   });
 }
 
-// It is announced, and the server does not wait for it, nor make room.
+// The length is announced; the server neither waits for the data nor allocates memory.
 TEST(ServerPages, AGigabyteCutsItOffAtOnce) {
   const long before = resident();
   expect_cut_off({1009}, [](WebPage& page) {
@@ -159,7 +159,7 @@ TEST(ServerPages, FloodingCutsItOff) {
   });
 }
 
-// What a reader of messages does not see: pings, pongs, empty parts.
+// Parts of the protocol not visible to a reader of messages: pings, pongs, empty fragments.
 TEST(ServerPages, FloodingWithFramesThatAreNoMessagesCutsItOff) {
   for (const Frame& frame :
        {Frame{Frame::ping, "p"}, Frame{Frame::ping}, Frame{Frame::pong}, Frame{Frame::text, ""}}) {
@@ -176,7 +176,7 @@ TEST(ServerPages, FloodingWithFramesThatAreNoMessagesCutsItOff) {
   });
 }
 
-// The last of a flood is not heard after the page was told that it is over.
+// No message of a flood is processed after the page was told that it is closed.
 TEST(ServerPages, OfAFloodNoMoreIsHeardThanIsAllowed) {
   Stage stage;
   WebPage page(stage.port);
@@ -196,7 +196,7 @@ TEST(ServerPages, WhatIsAllowedInASecondIsHeard) {
   stage.expect_pictures(page, 1);
 }
 
-// Killed, its machine gone, or half of it: the end is heard of.
+// Killed, machine gone, or half closed: the end is detected.
 TEST(ServerPages, APageThatVanishesIsHeardOf) {
   Stage stage;
   {
@@ -217,7 +217,7 @@ TEST(ServerPages, APageThatVanishesIsHeardOf) {
   stage.expect_alive();
 }
 
-// Its first picture stays on its way; the others are not stored for it.
+// Its first frame stays in transit; later ones are not queued for it.
 TEST(ServerPages, APageThatNeverReadsHoldsUpNobody) {
   Stage stage;
   WebPage deaf(stage.port, "/live", 4096);
@@ -250,7 +250,8 @@ TEST(ServerPages, APageThatLetsAHundredMessagesWaitIsCutOff) {
   stage.expect_pictures(other, 2);
 }
 
-// The answer to its own question is what cuts it off: it counts as closed all the same.
+// It is disconnected because of the answer to its own request: it must count as closed all the
+// same.
 TEST(ServerPages, APageThatAsksAndNeverReadsIsCutOff) {
   Stage stage;
   stage.show.shows = false;
@@ -262,7 +263,7 @@ TEST(ServerPages, APageThatAsksAndNeverReadsIsCutOff) {
   EXPECT_TRUE(eventually([&] { return stage.show.open() == 0; }));
 }
 
-// One that sends no more but does not read what was sent either leaves nothing behind.
+// Clients that have shut down sending and do not read leave nothing behind.
 TEST(ServerPages, NothingIsKeptOfAPageThatIsClosed) {
   Stage stage;
   stage.show.picture_size = 8000000;
@@ -272,12 +273,12 @@ TEST(ServerPages, NothingIsKeptOfAPageThatIsClosed) {
     pages.push_back(std::make_unique<WebPage>(stage.port, "/live", 4096));
     EXPECT_EQ(pages.back()->next(), "welcome");
   }
-  // Each has a picture on its way that it does not take.
-  const std::int64_t beats = stage.show.beats();
-  EXPECT_TRUE(eventually([&] { return stage.show.beats() > beats + 3; }));
+  // Each has a frame in transit that it does not read.
+  const std::int64_t refreshes = stage.show.refreshes();
+  EXPECT_TRUE(eventually([&] { return stage.show.refreshes() > refreshes + 3; }));
   for (const auto& page : pages) page->line().end_sending();
   EXPECT_TRUE(eventually([&] { return stage.show.count("closed") == 5; }));
-  // Of each only the end that this test holds.
+  // Of each, only the socket held by this test.
   EXPECT_TRUE(eventually([&] { return open_files() == before + 5; }));
 }
 

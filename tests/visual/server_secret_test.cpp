@@ -1,5 +1,5 @@
-// A server that other machines reach: who may look on, and who may drive.
-#include "visual/fake_show.hpp"
+// A server reachable from other machines: who may watch, and who may control.
+#include "visual/fake_page_handler.hpp"
 
 namespace repel::visual {
 namespace server_secret_test {
@@ -14,7 +14,7 @@ std::string presenting(const std::string& text) {
   return R"({"type": "secret", "secret": ")" + text + "\"}";
 }
 
-/// A server that wants a secret, and listens where others reach it.
+/// A server that requires a secret and listens on all interfaces.
 struct SecretStage : Stage {
   explicit SecretStage(ServerOptions options = {}) : Stage(with_secret(options)) {}
   static ServerOptions with_secret(ServerOptions options) {
@@ -22,7 +22,7 @@ struct SecretStage : Stage {
     options.secret = secret;
     return options;
   }
-  /// A page that knows it, and has pictures.
+  /// A page that knows it and receives frames.
   void expect_alive() {
     WebPage page(port);
     ASSERT_EQ(page.status(), 101);
@@ -46,7 +46,7 @@ TEST(ServerSecret, WhoPresentsItLooksOnAndDrives) {
   EXPECT_EQ(stage.show.of_page(1), (std::vector<std::string>{"opened", "hello", "closed"}));
 }
 
-// Neither a picture nor a word of it reaches the show.
+// It receives no frame, and none of its messages reaches the page handler.
 TEST(ServerSecret, WhoDoesNotKnowItSeesAndDoesNothing) {
   for (const std::string& first :
        {std::string("hello"), std::string(), presenting(""), presenting(secret.substr(1)),
@@ -86,7 +86,7 @@ TEST(ServerSecret, WhoGuessesHasToWait) {
   }
   EXPECT_GE(codes[0], 5);
   EXPECT_GT(codes[1], 0) << "it is not compared any more";
-  // And in the end whoever knows it gets in.
+  // In the end a client that knows it is admitted.
   EXPECT_TRUE(eventually([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     WebPage page(stage.port);
@@ -114,7 +114,7 @@ TEST(ServerSecret, APageOfAnotherOriginIsRefusedWhateverItKnows) {
   }
 }
 
-// The page itself says nothing of the scene; without it nobody could present anything.
+// The page itself reveals nothing of the scene; without it no secret could be entered.
 TEST(ServerSecret, ThePageItselfIsForEverybody) {
   SecretStage stage;
   const test::Answer page = test::ask(stage.port, {});
@@ -122,7 +122,7 @@ TEST(ServerSecret, ThePageItselfIsForEverybody) {
   EXPECT_EQ(page.body.find(secret), std::string::npos);
 }
 
-// Those who have opened the line and say nothing take no page's place.
+// Clients that have connected and send nothing take no page's slot.
 TEST(ServerSecret, ManyThatDoNotPresentItDoNotKeepAPageOut) {
   ServerOptions options;
   options.patience = std::chrono::hours(1);
@@ -159,7 +159,7 @@ TEST(ServerSecret, AServerCanEndWhileItIsAskedFor) {
   }
 }
 
-// On this machine, without a secret: a browser always says of which page a WebSocket is.
+// On this machine, without a secret: a browser always sends the origin of a WebSocket.
 TEST(ServerSecret, WithoutOneAProgramThatNamesNoOriginLooksOn) {
   Stage stage;
   WebPage program(Line(stage.port),

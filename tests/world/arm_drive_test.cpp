@@ -1,4 +1,4 @@
-// The drive of a simulated arm, and what its brakes hold.
+// The drive of a simulated arm, and the holding torque of its brakes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ TEST(ArmDrive, WithoutAWatchdogTorquesLastForEver) {
   EXPECT_THROW(ArmDrive(std::nan("")), SetupError);
 }
 
-/// Two links of 2 kg, 0.5 m long; the second turns 0.4 m beyond the first.
+/// Two links of 2 kg, 0.5 m long; the second rotates 0.4 m beyond the first.
 ArmModel two_links() {
   ArmModel model;
   for (int i = 0; i < 2; ++i) {

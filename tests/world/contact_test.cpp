@@ -17,7 +17,7 @@ TEST(Contact, TheCoreReachesAsFarAsTheSizesOfAShapeSay) {
   EXPECT_EQ(core_extents(Shape::cone(0.1, 0.3)), Vec3(0.1, 0.1, 0.3));
 }
 
-/// What a part on `link` at `X_LP` is refused with by an arm of one link.
+/// The error message of an arm of one link for a part on `link` at `X_LP`.
 std::string complaint(int link, const Pose& X_LP) {
   ArmModel model;
   model.links.emplace_back();

@@ -1,4 +1,4 @@
-// What an engine refuses to move, and how it says so.
+// Arms that an engine refuses to simulate, and the error messages.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -22,7 +22,7 @@ ArmModel sound() {
   return model;
 }
 
-/// What a sound arm is refused with after `spoil`.
+/// The error message for a valid arm after `spoil`.
 template <class Spoil>
 std::string complaint(Spoil spoil) {
   ArmModel model = sound();

@@ -148,13 +148,13 @@ TEST(World, PlaceKeepsTheOldStateWhenTheNewOneIsNotSound) {
   EXPECT_EQ(refused, 36);
 }
 
-// Farthest point of a moving body from where it was, against the odometer that must not be less.
+// Distance of the farthest point of a moving body from its start, which the odometer must bound.
 TEST(World, OdometersBoundTheMotionOfEveryPointOfABody) {
   families::Rng random(seed);
   for (int run = 0; run < 40; ++run) {
     World world;
     const BodyId body = world.add_body("body");
-    std::vector<Vec3> corners;  // in the body
+    std::vector<Vec3> corners;  // in the body frame
     for (int part = 0; part < 3; ++part) {
       const Vec3 h = Vec3(families::uniform(random, 0.0, 0.3), families::uniform(random, 0.0, 0.3),
                           families::uniform(random, 0.0, 0.3));

@@ -46,14 +46,14 @@ class Coal {
   }
 
  private:
-  /// What a pair keeps from tick to tick.
+  /// State of a pair kept from tick to tick.
   struct Guess {
     coal::Vec3s ray = coal::Vec3s(1, 0, 0);
     coal::support_func_guess_t hint = coal::support_func_guess_t::Zero();
   };
 
-  /// Coal 3.0.3 decides once per process, by the direction of the first support of any box, whether
-  /// to inflate all boxes by 1e-10: a direction off the axes spares it that error.
+  /// Coal 3.0.3 decides once per process, by the direction of the first support query of any box,
+  /// whether to inflate all boxes by 1e-10: an oblique first direction avoids that error.
   static void decide_inflation() {
     const coal::Box box(1.0, 1.0, 1.0);
     int hint = 0;

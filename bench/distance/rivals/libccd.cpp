@@ -8,7 +8,7 @@ namespace repel::bench {
 
 namespace {
 
-/// What libccd's callbacks are given: the user's own shape at its pose.
+/// The argument of libccd's callbacks: the user's shape at its pose.
 struct Body {
   const Solid* solid = nullptr;
   Pose X_W = Pose::Identity();
@@ -19,7 +19,7 @@ ccd_vec3_t to_ccd(const Vec3& v) {
   return {{v.x(), v.y(), v.z()}};
 }
 
-/// The support map, which libccd leaves to its user: signs for a box, a scan for a hull.
+/// The support map, which libccd leaves to the user: signs for a box, a linear scan for a hull.
 void support(const void* object, const ccd_vec3_t* direction_W, ccd_vec3_t* farthest_W) {
   const Body& body = *static_cast<const Body*>(object);
   const Vec3 d =
@@ -40,7 +40,7 @@ void support(const void* object, const ccd_vec3_t* direction_W, ccd_vec3_t* fart
   *farthest_W = to_ccd(body.X_W * best);
 }
 
-/// A point inside the body, where MPR begins.
+/// An interior point, from which MPR starts.
 void place_centre(const void* object, ccd_vec3_t* centre_W) {
   const Body& body = *static_cast<const Body*>(object);
   *centre_W = to_ccd(body.X_W * body.centre);
@@ -85,7 +85,7 @@ class Libccd {
   Result warm(const Ask& ask) { return cold(ask); }
   static Answer read(const Result& r) {
     if (r.apart != 0) return {.distance = std::nan("")};
-    const ccd_real_t* out_of_a = r.direction_W.v;  // where B would have to go
+    const ccd_real_t* out_of_a = r.direction_W.v;  // the direction in which B separates from A
     return {.distance = -r.depth, .extraction_W = -Vec3(out_of_a[0], out_of_a[1], out_of_a[2])};
   }
 

@@ -35,7 +35,7 @@ class MuJoCo {
 
   Result cold(const Ask& ask) {
     const auto& [a, b] = task_.pairs[ask.pair];
-    // All geoms of a tick are placed at once by two pointers: no pose is copied in the time taken.
+    // All geoms of a tick are placed by setting two pointers: the timed section copies no pose.
     data_->geom_xpos = X_W_[ask.tick].positions.data();
     data_->geom_xmat = X_W_[ask.tick].rotations.data();
     Result r;
@@ -50,7 +50,7 @@ class MuJoCo {
   }
 
  private:
-  static constexpr double far = 1e6;  ///< [m] beyond every gap of the tasks
+  static constexpr double far = 1e6;  ///< [m] larger than every gap of the tasks
 
   struct Placed {
     std::vector<double> positions, rotations;
@@ -83,8 +83,9 @@ class MuJoCo {
     return model;
   }
 
-  /// The compiler turns a mesh into its axes of inertia and rounds the vertices to floats again.
-  /// Putting the given ones back, in the same order, spares MuJoCo that error; the hull stays.
+  /// MuJoCo's compiler transforms a mesh to its principal axes of inertia and rounds the vertices
+  /// to floats again. Restoring the original vertices, in the same order, removes that error; the
+  /// hull stays.
   void keep_vertices_where_they_were() {
     for (std::size_t i = 0; i < task_.solids.size(); ++i) {
       const int mesh = model_->geom_dataid[i];

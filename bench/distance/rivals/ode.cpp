@@ -9,8 +9,8 @@ namespace repel::bench {
 
 namespace {
 
-/// The planes, points and polygons a convex geom of ODE points to, around a point inside, as it
-/// wants them.
+/// The planes, points and polygons referenced by a convex geom of ODE, relative to an interior
+/// point, in the format of ODE.
 struct Mesh {
   Vec3 origin;
   std::vector<dReal> planes, points;
@@ -63,7 +63,7 @@ class Ode {
     const auto* deepest =
         std::max_element(r.contacts.begin(), r.contacts.begin() + r.count,
                          [](const auto& a, const auto& b) { return a.depth < b.depth; });
-    const dReal* n = deepest->normal;  // into the first geom
+    const dReal* n = deepest->normal;  // points into the first geom
     return {.distance = -deepest->depth, .extraction_W = {n[0], n[1], n[2]}};
   }
 

@@ -1,5 +1,5 @@
 /// @file
-/// Ours, as it is measured.
+/// repel as a measured library.
 #pragma once
 
 #include <repel/repel.hpp>
@@ -32,7 +32,7 @@ class Repel {
   static Answer read(const Separation& s) { return {s.distance, s.lower, s.upper, s.extraction_W}; }
 
  private:
-  // Levels are for overlap: large hulls are asked about gaps only, and load faster with one.
+  // Levels serve overlap only: large hulls occur only in gap tasks, and load faster with one level.
   static ReductionOptions levels(const Solid& s, const ReductionOptions& reduction) {
     return s.vertices.size() > 64 ? ReductionOptions{.levels = 1} : reduction;
   }

@@ -10,8 +10,8 @@ btVector3 to_bullet(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Its boxes are larger by a margin and its pairs stay listed while those overlap, so the boxes
-/// that were given are compared once more.
+/// Bullet enlarges its boxes by a margin and keeps a pair listed while these overlap, so the
+/// original boxes are compared once more.
 class Bullet final : public BroadPhase {
  public:
   Bullet(std::span<const Box> boxes, int tool_parts) {

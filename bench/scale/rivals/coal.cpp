@@ -52,7 +52,7 @@ class Coal final : public BroadPhase {
     std::vector<std::pair<int, int>>& found_;
   };
 
-  /// The box is given instead of computed from the geometry.
+  /// Uses the given box, not one computed from the geometry.
   void set(int part, const Box& box) {
     objects_[part]->getAABB().min_ = box.min();
     objects_[part]->getAABB().max_ = box.max();

@@ -7,7 +7,7 @@ namespace repel::scale {
 
 namespace {
 
-/// An object whose box is given instead of computed from its geometry.
+/// An object with a given box, not one computed from its geometry.
 class Object final : public fcl::CollisionObjectd {
  public:
   Object(int part, const Box& box)

@@ -1,5 +1,5 @@
 /// @file
-/// For threads beside the loop, whose troubles must not end it.
+/// Exceptions as text, for threads beside the loop: their errors must not end it.
 #pragma once
 
 #include <exception>
@@ -7,7 +7,7 @@
 
 namespace repel {
 
-/// Does `work`. Returns what it threw, in words; empty when it threw nothing.
+/// Runs `work`. Returns the text of the exception that it threw; empty when it threw none.
 template <class Work>
 [[nodiscard]] std::string complaint_of(const Work& work) noexcept {
   try {
@@ -19,7 +19,7 @@ template <class Work>
       return what.empty() ? "unknown" : what;
     }
   } catch (...) {
-    return "unknown";  // short enough to take no memory, which may be what is lacking
+    return "unknown";  // short string optimization: needs no heap, which may be exhausted
   }
 }
 

@@ -1,6 +1,6 @@
 /// @file
-/// A number held as the unevaluated sum of two doubles: about 32 digits, for what double cannot
-/// decide.
+/// A number stored as the unevaluated sum of two doubles: about 32 digits, for decisions that
+/// double cannot make.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace repel {
 
-/// `hi + lo` with |lo| at most half an ulp of hi. Each operation is right to about 2^-102,
-/// relative. Error-free sum: Knuth, TAOCP 2, 4.2.2; error-free product: by fused multiply-add.
+/// `hi + lo` with |lo| at most half an ulp of hi. Relative error of each operation: about 2^-102.
+/// Error-free sum: Knuth, TAOCP 2, 4.2.2; error-free product: by fused multiply-add.
 struct DoubleDouble {
   double hi = 0.0;
   double lo = 0.0;
@@ -67,7 +67,7 @@ struct DoubleDouble {
   friend bool operator>=(DoubleDouble a, DoubleDouble b) noexcept { return !(a < b); }
 };
 
-/// Square root, right to about 2^-100 relative; 0 for a value that is not positive.
+/// Square root, relative error about 2^-100; 0 for a value that is not positive.
 [[nodiscard]] inline DoubleDouble sqrt(DoubleDouble a) noexcept {
   if (!(a.hi > 0.0)) return 0.0;
   const double root = std::sqrt(a.hi);

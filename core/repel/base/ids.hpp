@@ -1,12 +1,12 @@
 /// @file
-/// Ids that cannot be mixed up.
+/// Index types that cannot be mixed up.
 #pragma once
 
 #include <cstdint>
 
 namespace repel {
 
-/// An index with a type of its own: a body's id is not a part's.
+/// An index with its own type: a BodyId does not convert to a PartId.
 template <class Tag>
 struct Id {
   std::int32_t index = -1;

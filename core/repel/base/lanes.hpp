@@ -1,6 +1,6 @@
 /// @file
-/// Several numbers in one register of the target: the arithmetic of code that works on several
-/// vertices or pairs at once.
+/// SIMD: several numbers in one register of the target, for code that works on several vertices or
+/// pairs at once.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,7 @@
 
 namespace repel::detail {
 
-// As many numbers as one register holds. What is computed in a lane does not depend on how many
-// there are.
+// As many numbers as one register holds. The result in a lane does not depend on the lane count.
 #if defined(__AVX512F__)
 inline constexpr int lane_bytes = 64;
 #elif defined(__AVX__)
@@ -23,7 +22,7 @@ inline constexpr int lane_bytes = 16;
 #endif
 inline constexpr int lane_count = lane_bytes / 8;
 using Lanes = double __attribute__((vector_size(lane_bytes)));
-/// All bits of a lane are set, or none: what a comparison of Lanes gives.
+/// All bits of a lane are set, or none: the result of comparing Lanes.
 using LaneMask = std::int64_t __attribute__((vector_size(lane_bytes)));
 
 /// x in every lane.
@@ -37,7 +36,7 @@ template <class F>
   for (int k = 0; k < lane_count; ++k) lanes[k] = f(k);
   return lanes;
 }
-/// b where one of the two is not a number.
+/// The larger in each lane; b where one of the two is NaN.
 [[nodiscard]] inline Lanes larger(const Lanes& a, const Lanes& b) noexcept {
 #if defined(__AVX__) && !defined(__AVX512F__)
   return __builtin_ia32_maxpd256(a, b);
@@ -72,7 +71,7 @@ template <class F>
   for (int k = 1; k < lane_count; ++k) least = std::min(least, a[k]);
   return least;
 }
-/// Bit k is set when lane k holds.
+/// Bit k is set when the mask of lane k is set.
 [[nodiscard]] inline unsigned bits_of(const LaneMask& mask) noexcept {
 #if defined(__AVX__) && !defined(__AVX512F__)
   return static_cast<unsigned>(__builtin_ia32_movmskpd256((Lanes)mask));
@@ -83,15 +82,15 @@ template <class F>
 #endif
 }
 
-/// A vector in each lane.
+/// One vector per lane.
 struct LaneVec {
   Lanes x, y, z;
 
   LaneVec() = default;
   LaneVec(const Lanes& all_x, const Lanes& all_y, const Lanes& all_z) noexcept
       : x(all_x), y(all_y), z(all_z) {}
-  // Left to the compiler a copy is one of bytes, which goes through memory in pieces of its choice:
-  // a register written by pieces has to wait for all of them.
+  // The default copy is bytewise, through memory in pieces that the compiler chooses; a register
+  // load from several narrower stores stalls until all are done.
   // NOLINTBEGIN(modernize-use-equals-default)
   LaneVec(const LaneVec& v) noexcept : x(v.x), y(v.y), z(v.z) {}
   LaneVec& operator=(const LaneVec& v) noexcept {
@@ -102,14 +101,14 @@ struct LaneVec {
   }
   // NOLINTEND(modernize-use-equals-default)
 
-  /// The same vector in all.
+  /// The same vector in all lanes.
   [[nodiscard]] static LaneVec all(const Vec<double>& v) noexcept {
     return {all_of(v.x()), all_of(v.y()), all_of(v.z())};
   }
   /// The vector v(k) in lane k.
   template <class F>
   [[nodiscard]] static LaneVec of(const F& v) noexcept;
-  /// Puts `v` into lane k.
+  /// Stores `v` in lane k.
   void set(int k, const Vec<double>& v) noexcept {
     x[k] = v.x();
     y[k] = v.y();
@@ -117,7 +116,7 @@ struct LaneVec {
   }
   /// The vector in lane k.
   [[nodiscard]] Vec3 at(int k) const noexcept { return {x[k], y[k], z[k]}; }
-  /// The vectors one by one.
+  /// The vectors of all lanes.
   [[nodiscard]] std::array<Vec<double>, lane_count> each() const noexcept;
 
   friend LaneVec operator+(const LaneVec& a, const LaneVec& b) noexcept {
@@ -193,11 +192,11 @@ inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
 }
 #endif
 
-/// A pose in each lane: the columns of the rotation and the translation [m].
+/// One pose per lane: the columns of the rotation and the translation [m].
 struct LanePose {
   std::array<LaneVec, 4> columns;
 
-  /// The same pose in all.
+  /// The same pose in all lanes.
   [[nodiscard]] static LanePose all(const Pose& X) noexcept {
     return {LaneVec::all(column<double>(X, 0)), LaneVec::all(column<double>(X, 1)),
             LaneVec::all(column<double>(X, 2)), LaneVec::all(column<double>(X, 3))};
@@ -209,7 +208,7 @@ struct LanePose {
     };
     return {columns_of(0), columns_of(1), columns_of(2), columns_of(3)};
   }
-  /// Puts `X` into lane k.
+  /// Stores `X` in lane k.
   void set(int k, const Pose& X) noexcept {
     for (int c = 0; c < 4; ++c) columns[c].set(k, column<double>(X, c));
   }

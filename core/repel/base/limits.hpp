@@ -1,20 +1,20 @@
 /// @file
-/// Every capacity in one place.
+/// All fixed capacities of a world.
 #pragma once
 
 namespace repel {
 
-/// What a world may hold. Set-up that needs more throws SetupError naming the field to raise;
-/// nothing grows after set-up.
+/// Capacities of a world. Set-up that needs more throws SetupError naming the field to raise; no
+/// container grows after set-up.
 struct Limits {
-  int bodies = 64;           ///< rigid bodies, the fixed one included
+  int bodies = 64;           ///< rigid bodies, including the fixed one
   int parts = 20000;         ///< convex parts of all bodies
   int pairs = 1 << 20;       ///< pairs of parts
-  int candidates = 1 << 14;  ///< pairs at a time that can soon come within range, shared out
-                             ///< evenly over the blocks; for each about 1.2 kB
-  /// Worker threads of the coprocessor. The pairs make as many blocks, up to 8, whose forces are
-  /// bitwise the same whichever thread, or none, works on them; in a world with few near pairs
-  /// fewer blocks are faster.
+  int candidates = 1 << 14;  ///< pairs that can soon come within range, at one time; split evenly
+                             ///< over the blocks; about 1.2 kB each
+  /// Worker threads of the coprocessor. The pairs are split into as many blocks, at most 8. The
+  /// forces are bitwise the same whichever thread processes a block, also without worker threads;
+  /// in a world with few near pairs fewer blocks are faster.
   int threads = 16;
 };
 

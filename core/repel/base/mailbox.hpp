@@ -1,5 +1,6 @@
 /// @file
-/// A wait-free mailbox for the newest value from one writer thread to one reader thread.
+/// A wait-free mailbox (triple buffer) that passes the newest value from one writer thread to one
+/// reader thread.
 #pragma once
 
 #include <array>
@@ -8,35 +9,35 @@
 
 namespace repel {
 
-/// Three copies: one being written, one being read, one in between that the two sides swap for
-/// theirs. Neither side ever waits, and a value is taken whole or not at all. Values that nobody
-/// took are overwritten: the reader sees the newest. Memory: three T, sized once from a prototype.
+/// Three slots: one being written, one being read, and one in between that either side exchanges
+/// for its own. Neither side ever waits, and no value is read partly written. Values not taken are
+/// overwritten: the reader gets the newest. Memory: three T, sized once from a prototype.
 template <class T>
 class Mailbox {
  public:
   explicit Mailbox(const T& prototype)
       : slots_{Slot{prototype}, Slot{prototype}, Slot{prototype}} {}
 
-  /// Writer: the value to fill in. Its content is that of some earlier post.
+  /// Writer: the slot to fill in. It holds the content of some earlier post.
   [[nodiscard]] T& draft() noexcept { return slots_[writing_].value; }
-  /// Writer: makes the draft the newest value.
+  /// Writer: publishes the draft as the newest value.
   void post() noexcept {
     writing_ = between_.exchange(writing_ | fresh, std::memory_order_acq_rel) & index_mask;
   }
 
-  /// Reader: moves on to the newest value; false when there is none since the last time.
+  /// Reader: switches to the newest value; false when there is none since the last call.
   bool take() noexcept {
     if ((between_.load(std::memory_order_relaxed) & fresh) == 0U) return false;
     reading_ = between_.exchange(reading_, std::memory_order_acq_rel) & index_mask;
     return true;
   }
-  /// Reader: the value last taken; the prototype before that.
+  /// Reader: the value last taken; the prototype before the first.
   [[nodiscard]] const T& newest() const noexcept { return slots_[reading_].value; }
 
  private:
   static constexpr std::uint32_t fresh = 4;
   static constexpr std::uint32_t index_mask = 3;
-  // Two sides that share a cache line would slow each other down.
+  // Avoids false sharing between writer and reader.
   struct alignas(64) Slot {
     T value;
   };

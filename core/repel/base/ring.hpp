@@ -1,6 +1,6 @@
 /// @file
-/// A wait-free queue from one writer thread to one reader thread: every value, in order, or a count
-/// of those that found no room.
+/// A wait-free single-producer, single-consumer ring buffer: delivers every value in order and
+/// counts those dropped for lack of space.
 #pragma once
 
 #include <atomic>
@@ -12,22 +12,22 @@
 
 namespace repel {
 
-/// Slots that are filled in place, so that a value with memory of its own is never copied whole.
-/// The writer never waits: when the reader is behind by the capacity, the value is dropped and
-/// counted. Memory: `capacity` + 1 copies of a prototype, taken at construction.
+/// Slots are filled in place, so that a value that owns memory is never copied whole. The writer
+/// never waits: when all `capacity` slots are unread, the value is dropped and counted. Memory:
+/// `capacity` + 1 copies of a prototype, allocated at construction.
 template <class T>
 class Ring {
  public:
-  /// @param capacity 1 to 2^30 values. @throws SetupError for another number
+  /// @param capacity 1 to 2^30 values. @throws SetupError outside this range
   Ring(std::size_t capacity, const T& prototype)
       : slots_(static_cast<std::size_t>(
                    checked("ring capacity", static_cast<double>(capacity), 1.0, 0x1p30, "")) +
                    1,
                prototype) {}
 
-  /// Writer: the value to fill in. Its content is that of some earlier post.
+  /// Writer: the slot to fill in. It holds the content of some earlier post.
   [[nodiscard]] T& draft() noexcept { return slots_[writing_]; }
-  /// Writer: hands the draft over; false, and `dropped` is one more, when there is no room.
+  /// Writer: publishes the draft; false, with `dropped` increased by one, when the ring is full.
   bool post() noexcept {
     const std::size_t next = after(writing_);
     if (next == tail_.load(std::memory_order_acquire)) {
@@ -39,23 +39,23 @@ class Ring {
     return true;
   }
 
-  /// Writer: a post would find no room now.
+  /// Writer: a post would fail now.
   [[nodiscard]] bool full() const noexcept {
     return after(writing_) == tail_.load(std::memory_order_acquire);
   }
 
-  /// Reader: the oldest value that was not popped; null when there is none.
+  /// Reader: the oldest unread value; null when there is none.
   [[nodiscard]] const T* front() const noexcept {
     if (reading_ == head_.load(std::memory_order_acquire)) return nullptr;
     return &slots_[reading_];
   }
-  /// Reader: gives the slot of `front` back. There must be one.
+  /// Reader: releases the slot of `front`, which must not be null.
   void pop() noexcept {
     reading_ = after(reading_);
     tail_.store(reading_, std::memory_order_release);
   }
 
-  /// Anyone: how many values found no room.
+  /// Any thread: number of values dropped.
   [[nodiscard]] std::int64_t dropped() const noexcept {
     return dropped_.load(std::memory_order_relaxed);
   }
@@ -65,7 +65,7 @@ class Ring {
     return slot + 1 < slots_.size() ? slot + 1 : 0;
   }
 
-  // The slot between the newest value and the oldest is the writer's draft.
+  // One slot is always unused for values: it is the draft of the writer.
   std::vector<T> slots_;
   alignas(64) std::atomic<std::size_t> head_{0};  ///< next slot to be posted
   alignas(64) std::atomic<std::size_t> tail_{0};  ///< next slot to be popped

@@ -1,5 +1,5 @@
 /// @file
-/// The one exception of the library. It is thrown at set-up only, never by the tick.
+/// The only exception of the library. Thrown at set-up only, never by the tick.
 #pragma once
 
 #include <charconv>
@@ -9,12 +9,12 @@
 
 namespace repel {
 
-/// Says what is wrong in an input, where it stands, what was found and what is allowed.
+/// An error in an input: what is wrong, where, the value found and the range allowed.
 class SetupError : public std::runtime_error {
  public:
-  /// @param what_is_wrong one sentence, without the place
-  /// @param file the file it stands in; empty for a value given in code
-  /// @param line its line, from 1; 0 when there is none
+  /// @param what_is_wrong one sentence, without the location
+  /// @param file the file with the error; empty for a value given in code
+  /// @param line its line number, from 1; 0 for none
   explicit SetupError(const std::string& what_is_wrong, std::string file = {}, int line = 0)
       : std::runtime_error(place(file, line) + what_is_wrong),
         file_(std::move(file)),
@@ -33,14 +33,14 @@ class SetupError : public std::runtime_error {
   int line_ = 0;
 };
 
-/// `value` in the shortest form that reads back exactly, whatever the locale.
+/// `value` in the shortest form that reads back exactly, independent of the locale.
 [[nodiscard]] inline std::string to_text(double value) {
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
   return {digits, end};
 }
 
-/// `value` rounded to so many significant digits, for people.
+/// `value` rounded to `digits` significant digits, for display.
 [[nodiscard]] inline std::string to_text(double value, int digits) {
   char text[32];
   const auto end =

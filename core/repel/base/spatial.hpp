@@ -1,15 +1,17 @@
 /// @file
-/// Twist and wrench with their parts named, and how both move between points and frames.
+/// Twist and wrench as named linear and angular parts, and their transformation between points and
+/// frames.
 #pragma once
 
 #include <repel/base/types.hpp>
 
 namespace repel {
 
-/// Velocity of a rigid body: the velocity of one stated point of it, and its angular velocity.
+/// Velocity of a rigid body: the linear velocity of a stated reference point and the angular
+/// velocity.
 struct Twist {
-  Vec3 linear = Vec3::Zero();   ///< [m/s] velocity of the reference point
-  Vec3 angular = Vec3::Zero();  ///< [rad/s]
+  Vec3 linear{0, 0, 0};   ///< [m/s] velocity of the reference point
+  Vec3 angular{0, 0, 0};  ///< [rad/s]
 
   Twist& operator+=(const Twist& other) noexcept {
     linear += other.linear;
@@ -18,10 +20,10 @@ struct Twist {
   }
 };
 
-/// Force and torque on a rigid body about one stated reference point.
+/// Force and torque on a rigid body about a stated reference point.
 struct Wrench {
-  Vec3 force = Vec3::Zero();   ///< [N]
-  Vec3 torque = Vec3::Zero();  ///< [N m] about the reference point
+  Vec3 force{0, 0, 0};   ///< [N]
+  Vec3 torque{0, 0, 0};  ///< [N m] about the reference point
 
   Wrench& operator+=(const Wrench& other) noexcept {
     force += other.force;
@@ -44,22 +46,23 @@ struct Wrench {
   return {scale * F.force, scale * F.torque};
 }
 
-/// Power `F` delivers to a body that moves with `V` [W]. Both in one frame, about one point.
+/// Power that `F` delivers to a body moving with `V` [W]. Both in one frame, about one point.
 [[nodiscard]] inline double power(const Wrench& F, const Twist& V) noexcept {
   return F.force.dot(V.linear) + F.torque.dot(V.angular);
 }
 
-/// The wrench of a force `f_W` [N] at point Q, about point P; `p_PQ_W` [m] leads from P to Q.
+/// The wrench about point P of a force `f_W` [N] at point Q; `p_PQ_W` [m] from P to Q.
 [[nodiscard]] inline Wrench wrench_of_force(const Vec3& f_W, const Vec3& p_PQ_W) noexcept {
   return {f_W, p_PQ_W.cross(f_W)};
 }
 
-/// The same wrench about Q instead of P; `p_PQ_W` [m] leads from P to Q.
+/// The same wrench about Q instead of P; `p_PQ_W` [m] from P to Q.
 [[nodiscard]] inline Wrench moved_to(const Wrench& F_P_W, const Vec3& p_PQ_W) noexcept {
   return {F_P_W.force, F_P_W.torque - p_PQ_W.cross(F_P_W.force)};
 }
 
-/// The same motion seen at Q instead of P, both fixed in the body; `p_PQ_W` [m] leads from P to Q.
+/// The same motion at reference point Q instead of P, both fixed in the body; `p_PQ_W` [m] from P
+/// to Q.
 [[nodiscard]] inline Twist moved_to(const Twist& V_P_W, const Vec3& p_PQ_W) noexcept {
   return {V_P_W.linear + V_P_W.angular.cross(p_PQ_W), V_P_W.angular};
 }
@@ -69,7 +72,7 @@ struct Wrench {
   return {R_AB * F_B.force, R_AB * F_B.torque};
 }
 
-/// The twist expressed in A instead of B, of the same point.
+/// The twist expressed in A instead of B, about the same point.
 [[nodiscard]] inline Twist rotated(const Mat3& R_AB, const Twist& V_B) noexcept {
   return {R_AB * V_B.linear, R_AB * V_B.angular};
 }

@@ -1,5 +1,6 @@
 /// @file
-/// What went wrong during a tick, as bits. Every bit says what was done about it and what to mend.
+/// Faults and limits that occurred during a tick, as bits. Each bit states the reaction and the
+/// remedy.
 #pragma once
 
 #include <cstdint>
@@ -8,90 +9,89 @@
 
 namespace repel {
 
-/// The sum of what a tick noticed; 0 is a clean tick.
+/// The bits set by a tick; 0 is a tick without faults.
 using Status = std::uint32_t;
 
 namespace status {
-inline constexpr Status bad_pose = 1U << 0;  ///< a pose was not finite or not rigid: the last good
-                                             ///< one was kept and the arm brakes
-inline constexpr Status bad_command = 1U << 1;  ///< the operator's input was not finite: taken as
-                                                ///< rest, the operator is let go
-inline constexpr Status bad_joints = 1U << 2;  ///< the arm reported joints that are not finite: the
-                                               ///< motion is predicted, the arm brakes
-inline constexpr Status clock_fault = 1U << 3;  ///< the clock stood still or ran back: the operator
-                                                ///< is let go
-inline constexpr Status stale_pairs = 1U << 4;  ///< some near pairs kept an old answer, widened by
-                                                ///< the motion since: raise the budget or threads
-inline constexpr Status late_result = 1U
-                                      << 5;  ///< a worker of the coprocessor did not answer in
-                                             ///< time: the caller did its work; if it lasts, free
-                                             ///< a processor for each thread or lower the rate
-inline constexpr Status torque_limit = 1U << 6;   ///< a joint torque was cut to its limit
-inline constexpr Status crowded_pairs = 1U << 7;  ///< more pairs could come within range than
-                                                  ///< there is memory for: the rest was evaluated
-                                                  ///< from a cold start; raise Limits::candidates
-inline constexpr Status expired_pairs = 1U
-                                        << 8;  ///< some answer was older than Budget::max_age:
-                                               ///< nothing is known of what is near, the operator
-                                               ///< is let go; raise the budget or threads
-inline constexpr Status silent_device = 1U << 9;  ///< a master has not answered for too long: its
-                                                  ///< last sample stands, the operator is let go
-inline constexpr Status saturated = 1U << 10;     ///< a master, its motor or a coupling was at its
-                                               ///< limit: the operator asks for more than there is
-inline constexpr Status joint_limit = 1U << 11;  ///< a joint was pushed back from the end of its
-                                                 ///< range: lead the arm another way
-inline constexpr Status network_fault = 1U
-                                        << 12;  ///< the network could not be solved: the torques of
-                                                ///< the tick before stand, the operator is let go
-inline constexpr Status speed_limit = 1U << 13;  ///< a joint was as fast as it may be and was not
-                                                 ///< driven on: lead the arm more slowly, or away
-                                                 ///< from a singularity
-inline constexpr Status implausible_joints =
-    1U << 14;  ///< joints and rates as reported cannot both be true, nor follow from the torques
-               ///< sent: the motion is predicted, the arm brakes; mend cable, encoder or driver
-inline constexpr Status frozen_joints =
-    1U << 15;  ///< a joint reports the same numbers although it moves or must move: the motion is
-               ///< predicted, the arm brakes; mend cable, encoder or driver
-inline constexpr Status clock_gap = 1U << 16;  ///< the loop stood still for longer than
-                                               ///< TeleoperatorOptions::longest_gap: the operator
-                                               ///< is let go; free a processor for the loop
-inline constexpr Status bad_torque =
-    1U << 17;  ///< a torque came out as no finite number: what holds the arm against gravity was
-               ///< sent in its place and all memories begin anew
-inline constexpr Status torque_rate = 1U << 18;  ///< a torque was kept from changing faster than
-                                                 ///< TeleoperatorOptions::slew_time allows
-inline constexpr Status tool_speed = 1U << 19;   ///< the tool was as fast as it may be and was not
-                                                 ///< driven on: lead it more slowly
-inline constexpr Status arm_stopped = 1U << 20;  ///< the arm is not enabled, or stopped by itself:
-                                                 ///< see its own messages
-inline constexpr Status pushed_out = 1U << 21;   ///< the run began inside an obstacle: the arm is
-                                                 ///< pushed out slowly and nobody leads it
+/// A pose was not finite or not rigid: the last valid one is kept and the arm brakes
+inline constexpr Status bad_pose = 1U << 0;
+/// The operator's input was not finite: treated as zero motion, the operator's force is removed
+inline constexpr Status bad_command = 1U << 1;
+/// The arm reported joints that are not finite: the motion is predicted, the arm brakes
+inline constexpr Status bad_joints = 1U << 2;
+/// The clock stood still or ran backwards: the operator's force is removed
+inline constexpr Status clock_fault = 1U << 3;
+/// Some near pairs kept an old result, reduced by the motion since: raise the budget or threads
+inline constexpr Status stale_pairs = 1U << 4;
+/// A worker of the coprocessor missed its deadline: the caller did its work; if this persists, free
+/// a processor for each thread or lower the rate
+inline constexpr Status late_result = 1U << 5;
+/// A joint torque was clamped to its limit
+inline constexpr Status torque_limit = 1U << 6;
+/// More pairs could come within range than there is memory for: the others were evaluated from a
+/// cold start; raise Limits::candidates
+inline constexpr Status crowded_pairs = 1U << 7;
+/// Some result was older than Budget::max_age: nearby obstacles are unknown, the operator's force
+/// is removed; raise the budget or threads
+inline constexpr Status expired_pairs = 1U << 8;
+/// A master device timed out: its last sample is kept, the operator's force is removed
+inline constexpr Status silent_device = 1U << 9;
+/// A master, its motor or a coupling was at its limit: the operator demands more than is available
+inline constexpr Status saturated = 1U << 10;
+/// A joint was pushed back from the end of its range: guide the arm another way
+inline constexpr Status joint_limit = 1U << 11;
+/// The network could not be solved: the torques of the previous tick are kept, the operator's force
+/// is removed
+inline constexpr Status network_fault = 1U << 12;
+/// A joint was at its speed limit and was not driven further: guide the arm more slowly, or away
+/// from a singularity
+inline constexpr Status speed_limit = 1U << 13;
+/// The reported joint angles and rates contradict each other or the torques sent: the motion is
+/// predicted, the arm brakes; repair cable, encoder or driver
+inline constexpr Status implausible_joints = 1U << 14;
+/// A joint reports the same values although it moves or must move: the motion is predicted, the arm
+/// brakes; repair cable, encoder or driver
+inline constexpr Status frozen_joints = 1U << 15;
+/// The loop was suspended for longer than TeleoperatorOptions::longest_gap: the operator's force is
+/// removed; free a processor for the loop
+inline constexpr Status clock_gap = 1U << 16;
+/// A torque was not finite: gravity compensation was sent in its place and all internal states are
+/// reset
+inline constexpr Status bad_torque = 1U << 17;
+/// The rate of change of a torque was limited according to TeleoperatorOptions::slew_time
+inline constexpr Status torque_rate = 1U << 18;
+/// The tool was at its speed limit and was not driven further: guide it more slowly
+inline constexpr Status tool_speed = 1U << 19;
+/// The arm is not enabled, or stopped by itself: see its own messages
+inline constexpr Status arm_stopped = 1U << 20;
+/// The run began inside an obstacle: the arm is pushed out slowly without operator force
+inline constexpr Status pushed_out = 1U << 21;
 
-/// Faults of joint sensing: where the arm is now is not known.
+/// Faults of joint sensing: the present joint positions are unknown.
 inline constexpr Status blind = bad_joints | implausible_joints | frozen_joints;
-/// What takes the operator's force away.
+/// Faults that remove the operator's force.
 inline constexpr Status failsafe = bad_pose | bad_command | clock_fault | expired_pairs |
                                    silent_device | network_fault | clock_gap | bad_torque |
                                    arm_stopped | pushed_out | blind;
 }  // namespace status
 
-/// What the loop does about faults, named after the stop categories of machine safety.
+/// Reaction of the loop to faults, named after the stop categories of machine safety.
 enum class Stop : std::uint8_t {
-  running,   ///< no fault: the operator leads the arm
-  holding,   ///< what the operator gives is gone; walls, limits and a damping that brakes stay
-  braking,   ///< the joints are not trusted: the last motion is predicted and braked, then the
-             ///< brakes of the arm are asked for
-  released,  ///< nothing can be trusted: no torque but what holds the last pose known against
-             ///< gravity, and none at all where the brakes of the arm hold it
+  running,   ///< no fault: the operator guides the arm
+  holding,   ///< the operator's force is removed; walls, limits and braking damping remain
+  braking,   ///< the joint readings are not trusted: the last motion is predicted and braked, then
+             ///< the brakes of the arm are requested
+  released,  ///< nothing can be trusted: only gravity compensation at the last known pose, and no
+             ///< torque at all where the brakes hold the arm
 };
 
-/// Its name. Not for the tick.
+/// Its name. Not real-time safe.
 [[nodiscard]] inline std::string to_text(Stop stop) {
   static constexpr const char* names[] = {"running", "holding", "braking", "released"};
   return names[static_cast<std::size_t>(stop)];
 }
 
-/// The names of the bits that are set, comma by comma; "ok" when none is. Not for the tick.
+/// The names of the bits that are set, separated by commas; "ok" when none is. Not real-time safe.
 [[nodiscard]] inline std::string to_text(Status bits) {
   static constexpr const char* names[] = {
       "bad_pose",      "bad_command",  "bad_joints",    "clock_fault",   "stale_pairs",

@@ -1,5 +1,5 @@
 /// @file
-/// Reads a whole file into memory, if it is not too big for that.
+/// Reads a whole file into memory, up to a size limit.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace repel {
 
-/// The bytes of the file at `path`. No more than `most` [byte] and one are ever read, so that a
-/// device or a pipe without an end is refused too.
-/// @param what it should be, for errors: "a scene file"
+/// The bytes of the file at `path`. At most `most` + 1 [byte] are read, so that an endless device
+/// or pipe is refused too.
+/// @param what the expected kind of file, for errors: "a scene file"
 /// @throws SetupError naming the file when it cannot be read or is larger than `most`
 [[nodiscard]] inline std::string text_of_file(const std::string& path, const std::string& what,
                                               std::size_t most = input_limits.file_bytes) {

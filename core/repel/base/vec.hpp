@@ -1,5 +1,5 @@
 /// @file
-/// Three numbers of a chosen precision: the vector type of code that runs both in double and in
+/// A 3-vector of a chosen precision: the vector type of code that runs both in double and in
 /// DoubleDouble.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace repel {
 
-/// Vec<T> v; leaves the numbers to be set later, Vec<T>() is zero.
+/// `Vec<T> v;` leaves the coordinates uninitialized, `Vec<T>()` is zero.
 template <class T>
 class Vec {
  public:
@@ -45,7 +45,7 @@ class Vec {
   friend Vec cross(const Vec& a, const Vec& b) noexcept {
     return {a.y_ * b.z_ - a.z_ * b.y_, a.z_ * b.x_ - a.x_ * b.z_, a.x_ * b.y_ - a.y_ * b.x_};
   }
-  /// The three products of `d` with `a`, `b` and `c`.
+  /// The dot products of `d` with `a`, `b` and `c`.
   friend Vec dots(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
     return {dot(a, d), dot(b, d), dot(c, d)};
   }
@@ -53,15 +53,16 @@ class Vec {
     return {std::abs(a.x_), std::abs(a.y_), std::abs(a.z_)};
   }
   friend T sum(const Vec& a) noexcept { return a.x_ + a.y_ + a.z_; }
-  /// The products of the coordinates.
+  /// The elementwise product.
   friend Vec product(const Vec& a, const Vec& b) noexcept {
     return {a.x_ * b.x_, a.y_ * b.y_, a.z_ * b.z_};
   }
-  /// Bit k is set when coordinate k has a minus sign, be it that of a negative zero.
+  /// Bit k is set when coordinate k has its sign bit set, also for a negative zero.
   friend unsigned minus_signs(const Vec& a) noexcept {
     return (is_minus(a.x_) ? 1U : 0U) | (is_minus(a.y_) ? 2U : 0U) | (is_minus(a.z_) ? 4U : 0U);
   }
-  /// The sum of `a`, `b` and `c`, each turned round where its coordinate of `d` has a minus sign.
+  /// The sum of `a`, `b` and `c`, each negated where the corresponding coordinate of `d` has its
+  /// sign bit set: `a` by x, `b` by y, `c` by z.
   friend Vec sum_along(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
     return (is_minus(d.x_) ? -a : a) + (is_minus(d.y_) ? -b : b) + (is_minus(d.z_) ? -c : c);
   }
@@ -74,8 +75,8 @@ class Vec {
 };
 
 #ifdef __AVX__
-/// In double the three travel in one register, and a fourth lane that is 0 with them. The same
-/// sums in the same order as above.
+/// In double, the coordinates share one register with a fourth lane that is 0. The same sums in the
+/// same order as above.
 template <>
 class Vec<double> {
   using Bits = std::int64_t __attribute__((vector_size(32)));
@@ -89,7 +90,7 @@ class Vec<double> {
   explicit Vec(const Vec3& v) noexcept : lanes_{v.x(), v.y(), v.z(), 0.0} {}
   explicit Vec(const Vec<DoubleDouble>& v) noexcept
       : Vec(static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())) {}
-  /// From four numbers in memory, the last of which does not count.
+  /// From four numbers in memory; the last one is ignored.
   static Vec from_four(const double* numbers) noexcept {
     Bits bits;
     std::memcpy(&bits, numbers, sizeof bits);
@@ -156,7 +157,7 @@ class Vec<double> {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }
 
-/// From four numbers in a row, the last of which does not count.
+/// From four consecutive numbers; the last one is ignored.
 template <class T>
 [[nodiscard]] Vec<T> from_four(const double* c) noexcept {
   return {T(c[0]), T(c[1]), T(c[2])};
@@ -174,7 +175,8 @@ template <class T>
   return from_four<T>(X.data() + std::ptrdiff_t{4} * k);
 }
 
-/// Makes `v` column `k` of the matrix of `X`, as one piece of memory: it may be read as one next.
+/// Sets column `k` of the matrix of `X` to `v`. Written with one store, because it may be read next
+/// with one load.
 inline void set_column(Pose& X, int k, const Vec<double>& v) noexcept {
   double* c = X.data() + std::ptrdiff_t{4} * k;
   const double last = k == 3 ? 1.0 : 0.0;
@@ -191,8 +193,8 @@ template <class T>
 [[nodiscard]] Vec<T> rotate(const Pose& X, const Vec<T>& v) noexcept {
   return v.x() * column<T>(X, 0) + v.y() * column<T>(X, 1) + v.z() * column<T>(X, 2);
 }
-/// Its transpose applied to `v`: it carries a direction into the body without assuming that the
-/// nine numbers are exactly orthonormal.
+/// The transpose of the rotation applied to `v`: transforms a direction into the body frame without
+/// assuming that the nine entries are exactly orthonormal.
 template <class T>
 [[nodiscard]] Vec<T> rotate_transposed(const Pose& X, const Vec<T>& v) noexcept {
   return dots(column<T>(X, 0), column<T>(X, 1), column<T>(X, 2), v);

@@ -1,5 +1,6 @@
 /// @file
-/// The penetration depth of two boxes: the least overlap along fifteen axes.
+/// The penetration depth of two boxes by the separating axis test: the least overlap along fifteen
+/// axes.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +13,9 @@
 
 namespace repel::detail {
 
-/// The depth of boxes that overlap, along the axes of the faces of either and the products of their
-/// edges (Gottschalk, Lin and Manocha 1996), of which one is the shortest way out.
+/// The penetration depth of overlapping boxes: the least overlap along the face normals of both and
+/// the cross products of their edges (Gottschalk, Lin and Manocha 1996), one of which is the
+/// shortest separating direction.
 class BoxDepth {
  public:
   explicit BoxDepth(const PosedPair& pair) noexcept
@@ -46,7 +48,8 @@ class BoxDepth {
  private:
   static constexpr int none = -1;
 
-  // Of edges nearly parallel the product is formed with more digits: what is left is small.
+  // For nearly parallel edges the cross product suffers from cancellation: it is formed in extended
+  // precision.
   [[nodiscard]] static Vec<double> product(const Vec<double>& a, const Vec<double>& b) noexcept {
     const Vec<double> axis = cross(a, b);
     if (dot(axis, axis) > 0.01) return axis;
@@ -55,7 +58,7 @@ class BoxDepth {
 
   void consider(const Vec<double>& axis, int i, int j) noexcept {
     const double length = std::sqrt(dot(axis, axis));
-    // Edges that are parallel: the faces have the shortest way out.
+    // Parallel edges: the shortest separating direction is a face normal.
     if (!(length > 1e-30)) return;
     const Vec<double> n = (1.0 / length) * axis;
     const double along = dot(n, pair_.p_AB);
@@ -69,8 +72,9 @@ class BoxDepth {
     j_ = j;
   }
 
-  /// The farthest point of a box along n; where an edge or a face is, the one nearest to `toward`.
-  /// @param n, toward world axes, `toward` [m] from the centre of the box, as is the answer
+  /// The farthest point of a box along n; on an edge or face that is farthest as a whole, the point
+  /// nearest to `toward`.
+  /// @param n, toward in world axes; `toward` and the result [m] from the centre of the box
   [[nodiscard]] static Vec<double> farthest(const Pose& X_W, const Vec<double>& half,
                                             const Vec<double>& n,
                                             const Vec<double>& toward) noexcept {
@@ -84,8 +88,9 @@ class BoxDepth {
     return rotate(X_W, Vec<double>(x));
   }
 
-  /// The point of A that leaves B last: below the point of B that is deepest in a face of A, a
-  /// point of A, or of the edges that cross where they are nearest to each other.
+  /// The witness point on A, which leaves B last. For a face of A: the projection of the deepest
+  /// point of B onto it; for a face of B: the deepest point of A; for two edges: the point of the
+  /// edge of A nearest to the edge of B.
   [[nodiscard]] Vec<double> witness() const noexcept {
     const Vec<double>& p = pair_.p_AB;
     const Vec<double> a = farthest(pair_.X_WA, half_a_, n_, p);

@@ -8,15 +8,15 @@
 
 namespace repel::detail {
 
-/// The length of the shortest way out of an overlap, between proven bounds.
+/// The length of the shortest separating translation, with proven bounds.
 struct Depth {
-  double value = 0.0;                                      ///< [m] best value
-  double lower = 0.0;                                      ///< [m] the depth is at least this
-  double upper = std::numeric_limits<double>::infinity();  ///< [m] and at most this
-  Vec<double> n_W{};      ///< unit: A leaves B by moving against it
+  double value = 0.0;                                      ///< [m] best estimate
+  double lower = 0.0;                                      ///< [m] lower bound of the depth
+  double upper = std::numeric_limits<double>::infinity();  ///< [m] upper bound of the depth
+  Vec<double> n_W{};      ///< unit: A separates from B by moving along -n_W
   Vec<double> p_AQa_W{};  ///< [m] the point of A that leaves B last, from the origin of A
   int iterations = 0;     ///< support-map pairs evaluated
-  bool closed = false;    ///< the bounds are as near to each other as rounding lets them be
+  bool closed = false;    ///< the bounds differ by no more than rounding
 };
 
 }  // namespace repel::detail

@@ -1,6 +1,6 @@
 /// @file
-/// The penetration depth of two polytopes: the point nearest to the origin on the surface of their
-/// difference (van den Bergen 2001).
+/// The penetration depth of two polytopes by the expanding polytope algorithm (EPA, van den Bergen
+/// 2001): the point nearest to the origin on the boundary of their Minkowski difference.
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,18 @@
 
 namespace repel::detail {
 
-/// A polytope within A - B around the origin grows toward the surface where it is nearest: the
-/// support point along the normal of the nearest face joins, until it lies on that face. The
-/// nearest face bounds the depth from below, the support along any normal from above.
+/// A polytope inside A - B that contains the origin is expanded toward the boundary where it is
+/// nearest: the support point along the normal of the nearest face is added, until it lies on that
+/// face. The nearest face is a lower bound of the depth, the support value along any normal an
+/// upper bound.
 class ExpandingPolytope {
  public:
-  static constexpr int cap = 120;  ///< support-map pairs
+  static constexpr int cap = 120;  ///< limit of support-map pairs
 
   explicit ExpandingPolytope(const PosedPair& pair) noexcept : pair_(pair) {}
 
-  /// @param warm names of four corners that enclose the origin; with less, four directions are
-  /// tried
+  /// @param warm names of four corners that enclose the origin; with fewer, the support points of
+  /// four fixed directions are used
   [[nodiscard, gnu::noinline]] Depth run(const WarmStart& warm) noexcept {
     Depth depth;
     const double margin = pair_.margin();
@@ -49,8 +50,8 @@ class ExpandingPolytope {
   }
 
  private:
-  // Euler: with V corners there are 2 V - 4 faces, and as many are new at once as the rim has
-  // edges.
+  // Euler: with V corners there are 2 V - 4 faces, and each expansion adds as many faces as the rim
+  // (horizon) has edges.
   static constexpr std::size_t most_corners = 4 + cap;
   static constexpr std::size_t most_faces = 2 * most_corners;
 
@@ -71,7 +72,7 @@ class ExpandingPolytope {
     const Vec<double> turned = rotate(pair_.X_WA, a);
     return {turned, turned - (rotate(pair_.X_WB, b) + pair_.p_AB)};
   }
-  /// The point of A - B farthest along d.
+  /// The support point of A - B along d.
   [[nodiscard]] Corner support(const Vec<double>& d) const noexcept {
     return corner(pair_.A.support(rotate_transposed(pair_.X_WA, d)).p,
                   pair_.B.support(rotate_transposed(pair_.X_WB, -d)).p);
@@ -118,8 +119,8 @@ class ExpandingPolytope {
     return nearest;
   }
 
-  /// Replaces the faces that see the new corner by a cone over their rim; false when rounding
-  /// leaves no proper rim or a face without an area, or when the origin would come to lie outside.
+  /// Replaces the faces that see the new corner by a cone over their rim. False when, by rounding,
+  /// the rim is not a cycle or a face has no area, or when the origin would be outside.
   bool grow(const Corner& w, double margin) noexcept {
     if (corner_count_ == most_corners) return false;
     rim_count_ = 0;
@@ -143,7 +144,8 @@ class ExpandingPolytope {
     return true;
   }
 
-  /// An edge between two faces that go is seen from both and is none of the rim.
+  /// Adds an edge of a removed face to the rim; an edge shared by two removed faces is seen from
+  /// both and drops out.
   bool toggle(Edge e) noexcept {
     for (std::size_t i = 0; i < rim_count_; ++i) {
       if (rim_[i].from != e.to || rim_[i].to != e.from) continue;
@@ -168,7 +170,8 @@ class ExpandingPolytope {
     return false;
   }
 
-  /// The point of A where the foot of the origin on the face comes from.
+  /// The witness point on A: the combination of the corners of the face at the projection of the
+  /// origin.
   [[nodiscard]] Vec<double> foot(const Face& face) const noexcept {
     const auto [i, j, k] = face.corners;
     const Vec<double>& p = corners_[i].w;

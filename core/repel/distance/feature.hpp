@@ -1,6 +1,6 @@
 /// @file
-/// A vertex, edge or face of the difference A - B, its point nearest to the origin, and the proof
-/// that this is the nearest point of all.
+/// A feature (vertex, edge or face) of the Minkowski difference A - B, its point nearest to the
+/// origin, and the proof that no point of A - B is nearer.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace repel::detail {
 
-/// Two convex sets at their poses: the support of A - B, in world axes around the origin of A, so
-/// that nothing grows with the distance from the world's origin.
+/// Two convex sets at their poses: the support map of A - B, in world axes around the origin of A,
+/// so that rounding errors do not grow with the distance from the world origin.
 struct PosedPair {
   const Convex& A;
   const Pose& X_WA;
@@ -22,18 +22,18 @@ struct PosedPair {
   const Pose& X_WB;
   Vec<double> p_AB = column<double>(X_WB, 3) - column<double>(X_WA, 3);  ///< [m] world axes
 
-  /// What rounding can move a support value by [m].
+  /// Error bound of a support value due to rounding [m].
   [[nodiscard]] double margin() const noexcept {
     return 0x1p-49 * (A.reach() + B.reach() + sum(magnitudes(p_AB)));
   }
-  /// The least product of v with a point of A - B.
+  /// The smallest dot product of v with a point of A - B.
   [[nodiscard]] double least_product(const Vec<double>& v) const noexcept {
     return -(A.support_value(rotate_transposed(X_WA, -v)) +
              B.support_value(rotate_transposed(X_WB, v)) + dot(v, p_AB));
   }
 };
 
-/// Up to three corners w = a - b of A - B; no more than `size` of them are set.
+/// Up to three points w = a - b of A - B; only the first `size` of them are set.
 struct Feature {
   std::array<Vec<double>, 3> a;  ///< [m] points of A, from the origin of A, world axes
   std::array<Vec<double>, 3> w;  ///< [m]
@@ -50,10 +50,11 @@ struct Feature {
 /// The point of a feature nearest to the origin.
 struct Foot {
   Vec<double> v;                       ///< [m]
-  Vec<double> weights{1.0, 0.0, 0.0};  ///< of the corners; their sum is 1
+  Vec<double> weights{1.0, 0.0, 0.0};  ///< barycentric weights of the corners; their sum is 1
 };
 
-/// The foot on the span of the corners p, q, r; a weight is negative where it lies beyond them.
+/// The point nearest to the origin on the affine span of the corners p, q, r; a weight is negative
+/// where that point lies outside the feature.
 ///
 ///     face    n = (q - p) x (r - p),  v = n (n.p) / n.n,  weights n.(q x r), n.(r x p), n.(p x q)
 ///     edge    e = q - p,              v = p + t e,        weights 1 - t, t       (t = -p.e / e.e)
@@ -66,7 +67,8 @@ struct Foot {
     const double scale = 1.0 / dot(e, e);
     const double first = scale * dot(e, p);
     const Vec<double> slanted = p - first * e;
-    // Once more: near contact the first product is right to the size, not to the gap.
+    // Projected twice: near contact, the error of the first dot product is relative to the size,
+    // not to the gap.
     const double rest = scale * dot(e, slanted);
     return {slanted - rest * e, {1.0 + (first + rest), -(first + rest), 0.0}};
   }
@@ -75,9 +77,10 @@ struct Foot {
   return {(dot(n, p) / dot(n, n)) * n, (1.0 / sum(areas)) * areas};
 }
 
-/// True when `f` is proven to hold the nearest point of A and B within `options`, or the gap to be
-/// larger than `beyond` [m]; `gap` is the answer then. Never for what is not finite.
-/// @param least_vw the least product of `foot.v` with a point of A - B
+/// True when the nearest point of A and B is proven to be on `f` within `options`, or the gap is
+/// proven to be larger than `beyond` [m]; `gap` is then the result. False for input that is not
+/// finite.
+/// @param least_vw the smallest dot product of `foot.v` with a point of A - B
 [[nodiscard, gnu::always_inline]] inline bool proves(const Feature& f, const Foot& foot,
                                                      double least_vw, double margin,
                                                      const QueryOptions& options, double beyond,
@@ -85,7 +88,8 @@ struct Foot {
   const double vv = dot(foot.v, foot.v);
   const double length = std::sqrt(vv);
   const double lower = (least_vw / length - margin) * (1.0 - 0x1p-51);
-  // The foot as a point of the sets, whatever v has suffered from a thin face.
+  // The same point as a convex combination of points of the sets, valid also where a thin face
+  // makes v inaccurate.
   const Vec<double> w = f.mean(f.w, foot.weights);
   const double off = sum(magnitudes(w - foot.v));
   const double upper = (length + off) * (1.0 + 0x1p-51) + margin;
@@ -106,8 +110,8 @@ struct Foot {
   return true;
 }
 
-/// The look at last tick's answer, one to three points kept in `warm`: when they still hold the
-/// nearest one, a single evaluation of both support functions proves it.
+/// Replays the result of the last tick, one to three point pairs kept in `warm`: if they still
+/// contain the nearest point, a single evaluation of both support functions proves it.
 [[nodiscard, gnu::always_inline]] inline bool still_nearest(const PosedPair& pair,
                                                             const WarmStart& warm,
                                                             const QueryOptions& options,
@@ -123,8 +127,8 @@ struct Foot {
   return proves(f, foot, pair.least_product(foot.v), pair.margin(), options, beyond, gap);
 }
 
-/// True when the four corners of A - B named in `warm.met_a` and `warm.met_b` are proven to have
-/// the origin between them, so that the sets meet.
+/// True when the four points of A - B named in `warm.met_a` and `warm.met_b` are proven to enclose
+/// the origin, so that the sets intersect.
 [[nodiscard]] inline bool still_meets(const PosedPair& pair, const WarmStart& warm) noexcept {
   std::array<Vec<double>, 4> w;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -135,7 +139,8 @@ struct Foot {
   const Vec<double> across = cross(w[2], w[3]);
   const Vec<double> along = w[2] - w[3];
   const Vec<double> other = cross(w[0], w[1]);
-  // Six times the volumes between the origin and each face, turned as seen from its corner.
+  // Six times the volumes between the origin and each face, with the orientation seen from the
+  // opposite corner.
   const std::array<double, 4> volumes{dot(w[1], across), -dot(w[0], across), dot(w[3], other),
                                       -dot(w[2], other)};
   const std::array<Vec<double>, 4> normals{across + cross(w[1], along), across + cross(w[0], along),

@@ -1,5 +1,6 @@
 /// @file
-/// The proof that last tick's features still hold the nearest points, for several pairs at once.
+/// SIMD proof for several pairs at once that the features of the last tick still contain the
+/// nearest points.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +14,16 @@
 
 namespace repel::detail {
 
-/// One of the two sets of several pairs: what is known of each, its lane.
+/// One side (A or B) of several pairs, one lane per pair.
 struct LaneSets {
   std::array<const Convex*, lane_count> sets{};
   LanePose X_W{};                    ///< [m]
-  std::array<LaneVec, 3> corners{};  ///< [m] of the features, in the frames of the sets
-  std::array<LaneVec, 3> turned{};   ///< [m] the same from the origins of the sets, world axes
+  std::array<LaneVec, 3> corners{};  ///< [m] corners of the features, in the frames of the sets
+  std::array<LaneVec, 3> turned{};   ///< [m] the same in world axes, from the origins of the sets
   LaneVec half_extents{};            ///< [m] of boxes
-  bool boxes = false;                ///< all of them are
+  bool boxes = false;                ///< all sets are boxes
 
-  /// @param names of the corners in the set
+  /// @param names of the corners of the feature in the set
   void set(int k, const Convex& one, const std::array<std::uint32_t, 4>& names) noexcept {
     sets[static_cast<std::size_t>(k)] = &one;
     for (std::size_t i = 0; i < 3; ++i) corners[i].set(k, one.place(names[i]));
@@ -32,13 +33,13 @@ struct LaneSets {
     });
   }
 
-  /// After `X_W` or a lane was set, and before the next proof. Never a part of its callers, where
-  /// the compiler might round otherwise: sets that stand still are turned only once.
+  /// To be called after `X_W` or a lane was set and before the next proof. Never inlined, because
+  /// the compiler might then round differently: sets at rest are rotated only once.
   [[gnu::noinline]] void turn() noexcept {
     for (std::size_t i = 0; i < 3; ++i) turned[i] = X_W.rotate(corners[i]);
   }
 
-  /// `Convex::support_value` of each along `d`, in its own frame.
+  /// `Convex::support_value` of each set along `d`, given in its own frame.
   [[nodiscard]] Lanes support_values(const LaneVec& d) const noexcept {
     if (boxes) return dot(half_extents, magnitudes(d));
     const std::array<Vec<double>, lane_count> each = d.each();
@@ -49,23 +50,23 @@ struct LaneSets {
   }
 };
 
-/// The members of Gap, a lane for each pair.
+/// The members of Gap, one lane per pair.
 struct LaneGap {
   Lanes distance, lower, upper;      ///< [m]
   LaneVec n_BA_W, p_AQa_W, p_AQb_W;  ///< [1], [m], [m]
-  LaneMask proven;                   ///< lane k is the answer of its pair
+  LaneMask proven;                   ///< lane k is a valid result for its pair
 };
 
-/// `still_nearest` of several pairs of boxes and polytopes. It looks at faces, edges and vertices
-/// alike, as the lanes may have any of them, and has the same proof: what it accepts is true within
-/// the same bracket, to the last bits of which the order of its sums may differ. What a lane
-/// answers does not depend on the others.
+/// `still_nearest` for several pairs of boxes and polytopes. It evaluates vertex, edge and face
+/// formulas for all lanes, as lanes may differ, and applies the same proof: an accepted result lies
+/// within the same bracket, the last bits of which may differ by the order of summation. The result
+/// of a lane does not depend on the others.
 struct FeatureLanes {
   LaneSets A, B;
-  Lanes size{};   ///< corners of the features
-  Lanes reach{};  ///< [m] of A and B together
+  Lanes size{};   ///< number of corners of the features
+  Lanes reach{};  ///< [m] sum of the reaches of A and B
 
-  /// @param warm what the last query on the pair has left, 1 to 3 corners
+  /// @param warm left by the last query on the pair, with 1 to 3 corners
   void set(int k, const Convex& a, const Convex& b, const WarmStart& warm) noexcept {
     A.set(k, a, warm.a);
     B.set(k, b, warm.b);
@@ -73,7 +74,7 @@ struct FeatureLanes {
     reach[k] = a.reach() + b.reach();
   }
 
-  /// Every lane must have been set, and `A` and `B` turned.
+  /// Every lane must be set, and `A` and `B` turned.
   [[nodiscard]] LaneGap prove(const QueryOptions& options) const noexcept {
     const LaneVec p_AB = B.X_W.columns[3] - A.X_W.columns[3];
     std::array<LaneVec, 3> w;  // [m] points of A - B, world axes
@@ -103,14 +104,14 @@ struct FeatureLanes {
   }
 
  private:
-  /// The nearest point and the weights of the three corners in it.
+  /// The point nearest to the origin and the barycentric weights of the three corners.
   struct Foot {
     LaneVec v;
     Lanes p, q, r;
   };
 
-  // A feature of fewer than three corners has some others of its sets in their places, and no
-  // weight on them.
+  // A feature with fewer than three corners has arbitrary other points of its sets in the unused
+  // slots, with weight 0.
   [[nodiscard]] Foot foot_on(const std::array<LaneVec, 3>& w) const noexcept {
     const LaneMask is_corner = size == 1.0;
     const LaneMask is_face = size == 3.0;

@@ -1,5 +1,5 @@
 /// @file
-/// The quick search for the features of two convex sets that are nearest to each other.
+/// The fast search for the nearest features of two convex sets.
 #pragma once
 
 #include <array>
@@ -11,18 +11,18 @@
 
 namespace repel::detail {
 
-/// GJK in double, with no care for what rounding does to the choice of features: what it finds is a
-/// guess, and counts only when `proves` accepts it. What is rejected - overlap, contact, needles -
-/// is left to the careful search of gjk.hpp.
+/// GJK in double, without safeguards against rounding in the choice of features: its result is a
+/// candidate, valid only when `proves` accepts it. What is rejected - overlap, contact, needles -
+/// is left to the robust search of gjk.hpp.
 class FeatureSearch {
  public:
-  static constexpr int cap = 40;  ///< support-map pairs; the careful search takes over then
+  static constexpr int cap = 40;  ///< limit of support-map pairs, then the robust search takes over
 
   explicit FeatureSearch(const PosedPair& pair) noexcept
       : A_(pair.A, pair.X_WA), B_(pair.B, pair.X_WB), p_AB_(pair.p_AB), margin_(pair.margin()) {}
 
-  /// True when `gap` is the proven answer. In any case the names of the last feature are left in
-  /// `warm`, which may hold points to begin with, and the support-map pairs evaluated in `gap`.
+  /// True when `gap` is the proven result. In any case `warm`, which may hold points initially,
+  /// receives the names of the last feature, and `gap` the number of support-map pairs evaluated.
   [[nodiscard, gnu::flatten, gnu::noinline]] bool run(const QueryOptions& options, WarmStart& warm,
                                                       Gap& gap) noexcept {
     gap.iterations = begin(warm);
@@ -35,7 +35,7 @@ class FeatureSearch {
       ++gap.iterations;
       const double vw = scale_ * dot(d_, n.w);
       const double length = std::sqrt(vv_);
-      // A corner found again gives v.w = v.v but for rounding.
+      // A corner found again gives v.w = v.v except for rounding.
       const bool nearest = vv_ - vw <= std::max(options.tolerance * vv_, margin_ * length);
       if (nearest || vw > beyond * length) {
         found = accept(vw, options, gap);
@@ -59,8 +59,8 @@ class FeatureSearch {
     std::uint32_t name_a;
     std::uint32_t name_b;
   };
-  /// Which of the four corners are in use: `count` of them, at most three, the last one repeated,
-  /// and one that is not.
+  /// The use of the four corner slots: `count` of them in use, at most three, listed in `older`
+  /// with the last one repeated, and one free slot.
   struct Slots {
     std::array<std::uint8_t, 3> older;
     std::uint8_t count;
@@ -92,7 +92,7 @@ class FeatureSearch {
     return corner(A_.support(-v), B_.support(v));
   }
 
-  /// The number of support-map pairs evaluated.
+  /// Initializes the feature. Returns the number of support-map pairs evaluated.
   int begin(const WarmStart& warm) noexcept {
     const bool cold = warm.size == 0;
     corners_[0] = cold ? support(-p_AB_) : corner(A_.point(warm.a[0]), B_.point(warm.b[0]));
@@ -117,8 +117,8 @@ class FeatureSearch {
                   gap);
   }
 
-  /// Moves to the nearest feature that has `n`, the corner in the free slot; false when none is
-  /// nearer than the present one, or when the corners enclose the origin.
+  /// Moves to the nearest feature that contains `n`, the corner in the free slot; false when none
+  /// is nearer than the present one, or when the corners enclose the origin.
   bool approach(const Corner& n) noexcept {
     const Slots& in_use = slots();
     const auto& [i, j, k] = in_use.older;
@@ -133,8 +133,9 @@ class FeatureSearch {
     return (in_use_ & newest_) != 0U;
   }
 
-  /// A feature that has the newest corner and the `older` ones, a bit for each slot, with its point
-  /// v = `scale` `d` nearest to the origin, at the square `vv` [m^2] from it.
+  /// Offers a feature made of the newest corner and the `older` ones, one bit per slot, with its
+  /// point v = `scale` `d` nearest to the origin and vv = v.v [m^2]. The nearest one offered is
+  /// kept.
   void offer(const Vec<double>& d, double scale, double vv, unsigned older) noexcept {
     if (!(vv < vv_)) return;
     d_ = d;
@@ -151,7 +152,7 @@ class FeatureSearch {
     const double ee = dot(e, e);
     const double scale = 1.0 / ee;
     Vec<double> d = ee * n + along * e;
-    // Near contact the first product is right to the size, not to the gap.
+    // Near contact, the error of the first dot product is relative to the size, not to the gap.
     if (dot(d, d) < 1e-3 * ee * along * along) d = d - (scale * dot(d, e)) * e;
     offer(d, scale, scale * dot(d, d) * scale, bit(i));
   }
@@ -173,8 +174,8 @@ class FeatureSearch {
     if (!(areas.y() > 0.0)) offer_edge(i, n);
   }
 
-  // Seen from n, the other three corners span the volume e0 x e1 . e2 whichever comes first, so one
-  // product with each normal tells on which side of its face the origin lies.
+  // Seen from n, the other three corners span the volume e0 x e1 . e2 in any cyclic order, so one
+  // dot product with each normal tells on which side of its face the origin lies.
   void offer_tetrahedron(int i, int j, int k, const Vec<double>& n) noexcept {
     const std::array<int, 4> around{i, j, k, i};
     const std::array<Vec<double>, 3> e{corners_[i].w - n, corners_[j].w - n, corners_[k].w - n};
@@ -193,12 +194,12 @@ class FeatureSearch {
   Turned A_;
   Turned B_;
   Vec<double> p_AB_;  ///< [m] world axes
-  double margin_;     ///< [m] what rounding can move a support value by
+  double margin_;     ///< [m] error bound of a support value due to rounding
   std::array<Corner, 4> corners_;
-  unsigned in_use_ = 0;  ///< a bit for each corner of the present feature
-  unsigned newest_ = 0;  ///< the bit of the corner to join it
-  // The point v = scale d of that feature nearest to the origin. A support map needs the direction
-  // alone and does not wait for a division.
+  unsigned in_use_ = 0;  ///< one bit for each corner of the present feature
+  unsigned newest_ = 0;  ///< the bit of the corner being added
+  // The point v = scale d of that feature nearest to the origin. A support map needs only the
+  // direction and does not have to wait for a division.
   Vec<double> d_;
   double scale_ = 0.0;
   double vv_ = 0.0;  ///< [m^2]

@@ -1,6 +1,6 @@
 /// @file
-/// The distance of two convex sets by the algorithm of Gilbert, Johnson and Keerthi (1988), with a
-/// certificate.
+/// The distance of two convex sets by the algorithm of Gilbert, Johnson and Keerthi (GJK, 1988),
+/// with a certificate.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +16,21 @@ namespace repel {
 namespace detail {
 
 /// One run of the algorithm in the precision of T. The difference is formed in world axes around
-/// the origin of A, so that nothing grows with the distance from the world's origin.
+/// the origin of A, so that rounding errors do not grow with the distance from the world origin.
 ///
-///   v        point of A - B nearest to the origin so far; |v| bounds the distance from above
-///   w        support point of A - B along -v; v.w / |v| bounds it from below
-///   margin_  what rounding can move a support value by [m]
+///     v        point of A - B nearest to the origin so far; |v| is an upper bound of the distance
+///     w        support point of A - B along -v; v.w / |v| is a lower bound
+///     margin_  error bound of a support value due to rounding [m]
 template <class T>
 class Gjk {
  public:
   Gjk(const Convex& A, const Pose& X_WA, const Convex& B, const Pose& X_WB) noexcept
       : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), named_exactly_(A.is_polytope() && B.is_polytope()) {
-    const Vec<T> p_WA(Vec3(X_WA.translation()));
-    p_AB_ = Vec<T>(Vec3(X_WB.translation())) - p_WA;
+    const Vec<T> p_WA = column<T>(X_WA, 3);
+    p_AB_ = column<T>(X_WB, 3) - p_WA;
     const double size = A.reach() + B.reach() + to_vec3(p_AB_).norm();
     margin_ = 8.0 * epsilon(T{}) * size;
-    // Below it the square of a length is lost.
+    // Smaller lengths underflow when squared.
     margin_ = std::max(margin_, 1e-150);
   }
 
@@ -58,7 +58,7 @@ class Gjk {
     return p;
   }
 
-  /// The point of A - B farthest along -v.
+  /// The support point of A - B along -v.
   DifferencePoint<T> support(const Vec<T>& v) const noexcept {
     return difference(A_.support(rotate_transposed(X_WA_, -v)),
                       B_.support(rotate_transposed(X_WB_, v)));
@@ -96,11 +96,11 @@ class Gjk {
       if (below > options.ignore_beyond) return QueryEnd::far_apart;
       const T slack = simplex_.vv() - vw;
       if (slack <= tolerance * simplex_.vv() || slack <= T(0.25 * margin_) * length) break;
-      // Names of points on a curve are rounded: another point may bear the same one.
+      // Names of points on a curve are rounded: different points may have the same name.
       if (named_exactly_ && simplex_.holds(w.name_a, w.name_b)) break;
       const Projection step = simplex_.add(w, T(margin_));
       if (step == Projection::nearer) continue;
-      // What has been proven apart stays apart: an enclosing simplex is then a rounding error.
+      // Sets proven to be disjoint stay disjoint: an enclosing simplex is then a rounding error.
       encloses_ = step == Projection::encloses && !separated;
       if (encloses_) simplex_.append(w);
       break;
@@ -124,8 +124,8 @@ class Gjk {
     const T length = sqrt_of(simplex_.vv());
     gap.p_AQa_W = Vec<double>(a);
     gap.p_AQb_W = Vec<double>(a - w);
-    // The witness points are points of the sets whatever v has suffered from a thin simplex: their
-    // distance bounds from above, and is the better value.
+    // The witness points are points of the sets even where a thin simplex makes v inaccurate: their
+    // distance is an upper bound, and the better estimate.
     const double between = static_cast<double>(sqrt_of(dot(w, w)));
     gap.upper = between * (1.0 + 0x1p-51) + margin_;
     gap.lower *= 1.0 - 0x1p-51;
@@ -157,36 +157,36 @@ class Gjk {
   int iterations_ = 0;
 };
 
-/// True when the bracket, rounding included, is as narrow as may be claimed: against the distance
-/// and against the sizes involved, `size` [m].
+/// True when the bracket, rounding included, is narrow enough to be reported: relative to the
+/// distance and to `size` [m], the sizes involved.
 [[nodiscard]] inline bool is_certified(const Gap& gap, const QueryOptions& options,
                                        double size) noexcept {
   if (gap.meets || gap.end == QueryEnd::far_apart || gap.end == QueryEnd::budget_spent) return true;
   const double width = gap.upper - gap.lower;
   const double asked = 2.0 * options.tolerance * gap.upper;
-  // One and a half times the margins on either side.
+  // 1.5 times the margins on either side.
   return width <= std::max(options.relative_width * gap.upper, asked) &&
          width <= asked + 24.0 * 0x1p-52 * size;
 }
 
 }  // namespace detail
 
-/// The distance of A and B. What double precision cannot certify - a gap near rounding, a needle
-/// whose normal is noise, nearly parallel discs - is decided in extended precision; what even that
-/// leaves wide ends in `budget_spent`.
-/// Cost: a support pair or two when the warm start still holds, else a few more, for curved sets a
-/// few dozen; at most `options.iterations` in each precision. No heap, no lock.
+/// The distance of A and B. Cases that double precision cannot certify - a gap near rounding, a
+/// needle whose normal is noise, nearly parallel discs - are decided in extended precision; a
+/// bracket that is still too wide then ends in `budget_spent`.
+/// Cost: one or two support-map pairs when the warm start still holds, otherwise a few more, for
+/// curved sets a few dozen; at most `options.iterations` in each precision. No heap, no lock.
 [[nodiscard]] inline Gap gap_between(const Convex& A, const Pose& X_WA, const Convex& B,
                                      const Pose& X_WB, const QueryOptions& options,
                                      WarmStart& warm) noexcept {
   const bool curved = !A.is_polytope() || !B.is_polytope();
   const bool began_warm = warm.size > 0;
-  const double size = A.reach() + B.reach() + (X_WB.translation() - X_WA.translation()).norm();
+  const double size = A.reach() + B.reach() + (origin(X_WB) - origin(X_WA)).norm();
   Gap gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
   if (detail::is_certified(gap, options, size)) return gap;
   int spent = gap.iterations;
   if (curved && began_warm) {
-    // Points kept from the last tick may lie too close to fresh ones to tell the way.
+    // Points kept from the last tick may be too close to new ones to determine the direction.
     warm.size = 0;
     gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
     gap.iterations += spent;

@@ -1,5 +1,5 @@
 /// @file
-/// The simplex of the distance algorithm and the projection of the origin onto it.
+/// The simplex of GJK and the projection of the origin onto it.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace repel::detail {
 
-/// A point of the difference A - B with the two points it came from.
+/// A point of the Minkowski difference A - B with the point of A and the names of both points it
+/// came from.
 template <class T>
 struct DifferencePoint {
   Vec<T> w;                  ///< [m] a - b
@@ -21,18 +22,18 @@ struct DifferencePoint {
 };
 
 enum class Projection : std::uint8_t {
-  nearer,     ///< the simplex now holds the feature nearest to the origin
-  encloses,   ///< the origin lies deeper than the margin inside all four faces
-  no_nearer,  ///< nothing nearer than before: the simplex is unchanged
+  nearer,     ///< the simplex now is the feature nearest to the origin
+  encloses,   ///< the origin is inside all four faces by more than the margin
+  no_nearer,  ///< no feature is nearer than before: the simplex is unchanged
 };
 
-/// Up to four difference points and the point v of their hull nearest to the origin.
+/// Up to four difference points and the point v of their convex hull nearest to the origin.
 ///
-/// The projection takes the nearest of all features that could hold v instead of walking through
-/// Voronoi regions: with needles and near-parallel faces the region tests contradict each other
-/// through rounding, the minimum does not. A face is reached along its normal from its nearest
-/// vertex, an edge from its nearer end and then made orthogonal to the edge again, so that the
-/// error of v is that of the small vectors and not of the long ones.
+/// The projection takes the minimum over all features that could contain v instead of testing
+/// Voronoi regions: for needles and near-parallel faces, rounding makes the region tests contradict
+/// each other, but not the minimum. The projection on a face starts from its nearest vertex along
+/// the normal, that on an edge from its nearer end and is then made orthogonal to the edge again,
+/// so that the error of v scales with the short vectors and not with the long ones.
 template <class T>
 class Simplex {
  public:
@@ -49,7 +50,7 @@ class Simplex {
     return false;
   }
 
-  /// Starts again from one point.
+  /// Resets the simplex to one point.
   void restart(const DifferencePoint<T>& p) noexcept {
     points_[0] = p;
     size_ = 1;
@@ -58,18 +59,18 @@ class Simplex {
     vv_ = p.ww;
   }
 
-  /// Adds a point without projecting; for a warm start. At most four.
+  /// Adds a point without projecting, for a warm start. At most four points.
   void append(const DifferencePoint<T>& p) noexcept { points_[size_++] = p; }
 
-  /// Projects the origin onto the hull of all points. `margin` [m].
+  /// Projects the origin onto the convex hull of all points. `margin` [m].
   Projection project_all(T margin) noexcept {
     vv_ = T(std::numeric_limits<double>::infinity());
     return project(-1, margin);
   }
 
-  /// Adds `p` (at most four points then) and moves to the nearest feature that has `p` in it: no
-  /// other one can be nearer than the present v. Without a nearer one, or when the four points
-  /// enclose the origin, the simplex stays as it was.
+  /// Adds `p` (at most four points in total) and moves to the nearest feature that contains `p`: no
+  /// other one can be nearer than the present v. When none is nearer, or when the four points
+  /// enclose the origin, the simplex is unchanged.
   Projection add(const DifferencePoint<T>& p, T margin) noexcept {
     if (size_ == 4) return Projection::no_nearer;
     points_[size_++] = p;
@@ -122,7 +123,7 @@ class Simplex {
     if (p.ww < best.vv) best = {p.ww, p.w, 1, {i, i, i}, {T(1.0), T(0.0), T(0.0)}};
   }
 
-  // v = p + t e, e = q - p, t = -p.e / e.e, written from the end that is nearer to the origin.
+  // v = p + t e, e = q - p, t = -p.e / e.e, evaluated from the end nearer to the origin.
   void project_edge(int i, int j, int newest, Feature& best) const noexcept {
     if (points_[j].ww < points_[i].ww) std::swap(i, j);
     const Vec<T>& p = points_[i].w;
@@ -144,7 +145,7 @@ class Simplex {
   }
 
   // v = n (n.p) / n.n, n the normal, p the nearest vertex; the weights are the areas of the three
-  // triangles that v makes with the sides. `tried` has the edges tried already, by their ends.
+  // triangles of v and the sides. `tried` is the set of edges already projected on, as bits.
   void project_triangle(std::array<int, 3> f, int newest, unsigned& tried,
                         Feature& best) const noexcept {
     const Vec<T>& p = points_[f[0]].w;
@@ -178,10 +179,10 @@ class Simplex {
     }
   }
 
-  // True when the origin is surely inside; else the faces it is not inside of are tried. With n the
-  // normal of a face and e1, e2 its edges, the volume n.p is only known to within
-  // margin (|n| + (|e1| + |e2|) |p|): every difference point may be off by the margin. A face that
-  // is thin, or whose opposite vertex is too near to its plane, has no inner side.
+  // True when the origin is certainly inside; otherwise the faces it is not certainly inside of are
+  // projected on. With n the normal of a face and e1, e2 its edges, the volume n.p is known only to
+  // within margin (|n| + (|e1| + |e2|) |p|): every difference point may be off by the margin. For a
+  // thin face, or one whose opposite vertex is too close to its plane, the inner side is undefined.
   bool project_tetrahedron(int newest, T margin, unsigned& tried, Feature& best) const noexcept {
     constexpr std::array<std::array<int, 4>, 4> faces{
         {{0, 1, 3, 2}, {1, 2, 3, 0}, {2, 0, 3, 1}, {0, 1, 2, 3}}};

@@ -1,6 +1,6 @@
 /// @file
-/// The force law: how a signed distance and its rate become a force. This is the file to change
-/// when a wall should feel different.
+/// The force law: force as a function of a signed distance and its rate. Change this file to change
+/// how walls feel.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,8 @@
 
 namespace repel {
 
-/// The force of a pair that is not passable, for numbers of any kind: double, an extended
-/// precision, or lanes with a pair in each. The formula stands here and nowhere else; its letters
-/// are those of ForceLaw.
+/// The force of a pair that is not passable, for any number type: double, an extended precision, or
+/// SIMD lanes with one pair each. The only place of the formula; its letters are those of ForceLaw.
 template <class Number>
 struct LawFormula {
   Number range;          ///< r [m]
@@ -51,16 +50,16 @@ struct LawFormula {
 /// region, a large force at the surface).
 ///
 ///     phi(d) = F (1 - d/r)^2    0 <= d < r       zero slope at the range r
-///            = F (1 - 2 d/r)    d < 0            goes on rising with the slope it has at 0
-///     c(d)   = c0 min(1, 1 - d/r)                no damping at the range, all of it from 0 on
+///            = F (1 - 2 d/r)    d < 0            linear, with the slope at 0
+///     c(d)   = c0 min(1, 1 - d/r)                zero at the range, c0 from distance 0 on
 ///     f      = min(max(0, phi(d) - c(d) d'), ceiling)
 ///
-/// So the force is continuous, never pulls, and grows less when the body retreats (d' > 0): leaving
-/// is never resisted.
+/// So the force is continuous, never pulls, and is smaller on retreat (d' > 0): leaving is never
+/// resisted.
 ///
-/// A passable body, membrane or tissue, may be entered and left on its far side. Its spring stops
-/// at the ceiling and falls to zero towards the depth D at which the direction turns round, with k
-/// the `stiffness`:
+/// A passable body, membrane or tissue, may be entered and left on its far side. Its spring
+/// saturates at the ceiling and falls to zero towards the depth D at which the extraction direction
+/// reverses, with k the `stiffness`:
 ///
 ///     s(d) = min(phi(d), ceiling) min(1, (D + d) / L)    L = max((1 - plateau) D, ceiling / k)
 ///     f    = min(s max(0, 1 - (c0 / ceiling) d'), ceiling)
@@ -70,11 +69,11 @@ struct ForceLaw {
   double damping = 50.0;                                     ///< c0 [N s/m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [N] greatest force of the pair
   bool passable = false;                                     ///< may be entered
-  double depth = most;  ///< D [m] intrusion distance where a passable body lets go; World::add_pair
-                        ///< cuts it to the deepest that the two shapes can have
+  double depth = most;   ///< D [m] penetration depth at which a passable body releases;
+                         ///< World::add_pair clamps it to the deepest that the two shapes can have
   double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1
 
-  static constexpr double most = 1e9;  ///< of every number but the ceiling
+  static constexpr double most = 1e9;  ///< upper bound of every number but the ceiling
 
   [[nodiscard]] LawFormula<double> formula() const noexcept {
     return {range, surface_force, damping, ceiling};
@@ -85,10 +84,11 @@ struct ForceLaw {
     return distance >= range ? 0.0 : formula().spring(distance);
   }
 
-  /// The work [J] it takes against the spring to bring the pair to this distance from beyond its
-  /// range: the spring is the slope of this, cut to `ceiling`. Of a pair that is not passable.
+  /// The work [J] against the spring to bring a pair that is not passable from beyond its range to
+  /// this distance: the potential whose slope is the spring, clamped to `ceiling`.
   [[nodiscard]] double potential(double distance) const noexcept {
-    // Where the spring reaches the ceiling, and from where on it is straight.
+    // `full`: distance at which the spring reaches the ceiling; below it the clamped spring is
+    // constant.
     const double share = ceiling / surface_force;
     const double full = range * (share > 1.0 ? 0.5 - 0.5 * share : 1.0 - std::sqrt(share));
     const double held = std::max(0.0, full - distance) * ceiling;
@@ -109,8 +109,8 @@ struct ForceLaw {
     return std::min(spring(distance), ceiling) * share;
   }
 
-  /// The force of a passable body [N] whose spring is at `spring` [N]: the damper takes a share of
-  /// the spring, so that both vanish together. With `rate` [m/s] as below.
+  /// The force [N] of a passable body whose spring force is `spring` [N]: the damper takes a share
+  /// of the spring, so that both vanish together. With `rate` [m/s] as below.
   [[nodiscard]] double damped(double spring, double rate) const noexcept {
     return std::min(spring * std::max(0.0, 1.0 - damping / ceiling * rate), ceiling);
   }
@@ -123,11 +123,12 @@ struct ForceLaw {
     return passable ? damped(passing_spring(distance), rate) : formula()(distance, rate);
   }
 
-  /// Largest slope of the spring [N/m]: what a sampled wall must be able to hold.
+  /// Largest slope of the spring [N/m]: the wall stiffness to check against the clean-stiffness
+  /// limit.
   [[nodiscard]] double stiffness() const noexcept { return 2.0 * surface_force / range; }
 };
 
-/// Returns `law` when every number of it is usable; throws SetupError naming the one that is not.
+/// Returns `law`; throws SetupError naming the first number that is out of range.
 inline const ForceLaw& checked(const ForceLaw& law) {
   constexpr double most = ForceLaw::most;
   checked("range", law.range, 1e-9, most, "m");
@@ -137,7 +138,8 @@ inline const ForceLaw& checked(const ForceLaw& law) {
   checked("depth", law.depth, 0.0, most, "m");
   checked("plateau", law.plateau, 0.0, 1.0, "");
   if (law.passable) {
-    // Up to half of the surface force the ceiling is reached before the fall can have to begin.
+    // With at most half of the surface force, the ceiling is reached before the spring may begin to
+    // fall.
     checked("ceiling of a passable body, with this surface force,", law.ceiling, 1e-9,
             0.5 * law.surface_force, "N");
   }

@@ -1,5 +1,5 @@
 /// @file
-/// The force law of several pairs at once.
+/// The force law of several pairs at once, in SIMD lanes.
 #pragma once
 
 #include <repel/base/lanes.hpp>
@@ -7,7 +7,7 @@
 
 namespace repel::detail {
 
-/// The laws of pairs that are not passable, a lane for each.
+/// The laws of pairs that are not passable, one lane each.
 struct LawLanes : LawFormula<Lanes> {
   LawLanes() noexcept : LawFormula<Lanes>{} {}
 

@@ -1,5 +1,5 @@
 /// @file
-/// The force on the way through a passable body.
+/// The force during the passage through a passable body.
 #pragma once
 
 #include <algorithm>
@@ -10,34 +10,34 @@
 
 namespace repel {
 
-/// How fast the signed distance grows along the extraction direction, 0 to 1. It is 1 while the
-/// shapes are apart; in overlap it can be less, and a force that did not know would give back on
-/// the far side of a membrane more than it took, or less.
-/// @param s what `separation` answered to these shapes at these poses
-/// @param warm what it left
-/// @param iterations counts the support-map pairs spent
-/// Cost: in overlap a warm call of `separation`, else nothing.
+/// The slope of the signed distance along the extraction direction, 0 to 1. It is 1 while the
+/// shapes are apart; in overlap it can be less, and a force that ignored it would return more
+/// energy on the far side of a membrane than it absorbed, or less.
+/// @param s the result of `separation` for these shapes at these poses
+/// @param warm the warm start it left
+/// @param iterations is increased by the support-map pairs used
+/// Cost: in overlap a warm-started call of `separation`, else nothing.
 [[nodiscard]] inline double slope_of(const Separation& s, const Shape& A, const Pose& X_WA,
                                      const Shape& B, const Pose& X_WB, const QueryOptions& options,
                                      WarmStart warm, int& iterations) noexcept {
   if (!(s.distance < 0.0)) return 1.0;
   const double step = 1e-6 * (A.reach() + B.reach());
   Pose X_WA_on = X_WA;
-  X_WA_on.translation() += step * s.extraction_W;
+  set_column(X_WA_on, 3, Vec<double>(origin(X_WA) + step * s.extraction_W));
   const Separation on = separation(A, X_WA_on, B, X_WB, options, warm);
   iterations += on.iterations;
   return std::clamp((on.distance - s.distance) / step, 0.0, 1.0);
 }
 
-/// The spring of one passable pair as a vector. The law's is the gradient of a potential,
-/// s(d) grad d, but in overlap that gradient can jump: back while a tool enters, sideways near an
-/// edge, onward when it leaves. The fall of s(d) covers the turn in the middle of a passage. For
-/// all others the spring follows the law's by no more than its stiffness times the motion, and is
-/// never larger than s(d). So
+/// The spring of one passable pair as a vector. That of the law is the gradient of a potential,
+/// s(d) grad d, but in overlap this gradient can jump: backwards while a tool enters, sideways near
+/// an edge, forwards when it leaves. The fall of s(d) covers the reversal in the middle of a
+/// passage. For all other jumps the spring follows that of the law with a rate limit, its stiffness
+/// times the motion, and is never larger than s(d). So
 ///
 ///     |change of the spring| <= stiffness() x motion
 ///
-/// on every way, and what stands still feels no change. Lagging takes energy and never gives any:
+/// on every path, and the spring does not change at standstill. The lag only absorbs energy:
 /// docs/control.md.
 class Passage {
  public:
@@ -45,8 +45,9 @@ class Passage {
   /// @param law of a passable body
   /// @param distance [m] signed
   /// @param gradient_W of the distance when A moves: the extraction direction times `slope_of`
-  /// @param travel [m] the way both bodies have come; never falls. The first call has no past
-  /// Returns the spring on A [N], world axes.
+  /// @param travel [m] distance travelled by both bodies; never decreases. The first call is not
+  /// limited
+  /// @return the spring on A [N], world axes.
   const Vec3& follow(const ForceLaw& law, double distance, const Vec3& gradient_W,
                      double travel) noexcept {
     const double largest = law.passing_spring(distance);
@@ -64,12 +65,12 @@ class Passage {
   }
 
   /// The force on A [N], world axes: the spring after `follow`, damped along itself.
-  /// @param v_BA_W [m/s] of A against B where the force acts
+  /// @param v_BA_W [m/s] of A relative to B at the point of action
   [[nodiscard]] Vec3 force(const ForceLaw& law, double distance, const Vec3& gradient_W,
                            double travel, const Vec3& v_BA_W) noexcept {
     const Vec3& spring_W = follow(law, distance, gradient_W, travel);
     const double size = spring_W.norm();
-    if (!(size > 0.0)) return Vec3::Zero();
+    if (!(size > 0.0)) return {0, 0, 0};
     const Vec3 way_W = spring_W / size;
     return law.damped(size, way_W.dot(v_BA_W)) * way_W;
   }

@@ -1,11 +1,12 @@
 /// @file
-/// Which of many boxes that do not move are near another box.
+/// Bounding volume hierarchy of static boxes: finds those near another box.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -16,15 +17,24 @@
 
 namespace repel {
 
-/// Along the axes of a frame, between two corners [m].
+/// An axis-aligned box of a frame, between two corners [m].
 using Box = Eigen::AlignedBox3d;
 
-/// A tree over boxes of one frame, built once. In each node lie up to four boxes side by side, each
-/// around a quarter of the node's: one step of a query compares all four.
+/// The centre of `box` [m], as a plain vector.
+[[nodiscard]] inline Vec3 centre(const Box& box) noexcept {
+  return (box.min() + box.max()) / 2.0;
+}
+/// The size of `box` along each axis [m].
+[[nodiscard]] inline Vec3 extents(const Box& box) noexcept {
+  return box.max() - box.min();
+}
+
+/// A static 4-ary tree over boxes of one frame. Each node stores up to four child boxes side by
+/// side, each around a quarter of the boxes of the node: one step of a query compares all four.
 class BoxTree {
  public:
   BoxTree() = default;
-  /// @param boxes [m] none empty; their indices are what a query reports. Allocates.
+  /// @param boxes [m] none empty; queries report their indices. Allocates.
   explicit BoxTree(std::span<const Box> boxes) {
     std::vector<std::int32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0);
@@ -49,11 +59,11 @@ class BoxTree {
     nodes_.shrink_to_fit();
   }
 
-  /// Calls `found(index, distance)` for every box whose distance to `box` is no more than `within`
-  /// [m], up to 1e9, and for some that are by a millionth farther; the distance reported [m] is
-  /// never more than the true one. In the order of the tree.
-  /// Returns what all others are at least away [m], up to 1e18.
-  /// Cost: about 10 ns for each node it enters. No heap; bounded by the number of boxes.
+  /// Calls `found(index, distance)` for every box whose distance to `box` is at most `within` [m],
+  /// up to 1e9, and for some that are farther by up to a millionth; the reported distance [m] never
+  /// exceeds the true one. In the order of the tree.
+  /// Returns a lower bound of the distance of all other boxes [m], up to 1e18.
+  /// Cost: about 10 ns per node visited. No heap; bounded by the number of boxes.
   template <class Found>
   double query(const Box& box, double within, Found&& found) const noexcept {
     const Node::Probe probe(box);
@@ -64,7 +74,7 @@ class BoxTree {
     if (!nodes_.empty()) open[count++] = 0;
     while (count > 0) {
       const Node& node = nodes_[open[--count]];
-      const Eigen::Array4f distances = node.distances(probe);
+      const Floats distances = node.distances(probe);
       for (int lane = 0; lane < 4; ++lane) {
         const float distance = distances[lane];
         const std::int32_t link = node.links[lane];
@@ -89,21 +99,24 @@ class BoxTree {
     Range range;
   };
 
-  static constexpr float farthest = 1e18F;          ///< [m] whose square a float still holds
-  static constexpr float inward = 1.0F - 0x1p-20F;  ///< more than all roundings of a distance
-  /// A node leaves three of its four to wait, on each of the 16 levels that 2^31 boxes can have.
+  static constexpr float farthest = 1e18F;          ///< [m] its square still fits in a float
+  static constexpr float inward = 1.0F - 0x1p-20F;  ///< covers all rounding of a distance
+  /// Stack size: a node leaves three of its four children pending, on each of the 16 levels that
+  /// 2^31 boxes can have.
   static constexpr int most_open = 3 * 17 + 1;
 
-  /// Single precision, rounded outward.
+  using Floats = float __attribute__((vector_size(16)));
+
+  /// Boxes in single precision, rounded outward.
   struct alignas(64) Node {
     struct Probe {
       explicit Probe(const Box& box) {
         for (int axis = 0; axis < 3; ++axis) {
-          lower[axis] = Eigen::Array4f::Constant(below(box.min()[axis]));
-          upper[axis] = Eigen::Array4f::Constant(-below(-box.max()[axis]));
+          lower[axis] = below(box.min()[axis]) - Floats{};
+          upper[axis] = -below(-box.max()[axis]) - Floats{};
         }
       }
-      std::array<Eigen::Array4f, 3> lower, upper;
+      std::array<Floats, 3> lower, upper;
     };
 
     void set(int lane, const Box& box, std::int32_t link) {
@@ -114,29 +127,41 @@ class BoxTree {
       links[lane] = link;
     }
 
-    [[nodiscard]] Eigen::Array4f distances(const Probe& probe) const noexcept {
-      Eigen::Array4f squares = Eigen::Array4f::Zero();
+    [[nodiscard]] Floats distances(const Probe& probe) const noexcept {
+      Floats squares{};
       for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Array4f gap =
-            (lower[axis] - probe.upper[axis]).max(probe.lower[axis] - upper[axis]).max(0.0F);
+        const Floats before = lower[axis] - probe.upper[axis];
+        const Floats behind = probe.lower[axis] - upper[axis];
+        const Floats apart = before > behind ? before : behind;
+        const Floats gap = apart > 0.0F ? apart : Floats{};
         squares += gap * gap;
       }
-      return (squares.sqrt() * inward).min(farthest);
+      const Floats distances = roots(squares) * inward;
+      return distances < farthest ? distances : farthest - Floats{};
     }
 
-    // A lane without a box is farther than anything asked for.
-    std::array<Eigen::Array4f, 3> lower = all(3.0F * farthest);
-    std::array<Eigen::Array4f, 3> upper = all(3.0F * farthest);
-    std::array<std::int32_t, 4> links{};  ///< a node, or a box: ~ its index
+    // A lane without a box is farther than any query distance.
+    std::array<Floats, 3> lower = all(3.0F * farthest);
+    std::array<Floats, 3> upper = all(3.0F * farthest);
+    std::array<std::int32_t, 4> links{};  ///< index of a child node, or ~index of a box
 
    private:
-    static std::array<Eigen::Array4f, 3> all(float value) {
-      const Eigen::Array4f four = Eigen::Array4f::Constant(value);
+    static std::array<Floats, 3> all(float value) {
+      const Floats four = value - Floats{};
       return {four, four, four};
+    }
+    /// The square roots of Eigen, which are faster but not correctly rounded.
+    static Floats roots(const Floats& squares) noexcept {
+      Eigen::Array4f four;
+      std::memcpy(four.data(), &squares, sizeof squares);
+      four = four.sqrt();
+      Floats roots;
+      std::memcpy(&roots, four.data(), sizeof roots);
+      return roots;
     }
   };
 
-  /// Less than x by no more than some roundings.
+  /// A lower bound of x, by a few rounding errors.
   [[nodiscard]] static float below(double x) noexcept {
     const auto rounded = static_cast<float>(std::clamp<double>(x, -farthest, farthest));
     return rounded - (std::abs(rounded) * 0x1p-22F + std::numeric_limits<float>::min());
@@ -153,17 +178,18 @@ class BoxTree {
     return all;
   }
 
-  /// Two ranges of as many boxes, apart along the axis on which their centres spread most.
+  /// Splits `range` into halves of equal count, along the axis on which the centres spread most.
   [[nodiscard]] static std::pair<Range, Range> halves(std::span<const Box> boxes, Range range) {
     const std::size_t half = (range.size() + 1) / 2;
     if (range.size() > 1) {
       Box centres;
-      for (const std::int32_t i : range) centres.extend(boxes[i].center());
-      Eigen::Index axis = 0;
-      centres.sizes().maxCoeff(&axis);
+      for (const std::int32_t i : range) centres.extend(centre(boxes[i]));
+      const Vec3 spread = extents(centres);
+      int axis = spread[1] > spread[0] ? 1 : 0;
+      if (spread[2] > spread[axis]) axis = 2;
       std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half),
                        range.end(), [&](std::int32_t i, std::int32_t j) {
-                         const double a = boxes[i].center()[axis], b = boxes[j].center()[axis];
+                         const double a = centre(boxes[i])[axis], b = centre(boxes[j])[axis];
                          return a < b || (a == b && i < j);
                        });
     }

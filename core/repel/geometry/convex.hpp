@@ -15,13 +15,13 @@
 
 namespace repel {
 
-/// One convex set around its own origin. A box with zero extents is a rectangle, a segment or a
-/// point; a cylinder with zero half length is a disc. Points are addressed by a 32-bit name, so
+/// A convex set around its own origin. A box with zero extents is a rectangle, a segment or a
+/// point; a cylinder with zero half length is a disc. Points are identified by a 32-bit name, so
 /// that a simplex of them can be kept from tick to tick in a few bytes: corner signs for a box, the
-/// vertex index for a polytope, side and angle (to 1e-8) for a cylinder.
+/// vertex index for a polytope, end and angle (to 1e-8) for a cylinder.
 class Convex {
  public:
-  /// Up to so many vertices a scan of all of them is as fast as a table of directions.
+  /// Up to so many vertices, a scan of all of them is as fast as a SupportTable.
   static constexpr std::size_t largest_scan = 32;
 
   enum class Kind : std::uint8_t { box, cylinder, cone, polytope };
@@ -32,7 +32,7 @@ class Convex {
     Vec<T> p;  ///< [m] in the frame of the set
   };
 
-  /// Corners at +-`half_extents` [m], each at least 0.
+  /// A box with corners at +-`half_extents` [m], each at least 0.
   static Convex box(const Vec3& half_extents) {
     Convex set(Kind::box);
     set.size_ = Vec<double>(half_extents);
@@ -41,15 +41,15 @@ class Convex {
                       (half_extents.z() > 0.0 ? 4U : 0U);
     return set;
   }
-  /// Around the z axis; `radius` and `half_length` [m] at least 0.
+  /// A cylinder around the z axis; `radius` and `half_length` [m] at least 0.
   static Convex cylinder(double radius, double half_length) {
     Convex set(Kind::cylinder);
     set.size_ = {radius, radius, half_length};
     set.reach_ = std::hypot(radius, half_length);
     return set;
   }
-  /// Around the z axis: a disc of `radius` [m] at `z_base` [m] and the apex at `z_apex` [m], not
-  /// below it. Negative radii are not allowed.
+  /// A cone around the z axis: a disc of `radius` [m], at least 0, at `z_base` [m] and the apex at
+  /// `z_apex` [m], not below it.
   static Convex cone(double radius, double z_base, double z_apex) {
     Convex set(Kind::cone);
     set.size_ = {radius, z_base, z_apex};
@@ -65,7 +65,7 @@ class Convex {
     return set;
   }
 
-  /// [byte] held on the heap, and the most that a polytope of so many vertices holds.
+  /// [byte] Heap memory held, and the most that a polytope of so many vertices holds.
   [[nodiscard]] std::size_t bytes() const noexcept { return vertices_.bytes() + table_.bytes(); }
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     return VertexScan::bytes_of(vertices) +
@@ -74,23 +74,23 @@ class Convex {
   [[nodiscard]] Kind kind() const noexcept { return kind_; }
   /// [m] distance of the farthest point from the origin of the frame.
   [[nodiscard]] double reach() const noexcept { return reach_; }
-  /// True when the set is the hull of a few points.
+  /// True when the set has finitely many vertices.
   [[nodiscard]] bool is_polytope() const noexcept {
     return kind_ == Kind::box || kind_ == Kind::polytope || size_.x() == 0.0;
   }
   /// Number of vertices; 0 for a set with a curved boundary.
   [[nodiscard]] int vertex_count() const noexcept;
 
-  /// A polytope whose support map is a scan of all vertices: no more than `largest_scan`.
+  /// True for a polytope whose support map scans all vertices, at most `largest_scan`.
   [[nodiscard]] bool is_scanned() const noexcept {
     return kind_ == Kind::polytope && table_.empty();
   }
-  /// Of a polytope.
+  /// The vertices of a polytope.
   [[nodiscard]] VertexBlock vertices() const noexcept { return vertices_.block(); }
-  /// [m] of a box.
+  /// [m] The half extents of a box.
   [[nodiscard]] Vec<double> half_extents() const noexcept { return size_; }
-  /// The name of a box's corner by its signs, bit k set where coordinate k is positive. A corner of
-  /// a flat box has several; the lowest stands for all.
+  /// The name of a corner of a box by its signs, bit k set where coordinate k is positive. A corner
+  /// of a flat box has several sign patterns; the lowest is its name.
   [[nodiscard]] std::uint32_t corner_name(std::uint32_t signs) const noexcept {
     return signs & thick_axes_;
   }
@@ -112,7 +112,7 @@ class Convex {
     return named<T>({i, vertices_.vertex(i)});
   }
 
-  /// The place alone of the point of that name [m].
+  /// The position of the point with that name [m].
   [[nodiscard]] Vec<double> place(std::uint32_t name) const noexcept {
     switch (kind_) {
       case Kind::box:
@@ -126,8 +126,8 @@ class Convex {
     return vertices_.vertex(name);
   }
 
-  /// The largest product of `d` with a point of the set [m] for unit `d`: what `support` reaches,
-  /// without saying where.
+  /// The support function: the largest dot product of `d` with a point of the set, [m] for unit
+  /// `d`.
   [[nodiscard]] double support_value(const Vec<double>& d) const noexcept {
     switch (kind_) {
       case Kind::box:
@@ -147,8 +147,9 @@ class Convex {
     return largest;
   }
 
-  /// The point of that name; any name gives some point of the set. Names carry over between a set
-  /// and its reduced forms: the same corner, the same vertex, the same angle.
+  /// The point with that name; any name gives some point of the set. A name refers to the
+  /// corresponding point of a set and its reduced forms: the same corner, the same vertex, the same
+  /// angle.
   template <class T = double>
   [[nodiscard]] Point<T> point(std::uint32_t name) const noexcept {
     switch (kind_) {
@@ -178,7 +179,7 @@ class Convex {
 
   static double root(double x) noexcept { return std::sqrt(x); }
   static DoubleDouble root(DoubleDouble x) noexcept { return sqrt(x); }
-  /// Length of `d` across the z axis.
+  /// Length of the component of `d` normal to the z axis.
   template <class T>
   [[nodiscard]] static T across(const Vec<T>& d) noexcept {
     return root(d.x() * d.x() + d.y() * d.y());
@@ -192,7 +193,7 @@ class Convex {
     return {name, product(size_, from_four<double>(signs[name]))};
   }
 
-  // The candidates hold the vertex that a scan of all of them would find.
+  // The candidates contain the vertex that a scan of all vertices would find.
   template <class T>
   [[nodiscard]] std::uint32_t best_candidate(const Vec<T>& d) const noexcept {
     const auto candidates = table_.candidates(Vec<double>(d));
@@ -208,14 +209,14 @@ class Convex {
     return winner;
   }
 
-  /// [m] where the disc at the far end, or at the near end, of the z axis stands.
+  /// [m] z of the disc (or apex) at the far end or the near end of the z axis.
   [[nodiscard]] double end(bool far) const noexcept {
     if (kind_ == Kind::cone) return far ? size_.z() : size_.y();
     return far ? size_.z() : -size_.z();
   }
 
-  /// The farthest point of one of the two discs. Along the axis all are farthest: the centre stands
-  /// for them.
+  /// The farthest point of one of the two discs. When `d` is along the axis all points are equally
+  /// far: the centre is returned.
   template <class T>
   [[nodiscard]] Point<T> rim_support(const Vec<T>& d, bool far) const noexcept {
     const T length = across(d);
@@ -237,7 +238,7 @@ class Convex {
   }
 
   // Name of a rim point: bit 31 the end, bit 30 set for the centre of the disc, bits 28 and 29 the
-  // signs of cosine and sine, below them the tangent of half the angle within its quadrant.
+  // signs of cosine and sine, the lower bits the tangent of half the angle within its quadrant.
   static constexpr double angle_steps = 268435455.0;  // 2^28 - 1
 
   [[nodiscard]] static std::uint32_t name_of_centre(bool far) noexcept {
@@ -263,13 +264,14 @@ class Convex {
     return {name, {(name & (1U << 28U)) != 0U ? -x : x, (name & (1U << 29U)) != 0U ? -y : y, z}};
   }
 
-  // What a box needs stands first, together.
+  // The members used by a box come first, for cache locality.
   Kind kind_;
-  std::uint32_t thick_axes_ = 0;  ///< of a box: bit per axis with an extent
+  std::uint32_t thick_axes_ = 0;  ///< of a box: one bit per axis with nonzero extent
   double reach_ = 0.0;            ///< [m]
-  Vec<double> size_{};            ///< [m] half extents; for a cylinder radius, radius, half length
+  Vec<double> size_{};  ///< [m] box: half extents; cylinder: radius, radius, half length; cone:
+                        ///< radius, z of base, z of apex
   VertexScan vertices_;
-  SupportTable table_;  ///< of a polytope with many vertices; else empty
+  SupportTable table_;  ///< of a polytope with many vertices; otherwise empty
 };
 
 inline int Convex::vertex_count() const noexcept {

@@ -1,6 +1,6 @@
 /// @file
-/// On which side of a plane through three points a fourth one lies, decided exactly. Set-up only:
-/// it allocates.
+/// Orientation predicate: on which side of the plane through three points a fourth one lies,
+/// decided exactly. Set-up only: it allocates.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace repel {
 
 namespace detail {
 
-/// A sum of doubles without any rounding: components that do not overlap, the largest last
-/// (Shewchuk 1997, grow-expansion). Exact unless a product underflows.
+/// An exact sum of doubles: nonoverlapping components, the largest last (Shewchuk 1997,
+/// grow-expansion). Exact unless a product underflows.
 class ExactSum {
  public:
   void add(double x) {
@@ -37,7 +37,7 @@ class ExactSum {
     add_product(p.lo, z);
     add_product(p.hi, z);
   }
-  /// The products of each part of x with each of y, and of z.
+  /// The products of each component of x with each of y, and of z.
   void add_product(DoubleDouble x, DoubleDouble y) {
     for (const double a : {x.hi, x.lo}) {
       for (const double b : {y.hi, y.lo}) add_product(a, b);
@@ -65,7 +65,7 @@ class ExactSum {
   std::vector<double> parts_;
 };
 
-/// A difference of two points, exactly: three sums of two doubles.
+/// The exact difference of two points: one double-double per coordinate.
 using ExactVector = std::array<DoubleDouble, 3>;
 
 /// a - b.
@@ -90,7 +90,7 @@ inline int exact_sign_of_determinant(const ExactVector& u, const ExactVector& v,
   return sum.sign();
 }
 
-/// Components of the cross product, rounded once.
+/// The cross product, each component rounded once.
 inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v) {
   ExactVector n;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -105,9 +105,9 @@ inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v)
 }  // namespace detail
 
 /// The sign of the volume spanned by b - a, c - a and p - a: 1 when p lies on the side of the plane
-/// from which a, b, c go round counter-clockwise, -1 on the other, 0 in the plane. Right for any
-/// doubles whose triple products do not underflow: double where its error bound allows, then
-/// DoubleDouble with its own, then exact sums.
+/// from which a, b, c appear counter-clockwise, -1 on the other, 0 in the plane. Correct for any
+/// doubles whose triple products do not underflow: computed in double where its error bound allows,
+/// then in DoubleDouble with its own bound, then with exact sums.
 [[nodiscard]] inline int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 u = b - a;
   const Vec3 v = c - a;
@@ -116,7 +116,7 @@ inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v)
   const Vec3 products = {std::abs(u.y() * v.z()) + std::abs(u.z() * v.y()),
                          std::abs(u.z() * v.x()) + std::abs(u.x() * v.z()),
                          std::abs(u.x() * v.y()) + std::abs(u.y() * v.x())};
-  const double magnitude = products.dot(w.cwiseAbs());
+  const double magnitude = products.dot(Vec3(std::abs(w.x()), std::abs(w.y()), std::abs(w.z())));
   if (std::abs(determinant) > 1e-15 * magnitude) return determinant > 0.0 ? 1 : -1;
   const detail::ExactVector exact_u = detail::exact_difference(b, a);
   const detail::ExactVector exact_v = detail::exact_difference(c, a);
@@ -127,17 +127,17 @@ inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v)
   return detail::exact_sign_of_determinant(exact_u, exact_v, exact_w);
 }
 
-/// The unit normal of the plane through a, b, c, on the side from which they go round
-/// counter-clockwise, right to half an ulp or so in each coordinate however thin the triangle; zero
-/// when they lie on a line, exactly.
+/// The unit normal of the plane through a, b, c, on the side from which they appear
+/// counter-clockwise, with an error of about half an ulp per coordinate however thin the triangle;
+/// zero when they are exactly collinear.
 [[nodiscard]] inline Vec3 plane_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const detail::ExactVector u = detail::exact_difference(b, a);
   const detail::ExactVector v = detail::exact_difference(c, a);
   Vec<DoubleDouble> n = cross(detail::finer(u), detail::finer(v));
   if (!(to_vec3(n).norm() > 1e-12 * (b - a).norm() * (c - a).norm())) n = detail::exact_cross(u, v);
-  // Scaled first: the square of a thin triangle's normal might underflow.
-  const double scale = to_vec3(n).cwiseAbs().maxCoeff();
-  if (!(scale > 0.0)) return Vec3::Zero();
+  // Scaled first: the squared normal of a thin triangle might underflow.
+  const double scale = largest_entry(to_vec3(n));
+  if (!(scale > 0.0)) return {0, 0, 0};
   n = DoubleDouble(std::exp2(-std::ilogb(scale))) * n;
   return to_vec3((DoubleDouble(1.0) / sqrt(dot(n, n))) * n);
 }

@@ -1,5 +1,5 @@
 /// @file
-/// The planes around a polytope, and how deep a point lies below them.
+/// The face planes of a polytope, and the depth of a point below them.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,14 @@
 
 namespace repel {
 
-/// Half spaces n.x <= offset, n unit, whose intersection is a polytope; padded arrays of all n.x,
-/// n.y, n.z and offsets, one after the other, and behind them by name those that touch a round
-/// side. Empty for a set that is not described so.
+/// Half spaces n.x <= offset, n unit, whose intersection is a polytope. Stored as padded arrays of
+/// all n.x, n.y, n.z and offsets, one after the other; the tangent planes of a curved side follow
+/// by index and are not stored. Empty for a set that is not described by planes.
 class Planes {
  public:
   Planes() = default;
-  /// @param margin [m] how far outside the polytope a point below all planes can lie, by rounding
+  /// @param margin [m] largest distance from the set of a point below all planes: by rounding, and
+  /// by the sagitta of a curved side
   explicit Planes(std::span<const Facet> facets, double margin = 0.0, Tangents side = {})
       : side_(side),
         margin_(margin),
@@ -37,33 +38,33 @@ class Planes {
       numbers_[3 * stride_ + i] = f.offset;
     }
   }
-  /// Around the box of corners +-`half_extents` [m]. Where one is 0 two planes coincide, and no
-  /// point lies deeper than 0.
+  /// The planes of a box with corners +-`half_extents` [m]. Where one is 0 two planes coincide, and
+  /// no point has a depth above 0.
   static Planes box(const Vec3& half_extents) {
     std::vector<Facet> facets;
     for (int axis = 0; axis < 3; ++axis) {
       for (const double side : {1.0, -1.0}) {
-        facets.push_back({{}, side * Vec3::Unit(axis), half_extents[axis]});
+        facets.push_back({{}, side * unit(axis), half_extents[axis]});
       }
     }
     Planes planes(facets);
     planes.is_box_ = true;
     return planes;
   }
-  /// Around the z axis, flat ends at +-`half_length` [m].
+  /// A cylinder around the z axis, flat ends at +-`half_length` [m].
   static Planes cylinder(double radius, double half_length) {
     if (!(radius > 0.0)) return box({0.0, 0.0, half_length});
-    const std::array<Facet, 2> ends{
-        {{{}, Vec3::UnitZ(), half_length}, {{}, -Vec3::UnitZ(), half_length}}};
+    const std::array<Facet, 2> ends{{{{}, unit(2), half_length}, {{}, -unit(2), half_length}}};
     return Planes(ends, Tangents::sagitta(radius), {1.0, 0.0, radius});
   }
-  /// Around the z axis, the base of `radius` [m] at -`half_length` [m], the apex at +`half_length`.
+  /// A cone around the z axis, the base of `radius` [m] at -`half_length` [m], the apex at
+  /// +`half_length`.
   static Planes cone(double radius, double half_length) {
     if (!(radius > 0.0 && half_length > 0.0)) return cylinder(radius, half_length);
     const double length = 2.0 * half_length;
     const double side = std::hypot(radius, length);
-    const std::array<Facet, 1> base{{{{}, -Vec3::UnitZ(), half_length}}};
-    // In a sharp apex or rim, planes that are off by rounding hold more.
+    const std::array<Facet, 1> base{{{{}, -unit(2), half_length}}};
+    // At a sharp apex or rim, rounding of the planes enlarges the intersection most.
     const double sharp = std::min(radius, length) / side;
     const double margin = Tangents::sagitta(radius) + 4e-15 * side / sharp;
     return Planes(base, margin, {length / side, radius / side, half_length * radius / side});
@@ -72,7 +73,7 @@ class Planes {
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] double margin() const noexcept { return margin_; }
   [[nodiscard]] std::uint32_t size() const noexcept { return listed() + side_.size(); }
-  /// [byte] held on the heap, and what so many planes hold.
+  /// [byte] Heap memory held, and the heap memory of so many planes.
   [[nodiscard]] std::size_t bytes() const noexcept { return numbers_.capacity() * sizeof(double); }
   [[nodiscard]] static std::size_t bytes_of(std::size_t planes) noexcept {
     return 4 * stride_of(planes) * sizeof(double);
@@ -88,9 +89,9 @@ class Planes {
     return i < size_ ? numbers_[3 * stride_ + i] : side_.offset();
   }
 
-  /// Some planes touch a round side.
+  /// True when some planes are tangent to a curved side.
   [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0; }
-  /// The two of them that face along `x`, seen from the axis. Must be round.
+  /// The two tangent planes that face along `x`, seen from the axis. Must be round.
   [[nodiscard]] std::array<std::uint32_t, 2> facing(const Vec<double>& x) const noexcept {
     const std::array<std::uint32_t, 2> names = side_.around(x);
     return {listed() + names[0], listed() + names[1]};
@@ -99,16 +100,16 @@ class Planes {
   template <class T>
   struct Nearest {
     std::uint32_t plane;
-    T depth;  ///< [m] of the point below it; negative above
+    T depth;  ///< [m] of the point below the plane; negative above
   };
-  /// The plane that `x` is least deep below, the first of several: for a point of the polytope, its
-  /// depth. Must not be empty. Cost: one pass over the planes.
+  /// The plane below which `x` has the least depth, the first of several; for a point of the
+  /// polytope, its depth. Must not be empty. Cost: one pass over the planes.
   [[nodiscard]] Nearest<double> nearest(const Vec<double>& x) const noexcept;
   /// The same in extended precision. Cost: two passes.
   [[nodiscard]] Nearest<DoubleDouble> nearest(const Vec<DoubleDouble>& x) const noexcept;
 
  private:
-  /// Of a box, by its three half extents.
+  /// For a box, from its three half extents.
   [[nodiscard]] Nearest<double> nearest_of_box(const Vec<double>& x) const noexcept;
   [[nodiscard]] Nearest<double> nearest_of_listed(const Vec<double>& x) const noexcept;
 

@@ -12,28 +12,29 @@
 
 namespace repel::detail {
 
-/// Quickhull (Barber, Dobkin, Huhdanpaa 1996): every point outside waits at one facet that it sees;
-/// the farthest of a facet's points replaces all facets that see it by a cone over their rim.
+/// Quickhull (Barber, Dobkin, Huhdanpaa 1996): every outside point is assigned to one facet that it
+/// sees; the farthest point of a facet replaces all facets that see it by a cone over their
+/// horizon.
 ///
 /// A facet sees a point that is strictly above it, decided exactly. So the facets that see a point
-/// are connected and have a rim that is one cycle, a point is never on the line of the rim edge it
-/// is joined to, and points in the plane of a facet give further facets in that plane.
+/// are connected and their horizon is a single cycle, a point is never collinear with the horizon
+/// edge it is joined to, and points in the plane of a facet give further facets in that plane.
 class QuickHull {
  public:
   struct Face {
     std::array<int, 3> vertices{};   ///< counter-clockwise seen from outside
     std::array<int, 3> neighbors{};  ///< face beyond the edge from vertex k to the one after it
-    Vec3 n = Vec3::Zero();           ///< unit, outward
-    std::vector<int> outside;        ///< points seen that wait here, the farthest last
-    double farthest = 0.0;           ///< height of the last of them
+    Vec3 n{0, 0, 0};                 ///< unit, outward
+    std::vector<int> outside;        ///< points assigned to this face, the farthest last
+    double farthest = 0.0;           ///< height of the last of them above the face
     bool gone = false;
   };
 
-  /// Of finite points [m].
+  /// For finite points [m].
   explicit QuickHull(std::span<const Vec3> points) : points_(points.begin(), points.end()) {
     double size = 0.0;
-    for (const Vec3& p : points_) size = std::max(size, p.cwiseAbs().maxCoeff());
-    // Scaled by a power of two, and rid of what is smaller than 5e-91 of the size, so that no
+    for (const Vec3& p : points_) size = std::max(size, largest_entry(p));
+    // Scaled by a power of two, with coordinates below 5e-91 of the size set to 0, so that no
     // product underflows and all decisions are exact.
     const int exponent = size > 0.0 ? std::ilogb(size) : 0;
     for (Vec3& p : points_) {
@@ -44,11 +45,11 @@ class QuickHull {
     }
   }
 
-  /// None when all points lie within 1e-14 of their largest coordinate of one plane.
+  /// Empty when all points lie within 1e-14 of their largest coordinate from one plane.
   [[nodiscard]] std::vector<Face> build() {
     if (points_.size() < 4 || !start()) return {};
     rim_face_.resize(points_.size());
-    // New faces are appended, so one pass meets them all.
+    // New faces are appended, so one pass visits all.
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       if (faces_[i].gone || faces_[i].outside.empty()) continue;
       add(faces_[i].outside.back(), static_cast<int>(i));
@@ -61,12 +62,12 @@ class QuickHull {
   struct RimEdge {
     int from = 0;
     int to = 0;
-    int beyond = 0;  ///< the face that stays
-    int slot = 0;    ///< its edge
+    int beyond = 0;  ///< the face on the other side, which stays
+    int slot = 0;    ///< index of the edge in that face
   };
 
   static constexpr double flat = 1e-14;
-  static constexpr double rounding = 8e-15;  ///< of a height, more than enough
+  static constexpr double rounding = 8e-15;  ///< error of a height, a generous bound
 
   bool start();
   void push(int a, int b, int c, const std::array<int, 3>& neighbors);
@@ -74,8 +75,8 @@ class QuickHull {
   void find_rim(int apex, int first_seen);
   void close_rim(int apex);
 
-  /// The point with the largest measure; of several equal ones the last in the order of their
-  /// coordinates, which is a corner of what they span.
+  /// The point with the largest measure; of several equal ones the lexicographically last, which is
+  /// a vertex of their hull.
   template <class Measure>
   [[nodiscard]] int farthest(Measure measure) const {
     std::size_t best = 0;
@@ -104,7 +105,8 @@ class QuickHull {
     return orientation(points_[a], points_[b], points_[c], points_[i]) > 0;
   }
 
-  /// Leaves point i at the first of the faces from `begin` on that sees it; at none, it is inside.
+  /// Assigns point i to the first face from `begin` on that sees it. A point that none sees is
+  /// inside.
   void assign(int i, std::size_t begin) {
     for (std::size_t k = begin; k < faces_.size(); ++k) {
       Face& f = faces_[k];
@@ -125,15 +127,16 @@ class QuickHull {
   std::vector<Vec3> points_;  ///< scaled to about 1
   std::vector<Face> faces_;
   std::vector<RimEdge> rim_;
-  std::vector<int> seen_;      ///< faces that the apex removes
-  std::vector<int> rim_face_;  ///< for each point, the new face on the rim edge that leaves it
+  std::vector<int> seen_;      ///< faces that see the apex and are removed
+  std::vector<int> rim_face_;  ///< for each point, the new face on the rim edge that starts there
 };
 
 inline void QuickHull::push(int a, int b, int c, const std::array<int, 3>& neighbors) {
   faces_.push_back({{a, b, c}, neighbors, plane_normal(points_[a], points_[b], points_[c]), {}});
 }
 
-/// Four points that span a volume, each the farthest from the span of those before it.
+/// The initial tetrahedron: each vertex is the farthest from the span of those before it. False
+/// when there is none.
 inline bool QuickHull::start() {
   const int o = farthest([](const Vec3& p) { return p.x(); });
   const Vec3 origin = points_[o];
@@ -194,7 +197,7 @@ inline void QuickHull::find_rim(int apex, int first_seen) {
   }
 }
 
-/// Joins the edges of the rim to the apex.
+/// Joins the edges of the rim (horizon) to the apex.
 inline void QuickHull::close_rim(int apex) {
   const int begin = static_cast<int>(faces_.size());
   const int count = static_cast<int>(rim_.size());

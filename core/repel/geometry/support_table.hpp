@@ -1,6 +1,6 @@
 /// @file
-/// Which vertices of a large polytope can be the farthest along a direction: a table of the
-/// directions, for a support map whose cost does not grow with the number of vertices.
+/// Lookup table from directions to the vertices of a large polytope that can be the farthest along
+/// them, for a support map whose cost does not grow with the number of vertices.
 #pragma once
 
 #include <algorithm>
@@ -15,29 +15,29 @@
 
 namespace repel {
 
-/// The directions, sorted into the square cells of a cube around the origin, and for each cell the
-/// vertices among which is the farthest one along any of its directions.
+/// The directions are sorted into the square cells of a cube map around the origin. Each cell lists
+/// the vertices that can be the farthest along one of its directions.
 ///
-/// A vertex u is left out of a cell when another one is farther along each of the cell's four
-/// corners by more than rounding can take back: every direction of the cell is a sum of multiples
-/// of the corners, so u is never the farthest. Hence the first best of `candidates(d)` is the very
-/// vertex that a scan of all of them would find, flat and nearly flat regions, repeated and nearly
-/// repeated vertices included; climbing along edges gets lost in those. A cell that holds the
-/// normal of a flat face has all corners of that face. Where finer cells would have more than
-/// `most_candidates` for each vertex in all, as those of a far corner that is a thousand vertices
-/// within rounding, the coarser ones stay.
+/// A vertex u is left out of a cell when another one is farther along each of the four corner
+/// directions of the cell by more than the rounding error: every direction of the cell is a
+/// nonnegative combination of the corners, so u is never the farthest. Hence the first best of
+/// `candidates(d)` is exactly the vertex that a scan of all vertices would find, also in flat and
+/// nearly flat regions and among repeated and nearly repeated vertices, where hill climbing along
+/// edges gets stuck. A cell that contains the normal of a flat face lists all vertices of that
+/// face. Where refining would give more than `most_candidates` per vertex in total, for example for
+/// a far corner that consists of a thousand vertices within rounding, the coarser cells are kept.
 class SupportTable {
  public:
-  /// For each vertex, in all cells: round shapes have 4 to 8, needles and prisms up to 26.
+  /// Per vertex, summed over all cells: round shapes have 4 to 8, needles and prisms up to 26.
   static constexpr std::size_t most_candidates = 32;
 
   SupportTable() = default;
-  /// Of at least one vertex [m]. Set-up: it allocates. Cost: a few passes over the vertices.
+  /// For at least one vertex [m]. Set-up: it allocates. Cost: a few passes over the vertices.
   explicit SupportTable(std::span<const Vec3> vertices);
 
   [[nodiscard]] bool empty() const noexcept { return first_.empty(); }
 
-  /// [byte] held on the heap, and the most that a table of so many vertices holds.
+  /// [byte] Heap memory held, and the most that a table of so many vertices holds.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (first_.capacity() + candidates_.capacity()) * sizeof(std::uint32_t);
   }
@@ -46,8 +46,8 @@ class SupportTable {
     return (6 * width * width + 1 + most_candidates * vertices) * sizeof(std::uint32_t);
   }
 
-  /// Indices, in ascending order, of the vertices that can have the largest product with `d`, as
-  /// computed in double or better; for a `d` that is zero or not finite, of some vertices. The
+  /// Indices, in ascending order, of the vertices that can have the largest dot product with `d`,
+  /// as computed in double or better; for a `d` that is zero or not finite, of some vertices. The
   /// table must not be empty.
   [[nodiscard]] std::span<const std::uint32_t> candidates(const Vec<double>& d) const noexcept {
     const std::size_t cell = cell_of(d);
@@ -57,8 +57,8 @@ class SupportTable {
  private:
   using List = std::vector<std::uint32_t>;
 
-  // Face 2 k lies across the positive axis k, face 2 k + 1 across the negative one; the cells of a
-  // face are counted along the axis after k, then along the one after that.
+  // Face 2 k faces the positive axis k, face 2 k + 1 the negative one; the cells of a face are
+  // numbered along axis k + 1 first, then along axis k + 2 (mod 3).
   [[nodiscard]] std::size_t cell_of(const Vec<double>& d) const noexcept {
     const double x = std::abs(d.x());
     const double y = std::abs(d.y());
@@ -73,11 +73,11 @@ class SupportTable {
   [[nodiscard]] std::size_t step_at(double u) const noexcept {
     const double width = static_cast<double>(width_);
     const double step = 0.5 * (u + 1.0) * width;
-    if (!(step > 0.0)) return 0;  // also when u is not a number
+    if (!(step > 0.0)) return 0;  // also when u is NaN
     return step < width ? static_cast<std::size_t>(step) : width_ - 1;
   }
 
-  /// Halves the cells until there are about as many as vertices.
+  /// The finest resolution: about as many cells as vertices.
   [[nodiscard]] static std::size_t finest_width(std::size_t vertices) noexcept {
     std::size_t width = 1;
     while (width < 64 && 6 * width * width * 2 < vertices) width *= 2;
@@ -90,7 +90,7 @@ class SupportTable {
                                    const std::array<Vec3, 4>& corners);
 
   std::size_t width_ = 1;             ///< cells along the edge of a face
-  std::vector<std::uint32_t> first_;  ///< where the candidates of each cell begin, and their end
+  std::vector<std::uint32_t> first_;  ///< start of the candidates of each cell, and the end
   List candidates_;
 };
 
@@ -109,20 +109,22 @@ inline std::array<Vec3, 4> SupportTable::corners_of(std::size_t face, std::size_
   return corners;
 }
 
-/// The vertices of `list` that no other one beats by `margin` along all four corners, or repeats.
-/// Those with the largest sums are tried as winners; more would hardly shorten a long list.
+/// The vertices of `list` that no other one exceeds by `margin` along all four corners, or
+/// duplicates. Only the first 32 kept, by descending sum, are tested as dominating vertices; more
+/// would hardly shorten a long list.
 inline SupportTable::List SupportTable::pruned(std::span<const Vec3> vertices, double margin,
                                                const List& list,
                                                const std::array<Vec3, 4>& corners) {
   struct Reach {
     std::uint32_t vertex = 0;
+    std::size_t place = 0;  // in `list`
     double sum = 0.0;
     std::array<double, 4> along{};
   };
   std::vector<Reach> order;
   order.reserve(list.size());
   for (const std::uint32_t i : list) {
-    Reach reach{i, 0.0, {}};
+    Reach reach{i, order.size(), 0.0, {}};
     for (std::size_t k = 0; k < 4; ++k) {
       reach.along[k] = corners[k].dot(vertices[i]);
       reach.sum += reach.along[k];
@@ -133,7 +135,7 @@ inline SupportTable::List SupportTable::pruned(std::span<const Vec3> vertices, d
     return a.sum > b.sum || (a.sum == b.sum && a.vertex < b.vertex);
   });
   std::vector<Reach> winners;
-  List kept;
+  std::vector<char> is_kept(list.size());
   for (const Reach& v : order) {
     const bool beaten = std::any_of(winners.begin(), winners.end(), [&](const Reach& u) {
       double least = std::numeric_limits<double>::infinity();
@@ -142,9 +144,12 @@ inline SupportTable::List SupportTable::pruned(std::span<const Vec3> vertices, d
     });
     if (beaten) continue;
     if (winners.size() < 32) winners.push_back(v);
-    kept.push_back(v.vertex);
+    is_kept[v.place] = 1;
   }
-  std::sort(kept.begin(), kept.end());
+  List kept;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (is_kept[i] != 0) kept.push_back(list[i]);
+  }
   return kept;
 }
 
@@ -153,9 +158,9 @@ inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
   double size = 0.0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     all[i] = static_cast<std::uint32_t>(i);
-    size = std::max(size, vertices[i].cwiseAbs().maxCoeff());
+    size = std::max(size, largest_entry(vertices[i]));
   }
-  // A product rounds by 9 half ulps of the size at most, a direction moves within its cell by 4
+  // A dot product rounds by at most 9 half ulps of the size, a direction moves within its cell by 4
   // half ulps: together 60 half ulps between two vertices.
   const double margin = 64.0 * std::numeric_limits<double>::epsilon() * size;
   std::vector<List> cells;
@@ -185,7 +190,7 @@ inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
   candidates_.reserve(count);
   for (const List& cell : cells) {
     first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
-    candidates_.insert(candidates_.end(), cell.begin(), cell.end());
+    for (const std::uint32_t i : cell) candidates_.push_back(i);
   }
   first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
 }

@@ -1,5 +1,5 @@
 /// @file
-/// The planes that touch the round side of a cylinder or a cone.
+/// The tangent planes of the curved side of a cylinder or a cone.
 #pragma once
 
 #include <algorithm>
@@ -11,19 +11,20 @@
 
 namespace repel {
 
-/// Half spaces n.x <= offset, n unit, all around the z axis: a prism or a pyramid of so many sides
-/// that it is the round one but for `sagitta`. None is stored; a name is a direction.
+/// Half spaces n.x <= offset, n unit, all around the z axis: a prism or a pyramid with so many
+/// sides that it deviates from the curved surface only by `sagitta`. None is stored: the index of a
+/// plane encodes its direction.
 class Tangents {
  public:
-  Tangents() = default;  ///< none
-  /// @param radial,axial of every normal, together unit
+  Tangents() = default;  ///< no planes
+  /// @param radial,axial components of every normal, together of length 1
   /// @param offset [m]
   Tangents(double radial, double axial, double offset)
       : radial_(radial), axial_(axial), offset_(offset), count_(4 * steps) {}
 
-  /// [m] How far the edges of the prism around a circle of `radius` [m] stand out of it.
+  /// [m] How far the edges of the prism around a circle of `radius` [m] protrude from the circle.
   [[nodiscard]] static constexpr double sagitta(double radius) noexcept {
-    // No two neighbours are more than 2 / steps apart; the rest is for terms of higher order.
+    // Neighbouring normals differ by at most 2 / steps; the surplus covers terms of higher order.
     return 0.501 / (static_cast<double>(steps) * steps) * radius;
   }
 
@@ -38,23 +39,24 @@ class Tangents {
     return {-along * scale, scale, axial_};
   }
 
-  /// The one that `x` is least deep below; any where it is on the axis. Must not be empty.
+  /// The plane below which `x` has the least depth; any plane when `x` is on the axis. Must not be
+  /// empty.
   [[nodiscard]] std::uint32_t nearest(const Vec<double>& x) const noexcept {
     return at(std::floor(place(x) + 0.5));
   }
-  /// The two on either side of the direction of `x` from the axis. Must not be empty.
+  /// The two planes on either side of the direction of `x` from the axis. Must not be empty.
   [[nodiscard]] std::array<std::uint32_t, 2> around(const Vec<double>& x) const noexcept {
     const double below = std::floor(place(x));
     return {at(below), at(below + 1.0)};
   }
 
  private:
-  // In each quarter the normals point at equal steps along the side of a square: to name a
-  // direction takes a division, to find it a root, and both are exact on the axes. Fewer steps
-  // would show in the depth, more take longer to choose from.
+  // In each quadrant the normals point at equal steps along the side of a square: finding the index
+  // of a direction takes a division, finding the direction of an index a square root, and both are
+  // exact on the axes. Fewer steps would show in the depth, more take longer to choose from.
   static constexpr std::uint32_t steps = 1U << 16U;
 
-  /// 0 to 4 `steps`, growing around the axis; not a number on it.
+  /// Position around the axis, increasing, 0 to 4 `steps`; NaN on the axis.
   [[nodiscard]] static double place(const Vec<double>& x) noexcept {
     const bool ahead = std::abs(x.x()) >= std::abs(x.y());
     const double along = ahead ? x.y() / x.x() : -x.x() / x.y();

@@ -1,5 +1,5 @@
 /// @file
-/// A convex set turned into the axes of the world.
+/// A convex set rotated into world axes.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace repel::detail {
 
-/// The support map of a set in world axes around the set's own origin, for a search that asks it
-/// several times: what can be turned once is, so that neither the direction nor the answer has to
-/// be - the edges of a box, of which a corner is a sum of three, and the vertices of a small
-/// polytope.
+/// The support map of a set in world axes around the origin of the set, for a search that evaluates
+/// it several times. What can be rotated once is precomputed, so that neither the direction nor the
+/// result has to be rotated: the edges of a box, three of which sum to a corner, and the vertices
+/// of a small polytope.
 class Turned {
  public:
   struct Point {
-    std::uint32_t name;  ///< as Convex names it
+    std::uint32_t name;  ///< as in Convex::Point
     Vec<double> p;       ///< [m] world axes
   };
 
-  /// Both must outlive it.
+  /// Both arguments must outlive the object.
   Turned(const Convex& set, const Pose& X) noexcept
       : set_(set), X_(X), is_box_(set.kind() == Convex::Kind::box) {
     if (is_box_) {
@@ -31,12 +31,12 @@ class Turned {
       vertices_ = set.vertices().turned(X, room_.data());
     }
   }
-  // The vertices lie within.
+  // `vertices_` refers to `room_`.
   Turned(const Turned&) = delete;
   Turned& operator=(const Turned&) = delete;
 
-  /// The farthest point along `d`, which need not be unit; where several are, as far as rounding
-  /// can tell, one of them.
+  /// The farthest point along `d`, which need not be unit; one of them where several are equally
+  /// far within rounding.
   [[nodiscard]] Point support(const Vec<double>& d) const noexcept {
     if (is_box_) {
       const Vec<double> d_own = rotate_transposed(X_, d);

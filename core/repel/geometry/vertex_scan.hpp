@@ -1,5 +1,5 @@
 /// @file
-/// Vertices kept in three padded arrays, and the scan for the one farthest along a direction.
+/// Vertices stored in three padded arrays, and the scan for the one farthest along a direction.
 #pragma once
 
 #include <algorithm>
@@ -16,30 +16,30 @@
 namespace repel {
 
 /// A view of vertices as three arrays, one after the other: all x, all y, all z, each `stride`
-/// numbers long. `farthest` gives the same vertex whether the compiler has wide registers or not:
-/// the lanes only change the order in which candidates are compared, and ties go to the lowest
-/// index.
+/// numbers long. `farthest` gives the same vertex at any register width: the lanes only change the
+/// order in which candidates are compared, and ties go to the lowest index.
 struct VertexBlock {
   static constexpr std::size_t lanes = 8;  ///< `stride` is a multiple of this
 
   const double* numbers = nullptr;  ///< [m]
   std::size_t stride = 0;
 
-  /// Vertex i [m], which must be there.
+  /// Vertex i [m]; i must be valid.
   [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
     return {numbers[i], numbers[stride + i], numbers[2 * stride + i]};
   }
-  /// Index of the vertex with the largest product with `d`, the lowest of several. Cost: one pass.
+  /// Index of the vertex with the largest dot product with `d`, the lowest of several. Cost: one
+  /// pass.
   [[nodiscard]] std::uint32_t farthest(const Vec<double>& d) const noexcept;
-  /// The largest product itself. Cost: half of `farthest`.
+  /// The largest dot product itself. Cost: half of `farthest`.
   [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
   /// The same for each of several directions. Cost: one pass for all.
   [[nodiscard]] detail::Lanes largest_products(const detail::LaneVec& d) const noexcept;
-  /// The vertices turned by the rotation of `X`, in `room` for 3 x stride numbers.
+  /// The vertices rotated by `X`, written to `room`, which holds 3 x stride numbers.
   VertexBlock turned(const Pose& X, double* room) const noexcept;
 
  private:
-  /// Coordinate `axis` of as many vertices as there are lanes, beginning with vertex i.
+  /// Coordinate `axis` of one register of vertices, starting with vertex i.
   [[nodiscard]] detail::Lanes coordinates(std::size_t axis, std::size_t i) const noexcept {
     detail::Lanes some;
     std::memcpy(&some, numbers + axis * stride + i, sizeof some);
@@ -50,8 +50,8 @@ struct VertexBlock {
   }
 };
 
-/// The vertices of a polytope as a block, padded with the first vertex to full lanes, and once
-/// more one by one.
+/// The vertices of a polytope as a block, padded with the first vertex to full lanes, and a second
+/// copy as one vector per vertex.
 class VertexScan {
  public:
   VertexScan() = default;
@@ -67,7 +67,7 @@ class VertexScan {
   }
 
   [[nodiscard]] int size() const noexcept { return size_; }
-  /// [byte] held on the heap, and what so many vertices hold.
+  /// [byte] Heap memory held, and the heap memory of so many vertices.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return numbers_.capacity() * sizeof(double) + rows_.capacity() * sizeof(Vec<double>);
   }
@@ -75,13 +75,13 @@ class VertexScan {
     return 3 * stride_of(vertices) * sizeof(double) + vertices * sizeof(Vec<double>);
   }
   [[nodiscard]] VertexBlock block() const noexcept { return {numbers_.data(), stride_}; }
-  /// Vertex i [m]; any number gives some vertex.
+  /// Vertex i [m]; an invalid index gives vertex 0.
   [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
     return rows_[i < static_cast<std::uint32_t>(size_) ? i : 0U];
   }
 
-  /// Index of the vertex with the largest product with `d`, the lowest of several. Cost: one pass
-  /// over the vertices.
+  /// Index of the vertex with the largest dot product with `d`, the lowest of several. Cost: one
+  /// pass over the vertices.
   [[nodiscard]] std::uint32_t scan(const Vec<double>& d) const noexcept {
     return block().farthest(d);
   }
@@ -99,8 +99,8 @@ class VertexScan {
   std::vector<Vec<double>> rows_;  ///< [m]
 };
 
-// Each lane keeps its own best and where it found it, in double as well, so that nothing branches
-// on which vertex it is.
+// Each lane keeps its best value and its index, the index in double as well, so that the code is
+// branchless.
 inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept {
   using detail::Lanes;
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -108,7 +108,7 @@ inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept 
   Lanes winner{};
   Lanes here;
   for (int k = 0; k < detail::lane_count; ++k) here[k] = k;
-    // Unrolled, the end of a short block is a branch of its own, which the machine soon knows.
+    // Unrolled, the end of a short block has its own branch, which is soon predicted correctly.
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < stride; i += lanes) {
     for (std::size_t k = 0; k < lanes; k += detail::lane_count) {

@@ -1,5 +1,5 @@
 /// @file
-/// The mass that an arm puts up at its joints, from its links where they are.
+/// The joint-space inertia of an arm, from its links at their present poses.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,16 @@
 
 #include <Eigen/Core>
 
+#include <repel/loop/arm_bodies.hpp>
 #include <repel/network/port.hpp>
 #include <repel/world/arm.hpp>
+#include <repel/world/arm_kinematics.hpp>
 
 namespace repel {
 
-/// What a joint can give where its file knows no limit: twice the weight it may have to carry and
-/// 50 rad/s^2 (m/s^2) of what it moves, all of it stretched out, and no less than 200 N m or 1000
-/// N. Its own limit where there is one. [N m] or [N]; finite. Not for the tick.
+/// Effort limit of a joint [N m] or [N], finite. Where the model has none: twice the gravity load
+/// plus 50 rad/s^2 (m/s^2) times the inertia that it moves, both with the arm stretched out, and at
+/// least 200 N m or 1000 N. Not for the tick.
 [[nodiscard]] inline double effort_bound(const ArmModel& model, std::size_t joint) {
   const ArmLink& at = model.links[joint];
   if (at.effort_limit > 0.0 && std::isfinite(at.effort_limit)) return at.effort_limit;
@@ -24,10 +26,10 @@ namespace repel {
   const double g = model.gravity_W.norm();
   double weight = 0.0;
   double inertia = at.rotor_inertia;
-  double reach = 0.0;  // of the frame of a link from the joint, stretched out
+  double reach = 0.0;  // from the joint to the frame of a link, stretched out
   for (std::size_t k = joint; k < model.links.size(); ++k) {
     const ArmLink& link = model.links[k];
-    if (k > joint) reach += link.X_PJ.translation().norm();
+    if (k > joint) reach += origin(link.X_PJ).norm();
     const double lever = turns ? reach + link.p_LC.norm() : 1.0;
     weight += link.mass * g * lever;
     inertia += link.mass * lever * lever + (turns ? link.I_C_L.norm() : 0.0);
@@ -39,49 +41,53 @@ namespace repel {
 ///
 ///     M = sum over the links of  m Jv' Jv + Jw' I Jw     and the rotors on the diagonal
 ///
-/// with Jv that of the centre of mass. A joint of which nothing is known to have mass is taken to
-/// move what its effort accelerates by 100 m/s^2. Memory is taken at construction.
+/// with Jv that of the centre of mass; or the mass matrix of the kinematics. A joint that moves no
+/// mass at this pose (`missing`) is given the inertia that its effort accelerates by 100 rad/s^2
+/// (m/s^2). Allocates at construction only.
 class ArmInertia {
  public:
   using Vector = network::Vec<network::any_size>;
   using Matrix = network::Mat<network::any_size>;
 
   explicit ArmInertia(const ArmModel& model)
-      : model_(model), drawn_(Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, size())) {
+      : model_(model), drawn_(Jacobian::Zero(6, size())), given_(size(), size()) {
     M_.setZero(size(), size());
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       nominal_.push_back(0.01 * effort_bound(model, i));
     }
   }
 
-  /// Brings M to where `kinematics` is. Cost: a Jacobian for each link.
-  template <ArmKinematics Kinematics>
-  void update(const Kinematics& kinematics) noexcept {
+  /// Updates M to the pose of `kinematics`. Cost: a Jacobian for each link, or its mass matrix.
+  void update(const ArmKinematics& kinematics) noexcept {
+    const bool is_given =
+        kinematics.mass_matrix(given_) && given_.rows() == size() && given_.cols() == size();
     for (Eigen::Index i = 0; i < size(); ++i) {
-      for (Eigen::Index k = 0; k < size(); ++k) M_(i, k) = 0.0;
+      for (Eigen::Index k = 0; k < size(); ++k)
+        M_.coeffRef(i, k) = is_given ? given_.coeff(i, k) : 0.0;
     }
-    for (Eigen::Index k = 0; k < size(); ++k) {
-      const ArmLink& link = model_.links[static_cast<std::size_t>(k)];
-      if (link.mass > 0.0 || !link.I_C_L.isZero(0.0)) add(kinematics, link, static_cast<int>(k));
-    }
-    for (Eigen::Index i = 0; i < size(); ++i) {
-      const auto joint = static_cast<std::size_t>(i);
-      M_(i, i) += model_.links[joint].rotor_inertia;
-      if (!(M_(i, i) > 1e-9)) M_(i, i) = nominal_[joint];
-      for (Eigen::Index k = 0; k < i; ++k) M_(k, i) = M_(i, k);
+    if (!is_given) add_links(kinematics);
+    missing_ = -1;
+    for (Eigen::Index i = size() - 1; i >= 0; --i) {
+      if (M_.coeff(i, i) > 1e-9) continue;
+      missing_ = static_cast<int>(i);
+      M_.coeffRef(i, i) = nominal_[static_cast<std::size_t>(i)];
     }
   }
 
-  /// [kg m^2] or [kg], symmetric.
+  /// M [kg m^2] or [kg], symmetric.
   [[nodiscard]] const Matrix& matrix() const noexcept { return M_; }
+
+  /// The first joint with no mass, or a mass that is not a number, at the last update; -1: none.
+  [[nodiscard]] int missing() const noexcept { return missing_; }
 
   /// Momenta M v [kg m^2/s] or [kg m/s].
   void momenta(const std::vector<double>& v, Vector& out) const noexcept {
     out.resize(size());
     for (Eigen::Index i = 0; i < size(); ++i) {
       double sum = 0.0;
-      for (Eigen::Index k = 0; k < size(); ++k) sum += M_(i, k) * v[static_cast<std::size_t>(k)];
-      out(i) = sum;
+      for (Eigen::Index k = 0; k < size(); ++k)
+        sum += M_.coeff(i, k) * v[static_cast<std::size_t>(k)];
+      out.coeffRef(i) = sum;
     }
   }
 
@@ -90,26 +96,39 @@ class ArmInertia {
     return static_cast<Eigen::Index>(model_.links.size());
   }
 
-  // The lower triangle.
-  template <ArmKinematics Kinematics>
-  void add(const Kinematics& kinematics, const ArmLink& link, int index) noexcept {
-    const Pose& X_WL = kinematics.X_WL(index);
+  void add_links(const ArmKinematics& kinematics) noexcept {
+    for (Eigen::Index k = 0; k < size(); ++k) {
+      const ArmLink& link = model_.links[static_cast<std::size_t>(k)];
+      if (link.mass > 0.0 || !link.I_C_L.isZero(0.0)) add(kinematics, link, static_cast<int>(k));
+    }
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      M_.coeffRef(i, i) += model_.links[joint].rotor_inertia;
+      for (Eigen::Index k = 0; k < i; ++k) M_.coeffRef(k, i) = M_.coeff(i, k);
+    }
+  }
+
+  // Adds a link to the lower triangle.
+  void add(const ArmKinematics& kinematics, const ArmLink& link, int index) noexcept {
+    const Pose X_WL = kinematics.X_WL(index);
     kinematics.jacobian(index, X_WL * link.p_LC, drawn_);
-    const Mat3 I_W = X_WL.linear() * link.I_C_L * X_WL.linear().transpose();
+    const Mat3 R_WL = rotation(X_WL);
+    const Mat3 I_W = R_WL * link.I_C_L * transposed(R_WL);
     for (Eigen::Index i = 0; i <= index; ++i) {
-      const Vec3 force = link.mass * drawn_.col(i).template head<3>();
-      const Vec3 torque = I_W * drawn_.col(i).template tail<3>();
+      const Twist column = column_of(drawn_, i);
+      const Wrench inertial{link.mass * column.linear, I_W * column.angular};
       for (Eigen::Index k = 0; k <= i; ++k) {
-        M_(i, k) += force.dot(drawn_.col(k).template head<3>()) +
-                    torque.dot(drawn_.col(k).template tail<3>());
+        M_.coeffRef(i, k) += power(inertial, column_of(drawn_, k));
       }
     }
   }
 
   const ArmModel& model_;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> drawn_;
+  Jacobian drawn_;
+  Eigen::MatrixXd given_;
   Matrix M_;
   std::vector<double> nominal_;  // [kg m^2] or [kg]
+  int missing_ = -1;
 };
 
 }  // namespace repel

@@ -1,5 +1,5 @@
 /// @file
-/// What happens to the forces when an input cannot be trusted.
+/// Removes the operator's force when an input cannot be trusted.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@ namespace repel {
 
 struct FailsafeOptions {
   double fall = 0.05;  ///< [s] in which the force ramps to zero after a fault
-  double hold = 0.25;  ///< [s] without a fault before it comes back
-  double rise = 0.5;   ///< [s] in which it comes back
+  double hold = 0.25;  ///< [s] without a fault before the force comes back
+  double rise = 0.5;   ///< [s] in which the force comes back
 };
 
-/// A gain on every force: 1 while inputs are sound, ramped to 0 by a fault of
-/// `status::failsafe`, held there until inputs have been sound for a while, then ramped back.
+/// The gain of the operator's force: 1 while inputs are valid, ramped to 0 by a fault of
+/// `status::failsafe`, held there until inputs have been valid for a while, then ramped back.
 class Failsafe {
  public:
   explicit Failsafe(const FailsafeOptions& options = {}) noexcept : options_(options) {}
@@ -37,7 +37,7 @@ class Failsafe {
     return gain_;
   }
 
-  /// That of the last tick.
+  /// The gain of the last tick.
   [[nodiscard]] double gain() const noexcept { return gain_; }
   /// True from a fault until the force has begun to come back.
   [[nodiscard]] bool tripped() const noexcept { return tripped_; }

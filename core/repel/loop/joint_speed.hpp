@@ -1,5 +1,5 @@
 /// @file
-/// Keeps joints within the speed they are made for.
+/// Keeps joints within their speed limits.
 #pragma once
 
 #include <algorithm>
@@ -7,11 +7,10 @@
 
 namespace repel {
 
-/// What is given of a torque `asked` [N m] of a joint that moves at `v` [rad/s] and may move at
-/// `limit` (0 or infinite: none is known): all of it while it brakes; where it drives, less and
-/// less over the last fifth below the limit, and nothing beyond. It only ever takes power away, so
-/// what was passive stays so. A joint can still be carried past its limit by the motion of the
-/// others.
+/// The part of a torque `asked` [N m] that is allowed for a joint that moves at `v` [rad/s] with
+/// speed limit `limit` (0 or infinite: none is known): all of it while it brakes; while it drives,
+/// a factor that falls linearly to zero over the last fifth below the limit. It only removes power,
+/// so passivity is preserved. The motion of other joints can still carry a joint past its limit.
 [[nodiscard]] inline double within_speed(double asked, double v, double limit) noexcept {
   constexpr double fade = 0.2;
   if (!(limit > 0.0) || std::isinf(limit) || !(asked * v > 0.0)) return asked;

@@ -1,5 +1,5 @@
 /// @file
-/// What is sent to the joints: who has a share in it, and how much it may be.
+/// Composes the joint torques from their contributions, within the limits.
 #pragma once
 
 #include <algorithm>
@@ -18,28 +18,28 @@
 namespace repel {
 
 struct JointTorqueOptions {
-  double brake_time = 0.02;  ///< [s], and no less than four ticks, in which braking takes 63 % of a
+  double brake_time = 0.02;  ///< [s], at least four ticks, in which braking removes 63 % of a
                              ///< speed, as far as the efforts of the joints allow
-  double slew_time = 0.005;  ///< [s] in which a torque may go from none to the most there is
+  double slew_time = 0.005;  ///< [s] in which a torque may go from zero to its limit
 };
 
-/// Who has which share in a tick.
+/// The share of each contribution in a tick.
 struct TorqueShares {
-  double operators = 1.0;  ///< of what the network gives beside walls and limits
-  double drive = 1.0;      ///< of the same again where it gives power
-  double walls = 1.0;      ///< of walls and limits of joints
+  double operators = 1.0;  ///< of the network's torques other than walls and limits
+  double drive = 1.0;      ///< further factor on these while they deliver power
+  double walls = 1.0;      ///< of walls and joint limits
   double friction = 1.0;   ///< of the compensation of dry friction
-  double brake = 0.0;      ///< of a damping that brakes all motion
-  double gravity = 1.0;    ///< of what holds the arm
+  double brake = 0.0;      ///< of a damping against all motion
+  double gravity = 1.0;    ///< of the gravity compensation
 };
 
-/// Adds the shares up:
+/// Sums the contributions:
 ///
 ///     tau = g(q) + operator + walls + friction - M v / brake_time
 ///
-/// within the speed and the effort of each joint, and not from none to all in a tick. Braking takes
-/// what effort is left over: its direction is kept, so that it never drives. Where a wall pushes
-/// the arm ahead of itself, braking steps back. Memory is taken at construction.
+/// within the speed, effort and slew-rate limits of each joint. Braking uses the effort that is
+/// left over: all its torques are scaled together, so that it never drives. While a wall pushes the
+/// arm along, braking is reduced. Allocates at construction only.
 class JointTorques {
  public:
   using Vector = ArmInertia::Vector;
@@ -60,11 +60,11 @@ class JointTorques {
     wanted_ = brake_ = rate_ = net_;
   }
 
-  /// Where gravity torques are to be written before `compose` [N m].
+  /// Buffer for the gravity torques, to be filled before `compose` [N m].
   [[nodiscard]] std::span<double> gravity() noexcept { return gravity_; }
 
-  /// Makes the torques of this tick. @param network all that it sends the joints [N m]; `walls` the
-  /// part of it that comes from walls and limits; `v` [rad/s]
+  /// Computes the torques of this tick. @param network all its joint torques [N m]; `walls` the
+  /// part of them that comes from walls and limits; `v` [rad/s]
   /// @return status bits
   [[nodiscard]] Status compose(const Vector& network, const Vector& walls, const TorqueShares& s,
                                const std::vector<double>& v, const ArmInertia& inertia) noexcept {
@@ -83,14 +83,14 @@ class JointTorques {
   [[nodiscard]] const std::vector<double>& torques() const noexcept { return torques_; }  ///< [N m]
   /// tau - g of the last tick [N m].
   [[nodiscard]] const Vector& net() const noexcept { return net_; }
-  /// At which each joint is to move a period later by what was sent, dry friction and all [rad/s].
+  /// Predicted rate of each joint one period later with the torques sent and dry friction [rad/s].
   [[nodiscard]] const Vector& expected_rate() const noexcept { return rate_; }
 
  private:
   static bool is_number(double x) noexcept { return x - x == 0.0; }
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
-  // What is no number is not sent; of gravity the last that was one.
+  // Rejects torques that are not finite; gravity falls back to its last finite value.
   [[nodiscard]] bool keep_sound(const Vector& network, const Vector& walls) noexcept {
     bool sound = true;
     for (std::size_t i = 0; i < gravity_.size(); ++i) {
@@ -107,17 +107,17 @@ class JointTorques {
     return sound;
   }
 
-  // True when a joint was kept from going faster.
+  // True when the speed limit of a joint reduced its torque.
   [[nodiscard]] bool share_out(const Vector& network, const Vector& walls, const TorqueShares& s,
                                const std::vector<double>& v) noexcept {
-    double power = 0.0;  // of the operator
+    double power = 0.0;  // of the operator [W]
     for (std::size_t i = 0; i < v.size(); ++i)
       power += (network(index(i)) - walls(index(i))) * v[i];
     const double share = s.operators * (power > 0.0 ? s.drive : 1.0);
     bool is_kept = false;
     for (std::size_t i = 0; i < v.size(); ++i) {
       const ArmLink& link = model_.links[i];
-      // What has no share may be no number.
+      // A contribution of share zero may be NaN.
       double wish = share > 0.0 ? share * (network(index(i)) - walls(index(i))) : 0.0;
       if (s.walls > 0.0) wish += s.walls * walls(index(i));
       const double asked = within_speed(wish, v[i], link.velocity_limit);
@@ -128,7 +128,7 @@ class JointTorques {
     return is_kept;
   }
 
-  // The share of a damping M v / brake_time that is given; in `brake_` what it is.
+  // Returns the share of the damping M v / brake_time that is applied; its torques are in `brake_`.
   double brake(const Vector& walls, const TorqueShares& s, const std::vector<double>& v,
                const ArmInertia& inertia) noexcept {
     double share = 0.0;
@@ -189,10 +189,10 @@ class JointTorques {
 
   const ArmModel& model_;
   network::FrictionCompensation friction_;
-  double period_;                                         // [s]
-  double brake_time_;                                     // [s]
-  double slew_;                                           // share of the effort in a tick
-  std::vector<double> effort_;                            // [N m]
+  double period_;               // [s]
+  double brake_time_;           // [s]
+  double slew_;                 // largest change in a tick, as a share of the effort
+  std::vector<double> effort_;  // [N m] limits
   std::vector<double> gravity_, last_gravity_, torques_;  // [N m]
   Vector wanted_, brake_, net_, rate_;
   bool has_sent_ = false;

@@ -1,5 +1,5 @@
 /// @file
-/// Whether what an arm reports of its joints can be true, and where it is while it cannot.
+/// Plausibility check of joint readings, and prediction of the motion while they fail it.
 #pragma once
 
 #include <algorithm>
@@ -15,34 +15,34 @@
 
 namespace repel {
 
-/// How far readings of a sound arm may be off. Angles; lengths likewise in [m] and [m/s].
+/// Tolerances for the readings of a sound arm. Angles; lengths likewise in [m] and [m/s].
 struct JointWatchOptions {
-  double position_noise = 1e-3;   ///< [rad] error of one reading against the next
-  double rate_noise = 0.2;        ///< [rad/s] error of one rate against the next
-  double resolution = 1e-5;       ///< [rad] smallest step that a position can show
-  double jitter = 1.0;            ///< [periods] by which the time between readings may be off
-  int repeats = 1;                ///< ticks for which a sound arm may report the same of a moving
-                                  ///< joint; more where it is asked more often than it measures
+  double position_noise = 1e-3;  ///< [rad] error of one reading relative to the next
+  double rate_noise = 0.2;       ///< [rad/s] error of one rate relative to the next
+  double resolution = 1e-5;      ///< [rad] smallest step of a position
+  double jitter = 1.0;           ///< [periods] by which the time between readings may be off
+  int repeats = 1;  ///< ticks for which a sound arm may report the same position of a moving joint;
+                    ///< more where it is read more often than it measures
   double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
-  bool touches = false;           ///< the arm may press on what is not in the model: a joint that
-                                  ///< stands still against a force is believed
-  int regain = 4;                 ///< sound readings in a row after which they are believed again
+  bool touches = false;  ///< the arm may press on objects that are not in the model: a joint that
+                         ///< stands still against a force is believed
+  int regain = 4;        ///< consecutive sound readings after which they are believed again
 };
 
-/// Compares every reading with the one before, with the torques that were sent in between and with
-/// the inertia of the arm, joint by joint:
+/// Compares every reading with the last one, with the torques sent in between and with the inertia
+/// of the arm, joint by joint:
 ///
 /// - positions and rates are finite, rates below twice the speed limit;
-/// - a position follows the last one by the mean of the rates, within the noise; what is missing
-///   over several ticks adds up;
-/// - a rate grows no faster than the joint's whole effort, and what the other joints pass on, can
-///   accelerate it: M_ii |dv_i| <= T (|tau_i - g_i| + effort_i) + sum |M_ik dv_k|. To lose speed is
-///   possible at once, where something is hit;
-/// - a joint that moves, or is driven by more than its friction can hold, does not report the very
-///   same position again and again.
+/// - a position follows from the last one and the mean of the rates, within the noise; errors of
+///   several ticks accumulate;
+/// - a rate grows no faster than the full effort of the joint, and the coupling from other joints,
+///   can accelerate it: M_ii |dv_i| <= T (|tau_i - g_i| + effort_i) + sum |M_ik dv_k|. Speed may be
+///   lost at once, by an impact;
+/// - a joint that moves, or is driven by more than its friction can hold, does not report exactly
+///   the same position repeatedly.
 ///
-/// A reading that fails is not used. Meanwhile the motion is predicted from the last one that was
-/// believed. Memory is taken at construction; a tick costs a few comparisons a joint.
+/// A reading that fails is not used; meanwhile the motion is predicted from the last believed one.
+/// Allocates at construction only; a tick costs a few operations for each pair of joints.
 class JointWatch {
  public:
   using Vector = ArmInertia::Vector;
@@ -61,8 +61,8 @@ class JointWatch {
     for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].effort = effort_bound(model, i);
   }
 
-  /// Compares a reading `q` [rad], `v` [rad/s] with what was known; if it stands, `position` and
-  /// `rate` become it, else the prediction. @param elapsed [s] since the reading before
+  /// Checks a reading `q` [rad], `v` [rad/s]; `position` and `rate` then return it if it is
+  /// believed, else the prediction. @param elapsed [s] since the last reading
   /// @return the bits of status::blind that hold; 0 when the reading is believed
   [[nodiscard]] Status step(const std::vector<double>& q, const std::vector<double>& v,
                             double elapsed, const ArmInertia::Matrix& M) noexcept {
@@ -78,8 +78,8 @@ class JointWatch {
     return believe(found, elapsed);
   }
 
-  /// What the loop sent after the reading: the net torque `net` = tau - g [N m], g itself, and the
-  /// rate that is expected a period later [rad/s]. `held`: brakes are on.
+  /// What the loop sent after the reading: the net torque `net` = tau - g [N m], `weight` g, and
+  /// the `rate` predicted one period later [rad/s]. `held`: brakes are on.
   void expect(const Vector& net, std::span<const double> weight, const Vector& rate,
               bool held) noexcept {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -90,10 +90,10 @@ class JointWatch {
     held_ = held;
   }
 
-  /// Brakes are on, whoever engaged them: nothing has to move.
+  /// Brakes are on, whoever engaged them: the joints need not move.
   void hold() noexcept { held_ = true; }
 
-  /// The next reading is taken as it is: the loop stood still, and the arm moved on by itself.
+  /// Accepts the next reading without comparison: the arm moved on while the loop was suspended.
   void begin_anew() noexcept {
     has_reading_ = false;
     for (Joint& joint : joints_) joint.forget();
@@ -103,27 +103,27 @@ class JointWatch {
   [[nodiscard]] double position(std::size_t joint) const noexcept { return joints_[joint].q; }
   /// Read or predicted [rad/s] or [m/s].
   [[nodiscard]] double rate(std::size_t joint) const noexcept { return joints_[joint].v; }
-  /// [s] since the last reading that was believed; 0: now.
+  /// Time since the last believed reading [s]; 0: now.
   [[nodiscard]] double blind_for() const noexcept { return blind_for_; }
-  /// No reading was ever believed.
+  /// No reading has been believed yet.
   [[nodiscard]] bool knows_nothing() const noexcept { return !has_believed_; }
 
  private:
   struct Joint {
     double q = 0.0, v = 0.0;            // believed or predicted
     double read_q = 0.0, read_v = 0.0;  // the last finite reading
-    double net = 0.0;                   // [N m] sent, without what carries the weight
+    double net = 0.0;                   // [N m] sent, without the gravity torque
     double expected_rate = 0.0;         // [rad/s]
     double effort = 0.0;                // [N m]
-    double drift = 0.0;                 // [rad] positions less rates, of the last ticks
-    double change = 0.0;                // [rad/s] of the rate, of the last ticks
-    double weight = 0.0;                // [N m] that is carried
-    double forced_rate = 0.0;           // [rad/s] it would have by what was sent, where it stands
-    double forced_way = 0.0;            // [rad] and its integral
-    int same = 0;                       // positions like the one before
-    double moved_at = 0.0;              // [rad/s] before it began to report the same
-    bool moved = false;                 // before it began to report the same
-    bool stuck = false;                 // until it reports anything else
+    double drift = 0.0;                 // [rad] position minus integrated rate, leaky sum
+    double change = 0.0;                // [rad/s] of the rate, leaky sum
+    double weight = 0.0;                // [N m] gravity torque
+    double forced_rate = 0.0;           // [rad/s] due to the torques sent, if reported still
+    double forced_way = 0.0;            // [rad] integral of forced_rate
+    int same = 0;                       // consecutive readings of the same position
+    double moved_at = 0.0;              // [rad/s] before the position repeated
+    bool moved = false;                 // before the position repeated
+    bool stuck = false;                 // until another position is reported
 
     void forget() noexcept {
       drift = change = forced_rate = forced_way = 0.0;
@@ -132,7 +132,7 @@ class JointWatch {
     }
   };
 
-  static constexpr double memory = 0.9;  // of the last ticks, per tick
+  static constexpr double memory = 0.9;  // decay per tick of the leaky sums
 
   static bool is_number(double x) noexcept { return x - x == 0.0; }
 
@@ -154,7 +154,7 @@ class JointWatch {
     Joint& joint = joints_[i];
     const double limit = model_.links[i].velocity_limit;
     if (limit > 0.0 && !(std::abs(v[i]) <= 2.0 * limit + options_.rate_noise)) return false;
-    double passed_on = 0.0;  // by the other joints [N m s]
+    double passed_on = 0.0;  // momentum from the other joints [N m s]
     for (std::size_t k = 0; k < joints_.size(); ++k) {
       if (k != i) passed_on += std::abs(M(index(i), index(k)) * (v[k] - joints_[k].read_v));
     }
@@ -162,8 +162,8 @@ class JointWatch {
     const double gain =
         options_.rate_noise + options_.mass_uncertainty * push / M(index(i), index(i));
     if (!(std::abs(v[i]) <= std::abs(joint.read_v) + gain)) return false;
-    // Between two readings the rate may have been anything from one to the other; where some are
-    // missing, it may have been more for a while.
+    // Between two readings the rate is assumed to lie between theirs; with readings missing, it may
+    // have been higher for a while.
     const double step = std::abs(v[i] - joint.read_v);
     const double missing = q[i] - joint.read_q - 0.5 * elapsed * (v[i] + joint.read_v);
     const double speed = std::max(std::abs(v[i]), std::abs(joint.read_v));
@@ -175,13 +175,13 @@ class JointWatch {
     const bool follows =
         std::abs(missing) <= most + off &&
         std::abs(joint.drift) <= 3.0 * most + 2.0 * off + 0.6 * elapsed * joint.change;
-    if (!follows) joint.drift = joint.change = 0.0;  // of what cannot be true nothing is to stay
+    if (!follows) joint.drift = joint.change = 0.0;  // discards implausible data
     return follows;
   }
 
-  // The same position again, bit for bit, of a joint that moved, moves, or must move: what friction
-  // and a wrong weight can hold may stand, up to a way that is noise; against a twentieth of its
-  // effort it may not.
+  // Detects the same position, bit for bit, of a joint that moved, moves, or must move. Dry
+  // friction and a wrong gravity model may hold it while the expected motion is within the noise;
+  // above a twentieth of its effort, within twice the resolution.
   [[nodiscard]] bool stands_still(Joint& joint, const ArmLink& link, double q, double v,
                                   double elapsed, double inertia) noexcept {
     const bool is_same = q == joint.read_q;
@@ -211,7 +211,8 @@ class JointWatch {
     return joint.stuck;
   }
 
-  // [rad] on from the last reading, if friction and all that was sent stop the joint.
+  // Shortest distance [rad] beyond the last reading, if friction and all torque sent brake the
+  // joint.
   [[nodiscard]] double shortest_way(const Joint& joint, const ArmLink& link, double inertia,
                                     double elapsed) const noexcept {
     const double force = 1.5 * link.coulomb_friction + std::abs(joint.net);
@@ -220,7 +221,8 @@ class JointWatch {
     return std::min(v * elapsed, stopping);
   }
 
-  // Where a reading may be after a while without any: on from the last one believed, which braked.
+  // Whether positions after a gap are within reach of the prediction, for an arm that braked
+  // meanwhile.
   [[nodiscard]] bool agrees(const std::vector<double>& q) const noexcept {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const double way = lost_speed_ * std::min(blind_for_, 0.2) +
@@ -261,7 +263,7 @@ class JointWatch {
     return blind_;
   }
 
-  // Of a joint that stands still only in what it reports, the motion was lost some ticks ago.
+  // Starts the prediction. The motion of a joint with frozen readings was lost some ticks ago.
   void lose(double elapsed) noexcept {
     lost_speed_ = 0.0;
     for (Joint& joint : joints_) {
@@ -282,9 +284,9 @@ class JointWatch {
   double period_;  // [s]
   std::vector<Joint> joints_;
   Status blind_ = 0U;        // why the readings are not believed
-  int sound_ = 0;            // readings in a row since
+  int sound_ = 0;            // consecutive sound readings since
   double blind_for_ = 0.0;   // [s]
-  double lost_speed_ = 0.0;  // [rad/s] greatest, when they were believed last
+  double lost_speed_ = 0.0;  // [rad/s] greatest joint speed when the readings failed
   bool has_reading_ = false, has_believed_ = false, held_ = false;
 };
 

@@ -1,5 +1,5 @@
 /// @file
-/// What the loop does about faults, and how fast the tool may be.
+/// Options of the loop: reactions to faults, and speed limits.
 #pragma once
 
 #include <repel/base/setup_error.hpp>
@@ -11,18 +11,21 @@
 namespace repel {
 
 struct TeleoperatorOptions {
-  double tool_speed = 0.25;  ///< [m/s] at which the operator may lead the tool; beyond it he drives
-                             ///< less and less, and from 1.2 times it the arm brakes; 1e-3 to 10
-  double longest_gap = 0.1;  ///< [s] without a tick after which the operator is let go
-  double exit_speed = 0.02;  ///< [m/s] at which an arm is pushed out of what it starts in
+  double tool_speed = 0.25;  ///< [m/s] up to which the operator may drive the tool; above it the
+                             ///< driving power fades, from 1.2 times it the arm brakes; 1e-3 to 10
+  double longest_gap = 0.1;  ///< [s] without a tick after which the operator's force is removed
+  double exit_speed = 0.02;  ///< [m/s] at which an arm is pushed out of an obstacle it starts in
   bool push_out = false;     ///< the arm starts inside an obstacle and is to be pushed out of it
+  /// The drive of the arm engages its brakes where TickRecord::brakes says so. Without brakes the
+  /// motors hold the weight for as long as a pose is known.
+  bool has_brakes = false;
   FailsafeOptions failsafe;
   StopOptions stop;
   JointTorqueOptions torques;
   JointWatchOptions joints;
 };
 
-/// `options`, if they are within their ranges. @throws SetupError naming the one that is not
+/// Returns `options`. @throws SetupError naming the one that is out of range
 [[nodiscard]] inline const TeleoperatorOptions& checked(const TeleoperatorOptions& options) {
   checked("tool speed", options.tool_speed, 1e-3, 10.0, "m/s");
   checked("longest gap", options.longest_gap, 0.0, 1e6, "s");

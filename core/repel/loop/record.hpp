@@ -1,5 +1,5 @@
 /// @file
-/// What is kept of every tick, and what a run amounts to.
+/// The record of every tick, and the totals of a run.
 #pragma once
 
 #include <algorithm>
@@ -23,12 +23,13 @@ struct TickRecord {
   std::int32_t phase = 0;  ///< of the operator's script
   Status status = 0;
   Stop stop = Stop::running;  ///< what was done about faults
-  bool brakes = false;        ///< the brakes of the arm are asked for
-  std::int64_t elapsed = 1;   ///< [periods] since the tick before; more where ticks are missing
-  /// [rad] or [m] joints, as they were read, or predicted where that was not believed.
+  bool brakes = false;        ///< the brakes of the arm are requested
+  bool enable = false;        ///< the stopped drive of the arm is to be enabled again
+  std::int64_t elapsed = 1;   ///< [periods] since the last tick; more after missed ticks
+  /// [rad] or [m] joints as read, or predicted where the reading was not believed.
   std::array<double, network::most_joints> q{};
-  std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] and their rates
-  std::array<double, network::most_joints> q_read{};  ///< as they were read in any case
+  std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] their rates
+  std::array<double, network::most_joints> q_read{};  ///< as read, believed or not
   std::array<double, network::most_joints> v_read{};
   network::Command command;   ///< of the operator
   Vec3 p_WT{0, 0, 0};         ///< [m] tool
@@ -40,12 +41,12 @@ struct TickRecord {
   std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_modules> energy{};
-  std::chrono::nanoseconds network_time{0};  ///< that the network took; not repeatable
+  std::chrono::nanoseconds network_time{0};  ///< compute time of the network; not reproducible
   PairTotals pairs;
   WorkerReport workers;
 };
 
-/// Keeps the ticks of a run in memory taken at set-up; those beyond it are counted and left out.
+/// Keeps the ticks of a run in memory reserved at set-up; ticks beyond it are dropped and counted.
 class Recorder {
  public:
   explicit Recorder(std::size_t capacity) { records_.reserve(capacity); }
@@ -69,7 +70,7 @@ class Recorder {
 struct RunTotals {
   std::int64_t ticks = 0;
   std::int64_t near = 0;        ///< pair evaluations that were due, summed over ticks
-  std::int64_t evaluated = 0;   ///< and made
+  std::int64_t evaluated = 0;   ///< pair evaluations made
   std::int64_t iterations = 0;  ///< support-map pairs
   std::int64_t stale = 0;       ///< stale answers used, summed over ticks
   int most_stale = 0;           ///< in one tick
@@ -77,12 +78,12 @@ struct RunTotals {
   double refresh_energy = 0.0;  ///< [J] PairTotals::refresh_energy, summed over ticks
   double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
   PairId nearest_pair;
-  double deepest = 0.0;                         ///< [m] proven: no pair was deeper when asked
-  double peak_force = 0.0;                      ///< [N] greatest virtual force on the tool
+  double deepest = 0.0;     ///< [m] proven bound: no pair was deeper when evaluated
+  double peak_force = 0.0;  ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
   std::array<std::int64_t, 4> stop_ticks{};     ///< ticks in each Stop
-  std::int64_t brake_ticks = 0;                 ///< in which the brakes were asked for
-  std::int64_t missing = 0;                     ///< ticks that were due and never made
+  std::int64_t brake_ticks = 0;                 ///< ticks in which the brakes were requested
+  std::int64_t missing = 0;                     ///< missed ticks
   WorkerReport workers;                         ///< as of the last tick
 
   void add(const TickRecord& r) noexcept {

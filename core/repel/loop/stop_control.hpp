@@ -1,5 +1,5 @@
 /// @file
-/// Which stop a tick is in, and whether the brakes of the arm are asked for.
+/// The stop of each tick, and whether the brakes of the arm are requested.
 #pragma once
 
 #include <algorithm>
@@ -9,30 +9,30 @@
 namespace repel {
 
 struct StopOptions {
-  double predicted = 0.02;  ///< [s], and no less than three ticks, for which a motion that cannot
-                            ///< be seen is braked by prediction before the brakes are asked for
-  double released = 0.5;    ///< [s] after which an arm that cannot be seen is released
+  double predicted = 0.02;  ///< [s], at least three ticks, for which an unobserved motion is braked
+                            ///< by prediction before the brakes are requested
+  double released = 0.5;    ///< [s] after which an arm with unobserved motion is released
 };
 
-/// From what is not trusted to what is done about it.
+/// State machine from faults to the stop of a tick.
 class StopControl {
  public:
   StopControl(double period, const StopOptions& options) noexcept
       : options_(options), predicted_(std::max(options.predicted, 3.0 * period)) {}
 
   /// The stop of this tick.
-  /// @param lost where the arm is cannot be told in this tick; `never_known`: and never could
-  /// @param tripped the fail-safe has not let the operator's force back; `elapsed` [s]
+  /// @param lost the pose is unknown in this tick; `never_known`: it has never been known
+  /// @param tripped the fail-safe does not restore the operator's force yet; `elapsed` [s]
   [[nodiscard]] Stop step(bool lost, bool never_known, bool tripped, double elapsed) noexcept {
     lost_for_ = lost ? lost_for_ + elapsed : 0.0;
-    // Once engaged the brakes stay until the operator comes back.
+    // Latched until the operator's force is restored.
     brakes_ = tripped && (brakes_ || never_known || lost_for_ > predicted_);
     if (!tripped) return Stop::running;
     if (never_known || lost_for_ > options_.released) return Stop::released;
     return lost || brakes_ ? Stop::braking : Stop::holding;
   }
 
-  /// "Engage brakes."
+  /// The brakes are requested.
   [[nodiscard]] bool brakes() const noexcept { return brakes_; }
 
  private:

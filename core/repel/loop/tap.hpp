@@ -1,5 +1,5 @@
 /// @file
-/// The tap: what displays and logs get of every tick, without a hold on it.
+/// The tap: copies of every tick for displays and logs, without blocking the loop.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +22,15 @@ struct TickTimes {
   std::chrono::nanoseconds compute{0};
 };
 
-/// Everything of one tick. Its vectors have their size from set-up on.
+/// All data of one tick. Its vectors have their size from set-up on.
 struct Snapshot {
   std::vector<TickRecord> arms;  ///< of each arm that shares the world, in their order
   std::vector<Pose> X_WB;        ///< [m] by BodyId
-  std::vector<NearPair> pairs;   ///< room; the first `pair_count` count, the nearest first
+  std::vector<NearPair> pairs;   ///< fixed size; the first `pair_count` are valid, nearest first
   int pair_count = 0;
-  int pairs_omitted = 0;  ///< near as well, but farther than all of these
+  int pairs_omitted = 0;  ///< further near pairs, farther than all of these
   TickTimes times;
-  std::chrono::steady_clock::time_point made;  ///< when this was written down, after the tick
+  std::chrono::steady_clock::time_point made;  ///< time of this copy, after the tick
 
   [[nodiscard]] std::span<const NearPair> near() const noexcept {
     return {pairs.data(), static_cast<std::size_t>(pair_count)};
@@ -47,17 +47,17 @@ struct TickSample {
 
 struct TapOptions {
   int arms = 1;
-  int pairs = 64;  ///< of a snapshot, at most
-  /// Between two pictures.
+  int pairs = 64;  ///< most in a snapshot
+  /// Period of the pictures.
   std::chrono::nanoseconds picture_period{1000000000 / 60};
-  std::size_t samples = 1024;  ///< that wait to be read at most
-  std::size_t log = 0;         ///< snapshots that wait to be read at most; 0: no log is kept
+  std::size_t samples = 1024;  ///< most waiting to be read
+  std::size_t log = 0;         ///< most snapshots waiting to be read; 0: no log is kept
 };
 
-/// Three outlets, each for one thread that reads it when it likes: `pictures` has the newest
-/// snapshot, `samples` a few numbers of every tick, `log` every tick whole. The loop writes them
-/// after a tick and never waits: pictures that nobody took are overwritten, what finds no room in a
-/// ring is dropped and counted there. All memory is taken at construction.
+/// Three outputs, each for one reader thread: `pictures` has the newest snapshot, `samples` a few
+/// numbers of every tick, `log` a snapshot of every tick. The loop writes them after a tick and
+/// never waits: pictures not read are overwritten, entries for which a ring has no room are dropped
+/// and counted there. Allocates at construction only.
 class Tap {
  public:
   /// @throws SetupError for a number out of range
@@ -69,11 +69,11 @@ class Tap {
         has_log_(options.log > 0),
         log_(std::max<std::size_t>(1, options.log), room_for(world, options)) {}
 
-  /// Another world with the same bodies and pairs goes on in place of the first.
+  /// Continues with another world that has the same bodies and pairs.
   void watch(const World& world) noexcept { world_ = &world; }
 
-  /// After a tick, by the thread of the loop. Cost: a sample; for a picture or a log a copy of the
-  /// poses, records and near pairs as well.
+  /// Called by the loop's thread after a tick. Cost: a sample; for a picture or a log also a copy
+  /// of the poses, records and near pairs.
   void note(const Coprocessor& coprocessor, std::span<const TickRecord* const> arms,
             const TickTimes& times) noexcept {
     samples_.draft() = {arms.front()->tick, arms.front()->pairs.nearest,
@@ -86,7 +86,7 @@ class Tap {
     if (std::chrono::steady_clock::now() >= next_picture_) show(coprocessor, arms, times);
   }
 
-  /// Makes a picture of the last tick, however short a time after the last: before a pause.
+  /// Makes a picture of the last tick regardless of the picture period, for use before a pause.
   void show(const Coprocessor& coprocessor, std::span<const TickRecord* const> arms,
             const TickTimes& times) noexcept {
     next_picture_ = std::chrono::steady_clock::now() + period_;
@@ -120,7 +120,7 @@ class Tap {
     s.times = times;
     s.made = std::chrono::steady_clock::now();
     s.pair_count = s.pairs_omitted = 0;
-    // A heap with the farthest on top, which makes room for a nearer one.
+    // A heap with the farthest pair on top, which a nearer one replaces.
     const auto begin = s.pairs.begin();
     coprocessor.for_each_near([&](const NearPair& near) {
       if (s.pair_count < static_cast<int>(s.pairs.size())) {

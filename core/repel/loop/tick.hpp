@@ -1,139 +1,133 @@
 /// @file
-/// The straight line: everything that happens in one tick, in the order it happens.
+/// The control of one arm: everything that happens in one tick, in the order it happens.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
-#include <repel/loop/network_check.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/loop/speed_share.hpp>
+#include <repel/loop/teleoperator_parts.hpp>
 #include <repel/loop/tick_clock.hpp>
 #include <repel/network/limits.hpp>
 #include <repel/network/multiplex.hpp>
 #include <repel/network/obstacle.hpp>
 #include <repel/network/operator.hpp>
-#include <repel/network/plan.hpp>
 #include <repel/network/puma_joints.hpp>
 #include <repel/network/puma_kin.hpp>
 #include <repel/network/torque_arm.hpp>
-#include <repel/schedule/coprocessor.hpp>
-#include <repel/world/arm.hpp>
+#include <repel/schedule/pair_forces.hpp>
+#include <repel/world/arm_kinematics.hpp>
 
 namespace repel {
 
-/// A teleoperator: an operator, a network, a world model and an arm. It keeps references to what
-/// it is built from, but for the network, which becomes its own; all memory is taken at
-/// construction.
-template <TorqueDrivenArm Arm, ArmKinematics Kinematics,
-          network::Operator Operator = network::ScriptedOperator>
+/// The control of one arm: from joint readings, forces of the world model and the input of an
+/// operator, through a network, to joint torques. Allocates at construction only. A cell
+/// (cell/cell.hpp) has one for each arm.
 class Teleoperator {
  public:
-  /// A device that has not answered for this long is silent [s].
+  /// Timeout of an operator's device [s].
   static constexpr double patience = 0.02;
 
-  /// @param network built for `period`
-  /// @param links bodies whose forces act on the arm through the module ARM_OBSTACLE
   /// @throws SetupError for a network that does not fit arm and world (`require_complete`), or an
   /// option out of range
-  Teleoperator(const ArmModel& model, Arm& arm, Kinematics& kinematics, World& world, BodyId tool,
-               Coprocessor& coprocessor, Operator& the_operator, network::Network network,
-               std::chrono::nanoseconds period, std::vector<LinkBody> links = {},
+  Teleoperator(TeleoperatorParts parts, std::chrono::nanoseconds period,
                const TeleoperatorOptions& options = {})
-      : options_(checked(options)),
-        arm_(arm),
-        kinematics_(kinematics),
-        world_(world),
-        tool_(tool),
-        links_(std::move(links), static_cast<int>(model.links.size())),
-        coprocessor_(coprocessor),
-        operator_(the_operator),
-        network_(std::move(network)),
+      : options_((require_complete(parts), checked(options))),
+        kinematics_(parts.kinematics),
+        world_(parts.world),
+        tool_(parts.tool),
+        links_(std::move(parts.links), static_cast<int>(parts.model.links.size())),
+        network_(std::move(parts.network)),
         clock_(period, in_nanoseconds(options.longest_gap)),
         period_(std::chrono::duration<double>(period).count()),
-        watch_(model, period_, options.joints),
-        inertia_(model),
-        command_(model, arm, period_, options),
-        q_(model.links.size()),
-        v_(model.links.size()),
-        read_q_(model.links.size()),
-        read_v_(model.links.size()),
-        jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(model.links.size()))),
+        watch_(parts.model, period_, options.joints),
+        inertia_(parts.model),
+        command_(parts.model, period_, options),
+        q_(parts.model.links.size()),
+        v_(q_),
+        read_q_(q_),
+        read_v_(q_),
+        jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(q_.size()))),
         new_jacobian_(jacobian_),
-        flow_(static_cast<int>(model.links.size())),
+        flow_(static_cast<int>(q_.size())),
         pushing_out_(options.push_out) {
-    require_complete(network_, static_cast<int>(model.links.size()), world, tool, links_.bodies());
     const network::Node* at = network_.node_of<network::Obstacle>();
     if (at == nullptr) at = network_.node_of<network::PumaKin>();
     before_walls_ = at == nullptr ? -1 : at->left;
     const auto* lever = network_.find<network::Multiplex>();
     lever_scale_ = lever == nullptr ? 1.0 : lever->velocity_scale();
     signals_.period = signals_.elapsed = period_;
-    kinematics_.update(q_);
     inertia_.update(kinematics_);
-    read_joints();
-    place_bodies();
-    flow_.reset(joints_vec(q_));
   }
 
-  /// One tick. @param now the time it is due [ns]; it must grow from tick to tick
-  const TickRecord& tick(std::chrono::nanoseconds now) noexcept {
-    sense(now);
-    return act(coprocessor_.exchange());
+  /// The first half of a tick: places the arm in the world. After all arms that share a world have
+  /// done this, one exchange of the coprocessor computes the forces for the second half.
+  /// @param readings of the arm for this tick @param now the time the tick is due [ns]; it must
+  /// grow from tick to tick
+  void sense(const ArmReadings& readings, std::chrono::nanoseconds now) noexcept {
+    if (next_tick_ == 0) begin(readings);
+    begin_tick(now);        // clock -> status
+    read_joints(readings);  // arm -> q, v
+    place_bodies();         // q, v -> poses and twists of tool and links in the world
   }
 
-  /// The first half of a tick. Arms that share a world all sense, then one exchange of the
-  /// coprocessor tells each how to act.
-  void sense(std::chrono::nanoseconds now) noexcept {
-    begin_tick(now);  // clock -> status
-    read_joints();    // arm -> q, v
-    place_bodies();   // q, v -> poses and twists of tool and links in the world
-  }
-
-  /// The second half. @param forces of the world in which all arms have been placed
-  const TickRecord& act(const PairForces& forces) noexcept {
-    push_away(forces);                                  // world -> virtual forces on tool and links
-    ask_operator();                                     // script -> what the hands do
-    run_network();                                      // hands, walls, joint rates -> torques
-    command_.judge(record_, watch_, signals_.elapsed);  // status -> stop, share of the operator
-    drive();                                            // torques -> arm
-    finish_tick();                                      // everything -> record
+  /// The second half: writes the command of the arm to the record.
+  /// @param forces of the world in which all arms have been placed @param workers that ran
+  const TickRecord& act(const PairForces& forces, const WorkerReport& workers,
+                        const network::Command& command) noexcept {
+    push_away(forces, workers);  // world -> virtual forces on tool and links
+    follow(command);             // operator's input
+    run_network();               // operator's input, walls, joint rates -> torques
+    command_.judge(record_, watch_, drive_state_, signals_.elapsed);  // -> stop, operator's share
+    drive();                                                          // torques for the arm
+    finish_tick();                                                    // everything -> record
     return record_;
   }
 
   [[nodiscard]] const network::Network& network() const noexcept { return network_; }
+  /// Pose of the tool in the world [m], as of the last `sense`.
+  [[nodiscard]] const Pose& X_WT() const noexcept { return X_WT_; }
+  /// Time since the last tick, as of the last `sense` [s].
+  [[nodiscard]] double elapsed() const noexcept { return signals_.elapsed; }
 
-  /// Brings the code and the data of the next tick into the caches and changes nothing. For the
-  /// moment before it is due: a tick that begins cold takes several times as long.
+  /// Warms the caches with code and data of the next tick and has no other effect. Call it just
+  /// before the tick is due: a tick with cold caches takes several times as long.
   void rehearse() noexcept {
     kinematics_.update(q_);
     kinematics_.tool_jacobian(new_jacobian_);
     kinematics_.gravity_torques(command_.gravity());
-    coprocessor_.rehearse();
   }
 
  private:
+  void begin(const ArmReadings& readings) noexcept {
+    read_joints(readings);
+    place_bodies();
+    flow_.reset(joints_vec(q_));
+  }
+
   void begin_tick(std::chrono::nanoseconds now) noexcept {
     record_.status = clock_.step(now);
     record_.elapsed = clock_.elapsed();
     signals_.elapsed = period_ * static_cast<double>(clock_.elapsed());
-    // The arm went on without the loop: what it reports now need not follow what it reported then.
+    // The arm moved on without the loop: its readings need not follow from the last ones.
     if ((record_.status & status::clock_gap) != 0U || next_tick_ == 0) watch_.begin_anew();
   }
 
-  void read_joints() noexcept {
-    arm_.read_positions(read_q_);
-    arm_.read_velocities(read_v_);
-    if constexpr (BrakedArm<Arm>) {
-      if (arm_.state() != ArmState::enabled) watch_.hold();
-    }
+  void read_joints(const ArmReadings& readings) noexcept {
+    copy_readings(readings.q, read_q_);
+    copy_readings(readings.v, read_v_);
+    drive_state_ = readings.state;
+    if (drive_state_ != ArmState::enabled) watch_.hold();
     record_.status |= watch_.step(read_q_, read_v_, signals_.elapsed, inertia_.matrix());
     for (std::size_t i = 0; i < q_.size(); ++i) {
       q_[i] = watch_.position(i);
@@ -158,10 +152,10 @@ class Teleoperator {
     if (!links_.place(world_, kinematics_, v_)) record_.status |= status::bad_pose;
   }
 
-  void push_away(const PairForces& forces) noexcept {
+  void push_away(const PairForces& forces, const WorkerReport& workers) noexcept {
     record_.pairs = forces.totals;
-    record_.workers = coprocessor_.workers();
-    if (coprocessor_.late()) record_.status |= status::late_result;
+    record_.workers = workers;
+    if (workers.stood_in > 0) record_.status |= status::late_result;
     if (forces.totals.stale > 0) record_.status |= status::stale_pairs;
     if (forces.totals.crowded > 0) record_.status |= status::crowded_pairs;
     if (forces.totals.expired > 0) record_.status |= status::expired_pairs;
@@ -172,9 +166,9 @@ class Teleoperator {
     if (pushing_out_) push_out(forces.totals);
   }
 
-  // The walls may give what an arm takes that leaves at exit_speed, and nobody leads it meanwhile.
+  // Credits the walls with the power of an arm that leaves at exit_speed, without an operator.
   void push_out(const PairTotals& totals) noexcept {
-    constexpr double lever = 0.5;  // [m] of a wall that turns a joint
+    constexpr double lever = 0.5;  // [m] lever arm of a wall force about a joint
     const bool is_felt = totals.peak_force > 0.0;
     if (totals.nearest > 0.0 && (!is_felt || command_.pushes_out_whole())) {
       pushing_out_ = false;
@@ -185,12 +179,19 @@ class Teleoperator {
     signals_.arm_power += options_.exit_speed / lever * signals_.arm_torques.norm();
   }
 
-  void ask_operator() noexcept {
-    const network::Command& command = operator_.step(X_WT_.linear(), signals_.elapsed);
-    if (!command.sound) record_.status |= status::bad_command;
-    if (command.silent_for > patience) record_.status |= status::silent_device;
-    signals_.hand = command.hand;
+  void follow(const network::Command& command) noexcept {
     record_.command = command;
+    network::HandInput& hand = record_.command.hand;
+    if (!is_finite(hand.ball) || !is_finite(hand.direction_W) ||
+        hand.lever_rate - hand.lever_rate != 0.0) {
+      record_.command.sound = false;
+      hand.ball = {};
+      hand.lever_rate = 0.0;
+      hand.direction_W = signals_.hand.direction_W;
+    }
+    if (!record_.command.sound) record_.status |= status::bad_command;
+    if (command.silent_for > patience) record_.status |= status::silent_device;
+    signals_.hand = hand;
     if (cut_to_speed(signals_.hand, options_.tool_speed, lever_scale_)) {
       record_.status |= status::saturated;
     }
@@ -198,7 +199,7 @@ class Teleoperator {
 
   void run_network() noexcept {
     const auto begin = std::chrono::steady_clock::now();
-    // With the operator let go, springs and accounts of his side begin anew from where the tool is.
+    // Without the operator's force, springs and accounts on that side restart at the present pose.
     signals_.released = record_.stop == Stop::released || command_.is_poisoned();
     signals_.at_rest = command_.has_let_go() || signals_.released;
     signals_.joints = joints_vec(q_);
@@ -236,14 +237,12 @@ class Teleoperator {
     record_.tick = next_tick_++;
     if (record_.tick > 0) periods_ += record_.elapsed;
     record_.time = period_ * static_cast<double>(periods_);
-    record_.phase = static_cast<std::int32_t>(operator_.phase());
+    record_.phase = record_.command.phase;
     std::copy(q_.begin(), q_.end(), record_.q.begin());
     std::copy(v_.begin(), v_.end(), record_.v.begin());
     std::copy(read_q_.begin(), read_q_.end(), record_.q_read.begin());
     std::copy(read_v_.begin(), read_v_.end(), record_.v_read.begin());
-    const std::vector<double>& torques = command_.torques();
-    std::copy(torques.begin(), torques.end(), record_.torques.begin());
-    record_.p_WT = X_WT_.translation();
+    record_.p_WT = origin(X_WT_);
     record_.v_WT = V_WT_.linear;
     record_.virtual_force = signals_.walls;
     record_.coupling = before_walls_ < 0
@@ -252,6 +251,13 @@ class Teleoperator {
     std::size_t module = 0;
     for (const network::Node& node : network_.nodes()) {
       record_.energy[module++] = static_cast<float>(node.ledger.energy);
+    }
+  }
+
+  // Missing entries read as NaN.
+  static void copy_readings(std::span<const double> from, std::vector<double>& to) noexcept {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      to[i] = i < from.size() ? from[i] : std::numeric_limits<double>::quiet_NaN();
     }
   }
 
@@ -266,23 +272,21 @@ class Teleoperator {
   }
 
   TeleoperatorOptions options_;
-  Arm& arm_;
-  Kinematics& kinematics_;
+  ArmKinematics& kinematics_;
   World& world_;
   BodyId tool_;
   ArmBodies links_;
-  Coprocessor& coprocessor_;
-  Operator& operator_;
   network::Network network_;
   TickClock clock_;
   double period_;  ///< [s]
   JointWatch watch_;
   ArmInertia inertia_;
-  ArmCommand<Arm> command_;
+  ArmCommand command_;
   std::vector<double> q_, v_, read_q_, read_v_;  ///< [rad], [rad/s]
   Jacobian jacobian_, new_jacobian_;
   Pose X_WT_ = Pose::Identity();
   Twist V_WT_;
+  ArmState drive_state_ = ArmState::enabled;
   network::MeasuredFlow flow_;
   network::Signals signals_;
   int before_walls_ = -1;     // connection over which the operator's side acts on the tool

@@ -1,5 +1,5 @@
 /// @file
-/// How many periods have gone by since the tick before.
+/// Counts the periods since the last tick.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 
 namespace repel {
 
-/// Counts the periods of a grid that begins with the first tick. A tick that is late by less than
-/// three quarters of a period is late; one that is later stands for those that are missing, too.
+/// Counts the periods of a grid that starts at the first tick. A tick up to three quarters of a
+/// period late counts as one period; a later one also stands for those that were missed.
 class TickClock {
  public:
   using nanoseconds = std::chrono::nanoseconds;
 
-  /// @param longest_gap without a tick that is no fault
+  /// @param longest_gap longest time without a tick that is not a fault
   TickClock(nanoseconds period, nanoseconds longest_gap) noexcept
       : period_(std::max(period, nanoseconds(1))), longest_gap_(std::max(longest_gap, period_)) {}
 
-  /// The next tick is made at `now`. @return status::clock_fault or clock_gap, or 0
+  /// Registers the tick at `now`. @return status::clock_fault or clock_gap, or 0
   [[nodiscard]] Status step(nanoseconds now) noexcept {
     elapsed_ = 1;
     const bool runs = now > last_;
@@ -29,7 +29,7 @@ class TickClock {
       elapsed_ = std::max<std::int64_t>(1, index - index_);
       index_ += elapsed_;
     } else {
-      first_ = now;  // or after a fault the next one
+      first_ = now;  // the grid starts here: at the first tick, or again after a fault
       index_ = 0;
     }
     has_begun_ = runs;

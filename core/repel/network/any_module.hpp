@@ -1,5 +1,5 @@
 /// @file
-/// What a network asks of a module, and how any type can answer.
+/// The type-erased interface of a network module, and its adaptor for any type.
 #pragma once
 
 #include <concepts>
@@ -16,11 +16,11 @@
 
 namespace repel::network {
 
-/// How a module stands in a network.
+/// Kind of a module by its ports.
 enum class Ports {
-  one,       ///< at the end of a branch
-  two,       ///< between what lies behind it and the root
-  line,      ///< two ends, each a one-port: what goes in at one comes out later at the other
+  one,       ///< terminates a branch
+  two,       ///< between the subtree behind it and the root
+  line,      ///< two ends, each a one-port: what enters one end leaves the other after a delay
   junction,  ///< where branches meet
 };
 
@@ -77,7 +77,7 @@ concept TakesItsWave = requires(M& m, const M& same) {
   noexcept;
 };
 
-/// Says in words what a type lacks to be a module: one thing at a time.
+/// Fails to compile with a message for the first requirement of a module that `M` does not meet.
 template <class M>
 constexpr void require_module() noexcept {
   constexpr Ports ports = ports_of<M>();
@@ -116,7 +116,7 @@ template <class M>
   }
 }
 
-/// The resistance of a one-port as a matrix of the network's size.
+/// Writes the equivalent of a one-port: its own, or that of its port resistance and reflected wave.
 template <class M>
 void show_one_port(const M& module, Equivalent<any_size>& shown) noexcept {
   if constexpr (ShowsItself<M>) {
@@ -132,13 +132,13 @@ template <class M>
 void settle_one_port(M& module, const PortState<any_size>& state) noexcept {
   if constexpr (ShowsItsWaves<M>) {
     const auto& R = module.resistance();
-    if constexpr (TakesItsWave<M>) module.incident(state.effort + R.lazyProduct(state.flow));
+    if constexpr (TakesItsWave<M>) module.incident(state.incident(R));
   } else if constexpr (requires { module.incident(state); }) {
     module.incident(state);
   }
 }
 
-/// What a network asks of any module. Set-up may throw, the rest may not.
+/// Type-erased interface of a module. Set-up functions may throw, the others may not.
 class AnyModule {
  public:
   AnyModule() = default;
@@ -173,11 +173,12 @@ class AnyModule {
   AnyModule(AnyModule&&) = default;
 };
 
-/// An address of its own for every type.
+/// Its address identifies the type `M`.
 template <class M>
 inline constexpr char type_mark = 0;
 
-/// What `M` does not offer has the effect of not being there.
+/// Adapts `M` to AnyModule. A function that `M` does not have does nothing, or returns a neutral
+/// value.
 template <class M>
 class ModuleOf final : public AnyModule {
  public:

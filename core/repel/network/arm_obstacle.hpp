@@ -9,14 +9,13 @@ namespace repel::network {
 
 struct ArmObstacleOptions {
   double most_energy = 5.0;     ///< [J] see PassivityOptions
-  double most_damping = 300.0;  ///< [N m s/rad] injected against energy from sampling
+  double most_damping = 300.0;  ///< [N m s/rad] limit of the damping against energy from sampling
 };
 
-/// A series source of torque on the joints: f_left = f_right - sum over the links of J^T F. What
-/// OBSTACLE is for the tool, this is for the links behind it, each pushed by what it is near. The
-/// joints are where their forces meet, so it stands between PUMA_KIN and the robot, and nothing
-/// compliant may stand on its right. One passivity controller keeps the accounts of all joints
-/// together: one of them may give what another has taken.
+/// A series source of torque on the joints: f_left = f_right - sum over the links of J^T F, with F
+/// the virtual forces on a link. The counterpart of OBSTACLE for the links. It must stand between
+/// PUMA_KIN and the robot, with nothing compliant on its right. One passivity controller observes
+/// the energy of all joints together: one joint may return energy that another has absorbed.
 class ArmObstacle {
  public:
   static constexpr Traits traits{.left = Space::joints,
@@ -60,13 +59,13 @@ class ArmObstacle {
     series::pass(at_root, effort_, at_leaf);
   }
 
-  /// Of the walls on the joints after the controller [N m].
+  /// Torques of the walls on the joints, after the passivity controller [N m].
   [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
   void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
     torques += this->torques();
   }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
-  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by what moves
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by moving obstacles
 
  private:
   static PassivityOptions passivity_of(const ArmObstacleOptions& options) {

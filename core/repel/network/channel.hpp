@@ -1,5 +1,5 @@
 /// @file
-/// A simulated channel: delay that varies, loss, packets that overtake each other.
+/// A simulated channel with delay, jitter, packet loss and reordering.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@
 namespace repel::network {
 
 struct ChannelOptions {
-  double delay = 0.0;      ///< [s] of every packet, 0 to 10; never less than one tick
-  double jitter = 0.0;     ///< [s] up to which a packet takes longer, evenly spread
-  double loss = 0.0;       ///< part of the packets that never arrive, 0 to 1
-  std::uint64_t seed = 1;  ///< the same seed, the same channel
+  double delay = 0.0;      ///< [s] of every packet, 0 to 10; at least one tick
+  double jitter = 0.0;     ///< [s] greatest additional delay, uniformly distributed
+  double loss = 0.0;       ///< probability that a packet is lost, 0 to 1
+  std::uint64_t seed = 1;  ///< the same seed gives the same channel
 };
 
-/// Carries one packet per tick. What has arrived can be asked for by the tick in which it was sent;
-/// `newest` is the youngest of it. Deterministic; all memory is taken by `prepare`.
+/// Carries one packet per tick. A packet that has arrived is looked up by the tick in which it was
+/// sent; `newest` is the one sent last. Deterministic; only `prepare` allocates.
 template <class Payload>
 class Channel {
  public:
-  /// What happened so far.
+  /// Packet counts since construction.
   struct Counts {
     std::int64_t sent = 0;
     std::int64_t lost = 0;
@@ -37,9 +37,8 @@ class Channel {
     checked("loss", options.loss, 0.0, 1.0, "");
   }
 
-  /// @param period [s]; `nothing` is what the receiver sees before the first packet; packets are
-  /// kept
-  ///        for `kept` ticks after the last can have arrived
+  /// @param period [s]; `nothing` is returned by `newest` before the first packet arrives; packets
+  /// are kept for `kept` ticks after the latest possible arrival
   void prepare(double period, const Payload& nothing, std::int64_t kept = 0) {
     delay_ = std::max<std::int64_t>(1, std::llround(options_.delay / period));
     jitter_ = std::llround(options_.jitter / period);
@@ -57,10 +56,10 @@ class Channel {
     packet(tick_) = {payload, lost ? -1 : tick_, tick_ + delay_ + std::min(late, jitter_)};
   }
 
-  /// One tick on.
+  /// Advances by one tick.
   void advance() noexcept {
     ++tick_;
-    // Those that can arrive in this tick, the youngest first.
+    // Packets that can arrive in this tick, the last one sent first.
     const std::int64_t oldest = std::max<std::int64_t>(0, tick_ - delay_ - jitter_);
     for (std::int64_t sent = tick_ - delay_; sent >= oldest; --sent) {
       const Packet& arriving = packet(sent);
@@ -73,16 +72,17 @@ class Channel {
     }
   }
 
-  /// The packet that was sent in a tick; null when it has not arrived (yet) or is no longer kept.
+  /// The packet that was sent in `tick`; null when it was lost, has not arrived or is no longer
+  /// kept.
   [[nodiscard]] const Payload* sent_at(std::int64_t tick) const noexcept {
     if (tick < 0) return nullptr;
     const Packet& packet = packets_[static_cast<std::size_t>(tick) % packets_.size()];
     return packet.sent == tick && packet.arrives <= tick_ ? &packet.payload : nullptr;
   }
   [[nodiscard]] const Payload& newest() const noexcept { return newest_.payload; }
-  /// Ticks since the beginning.
+  /// Ticks since `prepare`.
   [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
-  /// How old `newest` is [ticks].
+  /// Age of `newest` [ticks].
   [[nodiscard]] std::int64_t age() const noexcept { return tick_ - newest_.sent; }
   [[nodiscard]] std::int64_t delay() const noexcept { return delay_; }    ///< [ticks]
   [[nodiscard]] std::int64_t jitter() const noexcept { return jitter_; }  ///< [ticks]
@@ -98,7 +98,7 @@ class Channel {
   Packet& packet(std::int64_t tick) noexcept {
     return packets_[static_cast<std::size_t>(tick) % packets_.size()];
   }
-  // 0 to 1, without 1: SplitMix64 (Steele, Lea and Flood 2014).
+  // Uniform in [0, 1): SplitMix64 (Steele, Lea and Flood 2014).
   double uniform() noexcept {
     state_ += 0x9e3779b97f4a7c15U;
     std::uint64_t z = state_;

@@ -1,5 +1,5 @@
 /// @file
-/// How stiff a sampled wall may be.
+/// The largest stiffness at which a sampled wall is passive.
 #pragma once
 
 #include <limits>
@@ -12,25 +12,25 @@ namespace repel::network {
 /// What is done about a wall that is too stiff.
 enum class GainCheck {
   error,    ///< SetupError
-  warning,  ///< a text for the report; the passivity controller has to make up for it
+  warning,  ///< a text for the report; the passivity controller has to dissipate the excess energy
 };
 
-/// What decides how stiff a wall may be.
+/// Parameters of the clean-stiffness limit.
 struct CleanStiffness {
   double period = 0.0025;       ///< T [s]
-  double device_damping = 0.0;  ///< b [N s/m] physical viscous damping of what moves
+  double device_damping = 0.0;  ///< b [N s/m] physical viscous damping of the device
   double wall_damping = 0.0;    ///< B [N s/m] of the wall itself
-  double delay = 0.0;           ///< t_d [s] between measuring and pushing, beyond the hold
+  double delay = 0.0;  ///< t_d [s] from measurement to actuation, beyond the zero-order hold
 
-  /// Largest K [N/m] of a wall that gives back no more energy than it took, whoever holds the
-  /// device: b > K (T / 2 + t_d) + |B| (Colgate and Schenkel 1997; the delay adds to the half
-  /// period of the hold). 0 when the wall's own damping is already too much.
+  /// Largest K [N/m] of a passive wall, whoever holds the device: b > K (T / 2 + t_d) + |B|
+  /// (Colgate and Schenkel 1997; the delay adds to the half period of the zero-order hold). 0 when
+  /// |B| reaches b.
   [[nodiscard]] double limit() const noexcept {
     const double left = device_damping - (wall_damping < 0.0 ? -wall_damping : wall_damping);
     return left > 0.0 ? left / (0.5 * period + delay) : 0.0;
   }
 
-  /// The damping [N s/m] that a wall of `stiffness` [N/m] needs of the device.
+  /// The device damping b [N s/m] that a wall of `stiffness` [N/m] needs.
   [[nodiscard]] double needed_damping(double stiffness) const noexcept {
     return stiffness * (0.5 * period + delay) + (wall_damping < 0.0 ? -wall_damping : wall_damping);
   }

@@ -1,13 +1,13 @@
 /// @file
-/// Products of small matrices whose sizes are known at set-up, by plain loops: expressions of Eigen
-/// of such sizes make every source that includes a network seconds longer to compile.
+/// Products of small matrices of sizes known at set-up, in plain loops: Eigen expressions of such
+/// sizes add seconds to the compile time of every source that includes a network.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace repel::network::dense {
 
-/// y += scale A x. Sizes must fit; y is none of the others.
+/// y += scale A x. Sizes must match; y must not alias A or x.
 template <class A, class X, class Y>
 void add_product(const A& matrix, const X& x, Y& y, double scale = 1.0) noexcept {
   for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
@@ -16,7 +16,19 @@ void add_product(const A& matrix, const X& x, Y& y, double scale = 1.0) noexcept
   }
 }
 
-/// y = A' x. Sizes must fit; y is neither of the others.
+/// A x as a `Y`. Sizes must match.
+template <class Y, class A, class X>
+[[nodiscard]] Y product(const A& matrix, const X& x) noexcept {
+  Y y(matrix.rows());
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    double sum = 0.0;
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) sum += matrix.coeff(i, k) * x.coeff(k);
+    y.coeffRef(i) = sum;
+  }
+  return y;
+}
+
+/// y = A' x. Sizes must match; y must not alias A or x.
 template <class A, class X, class Y>
 void transposed_product(const A& matrix, const X& x, Y& y) noexcept {
   y.resize(matrix.cols());
@@ -27,7 +39,7 @@ void transposed_product(const A& matrix, const X& x, Y& y) noexcept {
   }
 }
 
-/// C = A' S B, S symmetric. Sizes must fit; C is none of the others.
+/// C = A' S B, S symmetric. Sizes must match; C must not alias the others.
 template <class A, class S, class B, class C>
 void sandwich(const A& left, const S& middle, const B& right, C& product) noexcept {
   product.resize(left.cols(), right.cols());

@@ -1,5 +1,5 @@
 /// @file
-/// What a port shows of everything behind it.
+/// Thevenin or Norton equivalent of everything behind a port.
 #pragma once
 
 #include <cmath>
@@ -10,20 +10,20 @@
 
 namespace repel::network {
 
-/// In which direction a port answers.
+/// Form of the relation between effort and flow.
 enum class Form {
-  impedance,   ///< effort for a flow: f = b + R v
-  admittance,  ///< flow for an effort: v = w + G f
+  impedance,   ///< effort as a function of flow: f = b + R v
+  admittance,  ///< flow as a function of effort: v = w + G f
 };
 
-/// All that lies behind a port, in one tick, as one line through effort and flow (Thevenin,
-/// Norton). In the impedance form R is the port resistance at which nothing is reflected at once,
-/// and the offset b is the wave that comes out whatever goes in: f - R v = b. The admittance form
-/// is the same with the roles exchanged; it holds what no finite R can, a side that is moved and
-/// cannot be pushed back in some direction, for which G is zero.
+/// Everything behind a port, in one tick, as an affine relation between effort and flow (Thevenin,
+/// Norton equivalent). In the impedance form R is the port resistance without instantaneous
+/// reflection, and the offset b is the reflected wave, whatever the incident one: f - R v = b. The
+/// admittance form has the roles exchanged; it also represents what no finite R can: a side whose
+/// flow is imposed in some direction, for which G is zero.
 ///
-/// The matrix is symmetric positive semidefinite. Every operation keeps it so, and with it the
-/// power balance of each tick: no term is left out or delayed.
+/// The matrix is symmetric positive semidefinite. Every operation preserves this, and with it the
+/// exact power balance of each tick: no term is neglected or delayed.
 template <int N>
 struct Equivalent {
   Form form = Form::impedance;
@@ -42,7 +42,7 @@ struct Equivalent {
     offset = w;
   }
 
-  /// A source of effort on the same flow: a common-flow junction with f = `b`, no resistance.
+  /// Adds an effort source at the same flow: a common-flow junction with f = `b`, no resistance.
   void add_effort(const Vec<N>& b) noexcept {
     if (form == Form::impedance) {
       offset += b;
@@ -50,7 +50,7 @@ struct Equivalent {
       dense::add_product(matrix, b, offset, -1.0);
     }
   }
-  /// A source of flow under the same effort: a common-effort junction with v = `w`.
+  /// Adds a flow source at the same effort: a common-effort junction with v = `w`.
   void add_flow(const Vec<N>& w) noexcept {
     if (form == Form::admittance) {
       offset += w;
@@ -59,8 +59,8 @@ struct Equivalent {
     }
   }
 
-  /// An element f = b + R v on the same flow (common-flow junction: efforts add).
-  /// Cost: one sum, or 2 n^3 multiplications in the admittance form.
+  /// Adds an element f = b + R v at the same flow (common-flow junction: efforts add). Cost: one
+  /// sum, or 2 n^3 multiplications in the admittance form.
   void add_impedance(const Mat<N>& R, const Vec<N>& b) noexcept {
     if (form == Form::impedance) {
       matrix += R;
@@ -69,7 +69,7 @@ struct Equivalent {
       combine(R, b);
     }
   }
-  /// An element v = w + G f under the same effort (common-effort junction: flows add).
+  /// Adds an element v = w + G f at the same effort (common-effort junction: flows add).
   void add_admittance(const Mat<N>& G, const Vec<N>& w) noexcept {
     if (form == Form::admittance) {
       matrix += G;
@@ -79,8 +79,8 @@ struct Equivalent {
     }
   }
 
-  /// Brings it into `wanted`. False, and nothing is changed, when the matrix has no inverse: some
-  /// direction is rigid (G has a zero) or free (R has a zero). Cost: n^3 multiplications.
+  /// Converts to the form `wanted`. False, and nothing is changed, when the matrix is singular:
+  /// some direction is rigid (G singular) or free (R singular). Cost: n^3 multiplications.
   [[nodiscard]] bool take_form(Form wanted) noexcept {
     if (form == wanted) return true;
     if (!invert()) return false;
@@ -88,13 +88,13 @@ struct Equivalent {
     return true;
   }
 
-  /// Effort and flow where something else decides the flow (impedance form).
+  /// Effort and flow for the imposed flow `v` (impedance form only).
   void at_flow(const Vec<N>& v, PortState<N>& state) const noexcept {
     state.flow = v;
     state.effort = offset;
     dense::add_product(matrix, v, state.effort);
   }
-  /// Effort and flow where something else decides the effort (admittance form).
+  /// Effort and flow for the imposed effort `f` (admittance form only).
   void at_effort(const Vec<N>& f, PortState<N>& state) const noexcept {
     state.effort = f;
     state.flow = offset;
@@ -102,10 +102,10 @@ struct Equivalent {
   }
 
  private:
-  // By Cholesky's factor L and its inverse (Eigen's would bring in the heap for sizes that cannot
-  // occur). Rounding leaves a rigid direction with a pivot that is tiny, not zero; more so where
-  // the entry on the diagonal is itself a small part of the matrix. Each is measured by its own
-  // entry, so that units of different size make no difference. What is above the diagonal is not
+  // By the Cholesky factor L and its inverse (Eigen's would pull in heap allocation for sizes that
+  // cannot occur). Rounding makes the pivot of a rigid direction tiny instead of zero, the more so
+  // where its diagonal entry is a small part of the matrix. Each pivot is compared with its own
+  // diagonal entry, so that the test does not depend on units. Entries above the diagonal are not
   // read.
   [[nodiscard]] bool invert() noexcept {
     Mat<N> L = matrix;
@@ -124,7 +124,7 @@ struct Equivalent {
     dense::add_product(matrix, b, offset, -1.0);
     return true;
   }
-  // L L' = what L comes with.
+  // In-place Cholesky factorization, L L' = the given L. False when a pivot is too small.
   [[nodiscard]] bool factor(Mat<N>& L) const noexcept {
     const Eigen::Index n = L.rows();
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -139,7 +139,7 @@ struct Equivalent {
     }
     return true;
   }
-  // In place, column by column.
+  // Inverts L in place, column by column.
   static void invert_triangle(Mat<N>& L) noexcept {
     const Eigen::Index n = L.rows();
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -154,7 +154,7 @@ struct Equivalent {
 
   // f = b + R v with v = v' + w + G f, or the same with the roles exchanged:
   //     (I + R G) f = b - R w + R v'
-  // R G has no negative eigenvalue, so that the left side can always be solved.
+  // R G has no negative eigenvalue, so I + R G is invertible.
   void combine(const Mat<N>& other, const Vec<N>& other_offset) noexcept {
     const Eigen::Index n = matrix.rows();
     Mat<N> left;
@@ -175,8 +175,8 @@ struct Equivalent {
     }
   }
 
-  // Turns matrix and offset into left^-1 of them, by rows, with the largest pivot of each column
-  // (Eigen's LU would bring in the heap for sizes that cannot occur).
+  // Replaces matrix and offset by left^-1 times them: Gauss-Jordan elimination with partial
+  // pivoting (Eigen's LU would pull in heap allocation for sizes that cannot occur).
   void eliminate(Mat<N>& left) noexcept {
     const Eigen::Index n = left.rows();
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -199,7 +199,7 @@ struct Equivalent {
       offset.coeffRef(k) *= scale;
     }
   }
-  // Row i less `share` of row k; of `left`, what is before column k is done with.
+  // Subtracts `share` times row k from row i; columns of `left` before k are already eliminated.
   void subtract_row(Mat<N>& left, Eigen::Index i, double share, Eigen::Index k) noexcept {
     const Eigen::Index n = left.rows();
     for (Eigen::Index j = k; j < n; ++j) left.coeffRef(i, j) -= share * left.coeff(k, j);

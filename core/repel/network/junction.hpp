@@ -1,33 +1,33 @@
 /// @file
-/// JUNCTION: where more than two ports meet.
+/// JUNCTION: connects more than two ports.
 #pragma once
 
 #include <repel/network/two_port.hpp>
 
 namespace repel::network {
 
-/// What all ports of a junction have in common.
+/// The variable that all ports of a junction share.
 enum class Common {
-  flow,    ///< they move as one; into them, efforts sum to zero
-  effort,  ///< they carry the same effort; the flow towards the root is the sum of the others
+  flow,    ///< same flow at all ports; the efforts into them sum to zero
+  effort,  ///< same effort at all ports; the flow towards the root is the sum of the others
 };
 
 /// A lossless junction of any number of ports of one space (the series and parallel adaptors of
-/// wave digital filters). The port towards the root is matched: its resistance is what the others
-/// make.
+/// wave digital filters). The port towards the root is matched: its resistance follows from the
+/// others.
 class Junction {
  public:
   explicit Junction(Common common = Common::flow) noexcept : common_(common) {}
   [[nodiscard]] Traits traits() const noexcept { return {.keeps_flow = common_ == Common::flow}; }
   [[nodiscard]] Common common() const noexcept { return common_; }
 
-  /// Begins `sum` with the first branch.
+  /// Starts `sum` with the first branch.
   void begin(Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
     (void)branch.take_form(common_ == Common::flow ? Form::impedance : Form::admittance);
     sum = branch;
   }
-  /// Adds one more branch to `sum`, which holds those before. False when both sides insist: two
-  /// that move it, or two that push it.
+  /// Adds another branch to `sum`. False when both impose their flow on a common-flow junction, or
+  /// their effort on a common-effort junction.
   [[nodiscard]] bool add(Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
     const bool by_flow = common_ == Common::flow;
     const Form summed = by_flow ? Form::impedance : Form::admittance;

@@ -8,25 +8,26 @@
 
 namespace repel::network {
 
-/// Gains of the coupling; translation and rotation apart. In the spaces of a lever and of joints,
-/// where there is no such difference, the first group holds.
+/// Gains of the coupling, for translation and rotation. Lever and joint spaces, which have no such
+/// distinction, use the first group.
 struct Kbb2Options {
   double stiffness = 2000.0;        ///< K [N/m]
   double damping = 120.0;           ///< B [N s/m]
   double shunt = 0.0;               ///< B2 [N s/m]; 0: none
-  double force_limit = 60.0;        ///< [N] the spring stretches no further than this
+  double force_limit = 60.0;        ///< [N] the spring force saturates here
   double angular_stiffness = 60.0;  ///< [N m/rad]
   double angular_damping = 4.0;     ///< [N m s/rad]
   double angular_shunt = 0.0;       ///< [N m s/rad]
   double torque_limit = 8.0;        ///< [N m]
 };
 
-/// What is on the left moves the far end of a spring and a damper whose near end is on the right.
-/// R = K T / 2 + B. The shunt B2 to the ground stands on the left, where the waves of a line
-/// arrive: with B2 at the impedance of the line, what moves freely on the right reflects nothing.
+/// The left side moves the far end of a spring and a parallel damper whose near end is on the
+/// right. R = K T / 2 + B. The shunt B2 to ground is on the left, where the waves of a line arrive:
+/// with B2 equal to the impedance of the line, a right side that moves freely reflects nothing.
 ///
-/// Where the spring reaches its limit its far end is dragged along, so that a held-up tool winds
-/// nothing up and lets go at once when the operator turns back. That only takes energy from it.
+/// At its limit the far end of the spring is dragged along, so that a blocked tool causes no
+/// wind-up and the force drops at once when the operator reverses. That only removes energy from
+/// the spring.
 class Kbb2 {
  public:
   static constexpr Traits traits{};
@@ -43,13 +44,13 @@ class Kbb2 {
     checked("torque limit", options.torque_limit, 0.0, 1e6, "N m");
   }
 
-  /// Takes the size of the port it stands at.
+  /// Sets the size of its port, and the gains for that space.
   void fit(Space space, int size) {
     const bool tool = space == Space::tool;
     rotations_ = tool ? 3 : 0;
     const auto fill = [&](Vec<any_size>& gain, double linear, double angular) {
       gain.setConstant(size, linear);
-      if (tool) gain.tail<3>().setConstant(angular);
+      for (Eigen::Index i = tool ? size - 3 : size; i < size; ++i) gain.coeffRef(i) = angular;
     };
     fill(stiffness_, options_.stiffness, options_.angular_stiffness);
     fill(damping_, options_.damping, options_.angular_damping);
@@ -58,7 +59,7 @@ class Kbb2 {
   }
   void prepare(double period) {
     spring_resistance_ = 0.5 * detail::checked_period(period) * stiffness_;
-    conductance_ = (spring_resistance_ + damping_).cwiseInverse();
+    conductance_ = inverse(spring_resistance_ + damping_);
     has_shunt_ = !shunt_.isZero(0.0);
     none_.setZero(shunt_.size());
   }
@@ -71,7 +72,7 @@ class Kbb2 {
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
     if (root_ == Side::right) add_shunt(shown);
-    shown.add_admittance(conductance_.asDiagonal(), -conductance_.cwiseProduct(wave_));
+    shown.add_admittance(conductance_.asDiagonal(), -product(conductance_, wave_));
     if (!shown.take_form(Form::impedance)) return false;
     if (root_ == Side::left) add_shunt(shown);
     return true;
@@ -79,25 +80,34 @@ class Kbb2 {
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     at_leaf = at_root;
-    if (root_ == Side::left) at_leaf.effort -= shunt_.cwiseProduct(at_leaf.flow);
-    const Vec<any_size> relative = conductance_.cwiseProduct(at_leaf.effort - wave_);
-    at_leaf.flow -= relative;
+    if (root_ == Side::left) at_leaf.effort -= product(shunt_, at_leaf.flow);
     effort_ = at_leaf.effort;
-    if (root_ == Side::right) at_leaf.effort -= shunt_.cwiseProduct(at_leaf.flow);
-    wave_ += 2.0 * spring_resistance_.cwiseProduct(relative);
+    for (Eigen::Index i = 0; i < wave_.size(); ++i) {
+      const double relative = conductance_.coeff(i) * (effort_.coeff(i) - wave_.coeff(i));
+      at_leaf.flow.coeffRef(i) -= relative;
+      wave_.coeffRef(i) += 2.0 * (spring_resistance_.coeff(i) * relative);
+    }
+    if (root_ == Side::right) at_leaf.effort -= product(shunt_, at_leaf.flow);
     limit();
   }
 
-  /// Through spring and damper, as it acts on the side away from the root [N, N m].
+  /// Effort through spring and damper on the side away from the root [N, N m].
   [[nodiscard]] const Vec<any_size>& effort() const noexcept { return effort_; }
-  /// In the spring [J].
+  /// Energy stored in the spring [J].
   [[nodiscard]] double stored() const noexcept {
-    return 0.5 * wave_.cwiseAbs2().dot(stiffness_.cwiseInverse());
+    return 0.5 * product(wave_, wave_).dot(inverse(stiffness_));
   }
   /// True when the spring was at its limit in this tick.
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 
  private:
+  [[nodiscard]] static Vec<any_size> inverse(Vec<any_size> diagonal) noexcept {
+    for (double& x : diagonal) x = 1.0 / x;
+    return diagonal;
+  }
+  void scale(Eigen::Index first, Eigen::Index count, double share) noexcept {
+    for (Eigen::Index i = first; i < first + count; ++i) wave_.coeffRef(i) *= share;
+  }
   void add_shunt(Equivalent<any_size>& shown) const noexcept {
     if (has_shunt_) shown.add_impedance(shunt_.asDiagonal(), none_);
   }
@@ -106,12 +116,12 @@ class Kbb2 {
     const Eigen::Index linear = wave_.size() - rotations_;
     const double force = wave_.head(linear).norm();
     saturated_ = force > options_.force_limit;
-    if (saturated_) wave_.head(linear) *= options_.force_limit / force;
+    if (saturated_) scale(0, linear, options_.force_limit / force);
     if (rotations_ == 0) return;
-    const double torque = wave_.tail<3>().norm();
+    const double torque = three(wave_, linear).norm();
     if (!(torque > options_.torque_limit)) return;
     saturated_ = true;
-    wave_.tail<3>() *= options_.torque_limit / torque;
+    scale(linear, 3, options_.torque_limit / torque);
   }
 
   Kbb2Options options_;

@@ -1,5 +1,5 @@
 /// @file
-/// LIMITS: joint limit restrictions felt before the stops are hit.
+/// LIMITS: virtual springs and dampers ahead of the joint stops.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 
 namespace repel::network {
 
-/// A one-sided spring-damper at each end of a joint's range. It only ever pushes inward.
+/// A one-sided spring-damper at each end of a joint's range. It only pushes inward.
 struct JointLimits {
-  double range = 0.1;         ///< [rad] or [m] before the limit where it begins
+  double range = 0.1;         ///< [rad] or [m] distance before the limit at which it begins to act
   double stiffness = 2000.0;  ///< [N m/rad] or [N/m]
   double damping = 20.0;      ///< [N m s/rad] or [N s/m]
 
@@ -28,21 +28,21 @@ struct JointLimits {
   }
 };
 
-/// Range of one joint [rad] or [m]; infinite where it turns without end.
+/// Range of one joint [rad] or [m]; infinite for a continuous joint.
 struct JointRange {
   double lower = 0.0;
   double upper = 0.0;
 };
 
-/// Adds the torques of the limits to those from the left, on the same joint rates; each joint by
-/// itself and with a passivity controller of its own. Where both ends of a range are near each
-/// other, the lower one acts.
+/// Adds the torques of the limits to those from the left, at the same joint rates; each joint
+/// separately and with its own passivity controller. Where the zones of both limits overlap, the
+/// lower limit acts.
 class Limits {
  public:
   static constexpr Traits traits{
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
 
-  /// @throws SetupError for a number out of range or a range that ends before it begins
+  /// @throws SetupError for a number out of range or an upper limit below the lower one
   Limits(const JointLimits& law, const std::vector<JointRange>& ranges) : law_(law) {
     checked("range", law.range, 1e-6, 1e3, "rad");
     checked("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
@@ -80,14 +80,14 @@ class Limits {
     series::pass(at_root, effort_, at_leaf);
   }
 
-  /// Of the limits on the joints [N m].
+  /// Torques of the limits on the joints [N m].
   [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
   void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
     torques += this->torques();
   }
   /// True while a joint is within `range` of its limit and is pushed back.
   [[nodiscard]] bool active() const noexcept { return active_; }
-  /// Of all joints together.
+  /// Sum over all joints.
   [[nodiscard]] PassivityReport passivity() const noexcept {
     PassivityReport sum;
     for (const Joint& joint : joints_) {

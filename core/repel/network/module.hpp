@@ -1,5 +1,5 @@
 /// @file
-/// A module of any type, as a network holds it.
+/// Type-erased holder of a network module of any type.
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,8 @@
 
 namespace repel::network {
 
-/// A module of a network: an object of any copyable type that offers what one of these needs.
+/// A module of a network: an object of any copyable type that has the functions of one of these
+/// kinds.
 ///
 /// A two-port:
 ///
@@ -19,33 +20,33 @@ namespace repel::network {
 ///     void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
 ///                   PortState<any_size>& at_leaf) noexcept;
 ///
-/// A one-port, by what it shows or, matched, by its waves:
+/// A one-port, by its equivalent or, if it is matched, by its waves:
 ///
 ///     void equivalent(Equivalent<any_size>& shown) const noexcept;
-///     void incident(const PortState<any_size>& state) noexcept;         // or not at all
+///     void incident(const PortState<any_size>& state) noexcept;         // optional
 ///
 ///     const Mat<N>& resistance() const noexcept;
 ///     Vec<N> reflected() const noexcept;
 ///     void incident(const Vec<N>& wave) noexcept;
 ///
 /// A line, of which each end is a one-port: `equivalent` and `incident` with a `Side` before the
-/// other arguments. And of these what it has a use for:
+/// other arguments. Optional functions of all kinds:
 ///
 ///     static constexpr Traits traits;                // or a function of that name
-///     void fit(Space space, int size);               // the port it stands at; may throw
-///     int size() const noexcept;                     // of its port, if it has one of its own
-///     void face(Side root) noexcept;                 // where the root is
+///     void fit(Space space, int size);               // of the connected port; may throw
+///     int size() const noexcept;                     // of its port, if it is fixed
+///     void face(Side root) noexcept;                 // the side of the root
 ///     void prepare(double period);                   // [s]; may throw
-///     void read(const Signals& signals) noexcept;    // first of all in every tick
-///     double supplied() const noexcept;              // [W] by a source of its own
-///     double left_weight() const noexcept;           // of the power of its left port
-///     bool saturated() const noexcept;               // something was cut to its limit
+///     void read(const Signals& signals) noexcept;    // first call of every tick
+///     double supplied() const noexcept;              // [W] by its own source
+///     double left_weight() const noexcept;           // of the left port's power in the ledger
+///     bool saturated() const noexcept;               // something was clamped to its limit
 ///     PassivityReport passivity() const noexcept;
 ///     void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept;
 ///
-/// `add_walls` adds what a wall or a limit does to the joints [N m]: it stays when the operator is
-/// let go. Nothing but `fit` and `prepare` may throw or allocate. What is missing is said when it
-/// is compiled. Cost: a virtual call for each.
+/// `add_walls` adds the joint torques of a wall or a limit [N m]: they stay active when the
+/// fail-safe removes the operator's force. Only `fit` and `prepare` may throw or allocate. A
+/// missing function is reported at compile time. Cost: a virtual call for each.
 class Module {
  public:
   template <class M>
@@ -65,7 +66,7 @@ class Module {
   Module& operator=(Module&&) noexcept = default;
   ~Module() = default;
 
-  /// The object itself, if it is an `M`; else null.
+  /// The module as an `M`; null if it is of another type.
   template <class M>
   [[nodiscard]] const M* as() const noexcept {
     return static_cast<const M*>(held_->get(&detail::type_mark<M>));

@@ -1,5 +1,5 @@
 /// @file
-/// MULTIPLEX: couples a device of one degree of freedom to the six of the tool.
+/// MULTIPLEX: couples a one-degree-of-freedom device to the six degrees of freedom of the tool.
 #pragma once
 
 #include <cmath>
@@ -12,17 +12,18 @@ namespace repel::network {
 struct MultiplexOptions {
   double velocity_scale = 0.1;  ///< s_v [m/rad] tool motion per lever motion
   double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
-  double turning_time = 0.05;   ///< [s] in which the direction follows a new one
+  double turning_time = 0.05;   ///< [s] time constant with which the direction follows a new one
 };
 
 /// A transformer along one direction d: v6 = s_v d v1 and f1 = s_f d.f6. The other five directions
-/// of the tool side are at rest, whatever the effort.
+/// of the tool side have zero flow, whatever the effort.
 ///
-/// A new direction is approached as d += (new - d)(1 - exp(-T / turning_time)). Any d makes a
-/// lossless transformer, shorter ones too, so the change injects nothing and no effort jumps.
+/// A new direction is approached as d += (new - d)(1 - exp(-T / turning_time)). The transformer is
+/// lossless for any d, also of length below one, so the change injects no energy and no effort
+/// jumps.
 ///
-/// With s_f unlike s_v it passes on s_f / s_v of the power; that factor is declared and the ledger
-/// counts the power on the side of the lever as if it were s_v / s_f times as much.
+/// With s_f != s_v the lever receives s_f / s_v of the power at the tool; the ledger therefore
+/// weights the power at the lever by s_v / s_f.
 class Multiplex {
  public:
   static constexpr Traits traits{.left = Space::lever, .right = Space::tool};
@@ -41,11 +42,13 @@ class Multiplex {
   void face(Side root) noexcept { root_ = root; }
 
   void read(const Signals& signals) noexcept {
-    direction_ = begun_ ? Vec3(direction_ + share_ * (signals.hand.direction_W - direction_))
+    direction_ = begun_ ? direction_ + share_ * (signals.hand.direction_W - direction_)
                         : signals.hand.direction_W;
     begun_ = true;
-    flow_map_.head<3>() = options_.velocity_scale * direction_;
-    effort_map_.head<3>() = options_.force_scale * direction_;
+    for (int i = 0; i < 3; ++i) {
+      flow_map_[i] = options_.velocity_scale * direction_[i];
+      effort_map_[i] = options_.force_scale * direction_[i];
+    }
   }
 
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
@@ -62,16 +65,16 @@ class Multiplex {
     }
   }
 
-  /// s_f / s_v, the part of the power that goes from the tool to the lever.
+  /// s_f / s_v, the power at the lever as a part of that at the tool.
   [[nodiscard]] double power_factor() const noexcept {
     return options_.force_scale / options_.velocity_scale;
   }
-  /// How much more the power of its left port counts in the ledger.
+  /// Weight of the left port's power in the ledger.
   [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
   [[nodiscard]] double velocity_scale() const noexcept {  ///< s_v [m/rad]
     return options_.velocity_scale;
   }
-  /// d, world axes; shorter than one while it turns.
+  /// d, world axes; of length below one while it turns.
   [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
 
  private:
@@ -80,7 +83,7 @@ class Multiplex {
   Side root_ = Side::right;
   double share_ = 1.0;
   bool begun_ = false;
-  Vec3 direction_ = Vec3::UnitX();
+  Vec3 direction_{1, 0, 0};
   Column flow_map_ = Column::Zero();    // [m/rad]
   Column effort_map_ = Column::Zero();  // [m]
 };

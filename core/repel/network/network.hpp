@@ -11,8 +11,8 @@
 
 namespace repel::network {
 
-/// A connection of two ports. `shown` and `state` are those of the side away from the root, effort
-/// into that side.
+/// A connection of two ports. `shown` and `state` belong to the side away from the root, with
+/// effort into that side.
 struct Connection {
   std::string left, right;  ///< names of the modules
   Space space = Space::any;
@@ -33,26 +33,25 @@ struct Connection {
   }
 };
 
-/// A module where it stands. Connections by index; -1: none.
+/// A module and its connections, by index; -1: none.
 struct Node {
   std::string name;
   Module module;
   Traits traits;
   int toward_root = -1;       ///< -1 for the root
-  std::vector<int> branches;  ///< away from it; of a line both ends stand here
-  int left = -1;              ///< its left port, for two-ports and lines
+  std::vector<int> branches;  ///< away from the root; for a line: both its ends
+  int left = -1;              ///< of its left port, for two-ports and lines
   Ledger ledger;
 };
 
-/// Built by a Plan (plan.hpp), run once per tick. It keeps the power balance of every tick exact:
-/// at every connection both sides have the same flow and opposite efforts, whatever the modules
-/// are.
+/// Built by a Plan (plan.hpp), run once per tick. The power balance of every tick is exact: at
+/// every connection both sides have the same flow and opposite efforts, whatever the modules.
 class Network {
  public:
-  /// One tick. False when some part could not be solved, which set-up has ruled out but for signals
-  /// that take a direction away, as a direction of the lever of length zero does: then every module
-  /// has read its inputs and none has moved on. Cost: one visit to each module on the way to the
-  /// root and one back; one inversion of size 6 at a coupling.
+  /// Runs one tick. False when some part could not be solved. Set-up rules this out, except for
+  /// signals that remove a direction, such as a lever direction of length zero; then every module
+  /// has read its inputs and none has advanced. Cost: one visit to each module towards the root and
+  /// one back; one inversion of size 6 at a coupling.
   bool run(const Signals& signals) noexcept {
     for (Node& node : nodes_) node.module->read(signals);
     for (const Step& step : upward_) {
@@ -70,7 +69,7 @@ class Network {
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
   [[nodiscard]] std::span<const Connection> connections() const noexcept { return connections_; }
 
-  /// The first module of a type, and where it stands; null when there is none.
+  /// The node of the first module of type `M`; null when there is none.
   template <class M>
   [[nodiscard]] const Node* node_of() const noexcept {
     for (const Node& node : nodes_) {
@@ -83,14 +82,14 @@ class Network {
     const Node* node = node_of<M>();
     return node == nullptr ? nullptr : node->module.as<M>();
   }
-  /// Where the module of a name stands; null when there is none.
+  /// The node with this name; null when there is none.
   [[nodiscard]] const Node* find(std::string_view name) const noexcept {
     for (const Node& node : nodes_) {
       if (node.name == name) return &node;
     }
     return nullptr;
   }
-  /// The module at which the last `run` that failed could not go on.
+  /// Name of the module at which the last failed `run` stopped.
   [[nodiscard]] const std::string& stuck_at() const noexcept {
     return nodes_[static_cast<std::size_t>(stuck_)].name;
   }
@@ -124,7 +123,7 @@ class Network {
     }
     return node.toward_root >= 0 ? node.toward_root : node.branches.front();
   }
-  // Towards the root: what the module makes of what is behind it.
+  // Towards the root: the equivalent that the module shows, from those of its branches.
   [[nodiscard]] bool show(const Step& step) noexcept {
     Node& node = node_at(step);
     if (node.module.ports() == Ports::two) {
@@ -143,7 +142,7 @@ class Network {
     return true;
   }
 
-  // Away from the root.
+  // Away from the root: the states of the branches from that at the root.
   void settle(const Step& step) noexcept {
     Node& node = node_at(step);
     if (node.module.ports() == Ports::two) {
@@ -156,8 +155,8 @@ class Network {
     }
   }
 
-  // One branch at most insists on its own flow where flow is common (on its own effort where effort
-  // is): it takes what the others leave.
+  // At most one branch imposes its flow on a common-flow junction (its effort on a common-effort
+  // one): it takes what the others leave.
   void settle_junction(const Junction& junction, Node& node) noexcept {
     const bool by_flow = junction.common() == Common::flow;
     const PortState<any_size>& root = at(node.toward_root).state;
@@ -181,7 +180,7 @@ class Network {
     if (insisting != nullptr) insisting->state = left_over;
   }
 
-  // The root and all that is behind it share one flow, and their efforts sum to zero.
+  // The root and everything behind it share one flow, and their efforts sum to zero.
   [[nodiscard]] bool solve(const Step& root) noexcept {
     Connection& connection = at(only_connection(root));
     Equivalent<any_size> own;
@@ -193,10 +192,10 @@ class Network {
       const Equivalent<any_size> total = sum;
       if (!sum.take_form(Form::admittance)) return false;
       flow = sum.offset;
-      // What rounding left of the efforts, which must sum to zero.
+      // One refinement step: removes the rounding error in the sum of efforts, which must be zero.
       if (total.form == Form::impedance) {
-        const Vec<any_size> rest = total.offset + total.matrix.lazyProduct(flow);
-        flow -= sum.matrix.lazyProduct(rest);
+        const Vec<any_size> rest = total.offset + dense::product<Vec<any_size>>(total.matrix, flow);
+        dense::add_product(sum.matrix, rest, flow, -1.0);
       }
       own.at_flow(flow, connection.state);
     } else {
@@ -229,7 +228,7 @@ class Network {
       node.ledger.add(period * in, period * moved, period * node.module->supplied());
     }
   }
-  // The end of a line is the root of its side or a leaf of it.
+  // An end of a line is either the root of its tree or a leaf of it.
   [[nodiscard]] double sign_of_end(int index, const Node& node) noexcept {
     const Connection& end = at(index);
     const bool line_on_left = index != node.left;
@@ -239,7 +238,7 @@ class Network {
   std::vector<Node> nodes_;
   std::vector<Connection> connections_;
   std::vector<Step> upward_;    // leaves first, without the roots
-  std::vector<Step> downward_;  // the same, from the roots
+  std::vector<Step> downward_;  // the same in reverse order
   std::vector<Step> roots_;     // one for each part between lines
   int stuck_ = 0;
 };

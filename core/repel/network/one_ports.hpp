@@ -1,9 +1,8 @@
 /// @file
 /// The linear one-ports: damper, spring, mass, sources; bilinear (trapezoidal) rule.
 ///
-/// Each has a constant port resistance, so that what it reflects depends on the past only, and
-/// holds its energy exactly: sum T f.v = E - E0 + what was dissipated, in every tick and for any
-/// input.
+/// Each has a constant port resistance, so that its reflected wave depends on the past only, and an
+/// exact energy balance: sum T f.v = E - E0 + dissipated energy, in every tick and for any input.
 #pragma once
 
 #include <repel/base/setup_error.hpp>
@@ -49,7 +48,7 @@ class Spring {
   explicit Spring(const Mat<N>& K)
       : K_(detail::checked_gain<N>("stiffness", K)), R_(K), last_(Vec<N>::Zero(K.rows())) {}
   void prepare(double period) { R_ = 0.5 * detail::checked_period(period) * K_; }
-  /// With all force gone it lets go of what it holds.
+  /// Discharges the spring when the operator's force has been removed (`at_rest`).
   void read(const Signals& signals) noexcept {
     if (signals.at_rest) last_.setZero();
   }
@@ -57,7 +56,7 @@ class Spring {
   [[nodiscard]] const Mat<N>& resistance() const noexcept { return R_; }
   [[nodiscard]] const Vec<N>& reflected() const noexcept { return last_; }
   void incident(const Vec<N>& a) noexcept { last_ = a; }
-  /// The force at the end of the tick is the wave itself: a' K^-1 a / 2 [J].
+  /// Stored energy a' K^-1 a / 2 [J]: the wave a is the force at the end of the tick.
   [[nodiscard]] double stored() const noexcept {
     return 0.5 * last_.dot(Eigen::LLT<Mat<N>>(K_).solve(last_));
   }
@@ -79,7 +78,7 @@ class Mass {
     period_ = detail::checked_period(period);
     R_ = 2.0 / period * M_;
   }
-  /// With all force gone it comes to rest.
+  /// Stops the mass when the operator's force has been removed (`at_rest`).
   void read(const Signals& signals) noexcept {
     if (signals.at_rest) last_.setZero();
   }
@@ -87,7 +86,7 @@ class Mass {
   [[nodiscard]] const Mat<N>& resistance() const noexcept { return R_; }
   [[nodiscard]] Vec<N> reflected() const noexcept { return -last_; }
   void incident(const Vec<N>& a) noexcept { last_ = a; }
-  /// The wave is 2 M v / T at the end of the tick [J].
+  /// Stored energy [J]: the wave is 2 M v / T at the end of the tick.
   [[nodiscard]] double stored() const noexcept {
     return 0.125 * period_ * period_ * last_.dot(Eigen::LLT<Mat<N>>(M_).solve(last_));
   }
@@ -99,8 +98,8 @@ class Mass {
   double period_ = 1.0;  // [s]
 };
 
-/// A given effort: f = -e, whatever the flow. Pushes the rest of the network with e. A source of
-/// energy: outside any claim of passivity.
+/// An ideal effort source: f = -e, whatever the flow; e acts on the rest of the network. Not
+/// passive.
 template <int N>
 class EffortSource {
  public:
@@ -119,8 +118,8 @@ class EffortSource {
   Vec<N> effort_;
 };
 
-/// A given flow, whatever the effort. Also how a measured motion enters a network. A source of
-/// energy: outside any claim of passivity.
+/// An ideal flow source, whatever the effort. Also feeds a measured motion into a network. Not
+/// passive.
 template <int N>
 class FlowSource {
  public:

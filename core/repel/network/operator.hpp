@@ -1,9 +1,9 @@
 /// @file
-/// A scripted operator: what a person at the master does, written down so that it can be repeated.
+/// A scripted operator: a repeatable substitute for a person at the master.
 #pragma once
 
-#include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,48 +13,42 @@
 namespace repel::network {
 
 enum class Master {
-  spaceball,   ///< six rates, nothing is felt
-  torque_arm,  ///< one lever, which pushes back
+  spaceball,   ///< six rates, no force feedback
+  torque_arm,  ///< one lever with force feedback
 };
 
 /// Frame in which a phase states its directions.
 enum class PhaseFrame { world, tool };
 
-/// One stretch of the script.
+/// One phase of the script.
 struct Phase {
   std::string name;                      ///< shown in the progress line and the log
   Master master = Master::spaceball;     ///< the device in the operator's hand
   PhaseFrame frame = PhaseFrame::world;  ///< of the rates and of the direction
   double duration = 1.0;                 ///< [s]
-  Twist rates;                           ///< [m/s, rad/s] spaceball: held through the phase
-  Vec3 direction = Vec3::UnitX();        ///< torque arm: unit, the way the lever drives the tool
-  double lever_rate = 0.0;               ///< [rad/s] torque arm: rate at which the hand leads
-  bool silent = false;                   ///< the device does not answer: its last sample stands
+  Twist rates;                           ///< [m/s, rad/s] spaceball: constant through the phase
+  Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction in which the lever drives the tool
+  double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
+  bool silent = false;      ///< the device does not respond: its last sample is held
 };
 
 using Script = std::vector<Phase>;
 
-/// What one period of the operator gives.
+/// The operator's input of one period.
 struct Command {
-  HandInput hand;           ///< finite
-  bool sound = true;        ///< false: the input was not finite and was taken as rest
+  HandInput hand{};         ///< if not finite: taken as rest, and a fault
+  bool sound = true;        ///< false: the source reports that its data are invalid
   double silent_for = 0.0;  ///< [s] age of the sample
+  std::int32_t phase = 0;   ///< of a script; copied to the record
 };
 
-/// Whoever moves the master: a script, a person at a device, a recording. Nothing throws.
-template <class T>
-concept Operator = requires(T hands, const T& const_hands, const Mat3& R_WT, double period) {
-  { hands.step(R_WT, period) } -> std::convertible_to<const Command&>;  // once a tick; [s]
-  { const_hands.phase() } -> std::convertible_to<std::size_t>;          // of a script
-};
-
-/// Plays a script, phase after phase, and rests when it is over. The hand that does not lead the
-/// lever holds it still.
+/// Plays a script, phase after phase, and gives zero input when it is over. The hand holds the
+/// lever still unless a torque-arm phase moves it.
 class ScriptedOperator {
  public:
   explicit ScriptedOperator(Script script) : script_(std::move(script)) {}
 
-  /// One period on.
+  /// Advances by one period and returns its input.
   /// @param R_WT orientation of the tool, for phases in its frame
   [[nodiscard]] const Command& step(const Mat3& R_WT, double period) noexcept {
     while (phase_ < script_.size() && in_phase_ > script_[phase_].duration - 0.5 * period) {
@@ -62,6 +56,7 @@ class ScriptedOperator {
       in_phase_ = 0.0;
     }
     in_phase_ += period;
+    command_.phase = static_cast<std::int32_t>(phase_);
     if (!over() && script_[phase_].silent) {
       command_.silent_for += period;
       return command_;
@@ -88,10 +83,10 @@ class ScriptedOperator {
     }
     const bool finite = is_finite(phase.direction) && phase.lever_rate - phase.lever_rate == 0.0;
     if (!finite) return false;
-    // The direction is fixed when the phase begins: a lever coupled to a turning axis would move
-    // the tool without the hand.
+    // The direction is fixed at the start of the phase: a lever coupled to a rotating axis would
+    // move the tool without any motion of the hand.
     if (in_phase_ <= period) {
-      command_.hand.direction_W = in_tool ? Vec3(R_WT * phase.direction) : phase.direction;
+      command_.hand.direction_W = in_tool ? R_WT * phase.direction : phase.direction;
     }
     command_.hand.lever_rate = phase.lever_rate;
     return true;

@@ -1,5 +1,5 @@
 /// @file
-/// How a network is written down, and what is checked before it runs.
+/// The description of a network, and the checks before it runs.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace repel::network {
 
-/// What the right port of a module is joined to: the next module of the plan unless it is said.
-/// Only a junction can be joined to more than one; to none, the module ends a branch.
+/// What the right port of a module is connected to: by default the next module of the plan. Only a
+/// junction can be connected to more than one; a module connected to none ends a branch.
 struct To {
   To() = default;
   // NOLINTBEGIN(google-explicit-constructor): a name stands for itself.
@@ -28,8 +28,8 @@ struct To {
   bool next = true;
 };
 
-/// A list of modules from the operator to the robot. Each is joined to the next, or to the one it
-/// names:
+/// A list of modules from the operator to the robot. Each is connected to the next, or to the one
+/// it names:
 ///
 ///     Network network = Plan()
 ///         .add("torque_arm", TorqueArm())
@@ -40,12 +40,12 @@ struct To {
 ///         .build(0.0025);
 ///
 /// Branches meet at a `Junction`: `.add("hand", Mass<any_size>(M), "junction")` ends there, and
-/// `.add("junction", Junction(), {"left_arm", "right_arm"})` goes on to both.
+/// `.add("junction", Junction(), {"left_arm", "right_arm"})` continues to both.
 class Plan {
  public:
   static constexpr std::size_t most_modules = 32;
 
-  /// @param name unique; `to` what is on the right of it
+  /// @param name unique; `to` what its right port is connected to
   Plan& add(std::string name, Module module, To to = {}) & {
     entries_.push_back({std::move(name), std::move(module), std::move(to)});
     return *this;
@@ -54,11 +54,11 @@ class Plan {
     return std::move(add(std::move(name), std::move(module), std::move(to)));
   }
 
-  /// Checks the arrangement and readies every module for `period` [s].
-  /// @throws SetupError, naming the modules, for: a name twice or unknown, a port too many or not
-  /// connected, spaces or sizes that do not fit, a delay-free loop, two modules that both decide
-  /// their flow, a nonlinear module whose flow is not measured, and a rigid or slack part that
-  /// leaves nothing to solve
+  /// Checks the structure and prepares every module for `period` [s].
+  /// @throws SetupError, naming the modules, for: a duplicate or unknown name, too many connections
+  /// at a port or none, spaces or sizes that do not match, a delay-free loop, two modules that both
+  /// impose their flow, a nonlinear module whose flow is not measured, and a rigid or slack part
+  /// that makes the network singular
   [[nodiscard]] Network build(double period) const;
 
  private:
@@ -76,18 +76,18 @@ class Plan {
 
 namespace detail {
 
-/// Signals of an arm at rest that moves in all directions.
+/// Signals of an arm at rest whose Jacobian has full rank.
 inline Signals neutral_signals(int joints, double period) {
   Signals signals;
   signals.joints.setZero(joints);
   signals.rates = signals.mean_rates = signals.arm_torques = signals.joints;
   signals.jacobian.setZero(6, joints);
-  for (int i = 0; i < std::min(6, joints); ++i) signals.jacobian(i, i) = 1.0;
+  for (int i = 0; i < std::min(6, joints); ++i) signals.jacobian.coeffRef(i, i) = 1.0;
   signals.period = period;
   return signals;
 }
 
-/// Brings a module to its place: space, size, period and the way to the root.
+/// Sets space, size, side of the root and period of a module.
 inline void ready(Node& node, const Connection& first, Side root, double period) {
   try {
     node.module->fit(first.space, first.size);

@@ -1,5 +1,5 @@
 /// @file
-/// Turns a list of modules into trees that can be solved, and says why it cannot.
+/// Arranges a list of modules into trees that can be solved, or reports why it cannot.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace repel::network::detail {
 
-/// Turns a list of modules into a tree for each part between lines. One use.
+/// Arranges a list of modules into a tree for each part between lines. Single use.
 class Planner {
  public:
   Planner(std::vector<Node>& nodes, std::vector<Connection>& connections)
@@ -56,7 +56,7 @@ class Planner {
     }
   }
 
-  /// Gives every connection its space, from those modules that know theirs.
+  /// Determines the space of every connection, from the modules that declare theirs.
   void find_spaces() {
     for (std::size_t round = 0; round <= connections_.size(); ++round) {
       for (Connection& c : connections_) {
@@ -96,7 +96,7 @@ class Planner {
   }
   [[nodiscard]] int joints() const noexcept { return joints_; }
 
-  /// Splits at the lines, picks each root, and returns all vertices, each after those behind it.
+  /// Splits at the lines, picks each root, and returns all vertices, leaves before roots.
   [[nodiscard]] std::vector<Vertex> order() {
     make_vertices();
     std::vector<Vertex> ordered;
@@ -130,14 +130,14 @@ class Planner {
     }
     return {in, out};
   }
-  // That of a port; a one-port has only one, wherever it is joined.
+  // Declared space of a port; a one-port has only one, whichever side is connected.
   [[nodiscard]] Space own_space(int node, Side side) const {
     const Traits& traits = nodes_[node].traits;
     const Space here = side == Side::left ? traits.left : traits.right;
     const Space there = side == Side::left ? traits.right : traits.left;
     return here == Space::any && is_one_port_at(node) ? there : here;
   }
-  // The space that a module without one of its own carries from some connection to the others.
+  // The space that a module without a declared one passes from some connection to the others.
   [[nodiscard]] Space passed_on(int node) const {
     const Traits& traits = nodes_[node].traits;
     if (traits.left != Space::any || traits.right != Space::any) return Space::any;
@@ -174,7 +174,7 @@ class Planner {
   [[nodiscard]] bool measures(int vertex) const {
     return nodes_[vertices_[vertex].node].traits.measures_flow;
   }
-  // Those that decide their flow first, then the ends of chains, the later ones first.
+  // Modules that impose their flow first, then the ends of chains, the later ones first.
   [[nodiscard]] int next_root() const {
     const int n = static_cast<int>(vertices_.size());
     for (int v = 0; v < n; ++v) {
@@ -209,7 +209,7 @@ class Planner {
       tree.push_back(next);
     }
   }
-  // Names the modules that have connections on at least two sides after all ends are cut off.
+  // Names the modules with at least two connections left after repeated removal of all leaves.
   [[noreturn]] void fail_loop() const {
     std::vector<int> degree;
     for (const Vertex& v : vertices_) degree.push_back(static_cast<int>(v.connections.size()));

@@ -1,5 +1,5 @@
 /// @file
-/// Ports: effort and flow, and the waves they make.
+/// Ports: effort and flow, and the corresponding waves.
 ///
 /// The modules of a network are one-ports and two-ports. A port carries an effort f (force, torque,
 /// wrench) and a flow v (velocity, joint rate, twist), both counted into the element, so that f.v
@@ -8,33 +8,86 @@
 ///     a = f + R v   the incident wave       b = f - R v   the reflected wave
 ///     f.v = (a' R^-1 a - b' R^-1 b) / 4
 ///
-/// (R. J. Anderson's SMART in terms of wave digital filters, A. Fettweis 1986.)
+/// (R. J. Anderson's SMART, expressed as wave digital filters, A. Fettweis 1986.)
 #pragma once
 
-#include <Eigen/Cholesky>
+#include <concepts>
+
 #include <Eigen/Core>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/network/dense.hpp>
 
 namespace repel::network {
 
-/// The size of a port that is known at set-up only: 1 for a lever, 6 for a tool, one for each
-/// joint.
+/// Size of a port that is known only at set-up: 1 for a lever, 6 for a tool, one for each joint.
 inline constexpr int any_size = Eigen::Dynamic;
-/// The most joints, and so the largest port. Storage is of this size: nothing allocates.
+/// Maximum number of joints, and so the largest port. Storage has this capacity: nothing allocates.
 inline constexpr int most_joints = 16;
 template <int N>
 inline constexpr int room_for = N == any_size ? most_joints : N;
 
-/// N numbers of one port; of size `any_size` in storage of fixed size.
+/// Vector of one port; of size `any_size` in storage of fixed capacity.
 template <int N>
 using Vec = Eigen::Matrix<double, N, 1, Eigen::ColMajor, room_for<N>, 1>;
-/// N x N numbers between flow and effort of one port.
+/// Matrix between flow and effort of one port.
 template <int N>
 using Mat = Eigen::Matrix<double, N, N, Eigen::ColMajor, room_for<N>, room_for<N>>;
 
-/// What a port belongs to. Ports of different spaces do not fit together, whatever their sizes.
+// Operators that return values instead of Eigen expressions, as those of Vec3 in base/types.hpp.
+using repel::operator+;
+using repel::operator-;
+using repel::operator*;
+using repel::operator/;
+template <class V>
+concept PortVector =
+    std::same_as<V, Vec<any_size>> || std::same_as<V, Vec<1>> || std::same_as<V, Vec<6>>;
+
+template <PortVector V>
+[[nodiscard]] V operator+(const V& a, const V& b) noexcept {
+  V sum(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) sum.coeffRef(i) = a.coeff(i) + b.coeff(i);
+  return sum;
+}
+template <PortVector V>
+[[nodiscard]] V operator-(const V& a, const V& b) noexcept {
+  V rest(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) rest.coeffRef(i) = a.coeff(i) - b.coeff(i);
+  return rest;
+}
+template <PortVector V>
+[[nodiscard]] V operator-(const V& a) noexcept {
+  V turned(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) turned.coeffRef(i) = -a.coeff(i);
+  return turned;
+}
+template <std::same_as<double> S, PortVector V>
+[[nodiscard]] V operator*(S s, const V& a) noexcept {
+  V multiple(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) multiple.coeffRef(i) = s * a.coeff(i);
+  return multiple;
+}
+template <std::same_as<double> S, PortVector V>
+[[nodiscard]] V operator*(const V& a, S s) noexcept {
+  return s * a;
+}
+template <std::same_as<double> S, PortVector V>
+[[nodiscard]] V operator/(const V& a, S s) noexcept {
+  V part(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) part.coeffRef(i) = a.coeff(i) / s;
+  return part;
+}
+/// Entrywise product.
+template <PortVector V>
+[[nodiscard]] V product(const V& a, const V& b) noexcept {
+  V both(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) both.coeffRef(i) = a.coeff(i) * b.coeff(i);
+  return both;
+}
+
+/// What effort and flow refer to. Ports of different spaces cannot be connected, whatever their
+/// sizes.
 enum class Space {
   any,     ///< takes that of its neighbour
   lever,   ///< torque and rate of a lever [N m, rad/s]
@@ -42,7 +95,7 @@ enum class Space {
   joints,  ///< torques and rates of the joints, base outward [N m, rad/s]
 };
 
-/// Name of a space, as errors give it.
+/// Name of a space, for error messages.
 [[nodiscard]] constexpr const char* name_of(Space space) noexcept {
   switch (space) {
     case Space::lever:
@@ -66,15 +119,15 @@ enum class Walls {
   links,  ///< those on the links of the arm
 };
 
-/// What a module is to the network that it stands in.
+/// Properties of a module in a network.
 struct Traits {
   Space left = Space::any;     ///< of its left port
   Space right = Space::any;    ///< of its right port
-  bool measures_flow = false;  ///< decides its own flow: it must be the root, and the only one
-  bool needs_flow = false;     ///< nonlinear: needs a flow that the root has measured
-  bool keeps_flow = false;     ///< what is measured on one side is known on the other
-  Walls walls = Walls::none;   ///< what it takes from the world model
-  bool passive = true;         ///< gives no more energy than it took and was supplied with
+  bool measures_flow = false;  ///< imposes its own flow: must be the root, and the only one
+  bool needs_flow = false;     ///< nonlinear: needs a flow measured by the root
+  bool keeps_flow = false;     ///< a flow measured on one side is known on the other
+  Walls walls = Walls::none;   ///< the forces it takes from the world model
+  bool passive = true;         ///< returns no more energy than it absorbed and was supplied
 };
 
 /// Effort and flow of one port in one tick, both into the element.
@@ -87,40 +140,40 @@ struct PortState {
   [[nodiscard]] double power() const noexcept { return effort.dot(flow); }
   /// The wave a into the element, for the port resistance `R` [N s/m], [N m s/rad].
   [[nodiscard]] Vec<N> incident(const Mat<N>& R) const noexcept {
-    return effort + R.lazyProduct(flow);
+    return effort + dense::product<Vec<N>>(R, flow);
   }
   /// The wave b out of it.
   [[nodiscard]] Vec<N> reflected(const Mat<N>& R) const noexcept {
-    return effort - R.lazyProduct(flow);
+    return effort - dense::product<Vec<N>>(R, flow);
   }
 };
 
-/// Effort and flow of the port with waves `a` and `b` and resistance `R`. Cost: a Cholesky
-/// factorization of R.
-template <int N>
-[[nodiscard]] PortState<N> state_of(const Vec<N>& a, const Vec<N>& b, const Mat<N>& R) noexcept {
-  const Eigen::LLT<Mat<N>> factor(R);
-  const Vec<N> half = 0.5 * (a - b);
-  return {0.5 * (a + b), factor.solve(half)};
-}
-
-/// The six numbers of a twist and of a wrench, as a tool port has them.
-[[nodiscard]] inline Vec<any_size> to_vec(const Twist& V) noexcept {
+[[nodiscard]] inline Vec<any_size> to_vec(const Vec3& first, const Vec3& last) noexcept {
   Vec<any_size> six(6);
-  six << V.linear, V.angular;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    six.coeffRef(i) = first.coeff(i);
+    six.coeffRef(i + 3) = last.coeff(i);
+  }
   return six;
+}
+/// Three entries of a port vector, from the i-th on.
+template <PortVector V>
+[[nodiscard]] Vec3 three(const V& all, Eigen::Index i) noexcept {
+  return {all.coeff(i), all.coeff(i + 1), all.coeff(i + 2)};
+}
+/// A twist or a wrench as the vector of a tool port.
+[[nodiscard]] inline Vec<any_size> to_vec(const Twist& V) noexcept {
+  return to_vec(V.linear, V.angular);
 }
 [[nodiscard]] inline Vec<any_size> to_vec(const Wrench& F) noexcept {
-  Vec<any_size> six(6);
-  six << F.force, F.torque;
-  return six;
+  return to_vec(F.force, F.torque);
 }
 [[nodiscard]] inline Wrench to_wrench(const Vec<any_size>& six) noexcept {
-  return {six.head<3>(), six.segment<3>(3)};
+  return {three(six, 0), three(six, 3)};
 }
 
 namespace detail {
-/// [s] up to an hour
+/// Returns `period` [s]; throws SetupError unless it is 1e-9 to 3600.
 inline double checked_period(double period) {
   return checked("period", period, 1e-9, 3600.0, "s");
 }

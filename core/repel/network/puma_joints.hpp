@@ -1,5 +1,5 @@
 /// @file
-/// PUMA_JOINTS: the robot at the end of the network, of any arm.
+/// PUMA_JOINTS: the robot at the end of the network, for any arm.
 #pragma once
 
 #include <repel/network/equivalent.hpp>
@@ -7,12 +7,12 @@
 
 namespace repel::network {
 
-/// The flow of a motor joint as the network takes it: the measured rate, trimmed so that its
-/// integral by the trapezoidal rule stays at the measured position. Springs that integrate it do
-/// not drift away from the arm, whatever the quality of the rate.
+/// The flow of a motor joint for the network: the measured rate, corrected so that its trapezoidal
+/// integral tracks the measured position. Springs that integrate it do not drift away from the arm,
+/// whatever the quality of the rate.
 class MeasuredFlow {
  public:
-  /// [s] in which a difference is made good, at any rate of ticks.
+  /// [s] in which a position error is corrected, at any tick rate.
   static constexpr double trim_time = 0.0225;
 
   explicit MeasuredFlow(int joints)
@@ -21,42 +21,45 @@ class MeasuredFlow {
         integral_(position_),
         flow_(position_) {}
 
-  /// Begins at rest at `q` [rad].
+  /// Resets to rest at `q` [rad].
   void reset(const Vec<any_size>& q) noexcept {
     position_ = integral_ = q;
     flow_.setZero();
     mean_.setZero();
   }
-  /// One `period` [s] of the network later, `elapsed` [s] by the clock (0: a period); `q` [rad],
-  /// `rate` [rad/s] measured, finite.
+  /// Advances by one `period` [s] of the network and `elapsed` [s] by the clock (0: one period);
+  /// `q` [rad], `rate` [rad/s] measured, finite.
   void step(const Vec<any_size>& q, const Vec<any_size>& rate, double period,
             double elapsed = 0.0) noexcept {
-    mean_ = (q - position_) / (elapsed > 0.0 ? elapsed : period);
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      double& flow = flow_.coeffRef(i);
+      double& integral = integral_.coeffRef(i);
+      mean_.coeffRef(i) = (q.coeff(i) - position_.coeff(i)) / (elapsed > 0.0 ? elapsed : period);
+      const double error = q.coeff(i) - integral - 0.5 * period * (flow + rate.coeff(i));
+      integral += 0.5 * period * flow;
+      flow = rate.coeff(i) + error * 2.0 / (trim_time + period);
+      integral += 0.5 * period * flow;
+    }
     position_ = q;
-    const Vec<any_size> error = q - integral_ - 0.5 * period * (flow_ + rate);
-    integral_ += 0.5 * period * flow_;
-    flow_ = rate + error * 2.0 / (trim_time + period);
-    integral_ += 0.5 * period * flow_;
   }
   [[nodiscard]] const Vec<any_size>& flow() const noexcept { return flow_; }  ///< [rad/s]
-  /// Over the last period [rad/s].
+  /// Mean rate over the last period [rad/s].
   [[nodiscard]] const Vec<any_size>& mean() const noexcept { return mean_; }
 
  private:
   Vec<any_size> position_, mean_, integral_, flow_;
 };
 
-/// A one-port that decides its flow: the joint rates are measured, the network answers with
-/// torques. It is the one unmatched element of its network and stands at the root. What holds the
-/// torque for a period while the arm moves on is not part of the network: the energy that this
-/// gives the arm,
+/// A one-port that imposes its flow: the joint rates are measured, the network returns torques. It
+/// is the only unmatched element of its network, at the root. The zero-order hold of the torque
+/// while the arm moves on is not part of the network: the energy that it gives the arm,
 ///
 ///     sum T tau(k) . (mean flow of the period after k - flow at k)
 ///
 /// is observed and reported as `sampling_energy`.
 class PumaJoints {
  public:
-  /// The arm moves by itself, so that it may give more energy than it took.
+  /// The arm is an energy source: it may return more energy than it absorbed.
   static constexpr Traits traits{.left = Space::joints, .measures_flow = true, .passive = false};
 
   /// @throws SetupError when there is no joint or there are too many
@@ -79,7 +82,7 @@ class PumaJoints {
   }
   void incident(const PortState<any_size>& state) noexcept { effort_ = state.effort; }
 
-  /// On the joints [N m].
+  /// Torques on the joints [N m].
   [[nodiscard]] const Vec<any_size>& torques() const noexcept { return effort_; }
   [[nodiscard]] double sampling_energy() const noexcept { return sampling_energy_; }  ///< [J]
 

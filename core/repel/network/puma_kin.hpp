@@ -1,5 +1,5 @@
 /// @file
-/// PUMA_KIN: from the space of the tool to that of the joints, of any arm.
+/// PUMA_KIN: from tool space to joint space, for any arm.
 #pragma once
 
 #include <repel/network/two_port.hpp>
@@ -10,7 +10,7 @@ namespace repel::network {
 /// Poses come from forward kinematics and are never integrated from v.
 ///
 /// At a singularity J loses a direction, for effort and flow alike: the tool cannot be moved along
-/// it and no torque answers a force along it. Nothing is inverted, so nothing grows.
+/// it and no torque answers a force along it. Nothing is inverted, so no value grows without bound.
 class PumaKin {
  public:
   static constexpr Traits traits{.left = Space::tool, .right = Space::joints, .keeps_flow = true};

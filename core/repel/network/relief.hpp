@@ -21,13 +21,14 @@ struct ReliefOptions {
   double angular_damping = 0.5;    ///< [N m s/rad]
 };
 
-/// A series two-port: along each chosen direction s of the task frame a spring-damper gives way,
+/// A series two-port: compliant, with a spring-damper, along each chosen direction s of the task
+/// frame,
 ///
 ///     u = s.f / (K T / 2 + B) - what the spring reflects       v_right = v_left + sum s u
 ///
-/// and along the others both sides move as one. The directions turn with their frame; the same ones
-/// serve effort and flow in one tick, and the springs stretch along them, so turning stores and
-/// gives nothing.
+/// and rigid along the others. The directions rotate with their frame; the same ones are used for
+/// effort and flow in one tick, and the spring states are stored along them, so that rotating the
+/// frame neither stores nor releases energy.
 class Relief {
  public:
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
@@ -60,7 +61,7 @@ class Relief {
     }
   }
   void read(const Signals& signals) noexcept {
-    if (options_.frame == ReliefFrame::tool) turn_ = signals.X_WT.linear();
+    if (options_.frame == ReliefFrame::tool) turn_ = rotation(signals.X_WT);
     if (signals.at_rest) wave_.setZero();
   }
 
@@ -68,38 +69,52 @@ class Relief {
                                Equivalent<any_size>& shown) const noexcept {
     Mat<any_size> G = Mat<any_size>::Zero(6, 6);
     for (int block = 0; block < 6; block += 3) {
-      const Vec3 gains = conductance_.segment<3>(block);
-      G.block<3, 3>(block, block) = turn_ * gains.asDiagonal() * turn_.transpose();
+      for (int row = 0; row < 3; ++row) {
+        const Vec3 left = times_gains(row, block);
+        for (int column = 0; column < 3; ++column) {
+          const double* t = turn_.data() + column;
+          G.coeffRef(block + row, block + column) =
+              left[0] * t[0] + (left[1] * t[3] + left[2] * t[6]);
+        }
+      }
     }
     shown = behind;
-    shown.add_admittance(G, -in_world(conductance_.cwiseProduct(wave_)));
+    shown.add_admittance(G, -in_world(product(conductance_, wave_)));
     return true;
   }
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     const Six effort = in_task(at_root.effort);
-    const Six relative = conductance_.cwiseProduct(effort - wave_);
-    wave_ += 2.0 * spring_resistance_.cwiseProduct(relative);
+    const Six relative = product(conductance_, effort - wave_);
+    wave_ += 2.0 * product(spring_resistance_, relative);
     at_leaf.effort = at_root.effort;
     at_leaf.flow = at_root.flow - in_world(relative);
   }
 
-  /// In the springs [J].
+  /// Energy stored in the springs [J].
   [[nodiscard]] double stored() const noexcept {
-    return 0.5 * wave_.cwiseAbs2().dot(inverse_stiffness_);
+    return 0.5 * product(wave_, wave_).dot(inverse_stiffness_);
   }
 
  private:
   using Six = Eigen::Matrix<double, 6, 1>;
   [[nodiscard]] Six in_task(const Vec<any_size>& world) const noexcept {
     Six task;
-    task << turn_.transpose() * world.head<3>(), turn_.transpose() * world.segment<3>(3);
+    for (int i = 0; i < 6; ++i) {
+      const double* t = &turn_(0, i % 3);
+      const Vec3 v = three(world, i - i % 3);
+      task[i] = t[0] * v[0] + t[1] * v[1] + t[2] * v[2];
+    }
     return task;
   }
   [[nodiscard]] Vec<any_size> in_world(const Six& task) const noexcept {
-    Vec<any_size> world(6);
-    world << turn_ * task.head<3>(), turn_ * task.tail<3>();
-    return world;
+    return to_vec(turn_ * three(task, 0), turn_ * three(task, 3));
+  }
+  /// Row `row` of `turn_`, times the conductances along the axes of the task frame.
+  [[nodiscard]] Vec3 times_gains(int row, int block) const noexcept {
+    const double* t = turn_.data() + row;
+    return {t[0] * conductance_[block], t[3] * conductance_[block + 1],
+            t[6] * conductance_[block + 2]};
   }
 
   ReliefOptions options_;

@@ -1,5 +1,5 @@
 /// @file
-/// SPACEBALL: a six-degree-of-freedom rate source, one way only.
+/// SPACEBALL: a six-degree-of-freedom rate source without force feedback.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 namespace repel::network {
 
 struct SpaceballOptions {
-  double dead_band = 0.002;         ///< [m/s] rates below are rest
+  double dead_band = 0.002;         ///< [m/s] smaller rates count as zero
   double saturation = 0.25;         ///< [m/s]
   double angular_dead_band = 0.01;  ///< [rad/s]
   double angular_saturation = 1.0;  ///< [rad/s]
   double time_constant = 0.05;      ///< [s] of the low pass; 0 for none
 };
 
-/// Adds the rates of the ball to what comes from the left: v_right = v_left + v_ball under the same
-/// effort. Dead band, saturation and a first-order low pass act on the length of the vector, so
-/// that the direction is the operator's own.
+/// Adds the rates of the ball to the flow from the left: v_right = v_left + v_ball at the same
+/// effort. Dead band and saturation act on the length of the vector and keep its direction; a
+/// first-order low pass follows.
 ///
-/// It takes no effort back: it is a source, outside any claim of passivity. The ledger counts what
-/// it supplies, F.v_ball, apart.
+/// It reflects no effort to the operator: it is an energy source and not passive by itself. The
+/// ledger counts the power it supplies, F.v_ball, separately.
 class Spaceball {
  public:
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
@@ -71,7 +71,7 @@ class Spaceball {
  private:
   [[nodiscard]] Vec3 shaped(const Vec3& v, double dead_band, double most) noexcept {
     const double length = v.norm();
-    if (!(length > dead_band)) return Vec3::Zero();
+    if (!(length > dead_band)) return {0, 0, 0};
     saturated_ = saturated_ || length - dead_band > most;
     return v * (std::min(length - dead_band, most) / length);
   }

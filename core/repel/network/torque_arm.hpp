@@ -1,5 +1,6 @@
 /// @file
-/// TORQUE ARM: a force-reflecting lever of one degree of freedom, simulated, with a hand on it.
+/// TORQUE ARM: a simulated force-reflecting lever of one degree of freedom, with the hand that
+/// holds it.
 #pragma once
 
 #include <algorithm>
@@ -14,19 +15,20 @@ namespace repel::network {
 struct TorqueArmOptions {
   double inertia = 0.01;         ///< [kg m^2] lever
   double friction = 0.05;        ///< [N m s/rad] of its bearing
-  double hand_stiffness = 20.0;  ///< [N m/rad] how firmly the hand leads
+  double hand_stiffness = 20.0;  ///< [N m/rad] of the hand's grip
   double hand_damping = 0.6;     ///< [N m s/rad]
-  double torque_limit = 10.0;    ///< [N m] most the motor can reflect
+  double torque_limit = 10.0;    ///< [N m] limit of the motor
 };
 
-/// A one-port: torque in, rate out. Inertia, bearing and a hand that follows its own course through
-/// a spring and a damper, by the bilinear rule:
+/// A one-port: torque in, rate out. Inertia, bearing and a hand that follows its own trajectory
+/// through a spring and a damper, by the bilinear rule:
 ///
 ///     R = 2 I / T + c + (k_h T / 2 + c_h)      b = b_I + b_k - (k_h T / 2 + c_h) v_hand
 ///
-/// with b_I and b_k what inertia and spring reflect. The hand is a source of energy; what it gives
-/// is counted apart. The motor saturates in the waves: the lever takes a part a' of the wave a with
-/// |a'| <= |a| for which the torque stays within its limit, so that saturation dissipates.
+/// with b_I and b_k the waves reflected by inertia and spring. The hand is an energy source; what
+/// it supplies is counted separately. The motor saturates in the wave domain: the lever takes a
+/// wave a' with |a'| <= |a| for which the torque stays within its limit, so that saturation
+/// dissipates.
 class TorqueArm {
  public:
   static constexpr Traits traits{.right = Space::lever};

@@ -1,5 +1,5 @@
 /// @file
-/// What two-ports are made of: transformers and sources in series.
+/// Building blocks of two-ports: transformers and series sources.
 #pragma once
 
 #include <repel/network/equivalent.hpp>
@@ -8,10 +8,10 @@
 namespace repel::network {
 
 /// A lossless connection of two spaces: v_A = V v_B and f_B = F' f_A, with V = F unless a power
-/// factor is declared. Of the two matrices the same values serve both ways in one tick.
+/// factor is declared. The same two matrices are used in both directions of a tick.
 namespace transformer {
 
-/// Seen from the side of B. False when what is behind cannot take the impedance form.
+/// Equivalent of side A seen from B. False when it cannot take the impedance form.
 template <class V, class F>
 [[nodiscard]] bool shown_at_b(Equivalent<any_size> at_a, const V& flow_map, const F& effort_map,
                               Equivalent<any_size>& shown) noexcept {
@@ -22,7 +22,7 @@ template <class V, class F>
   return true;
 }
 
-/// Seen from the side of A. False when what is behind cannot take the admittance form.
+/// Equivalent of side B seen from A. False when it cannot take the admittance form.
 template <class V, class F>
 [[nodiscard]] bool shown_at_a(Equivalent<any_size> at_b, const V& flow_map, const F& effort_map,
                               Equivalent<any_size>& shown) noexcept {
@@ -33,7 +33,7 @@ template <class V, class F>
   return true;
 }
 
-/// State at A from that at B, what A shows being `at_a`.
+/// State at A from that at B and the equivalent `at_a` of side A.
 template <class V>
 void to_a(const PortState<any_size>& at_b, Equivalent<any_size> at_a, const V& flow_map,
           PortState<any_size>& state) noexcept {
@@ -43,7 +43,7 @@ void to_a(const PortState<any_size>& at_b, Equivalent<any_size> at_a, const V& f
   at_a.at_flow(flow, state);
 }
 
-/// State at B from that at A, what B shows being `at_b`.
+/// State at B from that at A and the equivalent `at_b` of side B.
 template <class F>
 void to_b(const PortState<any_size>& at_a, Equivalent<any_size> at_b, const F& effort_map,
           PortState<any_size>& state) noexcept {
@@ -55,7 +55,7 @@ void to_b(const PortState<any_size>& at_a, Equivalent<any_size> at_b, const F& e
 
 }  // namespace transformer
 
-/// An effort in series on the flow of both ports: f_root = f_leaf + effort.
+/// An effort in series, at the same flow of both ports: f_root = f_leaf + effort.
 namespace series {
 
 [[nodiscard]] inline bool shown(const Equivalent<any_size>& behind, const Vec<any_size>& effort,

@@ -1,5 +1,5 @@
 /// @file
-/// VISUAL: marks where a display looks, and changes nothing.
+/// VISUAL: a pass-through tap for displays and logs.
 #pragma once
 
 #include <repel/network/equivalent.hpp>
@@ -7,9 +7,9 @@
 
 namespace repel::network {
 
-/// A tap: effort and flow pass as they are. What passes stands in the connections of the network
-/// after every tick, where a display or a log takes it; the loop copies it to them through `Tap`
-/// (loop/tap.hpp), so that none can hold up a tick.
+/// Effort and flow pass unchanged. They can be read from the connections of the network after every
+/// tick; the loop copies them to displays and logs through `Tap` (loop/tap.hpp), so that no reader
+/// can delay a tick.
 class Visual {
  public:
   static constexpr Traits traits{.keeps_flow = true};

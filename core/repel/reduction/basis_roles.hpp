@@ -1,5 +1,5 @@
 /// @file
-/// What the rows of a basis are for.
+/// The roles of the rows of a basis.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace repel::detail {
 
-/// Which of the five rows of a basis do what, by the set of those that are of B.
+/// The role of each of the five rows of a basis, by the set of rows that belong to B.
 struct BasisRoles {
-  std::array<std::uint8_t, 2> base{};          ///< of A and B: the row that eliminates the depth
-  std::array<std::uint8_t, 3> equation{};      ///< the others, from which x follows
-  std::array<std::uint8_t, 3> side{};          ///< of these
-  std::array<std::array<double, 4>, 2> has{};  ///< 1 for those of A, and of B
+  std::array<std::uint8_t, 2> base{};          ///< for A and B: the row that eliminates the depth
+  std::array<std::uint8_t, 3> equation{};      ///< the other rows, which determine x
+  std::array<std::uint8_t, 3> side{};          ///< the side of each of these, 0 for A, 1 for B
+  std::array<std::array<double, 4>, 2> has{};  ///< 1 where an equation belongs to A, and to B
 };
 
 [[nodiscard]] constexpr std::array<BasisRoles, 32> all_basis_roles() {

@@ -1,5 +1,5 @@
 /// @file
-/// The deepest common point of two polytopes: a linear program of five variables.
+/// The deepest common point of two polytopes: a linear program with five variables.
 #pragma once
 
 #include <algorithm>
@@ -13,21 +13,21 @@
 
 namespace repel::detail {
 
-/// Where two polytopes overlap, the point x at which the depths below the surfaces of both together
-/// are largest:
+/// In an overlap, the point x with the largest sum of the depths below both surfaces:
 ///
 ///     max a + b   with   n.x + a <= o for all planes (n, o) of A,   a >= 0,   and so for b and B.
 ///
-/// Two balls around x, of radii a and b, lie in A and B: nothing shorter than a + b parts the
-/// shapes. Moved along, the maximum is concave, changes no faster than the shapes move, and its
-/// gradient are the multipliers of A's planes: the force it gives is conservative.
+/// The balls around x with radii a and b lie inside A and B, so no translation shorter than a + b
+/// separates the shapes. As a function of a translation, the maximum is concave, changes no faster
+/// than the shapes move, and its gradient is given by the multipliers of the planes of A: the
+/// resulting force is conservative.
 ///
-/// Solved by the dual simplex method. While the multipliers are not negative a basis gives an upper
-/// bound; the plane that x violates most comes in and the one whose multiplier falls to zero first
-/// goes out. A basis that was best at the last tick is mostly the best again.
+/// Solved by the dual simplex method. While no multiplier is negative, a basis gives an upper
+/// bound; the plane that x violates most enters and the one whose multiplier falls to zero first
+/// leaves. The basis that was optimal at the last tick is mostly optimal again.
 class DeepestPoint {
  public:
-  static constexpr int most_pivots = 216;  ///< of all attempts in both precisions
+  static constexpr int most_pivots = 216;  ///< total of all attempts in both precisions
 
   DeepestPoint(const PosedPlanes& A, const PosedPlanes& B) noexcept
       : A_(A),
@@ -35,10 +35,10 @@ class DeepestPoint {
         size_(A.reach + B.reach +
               sum(magnitudes(column<double>(B.X_W, 3) - column<double>(A.X_W, 3)))) {}
 
-  /// Begins with the basis in `warm` where it has one that still holds, and leaves the last one
+  /// Warm starts from the basis in `warm` if it is still dual feasible, and stores the last basis
   /// there. False when the polytopes have no common point deeper than rounding, or none was found.
-  /// @param doubted they may be apart: then what double precision holds for a proof of that is
-  /// taken for one, and left to a search for the gap to confirm
+  /// @param doubted the polytopes may be disjoint: infeasibility found in double precision is then
+  /// accepted, and left to the gap search to confirm
   [[nodiscard]] bool solve(WarmStart& warm, int allowed = most_pivots,
                            bool doubted = false) noexcept {
     pivots_ = 0;
@@ -52,7 +52,8 @@ class DeepestPoint {
   [[nodiscard]] double depth(std::size_t side) const noexcept { return depth_[side]; }
   /// The point [m], from the origin of A, world axes.
   [[nodiscard]] const Vec<double>& point() const noexcept { return point_; }
-  /// The gradient of the sum of the depths when A moves, world axes; at most 1 long.
+  /// The gradient of the sum of the depths with respect to a translation of A, in world axes;
+  /// length at most 1.
   [[nodiscard]] const Vec<double>& gradient() const noexcept { return gradient_; }
   [[nodiscard]] int pivots() const noexcept { return pivots_; }
 
@@ -61,17 +62,17 @@ class DeepestPoint {
 
   static constexpr std::uint32_t side_bit = 0x80000000U;  ///< of a name in a warm start: B
 
-  /// What the attempts in a precision may cost and what its rounding can do.
+  /// Pivot limits and tolerances in one precision.
   template <class T>
   struct Precision {
     static constexpr bool is_double = std::is_same_v<T, double>;
     static constexpr int warm_pivots = is_double ? 24 : 40;
     static constexpr int cold_pivots = is_double ? 72 : 80;
-    static constexpr double of_depth = is_double ? 0x1p-49 : 0x1p-86;  ///< of the size
+    static constexpr double of_depth = is_double ? 0x1p-49 : 0x1p-86;  ///< relative to the size
     static constexpr double of_multiplier = is_double ? 1e-14 : 1e-24;
     static constexpr double least_share = is_double ? 1e-9 : 1e-18;
   };
-  /// By how much multipliers may be told apart where they would all be 0 [-].
+  /// Perturbation that separates multipliers that would all be 0 [-].
   static constexpr double tilt = 1e-20;
 
   [[gnu::flatten, gnu::noinline]] End solved_in_double(WarmStart& warm, int allowed) noexcept {
@@ -98,7 +99,7 @@ class DeepestPoint {
     return end;
   }
 
-  /// Exchanges planes until none is violated, or the pivots reach `most`.
+  /// Pivots until no plane is violated, or the number of pivots reaches `most`.
   template <class T>
   End improved(PlaneBasis<T>& basis, int most) noexcept {
     const T tolerance(Precision<T>::of_depth * size_);
@@ -116,11 +117,11 @@ class DeepestPoint {
     return basis.exchange(entry, Precision<T>::least_share, Precision<T>::of_multiplier);
   }
 
-  /// Whether the depths at the point are as large as they can be at most, and more than rounding.
+  /// Checks that the depths at the point reach their upper bound, and exceed rounding.
   template <class T>
   End judged(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
     const T found = basis.depth(0) + basis.depth(1);
-    // Twice the tilt can be missing from a multiplier that is 0.
+    // The perturbation can reduce a multiplier that is 0 by twice the tilt.
     if (!(basis.least_multiplier() >= T(-Precision<T>::of_multiplier - 2.0 * tilt)) ||
         basis.bound() - found > T(4.0) * tolerance) {
       return End::unclear;
@@ -132,9 +133,10 @@ class DeepestPoint {
                                                                              : End::none;
   }
 
-  /// Four planes all around A and the largest depth B can have are a basis of anything. Then in
-  /// come the planes of the last tick, or else those of round sides that face the other shape:
-  /// mostly the way out is there, and the search for it would be long.
+  /// The initial basis, valid for any input: four bounding planes around A and the largest depth
+  /// that B can have. Then the planes of the last tick enter, or otherwise the tangent planes of
+  /// round sides that face the other shape: the extraction direction is mostly there, and the
+  /// search for it would be long.
   template <class T>
   bool begin(const WarmStart& warm, PlaneBasis<T>& basis, int allowed) noexcept {
     basis.clear();

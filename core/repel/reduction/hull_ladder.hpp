@@ -23,13 +23,13 @@ inline double depth_in(const std::vector<Facet>& facets, const Vec3& x) {
 }
 
 inline Vec3 centroid_of(std::span<const Vec3> vertices) {
-  Vec3 sum = Vec3::Zero();
+  Vec3 sum{0, 0, 0};
   for (const Vec3& v : vertices) sum += v / static_cast<double>(vertices.size());
   return sum;
 }
 
-/// A point near the deepest one: walks away from the nearest plane in steps that shrink. Whatever
-/// it finds is honest, since its depth is measured afterwards.
+/// A point near the deepest one: moves away from the nearest plane in steps of decreasing length.
+/// The accuracy is not critical, since the depth of the result is measured afterwards.
 inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> vertices) {
   struct Nearest {
     const Facet* facet;
@@ -61,9 +61,9 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
   return best;
 }
 
-/// A point at least `t` inside every plane, close to `v`: sweeps of projections onto the planes
-/// moved in by `t` (Dykstra without memory), then a slide toward `deep`, which is inside. Only the
-/// planes nearby take part in a sweep.
+/// A point at least `t` inside every plane, close to `v`: cyclic projections onto the planes moved
+/// in by `t` (Dykstra without memory), then a step toward `deep`, which is inside. Only nearby
+/// planes take part in the projections.
 inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, const Vec3& deep) {
   std::vector<const Facet*> nearby;
   for (const Facet& f : facets) {
@@ -89,46 +89,48 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   return v + std::min(1.0, share * (1.0 + 1e-12)) * (deep - v);
 }
 
-/// Directions, all around, along which the farthest corners of a hull with very many lead.
+/// Number of sample directions, all around, whose extreme vertices lead in a hull with very many
+/// vertices.
 inline constexpr int leading_steps = 13;  ///< along an edge of a cube around the origin
 inline constexpr std::size_t most_leading = std::size_t{6} * leading_steps * leading_steps;
 
-/// Of more than a thousand corners, moves those to the front that are the farthest along any of
-/// about a thousand directions all around. The number of them, or of all when there are fewer.
+/// If there are more than a thousand corners, moves those to the front that are extreme along one
+/// of about a thousand directions all around. Returns their number, or the number of all corners
+/// when there are fewer.
 inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
   constexpr int steps = leading_steps;
   if (corners.size() <= most_leading) return corners.size();
   const VertexScan all(corners);
-  std::vector<bool> leads(corners.size());
+  std::vector<char> leads(corners.size());
   const auto along = [](int step) { return (2.0 * step + 1.0) / steps - 1.0; };
   for (int i = 0; i < static_cast<int>(most_leading); ++i) {
     Vec3 d;
     d[i % 3] = i % 2 == 0 ? 1.0 : -1.0;
     d[(i + 1) % 3] = along(i / 6 % steps);
     d[(i + 2) % 3] = along(i / 6 / steps);
-    leads[all.scan(Vec<double>(d))] = true;
+    leads[all.scan(Vec<double>(d))] = 1;
   }
   std::vector<Vec3> rest;
   std::size_t count = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (leads[i]) {
+    if (leads[i] != 0) {
       corners[count++] = corners[i];
     } else {
       rest.push_back(corners[i]);
     }
   }
-  std::copy(rest.begin(), rest.end(), corners.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t i = 0; i < rest.size(); ++i) corners[count + i] = rest[i];
   return count;
 }
 
 /// The ladder of the hull of `points` with these facets.
 ///
-/// The first level is the hull of its corners; points that are none are dropped. From there on each
-/// vertex of a level moves to the nearest point it finds that is `t` deeper; the hull of the moved
-/// vertices is the next level. So no level has more vertices than its parent, a vertex keeps its
-/// index from level to level, and the depth of a level is the sum of what each step is measured to
-/// have won. Of a hull with very many corners a thousand move, the first ones. The last solid level
-/// goes to its centroid, and so does flat input, which has no depth.
+/// The first level is the hull without the points that are not vertices. To get the next level,
+/// each vertex moves to the nearest point it finds that is `t` deeper; the next level is the hull
+/// of the moved vertices. So no level has more vertices than its parent, a vertex keeps its index
+/// from level to level, and the depth of a level is the sum of the measured depth gains of all
+/// steps. Of a hull with very many vertices only the leading thousand move. The last level with
+/// volume is followed by its centroid, and so is flat input, which has no depth.
 inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
                           std::vector<Facet> facets) {
   std::vector<Vec3> sides;
@@ -155,7 +157,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
       v = moved_inside(facets, v, target, deep);
       won = std::min(won, depth_in(facets, v));
     }
-    // What rounding may have cost is taken off the claim.
+    // Subtracts a bound of the rounding error from the claimed depth.
     won -= 1e-12 * ladder.front().core.reach();
     if (!(won > 0.0)) break;
     depth += won;
@@ -169,8 +171,8 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
   return verified(std::move(ladder), sides);
 }
 
-/// [byte] The most that the ladder of so many points holds, all of them corners: no level has more
-/// vertices than its parent.
+/// [byte] Upper bound of the memory of the ladder of so many points, if all are vertices: no level
+/// has more vertices than its parent.
 [[nodiscard]] inline std::size_t most_ladder_bytes(std::size_t points,
                                                    const ReductionOptions& options) noexcept {
   const std::size_t moving = std::min(points, most_leading);
@@ -178,9 +180,9 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
          static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
 }
 
-/// The planes of the hull of `points` with these facets. Planes that are off by d hold no more than
-/// the hull scaled up by d / r about the centre of a ball of radius r in it: in the tip of a sliver
-/// that is far from the hull.
+/// The planes of the hull of `points` with these facets. Planes with an offset error d enclose at
+/// most the hull scaled by 1 + d / r about the centre of an inscribed ball of radius r; at the tip
+/// of a sliver this reaches far outside the hull.
 inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>& facets) {
   if (facets.empty()) return Planes();
   double reach = 0.0;

@@ -18,8 +18,8 @@ namespace repel {
 /// How a shape is reduced.
 struct ReductionOptions {
   int levels = 8;  ///< steps until the shape has lost its thickness; 1 to 64
-  /// The first i of n steps take (i/n)^spacing of the thickness: 1 makes them even, more crowds
-  /// them below the surface, less around the core; 0.25 to 4.
+  /// The first i of n steps take (i/n)^spacing of the thickness: 1 makes the steps even, a larger
+  /// value concentrates them below the surface, a smaller one around the core; 0.25 to 4.
   double spacing = 1.0;
 };
 
@@ -27,65 +27,66 @@ struct ReductionOptions {
 struct Level {
   Convex core;
   double depth = 0.0;  ///< [m]
-  double order = 0.0;  ///< where the level stands among those of another shape, see Ladder
+  double order = 0.0;  ///< position among the levels of another shape, see Ladder
 };
 
 /// The levels of one shape: A_0 first, a point last, with
 ///
 ///     A_i+1 + Ball(depth_i+1 - depth_i) inside A_i      and      A_0 + Ball(depth_0) = the shape,
 ///
-/// so that rounding (a sphere is a point with a depth) is a depth like any other. Two ladders are
-/// merged by `order`: by the depth lost while there is thickness to lose, and after that by how far
-/// the flat remains have shrunk. The merged pairs are nested, which is what the walk along them
-/// rests on; see separation.hpp.
+/// so that rounding (a sphere is a point with a depth) is treated as any other depth. Two ladders
+/// are merged by `order`: by the depth lost while there is thickness to lose, and after that by how
+/// far the flat remains have shrunk. The merged pairs are nested, which the walk along them relies
+/// on; see separation.hpp.
 using Ladder = std::vector<Level>;
 
 namespace detail {
 
-/// Flat levels come after every level that still gains depth, of either shape.
+/// Flat levels are ordered after every level that still gains depth, of either shape.
 inline constexpr double flat_order = 1e9;
 
-/// [byte] of the heap.
+/// [byte] Heap memory held.
 [[nodiscard]] inline std::size_t bytes_of(const Ladder& ladder) noexcept {
   std::size_t bytes = ladder.capacity() * sizeof(Level);
   for (const Level& level : ladder) bytes += level.core.bytes();
   return bytes;
 }
 
-/// [byte] The most that a ladder holds without a polytope: the shape, its levels, a line and a
-/// point.
+/// [byte] Upper bound of the memory of a ladder without polytopes: the shape, its levels, a line
+/// and a point.
 [[nodiscard]] inline std::size_t most_ladder_bytes(const ReductionOptions& options) noexcept {
   return (static_cast<std::size_t>(options.levels) + 3) * sizeof(Level) + Convex::most_bytes(1);
 }
 
-/// Adds a level, behind the last one in any case: orders that rounding made equal would leave the
-/// walk along the chain without a way.
+/// Adds a level, ordered strictly after the last one: the walk along the chain fails when rounding
+/// makes orders equal.
 inline void append(Ladder& ladder, Convex core, double depth, double order) {
   const double next = std::nextafter(ladder.back().order, std::numeric_limits<double>::infinity());
   ladder.push_back({std::move(core), depth, std::max(order, next)});
 }
 
-/// As many even steps as the first `i` steps, 1 to all, are worth: `i` itself when all are even.
+/// The number of even steps that the first `i` steps, 1 to all, are equivalent to: `i` itself when
+/// all are even.
 inline double even_steps(int i, const ReductionOptions& options) {
   return i * std::pow(static_cast<double>(i) / options.levels, options.spacing - 1.0);
 }
 
-/// [m] how far the first `i` steps go into a shape of that thickness [m].
+/// [m] Depth after the first `i` steps into a shape of that thickness [m].
 inline double depth_after(int i, const ReductionOptions& options, double thickness) {
   if (i == options.levels) return thickness;
   return thickness * even_steps(i, options) / options.levels;
 }
 
-/// The ladder with no more depth than its levels show: along each of `normals` a level ends by its
-/// depth before the first level, and by its step before its parent, within 4e-15 of the reach, less
-/// than queries allow for.
+/// The ladder with the depth of each level lowered to what its support values prove: along each of
+/// `normals`, a level must lie inside the first level by its depth and inside its parent by its
+/// step, within 4e-15 of the reach, which is less than queries allow for.
 /// @param normals of all sides of the first level; one of each pair where all levels are symmetric,
-/// one of a side that goes around the axis
-/// Throws SetupError for a level that reaches out of its parent by more than 1e-12 of the reach.
+/// one for a curved side around the axis
+/// Throws SetupError for a level that protrudes from its parent by more than 1e-12 of the reach.
 /// Cost: a support map per level and normal.
 inline Ladder verified(Ladder ladder, std::span<const Vec3> normals) {
   const double reach = ladder.front().core.reach();
-  // Squares of lengths below 1e-154 m have no digits left.
+  // Squares of lengths below 1e-154 m lose all digits by underflow.
   const double rounding = 4e-15 * reach + 1e-150;
   std::vector<double> outermost;
   for (const Vec3& n : normals) {
@@ -112,13 +113,16 @@ inline Ladder verified(Ladder ladder, std::span<const Vec3> normals) {
   return ladder;
 }
 
-/// A box loses thickness to a rectangle, the rectangle its width to a line, the line its
-/// length to a point (Figure 4 a, b, c). Coinciding steps fall together.
+/// A box is reduced by its thickness to a rectangle, the rectangle by its width to a line, the line
+/// by its length to a point (Figure 4 a, b, c). Steps that coincide are merged.
 inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& options) {
   Vec3 sorted = half_extents;
-  std::sort(sorted.begin(), sorted.end());
+  if (sorted[1] < sorted[0]) std::swap(sorted[0], sorted[1]);
+  if (sorted[2] < sorted[1]) std::swap(sorted[1], sorted[2]);
+  if (sorted[1] < sorted[0]) std::swap(sorted[0], sorted[1]);
   const auto eroded = [&](double t) -> Vec3 {
-    return (half_extents.array() - t).max(0.0).matrix();
+    return {std::max(half_extents[0] - t, 0.0), std::max(half_extents[1] - t, 0.0),
+            std::max(half_extents[2] - t, 0.0)};
   };
   Ladder ladder{{Convex::box(half_extents), 0.0, 0.0}};
   for (int i = 1; i <= options.levels && sorted[0] > 0.0; ++i) {
@@ -130,15 +134,15 @@ inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& optio
     if (t == sorted[1] && sorted[1] == sorted[2] && ladder.back().order > flat_order) continue;
     append(ladder, Convex::box(eroded(t)), sorted[0], flat_order + t);
   }
-  const Vec3 sides[] = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  const Vec3 sides[] = {unit(0), unit(1), unit(2)};
   return verified(std::move(ladder), sides);
 }
 
-/// Sides of a set around the z axis with equal ends.
-inline const Vec3 around_and_along[] = {Vec3::UnitX(), Vec3::UnitZ()};
+/// Normals of the sides of a set around the z axis with equal ends.
+inline const Vec3 around_and_along[] = {{1, 0, 0}, {0, 0, 1}};
 
-/// A cylinder shrinks to its axis and then to a point; a disk to a thin disc and then to a point
-/// (Figure 4 e, f).
+/// A long cylinder shrinks to its axis and then to a point; a flat one to a thin disc and then to a
+/// point (Figure 4 e, f).
 inline Ladder cylinder_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double thickness = std::min(radius, half_length);
   const double rest = std::max(radius, half_length);
@@ -148,13 +152,13 @@ inline Ladder cylinder_ladder(double radius, double half_length, const Reduction
     append(ladder, Convex::cylinder(radius - t, half_length - t), t, t);
   }
   if (rest > thickness) {
-    append(ladder, Convex::box(Vec3::Zero()), thickness, flat_order + rest);
+    append(ladder, Convex::box({0, 0, 0}), thickness, flat_order + rest);
   }
   return verified(std::move(ladder), around_and_along);
 }
 
-/// A cone keeps its opening and shrinks to the centre of its inscribed ball: moved in by t, the
-/// base rises by t and the apex falls by t / sin(a), a the angle between axis and side.
+/// A cone keeps its opening angle and shrinks to the centre of its inscribed ball: moved in by t,
+/// the base rises by t and the apex falls by t / sin(a), a the angle between axis and side.
 inline Ladder cone_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double length = 2.0 * half_length;
   const double side = std::hypot(radius, length);
@@ -172,20 +176,20 @@ inline Ladder cone_ladder(double radius, double half_length, const ReductionOpti
     append(ladder, Convex::polytope(std::span(&centre, 1)), thickness,
            thickness > 0.0 ? thickness : flat_order + std::max(radius, half_length));
   }
-  const Vec3 base_and_side[] = {-Vec3::UnitZ(), Vec3(length, 0.0, radius).stableNormalized()};
+  const Vec3 base_and_side[] = {-unit(2), direction_of({length, 0.0, radius})};
   return verified(std::move(ladder), base_and_side);
 }
 
 /// A sphere is a point with a depth (Figure 4 d).
 inline Ladder sphere_ladder(double radius) {
-  return {{Convex::box(Vec3::Zero()), radius, 0.0}};
+  return {{Convex::box({0, 0, 0}), radius, 0.0}};
 }
 
 /// A capsule is a segment with a depth, then a point with the same depth.
 inline Ladder capsule_ladder(double radius, double half_length) {
   Ladder ladder{{Convex::box({0.0, 0.0, half_length}), radius, 0.0}};
   if (half_length > 0.0) {
-    append(ladder, Convex::box(Vec3::Zero()), radius, flat_order + half_length);
+    append(ladder, Convex::box({0, 0, 0}), radius, flat_order + half_length);
   }
   return verified(std::move(ladder), around_and_along);
 }

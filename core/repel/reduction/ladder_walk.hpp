@@ -14,19 +14,19 @@
 namespace repel::detail {
 
 /// The chain of level pairs of two ladders, merged by Level::order, and the walk to the two pairs
-/// that decide: the last that meets and the first that does not.
+/// that decide: the last intersecting one and the first disjoint one.
 ///
-/// With T the summed depth of a pair of levels and d their distance, the signed distance is
-/// min (d - T) over the chain. Along the chain the pairs are nested, so d never falls, and where it
-/// is positive it gains at least what T gains. Hence only the last meeting pair (-T) and the first
-/// apart (d - T) can hold the minimum, wherever the walk begins.
+/// The signed distance is min(d - T) over the chain, T being the summed depth of a pair of levels
+/// and d their distance. Along the chain the pairs are nested, so d never decreases, and where it
+/// is positive it increases by at least as much as T. Hence only the last intersecting pair (-T)
+/// and the first disjoint pair (d - T) can attain the minimum, wherever the walk starts.
 class LadderWalk {
  public:
   LadderWalk(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB,
              const QueryOptions& options, WarmStart& warm) noexcept
       : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), options_(options), warm_(warm) {}
 
-  /// `first` is what a query on the levels of the warm start gave, or nothing.
+  /// @param first the result of a query on the levels of the warm start, or null
   Separation run(const Gap* first) noexcept {
     i_ = warm_.level_a;
     j_ = warm_.level_b;
@@ -42,7 +42,7 @@ class LadderWalk {
       const bool decided = meets ? went_in(gap) : went_out(gap);
       if (decided) break;
     }
-    // The next call does best to begin where the shapes are apart.
+    // The next call is fastest if it starts at the disjoint pair.
     warm_.level_a = static_cast<std::uint8_t>(apart_ ? apart_i_ : i_);
     warm_.level_b = static_cast<std::uint8_t>(apart_ ? apart_j_ : j_);
     return answer();
@@ -78,7 +78,8 @@ class LadderWalk {
     j_ -= b >= a && j_ > 0 ? 1 : 0;
   }
 
-  /// The pair of levels at hand, from what the last call on either kind of pair left.
+  /// The distance of the current pair of levels, warm started from the last call on a disjoint or
+  /// an intersecting pair.
   Gap query() noexcept {
     const Level& a = A_.level(i_);
     const Level& b = B_.level(j_);
@@ -108,7 +109,7 @@ class LadderWalk {
     return gap;
   }
 
-  /// True when the corners that decided last decide again.
+  /// True when the feature or corners that decided last still decide.
   bool is_quick(const PosedPair& pair, const QueryOptions& options, Gap& gap) noexcept {
     ++iterations_;
     if (apart_) {
@@ -130,7 +131,8 @@ class LadderWalk {
     warm_.met_b = four.b;
   }
 
-  /// This pair meets: is the next one known to be apart?
+  /// The current pair intersects. True when the next one is known to be disjoint, or the walk must
+  /// end.
   bool went_in(const Gap& gap) noexcept {
     meets_ = true;
     touches_ = at_start() && gap.end == QueryEnd::touching;
@@ -141,7 +143,8 @@ class LadderWalk {
     return false;
   }
 
-  /// This pair is apart: is the one before it known to meet?
+  /// The current pair is disjoint. True when the previous one is known to intersect, or the walk
+  /// must end.
   bool went_out(const Gap& gap) noexcept {
     apart_ = true;
     gap_ = gap;
@@ -151,12 +154,13 @@ class LadderWalk {
     const double here = depth();
     const bool far_out = gap.distance > here;
     step_out();
-    // A pair that met not would be apart by at least the depth it gains on the next.
+    // If the previous pair were disjoint, this distance would exceed the depth gained between the
+    // two.
     if (gap.distance <= here - depth()) return true;
     cut_short_ = spent() || gap.end == QueryEnd::budget_spent;
     if (cut_short_) return true;
     if (far_out) {
-      // Out of the overlap altogether, it seems: begin again with the shapes themselves.
+      // The shapes seem to be disjoint: restart with the shapes themselves.
       i_ = j_ = 0;
       apart_ = false;
     }
@@ -180,15 +184,15 @@ class LadderWalk {
   bool meets_ = false;
   bool apart_ = false;
   bool touches_ = false;
-  bool cut_short_ = false;  ///< the iterations ran out before the deciding pairs were found
-  double depth_met_ = 0.0;  ///< [m] T of the last pair that meets
-  double margin_ = 0.0;     ///< [m] how far from meeting it may be, by rounding
-  Gap gap_;                 ///< of the first pair that is apart
+  bool cut_short_ = false;  ///< the iterations were spent before the deciding pairs were found
+  double depth_met_ = 0.0;  ///< [m] T of the last intersecting pair
+  double margin_ = 0.0;     ///< [m] by which it may be disjoint, due to rounding
+  Gap gap_;                 ///< of the first disjoint pair
   int apart_i_ = 0;
   int apart_j_ = 0;
 };
 
-/// Both shapes shrunk to one common point: it lies as deep as the levels are.
+/// For shapes that are both reduced to one common point: it is as deep as their levels.
 inline void LadderWalk::choose_direction(Separation& s) const noexcept {
   s.extraction_W = shortest_axis(A_, X_WA_, B_, X_WB_);
   const Vec3 common = X_WA_ * to_vec3(A_.level(i_).core.point(0).p);
@@ -219,7 +223,7 @@ inline Separation LadderWalk::answer() const noexcept {
         std::min(s.distance, -overlap_along(s.extraction_W, A_, X_WA_, B_, X_WB_) - slack), -1.0);
   }
   if (!plain) s.upper = widened(s.upper + slack, 1.0);
-  // A point deep inside, in one plane with all support points found, looks like contact to GJK.
+  // A point deep inside but coplanar with all support points found looks like contact to GJK.
   if (touches_ && s.distance >= -(margin_ + slack)) s.end = QueryEnd::touching;
   if (cut_short_) s.end = QueryEnd::budget_spent;
   return s;

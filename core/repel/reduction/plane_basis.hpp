@@ -14,23 +14,23 @@
 
 namespace repel::detail {
 
-/// A polytope at its pose, by its planes.
+/// A polytope at its pose, described by its planes.
 struct PosedPlanes {
   const Planes& planes;
   const Pose& X_W;
   double reach;  ///< [m] of the polytope around the origin of its frame
 };
 
-/// Five constraints of max a + b (see DeepestPoint) that hold with equality, and what follows from
-/// them: three equations for x once the depths are eliminated, and by the same cofactors the
-/// multipliers. Where planes are nearly parallel solutions by cofactors are refined
-/// once: the others would not hold with equality otherwise.
+/// Five active constraints of max a + b (see DeepestPoint) and the solution they determine: three
+/// equations for x once the depths are eliminated, and, by the same cofactors, the multipliers.
+/// Where planes are nearly parallel, solutions by cofactors are refined once: the other constraints
+/// would not hold with equality otherwise.
 template <class T>
 class PlaneBasis {
  public:
   static constexpr std::size_t rows = 5;
-  // Names of constraints, as a warm start keeps them: the index of a plane, or one of those that
-  // hold for any point of the polytope and bound the first basis.
+  // Names of constraints, as a warm start keeps them: the index of a plane, or one of the bounds
+  // that hold for any point of the polytope and form the initial basis.
   static constexpr std::uint32_t first_bound = 0x7FFFFF00U;  ///< four around the polytope
   static constexpr std::uint32_t depth_bound = first_bound + 4;
   static constexpr std::uint32_t not_negative = first_bound + 5;  ///< a depth is at least 0
@@ -48,9 +48,9 @@ class PlaneBasis {
 
   /// [m] from the origin of A, world axes
   [[nodiscard]] const Vec<T>& point() const noexcept { return x_; }
-  /// [m] of the point below the surface of A (0) or B (1), once most_violated() was asked.
+  /// [m] Depth of the point below the surface of A (0) or B (1); valid after most_violated().
   [[nodiscard]] T depth(std::size_t side) const noexcept { return depth_[side]; }
-  /// [m] No common point has a larger sum of depths, if no multiplier is negative.
+  /// [m] Upper bound of the sum of depths of any common point, if no multiplier is negative.
   [[nodiscard]] T bound() const noexcept { return level_[0] + level_[1] + slack_; }
   [[nodiscard]] std::uint32_t name(std::size_t k) const noexcept { return rows_[k].name; }
   [[nodiscard]] unsigned side(std::size_t k) const noexcept { return of_b_ >> k & 1U; }
@@ -59,10 +59,10 @@ class PlaneBasis {
     count_ = 0;
     of_b_ = 0;
   }
-  /// Adds `tilt`.x to the objective: multipliers that would be 0 together, so that the choice
-  /// between them may go round in a circle, differ by it.
+  /// Adds `tilt`.x to the objective: a perturbation against cycling, which separates multipliers
+  /// that would all be 0.
   void tilt(const Vec<T>& tilt) noexcept { tilt_ = tilt; }
-  /// Adds a constraint to fewer than five; false for a name that none has.
+  /// Adds a constraint to fewer than five; false for an unknown name.
   bool add(unsigned side, std::uint32_t name) noexcept {
     if (!has_plane(side, name) && (name < first_bound || name > not_negative)) {
       return false;
@@ -74,7 +74,7 @@ class PlaneBasis {
     return true;
   }
 
-  /// x, the depths there and the multipliers. False when the equations have no solution.
+  /// Solves for x, the depths there and the multipliers. False when the equations are singular.
   bool weigh() noexcept;
 
   [[nodiscard]] T least_multiplier() const noexcept {
@@ -82,7 +82,7 @@ class PlaneBasis {
     for (const T& multiplier : multiplier_) least = std::min(least, multiplier);
     return least;
   }
-  /// The gradient of the sum of the depths when A moves, world axes.
+  /// The gradient of the sum of the depths with respect to a translation of A, in world axes.
   [[nodiscard]] Vec<T> gradient() const noexcept {
     Vec<T> g{};
     for (std::size_t k = 0; k < rows; ++k) {
@@ -92,7 +92,8 @@ class PlaneBasis {
     return g;
   }
 
-  /// The constraint that the point violates most, or one by no more than `tolerance` [m].
+  /// The constraint that the point violates most; its violation is at most `tolerance` [m] when
+  /// there is none.
   [[nodiscard]] Entry most_violated(T tolerance) noexcept {
     Entry most{0, 0, tolerance};
     for (unsigned s = 0; s < 2; ++s) {
@@ -106,13 +107,13 @@ class PlaneBasis {
     return most;
   }
 
-  /// A plane of A (0) or B (1) and how far the point violates it.
+  /// A plane of A (0) or B (1) and its violation by the point.
   [[nodiscard]] Entry entry(unsigned side, std::uint32_t name) noexcept {
     set_row(rows, side, name);
     const Row& row = rows_[rows];
     return {side, name, level_[side] + dot(row.n, x_) - row.offset};
   }
-  /// The two tangents of the round side of A (0) or B (1) that face the other.
+  /// The two tangent planes of the round side of A (0) or B (1) that face the other polytope.
   [[nodiscard]] std::array<std::uint32_t, 2> facing(unsigned side) const noexcept {
     const Vec<double> across(p_[1 - side] - p_[side]);
     return sets_[side].planes.facing(rotate_transposed(sets_[side].X_W, across));
@@ -124,7 +125,8 @@ class PlaneBasis {
     return sets_[side].planes.is_round();
   }
 
-  /// Rounding alone can violate a constraint that holds with equality.
+  /// True when the constraint is in the basis. A constraint that holds with equality can be
+  /// violated by rounding only.
   [[nodiscard]] bool holds(const Entry& entry) const noexcept {
     for (std::size_t k = 0; k < count_; ++k) {
       if (side(k) == entry.side && rows_[k].name == entry.name) return true;
@@ -132,9 +134,10 @@ class PlaneBasis {
     return false;
   }
 
-  /// Takes the entry into the basis for the constraint whose multiplier falls to zero first. False
-  /// when none falls: the polytopes have no common point.
-  /// @param least_share what falls slower than this does not count, being nearly parallel
+  /// Pivot: the entry replaces the constraint whose multiplier falls to zero first. False when none
+  /// falls: the polytopes have no common point.
+  /// @param least_share pivot tolerance: smaller shares are ignored, the planes being nearly
+  /// parallel
   /// @param late how far below zero rounding may take a multiplier
   bool exchange(const Entry& entry, double least_share, double late) noexcept {
     const bool is_plane = entry.name != not_negative;
@@ -143,8 +146,8 @@ class PlaneBasis {
     sums[entry.side] = T(is_plane ? 1.0 : -1.0);
     std::array<T, rows> share;
     spread(rows_[rows].n, sums, share);
-    // Of multipliers that fall to zero nearly at once, the one that falls fastest goes: its plane
-    // is the least parallel to the others (Harris 1973).
+    // Of the multipliers that fall to zero nearly at once, the one that falls fastest leaves: its
+    // plane is the least parallel to the others (ratio test of Harris 1973).
     const auto falls_at = [&](std::size_t k, double after) {
       return (std::max(multiplier_[k], T(0.0)) + T(after)) / share[k];
     };
@@ -173,7 +176,7 @@ class PlaneBasis {
     std::uint32_t name;
   };
 
-  /// Of a rotation; the precision of T.
+  /// Columns of a rotation, in the precision of T.
   using Columns = std::array<Vec<T>, 3>;
   [[nodiscard]] static Columns columns_of(const Pose& X) noexcept {
     return {column<T>(X, 0), column<T>(X, 1), column<T>(X, 2)};
@@ -181,8 +184,8 @@ class PlaneBasis {
 
   static constexpr std::array<BasisRoles, 32> all_roles = all_basis_roles();
 
-  /// Of the rows of a side, a depth not below 0 comes first: there it eliminates the depth, like a
-  /// plane without a normal.
+  /// Moves the constraint "depth not below 0" to the front of the rows of its side: there it
+  /// eliminates the depth, like a plane without a normal.
   void put_first(unsigned side) noexcept {
     std::size_t first = count_;
     for (std::size_t k = 0; k < count_; ++k) {
@@ -211,8 +214,8 @@ class PlaneBasis {
     row.offset = name == not_negative ? T(0.0) : T(set.reach) + dot(row.n, p_[side]);
   }
 
-  /// The shares of the rows in a constraint with the normal `target` and the factors `sums` before
-  /// the depths of A and B.
+  /// Expresses a constraint as a combination of the rows: their `shares` for one with the normal
+  /// `target` and the coefficients `sums` of the depths of A and B.
   void spread(const Vec<T>& target, const std::array<T, 2>& sums,
               std::array<T, rows>& shares) const noexcept {
     const BasisRoles& roles = all_roles[of_b_];
@@ -241,20 +244,20 @@ class PlaneBasis {
 
   std::array<PosedPlanes, 2> sets_;
   std::array<Columns, 2> columns_;
-  std::array<Vec<T>, 2> p_;         ///< [m] the origins from that of A, world axes
-  std::array<Row, rows + 1> rows_;  ///< and one that enters
+  std::array<Vec<T>, 2> p_;         ///< [m] the origins of A and B from that of A, world axes
+  std::array<Row, rows + 1> rows_;  ///< the basis, and the entering row
   std::array<T, rows> multiplier_;
   std::size_t count_ = 0;
-  unsigned of_b_ = 0;  ///< bit k: row k is of B
+  unsigned of_b_ = 0;  ///< bit k: row k belongs to B
   std::array<Vec<T>, 3> equations_;
   std::array<Vec<T>, 3> cofactors_;
   T inverse_{0.0};
   Vec<T> tilt_{};
   Vec<T> x_;
-  std::array<T, 2> level_;  ///< [m] the depths by the basis
-  std::array<T, 2> depth_;  ///< [m] the depths of x
-  bool thin_ = false;       ///< planes are nearly parallel
-  T slack_{0.0};            ///< [m] what the equations miss in x, weighed
+  std::array<T, 2> level_;  ///< [m] the depths according to the basis
+  std::array<T, 2> depth_;  ///< [m] the depths of x below all planes
+  bool thin_ = false;       ///< some planes are nearly parallel
+  T slack_{0.0};            ///< [m] residuals of the equations in x, weighted by the multipliers
 };
 
 template <class T>

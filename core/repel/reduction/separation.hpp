@@ -1,5 +1,5 @@
 /// @file
-/// The signed distance of two shapes: the answer for one pair.
+/// The signed distance of two shapes: the result for one pair.
 #pragma once
 
 #include <repel/distance/box_depth.hpp>
@@ -12,9 +12,9 @@ namespace repel {
 
 namespace detail {
 
-/// Neither pose has an entry that is not finite or so large that products of three would overflow.
+/// True when all pose entries are finite and small enough that products of three do not overflow.
 [[nodiscard]] inline bool are_usable(const Pose& X_WA, const Pose& X_WB) noexcept {
-  // A comparison with what is not a number is false; one settles all.
+  // A comparison with NaN is false; one comparison checks all entries.
   Vec<double> largest{};
   for (int k = 0; k < 4; ++k) {
     largest = largest + (magnitudes(column<double>(X_WA, k)) + magnitudes(column<double>(X_WB, k)));
@@ -27,7 +27,7 @@ namespace detail {
          options.relative_width >= 0.0;
 }
 
-/// The last query ended on a feature of the shapes themselves.
+/// True when the last query ended on a feature of the shapes themselves, not of reduced levels.
 [[nodiscard]] inline bool has_feature(const WarmStart& warm) noexcept {
   return warm.size >= 1 && warm.size <= 3 && warm.level_a == 0 && warm.level_b == 0;
 }
@@ -36,13 +36,13 @@ namespace detail {
   return a.core.is_polytope() && b.core.is_polytope();
 }
 
-/// What is asked about the cores so that the rounded shapes have what `options` ask.
+/// The query options for the cores that give the rounded shapes what `options` requires.
 [[nodiscard]] inline QueryOptions options_of_cores(const Level& a, const Level& b,
                                                    const QueryOptions& options) noexcept {
   QueryOptions of_cores = options;
   of_cores.ignore_beyond += a.depth + b.depth;
-  // What is left between rounded shapes can be much less than the gap of their cores, and a search
-  // on a curve only ever comes nearer.
+  // The distance of rounded shapes can be much less than that of their cores, and a search on a
+  // curve converges only asymptotically.
   if (!are_angular(a, b) || a.depth + b.depth > 0.0) of_cores.tolerance *= 0.01;
   return of_cores;
 }
@@ -52,14 +52,14 @@ namespace detail {
   return options.measure == Measure::deepest_point && !A.planes().empty() && !B.planes().empty();
 }
 
-/// Overlap is measured by the levels of the shapes, as asked or for want of what else it takes.
+/// True when overlap is measured by the levels of the shapes, as requested or as the fallback.
 [[nodiscard]] inline bool is_by_levels(const Shape& A, const Shape& B,
                                        const QueryOptions& options) noexcept {
   if (options.measure == Measure::exact) return !are_angular(A.level(0), B.level(0));
   return !is_by_planes(A, B, options);
 }
 
-/// The answer by the deepest common point of the cores; false when there is none or it takes more
+/// The result by the deepest common point of the cores; false when there is none or it takes more
 /// than `most_pivots`.
 /// @param doubted see DeepestPoint
 [[nodiscard]] inline bool at_deepest_point(const Shape& A, const Pose& X_WA, const Shape& B,
@@ -71,21 +71,22 @@ namespace detail {
   const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
   if (!deepest.solve(warm, most_pivots, doubted)) return false;
-  // What a shape may lack of what its planes hold is no depth.
+  // The planes may enclose more than the shape, by their margin: it is subtracted from the depth.
   const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
   const double sure = 1.0 - (A.planes().margin() + B.planes().margin()) / found;
   if (!(sure > 0.0)) return false;
   const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
   const double slack = 1e-14 * (A.reach() + B.reach());
-  // The way out is against the gradient; its length is left out until it is there.
+  // The extraction direction is the negative gradient. The support maps take it unnormalized, so
+  // that they need not wait for its length.
   const Vec<double> d = -deepest.gradient();
   const double times_length = cores_overlap_along(d, A, X_WA, B, X_WB);
   const double length = std::sqrt(dot(d, d));
-  // Without a gradient no direction is better by this measure.
+  // With a zero gradient, no direction is better by this measure.
   const bool flat = !(length > 1e-9);
   s.extraction_W = flat ? shortest_axis(A, X_WA, B, X_WB) : to_vec3((1.0 / length) * d);
-  const Vec3 common = X_WA.translation() + to_vec3(deepest.point());
+  const Vec3 common = origin(X_WA) + to_vec3(deepest.point());
   s.p_WA = common - depth_a * s.extraction_W;
   s.p_WB = common + depth_b * s.extraction_W;
   s.distance = -(depth_a + depth_b);
@@ -99,7 +100,7 @@ namespace detail {
   return true;
 }
 
-/// The answer by the penetration depth; false for curved cores and those without volume.
+/// The result by the penetration depth; false for curved cores and for those without volume.
 /// @param warm names of four corners of A - B that enclose the origin
 [[nodiscard]] inline bool at_exact_depth(const Shape& A, const Pose& X_WA, const Shape& B,
                                          const Pose& X_WB, const WarmStart& warm,
@@ -116,7 +117,7 @@ namespace detail {
   s.lower = std::min(s.distance, widened(-(depth.upper + rounded), -1.0));
   s.upper = std::max(s.distance, widened(-(depth.lower + rounded), 1.0));
   s.extraction_W = to_vec3(-depth.n_W);
-  const Vec3 p_WQ = X_WA.translation() + to_vec3(depth.p_AQa_W);
+  const Vec3 p_WQ = origin(X_WA) + to_vec3(depth.p_AQa_W);
   s.p_WA = p_WQ - a.depth * s.extraction_W;
   s.p_WB = s.p_WA - s.distance * s.extraction_W;
   s.level = 0;
@@ -125,8 +126,8 @@ namespace detail {
   return true;
 }
 
-/// The last query ended in an overlap that can be measured again without a search for corners
-/// around the origin.
+/// True when the last query ended in an overlap that can be measured again without a search for
+/// corners that enclose the origin.
 [[nodiscard]] inline bool overlapped(const Shape& A, const Shape& B,
                                      const WarmStart& warm) noexcept {
   if (warm.level_a == WarmStart::deepest_point) return true;
@@ -134,9 +135,9 @@ namespace detail {
          B.level(0).core.kind() == Convex::Kind::box;
 }
 
-/// The answer to an overlap of the cores by another measure than their levels; false when that is
-/// what is asked, or when the cores do not overlap after all.
-/// @param spent support-map pairs, 0 when no search has found the overlap yet
+/// The result for an overlap of the cores by a measure other than their levels; false when the
+/// levels are the requested measure, or when the cores turn out not to overlap.
+/// @param spent support-map pairs evaluated; 0 when no search has found the overlap yet
 [[nodiscard]] inline bool in_overlap(const Shape& A, const Pose& X_WA, const Shape& B,
                                      const Pose& X_WB, const QueryOptions& options, int spent,
                                      WarmStart& warm, Separation& s) noexcept {
@@ -147,7 +148,7 @@ namespace detail {
          s.upper < -(A.level(0).depth + B.level(0).depth);
 }
 
-/// The signed distance where the quick search, after `spent` support-map pairs, has no proof.
+/// The signed distance when the fast search, after `spent` support-map pairs, has no proof.
 [[gnu::noinline]] inline Separation carefully_searched(const Shape& A, const Pose& X_WA,
                                                        const Shape& B, const Pose& X_WB,
                                                        const QueryOptions& options, int spent,
@@ -164,15 +165,16 @@ namespace detail {
   gap.iterations += spent;
   if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
   Separation s;
-  // Deep inside, in one plane with all support points found, the origin looks like contact to GJK.
+  // If the origin is deep inside but coplanar with all support points found, it looks like contact
+  // to GJK.
   const bool meets = gap.meets || gap.end == QueryEnd::touching;
   if (meets && in_overlap(A, X_WA, B, X_WB, options, gap.iterations, warm, s)) {
     s.iterations += gap.iterations;
     return s;
   }
   s = walk.run(&gap);
-  // The levels stand in for a measure that was not finished: for want of iterations, or else where
-  // they find a depth that is more than rounding.
+  // The levels are the fallback for a measure that did not finish: report that, when the iterations
+  // ran short or the levels find a depth above rounding.
   const double depth_of_cores = s.distance + a.depth + b.depth;
   const double margin = A.planes().margin() + B.planes().margin();
   const bool deep = depth_of_cores < -1e-13 * (A.reach() + B.reach()) - margin;
@@ -184,7 +186,7 @@ namespace detail {
   return s;
 }
 
-/// The signed distance by search, from what the warm start has.
+/// The signed distance by search, starting from the warm start.
 [[gnu::noinline]] inline Separation searched(const Shape& A, const Pose& X_WA, const Shape& B,
                                              const Pose& X_WB, const QueryOptions& options,
                                              WarmStart& warm) noexcept {
@@ -209,15 +211,16 @@ namespace detail {
 /// The signed distance of A and B.
 ///
 /// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from
-/// GJK: for polytopes and rounded ones right to a few 1e-15 of their size, and relatively to 1e-7
-/// however small the gap; for cylinders right within the bracket, which `docs/distance.md` states.
-/// In overlap it is minus the depth by `options.measure` (see `docs/reduction.md`): continuous,
-/// 1-Lipschitz in translation, never deeper than the penetration depth; `lower` and `upper` bracket
-/// the true one.
+/// GJK: for polytopes and rounded polytopes with an error of a few 1e-15 of their size, and a
+/// relative error of 1e-7 however small the gap; for cylinders within the bracket, which
+/// `docs/distance.md` states. In overlap it is minus the depth by `options.measure` (see
+/// `docs/reduction.md`): continuous, 1-Lipschitz in translation, never deeper than the penetration
+/// depth; `lower` and `upper` bracket the true one.
 ///
-/// @param X_WA,X_WB rigid poses in the world [m]; not finite, or beyond 1e15 m, ends in bad_input
-/// @param warm what the last call on this pair left; any content is safe
-/// Cost: one to three support pairs per call when warm. No heap, no lock, bounded by
+/// @param X_WA,X_WB rigid poses in the world [m]; entries that are not finite, or beyond 1e15 m,
+/// end in bad_input
+/// @param warm state left by the last call on this pair; any content is safe
+/// Cost: one to three support-map pairs per call when warm. No heap, no lock, bounded by
 /// `options.iterations`.
 [[nodiscard, gnu::flatten]] inline Separation separation(const Shape& A, const Pose& X_WA,
                                                          const Shape& B, const Pose& X_WB,

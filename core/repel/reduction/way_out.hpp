@@ -1,5 +1,5 @@
 /// @file
-/// Ways out of an overlap.
+/// Separating translations of an overlap.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace repel::detail {
 
-/// How far A's core would have to move along `d` to leave B's behind, times the length of d [m].
-/// Cost: a support-map pair.
+/// How far the core of A would have to move along `d` to separate from that of B, times the length
+/// of d [m]. Cost: a support-map pair.
 [[nodiscard]] inline double cores_overlap_along(const Vec<double>& d, const Shape& A,
                                                 const Pose& X_WA, const Shape& B,
                                                 const Pose& X_WB) noexcept {
@@ -19,7 +19,7 @@ namespace repel::detail {
          dot(d, column<double>(X_WB, 3) - column<double>(X_WA, 3));
 }
 
-/// How far A would have to move along the unit `n_W` to leave B behind [m]; no less than the
+/// How far A would have to move along the unit `n_W` to separate from B [m]; an upper bound of the
 /// penetration depth. Cost: a support-map pair.
 [[nodiscard]] inline double overlap_along(const Vec3& n_W, const Shape& A, const Pose& X_WA,
                                           const Shape& B, const Pose& X_WB) noexcept {
@@ -27,12 +27,12 @@ namespace repel::detail {
          B.level(0).depth;
 }
 
-/// The axis of either body, world axes, along which A leaves B by the shortest way. Cost: six
-/// support-map pairs for boxes, else twelve.
+/// The axis of either body, in world axes, with the shortest translation that separates A from B.
+/// Cost: six support-map pairs for boxes, otherwise twelve.
 [[nodiscard]] inline Vec3 shortest_axis(const Shape& A, const Pose& X_WA, const Shape& B,
                                         const Pose& X_WB) noexcept {
   const auto is_box = [](const Shape& s) { return s.level(0).core.kind() == Convex::Kind::box; };
-  const bool alike = is_box(A) && is_box(B);  // along an axis and against it
+  const bool alike = is_box(A) && is_box(B);  // both signs of an axis from one evaluation
   const Vec<double> p_AB = column<double>(X_WB, 3) - column<double>(X_WA, 3);
   double least = std::numeric_limits<double>::infinity();
   Vec<double> best(0.0, 0.0, 1.0);

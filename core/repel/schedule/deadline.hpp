@@ -1,5 +1,5 @@
 /// @file
-/// Deadline accounting: how long ticks took, how late they began, how many missed their period.
+/// Deadline accounting: compute time, wake-up latency and deadline misses of ticks.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace repel {
 
-/// A histogram of durations with 64 bins to each doubling, so that any percentile is right to 1.6 %
-/// from 64 ns to 4 s, in 16 kB and without keeping the samples. The maximum is exact.
+/// A log-scale histogram of durations with 64 bins per octave: every percentile is accurate to
+/// 1.6 % from 64 ns to 4 s, in 16 kB and without storing the samples. The maximum is exact.
 class DurationHistogram {
  public:
   void record(std::chrono::nanoseconds duration) noexcept {
@@ -20,7 +20,7 @@ class DurationHistogram {
     if (ns > max_) max_ = ns;
   }
 
-  /// The duration that a share `p` (0 to 1) of the samples does not exceed [us]; 0 without samples.
+  /// The `p` quantile (0 to 1) of the samples [us]; 0 without samples.
   [[nodiscard]] double percentile_us(double p) const noexcept {
     if (count_ == 0) return 0.0;
     const double wanted = p * static_cast<double>(count_);
@@ -41,7 +41,7 @@ class DurationHistogram {
   static constexpr int fine_bits = 6;
   static constexpr std::size_t bin_count = std::size_t{32} << fine_bits;
 
-  // Values below 64 have a bin each; above, the leading bit and the next six name the bin.
+  // Values below 64 have a bin each; above, the leading bit and the next six bits select the bin.
   [[nodiscard]] static std::size_t bin_of(std::uint64_t ns) noexcept {
     if (ns < (1U << fine_bits)) return static_cast<std::size_t>(ns);
     const int shift = static_cast<int>(std::bit_width(ns)) - 1 - fine_bits;
@@ -60,33 +60,34 @@ class DurationHistogram {
   std::int64_t max_ = 0;
 };
 
-/// Judges every tick: it misses its deadline when it has not finished one period after it was due.
+/// Counts deadline misses: a tick misses its deadline if it finishes later than one period after it
+/// was due.
 class DeadlineMonitor {
  public:
   explicit DeadlineMonitor(std::chrono::nanoseconds period) noexcept : period_(period) {}
 
-  /// `ticks` that were due and never made: each missed its deadline.
+  /// Counts `ticks` that were due but skipped: each is a deadline miss.
   void skip(std::int64_t ticks) noexcept {
     for (std::int64_t i = 0; i < ticks; ++i) count(true);
   }
 
-  /// @param lateness how long after it was due the tick began
-  /// @param compute how long it took
+  /// @param lateness start of the tick minus its due time: wake-up latency
+  /// @param compute execution time of the tick
   void record(std::chrono::nanoseconds lateness, std::chrono::nanoseconds compute) noexcept {
     wakeup_.record(lateness);
     compute_.record(compute);
     count(lateness + compute > period_);
   }
 
-  /// Those made and those skipped.
+  /// Executed plus skipped ticks.
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
   [[nodiscard]] std::int64_t misses() const noexcept { return misses_; }
-  /// Share of the last 100 ticks (of all, while there are fewer) that met their deadline, 0 to 1.
+  /// Fraction of the last 100 ticks (of all ticks while there are fewer) that met their deadline.
   [[nodiscard]] double success_rate() const noexcept {
     const std::int64_t seen = ticks_ < window ? ticks_ : window;
     return seen == 0 ? 1.0 : 1.0 - static_cast<double>(recent_misses_) / static_cast<double>(seen);
   }
-  /// The least `success_rate` there has been.
+  /// The lowest `success_rate` so far.
   [[nodiscard]] double lowest_success_rate() const noexcept { return lowest_; }
   [[nodiscard]] const DurationHistogram& compute() const noexcept { return compute_; }
   [[nodiscard]] const DurationHistogram& wakeup() const noexcept { return wakeup_; }

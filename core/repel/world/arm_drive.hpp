@@ -12,11 +12,12 @@
 
 namespace repel {
 
-/// Which torques of an arm act, and whether its brakes are on. It begins enabled, brakes off.
+/// Whether the torques of an arm act and its brakes are on. It starts enabled, brakes off.
 class ArmDrive {
  public:
-  /// @param watchdog [s] of the arm's own time without torques after which it stops; 0, inf: never
-  /// @throws SetupError when it is negative or no number
+  /// @param watchdog [s] timeout without torques, in the arm's own time, after which it stops; 0,
+  /// inf: never
+  /// @throws SetupError when it is negative or NaN
   explicit ArmDrive(double watchdog = 0.0)
       : watchdog_(checked("watchdog", watchdog, 0.0, never, "s")) {
     if (watchdog_ == 0.0) watchdog_ = never;
@@ -25,14 +26,14 @@ class ArmDrive {
   /// As after construction.
   void reset() noexcept { enable(); }
 
-  /// Torques act from now on, brakes are off, and the watchdog begins anew.
+  /// Torques act from now on, brakes are off, and the watchdog restarts.
   void enable() noexcept {
     state_ = ArmState::enabled;
     brakes_on_ = false;
     silent_ = 0.0;
   }
 
-  /// Torques act no more and brakes are on, until `enable`.
+  /// No torque acts and brakes are on, until `enable`.
   void stop() noexcept { state_ = ArmState::stopped; }
 
   /// Brakes on or off while it is enabled; otherwise they stay on.
@@ -40,11 +41,12 @@ class ArmDrive {
     if (state_ == ArmState::enabled) brakes_on_ = on;
   }
 
-  /// Torques were sent.
+  /// Torques were received: restarts the watchdog.
   void heard() noexcept { silent_ = 0.0; }
 
-  /// The next `period` [s] of the arm's time begins. Returns true when what was sent last does not
-  /// last to its end and is to be forgotten: an enabled arm stops, a stopped one starts from none.
+  /// Starts the next `period` [s] of the arm's time. Returns true when the watchdog expires within
+  /// it: the drive stops, and the last torques are to be discarded, so that it restarts without
+  /// any.
   [[nodiscard]] bool advance(double period) noexcept {
     silent_ += period;
     if (!(silent_ > watchdog_ * (1.0 + rounding))) return false;
@@ -52,30 +54,30 @@ class ArmDrive {
     return true;
   }
 
-  /// True when the brakes hold the joints; no torque of a motor acts then.
+  /// True when the brakes hold the joints; no motor torque acts then.
   [[nodiscard]] bool braked() const noexcept { return state_ != ArmState::enabled || brakes_on_; }
 
   [[nodiscard]] ArmState state() const noexcept { return state_; }
 
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();
-  static constexpr double rounding = 1e-9;  // of the sum of the parts of a step
+  static constexpr double rounding = 1e-9;  // relative, of the sum of substeps
 
   double watchdog_;      // [s]
-  double silent_ = 0.0;  // [s] since torques were sent
+  double silent_ = 0.0;  // [s] since the last torques
   ArmState state_ = ArmState::enabled;
   bool brakes_on_ = false;
 };
 
 namespace detail {
 
-/// How far [m] the centre of mass of link `i` can come from the axis of a joint `first` that turns.
-/// Infinite where a sliding joint between them has no stop.
+/// Greatest distance [m] of the centre of mass of link `i` from the axis of a revolute joint
+/// `first`. Infinite where a prismatic joint between them has no stop.
 inline double longest_lever(const ArmModel& model, std::size_t first, std::size_t i) {
   double lever = model.links[i].p_LC.norm();
   for (std::size_t k = first + 1; k <= i; ++k) {
     const ArmLink& link = model.links[k];
-    lever += link.X_PJ.translation().norm();
+    lever += origin(link.X_PJ).norm();
     if (link.type == JointType::revolute) continue;
     lever += std::max(std::abs(link.lower), std::abs(link.upper));
   }
@@ -84,10 +86,10 @@ inline double longest_lever(const ArmModel& model, std::size_t first, std::size_
 
 }  // namespace detail
 
-/// The dry friction [N m] or [N] that the brake of a joint adds: ArmLink::brake_torque, or where
-/// that is not known 1.5 times the effort limit. Where neither is known it is enough for what the
-/// joint carries, stretched out as far as it goes: twice its weight, and what stops it from the
-/// speed limit, or from 3 rad/s or 1 m/s, within 0.25 s. Infinite where it can go any distance.
+/// The dry friction [N m] or [N] that the brake of a joint adds: ArmLink::brake_torque, or if that
+/// is unknown 1.5 times the effort limit. If neither is known it is enough for the load of the
+/// joint at its longest reach: twice its weight, plus what stops it from the speed limit, or from 3
+/// rad/s or 1 m/s, within 0.25 s. Infinite where the reach is unbounded.
 [[nodiscard]] inline double brake_torque(const ArmModel& model, int joint) {
   const auto first = static_cast<std::size_t>(joint);
   const ArmLink& braked = model.links[first];
@@ -99,7 +101,7 @@ inline double longest_lever(const ArmModel& model, std::size_t first, std::size_
   for (std::size_t i = first; i < model.links.size(); ++i) {
     const ArmLink& link = model.links[i];
     if (turns) inertia += link.I_C_L.norm();
-    if (!(link.mass > 0.0)) continue;  // no weight at any distance
+    if (!(link.mass > 0.0)) continue;  // no weight, whatever the lever
     const double lever = turns ? detail::longest_lever(model, first, i) : 1.0;
     weight += link.mass * lever * model.gravity_W.norm();
     inertia += link.mass * lever * lever;

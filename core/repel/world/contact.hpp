@@ -1,8 +1,7 @@
 /// @file
-/// Physical contact in simulated arms: which shapes can touch, and what a run tells of it.
+/// Physical contact in simulated arms: which shapes can touch.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 
@@ -12,21 +11,15 @@
 
 namespace repel {
 
-/// A convex part that a simulated arm can touch obstacles with, or that is one.
+/// A convex part of a simulated arm that can touch obstacles, or an obstacle.
 struct ContactPart {
-  std::string name;              ///< in errors
+  std::string name;              ///< for error messages
   int link = -1;                 ///< index in ArmModel::links; -1: an obstacle, fixed in the world
   Shape shape;                   ///< in its own frame
   Pose X_LP = Pose::Identity();  ///< [m] in its link; of an obstacle: in the world
 };
 
-/// What a simulated arm touched since it was reset.
-struct ContactReport {
-  std::int64_t steps = 0;  ///< calls of `step` in which a link reached into an obstacle
-  double deepest = 0.0;    ///< [m] how far at most
-};
-
-/// [m] How far the core of `shape` reaches along its x, y and z axis: half extents of a box; 0, 0
+/// Support values [m] of the core of `shape` along its x, y and z axis: half extents of a box; 0, 0
 /// and half length of a capsule; radius, radius and half length of a cylinder or cone.
 [[nodiscard]] inline Vec3 core_extents(const Shape& shape) noexcept {
   const Convex& core = shape.level(0).core;
@@ -34,7 +27,7 @@ struct ContactReport {
           core.support_value({0.0, 0.0, 1.0})};
 }
 
-/// Throws SetupError naming the part whose link `model` does not have or whose pose is not rigid.
+/// Throws SetupError naming the part whose link is not in `model` or whose pose is not rigid.
 /// Set-up only.
 inline void require_touchable(std::span<const ContactPart> parts, const ArmModel& model) {
   const int links = static_cast<int>(model.links.size());

@@ -1,12 +1,14 @@
 /// @file
-/// What simulated arms have in common, whatever engine moves them.
+/// Options, faults and set-up checks that all simulated arms share, whatever their engine.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <span>
 #include <string>
+
+#include <Eigen/Eigenvalues>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/world/arm.hpp>
@@ -19,18 +21,18 @@ struct SimulationOptions {
   int substeps = 4;                ///< equal parts of one `step`; 1 to 1000
   double stop_stiffness = 1e5;     ///< [N m/rad] or [N/m] of a joint stop; >= 0
   double stop_damping = 1e3;       ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
-  double contact_stiffness = 1e6;  ///< [N/m] of a point of contact; 0 to 1e12
+  double contact_stiffness = 1e6;  ///< [N/m] of a contact point; 0 to 1e12
   double contact_damping = 1e4;    ///< [N s/m] of the same, which never pulls; 1e-3 to 1e12
-  double contact_friction = 0.5;   ///< share of the normal force; 0 to 1e3
-  double watchdog = 0.0;           ///< [s] without torques after which the arm stops; 0: never
+  double contact_friction = 0.5;   ///< friction force as a share of the normal force; 0 to 1e3
+  double watchdog = 0.0;  ///< [s] timeout without torques after which the arm stops; 0: never
 };
 
-/// What a simulated arm has refused since construction or since its faults were cleared.
+/// What a simulated arm has rejected since construction or since its faults were cleared.
 struct SimulationFaults {
-  bool torque = false;  ///< an entry was missing or not usable and counted as zero
+  bool torque = false;  ///< an entry was missing or not usable and was taken as zero
   bool period = false;  ///< a period was not finite or not positive: the arm did not move
-  bool state = false;   ///< the motion left the range of numbers: the arm was stopped where it was;
-                        ///< lower the torques or raise SimulationOptions::substeps
+  bool state = false;   ///< the motion diverged: the arm was stopped where it was; lower the
+                        ///< torques or raise SimulationOptions::substeps
 };
 
 namespace detail {
@@ -39,7 +41,18 @@ inline void require(bool fact, const ArmLink& link, const std::string& otherwise
   if (!fact) throw SetupError("joint '" + link.joint_name + "': " + otherwise);
 }
 
-inline void require_simulable(const ArmLink& link) {
+// A template, so that the eigenvalue solver is compiled only where it is used.
+template <class Matrix>
+void require_moments(const Matrix& inertia, const ArmLink& link) {
+  require(inertia.allFinite() && inertia.isApprox(inertia.transpose(), 1e-9), link,
+          "the inertia is not a finite symmetric matrix");
+  const auto moments = Eigen::SelfAdjointEigenSolver<Matrix>(inertia).eigenvalues();
+  require(moments.minCoeff() >= -1e-9 * moments.maxCoeff(), link,
+          "the inertia has a negative principal moment");
+}
+
+template <std::same_as<ArmLink> Link>
+void require_simulable(const Link& link) {
   const auto not_negative = [&](const char* what, double value, const char* unit) {
     checked("joint '" + link.joint_name + "': " + what, value, 0.0,
             std::numeric_limits<double>::max(), unit);
@@ -52,11 +65,7 @@ inline void require_simulable(const ArmLink& link) {
   require(is_finite(link.X_PJ) && is_rigid(link.X_PJ), link, "X_PJ is not a rigid pose");
   require(std::abs(link.axis_J.norm() - 1.0) <= 1e-9, link, "axis_J is not of unit length");
   require(is_finite(link.p_LC), link, "the centre of mass is not finite");
-  require(link.I_C_L.allFinite() && link.I_C_L.isApprox(link.I_C_L.transpose(), 1e-9), link,
-          "the inertia is not a finite symmetric matrix");
-  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(link.I_C_L).eigenvalues();
-  require(moments.minCoeff() >= -1e-9 * moments.maxCoeff(), link,
-          "the inertia has a negative principal moment");
+  require_moments(link.I_C_L, link);
   require(link.lower < link.upper, link,
           "the limits are " + to_text(link.lower) + " to " + to_text(link.upper) +
               "; the lower must be below the upper (-inf and inf: no stop)");
@@ -64,10 +73,11 @@ inline void require_simulable(const ArmLink& link) {
 
 }  // namespace detail
 
-/// Throws SetupError that names the joint and the number of `model` no engine can move: a pose that
-/// is not rigid, an axis that is not of unit length, a mass, friction or inertia below zero or not
-/// finite, limits out of order. Set-up only, as all below.
-inline void require_simulable(const ArmModel& model) {
+/// Throws SetupError naming the joint and the number of `model` that no engine can simulate: a pose
+/// that is not rigid, an axis that is not of unit length, a mass, friction or inertia that is
+/// negative or not finite, limits out of order. Set-up only, as all below.
+template <std::same_as<ArmModel> Model>
+void require_simulable(const Model& model) {
   if (model.links.empty()) throw SetupError("arm '" + model.name + "' has no links");
   if (!is_finite(model.X_WB) || !is_rigid(model.X_WB)) {
     throw SetupError("arm '" + model.name + "': X_WB is not a rigid pose");
@@ -75,10 +85,10 @@ inline void require_simulable(const ArmModel& model) {
   if (!is_finite(model.gravity_W)) {
     throw SetupError("arm '" + model.name + "': gravity is not finite");
   }
-  for (const ArmLink& link : model.links) detail::require_simulable(link);
+  for (const auto& link : model.links) detail::require_simulable(link);
 }
 
-/// Throws SetupError that names the option that is out of its range.
+/// Throws SetupError naming the option that is out of its range.
 inline void require_valid(const SimulationOptions& options) {
   constexpr double largest = std::numeric_limits<double>::max();
   checked("SimulationOptions::substeps", options.substeps, 1, 1000, "");

@@ -1,5 +1,5 @@
 /// @file
-/// The world model: bodies, their convex parts, the pairs that must stay apart.
+/// The world model: bodies, their convex parts, and the pairs of parts to be kept apart.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 
 namespace repel {
 
-/// Where a body is, how it moves and how far it has come.
+/// Pose, twist and accumulated travel of a body.
 struct BodyState {
   Pose X_WB = Pose::Identity();  ///< [m]
   Twist V_WB;                    ///< [m/s, rad/s] of the body's origin, world axes
-  double travel = 0.0;           ///< [m] no point of the body has moved farther since set-up
-  double turn = 0.0;             ///< [m] the share of `travel` that is due to rotation
+  double travel = 0.0;  ///< [m] upper bound on the path of any point of the body since set-up
+  double turn = 0.0;    ///< [m] the part of `travel` due to rotation
 };
 
-/// All bodies at one instant: what the host hands to the coprocessor.
+/// All bodies at one instant: the input of the coprocessor.
 struct Motion {
   std::int64_t tick = -1;         ///< -1: before the first one
   std::vector<BodyState> bodies;  ///< by BodyId
@@ -41,11 +41,11 @@ struct Part {
 /// Two parts to be kept apart, and how.
 struct Pair {
   PartId a;      ///< the part that is pushed along the extraction direction
-  PartId b;      ///< and the one it is pushed away from
-  ForceLaw law;  ///< its `depth` no more than the two shapes can have
+  PartId b;      ///< the part it is pushed away from
+  ForceLaw law;  ///< its `depth` clamped to the deepest that the two shapes can have
 };
 
-/// The model is built once, through the functions that throw; `place` is the only one for the tick.
+/// Built at set-up, by the functions that throw; `place` is the one for the tick.
 class World {
  public:
   explicit World(const Limits& limits = {}) : limits_(limits) { add_body("world"); }
@@ -69,7 +69,7 @@ class World {
       throw SetupError("part " + name + ": no such body");
     check_rigid(name, X_BP);
     double& reach = reach_[body.index];
-    reach = std::max(reach, X_BP.translation().norm() + shape.reach());
+    reach = std::max(reach, origin(X_BP).norm() + shape.reach());
     parts_.push_back({name, body, shape, X_BP});
     return {static_cast<std::int32_t>(parts_.size()) - 1};
   }
@@ -90,7 +90,7 @@ class World {
     return {static_cast<std::int32_t>(pairs_.size()) - 1};
   }
 
-  /// Moves a body. False, and nothing changed, when the pose or twist is not finite or not rigid.
+  /// Moves a body. False, with nothing changed, when the pose or twist is not finite or not rigid.
   bool place(BodyId body, const Pose& X_WB, const Twist& V_WB) noexcept {
     if (!is_finite(X_WB) || !is_finite(V_WB) || !is_rigid(X_WB, 1e-6)) return false;
     BodyState& state = motion_.bodies[body.index];
@@ -102,7 +102,7 @@ class World {
     const double chord = std::sqrt(0.5 * (moved(0) + moved(1) + moved(2)));
     const double reach = reach_[body.index];
     const double turned = reach * chord;
-    const double rounding = 1e-14 * (X_WB.translation().norm() + reach);
+    const double rounding = 1e-14 * (origin(X_WB).norm() + reach);
     state.travel += std::sqrt(moved(3)) + turned + rounding;
     state.turn += turned + rounding;
     state.X_WB = X_WB;
@@ -110,7 +110,7 @@ class World {
     return true;
   }
 
-  /// The present state of all bodies; the tick number is the caller's to count.
+  /// The present state of all bodies; the caller counts the tick number.
   [[nodiscard]] Motion& motion() noexcept { return motion_; }
   [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
   [[nodiscard]] const Limits& limits() const noexcept { return limits_; }

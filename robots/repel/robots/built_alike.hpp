@@ -1,12 +1,12 @@
 /// @file
-/// Keeps a program with another layout of types than this part from linking it.
+/// Prevents linking with a program that was compiled with another type layout.
 #pragma once
 
 #include <repel/base/layout.hpp>
 
 namespace repel::robots {
 
-/// Defined for the flags this part was built with: a program with others does not link.
+/// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 

@@ -1,6 +1,6 @@
 /// @file
-/// The equations of motion of an arm, and an arm that obeys them: what simulated arms are measured
-/// against.
+/// The equations of motion of an arm, and a reference simulation with which simulated arms are
+/// compared.
 #pragma once
 
 #include <memory>
@@ -14,13 +14,13 @@
 
 namespace repel {
 
-/// M(q) a + c(q, v) = tau of one arm, by Orocos KDL, with the rotors on the diagonal of M. It holds
-/// its state: use one per thread. Spans have one entry per link, base outward.
+/// M(q) a + c(q, v) = tau of one arm, by Orocos KDL, with the rotor inertias on the diagonal of M.
+/// Not thread-safe: use one instance per thread. Spans have one entry per link, base outward.
 class Dynamics {
  public:
   using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 
-  /// Throws SetupError when `arm` has no link or a value is not finite.
+  /// @throws SetupError if `arm` has no link or a value is not finite
   explicit Dynamics(const ArmModel& arm);
   Dynamics(Dynamics&&) noexcept;
   Dynamics& operator=(Dynamics&&) noexcept;
@@ -40,60 +40,62 @@ class Dynamics {
   std::unique_ptr<Impl> impl_;
 };
 
-/// How finely a ReferenceArm steps.
+/// Integration parameters of a ReferenceArm.
 struct ReferenceOptions {
   int substeps = 16;  ///< equal parts of one `step`; 1 to 100 000
-  /// [rad/s] or [m/s], > 0. Coulomb friction grows from none at rest to 76 % at this speed: what
-  /// stands by friction alone creeps.
+  /// [rad/s] or [m/s], > 0. Coulomb friction is a smooth function of speed, zero at rest and 76 %
+  /// of its full value at this speed, so a joint held by friction alone creeps.
   double friction_speed = 0.01;
   double watchdog = 0.0;  ///< [s] without torques after which the arm stops; 0: never
 };
 
-/// An arm that obeys its equations of motion, weight and friction included, by Runge and Kutta's
-/// fourth order. Without stops: it turns beyond its limits. Made to be right, not fast, and
-/// unstable where friction is strong on little inertia and the sub-step is long. While its brakes
-/// are on it moves by the first order instead, with dry friction that stops it and holds it still.
-/// Satisfies TorqueDrivenArm and BrakedArm. One thread at a time.
-class ReferenceArm {
+/// An arm that integrates its equations of motion, gravity and friction included, by the
+/// fourth-order Runge-Kutta method. It has no stops: joints move beyond their limits. Made for
+/// accuracy, not speed, and unstable for strong friction on little inertia with long sub-steps.
+/// With the brakes engaged it uses a first-order method with dry friction that stops a joint and
+/// holds it still. It has brakes. One thread at a time.
+class ReferenceArm final : public TorqueDrivenArm {
  public:
-  /// Starts at rest at zero. Throws SetupError when a number of `model` or `options` is out of
-  /// range, or a joint moves no mass.
+  /// Starts at rest at zero.
+  /// @throws SetupError if a number of `model` or `options` is out of range, or a joint moves no
+  ///   mass
   explicit ReferenceArm(const ArmModel& model, const ReferenceOptions& options = {});
   ReferenceArm(ReferenceArm&&) noexcept;
   ReferenceArm& operator=(ReferenceArm&&) noexcept;
-  ~ReferenceArm();
+  ~ReferenceArm() override;
 
   [[nodiscard]] int links() const noexcept;
 
-  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when empty),
-  /// enabled, with zero torque. Throws SetupError when a size is wrong or an entry is not finite.
+  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest if empty), enabled,
+  /// with zero torque.
+  /// @throws SetupError if a size is wrong or an entry is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
   /// Joint torques [N m] or forces [N], held until the next call. An entry that is not finite or
   /// missing counts as zero.
-  void set_torques(std::span<const double> torques) noexcept;
+  void set_torques(std::span<const double> torques) noexcept override;
 
-  /// Moves the arm by `period` [s]; not when that is not finite and positive. A motion that leaves
-  /// the range of numbers stops where it was.
-  void step(double period) noexcept;
+  /// Advances the arm by `period` [s]; does nothing if that is not finite and positive. If the
+  /// state would become not finite, the arm stops at its last position.
+  void step(double period) noexcept override;
 
-  /// Torques act and the brakes are off, from now on; so the arm begins.
-  void enable() noexcept;
+  /// Enables the arm: torques act and the brakes are off. This is the initial state.
+  void enable() noexcept override;
 
-  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
-  /// the options finds that no torques were set for too long a time of the arm.
-  void stop() noexcept;
+  /// Stops the arm: no torque acts and the brakes are on, until `enable`. The watchdog of the
+  /// options does the same if no torques are set for its timeout, in simulated time.
+  void stop() noexcept override;
 
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
-  void engage_brakes(bool on) noexcept;
+  void engage_brakes(bool on) noexcept override;
 
-  [[nodiscard]] ArmState state() const noexcept;
+  [[nodiscard]] ArmState state() const noexcept override;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
-  void read_positions(std::span<double> out) const noexcept;
+  void read_positions(std::span<double> out) const noexcept override;
 
   /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
-  void read_velocities(std::span<double> out) const noexcept;
+  void read_velocities(std::span<double> out) const noexcept override;
 
   /// Kinetic energy [J], rotors included.
   [[nodiscard]] double kinetic_energy() noexcept;

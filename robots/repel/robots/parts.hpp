@@ -1,5 +1,5 @@
 /// @file
-/// The convex parts of a robot as shapes.
+/// Converts the convex parts of a robot to shapes.
 #pragma once
 
 #include <repel/reduction/shape.hpp>
@@ -7,7 +7,8 @@
 
 namespace repel {
 
-/// The shape of `part`, in its own frame. Throws SetupError where its sizes are out of range.
+/// The shape of `part`, in its own frame.
+/// @throws SetupError if its sizes are out of range
 [[nodiscard]] inline Shape shape_of(const RobotPart& part, const ReductionOptions& options = {}) {
   switch (part.kind) {
     case PartKind::box:

@@ -1,5 +1,5 @@
-// A box above a table, with a law that check.sh has given one more term: the force of every tick,
-// whether the pair is asked by itself or in a lane.
+// A box above a table, with a law to which check.sh has added a term: prints the force of every
+// tick, for single and for lane evaluation of the pair.
 #include <cmath>
 #include <cstdio>
 

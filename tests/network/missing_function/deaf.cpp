@@ -1,4 +1,4 @@
-// A matched one-port that does not take its wave.
+// A matched one-port without a function that receives its wave.
 #include <repel/network/module.hpp>
 
 using namespace repel::network;

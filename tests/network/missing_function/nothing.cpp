@@ -1,4 +1,4 @@
-// What has nothing of a module.
+// A type with none of the functions of a module.
 #include <repel/network/module.hpp>
 
 using namespace repel::network;

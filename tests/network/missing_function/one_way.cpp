@@ -1,4 +1,4 @@
-// A two-port that never turns the state of the root into that behind it.
+// A two-port without a function that propagates the state of the root to the leaf.
 #include <repel/network/module.hpp>
 
 using namespace repel::network;

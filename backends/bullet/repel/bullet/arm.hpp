@@ -11,63 +11,63 @@
 
 namespace repel::bullet {
 
-/// Defined for the flags this part was built with: a program with others does not link.
+/// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 using ArmOptions = SimulationOptions;
 using ArmFaults = SimulationFaults;
 
-/// Satisfies TorqueDrivenArm and BrakedArm. Same calls, bitwise the same motion. One thread at a
-/// time.
-class Arm {
+/// A simulated arm with brakes. Deterministic: the same calls give bitwise the same motion. One
+/// thread at a time.
+class Arm final : public TorqueDrivenArm {
  public:
-  /// Starts at rest at zero, or at the limit nearest to it.
-  /// @param parts what touches: those on links and obstacles, each of the former with each of the
-  /// latter; copied. Without parts the arm passes through everything
-  /// @throws SetupError when a number of `model` or `options` is out of range, when a part has no
-  /// thickness, or when the Bullet library in use is not the double-precision one
+  /// Starts at rest at zero, or at the joint limit nearest to it.
+  /// @param parts collision parts on links, and obstacles; each of the former is tested against
+  ///   each of the latter. Copied. Without parts the arm passes through everything
+  /// @throws SetupError if a number of `model` or `options` is out of range, a part has no
+  ///   thickness, or the Bullet library is not built in double precision
   explicit Arm(const ArmModel& model, const ArmOptions& options = {},
                std::span<const ContactPart> parts = {});
-  ~Arm();
+  ~Arm() override;
   Arm(Arm&&) noexcept;
   Arm& operator=(Arm&&) noexcept;
 
-  /// Number of links, which is the number of joints.
+  /// Number of links, equal to the number of joints.
   [[nodiscard]] int links() const noexcept;
 
-  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
-  /// enabled, with zero torque and nothing touched. Faults stay.
-  /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
+  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest if `v` is empty),
+  /// enabled, with zero torque and a cleared contact report. Faults stay.
+  /// @throws SetupError if a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
   /// Joint torques [N m] or forces [N], held until the next call.
-  void set_torques(std::span<const double> torques) noexcept;
+  void set_torques(std::span<const double> torques) noexcept override;
 
-  /// Moves the arm by `period` [s]. No allocation, no lock; cost grows with substeps x links^3.
-  /// With parts each sub-step has to find what they touch, and Bullet may allocate for it.
-  void step(double period) noexcept;
+  /// Advances the arm by `period` [s]. No allocation, no lock; cost grows with substeps x links^3.
+  /// With parts each sub-step also searches for contacts, for which Bullet may allocate.
+  void step(double period) noexcept override;
 
-  /// Torques act and the brakes are off, from now on; so the arm begins.
-  void enable() noexcept;
+  /// Enables the arm: torques act and the brakes are off. This is the initial state.
+  void enable() noexcept override;
 
-  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
-  /// the options finds that no torques were set for too long a time of the arm.
-  void stop() noexcept;
+  /// Stops the arm: no torque acts and the brakes are on, until `enable`. The watchdog of the
+  /// options does the same if no torques are set for its timeout, in simulated time.
+  void stop() noexcept override;
 
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
-  void engage_brakes(bool on) noexcept;
+  void engage_brakes(bool on) noexcept override;
 
-  [[nodiscard]] ArmState state() const noexcept;
+  [[nodiscard]] ArmState state() const noexcept override;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
-  void read_positions(std::span<double> out) const noexcept;
+  void read_positions(std::span<double> out) const noexcept override;
 
   /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
-  void read_velocities(std::span<double> out) const noexcept;
+  void read_velocities(std::span<double> out) const noexcept override;
 
-  /// What the parts touched since the last reset.
-  [[nodiscard]] ContactReport contact() const noexcept;
+  /// Contacts since the last reset.
+  [[nodiscard]] ContactReport contact() const noexcept override;
 
   [[nodiscard]] ArmFaults faults() const noexcept;
   void clear_faults() noexcept;

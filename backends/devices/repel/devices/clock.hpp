@@ -1,15 +1,15 @@
 /// @file
-/// Where a device has the time from.
+/// The clock of the input devices.
 #pragma once
 
 #include <chrono>
 
 namespace repel::devices {
 
-/// The time of a clock that no one sets. A test puts its own in place of `steady_now`.
+/// A monotonic clock. Tests replace `steady_now` by their own.
 using Clock = std::chrono::nanoseconds (*)() noexcept;
 
-/// The steady clock: CLOCK_MONOTONIC on Linux, by which the kernel stamps events as well.
+/// The steady clock: CLOCK_MONOTONIC on Linux, also used by the kernel to time-stamp events.
 [[nodiscard]] inline std::chrono::nanoseconds steady_now() noexcept {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::steady_clock::now().time_since_epoch());

@@ -1,10 +1,10 @@
 /// @file
-/// When the motion of a device counts.
+/// The clutch: decides when the motion of a device counts.
 #pragma once
 
 namespace repel::devices {
 
-/// What the button of the clutch does.
+/// Function of the clutch button.
 enum class ClutchPolicy {
   always,  ///< engaged without a button
   hold,    ///< engaged while the button is down
@@ -16,12 +16,12 @@ class Clutch {
  public:
   explicit Clutch(ClutchPolicy policy = ClutchPolicy::always) noexcept : policy_(policy) {}
 
-  /// The button is down or up from now on. Saying the same twice changes nothing.
+  /// Reports that the button is down or up. Repeating the same state has no effect.
   void set(bool down) noexcept {
     if (down && !down_) toggled_ = !toggled_;
     down_ = down;
   }
-  /// As at first: after a fault nobody knows what the button did meanwhile.
+  /// Back to the initial state, after a fault during which button events may have been missed.
   void reset() noexcept { down_ = toggled_ = false; }
 
   [[nodiscard]] bool engaged() const noexcept {

@@ -1,5 +1,5 @@
 /// @file
-/// A file descriptor that closes itself.
+/// An owning file descriptor.
 #pragma once
 
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 namespace repel::devices::detail {
 
-/// Owns a descriptor; -1 is none.
+/// Owns a file descriptor and closes it; -1 is none.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) noexcept : fd_(fd) {}

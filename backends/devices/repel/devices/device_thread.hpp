@@ -1,5 +1,5 @@
 /// @file
-/// A thread that reads a device and shows it forces, so that the tick need not wait for it.
+/// A thread that reads a device and sends it forces, so that the tick need not wait for it.
 #pragma once
 
 #include <pthread.h>
@@ -19,18 +19,18 @@
 
 namespace repel::devices {
 
-/// The tick's end of a device. Its functions belong to one thread, never wait, never fail and make
-/// no system call.
+/// The tick's end of a device. Its functions must be called from one thread. They never block,
+/// never fail and make no system call.
 class DeviceLink {
  public:
   static constexpr double alive_for = 0.25;  ///< [s] a thread that posts nothing for longer hangs
 
   DeviceLink() : felt_(Felt{}) {}
 
-  /// One period on.
+  /// Advances by one period.
   /// @param period [s] since the last call
-  /// @return the newest reading; fault, silent and at rest when the thread has posted nothing for
-  ///   longer than `alive_for`, by the sum of the periods. Valid until the next call.
+  /// @return the newest reading. If the thread has posted nothing for longer than `alive_for`, by
+  ///   the sum of the periods: fault, silent and at rest. Valid until the next call.
   [[nodiscard]] const Measured& measured(double period) noexcept {
     if (measured_.take()) {
       now_ = measured_.newest();
@@ -49,12 +49,11 @@ class DeviceLink {
     return now_;
   }
 
-  /// [s] since the thread last posted, as the tick counts.
+  /// [s] since the thread last posted, by the sum of the periods.
   [[nodiscard]] double silent_for() const noexcept { return silent_for_; }
 
-  /// What the operator is to feel from now on: torque on the lever [N m] and wrench on the tool
-  /// [N, N m], about its origin, in W. Taken as none when it is not finite, and when it is not
-  /// renewed.
+  /// Sets the force feedback: torque on the lever [N m] and wrench on the tool [N, N m], about its
+  /// origin, in W. Zero if not finite, or if not renewed in time.
   void servo_cf(double lever_torque, const Wrench& tool_force) noexcept {
     const bool finite = std::isfinite(lever_torque) && is_finite(tool_force);
     felt_.draft() = finite ? Felt{lever_torque, tool_force} : Felt{};
@@ -73,19 +72,19 @@ class DeviceLink {
 };
 
 struct DeviceThreadOptions {
-  std::chrono::milliseconds wait{10};        ///< longest between two readings
-  std::chrono::milliseconds felt_for{100};   ///< a force not renewed for so long is let go
-  const char* thread_name = "repel device";  ///< as `ps -L` shows it, up to 15 characters
-  void (*begin)() noexcept = nullptr;        ///< first on the thread, for its priority
+  std::chrono::milliseconds wait{10};        ///< longest time between two readings
+  std::chrono::milliseconds felt_for{100};   ///< a force not renewed for this long is removed
+  const char* thread_name = "repel device";  ///< as shown by `ps -L`, up to 15 characters
+  void (*begin)() noexcept = nullptr;        ///< called first in the thread, to set its priority
 };
 
-/// Owns a device and the thread that alone touches it from now on. It posts a reading at least
-/// every `wait`, with a number that counts up, and shows the newest force after each; the last
-/// thing it does is to show no force.
+/// Owns a device and the only thread that accesses it from now on. The thread posts a numbered
+/// reading at least every `wait` and sends the newest force after each; at its end it sends zero
+/// force.
 template <MasterDevice Device>
 class DeviceThread : public DeviceLink {
  public:
-  /// @throws SetupError for a time out of range
+  /// @throws SetupError if a time is out of range
   explicit DeviceThread(std::unique_ptr<Device> device, const DeviceThreadOptions& options = {})
       : device_(std::move(device)), options_(options) {
     checked("wait", static_cast<double>(options.wait.count()), 1.0, 100.0, "ms");
@@ -95,7 +94,7 @@ class DeviceThread : public DeviceLink {
 
   [[nodiscard]] std::string_view name() const noexcept { return device_->name(); }
 
-  /// Ends the thread within `wait`; the device shows no force and is not read after that.
+  /// Ends the thread within `wait`. After that the device shows no force and is not read.
   void stop() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
@@ -130,9 +129,9 @@ class DeviceThread : public DeviceLink {
 
   std::unique_ptr<Device> device_;
   DeviceThreadOptions options_;
-  std::chrono::nanoseconds renewed_at_{0};  // of the thread
-  bool shows_ = false;                      // of the thread
-  std::jthread thread_;                     // last: the others outlive it
+  std::chrono::nanoseconds renewed_at_{0};  // used by the thread only
+  bool shows_ = false;                      // used by the thread only
+  std::jthread thread_;  // last, so that it ends before the other members are destroyed
 };
 
 }  // namespace repel::devices

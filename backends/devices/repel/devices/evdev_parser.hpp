@@ -1,6 +1,5 @@
 /// @file
-/// The events of a Linux input device out of the bytes of /dev/input/eventN. No input or output
-/// here.
+/// Parses the events of a Linux input device from the bytes of /dev/input/eventN. Does no I/O.
 #pragma once
 
 #include <linux/input.h>
@@ -15,21 +14,22 @@
 
 namespace repel::devices {
 
-/// One event of the kernel, as linux/input.h numbers them.
+/// One event of the kernel, with the numbers of linux/input.h.
 struct EvdevEvent {
-  std::chrono::nanoseconds time{0};  ///< by the clock the device was told to stamp with
+  std::chrono::nanoseconds time{0};  ///< by the clock that was selected for the device
   std::uint16_t type = 0;
   std::uint16_t code = 0;
   std::int32_t value = 0;
 };
 
-/// Cuts the bytes into whole `input_event`s. A time that no clock shows breaks it until `reset`.
+/// Splits the bytes into `input_event`s. An impossible time stamp invalidates the stream until
+/// `reset`.
 class EvdevParser {
  public:
   static constexpr std::size_t event_size = sizeof(input_event);
 
-  /// Hands every event that is now whole to `use(const EvdevEvent&)`; a half one is kept.
-  /// @return false when the stream is broken
+  /// Passes every complete event to `use(const EvdevEvent&)`; keeps an incomplete one.
+  /// @return false if the stream is invalid
   template <class Use>
   bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
     if (broken_) return false;
@@ -48,7 +48,7 @@ class EvdevParser {
   }
 
   [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// Bytes of an event that is not whole yet.
+  /// Bytes received of an incomplete event.
   [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
   void reset() noexcept {
     records_.clear();

@@ -1,5 +1,5 @@
 /// @file
-/// The only place where an input device is touched; a test puts its own in.
+/// The interface to the system calls on an input device; tests replace it.
 #pragma once
 
 #include <chrono>
@@ -24,15 +24,15 @@ class EvdevPort {
   virtual int control(unsigned long request, void* argument) noexcept = 0;
   /// ioctl with a number: EVIOCRMFF.
   virtual int control_number(unsigned long request, long argument) noexcept = 0;
-  /// Does not wait; -EAGAIN when there is nothing.
+  /// Non-blocking; -EAGAIN if there is nothing to read.
   virtual long read(std::span<std::byte> bytes) noexcept = 0;
   virtual long write(std::span<const std::byte> bytes) noexcept = 0;
-  /// Returns once there is something to read, or after `wait`, or soon when the device is gone.
+  /// Returns once there is something to read, after `wait`, or soon if the device has been removed.
   virtual void wait(std::chrono::milliseconds wait) noexcept = 0;
 };
 
-/// Opens the device to read and write, without waiting.
-/// @throws SetupError when it cannot, with what to do
+/// Opens the device for reading and writing, non-blocking.
+/// @throws SetupError if it cannot be opened, saying what to do
 [[nodiscard]] std::unique_ptr<EvdevPort> open_evdev(const std::string& path);
 
 }  // namespace repel::devices

@@ -1,5 +1,5 @@
 /// @file
-/// Angle and rate of a lever from the counts of its axis.
+/// Estimates angle and rate of a lever from the counts of its axis.
 #pragma once
 
 #include <algorithm>
@@ -10,35 +10,35 @@
 
 namespace repel::devices {
 
-/// What the kernel says of the axis, and what it is in angles.
+/// The range of the axis that the kernel reports, and its meaning as an angle.
 struct LeverScale {
   std::int32_t low = -32768;   ///< [counts] at one end
   std::int32_t high = 32767;   ///< [counts] at the other; > low
-  std::int32_t fuzz = 0;       ///< [counts] of change that the kernel keeps to itself
+  std::int32_t fuzz = 0;       ///< [counts] changes below this are filtered by the kernel
   double full_range = 1.0;     ///< [rad] from low to high
-  double time_constant = 0.0;  ///< [s] of the low pass on the rate; 0 for none
-  double max_rate = 20.0;      ///< [rad/s] anything faster is cut to it
+  double time_constant = 0.0;  ///< [s] of the low-pass filter on the rate; 0: none
+  double max_rate = 20.0;      ///< [rad/s] saturation of the rate
 };
 
-/// The kernel sends an axis only when it has changed. So the rate is the difference of two changes
-/// over their time stamps, through a first-order low pass; and the longer nothing comes, the slower
-/// the lever must be: had it turned by a count, we would know. The rate is at most one count over
-/// the time since the last change, after a grace of `report_interval` in which no device need talk.
+/// The kernel reports an axis only when it has changed. The rate is the difference of two changes
+/// over that of their time stamps, through a first-order low-pass filter. While nothing is
+/// reported, the lever has moved by less than one count, so the rate is bounded by one count over
+/// the time since the last change, minus a grace time of `report_interval`.
 class LeverMotion {
  public:
-  static constexpr double report_interval = 0.02;  ///< [s] longer than that of usual devices
+  static constexpr double report_interval = 0.02;  ///< [s] longer than that of common devices
 
   explicit LeverMotion(const LeverScale& scale) noexcept : scale_(scale) {}
 
-  /// The lever is here now, and nobody knows how it came: at rest.
+  /// Sets the current position when the motion up to it is unknown: rate zero.
   void place(std::int32_t counts, std::chrono::nanoseconds time) noexcept {
     angle_ = from_ = angle_of(counts);
     since_ = changed_at_ = time;
     rate_ = 0.0;
   }
 
-  /// The kernel reports the axis with its time. A time that does not run on is no time to divide
-  /// by: the change counts at the next.
+  /// Processes a report of the axis with its time stamp. If the time has not advanced, the change
+  /// is evaluated with the next report.
   void move(std::int32_t counts, std::chrono::nanoseconds time) noexcept {
     angle_ = angle_of(counts);
     const double passed = in_seconds(time - since_);
@@ -53,7 +53,7 @@ class LeverMotion {
   /// [rad] 0 in the middle of the range
   [[nodiscard]] double angle() const noexcept { return angle_; }
 
-  /// [rad/s] at the time `now`, by the clock of the stamps; at most `max_rate`, 0 in the long run
+  /// [rad/s] at the time `now`, by the clock of the time stamps; at most `max_rate`, decays to 0
   [[nodiscard]] double rate(std::chrono::nanoseconds now) const noexcept {
     const double quiet = in_seconds(now - changed_at_) - report_interval;
     if (!(quiet > 0.0)) return rate_;
@@ -64,9 +64,7 @@ class LeverMotion {
 
  private:
   static constexpr double shortest = 1e-4;  // [s]
-  static constexpr double least = 1e-3;     // [rad/s] of a lever that has long stood still
-
-  /// [rad]
+  static constexpr double least = 1e-3;     // [rad/s] less counts as zero once the lever is quiet
   [[nodiscard]] double count() const noexcept {
     return scale_.full_range / (static_cast<double>(scale_.high) - scale_.low);
   }

@@ -1,5 +1,5 @@
 /// @file
-/// Records of one size out of a stream that is read in pieces.
+/// Splits a stream that is read in pieces into records of fixed size.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 
 namespace repel::devices::detail {
 
-/// Keeps the part of a record that has come until the rest is there. Memory: one record.
+/// Buffers an incomplete record until the rest arrives. Memory: one record.
 template <std::size_t size>
 class Records {
  public:
-  /// Hands every record that is now whole to `use`, which returns false to stop.
-  /// @return false when it did; what came after is lost
+  /// Passes every complete record to `use`, which returns false to stop.
+  /// @return false if it did; the remaining bytes are lost
   template <class Use>
   bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
     while (!bytes.empty()) {
@@ -30,7 +30,7 @@ class Records {
     return true;
   }
 
-  /// Bytes of a record that is not whole yet.
+  /// Bytes received of an incomplete record.
   [[nodiscard]] std::size_t held() const noexcept { return held_; }
   void clear() noexcept { held_ = 0; }
 

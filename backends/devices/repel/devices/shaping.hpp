@@ -1,5 +1,5 @@
 /// @file
-/// From the deflection of a six-axis device to the rates it commands.
+/// Maps the deflection of a six-axis device to commanded rates.
 #pragma once
 
 #include <algorithm>
@@ -13,29 +13,30 @@
 
 namespace repel::devices {
 
-/// Which axis of the device drives an axis of the twist, and which way.
+/// The axis of the device that drives an axis of the twist, and its sign.
 struct AxisSource {
   int axis = 0;       ///< of the device: x, y, z, rx, ry, rz from 0
   double sign = 1.0;  ///< 1 or -1
 };
 
-/// Names and default values of what stands between deflection and rate.
+/// Parameters of the map from deflection to rate.
 struct ShapingOptions {
-  double full_travel = 350.0;  ///< [counts] of an axis at its stop
-  double dead_band = 0.05;     ///< share of full travel that is rest
-  double exponent = 1.0;       ///< 1: straight; above, finer near rest
+  double full_travel = 350.0;  ///< [counts] of an axis at its mechanical stop
+  double dead_band = 0.05;     ///< fraction of full travel
+  double exponent = 1.0;       ///< 1: linear; above 1: finer near rest
   double linear_scale = 0.25;  ///< [m/s] at full travel
   double angular_scale = 1.0;  ///< [rad/s] at full travel
-  /// For the linear and the angular parts of the twist: x forward, y left, z up of the operator,
-  /// from spacenavd's x right, y up, z forward. The same choice as that of ROS's spacenav_node.
+  /// Sources of the linear and then the angular axes of the twist: x forward, y left, z up as seen
+  /// by the operator, from spacenavd's x right, y up, z forward. The same choice as ROS's
+  /// spacenav_node.
   std::array<AxisSource, 6> axes{{{2, 1.0}, {0, -1.0}, {1, 1.0}, {5, 1.0}, {3, -1.0}, {4, 1.0}}};
 };
 
-/// Maps each axis by itself with f(x) = sign(x) ((|x| - d) / (1 - d))^e for |x| in [d, 1], 0 below
-/// and 1 above: odd, monotone and without a step at the edge of the dead band d.
+/// Maps each axis independently by f(x) = sign(x) ((|x| - d) / (1 - d))^e for |x| in [d, 1], 0
+/// below and 1 above: odd, monotone and continuous at the edge of the dead band d.
 class Shaping {
  public:
-  /// @throws SetupError for a number out of range
+  /// @throws SetupError if a number is out of range
   explicit Shaping(const ShapingOptions& options = {}) : options_(options) {
     checked("full travel", options.full_travel, 1.0, 10000.0, "counts");
     checked("dead band", options.dead_band, 0.0, 0.9, "of full travel");
@@ -45,7 +46,7 @@ class Shaping {
     for (const AxisSource& source : options.axes) check(source);
   }
 
-  /// f of a share of full travel, -1 to 1; 0 for what is not finite.
+  /// f of a fraction of full travel, -1 to 1; 0 if not finite.
   [[nodiscard]] double share(double deflection) const noexcept {
     if (!std::isfinite(deflection)) return 0.0;
     const double size = std::min(1.0, std::abs(deflection));
@@ -54,7 +55,7 @@ class Shaping {
     return std::copysign(std::pow(inside, options_.exponent), deflection);
   }
 
-  /// [m/s, rad/s] for the six axes of the device in counts; always finite.
+  /// [m/s, rad/s] from the six axes of the device in counts; always finite.
   [[nodiscard]] Twist twist(std::span<const double, 6> counts) const noexcept {
     Twist result;
     for (int i = 0; i < 3; ++i) {

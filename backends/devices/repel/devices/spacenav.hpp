@@ -1,5 +1,5 @@
 /// @file
-/// A six-axis mouse through the socket of spacenavd: SpaceMouse, SpaceNavigator, Spaceball.
+/// A six-axis mouse (SpaceMouse, SpaceNavigator, Spaceball) through the socket of spacenavd.
 #pragma once
 
 #include <array>
@@ -18,36 +18,36 @@
 namespace repel::devices {
 
 struct SpacenavOptions {
-  /// Of the socket; empty: what SPNAV_SOCKET says, or /run/spnav.sock, then /var/run/spnav.sock.
+  /// Of the socket; empty: that of SPNAV_SOCKET, else /run/spnav.sock, then /var/run/spnav.sock.
   std::string path;
   ShapingOptions shaping;
   ClutchPolicy clutch = ClutchPolicy::always;
-  int clutch_button = 0;     ///< from 0; without meaning for ClutchPolicy::always
-  double stale_after = 0.5;  ///< [s] motion that is not renewed for so long is silence
-  double retry_after = 1.0;  ///< [s] between attempts to find a daemon that went away
+  int clutch_button = 0;     ///< from 0; unused for ClutchPolicy::always
+  double stale_after = 0.5;  ///< [s] motion that is not renewed for this long counts as silence
+  double retry_after = 1.0;  ///< [s] between attempts to reconnect to the daemon
   Clock now = &steady_now;
 };
 
-/// Reads the daemon's events, whole ones only, and holds the last motion until the next.
+/// Reads complete events from the daemon and holds the last motion until the next.
 ///
-/// Rest until the first event. A motion that is not rest and not renewed for `stale_after` is
-/// silence, and rest. When the daemon goes away or talks nonsense, the state is fault, silent, and
-/// rest; from then on it looks for the daemon every `retry_after`, and begins again at rest and
-/// with a released clutch when it is back. The only thread that may call it is the one that reads.
+/// At rest until the first event. A non-zero motion that is not renewed for `stale_after` is
+/// reported as silent and at rest. If the daemon disconnects or sends invalid data, the state is
+/// fault, silent and at rest; it then tries to reconnect every `retry_after`, and restarts at rest
+/// with a released clutch. Not thread-safe: only the reading thread may call it.
 class Spacenav {
  public:
-  /// Connects.
-  /// @throws SetupError for a number out of range, and where no daemon answers, with what to do
+  /// Connects to the daemon.
+  /// @throws SetupError if a number is out of range or no daemon answers, saying what to do
   explicit Spacenav(const SpacenavOptions& options = {});
 
   /// "Spacenav on PATH"
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
 
-  /// Waits for events for at most `wait`, and a second, and says what holds then. Takes a bounded
-  /// number of events; does not allocate.
+  /// Waits for events for at most `wait`, limited to 1 s, and returns the state at its end.
+  /// Processes a bounded number of events; does not allocate.
   [[nodiscard]] Measured read(std::chrono::milliseconds wait) noexcept;
 
-  /// Nothing: the device cannot show force.
+  /// Does nothing: the device has no force feedback.
   void servo_cf(double /*lever_torque*/, const Wrench& /*tool_force*/) noexcept {}
 
  private:
@@ -65,8 +65,8 @@ class Spacenav {
   SpacenavParser parser_;
   Clutch clutch_;
   Twist held_;                            // of the last motion
-  std::chrono::nanoseconds heard_at_{0};  // the last motion
-  std::chrono::nanoseconds tried_at_{0};  // the last attempt to connect
+  std::chrono::nanoseconds heard_at_{0};  // time of the last motion event
+  std::chrono::nanoseconds tried_at_{0};  // time of the last attempt to connect
   const char* why_lost_ = "";
 };
 

@@ -1,5 +1,5 @@
 /// @file
-/// The events of spacenavd out of the bytes of its socket. No input or output here.
+/// Parses the events of spacenavd from the bytes of its socket. Does no I/O.
 #pragma once
 
 #include <algorithm>
@@ -13,42 +13,42 @@
 
 namespace repel::devices {
 
-/// What the daemon says about the device.
+/// An event that the daemon sends.
 struct SpacenavEvent {
   enum class Kind {
-    motion,   ///< `axes` hold from now on; all zero is rest
+    motion,   ///< `axes` hold from now on; all zero: at rest
     press,    ///< of `button`
     release,  ///< of `button`
-    other,    ///< whole and known, but no input
+    other,    ///< valid, but no input
   };
   Kind kind = Kind::other;
   std::array<std::int32_t, 6> axes{};  ///< [counts] x, y, z, rx, ry, rz
   std::int32_t button = 0;             ///< from 0
 };
 
-/// Protocol version 0, which every spacenavd speaks to a client that says nothing (spacenavd
-/// src/client.c: `proto = 0`, events of motion and buttons). Each event is 8 int32 of the machine's
-/// own byte order (src/proto_unix.c, send_uevent):
+/// Protocol version 0, which every spacenavd uses with a client that sends no handshake (spacenavd
+/// src/client.c: `proto = 0`, events of motion and buttons). Each event is 8 int32 in native byte
+/// order (src/proto_unix.c, send_uevent):
 ///
 ///     0, x, y, z, rx, ry, rz, milliseconds since the last
 ///     1, button                                    pressed
 ///     2, button                                    released
 ///
-/// The handshake of version 1, 0x7faa5501, is not sent on purpose: it would bring nothing but news
-/// of devices and settings, and a daemon that does not know it takes it for a sensitivity that is
-/// not a number (libspnav src/spnav.c, spnav_open, repairs that after 0.3 s of waiting). Types 3 to
-/// 6 are those of later versions: devices, settings, raw axes, raw buttons (src/proto.h).
+/// The handshake of version 1, 0x7faa5501, is deliberately not sent: it would only add events on
+/// devices and settings, and a daemon that does not know it takes it for a sensitivity that is not
+/// a number (libspnav src/spnav.c, spnav_open, repairs that after 0.3 s of waiting). Types 3 to 6
+/// are those of later versions: devices, settings, raw axes, raw buttons (src/proto.h).
 ///
-/// A number that no sound daemon sends breaks the parser: it says no more until `reset`, because
-/// what follows may be out of step by some bytes and look like motion.
+/// A value that no working daemon sends invalidates the stream: the parser returns nothing until
+/// `reset`, because what follows may be misaligned by some bytes and look like motion.
 class SpacenavParser {
  public:
   static constexpr std::size_t event_size = 8 * sizeof(std::int32_t);
-  static constexpr std::int32_t most_counts = 100000;  ///< of a sound axis
+  static constexpr std::int32_t most_counts = 100000;  ///< largest plausible magnitude of an axis
   static constexpr std::int32_t most_buttons = 256;
 
-  /// Hands every event that is now whole to `use(const SpacenavEvent&)`; a half one is kept.
-  /// @return false when the stream is broken
+  /// Passes every complete event to `use(const SpacenavEvent&)`; keeps an incomplete one.
+  /// @return false if the stream is invalid
   template <class Use>
   bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
     if (broken_) return false;
@@ -62,7 +62,7 @@ class SpacenavParser {
   }
 
   [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// Bytes of an event that is not whole yet.
+  /// Bytes received of an incomplete event.
   [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
   /// For a new connection.
   void reset() noexcept {

@@ -1,5 +1,5 @@
 /// @file
-/// A reference arm without an engine: joints that do not feel each other or gravity.
+/// A simulated arm without a physics engine: decoupled joints without gravity.
 #pragma once
 
 #include <algorithm>
@@ -18,22 +18,22 @@ namespace repel {
 struct IdealJoint {
   double inertia = 1.0;           ///< [kg m^2] or [kg]; > 0
   double viscous_friction = 0.0;  ///< [N m s/rad] or [N s/m]; >= 0
-  /// [N m] or [N] of its brake; >= 0. Infinite: the joint stands at once.
+  /// [N m] or [N] of its brake; >= 0. Infinite: the joint stops at once.
   double brake_torque = std::numeric_limits<double>::infinity();
 };
 
-/// What the drive of an IdealArm does by itself.
+/// Options of the drive of an IdealArm.
 struct IdealOptions {
   double watchdog = 0.0;  ///< [s] without torques after which the arm stops; 0: never
 };
 
-/// An arm whose joints obey inertia * a = torque - viscous_friction * v, each on its own, by
-/// semi-implicit Euler with the friction at the new velocity. A brake is dry friction, which stops
-/// a joint and holds it. Satisfies TorqueDrivenArm and BrakedArm.
-class IdealArm {
+/// An arm whose joints obey inertia * a = torque - viscous_friction * v, each independently,
+/// integrated by semi-implicit Euler with the friction at the new velocity. A brake is dry
+/// friction, which stops a joint and holds it.
+class IdealArm final : public TorqueDrivenArm {
  public:
   /// Starts at rest at zero.
-  /// @throws SetupError when there is no joint, or an inertia, friction or option is out of range
+  /// @throws SetupError if there is no joint, or an inertia, friction or option is out of range
   explicit IdealArm(std::span<const IdealJoint> joints, const IdealOptions& options = {})
       : drive_(options.watchdog) {
     if (joints.empty()) throw SetupError("an IdealArm needs at least one joint");
@@ -44,7 +44,7 @@ class IdealArm {
   [[nodiscard]] int links() const noexcept { return static_cast<int>(joints_.size()); }
 
   /// Puts the arm at rest at `q` [rad] or [m], enabled, with zero torque. The fault stays.
-  /// @throws SetupError when the size is wrong or an entry is not finite
+  /// @throws SetupError if the size is wrong or an entry is not finite
   void reset(std::span<const double> q) {
     const bool finite = std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); });
     if (q.size() != joints_.size() || !finite) {
@@ -56,7 +56,7 @@ class IdealArm {
 
   /// Joint torques [N m] or forces [N], held until the next call. An entry that is not finite or
   /// missing counts as zero and sets `torque_fault`.
-  void set_torques(std::span<const double> torques) noexcept {
+  void set_torques(std::span<const double> torques) noexcept override {
     drive_.heard();
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const bool usable = i < torques.size() && std::isfinite(torques[i]);
@@ -65,8 +65,8 @@ class IdealArm {
     }
   }
 
-  /// Moves the arm by `period` [s]; does nothing when that is not finite and positive.
-  void step(double period) noexcept {
+  /// Advances the arm by `period` [s]; does nothing if that is not finite and positive.
+  void step(double period) noexcept override {
     if (!(period > 0.0 && std::isfinite(period))) return;
     if (drive_.advance(period)) forget_torques();
     const bool braked = drive_.braked();
@@ -83,34 +83,34 @@ class IdealArm {
     }
   }
 
-  /// Torques act and the brakes are off, from now on; so the arm begins.
-  void enable() noexcept { drive_.enable(); }
+  /// Enables the arm: torques act and the brakes are off. This is the initial state.
+  void enable() noexcept override { drive_.enable(); }
 
-  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
-  /// the options finds that no torques were set for too long a time of the arm.
-  void stop() noexcept {
+  /// Stops the arm: no torque acts and the brakes are on, until `enable`. The watchdog of the
+  /// options does the same if no torques are set for its timeout, in simulated time.
+  void stop() noexcept override {
     drive_.stop();
     forget_torques();
   }
 
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
-  void engage_brakes(bool on) noexcept { drive_.engage_brakes(on); }
+  void engage_brakes(bool on) noexcept override { drive_.engage_brakes(on); }
 
-  [[nodiscard]] ArmState state() const noexcept { return drive_.state(); }
+  [[nodiscard]] ArmState state() const noexcept override { return drive_.state(); }
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
-  void read_positions(std::span<double> out) const noexcept {
+  void read_positions(std::span<double> out) const noexcept override {
     const auto count = std::min(out.size(), joints_.size());
     for (std::size_t i = 0; i < count; ++i) out[i] = joints_[i].position;
   }
 
   /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
-  void read_velocities(std::span<double> out) const noexcept {
+  void read_velocities(std::span<double> out) const noexcept override {
     const auto count = std::min(out.size(), joints_.size());
     for (std::size_t i = 0; i < count; ++i) out[i] = joints_[i].velocity;
   }
 
-  /// True once an entry of `set_torques` was refused.
+  /// True once an entry passed to `set_torques` was unusable.
   [[nodiscard]] bool torque_fault() const noexcept { return torque_fault_; }
   void clear_fault() noexcept { torque_fault_ = false; }
 

@@ -12,68 +12,69 @@
 
 namespace repel::ode {
 
-/// Defined for the flags this part was built with: a program with others does not link.
+/// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 using ArmOptions = SimulationOptions;
 using ArmFaults = SimulationFaults;
 
-/// Satisfies TorqueDrivenArm and BrakedArm. Each link is a free body that its joint holds: links
-/// part by what a sub-step leaves, less the shorter it is. Same calls, bitwise the same motion. One
-/// thread at a time.
-class Arm {
+/// A simulated arm with brakes. Each link is a free body held by its joint, so the links drift
+/// apart by the constraint error of a sub-step, which decreases with its length. Deterministic: the
+/// same calls give bitwise the same motion. One thread at a time.
+class Arm final : public TorqueDrivenArm {
  public:
-  /// Starts at rest at zero, or at the limit nearest to it.
-  /// @param parts what touches: those on links and obstacles, each of the former with each of the
-  /// latter; copied. Without parts the arm passes through everything
-  /// @throws SetupError when a number of `model` or `options` is out of range, or a link has no
-  /// mass or an inertia that is not positive: here every link moves by itself; or when a part is
-  /// a cone, a hull or without thickness
+  /// Starts at rest at zero, or at the joint limit nearest to it.
+  /// @param parts collision parts on links, and obstacles; each of the former is tested against
+  ///   each of the latter. Copied. Without parts the arm passes through everything
+  /// @throws SetupError if a number of `model` or `options` is out of range, a link has no mass or
+  ///   an inertia that is not positive definite (each link is a free body), or a part is a cone, a
+  ///   hull or without thickness
   explicit Arm(const ArmModel& model, const ArmOptions& options = {},
                std::span<const ContactPart> parts = {});
-  ~Arm();
+  ~Arm() override;
   Arm(Arm&&) noexcept;
   Arm& operator=(Arm&&) noexcept;
 
-  /// Number of links, which is the number of joints.
+  /// Number of links, equal to the number of joints.
   [[nodiscard]] int links() const noexcept;
 
-  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest when `v` is empty),
-  /// enabled, with zero torque and nothing touched. Faults stay.
-  /// @throws SetupError when a size is wrong, `q` is outside the limits or `v` is not finite
+  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest if `v` is empty),
+  /// enabled, with zero torque and a cleared contact report. Faults stay.
+  /// @throws SetupError if a size is wrong, `q` is outside the limits or `v` is not finite
   void reset(std::span<const double> q, std::span<const double> v = {});
 
-  /// Joint torques [N m] or forces [N], held until the next call. Beyond 1e9 none is usable.
-  void set_torques(std::span<const double> torques) noexcept;
+  /// Joint torques [N m] or forces [N], held until the next call. A magnitude above 1e9 counts as
+  /// zero and sets a fault.
+  void set_torques(std::span<const double> torques) noexcept override;
 
-  /// Moves the arm by `period` [s]. Cost grows with substeps x links^3; ODE allocates.
-  void step(double period) noexcept;
+  /// Advances the arm by `period` [s]. Cost grows with substeps x links^3; ODE allocates.
+  void step(double period) noexcept override;
 
-  /// Torques act and the brakes are off, from now on; so the arm begins.
-  void enable() noexcept;
+  /// Enables the arm: torques act and the brakes are off. This is the initial state.
+  void enable() noexcept override;
 
-  /// No torque acts and the brakes are on, until `enable`. So it ends as well when the watchdog of
-  /// the options finds that no torques were set for too long a time of the arm.
-  void stop() noexcept;
+  /// Stops the arm: no torque acts and the brakes are on, until `enable`. The watchdog of the
+  /// options does the same if no torques are set for its timeout, in simulated time.
+  void stop() noexcept override;
 
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
-  void engage_brakes(bool on) noexcept;
+  void engage_brakes(bool on) noexcept override;
 
-  [[nodiscard]] ArmState state() const noexcept;
+  [[nodiscard]] ArmState state() const noexcept override;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
-  void read_positions(std::span<double> out) const noexcept;
+  void read_positions(std::span<double> out) const noexcept override;
 
   /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
-  void read_velocities(std::span<double> out) const noexcept;
+  void read_velocities(std::span<double> out) const noexcept override;
 
-  /// How far the joints have come apart [m]: the greatest distance between a link and where its
-  /// parent and its joint position put it.
+  /// Constraint drift of the joints [m]: the greatest distance between the centre of mass of a link
+  /// and where its parent and its joint position put it.
   [[nodiscard]] double parted() const noexcept;
 
-  /// What the parts touched since the last reset.
-  [[nodiscard]] ContactReport contact() const noexcept;
+  /// Contacts since the last reset.
+  [[nodiscard]] ContactReport contact() const noexcept override;
 
   [[nodiscard]] ArmFaults faults() const noexcept;
   void clear_faults() noexcept;

@@ -1,5 +1,5 @@
 /// @file
-/// Reads recordings: MCAP files (https://mcap.dev/spec) without compression, whole or cut off.
+/// Reads recordings: uncompressed MCAP files (https://mcap.dev/spec), complete or truncated.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace repel::record {
 
-/// What messages look like.
+/// A description of the messages of a channel.
 struct McapSchema {
   std::string name;
   std::string encoding;  ///< of `data`: "jsonschema", "ros2msg", ...
@@ -30,42 +30,42 @@ struct McapChannel {
 
 /// One message. Times are [ns] since an epoch that the writer chose.
 struct McapMessage {
-  std::uint16_t channel = 0;  ///< its id; channels() has it
+  std::uint16_t channel = 0;  ///< its id, see channels()
   std::uint32_t sequence = 0;
   std::uint64_t log_time_ns = 0;
   std::uint64_t publish_time_ns = 0;
-  std::string_view data;  ///< stands until the next call of the reader
+  std::string_view data;  ///< valid until the next call of the reader
 };
 
-/// A file within the file.
+/// A file embedded in the MCAP file.
 struct McapAttachment {
   std::string name;
   std::string media_type;
   std::uint64_t log_time_ns = 0;
-  std::uint64_t create_time_ns = 0;  ///< 0: not known
+  std::uint64_t create_time_ns = 0;  ///< 0: unknown
   std::string data;
 };
 
-/// Words about the recording.
+/// Key-value data about the recording.
 struct McapMetadata {
   std::string name;
   std::map<std::string, std::string> entries;
 };
 
-/// One MCAP file, read from front to back, in memory one chunk at a time. Indices are not needed
-/// and not looked at. At most 256 MiB for a record and 1 GiB for what is kept are taken.
+/// One MCAP file, read sequentially, with one chunk at a time in memory. Indices are not used.
+/// Limits: 256 MiB for a record, 1 GiB for what is kept in memory.
 ///
-/// A file that was cut off can be read: it gives every message that is complete, and says that it
-/// is not whole. Damage is an error, which comes after everything that stands before it.
+/// A truncated file can be read: the reader returns every complete message and reports that the
+/// file is incomplete. Damage is an error, reported after everything that precedes it.
 class McapReader {
  public:
-  /// Opens the file at `path` and finds everything but the messages. Cost: reads the first nine
+  /// Opens the file at `path` and reads everything except the messages. Cost: reads the first nine
   /// bytes of every record, and all of attachments, metadata, schemas, channels and the summary.
-  /// @throws SetupError, naming the byte, what was found and what is allowed, when the file cannot
-  ///         be read or does not begin as MCAP files do
+  /// @throws SetupError naming the byte, what was found and what is allowed, if the file cannot be
+  ///   read or does not start as an MCAP file
   explicit McapReader(const std::string& path);
 
-  /// The same for a file in memory; `name` stands for its path in errors.
+  /// The same for a file in memory; `name` replaces its path in errors.
   [[nodiscard]] static McapReader from_bytes(std::string bytes, const std::string& name = "memory");
 
   ~McapReader();
@@ -74,32 +74,31 @@ class McapReader {
   McapReader(const McapReader&) = delete;
   McapReader& operator=(const McapReader&) = delete;
 
-  /// Of the header; empty: none, or the file is cut off before.
+  /// From the header; empty: none, or the file is truncated before it.
   [[nodiscard]] const std::string& profile() const noexcept;
   [[nodiscard]] const std::string& library() const noexcept;
 
-  /// By id. Where they stand only in chunks and the file has no summary, next() finds them.
+  /// By id. Those that are only in chunks, in a file without summary, are found by next().
   [[nodiscard]] const std::map<std::uint16_t, McapSchema>& schemas() const noexcept;
   [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const noexcept;
 
-  /// In the order of the file.
+  /// In file order.
   [[nodiscard]] const std::vector<McapAttachment>& attachments() const noexcept;
   [[nodiscard]] const std::vector<McapMetadata>& metadata() const noexcept;
 
-  /// The next message of the file, in the order it was written; false, and `message` as it was,
-  /// when there is none. Cost: when it comes to a new chunk, reads and checks all of it.
-  /// @throws SetupError, naming the byte, for a chunk that is compressed or damaged (it is left
-  /// out,
-  ///         and another call goes on behind it), and once at the end when anything else is damaged
+  /// Reads the next message in file order. At the end returns false and leaves `message` unchanged.
+  /// Cost: at the start of a chunk, reads and checks all of it.
+  /// @throws SetupError naming the byte, for a compressed or damaged chunk (it is skipped, and the
+  ///   next call continues after it), and once at the end if anything else is damaged
   bool next(McapMessage& message);
 
-  /// next() begins again. What it has learned of schemas and channels stays.
+  /// Restarts next() from the beginning. Keeps the schemas and channels found.
   void rewind();
 
-  /// False when the file was cut off or is damaged, as far as opening it could tell: damage within
-  /// chunks shows in next().
+  /// False if the file is truncated or damaged, as far as known at opening: damage within chunks is
+  /// found by next().
   [[nodiscard]] bool whole() const noexcept { return why_not_whole().empty(); }
-  /// In words, with the path; empty: it is whole.
+  /// Description with the path; empty: the file is complete.
   [[nodiscard]] const std::string& why_not_whole() const noexcept;
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// The modules that a scene file can name: those of the library, and those of a program.
+/// The module kinds that a scene file can name: those of the library, and those of a program.
 #pragma once
 
 #include <any>
@@ -24,28 +24,28 @@ struct Element {
   enum class Kind { spring, damper, mass };
   Kind kind = Kind::damper;
   network::Space space = network::Space::tool;  ///< tool or lever
-  double linear = 0.0;                          ///< [N/m], [N s/m] or [kg]; of a tool
+  double linear = 0.0;                          ///< [N/m], [N s/m] or [kg]; for a tool only
   double angular = 0.0;                         ///< [N m/rad], [N m s/rad] or [kg m^2]
 };
 
-/// What one entry of `network` says, for the function that reads its module. A key that is not
-/// asked for is refused. Its functions throw SetupError, naming file, line, value and what is
-/// allowed, when a value is not what is asked for.
+/// One entry of `network`, for the function that reads its module. A key that the function does not
+/// read is refused. All functions throw SetupError, naming file, line, value and what is allowed,
+/// if a value is invalid.
 class ModuleEntry {
  public:
   explicit ModuleEntry(const Map& map) : map_(map) {}
 
-  /// The number under `key` in the SI unit `unit`, "N s/m" say; the file may use another unit of
-  /// the same dimension. `otherwise` when the key is missing.
+  /// The number under `key` in the SI unit `unit`, for example "N s/m"; the file may use another
+  /// unit of the same dimension. `otherwise` if the key is missing.
   [[nodiscard]] double number(std::string_view key, std::string_view unit, double low, double high,
                               double otherwise) const;
-  /// One of `words`; the first of them when the key is missing.
+  /// One of `words`; the first of them if the key is missing.
   [[nodiscard]] std::string word(std::string_view key,
                                  std::initializer_list<std::string_view> words) const;
 
-  /// Throws SetupError for a key that has not been asked for.
+  /// @throws SetupError for a key that has not been read
   void finish() const;
-  /// All that the file says, for the readers of this library, which check the keys themselves.
+  /// The complete entry, for the readers of this library, which check the keys themselves.
   [[nodiscard]] const Map& map() const noexcept { return map_; }
 
  private:
@@ -53,18 +53,20 @@ class ModuleEntry {
   mutable std::vector<std::string> asked_;
 };
 
-/// Makes the module for an arm. @throws SetupError for options out of range
+/// Makes the module for an arm.
+///
+/// @throws SetupError if options are out of range
 using MakeModule = std::function<network::Module(const ArmModel&)>;
 
-/// One module as read: what it was given and how it is made.
+/// A module as read from a file: its options and its factory.
 struct ReadModule {
   std::any options;  ///< of the type that its constructor takes
   MakeModule make;
-  network::Walls walls = network::Walls::none;  ///< that it brings to the arm, as its traits say
+  network::Walls walls = network::Walls::none;  ///< that it applies to the arm, as in its traits
 };
 
-/// The kinds of module by the word after `module:`. It begins with those of scenes/README.md; a
-/// program adds its own:
+/// The kinds of module by the word after `module:`. Initially those of scenes/README.md; a program
+/// can add its own:
 ///
 ///     scene::ModuleKinds kinds;
 ///     kinds.add("notch", [](const scene::ModuleEntry& entry) {
@@ -77,8 +79,8 @@ class ModuleKinds {
 
   ModuleKinds();
 
-  /// @param read the module itself, or a ReadModule where it depends on the arm
-  /// @throws SetupError when there is such a word already
+  /// @param read returns the module itself, or a ReadModule if it depends on the arm
+  /// @throws SetupError if the word is already in use
   template <class Function>
   void add(const std::string& word, Function read) {
     insert(word, [read = std::move(read)](const ModuleEntry& entry) {
@@ -97,7 +99,7 @@ class ModuleKinds {
 
   /// The words, in the order in which they were added.
   [[nodiscard]] const std::vector<std::string>& words() const noexcept { return words_; }
-  /// How the module of a word is read, which must be one of `words()`.
+  /// The reader for a word, which must be one of `words()`.
   [[nodiscard]] const Read& at(const std::string& word) const { return kinds_.at(word); }
 
  private:

@@ -1,5 +1,5 @@
 /// @file
-/// What the page is told, as JSON text; docs/live_view.md states the format.
+/// The messages to the page, as JSON text; docs/live_view.md describes the format.
 #pragma once
 
 #include <span>
@@ -12,48 +12,49 @@
 
 namespace repel::visual {
 
-/// Defined for the flags this part was built with: a program with others does not link.
+/// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
-/// One arm of a world, for those who look on.
-struct ArmCast {
+/// One arm of a world, for display.
+struct ArmInfo {
   std::string name;  ///< empty if there is only one
   BodyId tool;
-  std::vector<BodyId> links;         ///< that have parts
+  std::vector<BodyId> links;         ///< those with parts
   std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
-  std::vector<std::string> modules;  ///< of its network, in its order
-  std::vector<std::string> phases;   ///< names of those of its script
-  double max_speed = 0.25;           ///< [m/s] that its master can command
-  double max_turn = 1.0;             ///< [rad/s]
-  double max_lever_rate = 1.5;       ///< [rad/s] at which a hand leads the lever
+  std::vector<std::string> modules;  ///< of its network, in the same order
+  std::vector<std::string> phases;   ///< names of the phases of its script
+  double max_speed = 0.25;           ///< [m/s] maximum command of its master
+  double max_turn = 1.0;             ///< [rad/s] likewise
+  double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
 };
 
-/// What stays as it is while a scene runs.
-struct Cast {
+/// Properties that are constant while a scene runs.
+struct SceneInfo {
   std::string scene;
   double rate_hz = 400.0;  ///< [Hz]
-  bool replay = false;     ///< of a recording
+  bool replay = false;     ///< replay of a recording
   double duration = 0.0;   ///< [s] 0: until it is stopped
-  std::vector<ArmCast> arms;
+  std::vector<ArmInfo> arms;
 };
 
 /// `scene`: bodies, parts with their levels as meshes, pairs, arms. Takes milliseconds.
-[[nodiscard]] std::string scene_message(const Cast& cast, const World& world);
+[[nodiscard]] std::string scene_message(const SceneInfo& info, const World& world);
 
-/// `frame`: one picture, and a few numbers of every tick since the last.
-[[nodiscard]] std::string frame_message(const Cast& cast, const World& world, const Snapshot& shot,
-                                        std::span<const TickSample> recent, bool running);
+/// `frame`: one picture, and a few values of every tick since the last.
+[[nodiscard]] std::string frame_message(const SceneInfo& info, const World& world,
+                                        const Snapshot& shot, std::span<const TickSample> recent,
+                                        bool running);
 
-/// What is counted of every tick for the histograms.
+/// Histograms and counts over all ticks.
 struct Timing {
   DurationHistogram compute;
   DurationHistogram late;
-  std::vector<std::int64_t> compute_bins;  ///< between the edges
+  std::vector<std::int64_t> compute_bins;  ///< one for each interval between edges
   std::vector<std::int64_t> late_bins;
   std::int64_t ticks = 0;
-  std::int64_t misses = 0;   ///< not over one period after they were due
-  std::int64_t dropped = 0;  ///< ticks of which nothing is known
+  std::int64_t misses = 0;   ///< ticks not finished within one period of their due time
+  std::int64_t dropped = 0;  ///< ticks without data
 
   /// Edges [us] of the bins: ten to each decade, from 0.1 us to 0.1 s.
   [[nodiscard]] static const std::vector<double>& edges();

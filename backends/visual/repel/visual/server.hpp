@@ -1,5 +1,5 @@
 /// @file
-/// Serves one page and talks to it: HTTP and WebSocket on one port, from a thread of its own.
+/// Serves the live view: HTTP and WebSocket on one port, in its own thread.
 #pragma once
 
 #include <chrono>
@@ -14,41 +14,41 @@ namespace repel::visual {
 
 /// A file of the page.
 struct Asset {
-  std::string target;      ///< of the request: "/page.css"
+  std::string target;      ///< path of the request: "/page.css"
   std::string media_type;  ///< "text/css"
   std::string body;
 };
 
-/// The files below `folder`, index.html as "/" as well.
+/// All files below `folder`; index.html also as "/".
 /// @throws SetupError naming the folder if it has no index.html
 [[nodiscard]] std::vector<Asset> load_assets(const std::string& folder);
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of the interface to listen on
-  std::uint16_t port = 8448;          ///< 0: any that is free
-  int pages = 8;                      ///< that may be open at a time
-  int messages_per_second = 400;      ///< of one page, pings and parts too, before it is cut off
-  std::size_t message_bytes = 4096;   ///< of one message, before the page is cut off
-  double beats_per_second = 60.0;     ///< [Hz] of Show::beat, unless it says when
-  std::string secret;                 ///< that a page must present; empty: none
-  int visitors = 64;                  ///< connections that wait for an answer; the oldest makes way
-  int visitors_of_one = 32;           ///< of them from one address
-  std::chrono::milliseconds patience{2000};  ///< with one that has not said what it wants
+  std::uint16_t port = 8448;          ///< 0: any free port
+  int pages = 8;                      ///< maximum number of open pages
+  int messages_per_second = 400;     ///< limit per page, pings and fragments included; else cut off
+  std::size_t message_bytes = 4096;  ///< limit per message; beyond it the page is cut off
+  double refresh_rate = 60.0;  ///< [Hz] of PageHandler::refresh, unless next_refresh gives a time
+  std::string secret;          ///< that a page must present; empty: none
+  int visitors = 64;           ///< limit of unanswered connections; the oldest is closed
+  int visitors_of_one = 32;    ///< limit per IPv4 address or IPv6 /64 network
+  std::chrono::milliseconds patience{2000};  ///< timeout for a connection without a request
 };
 
-/// What a page may do at most: one of another program, which is no browser and presents no secret,
-/// looks on.
+/// Permissions of a page. A client without Origin (not a browser) that presents no secret only
+/// watches.
 enum class Role { looks_on, drives };
 
-/// The pages that are open, for Show to speak to.
+/// The open pages, for use by PageHandler.
 class Pages {
  public:
-  /// Sends a message to one page; each page that is open gets a number when it opens. A page that
-  /// has let a hundred of them wait is cut off.
+  /// Sends a message to one page; each page gets a number when it opens. A page with a hundred
+  /// unsent messages is cut off.
   virtual void send(int page, std::string text) = 0;
-  /// Sends a message to all.
+  /// Sends a message to all pages.
   virtual void send_all(std::string text) = 0;
-  /// Sends a picture to every page that has got its last one; the others go without.
+  /// Sends a picture to every page that has received its last one; the others skip it.
   virtual void show(std::string text) = 0;
   [[nodiscard]] virtual int count() const = 0;
 
@@ -58,40 +58,40 @@ class Pages {
   virtual ~Pages() = default;
 };
 
-/// What is shown. The thread of the server calls these, one at a time. What they throw is said on
-/// stderr, and the server goes on.
-class Show {
+/// The content of the pages. Called by the server's thread, one call at a time. Exceptions are
+/// printed on stderr, and the server continues.
+class PageHandler {
  public:
   virtual void opened(int page, Role role, Pages& pages) = 0;
   virtual void heard(int page, std::string_view text, Pages& pages) = 0;
   virtual void closed(int page, Pages& pages) = 0;
-  virtual void beat(Pages& pages) = 0;
-  /// After a beat: when the next is wanted, if not at the pace of the server.
-  [[nodiscard]] virtual std::optional<std::chrono::steady_clock::time_point> next_beat() const {
+  virtual void refresh(Pages& pages) = 0;
+  /// Called after a refresh: the time of the next one; none: at the server's rate.
+  [[nodiscard]] virtual std::optional<std::chrono::steady_clock::time_point> next_refresh() const {
     return std::nullopt;
   }
 
-  Show() = default;
-  Show(const Show&) = delete;
-  Show& operator=(const Show&) = delete;
-  virtual ~Show() = default;
+  PageHandler() = default;
+  PageHandler(const PageHandler&) = delete;
+  PageHandler& operator=(const PageHandler&) = delete;
+  virtual ~PageHandler() = default;
 };
 
-/// Listens from construction on. Only a page that it has served itself may talk to it: a request
-/// for another host than the end of its own connection and a WebSocket of another origin get 403.
-/// Neither a page that is slow nor one that sends too much or too long messages holds up anyone but
-/// itself, nor do those who connect and say nothing. With a secret nothing is shown or heard before
-/// a page has presented it.
+/// Listens from construction on. Only pages served by this server may use it: a request for a host
+/// other than the local address of its connection, and a WebSocket of another origin, get 403. A
+/// page that is slow, or sends too many or too long messages, delays only itself, and so does a
+/// client that connects and sends nothing. With a secret, nothing is sent to or accepted from a
+/// page before it has presented it.
 class Server {
  public:
-  /// @param show must live as long as the server
-  /// @throws SetupError naming address and port if they cannot be had
-  Server(const ServerOptions& options, std::vector<Asset> assets, Show& show);
+  /// @param show must outlive the server
+  /// @throws SetupError naming address and port if it cannot listen there
+  Server(const ServerOptions& options, std::vector<Asset> assets, PageHandler& show);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   ~Server();
 
-  /// Where the page is for a browser on this machine: "http://127.0.0.1:8448/".
+  /// The URL of the page for a browser on this machine: "http://127.0.0.1:8448/".
   [[nodiscard]] const std::string& url() const noexcept;
 
  private:

@@ -1,0 +1,25 @@
+/// @file
+/// Converts a scene to the description of a cell.
+#pragma once
+
+#include <vector>
+
+#include <repel/cell/description.hpp>
+#include <repel/robots/urdf.hpp>
+#include <repel/scene/scene.hpp>
+
+namespace repel::teleop {
+
+/// The cell of a scene, and the robots of its arms, in the order of the arms.
+struct DescribedScene {
+  CellDescription cell;
+  std::vector<Robot> robots;
+};
+
+/// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.
+/// @param with_gravity false for arms without weight, as those of the back end "ideal"
+/// @throws SetupError naming file, value and what is allowed
+[[nodiscard]] DescribedScene describe(const scene::Scene& scene, double rate_hz,
+                                      bool with_gravity = true);
+
+}  // namespace repel::teleop

@@ -1,0 +1,88 @@
+/// @file
+/// A cell together with the arms and operators of a run.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <repel/cell/arm_port.hpp>
+#include <repel/cell/cell.hpp>
+
+#include "operator_input.hpp"
+#include "recording.hpp"
+
+namespace repel::teleop {
+
+/// Allocates only at construction.
+class DrivenCell {
+ public:
+  /// @param cell must outlive this object
+  /// @param arms one for each arm of the cell, in the same order
+  /// @param operators likewise
+  DrivenCell(Cell& cell, std::vector<std::unique_ptr<TorqueDrivenArm>> arms,
+             std::vector<OperatorInput> operators)
+      : cell_(cell),
+        arms_(std::move(arms)),
+        operators_(std::move(operators)),
+        readings_(arms_.size()),
+        commands_(arms_.size()) {
+    for (std::size_t i = 0; i < arms_.size(); ++i) {
+      ports_.emplace_back(*arms_[i], cell.description().arms[i].model.links.size());
+    }
+  }
+
+  /// Runs one tick, due at `now` [ns]. Returns the record of each arm, in their order.
+  std::span<const TickRecord* const> tick(std::chrono::nanoseconds now) noexcept {
+    for (std::size_t i = 0; i < ports_.size(); ++i) readings_[i] = ports_[i].read();
+    cell_.sense(readings_, now);
+    for (std::size_t i = 0; i < operators_.size(); ++i) {
+      const Teleoperator& control = cell_.control(i);
+      commands_[i] = operators_[i].step(control.X_WT().linear(), control.elapsed());
+    }
+    const auto records = cell_.act(commands_);
+    for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].apply(*records[i]);
+    return records;
+  }
+
+  /// Advances the simulated arms, which keep moving during skipped ticks too.
+  ///
+  /// @param period [s]
+  void move_arms(double period, std::int64_t periods) {
+    for (std::int64_t i = 0; i < periods; ++i) {
+      for (const auto& arm : arms_) arm->step(period);
+    }
+  }
+
+  /// The next tick repeats tick `tick` of the recording: operators repeat their commands, and every
+  /// RecordedArm reports its recorded state.
+  void replay(const Recording& recording, std::size_t tick) noexcept {
+    for (std::size_t i = 0; i < operators_.size(); ++i) {
+      const TickRecord& then = recording.arms[i][tick];
+      operators_[i].follow(then);
+      if (auto* arm = dynamic_cast<RecordedArm*>(arms_[i].get())) arm->follow(then);
+    }
+  }
+
+  /// From the next tick on all operators are at rest: see OperatorInput::let_go.
+  void let_go() noexcept {
+    for (OperatorInput& each : operators_) each.let_go();
+  }
+
+  /// See Cell::rehearse.
+  void rehearse() noexcept { cell_.rehearse(); }
+
+  [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
+  [[nodiscard]] const TorqueDrivenArm& arm(std::size_t i) const noexcept { return *arms_[i]; }
+
+ private:
+  Cell& cell_;
+  std::vector<std::unique_ptr<TorqueDrivenArm>> arms_;
+  std::vector<ArmPort> ports_;
+  std::vector<OperatorInput> operators_;
+  std::vector<ArmReadings> readings_;
+  std::vector<network::Command> commands_;
+};
+
+}  // namespace repel::teleop

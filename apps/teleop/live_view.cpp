@@ -1,0 +1,287 @@
+#include "live_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "operator_input.hpp"
+
+namespace repel::teleop {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The number of that name, if within +-`most`.
+std::optional<double> number(const Json& message, const char* name, double most) {
+  const auto found = message.find(name);
+  if (found == message.end() || !found->is_number()) return std::nullopt;
+  const double value = found->get<double>();
+  if (!(std::abs(value) <= most)) return std::nullopt;
+  return value;
+}
+
+std::optional<Vec3> vector(const Json& message, const char* name, double most) {
+  const auto found = message.find(name);
+  if (found == message.end() || !found->is_array() || found->size() != 3) return std::nullopt;
+  Vec3 v;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Json& entry = (*found)[axis];
+    if (!entry.is_number()) return std::nullopt;
+    v[static_cast<Eigen::Index>(axis)] = entry.get<double>();
+  }
+  if (!(v.norm() <= most)) return std::nullopt;
+  return v;
+}
+
+std::string text(const Json& message, const char* name) {
+  const auto found = message.find(name);
+  return found != message.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+const char* to_word(Driver driver, bool replay) {
+  if (replay) return "recording";
+  switch (driver) {
+    case Driver::script:
+      return "script";
+    case Driver::page:
+      return "page";
+    case Driver::device:
+      return "device";
+    case Driver::nobody:
+      break;
+  }
+  return "nobody";
+}
+
+/// Limits the length: no page can command more than the master of the scene can.
+Vec3 within(const Vec3& v, double most) {
+  const double length = v.norm();
+  return length > most ? Vec3(v * (most / length)) : v;
+}
+
+constexpr const char* out_of_range = "a number is missing or out of range";
+
+}  // namespace
+
+LiveView::LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
+                   const std::string& device, bool pages_drive)
+    : info_(info),
+      world_(world),
+      tap_(tap),
+      controls_(controls),
+      device_(device),
+      pages_drive_(pages_drive),
+      greeting_(visual::scene_message(info, world)),
+      period_(std::llround(1e9 / info.rate_hz)),
+      driver_(device.empty() ? Driver::script : Driver::device) {}
+
+void LiveView::opened(int page, visual::Role role, visual::Pages& pages) {
+  open_pages_[page] = role;
+  pages.send(page, greeting_);
+  say_who_drives(pages);
+  pages.send(page, visual::timing_message(timing_));
+  if (!has_picture_) return;
+  pages.send(page,
+             visual::frame_message(info_, world_, tap_.pictures().newest(), {}, !controls_.paused));
+}
+
+void LiveView::closed(int page, visual::Pages& pages) {
+  open_pages_.erase(page);
+  say_who_drives(pages);  // if it was driving, watch_driver handles its silence
+}
+
+void LiveView::heard(int page, std::string_view said, visual::Pages& pages) {
+  const Json message = Json::parse(said, nullptr, false);
+  if (message.is_discarded() || !message.is_object()) {
+    return pages.send(page,
+                      Json{{"type", "refused"}, {"what", ""}, {"why", "no JSON object"}}.dump());
+  }
+  const std::string type = text(message, "type");
+  const Driver driver = driver_;
+  const int driving = page_;
+  const std::string why = obey(page, type, message);
+  if (!why.empty()) {
+    // The page may have sent invalid UTF-8.
+    pages.send(page, Json{{"type", "refused"}, {"what", type}, {"why", why}}.dump(
+                         -1, ' ', true, Json::error_handler_t::replace));
+  }
+  if (driver != driver_ || driving != page_) say_who_drives(pages);
+}
+
+std::string LiveView::obey(int page, const std::string& type, const Json& message) {
+  std::string bar = bar_of(page);
+  if (!bar.empty()) return bar;
+  if (page_ != nobody && page_ != page) return "another page has the controls";
+  if (type == "take" || type == "release" || type == "servo_cv" || type == "servo_lever")
+    return drive(page, type, message);
+  return conduct(type, message);
+}
+
+std::string LiveView::bar_of(int page) const {
+  if (!pages_drive_ && !device_.empty()) return device_ + " has the controls: pages look on only";
+  if (!pages_drive_) return "pages look on only";
+  const auto found = open_pages_.find(page);
+  if (found == open_pages_.end() || found->second == visual::Role::looks_on)
+    return "a program without an Origin or a secret looks on only";
+  return {};
+}
+
+std::string LiveView::drive(int page, const std::string& type, const Json& message) {
+  if (info_.replay) return "this is a recording";
+  if (type == "take") {
+    hand_over(Driver::page, page);
+    return {};
+  }
+  if (page_ != page) return "take the controls first";
+  if (type == "release") {
+    hand_over(device_.empty() ? Driver::nobody : Driver::device, nobody);
+    return {};
+  }
+  const visual::ArmInfo& arm = info_.arms.front();
+  DriverInput input;
+  input.driver = Driver::page;
+  if (type == "servo_cv") {
+    const auto linear = vector(message, "linear", 10.0);
+    const auto angular = vector(message, "angular", 100.0);
+    const std::string frame = text(message, "frame");
+    if (!linear || !angular || (frame != "world" && frame != "tool")) return out_of_range;
+    input.in_tool = frame == "tool";
+    const auto clutch = message.find("clutch");
+    const bool held = clutch != message.end() && clutch->is_boolean() && clutch->get<bool>();
+    if (held) input.rates = {within(*linear, arm.max_speed), within(*angular, arm.max_turn)};
+  } else {
+    const auto direction = vector(message, "direction", 1e3);
+    const auto rate = number(message, "rate", 100.0);
+    if (!direction || !rate || direction->norm() < 1e-6) return out_of_range;
+    input.direction_W = direction->normalized();
+    input.lever_rate = std::clamp(*rate, -arm.max_lever_rate, arm.max_lever_rate);
+  }
+  controls_.input.draft() = input;
+  controls_.input.post();
+  heard_ = Clock::now();
+  return {};
+}
+
+std::string LiveView::conduct(const std::string& type, const Json& message) {
+  if (type == "pause" || type == "resume") {
+    controls_.steps = 0;
+    controls_.paused = type == "pause";
+  } else if (type == "step") {
+    const auto ticks = number(message, "ticks", 10000.0);
+    if (!ticks || *ticks < 1.0) return out_of_range;
+    controls_.paused = true;
+    controls_.steps += std::llround(*ticks);
+  } else if (type == "restart" && !controls_.may_restart) {
+    return "a log is being written, which begins once";
+  } else if (type == "restart") {
+    if (driver_ != Driver::device)
+      hand_over(device_.empty() ? Driver::script : Driver::device, nobody);
+    controls_.steps = 0;
+    controls_.paused = false;
+    controls_.restart = true;
+    timing_ = {};
+  } else if (type == "seek" && info_.replay) {
+    const auto time = number(message, "time_s", 1e9);
+    if (!time || *time < 0.0) return out_of_range;
+    // A time beyond the last tick would never be reached.
+    controls_.seek = std::min(*time, info_.duration - 1.0 / info_.rate_hz);
+  } else if (type == "speed" && info_.replay) {
+    const auto factor = number(message, "factor", 100.0);
+    if (!factor || *factor < 0.01) return out_of_range;
+    controls_.speed = *factor;
+  } else {
+    return info_.replay ? "no such message" : "no such message for a live run";
+  }
+  return {};
+}
+
+void LiveView::hand_over(Driver driver, int page) {
+  driver_ = driver;
+  page_ = page;
+  silent_ = false;
+  heard_ = Clock::now();
+  controls_.input.draft() = {};
+  controls_.input.draft().driver = driver;
+  controls_.input.post();
+}
+
+void LiveView::say_who_drives(visual::Pages& pages) const {
+  for (const auto& [page, role] : open_pages_) {
+    const std::string bar = bar_of(page);
+    pages.send(page, Json{{"type", "operator"},
+                          {"by", to_word(driver_, info_.replay)},
+                          {"you", page == page_},
+                          {"name", device_},
+                          {"silent", silent_},
+                          {"looks_on", !bar.empty()},
+                          {"why_not", bar},
+                          {"pages", pages.count()}}
+                         .dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+}
+
+void LiveView::read_samples() {
+  for (const TickSample* sample = tap_.samples().front(); sample != nullptr;
+       sample = tap_.samples().front()) {
+    timing_.add(sample->times, period_);
+    // At most 1000 samples; a page that has just opened needs no history.
+    if (recent_.size() < 1000) recent_.push_back(*sample);
+    tap_.samples().pop();
+  }
+  timing_.dropped = tap_.samples().dropped();
+}
+
+void LiveView::watch_driver(visual::Pages& pages) {
+  const bool was_silent = silent_;
+  if (driver_ == Driver::device) {
+    const Status status = tap_.pictures().newest().arms.front().status;
+    silent_ = (status & status::silent_device) != 0U;
+  }
+  if (page_ != nobody) {
+    const double unheard = std::chrono::duration<double>(Clock::now() - heard_).count();
+    silent_ = unheard > OperatorInput::silent_after;
+    if (unheard > OperatorInput::silent_after + 2.0)
+      hand_over(device_.empty() ? Driver::nobody : Driver::device, nobody);
+  }
+  if (silent_ != was_silent) say_who_drives(pages);
+}
+
+void LiveView::refresh(visual::Pages& pages) {
+  read_samples();
+  watch_driver(pages);
+  const bool running = !controls_.paused;
+  const bool is_new = tap_.pictures().take();
+  const auto now = Clock::now();
+  has_picture_ = has_picture_ || is_new;
+  // Repeated every 200 ms while nothing happens: a page that was busy may have missed the last.
+  const bool is_due = running != was_running_ || now > shown_ + std::chrono::milliseconds(200);
+  if (is_new || (has_picture_ && is_due)) {
+    was_running_ = running;
+    shown_ = now;
+    if (pages.count() > 0) {
+      pages.show(visual::frame_message(info_, world_, tap_.pictures().newest(), recent_, running));
+    }
+    recent_.clear();
+  }
+  if (now < next_timing_) return;
+  next_timing_ = now + std::chrono::milliseconds(500);
+  if (pages.count() > 0) pages.send_all(visual::timing_message(timing_));
+}
+
+std::optional<LiveView::Clock::time_point> LiveView::next_refresh() const {
+  using std::chrono::nanoseconds;
+  // The tap takes a picture in the first tick that ends at least this long after the last picture.
+  const nanoseconds spacing =
+      (TapOptions{}.picture_period + period_ - nanoseconds(1)) / period_ * period_;
+  const nanoseconds behind = std::min(nanoseconds(200000), period_ / 8);
+  const Clock::time_point now = Clock::now();
+  const Clock::time_point due = tap_.pictures().newest().made + spacing + behind;
+  if (due > now) return due;
+  const nanoseconds late = now - due;
+  if (late > std::chrono::seconds(1)) return std::nullopt;  // no pictures: default rate
+  return due + (late / period_ + 1) * period_;
+}
+
+}  // namespace repel::teleop

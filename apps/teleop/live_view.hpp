@@ -1,0 +1,76 @@
+/// @file
+/// Sends the state of a run, or of several in a row, to the pages of the live view, and receives
+/// their commands.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <repel/loop/tap.hpp>
+#include <repel/visual/messages.hpp>
+#include <repel/visual/server.hpp>
+
+#include "controls.hpp"
+
+namespace repel::teleop {
+
+/// Reads the tap and forwards the commands of the pages to the controls. One page at a time drives.
+class LiveView final : public visual::PageHandler {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @param device name of the master that drives whenever no page does; empty: none
+  /// @param pages_drive false: pages may only watch
+  LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
+           const std::string& device, bool pages_drive);
+
+  void opened(int page, visual::Role role, visual::Pages& pages) override;
+  void heard(int page, std::string_view text, visual::Pages& pages) override;
+  void closed(int page, visual::Pages& pages) override;
+  void refresh(visual::Pages& pages) override;
+  /// Just after the tick that takes the next picture: serving a page during a tick would cost that
+  /// tick cycles and cache; between two ticks it costs nothing.
+  [[nodiscard]] std::optional<Clock::time_point> next_refresh() const override;
+
+ private:
+  static constexpr int nobody = 0;
+
+  /// Each executes the message; empty, or why it is refused.
+  [[nodiscard]] std::string obey(int page, const std::string& type, const nlohmann::json& message);
+  [[nodiscard]] std::string drive(int page, const std::string& type, const nlohmann::json& message);
+  [[nodiscard]] std::string conduct(const std::string& type, const nlohmann::json& message);
+  /// Why the page may not drive, pause, step or restart; empty: it may.
+  [[nodiscard]] std::string bar_of(int page) const;
+  void hand_over(Driver driver, int page);
+  void say_who_drives(visual::Pages& pages) const;
+  void read_samples();
+  void watch_driver(visual::Pages& pages);
+
+  visual::SceneInfo info_;
+  World world_;  ///< the initial world: names and shapes
+  Tap& tap_;
+  Controls& controls_;
+  std::string device_;
+  bool pages_drive_;
+  std::string greeting_;
+  std::chrono::nanoseconds period_;
+  visual::Timing timing_;
+  std::vector<TickSample> recent_;  ///< since the last picture was sent
+  std::map<int, visual::Role> open_pages_;
+  Driver driver_;
+  int page_ = nobody;  ///< the page that drives
+  bool silent_ = false;
+  bool was_running_ = true;
+  bool has_picture_ = false;
+  Clock::time_point heard_;
+  Clock::time_point shown_;
+  Clock::time_point next_timing_;
+};
+
+}  // namespace repel::teleop

@@ -1,0 +1,129 @@
+/// @file
+/// The operator of an arm: a script, a page, a device, or a recording.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <repel/loop/record.hpp>
+#include <repel/network/operator.hpp>
+
+#ifdef REPEL_TELEOP_DEVICES
+#include <repel/devices/device_thread.hpp>
+#endif
+
+#include "controls.hpp"
+#include "device.hpp"
+
+namespace repel::teleop {
+
+/// Plays the script by default. Once a page has taken control, the script is over: the hand follows
+/// the last post, and rests while nobody drives. A device drives from the start; a page can
+/// override it for a while if the controls allow it.
+class OperatorInput {
+ public:
+  /// [s] Timeouts of the driver: without a post for `rest_after` its rates count as zero; after
+  /// `silent_after` it is reported silent, and the fail-safe fades the forces. A driver posts at
+  /// least ten times a second.
+  static constexpr double rest_after = 0.1;
+  static constexpr double silent_after = 0.25;
+
+  /// @param controls null: no page can drive
+  /// @param device null: none
+  explicit OperatorInput(network::Script script, Controls* controls = nullptr,
+                         devices::DeviceLink* device = nullptr)
+      : script_(std::move(script)), controls_(controls), device_(device) {
+    if (device_ != nullptr) driver_ = Driver::device;
+  }
+
+  /// From now on replays the command of `record`, which must stay valid and is read at each tick.
+  void follow(const TickRecord& record) noexcept { recorded_ = &record; }
+
+  /// From now on the hand is at rest and silent, whoever drives: the fail-safe fades the forces.
+  void let_go() noexcept { has_let_go_ = true; }
+
+  [[nodiscard]] const network::Command& step(const Mat3& R_WT, double period) noexcept {
+    if (recorded_ != nullptr) {
+      command_ = recorded_->command;
+    } else if (has_let_go_) {
+      rest(period);
+    } else {
+      const bool listens = hear(period);
+      if (device_ != nullptr) feel(period, listens);
+      if (listens) listen(R_WT);
+      if (driver_ == Driver::script) command_ = script_.step(R_WT, period);
+    }
+    command_.phase = static_cast<std::int32_t>(phase());
+    return command_;
+  }
+
+  [[nodiscard]] std::size_t phase() const noexcept {
+    if (recorded_ != nullptr) return static_cast<std::size_t>(recorded_->phase);
+    return driver_ == Driver::script ? script_.phase() : script_.script().size();
+  }
+
+ private:
+  /// Keeps the direction of the lever, so that the force of its spring does not change direction.
+  void rest(double period) noexcept {
+    command_.hand.ball = {};
+    command_.hand.lever_rate = 0.0;
+    command_.sound = true;
+    command_.silent_for = std::max(silent_after, command_.silent_for + period);
+  }
+
+  /// True while the controls, and not the device, determine the command.
+  bool hear(double period) noexcept {
+    if (controls_ == nullptr) return false;
+    const bool heard = controls_->input.take();
+    unheard_ = heard ? 0.0 : unheard_ + period;
+    if (device_ == nullptr) return true;
+    return controls_->over_device && controls_->input.newest().driver == Driver::page;
+  }
+
+  void listen(const Mat3& R_WT) noexcept {
+    const DriverInput& input = controls_->input.newest();
+    driver_ = input.driver;
+    // Rates in tool axes are rotated to the world in every tick.
+    command_.hand.ball = input.in_tool ? rotated(R_WT, input.rates) : input.rates;
+    command_.hand.lever_rate = input.lever_rate;
+    command_.sound = is_finite(input.rates) && is_finite(input.direction_W) &&
+                     input.lever_rate - input.lever_rate == 0.0;
+    if (command_.sound) command_.hand.direction_W = input.direction_W;
+    if (!command_.sound || unheard_ > rest_after) {
+      command_.hand.ball = {};
+      command_.hand.lever_rate = 0.0;
+    }
+    command_.silent_for = driver_ == Driver::page && unheard_ > silent_after ? unheard_ : 0.0;
+  }
+
+  /// A device reports itself whether it is silent; it then counts as at rest. It is also read while
+  /// a page drives, so that no old data counts when the device takes over again.
+  void feel(double period, bool taken) noexcept {
+#ifdef REPEL_TELEOP_DEVICES
+    const devices::Measured& m = device_->measured(period);
+    if (taken) return;
+    driver_ = Driver::device;
+    command_.sound = true;
+    command_.hand.ball = m.measured_cv;
+    command_.hand.lever_rate = m.lever_rate;
+    if (m.lever_rate != 0.0) command_.hand.direction_W = m.lever_direction_W;
+    command_.silent_for = m.silent ? std::max(silent_after, device_->silent_for()) : 0.0;
+#else
+    (void)period;
+    (void)taken;
+#endif
+  }
+
+  network::ScriptedOperator script_;
+  Controls* controls_;
+  devices::DeviceLink* device_;
+  const TickRecord* recorded_ = nullptr;
+  Driver driver_ = Driver::script;
+  network::Command command_;
+  double unheard_ = 0.0;  ///< [s] since the last post
+  bool has_let_go_ = false;
+};
+
+}  // namespace repel::teleop

@@ -1,0 +1,86 @@
+#include "prepared_run.hpp"
+
+#include <pthread.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "arm_backend.hpp"
+#include "budget.hpp"
+#include "describe.hpp"
+#include "heap_guard.hpp"
+#include "machine.hpp"
+#include "system_call_guard.hpp"
+
+namespace repel::teleop {
+namespace {
+
+using std::chrono::nanoseconds;
+
+/// Start of a coprocessor thread, which only runs ticks.
+void begin_worker_in_lock_step(int index) noexcept {
+  char name[16];  // as shown by `ps -L` and /proc, up to 15 characters
+  (void)std::snprintf(name, sizeof name, "repel pairs %d", index);
+  (void)pthread_setname_np(pthread_self(), name);
+  SystemCallGuard::arm(Pauses::naps);
+  host::HeapGuard::watch_this_thread();
+  SystemCallGuard::watch_this_thread();
+}
+void begin_worker(int index) noexcept {
+  (void)host::follow_real_time();
+  begin_worker_in_lock_step(index);
+}
+
+CoprocessorOptions coprocessor_options(const scene::Budget& budget, const RunOptions& options) {
+  const nanoseconds period(std::llround(1e9 / options.rate_hz));
+  CoprocessorOptions result;
+  result.threads = options.threads;
+  result.patience = period / 4;
+  result.lock_step = options.fast;
+  result.on_thread_start = options.fast ? &begin_worker_in_lock_step : &begin_worker;
+  result.every_pair = options.every_pair;
+  result.budget.work_units = budget.work_units;
+  result.budget.max_age = budget.max_age;
+  // A wall-clock budget would make runs differ, so without real time only the counted budget
+  // applies.
+  if (!options.fast) {
+    result.budget.wall = nanoseconds(std::llround(1e3 * budget.wall_us));
+    if (result.budget.wall.count() > 0) result.patience = result.budget.wall + period / 20;
+  }
+  return result;
+}
+
+/// The scene with the changes made by the options.
+scene::Scene as_run(const scene::Scene& scene, const RunOptions& options) {
+  scene::Scene result = scene;
+  result.budget = budget_of(scene, options.budget, options.rate_hz);
+  if (options.tool_alone) {
+    result.robot.links.emplace();
+    for (scene::OtherArm& partner : result.partners) partner.robot.links.emplace();
+  }
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions& options,
+                                     const Recording* recording) {
+  scene::Scene changed = as_run(scene, options);
+  DescribedScene described =
+      describe(changed, options.rate_hz, arm_backend(options.backend).has_gravity);
+  described.cell.coprocessor = coprocessor_options(changed.budget, options);
+  for (ArmDescription& arm : described.cell.arms) arm.options.joints.touches = options.contact;
+  const bool refuses = described.cell.start_inside == StartInside::refuse;
+  // A recorded run was allowed to start.
+  if (recording != nullptr && refuses) described.cell.start_inside = StartInside::allow;
+  try {
+    return std::make_unique<PreparedRun>(std::move(changed), options, std::move(described.robots),
+                                         std::move(described.cell));
+  } catch (const SetupError& error) {
+    throw scene::located(scene, error);
+  }
+}
+
+}  // namespace repel::teleop

@@ -1,0 +1,40 @@
+/// @file
+/// A scene that is ready to run once.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <repel/cell/cell.hpp>
+#include <repel/robots/urdf.hpp>
+#include <repel/scene/scene.hpp>
+
+#include "recording.hpp"
+#include "run_options.hpp"
+
+namespace repel::teleop {
+
+/// The state that a run starts from and consumes.
+struct PreparedRun {
+  PreparedRun(scene::Scene changed, const RunOptions& run, std::vector<Robot> read,
+              CellDescription described)
+      : scene(std::move(changed)),
+        options(run),
+        robots(std::move(read)),
+        cell(std::move(described)) {}
+
+  scene::Scene scene;  ///< with the changes made by the options
+  RunOptions options;
+  std::vector<Robot> robots;  ///< of the arms, in their order
+  Cell cell;
+};
+
+/// Builds the cell of a scene, and starts the threads of its coprocessor.
+/// @param recording to be replayed; null: none
+/// @throws SetupError for a scene that cannot be built, with file and line
+[[nodiscard]] std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene,
+                                                   const RunOptions& options,
+                                                   const Recording* recording = nullptr);
+
+}  // namespace repel::teleop

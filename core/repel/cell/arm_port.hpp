@@ -1,0 +1,38 @@
+/// @file
+/// Adapter between a cell and an in-process arm, e.g. a simulation or a recording.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <repel/loop/record.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// Reads an arm before a tick and applies the resulting record after it. All memory is allocated at
+/// construction.
+class ArmPort {
+ public:
+  /// @param arm must outlive the port; it has `joints` joints
+  ArmPort(TorqueDrivenArm& arm, std::size_t joints) : arm_(&arm), q_(joints), v_(joints) {}
+
+  /// The present joint readings; valid until the next call.
+  [[nodiscard]] ArmReadings read() noexcept {
+    arm_->read_positions(q_);
+    arm_->read_velocities(v_);
+    return {q_, v_, arm_->state()};
+  }
+
+  void apply(const TickRecord& record) noexcept {
+    if (record.enable) arm_->enable();
+    arm_->set_torques(std::span(record.torques).first(q_.size()));
+    arm_->engage_brakes(record.brakes);
+  }
+
+ private:
+  TorqueDrivenArm* arm_;
+  std::vector<double> q_, v_;
+};
+
+}  // namespace repel

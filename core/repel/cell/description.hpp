@@ -1,0 +1,76 @@
+/// @file
+/// The description a cell is built from: plain structs, no file format.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <repel/base/limits.hpp>
+#include <repel/base/types.hpp>
+#include <repel/force/law.hpp>
+#include <repel/loop/options.hpp>
+#include <repel/loop/reciprocating_motion.hpp>
+#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/plan.hpp>
+#include <repel/reduction/shape.hpp>
+#include <repel/schedule/coprocessor.hpp>
+#include <repel/world/arm.hpp>
+#include <repel/world/arm_kinematics.hpp>
+
+namespace repel {
+
+/// A convex part P of an arm.
+struct ArmPart {
+  static constexpr int on_tool = -1;
+
+  std::string name;
+  Shape shape;
+  Pose X_FP = Pose::Identity();  ///< [m] in the tool frame, or in the frame of its link
+  int link = on_tool;            ///< index in ArmModel::links
+};
+
+/// An arm, its parts that are repelled by obstacles, and the network between operator and joints.
+struct ArmDescription {
+  std::string name;  ///< prefix of the names of its bodies and parts: "left" gives "left/tool"
+  ArmModel model;    ///< limits, efforts and friction of the joints; masses of the links
+  std::unique_ptr<ArmKinematics> kinematics;
+  std::vector<double> start;             ///< [rad] or [m]; empty: all at zero
+  std::vector<ArmPart> parts;            ///< of tool and links
+  std::optional<network::Plan> network;  ///< without one: `default_network`
+  std::optional<ForceLaw> self_law;      ///< between own parts that are two or more joints apart
+  std::vector<std::pair<int, int>> may_touch;  ///< indices of parts, excluded from `self_law`
+  ForceLaw law;  ///< between its parts and those of the arms before it in the list
+  TeleoperatorOptions options;
+};
+
+/// A convex part P of the environment.
+struct ObstacleDescription {
+  std::string name;
+  Shape shape;
+  Pose X_WP = Pose::Identity();                 ///< [m]
+  ForceLaw law{};                               ///< between it and every part of every arm
+  std::optional<ReciprocatingMotion> motion{};  ///< without one it is fixed
+};
+
+/// Handling of an arm that starts with a part of it inside an obstacle that is not passable.
+enum class StartInside {
+  refuse,    ///< SetupError
+  push_out,  ///< it starts, and is pushed out slowly
+  allow,     ///< it starts, with the normal wall force
+};
+
+/// Arms, operators and obstacles in one world.
+struct CellDescription {
+  double rate_hz = 400.0;  ///< [Hz] of the tick, 1 to 1e5
+  std::vector<ArmDescription> arms{};
+  std::vector<ObstacleDescription> obstacles{};
+  Limits limits{};                                            ///< capacities of the world
+  CoprocessorOptions coprocessor{};                           ///< its `period` is overwritten
+  network::GainCheck gain_check = network::GainCheck::error;  ///< for walls that are too stiff
+  StartInside start_inside = StartInside::refuse;
+};
+
+}  // namespace repel

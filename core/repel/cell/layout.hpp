@@ -1,0 +1,176 @@
+/// @file
+/// Adds arms and obstacles to a world, as bodies, parts and pairs.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/cell/description.hpp>
+#include <repel/loop/arm_bodies.hpp>
+#include <repel/loop/reciprocating_motion.hpp>
+#include <repel/reduction/separation.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel {
+
+/// The bodies and parts that represent an arm in a world.
+struct ArmLayout {
+  BodyId tool;
+  std::vector<LinkBody> links;  ///< only those that have parts
+  std::vector<PartId> parts;    ///< in the order of the description
+};
+
+namespace detail {
+
+/// The designation of an arm in messages.
+[[nodiscard]] inline std::string named(const ArmDescription& arm) {
+  return arm.name.empty() ? "the arm" : "arm '" + arm.name + "'";
+}
+
+/// Updates the kinematics of the arm to its start. @throws SetupError if the arm has no joints or
+/// kinematics, or the start has a wrong number of joints or violates a joint limit
+inline void start(ArmDescription& arm) {
+  const std::size_t joints = arm.model.links.size();
+  if (joints == 0) throw SetupError(named(arm) + ": it has no joint; allowed: 1 or more");
+  if (arm.kinematics == nullptr) {
+    throw SetupError(named(arm) + ": it has no kinematics; allowed: an ArmKinematics");
+  }
+  if (arm.start.empty()) arm.start.assign(joints, 0.0);
+  if (arm.start.size() != joints) {
+    throw SetupError("robot start: " + std::to_string(arm.start.size()) +
+                     " joints; allowed: " + std::to_string(joints) + ", one for each moving joint");
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const ArmLink& link = arm.model.links[i];
+    if (arm.start[i] >= link.lower && arm.start[i] <= link.upper) continue;
+    throw SetupError("robot start: " + to_text(arm.start[i], 6) + " for " + link.joint_name +
+                     "; allowed: " + to_text(link.lower, 6) + " to " + to_text(link.upper, 6));
+  }
+  arm.kinematics->update(arm.start);
+}
+
+/// The world pose of a part [m].
+[[nodiscard]] inline Pose pose_of(const World& world, const Part& part) {
+  return composed(world.motion().bodies[static_cast<std::size_t>(part.body.index)].X_WB, part.X_BP);
+}
+
+/// Adds the bodies and parts of an arm that is at its start. @throws SetupError for an unknown link
+/// or a link without a pose
+inline ArmLayout add_arm(World& world, const ArmDescription& arm) {
+  const std::string prefix = arm.name.empty() ? "" : arm.name + "/";
+  ArmLayout layout;
+  layout.tool = world.add_body(prefix + "tool", arm.kinematics->X_WT());
+  for (const ArmPart& part : arm.parts) {
+    BodyId body = layout.tool;
+    if (part.link != ArmPart::on_tool) {
+      const int last = static_cast<int>(arm.model.links.size()) - 1;
+      checked("link of part '" + part.name + "'", part.link, 0, last, "");
+      const auto same = [&](const LinkBody& link) { return link.link == part.link; };
+      auto at = std::find_if(layout.links.begin(), layout.links.end(), same);
+      if (at == layout.links.end()) {
+        const std::string& name = arm.model.links[static_cast<std::size_t>(part.link)].name;
+        const Pose X_WL = arm.kinematics->X_WL(part.link);
+        if (!is_finite(X_WL)) {
+          throw SetupError("link '" + name +
+                           "' has parts, but the kinematics give no pose of it (X_WL)");
+        }
+        layout.links.push_back({world.add_body(prefix + name, X_WL), part.link});
+        at = std::prev(layout.links.end());
+      }
+      body = at->body;
+    }
+    layout.parts.push_back(world.add_part(body, prefix + part.name, part.shape, part.X_FP));
+  }
+  return layout;
+}
+
+/// Adds the self-collision pairs of an arm: its parts that are two or more joints apart, except
+/// those in `may_touch`. @throws SetupError if two of them touch at the start
+inline void add_own_pairs(World& world, const ArmDescription& arm, const ArmLayout& layout) {
+  if (!arm.self_law) return;
+  const int last = static_cast<int>(arm.model.links.size()) - 1;
+  const auto link_of = [&](std::size_t part) {
+    const int link = arm.parts[part].link;
+    return link == ArmPart::on_tool ? last : link;
+  };
+  const auto may_touch = [&](std::size_t i, std::size_t k) {
+    const int a = static_cast<int>(i);
+    const int b = static_cast<int>(k);
+    return std::any_of(arm.may_touch.begin(), arm.may_touch.end(), [&](const auto& pair) {
+      return pair == std::pair(a, b) || pair == std::pair(b, a);
+    });
+  };
+  for (std::size_t k = 0; k < layout.parts.size(); ++k) {
+    for (std::size_t i = 0; i < k; ++i) {
+      if (std::abs(link_of(i) - link_of(k)) < 2 || may_touch(i, k)) continue;
+      const Part& a = world.part(layout.parts[i]);
+      const Part& b = world.part(layout.parts[k]);
+      if (separation(a.shape, pose_of(world, a), b.shape, pose_of(world, b)).lower <= 0.0) {
+        throw SetupError("robot: '" + a.name + "' and '" + b.name +
+                         "' meet where the arm starts; allowed: another start, or links that "
+                         "the srdf file disables");
+      }
+      world.add_pair(layout.parts[i], layout.parts[k], *arm.self_law);
+    }
+  }
+}
+
+/// Adds an obstacle and its pairs with all arms. @return the moving body; none for a fixed obstacle
+inline std::optional<MovingBody> add_obstacle(World& world, const ObstacleDescription& obstacle,
+                                              const std::vector<ArmLayout>& arms) {
+  std::optional<MovingBody> moving;
+  BodyId body = World::fixed;
+  Pose X_BP = obstacle.X_WP;
+  if (obstacle.motion) {
+    checked("obstacle '" + obstacle.name + "': duration of its motion", obstacle.motion->duration,
+            1e-3, 1e6, "s");
+    body = world.add_body(obstacle.name, obstacle.X_WP);
+    X_BP = Pose::Identity();
+    moving = MovingBody{body, obstacle.X_WP, *obstacle.motion};
+  }
+  const PartId id = world.add_part(body, obstacle.name, obstacle.shape, X_BP);
+  for (const ArmLayout& arm : arms) {
+    for (const PartId part : arm.parts) world.add_pair(part, id, obstacle.law);
+  }
+  return moving;
+}
+
+/// One message for each non-passable pair whose parts overlap by more than `touch` in the present
+/// motion of the world.
+[[nodiscard]] inline std::vector<std::string> overlaps(const World& world) {
+  constexpr double touch = 1e-6;  // [m] tolerance for parts that only touch, up to rounding
+  std::vector<std::string> sentences;
+  for (const Pair& pair : world.pairs()) {
+    if (pair.law.passable) continue;
+    const Part& a = world.part(pair.a);
+    const Part& b = world.part(pair.b);
+    const Separation s =
+        separation(a.shape, pose_of(world, a), b.shape, pose_of(world, b), {.ignore_beyond = 0.0});
+    if (!(s.upper < -touch)) continue;
+    sentences.push_back("'" + a.name + "' starts inside '" + b.name + "', " +
+                        to_text(-1e3 * s.upper, 3) + " mm deep or more");
+  }
+  return sentences;
+}
+
+/// @throws SetupError listing the first five of these messages, if there are any
+inline void require_clear_start(const std::vector<std::string>& overlaps) {
+  if (overlaps.empty()) return;
+  constexpr std::size_t most_named = 5;
+  std::string sentence;
+  for (std::size_t i = 0; i < std::min(overlaps.size(), most_named); ++i) {
+    sentence += (i == 0 ? "" : ", ") + overlaps[i];
+  }
+  if (overlaps.size() > most_named) {
+    sentence += ", and " + std::to_string(overlaps.size() - most_named) + " more";
+  }
+  throw SetupError(sentence + "; allowed: another 'start', or 'start_inside: push_out'");
+}
+
+}  // namespace detail
+
+}  // namespace repel

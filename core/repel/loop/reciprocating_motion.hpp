@@ -1,0 +1,43 @@
+/// @file
+/// Bodies with a prescribed motion: a box on a conveyor, a sliding door.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include <repel/base/spatial.hpp>
+#include <repel/base/vec.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel {
+
+/// Sinusoidal motion to and fro on a line: at rest at both ends, at the far end after half the
+/// duration.
+struct ReciprocatingMotion {
+  Vec3 along_W{0, 0, 0};  ///< [m] from where the body starts to the far end
+  double duration = 1.0;  ///< [s] there and back, above 0
+
+  /// Greatest speed [m/s].
+  [[nodiscard]] double top_speed() const noexcept {
+    return std::numbers::pi / duration * along_W.norm();
+  }
+};
+
+/// A body with a prescribed motion, whatever forces act on it.
+struct MovingBody {
+  BodyId body;
+  Pose X_WB = Pose::Identity();  ///< [m] where it starts
+  ReciprocatingMotion motion;
+
+  /// Places the body where it is `time` [s] after the start. False when the pose is invalid: the
+  /// body stays where it was.
+  [[nodiscard]] bool place(World& world, double time) const noexcept {
+    const double turn = 2.0 * std::numbers::pi / motion.duration;
+    Pose X = X_WB;
+    set_column(X, 3,
+               Vec<double>(origin(X_WB) + 0.5 * (1.0 - std::cos(turn * time)) * motion.along_W));
+    return world.place(body, X, {0.5 * turn * std::sin(turn * time) * motion.along_W, {0, 0, 0}});
+  }
+};
+
+}  // namespace repel

@@ -1,0 +1,111 @@
+/// @file
+/// Sums over pairs: forces and totals at one tick, and per-pair extremes since set-up.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <repel/base/ids.hpp>
+#include <repel/base/spatial.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel {
+
+/// Counts and extremes of the pairs of a block, or of the world, at one tick.
+struct PairTotals {
+  int near = 0;                 ///< pairs that may be within range; all with `every_pair`
+  int evaluated = 0;            ///< near pairs evaluated at this tick
+  int stale = 0;                ///< near pairs not evaluated: force from a bound by the last answer
+  std::int64_t oldest_age = 0;  ///< [ticks] longest wait of a stale pair for an evaluation
+  std::int64_t iterations = 0;  ///< support-map pairs evaluated
+  double nearest =
+      std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
+  PairId nearest_pair;
+  double deepest = 0.0;     ///< [m] proven upper bound of the penetration of all evaluated pairs
+  double peak_force = 0.0;  ///< [N] largest of one pair
+  PairId hardest_pair;      ///< the pair of `peak_force`; invalid while no pair exerts a force
+  int crowded = 0;          ///< pairs without a slot: the memory (`Limits::candidates`) was full
+  int expired = 0;          ///< stale pairs older than `Budget::max_age`: their force fades out
+  /// [J] Sum over stale pairs that were evaluated again: potential of the law at the assumed
+  /// distance minus that at the distance found. Upper bound of the energy their forces have added.
+  double refresh_energy = 0.0;
+
+  /// Updates `peak_force` with the force of a pair [N].
+  void note_force(double force, PairId pair) noexcept {
+    if (!(force > peak_force)) return;
+    peak_force = force;
+    hardest_pair = pair;
+  }
+
+  void add(const PairTotals& other) noexcept {
+    near += other.near;
+    evaluated += other.evaluated;
+    stale += other.stale;
+    oldest_age = std::max(oldest_age, other.oldest_age);
+    iterations += other.iterations;
+    if (other.nearest < nearest) {
+      nearest = other.nearest;
+      nearest_pair = other.nearest_pair;
+    }
+    deepest = std::max(deepest, other.deepest);
+    note_force(other.peak_force, other.hardest_pair);
+    crowded += other.crowded;
+    expired += other.expired;
+    refresh_energy += other.refresh_energy;
+  }
+};
+
+/// The forces of a set of pairs at one tick.
+struct PairForces {
+  std::int64_t tick = -1;       ///< of the motion they belong to
+  std::vector<Wrench> on_body;  ///< [N, N m] by BodyId, about each body's origin, world axes
+  /// [W] by BodyId: the power delivered to it by the motion of the bodies acting on it, the sum of
+  /// f.v at the contact points, v of the other body. Bodies at rest add nothing.
+  std::vector<double> carried;
+  PairTotals totals;
+
+  PairForces() = default;
+  explicit PairForces(int bodies) : on_body(bodies), carried(bodies, 0.0) {}
+
+  void clear() noexcept {
+    std::fill(on_body.begin(), on_body.end(), Wrench{});
+    std::fill(carried.begin(), carried.end(), 0.0);
+    totals = {};
+  }
+
+  /// Adds the equal and opposite forces between A and B, each about the origin of its own body.
+  void push(BodyId a, BodyId b, const Wrench& on_a, const Wrench& on_b,
+            const Motion& motion) noexcept {
+    on_body[a.index] += on_a;
+    on_body[b.index] += on_b;
+    carried[a.index] -= power(on_b, motion.bodies[b.index].V_WB);
+    carried[b.index] -= power(on_a, motion.bodies[a.index].V_WB);
+  }
+
+  /// Adds the forces of other pairs of the same world at the same tick.
+  void add(const PairForces& other) noexcept {
+    for (std::size_t i = 0; i < on_body.size(); ++i) {
+      on_body[i] += other.on_body[i];
+      carried[i] += other.carried[i];
+    }
+    totals.add(other.totals);
+  }
+};
+
+/// The extremes of one pair since set-up.
+struct PairExtremes {
+  double nearest =
+      std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
+  double peak_force = 0.0;                      ///< [N]
+  double deepest = 0.0;  ///< [m] proven upper bound of the penetration at all evaluations
+
+  void add(const PairExtremes& other) noexcept {
+    nearest = std::min(nearest, other.nearest);
+    peak_force = std::max(peak_force, other.peak_force);
+    deepest = std::max(deepest, other.deepest);
+  }
+};
+
+}  // namespace repel

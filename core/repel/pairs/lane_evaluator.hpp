@@ -1,0 +1,258 @@
+/// @file
+/// SIMD evaluation of those pairs of a block that are in range and whose nearest features are
+/// known.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <repel/pairs/lane_sum.hpp>
+#include <repel/pairs/single_evaluator.hpp>
+
+namespace repel::detail {
+
+/// Holds some of the pairs of a SingleEvaluator in groups of SIMD lanes; lanes are numbered
+/// consecutively across groups. There are no gaps: when a pair is removed, the last one takes its
+/// lane. The answer of a pair stays in its lane until the pair is removed or its group is not
+/// evaluated at a tick; then it is stored in the memory. All memory is allocated at construction.
+class LaneEvaluator {
+ public:
+  /// @param singles evaluates the pairs that are in no lane; owns the memory and forces of all
+  /// pairs
+  explicit LaneEvaluator(SingleEvaluator& singles)
+      : singles_(&singles),
+        slots_(memory().slots() + lane_count),
+        groups_((memory().slots() + lane_count - 1) / lane_count) {}
+
+  /// Pairs in lanes.
+  [[nodiscard]] int count() const noexcept { return count_; }
+  /// Groups with at least one pair.
+  [[nodiscard]] int groups() const noexcept { return (count_ + lane_count - 1) / lane_count; }
+  [[nodiscard]] const LaneGroup& group(int g) const noexcept { return groups_[g]; }
+  /// The slot of the pair in a lane.
+  [[nodiscard]] std::int32_t slot(int lane) const noexcept { return slots_[lane]; }
+
+  /// Begins a tick: marks all answers as not of this tick.
+  void begin_tick() noexcept {
+    for (int g = 0; g < groups(); ++g) groups_[g].begin_tick();
+  }
+
+  /// The last stored answer of a pair, in a lane or not.
+  [[nodiscard]] Separation separation_of(int slot) const noexcept {
+    const int lane = lane_of(slot);
+    if (!has_answer(lane)) return memory().answer(slot).last;
+    return group_of(lane).answer(index_of(lane)).last;
+  }
+  [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
+    PairExtremes extremes = memory().extremes(id);
+    const int slot = memory().slot_of(id);
+    const int lane = slot == PairMemory::none ? -1 : lane_of(slot);
+    if (lane >= 0) extremes.add(extremes_in(lane));
+    return extremes;
+  }
+  /// The pair at the tick of `motion`, if it was near then. Call after `remove_ended`.
+  [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
+    const int lane = lane_of(slot);
+    if (!has_answer(lane)) return singles_->near_pair(slot, motion);
+    const LaneGroup& group = group_of(lane);
+    const int k = index_of(lane);
+    return NearPair{memory().tracking(slot).pair, group.answer(k).last, group.force(k), false, 0};
+  }
+
+  /// Puts the pair into a lane if it was evaluated at this tick and can be evaluated there.
+  void add(int slot, const PartPoses& poses) noexcept {
+    if (!singles_->is_fresh(slot) || !fits(slot)) return;
+    memory().tracking(slot).lane = count_;
+    slots_[count_] = slot;
+    // The unused lanes behind it need valid data to compute with, too.
+    for (int k = index_of(count_); k < lane_count; ++k) {
+      groups_[count_ / lane_count].set(singles_->world(), k, singles_->pair(slot),
+                                       memory().history(slot).warm, poses, k == index_of(count_));
+    }
+    ++count_;
+  }
+
+  /// Removes the pair from its lane, if it has one.
+  void remove(int slot, const PartPoses& poses) noexcept {
+    const int lane = lane_of(slot);
+    if (lane < 0) return;
+    const int last = slots_[count_ - 1];
+    store(slot);
+    store(last);
+    memory().tracking(last).lane = lane;
+    memory().tracking(slot).lane = -1;
+    --count_;
+    slots_[lane] = slots_[count_];
+    groups_[count_ / lane_count].remove(index_of(count_));
+    if (lane < count_) {
+      groups_[lane / lane_count].set(singles_->world(), index_of(lane), singles_->pair(last),
+                                     memory().history(last).warm, poses, true);
+    }
+  }
+
+  void remove_all(const PartPoses& poses) noexcept {
+    while (count_ > 0) remove(slots_[count_ - 1], poses);
+  }
+
+  /// Evaluates the pairs of a group; falls back to single evaluation where the nearest feature has
+  /// changed.
+  void evaluate_group(int g, const Motion& motion, PartPoses& poses) noexcept {
+    LaneGroup& group = groups_[g];
+    const unsigned stale = group.stale();
+    for_each(stale, [&](int k) { singles_->note_assumed(slot_at(g, k), motion); });
+    group.evaluate(motion, poses);
+    PairTotals& totals = singles_->forces().totals;
+    const int answered = std::popcount(group.proven());
+    totals.evaluated += answered;
+    totals.iterations += answered;
+    const unsigned unproven = group.used() & ~group.proven();
+    if ((stale | unproven) == 0U) return;
+    for_each(stale & group.proven(), [&](int k) {
+      singles_->add_refresh_energy(slot_at(g, k), group.answer(k).proven());
+      memory().answer(slot_at(g, k)).is_stale = false;
+    });
+    for_each(unproven, [&](int k) {
+      const int slot = slot_at(g, k);
+      singles_->evaluate(slot, motion, poses);
+      if (fits(slot)) {
+        group.set_feature(singles_->world(), k, singles_->pair(slot), memory().history(slot).warm);
+      }
+    });
+  }
+
+  /// Adds the forces of all pairs in lanes.
+  void push(const Motion& motion) noexcept {
+    GroupExtremes extremes;
+    all_stay_ = true;
+    for (int g = 0; g < groups(); ++g) {
+      LaneGroup& group = groups_[g];
+      if (group.fresh()) {
+        extremes.add(group);
+        all_stay_ = all_stay_ && group.in_range() == group.used();
+        for_each(group.used() & ~group.proven(),
+                 [&](int k) { singles_->push(slot_at(g, k), motion); });
+        continue;
+      }
+      for_each(group.used(), [&](int k) {
+        store(slot_at(g, k));
+        group.set_stale(k);
+        singles_->push(slot_at(g, k), motion);
+      });
+    }
+    LaneSum(motion, singles_->forces()).add({groups_.data(), static_cast<std::size_t>(groups())});
+    PairTotals& totals = singles_->forces().totals;
+    if (extremes.peak_force() > totals.peak_force) note_hardest(extremes.peak_force());
+    if (extremes.nearest() < totals.nearest) note_nearest(extremes.nearest());
+  }
+
+  /// Removes from their lanes the pairs that have left their range or whose nearest features are no
+  /// longer known. Call after `push`.
+  void remove_ended(const PartPoses& poses) noexcept {
+    if (all_stay_) return;
+    for (int g = groups() - 1; g >= 0; --g) {
+      const LaneGroup& group = groups_[g];
+      const unsigned staying = group.fresh() ? group.in_range() : group.used();
+      if ((group.used() & ~staying) == 0U) continue;
+      for (int k = lane_count - 1; k >= 0; --k) {
+        if ((group.used() & ~staying & 1U << k) == 0U) continue;
+        const bool proven = (group.proven() >> k & 1U) != 0U;
+        if (proven || !fits(slot_at(g, k))) remove(slot_at(g, k), poses);
+      }
+    }
+  }
+
+  /// Repeats the last evaluation to warm the CPU caches, without other effects. Returns the number
+  /// of pairs evaluated.
+  int rehearse(int most, const Motion& motion, PartPoses& poses) noexcept {
+    int done = 0;
+    for (int g = 0; g < groups() && done < most; ++g) {
+      LaneGroup& group = groups_[g];
+      if (!group.fresh() || group.proven() != group.used()) continue;
+      group.evaluate(motion, poses);
+      done += std::min(lane_count, count_ - g * lane_count);
+    }
+    return done;
+  }
+
+ private:
+  [[nodiscard]] PairMemory& memory() noexcept { return singles_->memory(); }
+  [[nodiscard]] const PairMemory& memory() const noexcept { return singles_->memory(); }
+
+  [[nodiscard]] int lane_of(int slot) const noexcept { return memory().tracking(slot).lane; }
+  [[nodiscard]] const LaneGroup& group_of(int lane) const noexcept {
+    return groups_[lane / lane_count];
+  }
+  [[nodiscard]] static int index_of(int lane) noexcept { return lane % lane_count; }
+  [[nodiscard]] int slot_at(int g, int k) const noexcept { return slots_[g * lane_count + k]; }
+  [[nodiscard]] PairId pair_at(int g, int k) const noexcept {
+    return memory().tracking(slot_at(g, k)).pair;
+  }
+  /// The newest answer of the pair in that lane is in the lane, not in the memory.
+  [[nodiscard]] bool has_answer(int lane) const noexcept {
+    return lane >= 0 && (group_of(lane).proven() >> index_of(lane) & 1U) != 0U;
+  }
+  [[nodiscard]] PairExtremes extremes_in(int lane) const noexcept {
+    const LaneGroup& group = group_of(lane);
+    return {.nearest = group.nearest(index_of(lane)), .peak_force = group.peak(index_of(lane))};
+  }
+  /// Calls f(k) for each set bit k.
+  template <class F>
+  static void for_each(unsigned bits, const F& f) noexcept {
+    for (; bits != 0U; bits &= bits - 1U) f(std::countr_zero(bits));
+  }
+
+  /// Notes `distance` [m], the least of this tick, and finds the pair it belongs to.
+  void note_nearest(double distance) noexcept {
+    PairTotals& totals = singles_->forces().totals;
+    totals.nearest = distance;
+    for (int g = 0; g < groups(); ++g) {
+      if (!groups_[g].fresh()) continue;
+      for_each(groups_[g].proven(), [&](int k) {
+        if (groups_[g].distance(k) == distance) totals.nearest_pair = pair_at(g, k);
+      });
+    }
+  }
+
+  /// Notes `force` [N], the largest of this tick, and finds the pair it belongs to.
+  void note_hardest(double force) noexcept {
+    for (int g = 0; g < groups(); ++g) {
+      if (!groups_[g].fresh()) continue;
+      for_each(groups_[g].used(), [&](int k) {
+        if (groups_[g].force(k) == force) {
+          singles_->forces().totals.note_force(force, pair_at(g, k));
+        }
+      });
+    }
+  }
+
+  /// The pair can be evaluated in a lane.
+  [[nodiscard]] bool fits(int slot) const noexcept {
+    const Pair& p = singles_->pair(slot);
+    const World& world = singles_->world();
+    return memory().answer(slot).in_range && !p.law.passable && !memory().is_temporary(slot) &&
+           has_feature(memory().history(slot).warm) &&
+           are_angular(world.part(p.a).shape.level(0), world.part(p.b).shape.level(0));
+  }
+
+  /// Copies answer and extremes from the lane of a pair to the memory.
+  void store(int slot) noexcept {
+    const int lane = lane_of(slot);
+    memory().extremes(memory().tracking(slot).pair).add(extremes_in(lane));
+    if (!has_answer(lane)) return;
+    LaneGroup& group = groups_[lane / lane_count];
+    singles_->store(slot, group.answer(index_of(lane)));
+    group.discard_answer(index_of(lane));
+  }
+
+  SingleEvaluator* singles_;
+  int count_ = 0;
+  std::vector<std::int32_t> slots_;  ///< by lane
+  std::vector<LaneGroup> groups_;
+  bool all_stay_ = true;  ///< no pair has to be removed from its lane after this tick
+};
+
+}  // namespace repel::detail

@@ -1,0 +1,236 @@
+/// @file
+/// Pairs within range whose nearest features are known, one per SIMD lane: their answers and forces
+/// are computed together.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include <repel/distance/feature_lanes.hpp>
+#include <repel/force/law_lanes.hpp>
+#include <repel/pairs/pair_answer.hpp>
+#include <repel/pairs/part_poses.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel::detail {
+
+/// One side of the pairs of a group: the parts and the bodies they belong to.
+class LaneBodies {
+ public:
+  void set(const World& world, int k, PartId part) noexcept {
+    parts_[index(k)] = part;
+    bodies_[index(k)] = world.part(part).body;
+    same_body_ = std::all_of(bodies_.begin(), bodies_.end(),
+                             [&](BodyId body) { return body == bodies_[0]; });
+  }
+  /// All lanes have the same body: that of lane 0.
+  [[nodiscard]] bool same_body() const noexcept { return same_body_; }
+  [[nodiscard]] BodyId body(int k) const noexcept { return bodies_[index(k)]; }
+  /// All lanes have the fixed body.
+  [[nodiscard]] bool are_fixed() const noexcept { return same_body_ && bodies_[0] == World::fixed; }
+  [[nodiscard]] LanePose poses(PartPoses& of, const Motion& motion) const noexcept {
+    std::array<const Pose*, lane_count> X_WP;
+    for (std::size_t k = 0; k < X_WP.size(); ++k) X_WP[k] = &of.at(parts_[k], motion);
+    return LanePose::of(X_WP);
+  }
+  [[nodiscard]] const BodyState& state(const Motion& motion, int k) const noexcept {
+    return motion.bodies[bodies_[index(k)].index];
+  }
+
+ private:
+  [[nodiscard]] static std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
+
+  std::array<PartId, lane_count> parts_{};
+  std::array<BodyId, lane_count> bodies_{};
+  bool same_body_ = false;
+};
+
+/// As many pairs as there are lanes, their answers and forces at one tick. The result of a lane
+/// depends only on its own pair.
+class LaneGroup {
+ public:
+  /// Assigns lane k to a pair of polytopes, rounded or not, whose law is not passable.
+  /// @param warm with a known nearest feature of the level-0 shapes
+  /// @param used false for a lane without a pair, which only needs valid data to compute with
+  void set(const World& world, int k, const Pair& pair, const WarmStart& warm,
+           const PartPoses& poses, bool used) noexcept {
+    used_[k] = used ? -1 : 0;
+    of_a_.set(world, k, pair.a);
+    of_b_.set(world, k, pair.b);
+    features_.A.X_W.set(k, poses.last(pair.a));
+    features_.B.X_W.set(k, poses.last(pair.b));
+    law_.set(k, pair.law);
+    depth_a_[k] = world.part(pair.a).shape.level(0).depth;
+    depth_b_[k] = world.part(pair.b).shape.level(0).depth;
+    nearest_[k] = std::numeric_limits<double>::infinity();
+    peak_[k] = 0.0;
+    stale_ &= ~(1U << k);
+    set_feature(world, k, pair, warm);
+  }
+
+  /// Changes the feature of the pair in lane k and discards its answer.
+  void set_feature(const World& world, int k, const Pair& pair, const WarmStart& warm) noexcept {
+    features_.set(k, world.part(pair.a).shape.level(0).core, world.part(pair.b).shape.level(0).core,
+                  warm);
+    fixed_are_turned_ = false;
+    discard_answer(k);
+  }
+
+  /// Computes the answers and forces of all lanes.
+  [[gnu::noinline, gnu::flatten]] void evaluate(const Motion& motion, PartPoses& poses) noexcept {
+    update_poses(of_a_, features_.A, motion, poses);
+    update_poses(of_b_, features_.B, motion, poses);
+    fixed_are_turned_ = true;
+    const LaneGap gap = features_.prove(options);
+    apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
+    compute_forces(motion, gap.proven & used_);
+    tick_ = motion.tick;
+    fresh_ = true;
+    stale_ = 0;
+  }
+
+  /// Bit k: lane k has a pair.
+  [[nodiscard]] unsigned used() const noexcept { return bits_of(used_); }
+  /// Bit k: the lane is used and its feature was proven the nearest at the last evaluation, so that
+  /// it has an answer.
+  [[nodiscard]] unsigned proven() const noexcept { return proven_; }
+  /// Bit k: the lane is proven and was within range.
+  [[nodiscard]] unsigned in_range() const noexcept { return in_range_; }
+  /// The answers are of this tick, provided that `begin_tick` is called at the start of each.
+  [[nodiscard]] bool fresh() const noexcept { return fresh_; }
+  void begin_tick() noexcept { fresh_ = false; }
+  /// Bit k: a force was computed from the answer of lane k at a later tick.
+  [[nodiscard]] unsigned stale() const noexcept { return stale_; }
+  void set_stale(int k) noexcept { stale_ |= 1U << k; }
+  /// Marks lane k as unused.
+  void remove(int k) noexcept {
+    used_[k] = 0;
+    discard_answer(k);
+  }
+  void discard_answer(int k) noexcept {
+    proven_ &= ~(1U << k);
+    in_range_ &= ~(1U << k);
+  }
+
+  /// All pairs belong to the same two bodies, those of lane 0.
+  [[nodiscard]] bool same_bodies() const noexcept { return of_a_.same_body() && of_b_.same_body(); }
+  [[nodiscard]] BodyId body_a(int k) const noexcept { return of_a_.body(k); }
+  [[nodiscard]] BodyId body_b(int k) const noexcept { return of_b_.body(k); }
+  /// [N], [N m] on the bodies A, about the origin of each; zero for pairs out of range.
+  [[nodiscard]] const LaneVec& force() const noexcept { return force_W_; }
+  [[nodiscard]] const LaneVec& torque() const noexcept { return torque_W_; }
+  /// [N] The magnitude of each force, and [m] the distances, infinite in lanes not proven.
+  [[nodiscard]] const Lanes& sizes() const noexcept { return size_; }
+  [[nodiscard]] const Lanes& distances() const noexcept { return distance_if_proven_; }
+  [[nodiscard]] double distance(int k) const noexcept { return distance_if_proven_[k]; }
+  [[nodiscard]] double force(int k) const noexcept { return size_[k]; }
+  /// [m], [N] The least distance and the largest force of lane k since it was set.
+  [[nodiscard]] double nearest(int k) const noexcept { return nearest_[k]; }
+  [[nodiscard]] double peak(int k) const noexcept { return peak_[k]; }
+
+  [[nodiscard]] PairAnswer answer(int k) const noexcept {
+    PairAnswer answer;
+    answer.last = {apart_.distance[k],
+                   apart_.lower[k],
+                   apart_.upper[k],
+                   apart_.p_WA.at(k),
+                   apart_.p_WB.at(k),
+                   apart_.extraction_W.at(k),
+                   0,
+                   1,
+                   QueryEnd::converged};
+    answer.p_AQ_W = p_AQ_W_.at(k);
+    answer.p_BA_W = p_BA_W_.at(k);
+    answer.turn = turn_[k];
+    answer.tick = tick_;
+    answer.waits_since = tick_;
+    answer.in_range = (in_range_ >> k & 1U) != 0U;
+    answer.force = size_[k];
+    return answer;
+  }
+
+ private:
+  static constexpr QueryOptions options{};
+
+  void update_poses(const LaneBodies& bodies, LaneSets& sets, const Motion& motion,
+                    PartPoses& poses) const noexcept {
+    const bool are_fixed = bodies.are_fixed();
+    if (!are_fixed) sets.X_W = bodies.poses(poses, motion);
+    if (!are_fixed || !fixed_are_turned_) sets.turn();
+  }
+
+  [[nodiscard]] RelativeMotion<Lanes, LaneVec> relative_motions(
+      const Motion& motion) const noexcept {
+    const auto one = [&](int k) {
+      return relative_motion(of_a_.state(motion, k), of_b_.state(motion, k));
+    };
+    if (same_bodies()) return in_all_lanes(one(0));
+    RelativeMotion<Lanes, LaneVec> each;
+    for (int k = 0; k < lane_count; ++k) set_lane(each, k, one(k));
+    return each;
+  }
+
+  void compute_forces(const Motion& motion, const LaneMask& proven) noexcept {
+    const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
+    p_AQ_W_ = apart_.p_WA - relative.p_WoA;
+    p_BA_W_ = relative.p_BA_W;
+    turn_ = relative.turn;
+    const Lanes distance = proven_distance(apart_.distance, apart_.lower);
+    const LaneMask in_range = proven & (distance < law_.range);
+    proven_ = bits_of(proven);
+    in_range_ = bits_of(in_range);
+    const Lanes none{};
+    // With the lever arm p = p_AQ_W, the rate n.(v + w x p) equals n.v + w.(p x n); p x n is reused
+    // for the torque.
+    const LaneVec n = either(in_range, apart_.extraction_W, LaneVec{});
+    const LaneVec moment = either(in_range, cross(p_AQ_W_, apart_.extraction_W), LaneVec{});
+    const Lanes rate = dot(n, relative.v_BA_W) + dot(relative.w_BA_W, moment);
+    size_ = in_range ? law_(distance, rate) : none;
+    force_W_ = size_ * n;
+    torque_W_ = size_ * moment;
+    distance_if_proven_ =
+        proven ? apart_.distance : all_of(std::numeric_limits<double>::infinity());
+    nearest_ = smaller(nearest_, distance_if_proven_);
+    peak_ = larger(peak_, size_);
+  }
+
+  LaneBodies of_a_, of_b_;
+  FeatureLanes features_;
+  bool fixed_are_turned_ = false;  ///< corners of fixed parts are already rotated into world axes
+  LawLanes law_;
+  LaneMask used_{};
+  Lanes depth_a_{}, depth_b_{};    ///< [m] rounding radius of the shapes
+  Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
+  // The members of PairAnswer.
+  LaneVec p_AQ_W_{}, p_BA_W_{};
+  Lanes turn_{};
+  std::int64_t tick_ = PairAnswer::never;
+  unsigned proven_ = 0;
+  unsigned in_range_ = 0;
+  unsigned stale_ = 0;
+  bool fresh_ = false;
+  Lanes size_{};                    ///< [N] magnitude of the force
+  LaneVec force_W_{}, torque_W_{};  ///< [N], [N m] on A, about the origin of its body
+  Lanes distance_if_proven_{};      ///< [m]
+  Lanes nearest_{}, peak_{};
+};
+
+/// The extremes of several groups.
+class GroupExtremes {
+ public:
+  void add(const LaneGroup& group) noexcept {
+    sizes_ = larger(sizes_, group.sizes());
+    distances_ = smaller(distances_, group.distances());
+  }
+  /// [N] The largest force of one pair, and [m] the least distance.
+  [[nodiscard]] double peak_force() const noexcept { return largest_of(sizes_); }
+  [[nodiscard]] double nearest() const noexcept { return least_of(distances_); }
+
+ private:
+  Lanes sizes_{};
+  Lanes distances_ = all_of(std::numeric_limits<double>::infinity());
+};
+
+}  // namespace repel::detail

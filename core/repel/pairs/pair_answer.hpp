@@ -1,0 +1,56 @@
+/// @file
+/// The result of the last evaluation of a pair, and the distance bound it gives at a later tick.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include <repel/pairs/pair_geometry.hpp>
+#include <repel/reduction/answer.hpp>
+
+namespace repel::detail {
+
+/// The data the force of a pair is computed from, at the tick of its evaluation and later.
+struct PairAnswer {
+  Separation last;
+  double slope = 1.0;         ///< of the distance along the extraction; passable pairs only
+  Vec3 p_AQ_W{0, 0, 0};       ///< [m] witness point on A, from the origin of body A
+  Vec3 p_BA_W{0, 0, 0};       ///< [m] origin of body A from that of body B at the evaluation
+  double turn = 0.0;          ///< [m] both bodies' BodyState::turn at the evaluation
+  std::int64_t tick = never;  ///< of the motion that was evaluated
+  std::int64_t evaluated_at = never;  ///< the same on the tick counter of the evaluator
+  std::int64_t pushed_at = never;     ///< last time a force was computed from it, same counter
+  std::int64_t waits_since = 0;       ///< [ticks] since when the pair is near but not evaluated
+  bool in_range = false;              ///< of its law, at the evaluation
+  bool is_stale = false;              ///< a force was computed from it at a later tick
+  double assumed = 0.0;  ///< [m] for a stale pair about to be evaluated: see `note_assumed`
+  double force = 0.0;    ///< [N] last computed from it
+
+  static constexpr std::int64_t never = INT64_MIN;
+
+  [[nodiscard]] bool known() const noexcept { return tick > never; }
+  /// A signed distance [m] that is not larger than the true one. The measured distance of a query
+  /// that ran out of budget has no matching direction: only its lower bound is used.
+  [[nodiscard]] double proven() const noexcept {
+    return cut_short() ? last.lower : proven_distance(last.distance, last.lower);
+  }
+
+  /// Conservative lower bound of the signed distance [m] now. If the shapes were apart, the
+  /// separating plane remains valid when shifted by the relative motion along its normal; in
+  /// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
+  /// increase of `turn` in both cases. No answer is deeper than the last levels of both shapes.
+  /// @param deepest [m] largest penetration depth of any answer, positive
+  [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B,
+                                   double deepest) const noexcept {
+    const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
+    const bool separated = last.lower > 0.0 && !cut_short();
+    const double along = separated ? last.extraction_W.dot(moved) : -moved.norm();
+    const double now = proven() + along - (A.turn + B.turn - turn);
+    return now > 0.0 ? now : std::max(now, -deepest);
+  }
+
+ private:
+  [[nodiscard]] bool cut_short() const noexcept { return last.end == QueryEnd::budget_spent; }
+};
+
+}  // namespace repel::detail

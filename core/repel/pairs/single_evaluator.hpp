@@ -1,0 +1,278 @@
+/// @file
+/// Evaluates pairs one by one, and computes forces from their answers, fresh or stale.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include <repel/pairs/near_pair.hpp>
+#include <repel/pairs/pair_memory.hpp>
+#include <repel/pairs/part_poses.hpp>
+#include <repel/reduction/separation.hpp>
+
+namespace repel::detail {
+
+/// Owns the memory and the forces of a block of pairs. A pair is identified by its slot in the
+/// memory. All memory is allocated at construction.
+class SingleEvaluator {
+ public:
+  /// @param slots largest number of pairs with a slot, at least 0
+  /// @param max_age [ticks] `Budget::max_age`
+  SingleEvaluator(const World& world, PairPartition partition, int slots, std::int64_t max_age)
+      : world_(&world), max_age_(max_age), memory_(world, partition, slots) {
+    forces_ = PairForces(world.body_count());
+  }
+
+  /// Begins a tick: clears the forces and marks all answers as not of this tick.
+  void begin_tick(std::int64_t tick) noexcept {
+    if (forces_.totals.near > 0 || forces_.totals.crowded > 0) forces_.clear();
+    forces_.tick = tick;
+    ++now_;
+  }
+
+  [[nodiscard]] const World& world() const noexcept { return *world_; }
+  [[nodiscard]] PairMemory& memory() noexcept { return memory_; }
+  [[nodiscard]] const PairMemory& memory() const noexcept { return memory_; }
+  [[nodiscard]] PairForces& forces() noexcept { return forces_; }
+  [[nodiscard]] const PairForces& forces() const noexcept { return forces_; }
+
+  [[nodiscard]] const Pair& pair(int slot) const noexcept {
+    return world_->pair(memory_.tracking(slot).pair);
+  }
+  [[nodiscard]] const BodyState& body_a(int slot, const Motion& motion) const noexcept {
+    return motion.bodies[memory_.tracking(slot).body_a.index];
+  }
+  [[nodiscard]] const BodyState& body_b(int slot, const Motion& motion) const noexcept {
+    return motion.bodies[memory_.tracking(slot).body_b.index];
+  }
+
+  /// False while the summed travel of both bodies is below the clearance of the pair: then it
+  /// cannot have come within range. Cost: one comparison.
+  [[nodiscard]] bool is_due(int slot, const Motion& motion) const noexcept {
+    return body_a(slot, motion).travel + body_b(slot, motion).travel >=
+           memory_.tracking(slot).due_at;
+  }
+
+  /// Sets the summed travel [m] of both bodies before which the pair cannot be within range. A
+  /// larger clearance set earlier remains in force.
+  void set_clearance(int slot, const Motion& motion, double clearance) noexcept {
+    if (!(clearance > 0.0)) return;
+    double& due_at = memory_.tracking(slot).due_at;
+    const double travel = body_a(slot, motion).travel + body_b(slot, motion).travel;
+    due_at = std::max(due_at, travel + clearance);
+  }
+
+  /// Conservative lower bound of the signed distance [m] now, from the last answer.
+  [[nodiscard]] double lower_bound(int slot, const Motion& motion) const noexcept {
+    const Pair& p = pair(slot);
+    const double deepest = world_->part(p.a).shape.deepest() + world_->part(p.b).shape.deepest();
+    return memory_.answer(slot).lower_bound(body_a(slot, motion), body_b(slot, motion), deepest);
+  }
+
+  /// [m] The part of the reduction of that bound that is due to rotation of the bodies.
+  [[nodiscard]] double lost_to_rotation(int slot, const Motion& motion) const noexcept {
+    return body_a(slot, motion).turn + body_b(slot, motion).turn - memory_.answer(slot).turn;
+  }
+
+  /// Another lower bound [m]: the present distance of the shapes along the extraction direction of
+  /// the last answer. Cost: one evaluation of both support maps.
+  [[nodiscard]] double lower_bound_by_shapes(int slot, const Motion& motion,
+                                             PartPoses& poses) const noexcept {
+    const Pair& p = pair(slot);
+    return -overlap_along(memory_.answer(slot).last.extraction_W, world_->part(p.a).shape,
+                          poses.at(p.a, motion), world_->part(p.b).shape, poses.at(p.b, motion)) -
+           rounding;
+  }
+
+  /// Time to contact [s] at the present velocities: the key of urgency, smallest first. Negative in
+  /// overlap, 1e9 for separating pairs.
+  [[nodiscard]] double time_to_touch(int slot, const Motion& motion) const noexcept {
+    const double closing = -memory_.answer(slot).last.extraction_W.dot(velocity(slot, motion));
+    const double distance = lower_bound(slot, motion);
+    return closing > 0.0 || distance < 0.0 ? distance / std::max(closing, 1e-3) : 1e9;
+  }
+
+  /// Removes the pair, which is out of reach, from its list.
+  void remove_from_list(int slot) noexcept {
+    memory_.answer(slot).in_range = false;
+    memory_.remove_from_list(slot);
+  }
+
+  /// Stores `answer`, from which a force was computed at the last tick, as the answer of the pair.
+  void store(int slot, const PairAnswer& answer) noexcept {
+    memory_.answer(slot) = answer;
+    memory_.answer(slot).pushed_at = now_ - 1;
+  }
+
+  /// The pair was evaluated since `begin_tick`.
+  [[nodiscard]] bool is_fresh(int slot) const noexcept {
+    return memory_.answer(slot).evaluated_at == now_;
+  }
+
+  /// For a pair that comes within range: discards its warm start, so that its forces depend only on
+  /// its motion within range, not on how often it was evaluated before.
+  void clear_history(int slot) noexcept { memory_.history(slot) = {}; }
+
+  /// Evaluates the pair of a slot.
+  void evaluate(int slot, const Motion& motion, PartPoses& poses) noexcept {
+    PairAnswer& answer = memory_.answer(slot);
+    note_assumed(slot, motion);
+    const WarmStart& warm = memory_.history(slot).warm;
+    const bool is_warm = warm.size > 0 || warm.level_a > 0;
+    answer.last = query(slot, motion, poses, memory_.history(slot).warm);
+    ++forces_.totals.evaluated;
+    forces_.totals.iterations += answer.last.iterations;
+    if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).law.range + rounding) {
+      clear_history(slot);
+      answer.last = query(slot, motion, poses, memory_.history(slot).warm);
+      forces_.totals.iterations += answer.last.iterations;
+    }
+    complete(slot, motion, poses);
+  }
+
+  /// Repeats the query of the last tick to warm the CPU caches, without other effects.
+  void rehearse(int slot, const PartPoses& poses) const noexcept {
+    WarmStart warm = memory_.history(slot).warm;
+    const Pair& p = pair(slot);
+    (void)separation(world_->part(p.a).shape, poses.last(p.a), world_->part(p.b).shape,
+                     poses.last(p.b), {}, warm);
+  }
+
+  /// Adds the force of the pair on both bodies: at the distance of its answer if that is fresh,
+  /// else at the conservative lower bound for now.
+  void push(int slot, const Motion& motion) noexcept {
+    PairAnswer& answer = memory_.answer(slot);
+    answer.is_stale = answer.evaluated_at != now_;
+    // The time out of reach does not count as waiting for an evaluation.
+    if (answer.pushed_at != now_ - 1) answer.waits_since = motion.tick - 1;
+    answer.pushed_at = now_;
+    if (!answer.is_stale) {
+      answer.waits_since = motion.tick;
+      return push_at(answer.proven(), 1.0, slot, motion);
+    }
+    const std::int64_t age = motion.tick - answer.waits_since;
+    PairTotals& totals = forces_.totals;
+    ++totals.stale;
+    totals.oldest_age = std::max(totals.oldest_age, age);
+    totals.expired += age > max_age_ ? 1 : 0;
+    const double fade = static_cast<double>(age - max_age_) / static_cast<double>(max_age_);
+    push_at(lower_bound(slot, motion), 1.0 - std::clamp(fade, 0.0, 1.0), slot, motion);
+  }
+
+  /// The pair for a display; nullopt if at the tick of `motion` it was neither evaluated nor
+  /// `push`ed.
+  [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
+    const PairAnswer& answer = memory_.answer(slot);
+    const bool stale = answer.tick != motion.tick;
+    if (stale && answer.pushed_at != now_) return std::nullopt;
+    return NearPair{memory_.tracking(slot).pair, answer.last, answer.force, stale,
+                    stale ? motion.tick - answer.waits_since : 0};
+  }
+
+  /// Call before a stale pair is evaluated: notes the bound from which its force would be computed
+  /// at this tick without the evaluation.
+  void note_assumed(int slot, const Motion& motion) noexcept {
+    PairAnswer& answer = memory_.answer(slot);
+    if (answer.is_stale) answer.assumed = lower_bound(slot, motion);
+  }
+  /// Call after that evaluation: adds to `PairTotals::refresh_energy`.
+  /// @param distance [m] the distance found
+  void add_refresh_energy(int slot, double distance) noexcept {
+    const ForceLaw& law = pair(slot).law;
+    const double assumed = memory_.answer(slot).assumed;
+    forces_.totals.refresh_energy +=
+        std::max(0.0, law.potential(assumed) - law.potential(distance));
+  }
+
+ private:
+  /// [m] Exceeds the difference between any two answers to the same query.
+  static constexpr double rounding = 1e-9;
+
+  [[nodiscard]] Separation query(int slot, const Motion& motion, PartPoses& poses,
+                                 WarmStart& warm) noexcept {
+    const Pair& p = pair(slot);
+    return separation(world_->part(p.a).shape, poses.at(p.a, motion), world_->part(p.b).shape,
+                      poses.at(p.b, motion), {}, warm);
+  }
+
+  /// Fills in the rest of the answer after a new query and updates the totals.
+  void complete(int slot, const Motion& motion, PartPoses& poses) noexcept {
+    const Pair& p = pair(slot);
+    PairAnswer& answer = memory_.answer(slot);
+    PairTotals& totals = forces_.totals;
+    if (p.law.passable) {
+      int iterations = 0;
+      answer.slope = slope_of(answer.last, world_->part(p.a).shape, poses.at(p.a, motion),
+                              world_->part(p.b).shape, poses.at(p.b, motion), {},
+                              memory_.history(slot).warm, iterations);
+      totals.iterations += iterations;
+    } else if (answer.is_stale) {
+      add_refresh_energy(slot, answer.proven());
+    }
+    const auto relative = relative_motion(body_a(slot, motion), body_b(slot, motion));
+    answer.p_AQ_W = answer.last.p_WA - to_vec3(relative.p_WoA);
+    answer.p_BA_W = to_vec3(relative.p_BA_W);
+    answer.turn = relative.turn;
+    answer.tick = motion.tick;
+    answer.evaluated_at = now_;
+    answer.in_range = answer.proven() < p.law.range;
+    set_clearance(slot, motion, answer.last.lower - p.law.range);
+    const PairId id = memory_.tracking(slot).pair;
+    const double deepest = std::max(0.0, -answer.last.lower);
+    totals.deepest = std::max(totals.deepest, deepest);
+    memory_.extremes(id).add({.nearest = answer.last.distance, .deepest = deepest});
+    if (answer.last.distance < totals.nearest) {
+      totals.nearest = answer.last.distance;
+      totals.nearest_pair = id;
+    }
+  }
+
+  /// [m] The witness point of the last answer relative to the present origin of body B.
+  [[nodiscard]] Vec3 arm_b(int slot, const Motion& motion) const noexcept {
+    return memory_.answer(slot).p_AQ_W + origin(body_a(slot, motion).X_WB) -
+           origin(body_b(slot, motion).X_WB);
+  }
+
+  /// Velocity of A relative to B [m/s] at the witness point of the last answer.
+  [[nodiscard]] Vec3 velocity(int slot, const Motion& motion) const noexcept {
+    return moved_to(body_a(slot, motion).V_WB, memory_.answer(slot).p_AQ_W).linear -
+           moved_to(body_b(slot, motion).V_WB, arm_b(slot, motion)).linear;
+  }
+
+  /// Adds the force of the pair at that distance [m], scaled by `share`.
+  void push_at(double distance, double share, int slot, const Motion& motion) noexcept {
+    const ForceLaw& law = pair(slot).law;
+    memory_.answer(slot).force = 0.0;
+    if (!(distance < law.range)) return;
+    const PairAnswer& answer = memory_.answer(slot);
+    const Vec3& n = answer.last.extraction_W;
+    const Vec3 v_BA = velocity(slot, motion);
+    double size = 0.0;
+    Vec3 f;
+    if (law.passable) {
+      const double travel = body_a(slot, motion).travel + body_b(slot, motion).travel;
+      f = share *
+          memory_.history(slot).passage.force(law, distance, answer.slope * n, travel, v_BA);
+      size = f.norm();
+    } else {
+      size = share * law(distance, n.dot(v_BA));
+      f = size * n;
+    }
+    memory_.answer(slot).force = size;
+    const PairTracking& tracking = memory_.tracking(slot);
+    forces_.totals.note_force(size, tracking.pair);
+    double& peak = memory_.extremes(tracking.pair).peak_force;
+    peak = std::max(peak, size);
+    forces_.push(tracking.body_a, tracking.body_b, wrench_of_force(f, answer.p_AQ_W),
+                 wrench_of_force(-f, arm_b(slot, motion)), motion);
+  }
+
+  const World* world_;
+  std::int64_t max_age_;  ///< [ticks]
+  std::int64_t now_ = 0;  ///< counts the ticks begun
+  PairMemory memory_;
+  PairForces forces_;
+};
+
+}  // namespace repel::detail

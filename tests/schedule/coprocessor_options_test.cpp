@@ -1,0 +1,42 @@
+#include <repel/schedule/coprocessor_options.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include <repel/schedule/coprocessor.hpp>
+
+namespace repel {
+namespace coprocessor_options_test {
+
+using namespace std::chrono_literals;
+
+TEST(CoprocessorOptions, RefusesMoreThreadsThanTheLimit) {
+  World world(Limits{.threads = 2});
+  CoprocessorOptions options;
+  for (const int threads : {-1, 3}) {
+    options.threads = threads;
+    EXPECT_THROW(Coprocessor(world, options), SetupError) << threads;
+  }
+}
+
+std::atomic<unsigned> started{0};
+
+TEST(CoprocessorOptions, CallsTheStartFunctionInEachWorker) {
+  started = 0;
+  World world;
+  CoprocessorOptions options;
+  options.threads = 3;
+  options.lock_step = true;
+  options.on_thread_start = [](int index) noexcept { started |= 1U << index; };
+  Coprocessor coprocessor(world, options);
+  const auto until = std::chrono::steady_clock::now() + 10s;
+  while (started != 7U && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(started, 7U);
+}
+
+}  // namespace coprocessor_options_test
+}  // namespace repel
