@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <repel/network/puma_joints.hpp>
+#include <repel/network/modules/puma_joints.hpp>
 
 #include "heading.hpp"
 

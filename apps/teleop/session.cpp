@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include <repel/network/spaceball.hpp>
+#include <repel/network/modules/spaceball.hpp>
 
 #include "listening.hpp"
 #include "log.hpp"

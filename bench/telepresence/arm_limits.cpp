@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <repel/base/status.hpp>
-#include <repel/network/limits.hpp>
+#include <repel/network/modules/limits.hpp>
 
 #include "arm_run.hpp"
 #include "part.hpp"

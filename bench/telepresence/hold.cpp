@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 
 #include "part.hpp"
 #include "rig.hpp"

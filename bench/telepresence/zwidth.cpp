@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <repel/network/clean_stiffness.hpp>
-#include <repel/network/passivity.hpp>
+#include <repel/network/elements/passivity.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 
 #include "part.hpp"
 #include "rig.hpp"

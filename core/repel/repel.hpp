@@ -24,7 +24,7 @@
 #include <repel/loop/reciprocating_motion.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/loop/tick.hpp>
-#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>

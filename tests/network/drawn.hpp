@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <repel/network/ledger.hpp>
-#include <repel/network/two_port.hpp>
+#include <repel/network/elements/two_port.hpp>
+#include <repel/network/machinery/ledger.hpp>
 
 #include "support/draws.hpp"
 #include "support/families.hpp"

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <repel/network/port.hpp>
+#include <repel/network/elements/port.hpp>
 
 namespace repel::test {
 

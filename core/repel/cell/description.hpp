@@ -13,7 +13,7 @@
 #include <repel/force/law.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
-#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/schedule/coprocessor.hpp>

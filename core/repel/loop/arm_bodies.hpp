@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <repel/base/spatial.hpp>
-#include <repel/network/port.hpp>
+#include <repel/network/elements/port.hpp>
 #include <repel/schedule/pair_forces.hpp>
 #include <repel/world/arm_kinematics.hpp>
 #include <repel/world/world.hpp>

@@ -15,8 +15,8 @@
 #include <repel/loop/record.hpp>
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/stop_control.hpp>
+#include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/network.hpp>
-#include <repel/network/puma_joints.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {

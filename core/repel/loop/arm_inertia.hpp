@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include <repel/loop/arm_bodies.hpp>
-#include <repel/network/port.hpp>
+#include <repel/network/elements/port.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
 

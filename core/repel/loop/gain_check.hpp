@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <repel/loop/arm_bodies.hpp>
-#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/world.hpp>
 

@@ -12,7 +12,7 @@
 #include <repel/base/status.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/joint_speed.hpp>
-#include <repel/network/friction.hpp>
+#include <repel/network/elements/friction.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <repel/network/signals.hpp>
+#include <repel/network/elements/signals.hpp>
 
 namespace repel {
 

@@ -8,8 +8,8 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/loop/arm_bodies.hpp>
+#include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/network.hpp>
-#include <repel/network/puma_joints.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
 #include <repel/world/world.hpp>

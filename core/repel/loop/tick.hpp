@@ -18,13 +18,13 @@
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/teleoperator_parts.hpp>
 #include <repel/loop/tick_clock.hpp>
-#include <repel/network/limits.hpp>
-#include <repel/network/multiplex.hpp>
-#include <repel/network/obstacle.hpp>
+#include <repel/network/modules/limits.hpp>
+#include <repel/network/modules/multiplex.hpp>
+#include <repel/network/modules/obstacle.hpp>
+#include <repel/network/modules/puma_joints.hpp>
+#include <repel/network/modules/puma_kin.hpp>
+#include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/operator.hpp>
-#include <repel/network/puma_joints.hpp>
-#include <repel/network/puma_kin.hpp>
-#include <repel/network/torque_arm.hpp>
 #include <repel/schedule/pair_forces.hpp>
 #include <repel/world/arm_kinematics.hpp>
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <repel/network/any_module.hpp>
+#include <repel/network/machinery/any_module.hpp>
 
 namespace repel::network {
 

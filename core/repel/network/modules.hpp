@@ -2,16 +2,17 @@
 /// The modules that come with the library.
 #pragma once
 
-#include <repel/network/arm_obstacle.hpp>
-#include <repel/network/kbb2.hpp>
-#include <repel/network/limits.hpp>
-#include <repel/network/line.hpp>
-#include <repel/network/multiplex.hpp>
-#include <repel/network/obstacle.hpp>
-#include <repel/network/one_ports.hpp>
-#include <repel/network/puma_joints.hpp>
-#include <repel/network/puma_kin.hpp>
-#include <repel/network/relief.hpp>
-#include <repel/network/spaceball.hpp>
-#include <repel/network/torque_arm.hpp>
-#include <repel/network/visual.hpp>
+#include <repel/network/elements/junction.hpp>
+#include <repel/network/elements/line.hpp>
+#include <repel/network/elements/one_ports.hpp>
+#include <repel/network/modules/arm_obstacle.hpp>
+#include <repel/network/modules/kbb2.hpp>
+#include <repel/network/modules/limits.hpp>
+#include <repel/network/modules/multiplex.hpp>
+#include <repel/network/modules/obstacle.hpp>
+#include <repel/network/modules/puma_joints.hpp>
+#include <repel/network/modules/puma_kin.hpp>
+#include <repel/network/modules/relief.hpp>
+#include <repel/network/modules/spaceball.hpp>
+#include <repel/network/modules/torque_arm.hpp>
+#include <repel/network/modules/visual.hpp>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <repel/network/ledger.hpp>
+#include <repel/network/machinery/ledger.hpp>
 #include <repel/network/module.hpp>
 
 namespace repel::network {

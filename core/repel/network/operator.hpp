@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <repel/network/signals.hpp>
+#include <repel/network/elements/signals.hpp>
 
 namespace repel::network {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/network/machinery/planner.hpp>
 #include <repel/network/network.hpp>
-#include <repel/network/planner.hpp>
 
 namespace repel::network {
 

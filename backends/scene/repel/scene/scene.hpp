@@ -15,7 +15,7 @@
 #include <repel/cell/description.hpp>
 #include <repel/force/law.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
-#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/reduction/shape.hpp>

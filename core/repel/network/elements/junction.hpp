@@ -1,0 +1,57 @@
+/// @file
+/// JUNCTION: connects more than two ports.
+#pragma once
+
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+/// The variable that all ports of a junction share.
+enum class Common {
+  flow,    ///< same flow at all ports; the efforts into them sum to zero
+  effort,  ///< same effort at all ports; the flow towards the root is the sum of the others
+};
+
+/// A lossless junction of any number of ports of one space (the series and parallel adaptors of
+/// wave digital filters). The port towards the root is matched: its resistance follows from the
+/// others.
+class Junction {
+ public:
+  explicit Junction(Common common = Common::flow) noexcept : common_(common) {}
+  [[nodiscard]] Traits traits() const noexcept { return {.keeps_flow = common_ == Common::flow}; }
+  [[nodiscard]] Common common() const noexcept { return common_; }
+
+  /// Starts `sum` with the first branch.
+  void begin(Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
+    (void)branch.take_form(common_ == Common::flow ? Form::impedance : Form::admittance);
+    sum = branch;
+  }
+  /// Adds another branch to `sum`. False when both impose their flow on a common-flow junction, or
+  /// their effort on a common-effort junction.
+  [[nodiscard]] bool add(Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
+    const bool by_flow = common_ == Common::flow;
+    const Form summed = by_flow ? Form::impedance : Form::admittance;
+    if (!branch.take_form(summed)) {
+      if (!sum.take_form(summed)) return false;
+      const Equivalent<any_size> others = sum;
+      sum = branch;
+      join(others, sum);
+    } else {
+      join(branch, sum);
+    }
+    return true;
+  }
+
+ private:
+  void join(const Equivalent<any_size>& branch, Equivalent<any_size>& sum) const noexcept {
+    if (common_ == Common::flow) {
+      sum.add_impedance(branch.matrix, branch.offset);
+    } else {
+      sum.add_admittance(branch.matrix, branch.offset);
+    }
+  }
+
+  Common common_;
+};
+
+}  // namespace repel::network

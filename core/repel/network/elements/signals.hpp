@@ -1,0 +1,55 @@
+/// @file
+/// The inputs of a network in one tick.
+#pragma once
+
+#include <repel/network/elements/port.hpp>
+
+namespace repel::network {
+
+/// Six rows, linear then angular, world axes; a column for each joint. In storage of fixed size.
+using Jacobian = Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints>;
+
+/// The torque [N m] or force [N] on joint `i` due to `F` at the point of the Jacobian: (J' F)_i.
+[[nodiscard]] inline double along_column(const Jacobian& J, Eigen::Index i,
+                                         const Wrench& F) noexcept {
+  const double* c = J.data() + 6 * i;
+  return power(F, {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}});
+}
+
+/// The operator's input in one tick.
+struct HandInput {
+  Twist ball;                 ///< [m/s, rad/s] raw rates of the force ball, world axes
+  double lever_rate = 0.0;    ///< [rad/s] rate of the hand at the lever
+  Vec3 direction_W{1, 0, 0};  ///< unit, world axes: direction in which the lever drives the tool
+};
+
+/// The state of arm, world and operator at the start of a tick. All numbers are finite: the loop
+/// holds the last valid ones where an input fails.
+struct Signals {
+  Vec<any_size> joints;          ///< q [rad], [m]
+  Vec<any_size> rates;           ///< [rad/s], [m/s] the measured flow
+  Vec<any_size> mean_rates;      ///< [rad/s], [m/s] (q - last q) / elapsed
+  Jacobian jacobian;             ///< of the tool
+  Pose X_WT = Pose::Identity();  ///< [m]
+  Wrench walls;               ///< [N, N m] of the world model on the tool, about its origin, in W
+  Vec<any_size> arm_torques;  ///< [N m], [N] of the world model on the links, sum of J^T F
+  double walls_power = 0.0;   ///< [W] supplied to the tool by moving obstacles
+  double arm_power = 0.0;     ///< [W] and to the links
+  HandInput hand;
+  double period = 0.0025;  ///< [s]
+  double elapsed = 0.0;    ///< [s] since the last tick, more after missed ticks; 0: one period
+  bool at_rest = false;    ///< no force of the operator: states of the operator side are reset
+  bool released = false;   ///< nothing can be trusted: states of the walls are reset, too
+
+  /// Time since the last tick [s].
+  [[nodiscard]] double since_last() const noexcept { return elapsed > 0.0 ? elapsed : period; }
+  /// Twist of the tool, J rates, and that of the last period, J mean_rates.
+  [[nodiscard]] Vec<any_size> tool_flow() const noexcept {
+    return dense::product<Vec<any_size>>(jacobian, rates);
+  }
+  [[nodiscard]] Vec<any_size> mean_tool_flow() const noexcept {
+    return dense::product<Vec<any_size>>(jacobian, mean_rates);
+  }
+};
+
+}  // namespace repel::network

@@ -1,0 +1,75 @@
+/// @file
+/// Building blocks of two-ports: transformers and series sources.
+#pragma once
+
+#include <repel/network/elements/equivalent.hpp>
+#include <repel/network/elements/signals.hpp>
+
+namespace repel::network {
+
+/// A lossless connection of two spaces: v_A = V v_B and f_B = F' f_A, with V = F unless a power
+/// factor is declared. The same two matrices are used in both directions of a tick.
+namespace transformer {
+
+/// Equivalent of side A seen from B. False when it cannot take the impedance form.
+template <class V, class F>
+[[nodiscard]] bool shown_at_b(Equivalent<any_size> at_a, const V& flow_map, const F& effort_map,
+                              Equivalent<any_size>& shown) noexcept {
+  if (!at_a.take_form(Form::impedance)) return false;
+  shown.form = Form::impedance;
+  dense::sandwich(effort_map, at_a.matrix, flow_map, shown.matrix);
+  dense::transposed_product(effort_map, at_a.offset, shown.offset);
+  return true;
+}
+
+/// Equivalent of side B seen from A. False when it cannot take the admittance form.
+template <class V, class F>
+[[nodiscard]] bool shown_at_a(Equivalent<any_size> at_b, const V& flow_map, const F& effort_map,
+                              Equivalent<any_size>& shown) noexcept {
+  if (!at_b.take_form(Form::admittance)) return false;
+  shown.form = Form::admittance;
+  dense::sandwich(flow_map.transpose(), at_b.matrix, effort_map.transpose(), shown.matrix);
+  dense::transposed_product(flow_map.transpose(), at_b.offset, shown.offset);
+  return true;
+}
+
+/// State at A from that at B and the equivalent `at_a` of side A.
+template <class V>
+void to_a(const PortState<any_size>& at_b, Equivalent<any_size> at_a, const V& flow_map,
+          PortState<any_size>& state) noexcept {
+  (void)at_a.take_form(Form::impedance);
+  Vec<any_size> flow;
+  dense::transposed_product(flow_map.transpose(), at_b.flow, flow);
+  at_a.at_flow(flow, state);
+}
+
+/// State at B from that at A and the equivalent `at_b` of side B.
+template <class F>
+void to_b(const PortState<any_size>& at_a, Equivalent<any_size> at_b, const F& effort_map,
+          PortState<any_size>& state) noexcept {
+  (void)at_b.take_form(Form::admittance);
+  Vec<any_size> effort;
+  dense::transposed_product(effort_map, at_a.effort, effort);
+  at_b.at_effort(effort, state);
+}
+
+}  // namespace transformer
+
+/// An effort in series, at the same flow of both ports: f_root = f_leaf + effort.
+namespace series {
+
+[[nodiscard]] inline bool shown(const Equivalent<any_size>& behind, const Vec<any_size>& effort,
+                                Equivalent<any_size>& shown) noexcept {
+  shown = behind;
+  shown.add_effort(effort);
+  return true;
+}
+inline void pass(const PortState<any_size>& at_root, const Vec<any_size>& effort,
+                 PortState<any_size>& at_leaf) noexcept {
+  at_leaf.flow = at_root.flow;
+  at_leaf.effort = at_root.effort - effort;
+}
+
+}  // namespace series
+
+}  // namespace repel::network

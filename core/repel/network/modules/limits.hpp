@@ -1,0 +1,111 @@
+/// @file
+/// LIMITS: virtual springs and dampers ahead of the joint stops.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <repel/network/elements/passivity.hpp>
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+/// A one-sided spring-damper at each end of a joint's range. It only pushes inward.
+struct JointLimits {
+  double range = 0.1;         ///< [rad] or [m] distance before the limit at which it begins to act
+  double stiffness = 2000.0;  ///< [N m/rad] or [N/m]
+  double damping = 20.0;      ///< [N m s/rad] or [N s/m]
+
+  /// The torque [N m] at position `q` moving at `v`, for a joint between `lower` and `upper`.
+  [[nodiscard]] double operator()(double q, double v, double lower, double upper) const noexcept {
+    const double below = lower + range - q;
+    const double above = q - (upper - range);
+    if (below > 0.0) return std::max(0.0, stiffness * below - damping * v);
+    if (above > 0.0) return std::min(0.0, -stiffness * above - damping * v);
+    return 0.0;
+  }
+};
+
+/// Range of one joint [rad] or [m]; infinite for a continuous joint.
+struct JointRange {
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+/// Adds the torques of the limits to those from the left, at the same joint rates; each joint
+/// separately and with its own passivity controller. Where the zones of both limits overlap, the
+/// lower limit acts.
+class Limits {
+ public:
+  static constexpr Traits traits{
+      .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
+
+  /// @throws SetupError for a number out of range or an upper limit below the lower one
+  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) : law_(law) {
+    checked("range", law.range, 1e-6, 1e3, "rad");
+    checked("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
+    checked("damping", law.damping, 0.0, 1e6, "N m s/rad");
+    checked("number of joints", static_cast<double>(ranges.size()), 1, most_joints, "");
+    for (const JointRange& range : ranges) {
+      if (!std::isinf(range.lower)) checked("lower limit", range.lower, -1e6, 1e6, "rad");
+      if (!std::isinf(range.upper)) checked("upper limit", range.upper, range.lower, 1e6, "rad");
+      joints_.push_back({range, PassivityController<1>({.lever = 1.0}, Vec<1>::Ones())});
+    }
+    effort_.setZero(static_cast<Eigen::Index>(ranges.size()));
+  }
+
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(joints_.size()); }
+
+  void read(const Signals& signals) noexcept {
+    active_ = false;
+    for (Eigen::Index i = 0; i < effort_.size(); ++i) {
+      Joint& joint = joints_[static_cast<std::size_t>(i)];
+      const double rate = signals.rates(i);
+      Vec<1> effort(-law_(signals.joints(i), rate, joint.range.lower, joint.range.upper));
+      active_ = active_ || effort(0) != 0.0;
+      effort(0) += rate * joint.controller.step(effort, Vec<1>(rate), Vec<1>(signals.mean_rates(i)),
+                                                signals.period, 0.0, signals.since_last());
+      effort_(i) = effort(0);
+    }
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    return series::shown(behind, effort_, shown);
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) const noexcept {
+    series::pass(at_root, effort_, at_leaf);
+  }
+
+  /// Torques of the limits on the joints [N m].
+  [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
+  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
+    torques += this->torques();
+  }
+  /// True while a joint is within `range` of its limit and is pushed back.
+  [[nodiscard]] bool active() const noexcept { return active_; }
+  /// Sum over all joints.
+  [[nodiscard]] PassivityReport passivity() const noexcept {
+    PassivityReport sum;
+    for (const Joint& joint : joints_) {
+      sum.dissipated += joint.controller.report().dissipated;
+      sum.owed += joint.controller.report().owed;
+    }
+    return sum;
+  }
+
+ private:
+  struct Joint {
+    JointRange range;
+    PassivityController<1> controller;
+  };
+  JointLimits law_;
+  std::vector<Joint> joints_;
+  Vec<any_size> effort_;  // into the module [N m]
+  bool active_ = false;
+};
+
+}  // namespace repel::network

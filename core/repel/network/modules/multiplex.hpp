@@ -1,0 +1,91 @@
+/// @file
+/// MULTIPLEX: couples a one-degree-of-freedom device to the six degrees of freedom of the tool.
+#pragma once
+
+#include <cmath>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+struct MultiplexOptions {
+  double velocity_scale = 0.1;  ///< s_v [m/rad] tool motion per lever motion
+  double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
+  double turning_time = 0.05;   ///< [s] time constant with which the direction follows a new one
+};
+
+/// A transformer along one direction d: v6 = s_v d v1 and f1 = s_f d.f6. The other five directions
+/// of the tool side have zero flow, whatever the effort.
+///
+/// A new direction is approached as d += (new - d)(1 - exp(-T / turning_time)). The transformer is
+/// lossless for any d, also of length below one, so the change injects no energy and no effort
+/// jumps.
+///
+/// With s_f != s_v the lever receives s_f / s_v of the power at the tool; the ledger therefore
+/// weights the power at the lever by s_v / s_f.
+class Multiplex {
+ public:
+  static constexpr Traits traits{.left = Space::lever, .right = Space::tool};
+
+  /// @throws SetupError for a number out of range
+  explicit Multiplex(const MultiplexOptions& options = {}) : options_(options) {
+    checked("velocity scale", options.velocity_scale, 1e-6, 100.0, "m/rad");
+    checked("force scale", options.force_scale, 1e-6, 100.0, "m");
+    checked("turning time", options.turning_time, 0.0, 100.0, "s");
+  }
+
+  void prepare(double period) {
+    const double time = options_.turning_time;
+    share_ = time > 0.0 ? -std::expm1(-detail::checked_period(period) / time) : 1.0;
+  }
+  void face(Side root) noexcept { root_ = root; }
+
+  void read(const Signals& signals) noexcept {
+    direction_ = begun_ ? direction_ + share_ * (signals.hand.direction_W - direction_)
+                        : signals.hand.direction_W;
+    begun_ = true;
+    for (int i = 0; i < 3; ++i) {
+      flow_map_[i] = options_.velocity_scale * direction_[i];
+      effort_map_[i] = options_.force_scale * direction_[i];
+    }
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    return root_ == Side::right ? transformer::shown_at_a(behind, flow_map_, effort_map_, shown)
+                                : transformer::shown_at_b(behind, flow_map_, effort_map_, shown);
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
+                PortState<any_size>& at_leaf) const noexcept {
+    if (root_ == Side::right) {
+      transformer::to_b(at_root, behind, effort_map_, at_leaf);
+    } else {
+      transformer::to_a(at_root, behind, flow_map_, at_leaf);
+    }
+  }
+
+  /// s_f / s_v, the power at the lever as a part of that at the tool.
+  [[nodiscard]] double power_factor() const noexcept {
+    return options_.force_scale / options_.velocity_scale;
+  }
+  /// Weight of the left port's power in the ledger.
+  [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
+  [[nodiscard]] double velocity_scale() const noexcept {  ///< s_v [m/rad]
+    return options_.velocity_scale;
+  }
+  /// d, world axes; of length below one while it turns.
+  [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
+
+ private:
+  using Column = Eigen::Matrix<double, 6, 1>;
+  MultiplexOptions options_;
+  Side root_ = Side::right;
+  double share_ = 1.0;
+  bool begun_ = false;
+  Vec3 direction_{1, 0, 0};
+  Column flow_map_ = Column::Zero();    // [m/rad]
+  Column effort_map_ = Column::Zero();  // [m]
+};
+
+}  // namespace repel::network

@@ -1,0 +1,40 @@
+/// @file
+/// PUMA_KIN: from tool space to joint space, for any arm.
+#pragma once
+
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+/// The lossless transformer v = J qdot, tau = J' f, with the same Jacobian both ways in one tick.
+/// Poses come from forward kinematics and are never integrated from v.
+///
+/// At a singularity J loses a direction, for effort and flow alike: the tool cannot be moved along
+/// it and no torque answers a force along it. Nothing is inverted, so no value grows without bound.
+class PumaKin {
+ public:
+  static constexpr Traits traits{.left = Space::tool, .right = Space::joints, .keeps_flow = true};
+
+  void face(Side root) noexcept { root_ = root; }
+  void read(const Signals& signals) noexcept { jacobian_ = signals.jacobian; }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    return root_ == Side::right ? transformer::shown_at_b(behind, jacobian_, jacobian_, shown)
+                                : transformer::shown_at_a(behind, jacobian_, jacobian_, shown);
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
+                PortState<any_size>& at_leaf) const noexcept {
+    if (root_ == Side::right) {
+      transformer::to_a(at_root, behind, jacobian_, at_leaf);
+    } else {
+      transformer::to_b(at_root, behind, jacobian_, at_leaf);
+    }
+  }
+
+ private:
+  Side root_ = Side::right;
+  decltype(Signals::jacobian) jacobian_;
+};
+
+}  // namespace repel::network

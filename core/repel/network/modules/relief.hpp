@@ -1,0 +1,127 @@
+/// @file
+/// RELIEF: compliance along chosen degrees of freedom.
+#pragma once
+
+#include <array>
+
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+/// Frame in which the compliant directions are stated.
+enum class ReliefFrame { world, tool };
+
+struct ReliefOptions {
+  /// Which of x, y, z, and rotation about x, y, z, are compliant.
+  std::array<bool, 6> compliant{};
+  ReliefFrame frame = ReliefFrame::tool;
+  double stiffness = 500.0;        ///< [N/m]; 0: a pure damper, which creeps and does not return
+  double damping = 50.0;           ///< [N s/m]
+  double angular_stiffness = 5.0;  ///< [N m/rad]; 0: a pure damper
+  double angular_damping = 0.5;    ///< [N m s/rad]
+};
+
+/// A series two-port: compliant, with a spring-damper, along each chosen direction s of the task
+/// frame,
+///
+///     u = s.f / (K T / 2 + B) - what the spring reflects       v_right = v_left + sum s u
+///
+/// and rigid along the others. The directions rotate with their frame; the same ones are used for
+/// effort and flow in one tick, and the spring states are stored along them, so that rotating the
+/// frame neither stores nor releases energy.
+class Relief {
+ public:
+  static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
+
+  /// @throws SetupError for a number out of range, or when a direction would have neither spring
+  /// nor damper
+  explicit Relief(const ReliefOptions& options = {}) : options_(options) {
+    checked("stiffness", options.stiffness, 0.0, 1e7, "N/m");
+    checked("damping", options.damping, 0.0, 1e6, "N s/m");
+    checked("angular stiffness", options.angular_stiffness, 0.0, 1e6, "N m/rad");
+    checked("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
+    const auto& dof = options.compliant;
+    const bool slack = options.stiffness + options.damping <= 0.0;
+    const bool angular_slack = options.angular_stiffness + options.angular_damping <= 0.0;
+    if ((slack && (dof[0] || dof[1] || dof[2])) ||
+        (angular_slack && (dof[3] || dof[4] || dof[5]))) {
+      throw SetupError("a compliant direction has neither stiffness nor damping");
+    }
+  }
+
+  void prepare(double period) {
+    (void)detail::checked_period(period);
+    for (int i = 0; i < 6; ++i) {
+      const bool angular = i >= 3;
+      const double k = angular ? options_.angular_stiffness : options_.stiffness;
+      const double b = angular ? options_.angular_damping : options_.damping;
+      spring_resistance_[i] = 0.5 * k * period;
+      conductance_[i] = options_.compliant[i] ? 1.0 / (spring_resistance_[i] + b) : 0.0;
+      inverse_stiffness_[i] = k > 0.0 ? 1.0 / k : 0.0;
+    }
+  }
+  void read(const Signals& signals) noexcept {
+    if (options_.frame == ReliefFrame::tool) turn_ = rotation(signals.X_WT);
+    if (signals.at_rest) wave_.setZero();
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    Mat<any_size> G = Mat<any_size>::Zero(6, 6);
+    for (int block = 0; block < 6; block += 3) {
+      for (int row = 0; row < 3; ++row) {
+        const Vec3 left = times_gains(row, block);
+        for (int column = 0; column < 3; ++column) {
+          const double* t = turn_.data() + column;
+          G.coeffRef(block + row, block + column) =
+              left[0] * t[0] + (left[1] * t[3] + left[2] * t[6]);
+        }
+      }
+    }
+    shown = behind;
+    shown.add_admittance(G, -in_world(product(conductance_, wave_)));
+    return true;
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) noexcept {
+    const Six effort = in_task(at_root.effort);
+    const Six relative = product(conductance_, effort - wave_);
+    wave_ += 2.0 * product(spring_resistance_, relative);
+    at_leaf.effort = at_root.effort;
+    at_leaf.flow = at_root.flow - in_world(relative);
+  }
+
+  /// Energy stored in the springs [J].
+  [[nodiscard]] double stored() const noexcept {
+    return 0.5 * product(wave_, wave_).dot(inverse_stiffness_);
+  }
+
+ private:
+  using Six = Eigen::Matrix<double, 6, 1>;
+  [[nodiscard]] Six in_task(const Vec<any_size>& world) const noexcept {
+    Six task;
+    for (int i = 0; i < 6; ++i) {
+      const double* t = &turn_(0, i % 3);
+      const Vec3 v = three(world, i - i % 3);
+      task[i] = t[0] * v[0] + t[1] * v[1] + t[2] * v[2];
+    }
+    return task;
+  }
+  [[nodiscard]] Vec<any_size> in_world(const Six& task) const noexcept {
+    return to_vec(turn_ * three(task, 0), turn_ * three(task, 3));
+  }
+  /// Row `row` of `turn_`, times the conductances along the axes of the task frame.
+  [[nodiscard]] Vec3 times_gains(int row, int block) const noexcept {
+    const double* t = turn_.data() + row;
+    return {t[0] * conductance_[block], t[3] * conductance_[block + 1],
+            t[6] * conductance_[block + 2]};
+  }
+
+  ReliefOptions options_;
+  Mat3 turn_ = Mat3::Identity();  // from the task frame to the world
+  Six spring_resistance_ = Six::Zero(), conductance_ = Six::Zero();
+  Six inverse_stiffness_ = Six::Zero();
+  Six wave_ = Six::Zero();  // of the springs, in the task frame [N, N m]
+};
+
+}  // namespace repel::network

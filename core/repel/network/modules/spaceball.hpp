@@ -1,0 +1,87 @@
+/// @file
+/// SPACEBALL: a six-degree-of-freedom rate source without force feedback.
+#pragma once
+
+#include <algorithm>
+
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+struct SpaceballOptions {
+  double dead_band = 0.002;         ///< [m/s] smaller rates count as zero
+  double saturation = 0.25;         ///< [m/s]
+  double angular_dead_band = 0.01;  ///< [rad/s]
+  double angular_saturation = 1.0;  ///< [rad/s]
+  double time_constant = 0.05;      ///< [s] of the low pass; 0 for none
+};
+
+/// Adds the rates of the ball to the flow from the left: v_right = v_left + v_ball at the same
+/// effort. Dead band and saturation act on the length of the vector and keep its direction; a
+/// first-order low pass follows.
+///
+/// It reflects no effort to the operator: it is an energy source and not passive by itself. The
+/// ledger counts the power it supplies, F.v_ball, separately.
+class Spaceball {
+ public:
+  static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
+
+  /// @throws SetupError for a number out of range
+  explicit Spaceball(const SpaceballOptions& options = {}) : options_(options) {
+    checked("dead band", options.dead_band, 0.0, 10.0, "m/s");
+    checked("saturation", options.saturation, 0.0, 10.0, "m/s");
+    checked("angular dead band", options.angular_dead_band, 0.0, 100.0, "rad/s");
+    checked("angular saturation", options.angular_saturation, 0.0, 100.0, "rad/s");
+    checked("time constant", options.time_constant, 0.0, 100.0, "s");
+  }
+
+  void prepare(double period) { period_ = detail::checked_period(period); }
+  void face(Side root) noexcept { sign_ = root == Side::right ? 1.0 : -1.0; }
+
+  void read(const Signals& signals) noexcept {
+    const Twist& raw = signals.hand.ball;
+    const double share = period_ / (period_ + options_.time_constant);
+    saturated_ = false;
+    const Vec3 linear = shaped(raw.linear, options_.dead_band, options_.saturation);
+    const Vec3 angular =
+        shaped(raw.angular, options_.angular_dead_band, options_.angular_saturation);
+    twist_.linear += share * (linear - twist_.linear);
+    twist_.angular += share * (angular - twist_.angular);
+    if (signals.at_rest) twist_ = {};
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    shown = behind;
+    shown.add_flow(sign_ * to_vec(twist_));
+    return true;
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) noexcept {
+    const Vec<any_size> flow = sign_ * to_vec(twist_);
+    at_leaf.effort = at_root.effort;
+    at_leaf.flow = at_root.flow - flow;
+    supplied_ = -at_root.effort.dot(flow);
+  }
+
+  [[nodiscard]] const Twist& twist() const noexcept { return twist_; }  ///< [m/s, rad/s]
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the operator
+  [[nodiscard]] bool saturated() const noexcept { return saturated_; }
+
+ private:
+  [[nodiscard]] Vec3 shaped(const Vec3& v, double dead_band, double most) noexcept {
+    const double length = v.norm();
+    if (!(length > dead_band)) return {0, 0, 0};
+    saturated_ = saturated_ || length - dead_band > most;
+    return v * (std::min(length - dead_band, most) / length);
+  }
+
+  SpaceballOptions options_;
+  double period_ = 1.0;  // [s]
+  double sign_ = 1.0;
+  Twist twist_;
+  double supplied_ = 0.0;
+  bool saturated_ = false;
+};
+
+}  // namespace repel::network

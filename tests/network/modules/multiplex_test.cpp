@@ -1,0 +1,130 @@
+#include <repel/network/modules/multiplex.hpp>
+
+#include <gtest/gtest.h>
+
+#include "network/drawn.hpp"
+
+namespace repel::network {
+namespace multiplex_test {
+
+using test::Cell;
+using test::DrawnEnds;
+using test::DrawnSignals;
+using test::period;
+using test::Rng;
+
+constexpr unsigned seed = 3;
+using Six = Eigen::Matrix<double, 6, 1>;
+
+Signals toward(const Vec3& direction_W) {
+  Signals signals;
+  signals.hand.direction_W = direction_W;
+  return signals;
+}
+
+/// d as six numbers, without rotation.
+Six along(const Multiplex& multiplex) {
+  Six d = Six::Zero();
+  d.head<3>() = multiplex.direction();
+  return d;
+}
+
+TEST(Multiplex, TransformsAlongItsDirectionAndLosesNothing) {
+  const int ticks = families::draws(1000000) / 4;
+  for (const Side root : {Side::left, Side::right}) {
+    for (const double s_f : {0.2, 0.05}) {
+      SCOPED_TRACE(std::string(test::to_text(root)) + ", seed " + std::to_string(seed));
+      Rng rng(seed);
+      DrawnSignals drawn(rng, 0);
+      DrawnEnds tool(rng, 6, 20.0);
+      DrawnEnds lever(rng, 1, 2.0);
+      Cell cell(Multiplex({.velocity_scale = 0.2, .force_scale = s_f}), root);
+      for (int tick = 0; tick < ticks; ++tick) {
+        const bool right = root == Side::right;
+        const Equivalent<any_size> behind = right ? lever.definite() : tool.slack();
+        ASSERT_TRUE(cell.run(drawn.next(), behind, right ? tool.slack() : lever.definite()));
+        const auto& at_tool = right ? cell.at_root : cell.at_leaf;
+        const auto& at_lever = right ? cell.at_leaf : cell.at_root;
+        const Six d = along(cell.module);
+        ASSERT_LE((at_tool.flow - 0.2 * d * at_lever.flow(0)).norm(),
+                  1e-11 * (1.0 + at_tool.flow.norm()));
+        ASSERT_NEAR(at_lever.effort(0), s_f * d.dot(at_tool.effort), 1e-8);
+        ASSERT_LE(cell.error_behind(behind), 1e-8) << tick;
+      }
+      EXPECT_GT(cell.ledger.passed, 1.0);
+      EXPECT_LE(std::abs(cell.ledger.energy), 1e-9 * cell.ledger.passed);
+      EXPECT_LE(cell.ledger.deficit(), 1e-9);
+    }
+  }
+}
+
+TEST(Multiplex, PassesOnItsPowerFactor) {
+  Rng rng(seed);
+  DrawnEnds tool(rng, 6, 20.0);
+  DrawnEnds lever(rng, 1, 2.0);
+  for (int i = 0; i < 1000; ++i) {
+    const double s_v = families::log_uniform(rng, 1e-3, 10.0);
+    const double s_f = families::log_uniform(rng, 1e-3, 10.0);
+    Cell cell(Multiplex({.velocity_scale = s_v, .force_scale = s_f}), Side::right);
+    ASSERT_TRUE(cell.run(toward(families::direction(rng)), lever.definite(), tool.definite()));
+    const double to_lever = cell.at_leaf.power();
+    EXPECT_DOUBLE_EQ(cell.module.power_factor(), s_f / s_v);
+    const double moved = cell.at_root.effort.norm() * cell.at_root.flow.norm();
+    EXPECT_NEAR(to_lever, s_f / s_v * cell.at_root.power(), 1e-8 * s_f / s_v * moved)
+        << "seed " << seed << ", draw " << i;
+  }
+}
+
+TEST(Multiplex, FirstDirectionHoldsAtOnceAndTheNextIsApproached) {
+  for (const double T : {0.001, 0.0025, 0.01}) {
+    Multiplex multiplex({.turning_time = 0.05});
+    multiplex.prepare(T);
+    multiplex.read(toward(Vec3::UnitX()));
+    EXPECT_EQ(multiplex.direction(), Vec3::UnitX());
+    for (int tick = 0; tick < std::lround(0.05 / T); ++tick) multiplex.read(toward(Vec3::UnitY()));
+    const double left = std::exp(-1.0);
+    EXPECT_LE((multiplex.direction() - Vec3(left, 1.0 - left, 0.0)).norm(), 1e-12);
+  }
+  Multiplex at_once({.turning_time = 0.0});
+  at_once.prepare(period);
+  at_once.read(toward(Vec3::UnitX()));
+  at_once.read(toward(Vec3::UnitZ()));
+  EXPECT_EQ(at_once.direction(), Vec3::UnitZ());
+}
+
+/// The largest step of the torque at a fixed lever while a force acts on the tool and the direction
+/// is rotated.
+double largest_step(double T) {
+  Multiplex multiplex({.turning_time = 0.05});
+  multiplex.face(Side::left);
+  multiplex.prepare(T);
+  Equivalent<any_size> tool;
+  tool.set_impedance(test::Matrix::Zero(6, 6), test::Vector::Constant(6, 10.0));
+  Equivalent<any_size> shown;
+  double last = 0.0;
+  double largest = 0.0;
+  for (int tick = 0; tick < std::lround(0.2 / T); ++tick) {
+    multiplex.read(toward(tick * T < 0.1 ? Vec3::UnitX() : Vec3(-Vec3::UnitY())));
+    EXPECT_TRUE(multiplex.reflected(tool, shown));
+    if (tick > 0) largest = std::max(largest, std::abs(shown.offset(0) - last));
+    last = shown.offset(0);
+  }
+  EXPECT_LT(last, 0.0);  // finally in the opposite direction
+  return largest;
+}
+
+TEST(Multiplex, FeltEffortDoesNotJumpWhenTheDirectionDoes) {
+  const double coarse = largest_step(0.0025);
+  EXPECT_LT(coarse, 0.11);  // a jump would be 2 N m
+  EXPECT_NEAR(largest_step(0.00025) / coarse, 0.1, 0.005);
+  EXPECT_NEAR(largest_step(0.000025) / coarse, 0.01, 0.0005);
+}
+
+TEST(Multiplex, RefusesNumbersOutOfRange) {
+  EXPECT_THROW(Multiplex({.velocity_scale = 0.0}), SetupError);
+  EXPECT_THROW(Multiplex({.force_scale = -1.0}), SetupError);
+  EXPECT_THROW(Multiplex({.turning_time = std::nan("")}), SetupError);
+}
+
+}  // namespace multiplex_test
+}  // namespace repel::network
