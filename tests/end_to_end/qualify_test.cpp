@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <sstream>
 #include <thread>
 
@@ -155,11 +156,13 @@ TEST(HiccupWatch, SeesTheTimeBetweenTheFirstTickAndTheClose) {
   host::HiccupWatch watch(host::allowed_processors(),
                           host::Beat{.first = begin + 5ms, .period = 5ms, .ticks = 4});
   watch.close(begin + 25ms);
+  // A busy machine may come to the line above after the 25 ms: what was read until then counts.
+  const nanoseconds closed = std::max(begin + 25ms, host::steady_now());
   std::this_thread::sleep_for(40ms);
   watch.ended(4);
   const host::Hiccups& hiccups = watch.stop();
   EXPECT_GT(hiccups.watched(), 0ns);
-  EXPECT_LE(hiccups.watched(), 20ms);
+  EXPECT_LE(hiccups.watched(), closed - (begin + 5ms));
   EXPECT_LE(hiccups.total(), hiccups.watched());
   EXPECT_LE(hiccups.ticks(), 4);
 }
