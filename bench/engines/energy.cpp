@@ -12,7 +12,7 @@ namespace repel::engines {
 namespace {
 
 constexpr int ticks_per_second = 400;
-constexpr double reference_error = 1e-9;  // relative energy drift in 1 s, upper limit
+constexpr double reference_drift = 1e-9;  // relative energy drift in 1 s, upper limit
 
 struct Fall {
   std::string name;
@@ -63,7 +63,7 @@ void measure(const Fall& fall, const std::vector<int>& untils, Result& result) {
   const std::vector<double> kinetic = course_of(reference(), fall, 16, untils.back()).kinetic;
   const double scale = *std::max_element(kinetic.begin(), kinetic.end());
   for (const Engine& engine : engines()) {
-    double before = &engine == &reference() ? reference_error : INFINITY;
+    double before = &engine == &reference() ? reference_drift : INFINITY;
     for (const int substeps : {4, 16}) {
       const std::vector<double> total = course_of(engine, fall, substeps, untils.back()).total;
       std::vector<Json>& row = result.rows.emplace_back();
@@ -71,7 +71,7 @@ void measure(const Fall& fall, const std::vector<int>& untils, Result& result) {
       for (const int until : untils) row.emplace_back(furthest(total, until) / scale);
       row.emplace_back(gained(total) / scale);
       const double first = furthest(total, 1) / scale;
-      if (!(first < reference_error || first < before / 2)) {
+      if (!(first < reference_drift || first < before / 2)) {
         result.fail(fall.name + ", " + engine.name + ", " + std::to_string(substeps) + " sub-steps",
                     "its energy is too far off or does not come closer with the sub-steps");
       }

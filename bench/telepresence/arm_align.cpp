@@ -10,7 +10,7 @@ namespace repel::telepresence {
 
 namespace {
 
-struct Case {
+struct Alignment {
   const char* name;
   const char* obstacles;
   const char* start;  // a tilted tool
@@ -40,7 +40,7 @@ constexpr const char* corner_plates =
 
 constexpr const char* leaning = "0 45 -180 4 -40 0 deg";
 constexpr const char* twisted = "0 45 -180 4 -40 4 deg";
-constexpr Case cases[] = {
+constexpr Alignment alignments[] = {
     {"plate", floor_plate, leaning, "0 0 -40", 1, false},
     {"plate", floor_plate, leaning, "0 0 -40", 1, true},
     {"edge", edge_plates, twisted, "0 30 -30", 3, false},
@@ -71,7 +71,7 @@ Result align(const Options& options) {
                           "removed, or the chatter exceeds 2 % of the mean force."}};
   std::size_t done = 0;
   const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
-  for (const Case& each : cases) {
+  for (const Alignment& each : alignments) {
     for (const double rate_hz : rates) {
       ArmScene scene{.tool = "{name: cube, shape: box, size: 80 80 80 mm, position: 0 0 -10 mm}",
                      .obstacles = each.obstacles,
@@ -100,7 +100,7 @@ Result align(const Options& options) {
       if (!(force.chatter() < 0.02 * force.mean())) result.fail(row, "it chatters");
       result.rows.push_back({each.name, each.relieved, rate_hz, before, tilt.mean(), turning,
                              force.mean(), force.chatter(), 1e3 * tilt.swing()});
-      progress("align", ++done, std::size(cases) * rates.size());
+      progress("align", ++done, std::size(alignments) * rates.size());
     }
   }
   return result;

@@ -15,12 +15,12 @@ namespace {
 
 constexpr double seconds = 6.0;
 
-struct Case {
+struct PushedJoint {
   const char* pushed;
   const char* start;
   const char* script;
 };
-constexpr Case cases[] = {
+constexpr PushedJoint pushed_joints[] = {
     {"elbow, by the lever", "0 70 -218 0 -30 0 deg",
      "device: torque_arm, direction: -1 0 0, lever: 0.8 rad/s"},
     {"waist, by the lever", "152 45 -180 0 -45 0 deg",
@@ -42,7 +42,7 @@ double margin_of(double q, const network::JointRange& range) {
   return std::min(q - range.lower, range.upper - q);
 }
 
-Pushed push(const Case& each, double rate_hz) {
+Pushed push(const PushedJoint& each, double rate_hz) {
   ArmScene scene{
       .tool = "{name: rod, shape: capsule, radius: 15 mm, length: 60 mm, position: 0 0 -30 mm}",
       .obstacles = "",
@@ -90,7 +90,7 @@ Result joint_limits(const Options& options) {
   std::size_t done = 0;
   const std::vector<double> rates = options.quick ? std::vector{400.0} : std::vector{400.0, 4000.0};
   constexpr double degree = M_PI / 180.0;
-  for (const Case& each : cases) {
+  for (const PushedJoint& each : pushed_joints) {
     for (const double rate_hz : rates) {
       const Pushed p = push(each, rate_hz);
       const std::string row = each.pushed;
@@ -100,7 +100,7 @@ Result joint_limits(const Options& options) {
       result.rows.push_back({each.pushed, rate_hz, p.joint + 1, p.margin / degree, p.torque,
                              p.felt.mean(), 1e3 * p.felt.chatter(),
                              1e3 * p.angle.swing() / degree});
-      progress("limits", ++done, std::size(cases) * rates.size());
+      progress("limits", ++done, std::size(pushed_joints) * rates.size());
     }
   }
   return result;

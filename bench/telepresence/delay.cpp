@@ -94,22 +94,22 @@ Json curve(const Run& run, double rate_hz) {
   return {{"time [s]", times}, {"wall force [N]", wall}, {"force at the hand [N]", hand}};
 }
 
-struct Case {
+struct DelayCase {
   Way way;
   double jitter_ms, loss;  // [ms], [%]
   double buffer_ms = -1.0;
 };
-constexpr std::array<Case, 9> cases{{{Way::waves, 0, 0},
-                                     {Way::plain, 0, 0},
-                                     {Way::waves, 10, 0},
-                                     {Way::plain, 10, 0},
-                                     {Way::waves, 0, 5},
-                                     {Way::waves, 0, 5, 10},
-                                     {Way::plain, 0, 5},
-                                     {Way::waves, 10, 5},
-                                     {Way::plain, 10, 5}}};
+constexpr std::array<DelayCase, 9> delay_cases{{{Way::waves, 0, 0},
+                                                {Way::plain, 0, 0},
+                                                {Way::waves, 10, 0},
+                                                {Way::plain, 10, 0},
+                                                {Way::waves, 0, 5},
+                                                {Way::waves, 0, 5, 10},
+                                                {Way::plain, 0, 5},
+                                                {Way::waves, 10, 5},
+                                                {Way::plain, 10, 5}}};
 
-void add_row(Result& result, const Case& c, double ms, const Options& options) {
+void add_row(Result& result, const DelayCase& c, double ms, const Options& options) {
   RigOptions rig{.way = c.way, .buffer = c.buffer_ms < 0.0 ? -1.0 : 1e-3 * c.buffer_ms};
   rig.channel = {.delay = 1e-3 * ms,
                  .jitter = 1e-3 * c.jitter_ms,
@@ -141,9 +141,9 @@ Result delay(const Options& options) {
       options.quick ? std::vector<double>{0, 100} : std::vector<double>{0, 10, 25, 50, 100, 200};
   std::size_t done = 0;
   for (const double ms : delays_ms) {
-    for (const Case& c : cases) {
+    for (const DelayCase& c : delay_cases) {
       add_row(result, c, ms, options);
-      progress("delay", ++done, cases.size() * delays_ms.size());
+      progress("delay", ++done, delay_cases.size() * delays_ms.size());
     }
   }
   return result;
