@@ -48,7 +48,7 @@ struct Wrench {
 
 /// Power that `F` delivers to a body moving with `V` [W]. Both in one frame, about one point.
 [[nodiscard]] inline double power(const Wrench& F, const Twist& V) noexcept {
-  return F.force.dot(V.linear) + F.torque.dot(V.angular);
+  return dot(F.force, V.linear) + dot(F.torque, V.angular);
 }
 
 /// The wrench about point P of a force `f_W` [N] at point Q; `p_PQ_W` [m] from P to Q.

@@ -71,6 +71,26 @@ template <std::same_as<Pose> X, std::same_as<Vec3> V>
           r[2] * p[0] + r[6] * p[1] + r[10] * p[2] + r[14]};
 }
 
+/// The functions of Eigen's names, bitwise equal to them: sums run from the first entry.
+template <std::same_as<Vec3> V>
+[[nodiscard]] double dot(const V& a, const V& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <std::same_as<Vec3> V>
+[[nodiscard]] double squared_norm(const V& v) noexcept {
+  return dot(v, v);
+}
+template <std::same_as<Vec3> V>
+[[nodiscard]] double norm(const V& v) noexcept {
+  return std::sqrt(dot(v, v));
+}
+/// `v` itself when it is zero.
+template <std::same_as<Vec3> V>
+[[nodiscard]] V normalized(const V& v) noexcept {
+  const double square = dot(v, v);
+  return square > 0.0 ? v / std::sqrt(square) : v;
+}
+
 /// The unit vector along axis 0, 1 or 2.
 [[nodiscard]] inline Vec3 unit(int axis) noexcept {
   return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
@@ -84,7 +104,7 @@ template <std::same_as<Pose> X, std::same_as<Vec3> V>
 /// `v` normalized, without overflow or underflow; `v` itself when it is zero.
 [[nodiscard]] inline Vec3 direction_of(const Vec3& v) noexcept {
   const double scale = largest_entry(v);
-  const double square = (v / scale).squaredNorm();
+  const double square = squared_norm(v / scale);
   return square > 0.0 ? v / (std::sqrt(square) * scale) : v;
 }
 

@@ -28,7 +28,7 @@ class Gjk {
       : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), named_exactly_(A.is_polytope() && B.is_polytope()) {
     const Vec<T> p_WA = column<T>(X_WA, 3);
     p_AB_ = column<T>(X_WB, 3) - p_WA;
-    const double size = A.reach() + B.reach() + to_vec3(p_AB_).norm();
+    const double size = A.reach() + B.reach() + norm(to_vec3(p_AB_));
     margin_ = 8.0 * epsilon(T{}) * size;
     // Smaller lengths underflow when squared.
     margin_ = std::max(margin_, 1e-150);
@@ -181,7 +181,7 @@ class Gjk {
                                      WarmStart& warm) noexcept {
   const bool curved = !A.is_polytope() || !B.is_polytope();
   const bool began_warm = warm.size > 0;
-  const double size = A.reach() + B.reach() + (origin(X_WB) - origin(X_WA)).norm();
+  const double size = A.reach() + B.reach() + norm(origin(X_WB) - origin(X_WA));
   Gap gap = detail::Gjk<double>(A, X_WA, B, X_WB).run(options, warm);
   if (detail::is_certified(gap, options, size)) return gap;
   int spent = gap.iterations;

@@ -53,13 +53,13 @@ class Passage {
     const double largest = law.passing_spring(distance);
     double allowed = law.stiffness() * (travel - travel_);
     travel_ = travel;
-    const double size = spring_W_.norm();
+    const double size = norm(spring_W_);
     if (size > largest) {
       spring_W_ *= largest / size;
       allowed -= size - largest;
     }
     const Vec3 lag_W = largest * gradient_W - spring_W_;
-    const double lag = lag_W.norm();
+    const double lag = norm(lag_W);
     if (lag > 0.0) spring_W_ += std::clamp(allowed / lag, 0.0, 1.0) * lag_W;
     return spring_W_;
   }
@@ -69,10 +69,10 @@ class Passage {
   [[nodiscard]] Vec3 force(const ForceLaw& law, double distance, const Vec3& gradient_W,
                            double travel, const Vec3& v_BA_W) noexcept {
     const Vec3& spring_W = follow(law, distance, gradient_W, travel);
-    const double size = spring_W.norm();
+    const double size = norm(spring_W);
     if (!(size > 0.0)) return {0, 0, 0};
     const Vec3 way_W = spring_W / size;
-    return law.damped(size, way_W.dot(v_BA_W)) * way_W;
+    return law.damped(size, dot(way_W, v_BA_W)) * way_W;
   }
 
  private:

@@ -36,7 +36,7 @@ class Convex {
   static Convex box(const Vec3& half_extents) {
     Convex set(Kind::box);
     set.size_ = Vec<double>(half_extents);
-    set.reach_ = half_extents.norm();
+    set.reach_ = norm(half_extents);
     set.thick_axes_ = (half_extents.x() > 0.0 ? 1U : 0U) | (half_extents.y() > 0.0 ? 2U : 0U) |
                       (half_extents.z() > 0.0 ? 4U : 0U);
     return set;
@@ -61,7 +61,7 @@ class Convex {
     Convex set(Kind::polytope);
     set.vertices_ = VertexScan(vertices);
     if (vertices.size() > largest_scan) set.table_ = SupportTable(vertices);
-    for (const Vec3& v : vertices) set.reach_ = std::max(set.reach_, v.norm());
+    for (const Vec3& v : vertices) set.reach_ = std::max(set.reach_, norm(v));
     return set;
   }
 

@@ -27,14 +27,14 @@ struct Facet {
 /// take some 0.05 s.
 [[nodiscard]] inline std::vector<Facet> hull_facets(std::span<const Vec3> points) {
   double reach = 0.0;
-  for (const Vec3& p : points) reach = std::max(reach, p.norm());
+  for (const Vec3& p : points) reach = std::max(reach, norm(p));
   // A product n.p rounds by 1.5 epsilon of the reach, and two products are compared. n rounds by
   // half an epsilon, which moves its plane at the far end of the hull by one.
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * reach;
   std::vector<Facet> facets;
   for (const detail::QuickHull::Face& face : detail::QuickHull(points).build()) {
     double offset = -std::numeric_limits<double>::infinity();
-    for (const int i : face.vertices) offset = std::max(offset, face.n.dot(points[i]));
+    for (const int i : face.vertices) offset = std::max(offset, dot(face.n, points[i]));
     facets.push_back({face.vertices, face.n, offset + rounding});
   }
   return facets;

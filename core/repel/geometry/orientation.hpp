@@ -112,11 +112,11 @@ inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v)
   const Vec3 u = b - a;
   const Vec3 v = c - a;
   const Vec3 w = p - a;
-  const double determinant = u.cross(v).dot(w);
+  const double determinant = dot(u.cross(v), w);
   const Vec3 products = {std::abs(u.y() * v.z()) + std::abs(u.z() * v.y()),
                          std::abs(u.z() * v.x()) + std::abs(u.x() * v.z()),
                          std::abs(u.x() * v.y()) + std::abs(u.y() * v.x())};
-  const double magnitude = products.dot(Vec3(std::abs(w.x()), std::abs(w.y()), std::abs(w.z())));
+  const double magnitude = dot(products, Vec3(std::abs(w.x()), std::abs(w.y()), std::abs(w.z())));
   if (std::abs(determinant) > 1e-15 * magnitude) return determinant > 0.0 ? 1 : -1;
   const detail::ExactVector exact_u = detail::exact_difference(b, a);
   const detail::ExactVector exact_v = detail::exact_difference(c, a);
@@ -134,7 +134,7 @@ inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v)
   const detail::ExactVector u = detail::exact_difference(b, a);
   const detail::ExactVector v = detail::exact_difference(c, a);
   Vec<DoubleDouble> n = cross(detail::finer(u), detail::finer(v));
-  if (!(to_vec3(n).norm() > 1e-12 * (b - a).norm() * (c - a).norm())) n = detail::exact_cross(u, v);
+  if (!(norm(to_vec3(n)) > 1e-12 * norm(b - a) * norm(c - a))) n = detail::exact_cross(u, v);
   // Scaled first: the squared normal of a thin triangle might underflow.
   const double scale = largest_entry(to_vec3(n));
   if (!(scale > 0.0)) return {0, 0, 0};

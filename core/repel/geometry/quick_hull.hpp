@@ -97,7 +97,7 @@ class QuickHull {
   }
 
   [[nodiscard]] double height(const Face& f, int i) const {
-    return f.n.dot(points_[i] - points_[f.vertices[0]]);
+    return dot(f.n, points_[i] - points_[f.vertices[0]]);
   }
   [[nodiscard]] bool sees(const Face& f, int i, double height_of_i) const {
     if (std::abs(height_of_i) > rounding) return height_of_i > 0.0;
@@ -140,14 +140,14 @@ inline void QuickHull::push(int a, int b, int c, const std::array<int, 3>& neigh
 inline bool QuickHull::start() {
   const int o = farthest([](const Vec3& p) { return p.x(); });
   const Vec3 origin = points_[o];
-  int a = farthest([&](const Vec3& p) { return (p - origin).squaredNorm(); });
-  const Vec3 along = (points_[a] - origin).normalized();
-  const auto from_line = [&](const Vec3& p) { return (p - origin).cross(along).norm(); };
+  int a = farthest([&](const Vec3& p) { return squared_norm(p - origin); });
+  const Vec3 along = normalized(points_[a] - origin);
+  const auto from_line = [&](const Vec3& p) { return norm((p - origin).cross(along)); };
   int b = farthest(from_line);
   if (!(from_line(points_[b]) > flat)) return false;
   const Vec3 n = plane_normal(origin, points_[a], points_[b]);
-  const int top = farthest([&](const Vec3& p) { return std::abs((p - origin).dot(n)); });
-  const double height_of_top = (points_[top] - origin).dot(n);
+  const int top = farthest([&](const Vec3& p) { return std::abs(dot(p - origin, n)); });
+  const double height_of_top = dot(points_[top] - origin, n);
   if (!(std::abs(height_of_top) > flat)) return false;
   if (height_of_top > 0.0) std::swap(a, b);
   push(o, a, b, {1, 2, 3});

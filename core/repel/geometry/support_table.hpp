@@ -126,7 +126,7 @@ inline SupportTable::List SupportTable::pruned(std::span<const Vec3> vertices, d
   for (const std::uint32_t i : list) {
     Reach reach{i, order.size(), 0.0, {}};
     for (std::size_t k = 0; k < 4; ++k) {
-      reach.along[k] = corners[k].dot(vertices[i]);
+      reach.along[k] = dot(corners[k], vertices[i]);
       reach.sum += reach.along[k];
     }
     order.push_back(reach);

@@ -33,12 +33,12 @@ class BodyView {
     }
     set_column(X_, 3, in_to(column<double>(X_WFrom, 3) - column<double>(X_WTo, 3)));
     skew_ = std::sqrt(squares) + 1e-14;
-    far_ = origin(X_WFrom).norm() + origin(X_WTo).norm();
+    far_ = norm(origin(X_WFrom)) + norm(origin(X_WTo));
   }
   /// A box in the frame of the other body that contains `original`.
   [[nodiscard]] Box box(const Box& original) const noexcept {
     Box box = moved(original, X_);
-    const double far = far_ + centre(box).norm() + extents(box).norm();
+    const double far = far_ + norm(centre(box)) + norm(extents(box));
     const double slack = 2.0 * skew_ * far;
     for (int axis = 0; axis < 3; ++axis) {
       box.min()[axis] -= slack;

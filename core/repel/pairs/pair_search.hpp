@@ -105,7 +105,7 @@ struct PairIndex {
       of_a.extend(boxes_[e->part_a]);
       of_b.extend(boxes_[e->part_b]);
     }
-    if (extents(of_a).norm() >= extents(of_b).norm()) return;
+    if (norm(extents(of_a)) >= norm(extents(of_b))) return;
     std::transform(first, end, first, [](const Entry& e) { return e.swapped(); });
     std::sort(first, end);
   }

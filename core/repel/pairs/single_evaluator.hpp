@@ -88,7 +88,7 @@ class SingleEvaluator {
   /// Time to contact [s] at the present velocities: the key of urgency, smallest first. Negative in
   /// overlap, 1e9 for separating pairs.
   [[nodiscard]] double time_to_touch(int slot, const Motion& motion) const noexcept {
-    const double closing = -memory_.answer(slot).last.extraction_W.dot(velocity(slot, motion));
+    const double closing = -dot(memory_.answer(slot).last.extraction_W, velocity(slot, motion));
     const double distance = lower_bound(slot, motion);
     return closing > 0.0 || distance < 0.0 ? distance / std::max(closing, 1e-3) : 1e9;
   }
@@ -254,9 +254,9 @@ class SingleEvaluator {
       const double travel = body_a(slot, motion).travel + body_b(slot, motion).travel;
       f = share *
           memory_.history(slot).passage.force(law, distance, answer.slope * n, travel, v_BA);
-      size = f.norm();
+      size = norm(f);
     } else {
-      size = share * law(distance, n.dot(v_BA));
+      size = share * law(distance, dot(n, v_BA));
       f = size * n;
     }
     memory_.answer(slot).force = size;

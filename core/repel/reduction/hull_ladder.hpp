@@ -18,7 +18,7 @@ namespace repel::detail {
 /// Least distance of x to the facet planes [m]: its depth in the hull, negative outside.
 inline double depth_in(const std::vector<Facet>& facets, const Vec3& x) {
   double depth = std::numeric_limits<double>::infinity();
-  for (const Facet& f : facets) depth = std::min(depth, f.offset - f.n.dot(x));
+  for (const Facet& f : facets) depth = std::min(depth, f.offset - dot(f.n, x));
   return depth;
 }
 
@@ -36,9 +36,9 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
     double depth;
   };
   const auto nearest_to = [&](const Vec3& x) {
-    Nearest nearest{&facets.front(), facets.front().offset - facets.front().n.dot(x)};
+    Nearest nearest{&facets.front(), facets.front().offset - dot(facets.front().n, x)};
     for (const Facet& f : facets) {
-      const double depth = f.offset - f.n.dot(x);
+      const double depth = f.offset - dot(f.n, x);
       if (depth < nearest.depth) nearest = {&f, depth};
     }
     return nearest;
@@ -67,13 +67,13 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
 inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, const Vec3& deep) {
   std::vector<const Facet*> nearby;
   for (const Facet& f : facets) {
-    if (f.offset - f.n.dot(v) < 2.0 * t) nearby.push_back(&f);
+    if (f.offset - dot(f.n, v) < 2.0 * t) nearby.push_back(&f);
   }
   bool moved = true;
   for (int sweep = 0; sweep < 60 && moved; ++sweep) {
     moved = false;
     for (const Facet* f : nearby) {
-      const double excess = f->n.dot(v) - (f->offset - t);
+      const double excess = dot(f->n, v) - (f->offset - t);
       if (excess <= 0.0) continue;
       v -= excess * f->n;
       moved = true;
@@ -81,8 +81,8 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   }
   double share = 0.0;
   for (const Facet& f : facets) {
-    const double excess = f.n.dot(v) - (f.offset - t);
-    const double room = (f.offset - t) - f.n.dot(deep);
+    const double excess = dot(f.n, v) - (f.offset - t);
+    const double room = (f.offset - t) - dot(f.n, deep);
     if (excess > 0.0 && room > 0.0) share = std::max(share, excess / (excess + room));
     if (excess > 0.0 && room <= 0.0) return deep;
   }
@@ -186,7 +186,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
 inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>& facets) {
   if (facets.empty()) return Planes();
   double reach = 0.0;
-  for (const Vec3& p : points) reach = std::max(reach, p.norm());
+  for (const Vec3& p : points) reach = std::max(reach, norm(p));
   const double radius = depth_in(facets, deep_point(facets, points));
   const double off = 4e-15 * reach;
   return Planes(facets, radius > off ? off * (1.0 + 2.0 * reach / radius) : 2.0 * reach);

@@ -74,10 +74,10 @@ namespace detail {
 /// Greatest distance [m] of the centre of mass of link `i` from the axis of a revolute joint
 /// `first`. Infinite where a prismatic joint between them has no stop.
 inline double longest_lever(const ArmModel& model, std::size_t first, std::size_t i) {
-  double lever = model.links[i].p_LC.norm();
+  double lever = norm(model.links[i].p_LC);
   for (std::size_t k = first + 1; k <= i; ++k) {
     const ArmLink& link = model.links[k];
-    lever += origin(link.X_PJ).norm();
+    lever += norm(origin(link.X_PJ));
     if (link.type == JointType::revolute) continue;
     lever += std::max(std::abs(link.lower), std::abs(link.upper));
   }
@@ -103,7 +103,7 @@ inline double longest_lever(const ArmModel& model, std::size_t first, std::size_
     if (turns) inertia += link.I_C_L.norm();
     if (!(link.mass > 0.0)) continue;  // no weight, whatever the lever
     const double lever = turns ? detail::longest_lever(model, first, i) : 1.0;
-    weight += link.mass * lever * model.gravity_W.norm();
+    weight += link.mass * lever * norm(model.gravity_W);
     inertia += link.mass * lever * lever;
   }
   const double usual_speed = turns ? 3.0 : 1.0;  // [rad/s] or [m/s]

@@ -63,7 +63,7 @@ void require_simulable(const Link& link) {
   not_negative("rotor inertia", link.rotor_inertia, "kg m^2");
   not_negative("brake torque", link.brake_torque, "N m");
   require(is_finite(link.X_PJ) && is_rigid(link.X_PJ), link, "X_PJ is not a rigid pose");
-  require(std::abs(link.axis_J.norm() - 1.0) <= 1e-9, link, "axis_J is not of unit length");
+  require(std::abs(norm(link.axis_J) - 1.0) <= 1e-9, link, "axis_J is not of unit length");
   require(is_finite(link.p_LC), link, "the centre of mass is not finite");
   require_moments(link.I_C_L, link);
   require(link.lower < link.upper, link,

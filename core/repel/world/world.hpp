@@ -69,7 +69,7 @@ class World {
       throw SetupError("part " + name + ": no such body");
     check_rigid(name, X_BP);
     double& reach = reach_[body.index];
-    reach = std::max(reach, origin(X_BP).norm() + shape.reach());
+    reach = std::max(reach, norm(origin(X_BP)) + shape.reach());
     parts_.push_back({name, body, shape, X_BP});
     return {static_cast<std::int32_t>(parts_.size()) - 1};
   }
@@ -102,7 +102,7 @@ class World {
     const double chord = std::sqrt(0.5 * (moved(0) + moved(1) + moved(2)));
     const double reach = reach_[body.index];
     const double turned = reach * chord;
-    const double rounding = 1e-14 * (origin(X_WB).norm() + reach);
+    const double rounding = 1e-14 * (norm(origin(X_WB)) + reach);
     state.travel += std::sqrt(moved(3)) + turned + rounding;
     state.turn += turned + rounding;
     state.X_WB = X_WB;
