@@ -1,6 +1,8 @@
 #include "replay.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 
 namespace repel::teleop {
@@ -11,6 +13,11 @@ using std::chrono::nanoseconds;
 template <class Values>
 bool same_bits(const Values& a, const Values& b) {
   return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+/// Unlike ==, tells 0 from -0 and takes a NaN for equal to itself.
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 bool same_bits(const Wrench& a, const Wrench& b) {
@@ -27,7 +34,7 @@ void compare(const Recording& recording, std::size_t tick,
     const TickRecord& now = *records[i];
     same = same && same_bits(then.virtual_force, now.virtual_force) &&
            same_bits(then.coupling, now.coupling) && same_bits(then.torques, now.torques) &&
-           then.lever_torque == now.lever_torque && then.gain == now.gain;
+           same_bits(then.lever_torque, now.lever_torque) && same_bits(then.gain, now.gain);
     report.force_difference = std::max(report.force_difference,
                                        (then.virtual_force.force - now.virtual_force.force).norm());
   }

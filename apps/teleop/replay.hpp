@@ -9,8 +9,8 @@
 
 namespace repel::teleop {
 
-/// Compares the results of a tick with the recorded ones: the virtual force, the coupling force and
-/// the torques of every arm bit for bit, the lever torque and the gain by value.
+/// Compares the results of a tick with the recorded ones, bit for bit: of every arm the virtual
+/// force, the coupling force, the torques, the lever torque and the gain.
 void compare(const Recording& recording, std::size_t tick,
              std::span<const TickRecord* const> records, ReplayReport& report);
 

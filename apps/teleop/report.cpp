@@ -1,6 +1,7 @@
 #include "report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 
 #include "figure.hpp"
@@ -131,6 +132,19 @@ ordered_json obstacle_list(const RunResult& r) {
   return list;
 }
 
+/// An intrusion into a passable body is intended, one into a wall is not.
+void print_walls_and_passables(const RunResult& r, std::FILE* out) {
+  if (!std::isfinite(r.passables.nearest)) return;
+  const auto print = [out](const char* name, const PairExtremes& of) {
+    const std::string nearest =
+        std::isfinite(of.nearest) ? figure(1e3 * of.nearest, 3) + " mm" : "none";
+    std::fprintf(out, "    %-20s nearest %s, deepest intrusion %s mm\n", name, nearest.c_str(),
+                 figure(1e3 * of.deepest, 3).c_str());
+  };
+  print("walls", r.walls);
+  print("passable bodies", r.passables);
+}
+
 /// The counted budget, and how many support pairs this machine computes.
 void print_work(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  support pairs          %.2f per tick, most %lld in one\n",
@@ -223,6 +237,7 @@ void print_report(const RunResult& r, std::FILE* out) {
     std::fprintf(out, "  nearest                %s mm (%s), deepest intrusion %s mm\n",
                  figure(1e3 * t.nearest, 3).c_str(), r.nearest_pair.c_str(),
                  figure(1e3 * t.deepest, 3).c_str());
+    print_walls_and_passables(r, out);
   }
   print_line("peak virtual force", figure(t.peak_force, 2) + " N", out);
   print_obstacles(r, out);
@@ -291,6 +306,10 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["modules"] = modules_to_json(r.arms.front().modules);
   report["partners"] = partner_list(r);
   report["nearest_pair"] = r.nearest_pair;
+  report["nearest_wall_m"] = r.walls.nearest;
+  report["deepest_wall_m"] = r.walls.deepest;
+  report["nearest_passable_m"] = r.passables.nearest;
+  report["deepest_passable_m"] = r.passables.deepest;
   report["obstacles"] = obstacle_list(r);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);

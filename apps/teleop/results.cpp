@@ -20,6 +20,7 @@ void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& r
     if (result.options.keep_records) result.pair_names.push_back(name_of(world, {i}));
     const PairExtremes extremes = coprocessor.extremes_of({i});
     totals.deepest = std::max(totals.deepest, extremes.deepest);
+    (pair.law.passable ? result.passables : result.walls).add(extremes);
     // Includes evaluations before the first tick; not finite if nothing was near.
     if (std::isfinite(extremes.nearest) && extremes.nearest <= totals.nearest) {
       totals.nearest = extremes.nearest;

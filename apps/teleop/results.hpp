@@ -11,8 +11,8 @@
 
 namespace repel::teleop {
 
-/// Collects the extremes of every obstacle, and the nearest pair of all. Call once `coprocessor`
-/// has stopped.
+/// Collects the extremes of every obstacle, of the walls and of the passable bodies, and the
+/// nearest pair of all. Call once `coprocessor` has stopped.
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result);
 
 /// The results of every module, in the order of the network.

@@ -89,6 +89,8 @@ struct RunResult {
   bool begins_anew = false;  ///< the user requested another run
   ReplayReport replay;       ///< of a replay
   host::Machine machine;
+  /// Since set-up, of all pairs whose law is not passable, and of those whose law is.
+  PairExtremes walls, passables;
 
   /// Of the arm of the scene itself.
   [[nodiscard]] const RunTotals& totals() const noexcept { return arms.front().totals; }

@@ -6,7 +6,7 @@
 
 namespace repel::bullet::detail {
 
-constexpr int kRows = 3;  // per contact point
+constexpr int rows_per_point = 3;  // one outward, two tangential
 
 Contacts::Contacts(const ArmModel& model, const SimulationOptions& options,
                    std::span<const ContactPart> parts)
@@ -15,7 +15,7 @@ Contacts::Contacts(const ArmModel& model, const SimulationOptions& options,
       search_(model, parts),
       X_WL_(model.links.size(), Pose::Identity()),
       axis_W_(model.links.size(), Vec3::Zero()),
-      rows_(kRows * ContactSearch::most_touches),
+      rows_(rows_per_point * ContactSearch::most_touches),
       J_(model.links.size(), rows_.size()),
       response_(J_.rows(), J_.cols()) {}
 
@@ -65,7 +65,7 @@ void Contacts::begin(const Eigen::MatrixXd& W, const Eigen::VectorXd& v, double 
     const Vec3 side_W = touch.out_W.unitOrthogonal();
     const double target = options_.contact_stiffness * touch.depth * along;
     for (const Vec3& direction_W : {touch.out_W, side_W, Vec3(touch.out_W.cross(side_W))}) {
-      const bool out = row % kRows == 0;
+      const bool out = row % rows_per_point == 0;
       set_row(row, touch.link, touch.p_W, direction_W);
       response_.col(row).noalias() = W * J_.col(row);
       rows_[static_cast<std::size_t>(row)] = {.speed = J_.col(row).dot(v),
@@ -89,7 +89,8 @@ double Contacts::correct(int row, double least, double most, Eigen::VectorXd& a)
 
 double Contacts::sweep(Eigen::VectorXd& a) noexcept {
   double largest_change = 0.0;
-  for (int out = 0; out < kRows * static_cast<int>(touches_.size()); out += kRows) {
+  for (int out = 0; out < rows_per_point * static_cast<int>(touches_.size());
+       out += rows_per_point) {
     const double pushed = correct(out, 0.0, std::numeric_limits<double>::max(), a);
     const double most = options_.contact_friction * rows_[static_cast<std::size_t>(out)].force;
     const double first = correct(out + 1, -most, most, a);

@@ -6,8 +6,8 @@
 namespace repel::bullet::detail {
 namespace {
 
-constexpr int kFrictionSweeps = 100;
-constexpr double kSettled = 1e-14;  // [rad/s] the search ends when no change in a sweep exceeds it
+constexpr int most_sweeps = 100;
+constexpr double settled = 1e-14;  // [rad/s] the search ends when no change in a sweep exceeds it
 
 Eigen::VectorXd gathered(const ArmModel& model, double ArmLink::*field) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(model.links.size()));
@@ -101,7 +101,7 @@ void ImplicitJoints::stand(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const E
 void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
                                    const Eigen::VectorXd& v, double h,
                                    Contacts* contacts) noexcept {
-  for (int sweep = 0; sweep < kFrictionSweeps; ++sweep) {
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     double largest_change = 0.0;
     for (Eigen::Index i = 0; i < a.size(); ++i) {
       const double stopping = friction_[i] - (v[i] / h + a[i]) / W(i, i);
@@ -111,7 +111,7 @@ void ImplicitJoints::find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a,
       largest_change = std::max(largest_change, h * std::abs(change) * W(i, i));
     }
     if (contacts != nullptr) largest_change = std::max(largest_change, contacts->sweep(a));
-    if (largest_change <= kSettled) return;
+    if (largest_change <= settled) return;
   }
 }
 

@@ -1,7 +1,9 @@
 #include <repel/scene/module_kinds.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
@@ -120,17 +122,78 @@ ReadModule obstacle_of(const Map& map) {
   return made_of(options, make<network::Obstacle>, network::Obstacle::traits.walls);
 }
 
+/// The key `range` of the joint limits. Which kind each number has to be is known with the arm
+/// only.
+class LimitZones {
+ public:
+  explicit LimitZones(const Map& map) {
+    const Value* value = map.find("range");
+    if (value == nullptr) return;
+    value_ = *value;
+    is_list_ = value->is_list();
+    entries_ = is_list_ ? value->list(network::most_joints) : std::vector<Value>{*value};
+    for (const Value& entry : entries_) (void)zone(entry);
+  }
+
+  /// The range of each joint, with its zone if the file gives one.
+  ///
+  /// @throws SetupError for a length where a joint turns, an angle where one slides, and a list
+  ///   whose number of entries is not that of the joints
+  [[nodiscard]] std::vector<network::JointRange> ranges(const ArmModel& arm) const {
+    if (is_list_ && entries_.size() != arm.links.size()) {
+      value_->fail("'range' has " + std::to_string(entries_.size()) + " entries; allowed: " +
+                   std::to_string(arm.links.size()) + ", one for each joint");
+    }
+    std::vector<network::JointRange> ranges;
+    for (const ArmLink& link : arm.links) {
+      network::JointRange& range = ranges.emplace_back();
+      range = {.lower = link.lower, .upper = link.upper};
+      if (!value_) continue;
+      const Value& entry = entries_[is_list_ ? ranges.size() - 1 : 0];
+      require_kind(entry, link);
+      range.zone = zone(entry);
+    }
+    return ranges;
+  }
+
+ private:
+  static constexpr Rule turning{unit::angle, 1e-6, 1e3};
+  static constexpr Rule sliding{unit::length, 1e-6, 1e3};
+
+  static bool is_length(const Value& entry) {
+    return quantity(entry.text(), unit::length).has_value();
+  }
+
+  static double zone(const Value& entry) {
+    if (is_length(entry)) return entry.number(sliding);
+    if (quantity(entry.text(), unit::angle)) return entry.number(turning);
+    entry.fail_with_value("1 number, then the unit " + units_text(unit::angle) +
+                          " for a joint that turns, " + units_text(unit::length) +
+                          " for one that slides");
+  }
+
+  static void require_kind(const Value& entry, const ArmLink& link) {
+    const bool slides = link.type == JointType::prismatic;
+    if (is_length(entry) == slides) return;
+    entry.fail_with_value((slides ? "a length, " : "an angle, ") +
+                          range_text(slides ? sliding : turning) + ", since the joint '" +
+                          link.joint_name + (slides ? "' slides" : "' turns") +
+                          "; a list has one entry for each joint, as in [50 mm, 5 deg]");
+  }
+
+  std::optional<Value> value_;  // empty without the key
+  std::vector<Value> entries_;  // of the list, or the one for all joints
+  bool is_list_ = false;
+};
+
 ReadModule limits_of(const Map& map) {
   allow(map, {"range", "stiffness", "damping"});
   network::JointLimits law;
-  map.read("range", {unit::angle, 1e-6, 1e3}, law.range);
+  const LimitZones zones(map);
   map.read("stiffness", {unit::angular_stiffness, 0.0, 1e6}, law.stiffness);
   map.read("damping", {unit::angular_damping, 0.0, 1e6}, law.damping);
-  return {law, [law](const ArmModel& arm) {
-            std::vector<network::JointRange> ranges;
-            for (const ArmLink& link : arm.links) ranges.push_back({link.lower, link.upper});
-            return network::Limits(law, ranges);
-          }};
+  return {law,
+          [law, zones](const ArmModel& arm) { return network::Limits(law, zones.ranges(arm)); }};
 }
 
 ReadModule line_of(const Map& map) {

@@ -114,6 +114,7 @@ network::Plan plan_network(const Scene& scene, const ArmSetup& setup, const ArmM
       plan.add(module.name, module.make(arm), module.to);
     }
   } catch (const SetupError& error) {
+    if (!error.file().empty()) throw;  // a value of the file that does not suit this arm
     throw located(scene, SetupError(std::string("network: ") + error.what()));
   }
   return plan;

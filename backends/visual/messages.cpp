@@ -56,17 +56,20 @@ std::pair<int, const char*> owner_of(const SceneInfo& info, BodyId body) {
   return {-1, "obstacle"};
 }
 
-/// Adds the greatest range of the laws of a part's pairs, and `passable` of the last such pair.
+/// Adds the greatest range of the laws under which a part acts on others, and whether it is
+/// passable: all of these laws are. What may not enter it meets a wall.
 void add_laws(const World& world, std::int32_t part, Json& json) {
   double range = 0.0;
-  bool passable = false;
+  int pairs = 0;
+  int passable = 0;
   for (const Pair& pair : world.pairs()) {
     if (pair.b.index != part) continue;
     range = std::max(range, pair.law.range);
-    passable = pair.law.passable;
+    ++pairs;
+    passable += pair.law.passable ? 1 : 0;
   }
   json["range_m"] = range;
-  json["passable"] = passable;
+  json["passable"] = pairs > 0 && passable == pairs;
 }
 
 double us(std::chrono::nanoseconds time) {

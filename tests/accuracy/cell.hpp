@@ -67,15 +67,16 @@ inline void add_apart(Cell& cell, const Specimen& A, const Specimen& B, double g
   cell.iterations.push_back(s.iterations);
 }
 
-/// Adds a pose with the centres closer than half the smaller size.
-inline void add_overlapping(Cell& cell, const Specimen& A, const Specimen& B, Rng& rng) {
+/// Adds a pose with the centres closer than half the smaller size, its overlap by `measure`.
+inline void add_overlapping(Cell& cell, const Specimen& A, const Specimen& B, Measure measure,
+                            Rng& rng) {
   Pose X_WA = Pose::Identity();
   Pose X_WB = Pose::Identity();
   turn(X_WA, X_WB, static_cast<int>(cell.iterations.size()), rng);
   const double smaller = std::min(A.size, B.size);
   X_WB.translation() = families::uniform(rng, 0.0, 0.5) * smaller * families::direction(rng);
   const PosedPair pair(A, X_WA, B, X_WB);
-  const Separation s = separation(A.shape, X_WA, B.shape, X_WB);
+  const Separation s = separation(A.shape, X_WA, B.shape, X_WB, {.measure = measure});
   const double depth = pair.depth_by_search(s.extraction_W, rng);
   if (depth <= 0.0) return;  // rare: a thin hull beside the other
   const double size = std::max(A.size, B.size);

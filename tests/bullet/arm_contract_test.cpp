@@ -94,7 +94,7 @@ TEST(BulletArm, AStepAllocatesNothing) {
 #endif
 
 TEST(BulletArm, ATorqueThatIsNotFiniteCountsAsZeroAndIsRemembered) {
-  for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
+  for (const double bad : {std::nan(""), infinity, -infinity}) {
     Arm arm(turntable(0.5));
     arm.set_torques(std::vector{bad});
     arm.step(1.0 / 400);
@@ -117,7 +117,7 @@ TEST(BulletArm, AMissingTorqueCountsAsZeroAndIsRemembered) {
 TEST(BulletArm, APeriodThatIsNotPositiveMovesNothing) {
   Arm arm(turntable(0.5));
   arm.set_torques(std::vector{1.0});
-  for (const double bad : {0.0, -0.1, kInfinity, std::nan("")}) {
+  for (const double bad : {0.0, -0.1, infinity, std::nan("")}) {
     arm.clear_faults();
     arm.step(bad);
     EXPECT_TRUE(arm.faults().period);
@@ -184,8 +184,8 @@ TEST(BulletArm, SetUpRefusesOptionsAndStatesOutOfRange) {
   EXPECT_THROW(arm.reset(std::vector(6, 3.0)), SetupError);
   EXPECT_THROW(arm.reset(std::vector(6, std::nan(""))), SetupError);
   Arm free(turntable(1.0));
-  EXPECT_THROW(free.reset(std::vector{kInfinity}), SetupError);
-  EXPECT_THROW(free.reset(std::vector{0.0}, std::vector{kInfinity}), SetupError);
+  EXPECT_THROW(free.reset(std::vector{infinity}), SetupError);
+  EXPECT_THROW(free.reset(std::vector{0.0}, std::vector{infinity}), SetupError);
 }
 
 }  // namespace arm_contract_test

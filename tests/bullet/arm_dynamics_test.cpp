@@ -14,8 +14,8 @@ namespace arm_dynamics_test {
 ArmModel without_losses(ArmModel model) {
   for (ArmLink& link : model.links) {
     link.viscous_friction = link.coulomb_friction = 0.0;
-    link.lower = -kInfinity;
-    link.upper = kInfinity;
+    link.lower = -infinity;
+    link.upper = infinity;
   }
   return model;
 }
@@ -52,7 +52,7 @@ TEST(BulletArmDynamics, PendulumSwingsWithThePeriodOfTheEllipticIntegral) {
     smaller = std::sqrt(larger * smaller);
     larger = mean;
   }
-  const double expected = 2 * kPi / (std::sqrt(m * 9.81 * l / inertia) * larger);
+  const double expected = 2 * pi / (std::sqrt(m * 9.81 * l / inertia) * larger);
   Arm arm(model);
   arm.reset(std::vector{amplitude});
   EXPECT_NEAR(measured_period(arm, 1.0 / 400, 20) / expected, 1.0, 2e-6);
@@ -120,7 +120,7 @@ TEST(BulletArmDynamics, TwoLinksAccelerateAsTheLagrangianSaysWithAndWithoutRotor
   const unsigned seed = 560;
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> angle(-kPi, kPi), speed(-3, 3), effort(-20, 20);
+  std::uniform_real_distribution<double> angle(-pi, pi), speed(-3, 3), effort(-20, 20);
   for (const bool with_rotors : {true, false}) {
     TwoLink two;
     if (!with_rotors) two.r1 = two.r2 = 0.0;

@@ -40,7 +40,7 @@ TEST(BulletBrakes, ABrakeSlowsByItsOwnTorqueAndLetsABiggerLoadSlip) {
   model.links[0].brake_torque = 3.0;
   model.links[0].coulomb_friction = 1.0;
   Arm arm(model, {.substeps = 1});
-  arm.reset(std::vector{kPi / 2}, std::vector{0.0});
+  arm.reset(std::vector{pi / 2}, std::vector{0.0});
   arm.engage_brakes(true);
   arm.step(1e-6);
   EXPECT_NEAR(velocities(arm)[0] / 1e-6, -(2.0 * 9.81 * 0.5 - 4.0) / 0.53, 1e-4);
@@ -49,7 +49,7 @@ TEST(BulletBrakes, ABrakeSlowsByItsOwnTorqueAndLetsABiggerLoadSlip) {
 TEST(BulletBrakes, SetUpNamesTheWatchdogThatIsOutOfRange) {
   EXPECT_THROW(Arm(pendulum(), {.watchdog = -1.0}), SetupError);
   EXPECT_THROW(Arm(pendulum(), {.watchdog = std::nan("")}), SetupError);
-  EXPECT_NO_THROW(Arm(pendulum(), {.watchdog = kInfinity}));
+  EXPECT_NO_THROW(Arm(pendulum(), {.watchdog = infinity}));
 }
 
 }  // namespace brake_test

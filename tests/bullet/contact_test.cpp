@@ -43,7 +43,7 @@ TEST(BulletContact, WhatIsNotTouchedChangesNoBit) {
 
 TEST(BulletContact, AConeTouchesWithItsTipAndItsBase) {
   const ContactPart cone{"cone", 0, Shape::cone(0.05, 0.1), Pose::Identity()};
-  for (const double turn : {kPi / 2, -kPi / 2}) {
+  for (const double turn : {pi / 2, -pi / 2}) {
     ContactPart turned = cone;
     turned.X_LP.linear() = Eigen::AngleAxisd(turn, Vec3::UnitY()).toRotationMatrix();
     expect_a_box_stops<Arm>(turned);

@@ -14,8 +14,8 @@ namespace reference_test {
 TEST(BulletAgainstTheReference, PumaMovesAlikeToFirstOrderInTheSubStep) {
   ArmModel model = puma560();
   for (ArmLink& link : model.links) {  // the reference has no stops
-    link.lower = -kInfinity;
-    link.upper = kInfinity;
+    link.lower = -infinity;
+    link.upper = infinity;
   }
   const auto reference = motion_of(ReferenceArm(model, {.substeps = 8}));
   EXPECT_LT(apart(reference, motion_of(ReferenceArm(model, {.substeps = 16}))), 1e-9);

@@ -105,7 +105,6 @@ TEST(JointWatch, PredictsTheMotionWhileReadingsAreNotBelieved) {
   for (int tick = 1; tick <= 8; ++tick) {
     (void)bench.read({std::nan(""), 0.2, 0.3}, bench.v);
     EXPECT_NEAR(bench.watch.position(0), q + tick * period * v, 2e-3);
-    EXPECT_NEAR(bench.watch.blind_for(), tick * period, 1e-12);
   }
   EXPECT_FALSE(bench.watch.knows_nothing());
 }

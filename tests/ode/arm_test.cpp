@@ -30,7 +30,7 @@ TEST(OdeArm, PendulumSwingsWithThePeriodOfTheEllipticIntegralAndKeepsItsEnergy) 
     smaller = std::sqrt(larger * smaller);
     larger = mean;
   }
-  const double swing = 2 * kPi / (std::sqrt(2.0 * 9.81 * 0.5 / 0.53) * larger);
+  const double swing = 2 * pi / (std::sqrt(2.0 * 9.81 * 0.5 / 0.53) * larger);
   Arm arm(model, {.substeps = 16});
   arm.reset(std::vector{1.0});
   const double before = energy(model, arm);

@@ -39,7 +39,7 @@ TEST(OdeBrakes, ABrakeSlowsByItsOwnTorqueAndLetsABiggerLoadSlip) {
   model.links[0].brake_torque = 3.0;
   model.links[0].coulomb_friction = 1.0;
   Arm arm(model, {.substeps = 1});
-  arm.reset(std::vector{kPi / 2});
+  arm.reset(std::vector{pi / 2});
   arm.engage_brakes(true);
   arm.step(1e-6);
   EXPECT_NEAR(velocities(arm)[0] / 1e-6, -(2.0 * 9.81 * 0.5 - 4.0) / 0.53, 1e-3);

@@ -18,8 +18,8 @@ using namespace simulated;
 ArmModel free_puma() {
   ArmModel model = heavy_puma();
   for (ArmLink& link : model.links) {
-    link.lower = -kInfinity;
-    link.upper = kInfinity;
+    link.lower = -infinity;
+    link.upper = infinity;
   }
   return model;
 }

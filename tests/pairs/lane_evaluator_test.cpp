@@ -145,6 +145,7 @@ TEST(LaneEvaluator, AnswersAreThoseWithoutLanes) {
         const PairExtremes y = without.lanes.extremes_of({slot});
         ASSERT_NEAR(x.nearest, y.nearest, 1e-9);
         ASSERT_NEAR(x.peak_force, y.peak_force, 1e-5);
+        ASSERT_NEAR(x.deepest, y.deepest, 1e-9);
         in_lanes += with_lanes.is_in_lane(slot) ? 1 : 0;
       }
       for (std::size_t body = 0; body < a.on_body.size(); ++body) {
@@ -152,6 +153,7 @@ TEST(LaneEvaluator, AnswersAreThoseWithoutLanes) {
       }
       ASSERT_NEAR(a.totals.nearest, b.totals.nearest, 1e-9);
       ASSERT_NEAR(a.totals.peak_force, b.totals.peak_force, 1e-5);
+      ASSERT_NEAR(a.totals.deepest, b.totals.deepest, 1e-9);
       peak = std::max(peak, a.totals.peak_force);
     }
   }

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include <repel/network/modules.hpp>
 
@@ -137,6 +139,87 @@ TEST(SceneNetwork, WhatCannotBeBuiltIsRefusedWithItsLine) {
       "  - {module: junction, name: join}\n" +
           slave,
       "delay-free loop");
+}
+
+/// A mast that slides, 0 to 5 m, and a joint behind it that turns.
+ArmModel mast() {
+  ArmModel arm = two_joints();
+  arm.links[0].type = JointType::prismatic;
+  arm.links[0].lower = 0.0;
+  arm.links[0].upper = 5.0;
+  return arm;
+}
+
+/// Where the limits begin to act, for each joint; the part of the message after the file if they
+/// are refused.
+struct Zones {
+  std::vector<double> of_joints;
+  std::string refusal;
+};
+
+Zones zones(const ArmModel& arm, const std::string& range) {
+  Zones found;
+  try {
+    const Scene scene =
+        parsed(base_scene + "network: [{module: torque_arm}, {module: multiplex}, " +
+               "{module: kbb2}, {module: obstacle}, {module: puma_kin},\n  {module: limits" +
+               range + "},\n  {module: puma_joints}]\n");
+    const network::Network built = build_network(scene, scene, arm, 400.0);
+    auto limits = *built.find<network::Limits>();
+    network::Signals signals;
+    signals.joints = signals.rates = signals.mean_rates = network::Vec<network::any_size>::Zero(2);
+    for (int i = 0; i < 2; ++i) {
+      // From the lower end on: the distance at which the torque k (zone - distance) vanishes.
+      signals.joints(i) = arm.links[static_cast<std::size_t>(i)].lower;
+    }
+    limits.read(signals);
+    for (int i = 0; i < 2; ++i) found.of_joints.push_back(limits.torques()(i) / 2000.0);
+  } catch (const SetupError& error) {
+    found.refusal = error.what();
+  }
+  return found;
+}
+
+TEST(SceneNetwork, ALimitBeginsAtAnAngleOfATurningJointAndAtALengthOfASlidingOne) {
+  const auto expect = [](const ArmModel& arm, const std::string& range, double first,
+                         double second) {
+    const Zones found = zones(arm, range);
+    ASSERT_EQ(found.refusal, "");
+    EXPECT_NEAR(found.of_joints[0], first, 1e-12) << range;
+    EXPECT_NEAR(found.of_joints[1], second, 1e-12) << range;
+  };
+  const double degree = std::numbers::pi / 180.0;
+  expect(mast(), "", 0.1, 0.1);
+  expect(mast(), ", range: [50 mm, 3 deg]", 0.05, 3.0 * degree);
+  expect(mast(), ", range: [0.2 m, 0.03 rad]", 0.2, 0.03);
+  expect(two_joints(), ", range: 3 deg", 3.0 * degree, 3.0 * degree);
+  expect(two_joints(), ", range: [3 deg, 0.2 rad]", 3.0 * degree, 0.2);
+  ArmModel sliding = mast();
+  sliding.links[1].type = JointType::prismatic;
+  expect(sliding, ", range: 5 cm", 0.05, 0.05);
+}
+
+TEST(SceneNetwork, ALimitOfTheWrongKindIsRefusedWithItsLine) {
+  const auto expect = [](const ArmModel& arm, const std::string& range, const std::string& part) {
+    const std::string text = zones(arm, range).refusal;
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+    EXPECT_EQ(text.find("scenes/test.yaml:9: "), 0U) << text;
+  };
+  expect(
+      mast(), ", range: 0.1 rad",
+      "'range' is '0.1 rad'; allowed: a length, 1e-06 to 1000 m, since the joint 'first' slides");
+  expect(
+      mast(), ", range: 50 mm",
+      "'range' is '50 mm'; allowed: an angle, 1e-06 to 1000 rad, since the joint 'second' turns");
+  expect(mast(), ", range: [3 deg, 3 deg]", "'range[0]' is '3 deg'; allowed: a length");
+  expect(mast(), ", range: [50 mm, 50 mm]", "'range[1]' is '50 mm'; allowed: an angle");
+  expect(two_joints(), ", range: 50 mm", "'range' is '50 mm'; allowed: an angle");
+  expect(mast(), ", range: [50 mm]", "'range' has 1 entries; allowed: 2, one for each joint");
+  expect(mast(), ", range: []", "'range' has 0 entries; allowed: 2");
+  expect(two_joints(), ", range: 3 kg", "'range' is '3 kg'; allowed: 1 number, then the unit rad");
+  expect(two_joints(), ", range: 3 4 deg", "allowed: 1 number");
+  expect(two_joints(), ", range: 0 deg", "'range' is '0 deg'; allowed: 1e-06 to 1000 rad");
+  expect(mast(), ", range: [2000 m, 3 deg]", "'range[0]' is '2000 m'; allowed: 1e-06 to 1000 m");
 }
 
 TEST(SceneNetwork, ObstaclesNeedTheModuleThroughWhichTheyAct) {

@@ -12,8 +12,8 @@
 
 namespace repel::simulated {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPi = 3.14159265358979323846;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double pi = 3.14159265358979323846;
 
 /// A link of `mass` [kg] whose centre of mass is `p_LC` [m] from its joint, without stops.
 inline ArmLink link_with(double mass, const Vec3& p_LC, const Vec3& moments) {
@@ -23,8 +23,8 @@ inline ArmLink link_with(double mass, const Vec3& p_LC, const Vec3& moments) {
   link.mass = mass;
   link.p_LC = p_LC;
   link.I_C_L = moments.asDiagonal();
-  link.lower = -kInfinity;
-  link.upper = kInfinity;
+  link.lower = -infinity;
+  link.upper = infinity;
   return link;
 }
 
@@ -58,11 +58,11 @@ inline ArmModel puma560() {
     Vec3 p_DC, moments;  // in DH frame D of the link
   };
   const std::array<Joint, 6> joints{{
-      {kPi / 2, 0, 0, -160, 160, -62.6111, 200e-6, 1.48e-3},
+      {pi / 2, 0, 0, -160, 160, -62.6111, 200e-6, 1.48e-3},
       {0, .4318, 0, -45, 225, 107.815, 200e-6, .817e-3},
-      {-kPi / 2, .0203, .15005, -225, 45, -53.7063, 200e-6, 1.38e-3},
-      {kPi / 2, 0, .4318, -110, 170, 76.0364, 33e-6, 71.2e-6},
-      {-kPi / 2, 0, 0, -100, 100, 71.923, 33e-6, 82.6e-6},
+      {-pi / 2, .0203, .15005, -225, 45, -53.7063, 200e-6, 1.38e-3},
+      {pi / 2, 0, .4318, -110, 170, 76.0364, 33e-6, 71.2e-6},
+      {-pi / 2, 0, 0, -100, 100, 71.923, 33e-6, 82.6e-6},
       {0, 0, 0, -266, 266, 76.686, 33e-6, 36.7e-6},
   }};
   const std::array<Body, 6> bodies{{
@@ -86,8 +86,8 @@ inline ArmModel puma560() {
     link.X_PJ = X_PJ;
     link.rotor_inertia = motor_inertia * gear * gear;
     link.viscous_friction = motor_viscous * gear * gear;
-    link.lower = lower * kPi / 180.0;
-    link.upper = upper * kPi / 180.0;
+    link.lower = lower * pi / 180.0;
+    link.upper = upper * pi / 180.0;
     model.links.push_back(link);
     X_PJ = X_LD;
   }
@@ -111,11 +111,11 @@ inline ArmModel light_arm() {
     Vec3 p_LC;                 // [m]
   };
   const std::array<Link, 6> links{{
-      {kPi / 2, 0, .089, 3.7, {0, 0, .06}},
+      {pi / 2, 0, .089, 3.7, {0, 0, .06}},
       {0, -.425, 0, 8.4, {-.21, 0, .11}},
       {0, -.392, 0, 2.3, {-.24, 0, .03}},
-      {kPi / 2, 0, .109, 1.2, {0, 0, .1}},
-      {-kPi / 2, 0, .095, 1.2, {0, 0, .1}},
+      {pi / 2, 0, .109, 1.2, {0, 0, .1}},
+      {-pi / 2, 0, .095, 1.2, {0, 0, .1}},
       {0, 0, .082, .2, {0, 0, .05}},
   }};
   ArmModel model;
@@ -175,7 +175,7 @@ inline double potential_energy(const ArmModel& model, const std::vector<double>&
 
 /// The torques [N m] that balance gravity at `q`: the gradient of the potential energy.
 inline std::vector<double> holding_torques(const ArmModel& model, const std::vector<double>& q) {
-  constexpr double kStep = 1e-4;
+  constexpr double step = 1e-4;
   std::vector<double> torques;
   for (std::size_t i = 0; i < q.size(); ++i) {
     const auto at = [&](double offset) {
@@ -185,9 +185,9 @@ inline std::vector<double> holding_torques(const ArmModel& model, const std::vec
     };
     // Sixth-order differences: the energy is a trigonometric polynomial, so the residual is
     // rounding.
-    torques.push_back((45 * (at(kStep) - at(-kStep)) - 9 * (at(2 * kStep) - at(-2 * kStep)) +
-                       (at(3 * kStep) - at(-3 * kStep))) /
-                      (60 * kStep));
+    torques.push_back((45 * (at(step) - at(-step)) - 9 * (at(2 * step) - at(-2 * step)) +
+                       (at(3 * step) - at(-3 * step))) /
+                      (60 * step));
   }
   return torques;
 }
@@ -233,12 +233,12 @@ template <class Arm>
 std::vector<double> accelerations(Arm& arm, const std::vector<double>& q,
                                   const std::vector<double>& v,
                                   const std::vector<double>& torques) {
-  constexpr double kPeriod = 1e-6;
+  constexpr double period = 1e-6;
   arm.reset(q, v);
   arm.set_torques(torques);
-  arm.step(kPeriod);
+  arm.step(period);
   std::vector<double> a = velocities(arm);
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] = (a[i] - v[i]) / kPeriod;
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = (a[i] - v[i]) / period;
   return a;
 }
 

@@ -69,7 +69,7 @@ void expect_it_stops_a_capsule(ContactPart part) {
   part.link = -1;
   part.X_LP = at(0.5, 0, 0);
   ContactPart rod{"rod", 0, Shape::capsule(0.02, 0.2), Pose::Identity()};
-  rod.X_LP.linear() = Eigen::AngleAxisd(kPi / 2, Vec3::UnitX()).toRotationMatrix();
+  rod.X_LP.linear() = Eigen::AngleAxisd(pi / 2, Vec3::UnitX()).toRotationMatrix();
   expect_stop<Arm>({rod, part}, 0.38, part.name);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 namespace repel::visual {
 namespace messages_test {
@@ -90,6 +91,37 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   EXPECT_EQ(keys_of(scene.at("arms")[0]),
             (std::set<std::string>{"name", "joints", "modules", "tool_body", "max_speed_m_s",
                                    "max_turn_rad_s", "max_lever_rad_s"}));
+}
+
+// The order of the pairs does not matter, nor what else the parts that meet it are in a pair with.
+TEST(Messages, APartIsPassableIfAllThatMeetItMayEnter) {
+  const ForceLaw wall{.range = 0.02};
+  const ForceLaw membrane{.range = 0.01, .ceiling = 10.0, .passable = true};
+  struct Case {
+    std::vector<ForceLaw> laws;  ///< of the pairs with the part, in their order
+    bool passable;
+  };
+  for (const Case& each :
+       {Case{{membrane}, true}, Case{{membrane, membrane}, true}, Case{{wall, membrane}, false},
+        Case{{membrane, wall}, false}, Case{{wall, wall}, false}, Case{{}, false}}) {
+    World world;
+    const BodyId tool = world.add_body("tool");
+    const PartId part = world.add_part(World::fixed, "part", Shape::box({1, 1, 0.1}));
+    const PartId other = world.add_part(World::fixed, "other", Shape::box({1, 1, 0.1}));
+    double range = 0.0;
+    for (const ForceLaw& law : each.laws) {
+      const PartId finger = world.add_part(tool, "finger", Shape::sphere(0.01));
+      world.add_pair(finger, part, law);
+      world.add_pair(finger, other, law.passable ? wall : membrane);
+      range = std::max(range, law.range);
+    }
+    SceneInfo info;
+    info.arms.emplace_back().tool = tool;
+    const Json parts = Json::parse(scene_message(info, world)).at("parts");
+    EXPECT_EQ(parts[0].at("name"), "part");
+    EXPECT_EQ(parts[0].at("passable"), each.passable);
+    EXPECT_EQ(parts[0].at("range_m"), range);
+  }
 }
 
 TEST(Messages, AFrameIsOfTheDocumentedForm) {

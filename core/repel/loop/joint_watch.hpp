@@ -103,8 +103,6 @@ class JointWatch {
   [[nodiscard]] double position(std::size_t joint) const noexcept { return joints_[joint].q; }
   /// Read or predicted [rad/s] or [m/s].
   [[nodiscard]] double rate(std::size_t joint) const noexcept { return joints_[joint].v; }
-  /// Time since the last believed reading [s]; 0: now.
-  [[nodiscard]] double blind_for() const noexcept { return blind_for_; }
   /// No reading has been believed yet.
   [[nodiscard]] bool knows_nothing() const noexcept { return !has_believed_; }
 
@@ -285,7 +283,7 @@ class JointWatch {
   std::vector<Joint> joints_;
   Status blind_ = 0U;        // why the readings are not believed
   int sound_ = 0;            // consecutive sound readings since
-  double blind_for_ = 0.0;   // [s]
+  double blind_for_ = 0.0;   // [s] since the last believed reading
   double lost_speed_ = 0.0;  // [rad/s] greatest joint speed when the readings failed
   bool has_reading_ = false, has_believed_ = false, held_ = false;
 };

@@ -76,9 +76,10 @@ struct RunTotals {
   int most_stale = 0;           ///< in one tick
   std::int64_t oldest_age = 0;  ///< [ticks]
   double refresh_energy = 0.0;  ///< [J] PairTotals::refresh_energy, summed over ticks
-  double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
+  /// [m] Least signed distance by the measure of the overlap; of all pairs, passable ones included.
+  double nearest = std::numeric_limits<double>::infinity();
   PairId nearest_pair;
-  double deepest = 0.0;     ///< [m] proven bound: no pair was deeper when evaluated
+  double deepest = 0.0;     ///< [m] proven bound: none of these pairs was deeper when evaluated
   double peak_force = 0.0;  ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
   std::array<std::int64_t, 4> stop_ticks{};     ///< ticks in each Stop

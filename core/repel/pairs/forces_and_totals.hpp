@@ -13,7 +13,8 @@
 
 namespace repel {
 
-/// Counts and extremes of the pairs of a block, or of the world, at one tick.
+/// Counts and extremes of the pairs of a block, or of the world, at one tick. Walls and passable
+/// bodies alike: the law of the pair tells them apart.
 struct PairTotals {
   int near = 0;                 ///< pairs that may be within range; all with `every_pair`
   int evaluated = 0;            ///< near pairs evaluated at this tick
@@ -94,7 +95,7 @@ struct PairForces {
   }
 };
 
-/// The extremes of one pair since set-up.
+/// The extremes of one pair, or of several, since set-up.
 struct PairExtremes {
   double nearest =
       std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated

@@ -147,6 +147,7 @@ class LaneEvaluator {
     PairTotals& totals = singles_->forces().totals;
     if (extremes.peak_force() > totals.peak_force) note_hardest(extremes.peak_force());
     if (extremes.nearest() < totals.nearest) note_nearest(extremes.nearest());
+    totals.deepest = std::max(totals.deepest, extremes.deepest());
   }
 
   /// Removes from their lanes the pairs that have left their range or whose nearest features are no
@@ -197,7 +198,8 @@ class LaneEvaluator {
   }
   [[nodiscard]] PairExtremes extremes_in(int lane) const noexcept {
     const LaneGroup& group = group_of(lane);
-    return {.nearest = group.nearest(index_of(lane)), .peak_force = group.peak(index_of(lane))};
+    const int k = index_of(lane);
+    return {.nearest = group.nearest(k), .peak_force = group.peak(k), .deepest = group.deepest(k)};
   }
   /// Calls f(k) for each set bit k.
   template <class F>

@@ -66,6 +66,7 @@ class LaneGroup {
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
     nearest_[k] = std::numeric_limits<double>::infinity();
     peak_[k] = 0.0;
+    deepest_[k] = 0.0;
     stale_ &= ~(1U << k);
     set_feature(world, k, pair, warm);
   }
@@ -129,6 +130,10 @@ class LaneGroup {
   /// [m], [N] The least distance and the largest force of lane k since it was set.
   [[nodiscard]] double nearest(int k) const noexcept { return nearest_[k]; }
   [[nodiscard]] double peak(int k) const noexcept { return peak_[k]; }
+  /// [m] Proven bounds of the penetration: of each lane at this tick, and of lane k since it was
+  /// set. More than 0 for rounded shapes only, whose cores are apart while they overlap.
+  [[nodiscard]] const Lanes& depths() const noexcept { return depth_; }
+  [[nodiscard]] double deepest(int k) const noexcept { return deepest_[k]; }
 
   [[nodiscard]] PairAnswer answer(int k) const noexcept {
     PairAnswer answer;
@@ -192,7 +197,9 @@ class LaneGroup {
     torque_W_ = size_ * moment;
     distance_if_proven_ =
         proven ? apart_.distance : all_of(std::numeric_limits<double>::infinity());
+    depth_ = larger(proven ? -apart_.lower : none, none);
     nearest_ = smaller(nearest_, distance_if_proven_);
+    deepest_ = larger(deepest_, depth_);
     peak_ = larger(peak_, size_);
   }
 
@@ -214,7 +221,8 @@ class LaneGroup {
   Lanes size_{};                    ///< [N] magnitude of the force
   LaneVec force_W_{}, torque_W_{};  ///< [N], [N m] on A, about the origin of its body
   Lanes distance_if_proven_{};      ///< [m]
-  Lanes nearest_{}, peak_{};
+  Lanes depth_{};                   ///< [m] bound of the penetration; 0 where the pair is apart
+  Lanes nearest_{}, peak_{}, deepest_{};
 };
 
 /// The extremes of several groups.
@@ -223,14 +231,17 @@ class GroupExtremes {
   void add(const LaneGroup& group) noexcept {
     sizes_ = larger(sizes_, group.sizes());
     distances_ = smaller(distances_, group.distances());
+    depths_ = larger(depths_, group.depths());
   }
-  /// [N] The largest force of one pair, and [m] the least distance.
+  /// [N] The largest force of one pair, [m] the least distance and the greatest depth.
   [[nodiscard]] double peak_force() const noexcept { return largest_of(sizes_); }
   [[nodiscard]] double nearest() const noexcept { return least_of(distances_); }
+  [[nodiscard]] double deepest() const noexcept { return largest_of(depths_); }
 
  private:
   Lanes sizes_{};
   Lanes distances_ = all_of(std::numeric_limits<double>::infinity());
+  Lanes depths_{};
 };
 
 }  // namespace repel::detail

@@ -58,7 +58,7 @@ enum class ArmState {
 /// Contacts of a simulated arm since its reset.
 struct ContactReport {
   std::int64_t steps = 0;  ///< calls of `step` in which a link penetrated an obstacle
-  double deepest = 0.0;    ///< [m] greatest penetration depth
+  double deepest = 0.0;    ///< [m] greatest penetration depth, by the physics engine
 };
 
 /// A torque-controlled arm that is stepped by its owner: a simulation, a recording. All spans have

@@ -122,6 +122,20 @@ TEST(Limits, SayWhenTheyAreFelt) {
   EXPECT_EQ(limits.size(), 1);
 }
 
+TEST(Limits, BeginWhereTheirOwnJointSays) {
+  Limits limits({.range = 0.1, .stiffness = 100.0, .damping = 0.0},
+                {{-1.0, 1.0}, {-1.0, 1.0, 0.3}, {-1.0, 1.0, 0.02}});
+  Signals signals;
+  signals.rates = signals.mean_rates = Vector::Zero(3);
+  signals.joints = Vector::Constant(3, 0.95);
+  limits.read(signals);
+  EXPECT_NEAR(limits.torques()(0), -5.0, 1e-12);
+  EXPECT_NEAR(limits.torques()(1), -25.0, 1e-12);
+  EXPECT_EQ(limits.torques()(2), 0.0);
+  EXPECT_THROW(Limits({}, {{-1.0, 1.0, 0.0}}), SetupError);
+  EXPECT_THROW(Limits({}, {{-1.0, 1.0, std::nan("")}}), SetupError);
+}
+
 TEST(Limits, RefuseARangeThatEndsBeforeItBegins) {
   EXPECT_THROW(Limits({}, {{1.0, -1.0}}), SetupError);
   EXPECT_THROW(Limits({}, {}), SetupError);

@@ -68,6 +68,10 @@ TEST(Spaceball, SuppliesThePowerThatItsMotionTakes) {
     ASSERT_TRUE(cell.run(signals, right ? ground : damper, right ? damper : ground));
     EXPECT_NEAR(cell.module.supplied(), 10.0 * 0.1 * 0.1, 1e-12);
     EXPECT_NEAR((right ? cell.at_root : cell.at_leaf).flow(0), 0.1, 1e-12);
+    // Its ports alone give energy; that it is called passive holds with what it supplies.
+    EXPECT_TRUE(Spaceball::traits.passive);
+    EXPECT_LT(cell.ledger.energy - cell.ledger.supplied, 0.0);
+    EXPECT_NEAR(cell.ledger.energy, 0.0, 1e-12);
   }
 }
 

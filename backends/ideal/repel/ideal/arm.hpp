@@ -125,10 +125,10 @@ class IdealArm final : public TorqueDrivenArm {
   }
 
   static IdealJoint validated(const IdealJoint& joint) {
-    constexpr double kLargest = std::numeric_limits<double>::max();
-    constexpr double kSmallest = std::numeric_limits<double>::min();
-    checked("IdealJoint::inertia", joint.inertia, kSmallest, kLargest, "kg m^2");
-    checked("IdealJoint::viscous_friction", joint.viscous_friction, 0.0, kLargest, "N m s/rad");
+    constexpr double largest = std::numeric_limits<double>::max();
+    constexpr double smallest = std::numeric_limits<double>::min();
+    checked("IdealJoint::inertia", joint.inertia, smallest, largest, "kg m^2");
+    checked("IdealJoint::viscous_friction", joint.viscous_friction, 0.0, largest, "N m s/rad");
     checked("IdealJoint::brake_torque", joint.brake_torque, 0.0,
             std::numeric_limits<double>::infinity(), "N m");
     return joint;

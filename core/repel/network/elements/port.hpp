@@ -127,7 +127,8 @@ struct Traits {
   bool needs_flow = false;     ///< nonlinear: needs a flow measured by the root
   bool keeps_flow = false;     ///< a flow measured on one side is known on the other
   Walls walls = Walls::none;   ///< the forces it takes from the world model
-  bool passive = true;         ///< returns no more energy than it absorbed and was supplied
+  bool passive = true;         ///< returns no more energy than it absorbed and was supplied; the
+                               ///< latter is by its own source, as `supplied` reports it
 };
 
 /// Effort and flow of one port in one tick, both into the element.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct JointLimits {
 struct JointRange {
   double lower = 0.0;
   double upper = 0.0;
+  /// [rad] or [m] replaces JointLimits::range for this joint: joints that turn and joints that
+  /// slide cannot share one number
+  std::optional<double> zone{};
 };
 
 /// Adds the torques of the limits to those from the left, at the same joint rates; each joint
@@ -43,7 +47,7 @@ class Limits {
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
 
   /// @throws SetupError for a number out of range or an upper limit below the lower one
-  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) : law_(law) {
+  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) {
     checked("range", law.range, 1e-6, 1e3, "rad");
     checked("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
     checked("damping", law.damping, 0.0, 1e6, "N m s/rad");
@@ -51,7 +55,9 @@ class Limits {
     for (const JointRange& range : ranges) {
       if (!std::isinf(range.lower)) checked("lower limit", range.lower, -1e6, 1e6, "rad");
       if (!std::isinf(range.upper)) checked("upper limit", range.upper, range.lower, 1e6, "rad");
-      joints_.push_back({range, PassivityController<1>({.lever = 1.0}, Vec<1>::Ones())});
+      JointLimits own = law;
+      if (range.zone) own.range = checked("zone", *range.zone, 1e-6, 1e3, "rad or m");
+      joints_.push_back({own, range, PassivityController<1>({.lever = 1.0}, Vec<1>::Ones())});
     }
     effort_.setZero(static_cast<Eigen::Index>(ranges.size()));
   }
@@ -63,7 +69,7 @@ class Limits {
     for (Eigen::Index i = 0; i < effort_.size(); ++i) {
       Joint& joint = joints_[static_cast<std::size_t>(i)];
       const double rate = signals.rates(i);
-      Vec<1> effort(-law_(signals.joints(i), rate, joint.range.lower, joint.range.upper));
+      Vec<1> effort(-joint.law(signals.joints(i), rate, joint.range.lower, joint.range.upper));
       active_ = active_ || effort(0) != 0.0;
       effort(0) += rate * joint.controller.step(effort, Vec<1>(rate), Vec<1>(signals.mean_rates(i)),
                                                 signals.period, 0.0, signals.since_last());
@@ -99,10 +105,10 @@ class Limits {
 
  private:
   struct Joint {
+    JointLimits law;
     JointRange range;
     PassivityController<1> controller;
   };
-  JointLimits law_;
   std::vector<Joint> joints_;
   Vec<any_size> effort_;  // into the module [N m]
   bool active_ = false;

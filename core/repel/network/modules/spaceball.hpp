@@ -20,8 +20,9 @@ struct SpaceballOptions {
 /// effort. Dead band and saturation act on the length of the vector and keep its direction; a
 /// first-order low pass follows.
 ///
-/// It reflects no effort to the operator: it is an energy source and not passive by itself. The
-/// ledger counts the power it supplies, F.v_ball, separately.
+/// It reflects no effort to the operator: it is an energy source, and what leaves through its ports
+/// has no bound. Its traits say `passive` all the same: that is a claim about the ledger, which
+/// counts the power it supplies, F.v_ball. It returns no more than it absorbed and was supplied.
 class Spaceball {
  public:
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
