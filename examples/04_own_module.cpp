@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include <repel/repel.hpp>
+#include <repel/scene/build_network.hpp>
 #include <repel/scene/scene.hpp>
 
 using namespace repel::network;

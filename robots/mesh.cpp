@@ -10,7 +10,6 @@
 #include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/geometry/facets.hpp>
-#include <repel/robots/urdf.hpp>
 
 #include "child_process.hpp"
 
@@ -21,17 +20,7 @@
 #include <assimp/Importer.hpp>
 #endif
 
-namespace repel {
-
-bool reads_meshes() noexcept {
-#ifdef REPEL_HAS_ASSIMP
-  return true;
-#else
-  return false;
-#endif
-}
-
-namespace detail {
+namespace repel::detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,6 +87,14 @@ std::optional<fs::path> above(const fs::path& file, const std::string& package,
 }
 
 }  // namespace
+
+bool has_mesh_reader() noexcept {
+#ifdef REPEL_HAS_ASSIMP
+  return true;
+#else
+  return false;
+#endif
+}
 
 fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
   const auto colon = uri.find("://");
@@ -241,5 +238,4 @@ std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3&) {
 }
 #endif
 
-}  // namespace detail
-}  // namespace repel
+}  // namespace repel::detail

@@ -20,6 +20,9 @@ struct MeshFolders {
   std::vector<std::string> package_paths;  ///< see UrdfOptions
 };
 
+/// Whether this build has a reader for mesh files.
+[[nodiscard]] bool has_mesh_reader() noexcept;
+
 /// Resolves `uri`: package://NAME/PATH, model://NAME/PATH, file://PATH or a path relative to the
 /// folder of the description.
 /// @throws SetupError saying where it was searched

@@ -259,4 +259,8 @@ Robot load_arm(const std::string& path, const UrdfOptions& options) {
   return parse_arm(detail::text_of_description(path), options, path);
 }
 
+bool reads_meshes() noexcept {
+  return detail::has_mesh_reader();
+}
+
 }  // namespace repel

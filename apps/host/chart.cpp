@@ -188,6 +188,15 @@ std::string to_html(const Chart& chart) {
   return figure(chart.title, names.size() > 1 ? legend(names) : "", drawing);
 }
 
+std::vector<Percentile> percentile_points(const DurationHistogram& times) {
+  std::vector<Percentile> points;
+  for (int tenth = 3; tenth <= 50; ++tenth) {
+    const double share = 1.0 - std::pow(10.0, -0.1 * tenth);
+    points.push_back({share, times.percentile_us(share)});
+  }
+  return points;
+}
+
 std::string to_html(const PercentileChart& chart) {
   double low = std::numeric_limits<double>::infinity();
   double high = chart.deadline_us;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <repel/schedule/deadline.hpp>
+
 namespace repel::host {
 
 /// A curve of a chart: a name, and a value for each sample. Values that are not finite leave a gap.
@@ -36,6 +38,9 @@ struct Percentile {
   double share = 0.0;  ///< 0 to 1
   double us = 0.0;     ///< [us]
 };
+
+/// From the median to the share 1 - 10^-5, in tenths of a decade of the rest.
+[[nodiscard]] std::vector<Percentile> percentile_points(const DurationHistogram& times);
 
 /// Percentile curves, from the median to the share 1 - 10^-5, against the duration on a logarithmic
 /// axis.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <repel/base/setup_error.hpp>
+
 #include "page_style.hpp"
 
 namespace repel::host::page {
@@ -56,15 +58,6 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
 
 std::string tile(const std::string& name, const std::string& value) {
   return "<div><dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd></div>\n";
-}
-
-std::vector<Percentile> percentiles(const DurationHistogram& times) {
-  std::vector<Percentile> points;
-  for (int tenth = 3; tenth <= 50; ++tenth) {
-    const double share = 1.0 - std::pow(10.0, -0.1 * tenth);
-    points.push_back({share, times.percentile_us(share)});
-  }
-  return points;
 }
 
 std::string where(const Machine& machine) {

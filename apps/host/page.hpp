@@ -2,13 +2,11 @@
 /// Builds self-contained HTML pages (reports).
 #pragma once
 
+#include <cstddef>
 #include <ostream>
 #include <string>
 #include <vector>
 
-#include <repel/schedule/deadline.hpp>
-
-#include "chart.hpp"
 #include "machine.hpp"
 
 namespace repel::host::page {
@@ -29,9 +27,6 @@ namespace repel::host::page {
 
 /// A name and its value, as an entry of <dl class='tiles'>.
 [[nodiscard]] std::string tile(const std::string& name, const std::string& value);
-
-/// From the median to the share 1 - 10^-5, for a PercentileChart.
-[[nodiscard]] std::vector<Percentile> percentiles(const DurationHistogram& times);
 
 /// The machine, as a paragraph.
 [[nodiscard]] std::string where(const Machine& machine);

@@ -7,6 +7,7 @@
 
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
+#include <repel/scene/build_network.hpp>
 
 namespace repel::teleop {
 namespace {

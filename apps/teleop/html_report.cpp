@@ -105,12 +105,13 @@ double us(std::chrono::nanoseconds time) {
 std::string charts_of_time(const RunResult& r) {
   host::Chart times = chart_of(r, "Time of each tick", "us");
   times.curves = {{"compute", [&r](std::size_t i) { return us(r.times[i].compute); }}};
-  host::PercentileChart shares{.title = "Share of the ticks that took no longer",
-                               .lines = {{"compute", percentiles(r.deadline.compute())}},
-                               .deadline_us = 1e6 / r.options.rate_hz};
+  host::PercentileChart shares{
+      .title = "Share of the ticks that took no longer",
+      .lines = {{"compute", host::percentile_points(r.deadline.compute())}},
+      .deadline_us = 1e6 / r.options.rate_hz};
   if (!r.options.fast) {
     times.curves.push_back({"lateness", [&r](std::size_t i) { return us(r.times[i].late); }});
-    shares.lines.push_back({"wake-up lateness", percentiles(r.deadline.wakeup())});
+    shares.lines.push_back({"wake-up lateness", host::percentile_points(r.deadline.wakeup())});
   }
   return to_html(shares) + to_html(times);
 }

@@ -4,7 +4,7 @@
 
 #include <iosfwd>
 
-#include "run.hpp"
+#include "results.hpp"
 
 namespace repel::teleop {
 

@@ -1,12 +1,12 @@
 /// @file
-/// The network address of the live view.
+/// The network address of the live view, and the secret that guards it.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "session.hpp"
+#include "session_options.hpp"
 
 namespace repel::teleop {
 
@@ -20,6 +20,13 @@ struct Place {
 
 /// Whether only programs on this machine can reach it.
 [[nodiscard]] bool is_loopback(const Place& place);
+
+/// What is wrong with ADDRESS:PORT; empty: nothing.
+[[nodiscard]] std::string listen_complaint(const std::string& listen);
+
+/// Reads the secret from the file or variable of the options. Returns what is wrong with it, or
+/// that listening on an address reachable from other machines requires one; empty: nothing.
+[[nodiscard]] std::string settle_secret(SessionOptions& session);
 
 /// Prints on stderr the URL of the view, and what else is needed to open it.
 /// @param url as seen from this machine

@@ -14,9 +14,13 @@
 #include "device.hpp"
 #include "figure.hpp"
 #include "html_report.hpp"
-#include "mcap_log.hpp"
+#include "listening.hpp"
+#include "recording.hpp"
 #include "report.hpp"
+#include "results.hpp"
+#include "run_options.hpp"
 #include "session.hpp"
+#include "session_options.hpp"
 
 namespace {
 

@@ -1,13 +1,15 @@
 /// @file
-/// Runs as MCAP files: written tick by tick, read for replay.
+/// Runs as MCAP files, written tick by tick; recording.hpp reads them.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
+#include <repel/scene/scene.hpp>
+
+#include "heading.hpp"
 #include "log.hpp"
-#include "recording.hpp"
+#include "run_options.hpp"
 
 namespace repel::teleop {
 
@@ -17,11 +19,5 @@ namespace repel::teleop {
 [[nodiscard]] std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                                 const scene::Scene& scene,
                                                 const RunOptions& options);
-
-/// Reads such a file, up to the first missing tick: what follows cannot be replayed.
-/// @param find returns the path of the scene of that name, in whose folder its robots are
-/// @throws SetupError if the file is no such recording, or a robot file has changed since
-[[nodiscard]] Recording load_recording(const std::string& path,
-                                       const std::function<std::string(const std::string&)>& find);
 
 }  // namespace repel::teleop

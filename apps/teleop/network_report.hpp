@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "run.hpp"
+#include "results.hpp"
 #include "times.hpp"
 
 namespace repel::teleop {

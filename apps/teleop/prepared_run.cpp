@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <repel/scene/build_network.hpp>
+
 #include "arm_backend.hpp"
 #include "budget.hpp"
 #include "describe.hpp"

@@ -9,7 +9,6 @@
 #include <repel/base/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
 
-#include "mcap_log.hpp"
 #include "mcap_names.hpp"
 
 namespace repel::teleop {

@@ -1,9 +1,11 @@
 /// @file
-/// A recorded run: the inputs and outputs of each tick.
+/// A recorded run: the inputs and outputs of each tick, read from a file for replay.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +28,12 @@ struct Recording {
 
   [[nodiscard]] std::size_t ticks() const { return times.size(); }
 };
+
+/// Reads a file of mcap_log, up to the first missing tick: what follows cannot be replayed.
+/// @param find returns the path of the scene of that name, in whose folder its robots are
+/// @throws SetupError if the file is no such recording, or a robot file has changed since
+[[nodiscard]] Recording load_recording(const std::string& path,
+                                       const std::function<std::string(const std::string&)>& find);
 
 /// An arm that reports the recorded state and ignores torques.
 class RecordedArm final : public TorqueDrivenArm {

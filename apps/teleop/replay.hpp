@@ -3,11 +3,23 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
-#include "run.hpp"
+#include <repel/loop/record.hpp>
+
+#include "recording.hpp"
 
 namespace repel::teleop {
+
+/// How the ticks of a replay compare with the recorded ones.
+struct ReplayReport {
+  std::int64_t ticks = 0;
+  std::int64_t same = 0;               ///< forces and torques of all arms are identical
+  std::int64_t first_difference = -1;  ///< tick; -1: none
+  double force_difference = 0.0;       ///< [N] largest, of the virtual force
+};
 
 /// Compares the results of a tick with the recorded ones, bit for bit: of every arm the virtual
 /// force, the coupling force, the torques, the lever torque and the gain.

@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <iosfwd>
 
-#include "run.hpp"
+#include "recording.hpp"
+#include "results.hpp"
 
 namespace repel::teleop {
 

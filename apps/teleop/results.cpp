@@ -9,6 +9,12 @@
 
 namespace repel::teleop {
 
+double support_pairs_per_period(const RunResult& result) {
+  const double seconds = std::chrono::duration<double>(result.compute).count();
+  if (!(seconds > 0.0)) return 0.0;
+  return static_cast<double>(result.totals().iterations) / (seconds * result.options.rate_hz);
+}
+
 // Pairs are ordered by obstacle, and within it by part of the tools and arms.
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result) {
   RunTotals& totals = result.arms.front().totals;

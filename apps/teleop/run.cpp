@@ -14,9 +14,9 @@
 #include "driven_cell.hpp"
 #include "fade_out.hpp"
 #include "heap_guard.hpp"
+#include "machine.hpp"
 #include "pace.hpp"
 #include "replay.hpp"
-#include "results.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
 
@@ -252,12 +252,6 @@ RunResult result_of(const PreparedRun& prepared) {
 }
 
 }  // namespace
-
-double support_pairs_per_period(const RunResult& result) {
-  const double seconds = std::chrono::duration<double>(result.compute).count();
-  if (!(seconds > 0.0)) return 0.0;
-  return static_cast<double>(result.totals().iterations) / (seconds * result.options.rate_hz);
-}
 
 RunResult run(PreparedRun& prepared, const Attachments& attached, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include <repel/scene/build_network.hpp>
+
 namespace repel::teleop {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "run.hpp"
+#include "results.hpp"
 
 namespace repel::teleop {
 

@@ -26,7 +26,7 @@ Eigen::VectorXd brakes_of(const ArmModel& model) {
 
 }  // namespace
 
-ImplicitJoints::ImplicitJoints(const ArmModel& model, const ArmOptions& options)
+ImplicitJoints::ImplicitJoints(const ArmModel& model, const SimulationOptions& options)
     : lower_(gathered(model, &ArmLink::lower)),
       upper_(gathered(model, &ArmLink::upper)),
       rotor_inertia_(gathered(model, &ArmLink::rotor_inertia)),

@@ -5,8 +5,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <repel/world/arm.hpp>
+#include <repel/world/simulated_arm.hpp>
+
 #include "contacts.hpp"
-#include "repel/bullet/arm.hpp"
 
 namespace repel::bullet::detail {
 
@@ -27,7 +29,7 @@ namespace repel::bullet::detail {
 /// brake adds its torque to F.
 class ImplicitJoints {
  public:
-  ImplicitJoints(const ArmModel& model, const ArmOptions& options);
+  ImplicitJoints(const ArmModel& model, const SimulationOptions& options);
 
   /// Computes D and u for one sub-step of `h` [s]. Returns u, the torque to apply when the engine
   /// computes its free acceleration M^-1 (u - c).

@@ -8,7 +8,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/base/text_file.hpp>
 
-#include "network.hpp"
+#include "network_reader.hpp"
 #include "yaml.hpp"
 
 namespace repel::scene {

@@ -13,18 +13,18 @@ namespace websocket = beast::websocket;
 
 }  // namespace
 
-PageSession::PageSession(beast::tcp_stream&& stream, const ServerOptions& options, Events events)
+PageSession::PageSession(beast::tcp_stream&& stream, const PageLimits& limits, Events events)
     : socket_(MeteredStream(std::move(stream))),
-      messages_per_second_(options.messages_per_second),
+      messages_per_second_(limits.messages_per_second),
       events_(std::move(events)) {
   beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
-  websocket::stream_base::timeout limits =
+  websocket::stream_base::timeout timeouts =
       websocket::stream_base::timeout::suggested(beast::role_type::server);
-  limits.idle_timeout = std::chrono::seconds(10);
-  limits.keep_alive_pings = true;
-  limits.handshake_timeout = options.patience;
-  socket_.set_option(limits);
-  socket_.read_message_max(options.message_bytes);
+  timeouts.idle_timeout = std::chrono::seconds(10);
+  timeouts.keep_alive_pings = true;
+  timeouts.handshake_timeout = limits.patience;
+  socket_.set_option(timeouts);
+  socket_.read_message_max(limits.message_bytes);
 }
 
 void PageSession::open(const Request& request) {

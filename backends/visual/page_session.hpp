@@ -14,13 +14,18 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
-#include <repel/visual/server.hpp>
-
 #include "metered_stream.hpp"
 
 namespace repel::visual {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+
+/// What a page may send, and how long it may take to open.
+struct PageLimits {
+  int messages_per_second = 0;    ///< pings and fragments included; beyond it the page is cut off
+  std::size_t message_bytes = 0;  ///< of one message; beyond it the page is cut off
+  std::chrono::milliseconds patience{0};  ///< timeout of the handshake
+};
 
 /// Keeps itself alive while operations are pending; runs entirely in the server's thread.
 class PageSession : public std::enable_shared_from_this<PageSession> {
@@ -32,7 +37,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
     std::function<void()> failed;  ///< it could not be opened
   };
 
-  PageSession(boost::beast::tcp_stream&& stream, const ServerOptions& options, Events events);
+  PageSession(boost::beast::tcp_stream&& stream, const PageLimits& limits, Events events);
 
   /// Accepts the WebSocket upgrade request.
   void open(const Request& request);

@@ -257,8 +257,10 @@ class Server::Impl final : public Pages {
       newcomers_.erase(number);
       pages_.erase(number);
     };
+    const PageLimits limits{options_.messages_per_second, options_.message_bytes,
+                            options_.patience};
     const auto page =
-        std::make_shared<PageSession>(std::move(guest->stream), options_, std::move(events));
+        std::make_shared<PageSession>(std::move(guest->stream), limits, std::move(events));
     if (secret_.is_wanted()) {
       guest->seat->leave = [who = std::weak_ptr(page)] {
         if (const auto still = who.lock()) still->cut();

@@ -1,5 +1,6 @@
 #include "trials_page.hpp"
 
+#include "chart.hpp"
 #include "page.hpp"
 
 using namespace repel;
@@ -27,8 +28,8 @@ host::PercentileChart chart_of(const host::Trial& t) {
   std::string title = to_text(t.options.rate_hz);
   title += " Hz: share of the ticks that took, or were late, no longer";
   return {.title = title,
-          .lines = {{"compute", percentiles(t.deadline.compute())},
-                    {"wake-up lateness", percentiles(t.deadline.wakeup())}},
+          .lines = {{"compute", host::percentile_points(t.deadline.compute())},
+                    {"wake-up lateness", host::percentile_points(t.deadline.wakeup())}},
           .deadline_us = 1e6 / t.options.rate_hz};
 }
 

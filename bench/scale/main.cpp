@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "../distance/program.hpp"
+#include "crowding.hpp"
 #include "report.hpp"
 
 namespace repel::scale {
@@ -87,7 +88,7 @@ Options parse(Arguments arguments) {
 }
 
 Scenario measure_all(const Setting& setting, const std::vector<Way>& ways, double evaluations) {
-  const Scene scene(setting);
+  const Scene scene = crowded_scene(setting);
   Scenario scenario{.setting = setting, .tool_parts = scene.tool_parts(), .speed = scene.speed()};
   for (const Part& part : scene.parts()) {
     scenario.shape_bytes += static_cast<double>(part.shape.bytes());

@@ -5,8 +5,6 @@
 
 #include <support/families.hpp>
 
-#include "brute_force.hpp"
-
 namespace repel::scale {
 
 namespace {
@@ -98,11 +96,8 @@ Scene::Scene(const Setting& setting)
     parts_.push_back(
         {"obstacle", body, draw_shape(rng, i % 2 == 0, 0.03), placed(rng, Vec3::Zero())});
   }
-  steer();
 }
 
-/// Spreads the obstacles over a ball of `radius` [m], on moving bodies over a smaller ball of equal
-/// density. In a small scene the bodies stray less.
 void Scene::spread(double radius) {
   for (int i = 0; i < obstacles(); ++i) {
     Part& part = parts_[tool_parts_ + i];
@@ -117,28 +112,6 @@ void Scene::spread(double radius) {
     const Vec3 centre = std::min(radius, 0.4) * families::direction(rng);
     paths_.emplace_back(centre, 0.5 * region, 0.4 * setting_.speed, rng());
   }
-}
-
-void Scene::steer() {
-  constexpr int samples = 1000;
-  const auto is_crowded = [&](double radius) {
-    spread(radius);
-    BruteForce brute(*this);
-    const double most = setting_.near * samples;
-    double near = 0.0;
-    for (int i = 0; i < samples && near <= most; ++i) {
-      near += brute.count_near(placements(std::int64_t{setting_.ticks} * i / samples),
-                               static_cast<int>(most - near) + 1);
-    }
-    return near > most;
-  };
-  double low = 0.02;
-  double high = 20.0;
-  while (high > 1.01 * low) {
-    const double middle = std::sqrt(low * high);
-    (is_crowded(middle) ? low : high) = middle;
-  }
-  spread(high);
 }
 
 World Scene::world() const {

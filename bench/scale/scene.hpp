@@ -64,9 +64,12 @@ class Scene {
   static constexpr double period = 0.0025;  ///< [s] of a tick
   static constexpr double range = 0.03;     ///< [m] of the force
 
-  /// Draws the parts, then scales the spread of the obstacles until the mean number of pairs within
-  /// range is as close to the target as possible.
+  /// Draws the parts. The obstacles have no place before `spread`.
   explicit Scene(const Setting& setting);
+
+  /// Spreads the obstacles over a ball of `radius` [m], on moving bodies over a smaller ball of
+  /// equal density, and lays the paths of the bodies. In a small scene the bodies stray less.
+  void spread(double radius);
 
   [[nodiscard]] World world() const;
   /// Of all moving bodies. Ticks count from 0.
@@ -86,9 +89,6 @@ class Scene {
   }
 
  private:
-  void spread(double radius);
-  void steer();
-
   Setting setting_;
   ForceLaw law_{.range = range};
   int tool_parts_;

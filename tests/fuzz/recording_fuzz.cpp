@@ -1,8 +1,8 @@
 // Arbitrary text as the contents of a recording, or arbitrary bytes as its file: loaded, or refused
 // by a SetupError that names a file. A text is divided by lines of %%: metadata of the run, the
 // scene, then messages that begin with the letter of their channel.
-#include <mcap_log.hpp>
 #include <mcap_names.hpp>
+#include <recording.hpp>
 
 #include <cmath>
 #include <map>

@@ -7,6 +7,7 @@
 
 #include <fuzz/bytes.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/scene/build_network.hpp>
 
 namespace repel::scene {
 namespace {

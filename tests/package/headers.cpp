@@ -13,6 +13,7 @@
 #include <repel/ode/arm.hpp>
 #endif
 #ifdef PART_scene
+#include <repel/scene/build_network.hpp>
 #include <repel/scene/scene.hpp>
 #endif
 #ifdef PART_visual

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/network/modules.hpp>
+#include <repel/scene/build_network.hpp>
 
 #include "yaml_text.hpp"
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <repel/network/modules.hpp>
+#include <repel/scene/build_network.hpp>
 
 #include "yaml_text.hpp"
 

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/scene/build_network.hpp>
+
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {

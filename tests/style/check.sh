@@ -19,6 +19,7 @@ breaches() {
     tr '\n' '\0' | xargs -0 awk -v rooms="$rooms" -f "$here/lines.awk"
   core_headers_without_a_test
   core_headers_not_in_the_umbrella
+  circles
   dead_links
 }
 
@@ -55,6 +56,44 @@ included_from_the_umbrella() {
         }
         for (header in reached) if (reached[header]) print header
       }'
+}
+
+# Includes that lead back to where they stand, so that none of the units on the way stands alone. A
+# unit is X.hpp with X.cpp; the header may stand in repel/PART. An include in quotes counts within
+# its folder. What leads nowhere is taken away first: without a circle, nothing is left.
+circles() {
+  find core robots backends apps bench -name '*.[hc]pp' -exec grep -Hn '^#include' {} + \
+    2>/dev/null | awk -F '[:<">]' '
+      function unit(path) {
+        while (sub("[^/]+/[.][.]/", "", path)) {}
+        if (!sub("^.*/repel/", "", path)) sub("^backends/", "", path)
+        sub("[.][hc]pp$", "", path)
+        return path
+      }
+      function leads(a, b,   i) {
+        if (a == b) return 1
+        if (!seen[a]++) for (i in from) if (from[i] == a && leads(to[i], b)) return 1
+        return 0
+      }
+      {
+        folder = $1
+        sub("[^/]*$", "", folder)
+        line[NR] = $1 ":" $2
+        to[NR] = unit(/</ ? "/" $4 : folder $4)
+        if (unit($1) != to[NR]) from[NR] = unit($1)
+      }
+      END {
+        do {
+          split("", open)
+          for (i in from) open[from[i]] = 1
+          more = 0
+          for (i in from) if (!open[to[i]]) { delete from[i]; more = 1 }
+        } while (more)
+        for (i in from) {
+          split("", seen)
+          if (leads(to[i], from[i])) print line[i] ": [circle] " to[i] " leads back to " from[i]
+        }
+      }' | sort
 }
 
 # The targets of the links of a Markdown page, but for those of code.

@@ -15,11 +15,10 @@
 #include <repel/cell/description.hpp>
 #include <repel/force/law.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
-#include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/operator.hpp>
-#include <repel/network/plan.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/scene/module_kinds.hpp>
+#include <repel/scene/network.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/arm.hpp>
 
@@ -71,19 +70,6 @@ struct Budget {
   std::int64_t max_age = repel::Budget{}.max_age;  ///< [ticks] after which a result expires
 };
 
-/// One entry of the network.
-struct Module : ReadModule {
-  std::string name;
-  std::string kind;  ///< the word after `module:`
-  network::To to;    ///< where it is connected; by default to the next module
-  int line = 0;      ///< of the file
-};
-
-struct Network {
-  std::vector<Module> modules;                                ///< from the operator to the robot
-  network::GainCheck gain_check = network::GainCheck::error;  ///< of the obstacle module
-};
-
 /// An arm with its tool, its operator and the network between the two.
 struct ArmSetup {
   RobotChoice robot;
@@ -114,9 +100,6 @@ struct Scene : ArmSetup {
   }
 };
 
-/// Whether the network has the module that applies the walls to the links of the arm.
-[[nodiscard]] bool feels_links(const ArmSetup& setup);
-
 /// Reads the scene file at `path`.
 /// @param kinds of module that the file can name
 /// @throws SetupError naming file, line, value and what is allowed, for anything that does not
@@ -126,19 +109,5 @@ struct Scene : ArmSetup {
 /// The same for text; `file` is the name used in errors, and paths are relative to it.
 [[nodiscard]] Scene parse(std::string_view yaml, const std::string& file,
                           const ModuleKinds& kinds = {});
-
-/// Adds to an error about the cell of a scene the file and, if the message names a module of a
-/// network, its line. An error that already names its file is returned unchanged.
-[[nodiscard]] SetupError located(const Scene& scene, const SetupError& error);
-
-/// The plan of the network of a setup of the scene, for its arm.
-/// @throws SetupError naming the file, if the plan lacks a module that the scene requires
-[[nodiscard]] network::Plan plan_network(const Scene& scene, const ArmSetup& setup,
-                                         const ArmModel& arm);
-
-/// The same network, built for a period of 1 / `rate_hz`.
-/// @throws SetupError naming the file and the modules, if it cannot be built
-[[nodiscard]] network::Network build_network(const Scene& scene, const ArmSetup& setup,
-                                             const ArmModel& arm, double rate_hz);
 
 }  // namespace repel::scene

@@ -1,57 +1,12 @@
-#include "network.hpp"
+#include <repel/scene/build_network.hpp>
 
 #include <algorithm>
-#include <string_view>
+#include <cstddef>
+#include <string>
 #include <vector>
-
-#include <repel/base/setup_error.hpp>
 
 namespace repel::scene {
 namespace {
-
-/// The modules of the paper's Figure 9, with their defaults, for the tool and the links of an arm.
-constexpr std::string_view default_modules[] = {
-    "torque_arm", "multiplex",    "spaceball", "relief", "kbb2",       "obstacle",
-    "puma_kin",   "arm_obstacle", "limits",    "visual", "puma_joints"};
-
-Module module_of(const Value& value, const ModuleKinds& kinds) {
-  const Map map(value);
-  const Value& kind = map.at("module");
-  const std::vector<std::string_view> words(kinds.words().begin(), kinds.words().end());
-  Module module;
-  module.kind = module.name = kind.word_of(words);
-  static_cast<ReadModule&>(module) = kinds.at(module.kind)(ModuleEntry(map));
-  module.line = value.line();
-  map.read("name", module.name);
-  if (const Value* to = map.find("to")) {
-    module.to.next = false;
-    if (to->is_list()) {
-      for (const Value& name : to->list(input_limits.modules))
-        module.to.names.push_back(name.text());
-    } else {
-      module.to.names.push_back(to->text());
-    }
-  }
-  return module;
-}
-
-/// Reads the reaction to walls that are too stiff, given with the obstacle module.
-void read_gain_check(const Value& module, Network& network) {
-  const Map map(module);
-  if (const Value* check = map.find("gain_check")) {
-    const bool warn = check->word_of({"error", "warning"}) == "warning";
-    network.gain_check = warn ? network::GainCheck::warning : network::GainCheck::error;
-  }
-}
-
-Network listed_in(const Value& list, const ModuleKinds& kinds) {
-  Network network;
-  for (const Value& entry : list.list(input_limits.modules)) {
-    network.modules.push_back(module_of(entry, kinds));
-    if (network.modules.back().kind == "obstacle") read_gain_check(entry, network);
-  }
-  return network;
-}
 
 /// Line of the module whose name occurs first in `text`; 0 if none does.
 int line_of_named(const std::vector<Module>& modules, const std::string& text) {
@@ -74,21 +29,6 @@ bool brings(const ArmSetup& setup, network::Walls walls) {
 }
 
 }  // namespace
-
-Network detail::network_of(const Value* value, const ModuleKinds& kinds) {
-  if (value != nullptr) {
-    Network network = listed_in(*value, kinds);
-    if (network.modules.empty()) value->fail("'network' has no module; allowed: 1 or more");
-    return network;
-  }
-  std::string text;
-  for (const std::string_view word : default_modules) {
-    text += "- module: " + std::string(word) + "\n";
-  }
-  Network network = listed_in(Value::document(text, ""), kinds);
-  for (Module& module : network.modules) module.line = 0;
-  return network;
-}
 
 bool feels_links(const ArmSetup& setup) {
   return brings(setup, network::Walls::links);

@@ -2,7 +2,8 @@
 /// Reads the `network` of a scene file.
 #pragma once
 
-#include <repel/scene/scene.hpp>
+#include <repel/scene/module_kinds.hpp>
+#include <repel/scene/network.hpp>
 
 #include "yaml.hpp"
 

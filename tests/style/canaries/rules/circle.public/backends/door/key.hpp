@@ -1,0 +1,5 @@
+/// @file
+/// Its third leads back.
+#pragma once
+
+#include "parts/bit.hpp"

@@ -1,0 +1,3 @@
+#include <repel/door/lock.hpp>
+
+#include "key.hpp"

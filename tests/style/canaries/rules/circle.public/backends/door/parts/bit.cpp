@@ -1,0 +1,5 @@
+#include "bit.hpp"
+
+#include <repel/door/lock.hpp>
+
+#include "../key.hpp"

@@ -1,0 +1,3 @@
+/// @file
+/// Closes the circle.
+#pragma once

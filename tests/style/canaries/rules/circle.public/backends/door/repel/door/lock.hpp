@@ -1,0 +1,3 @@
+/// @file
+/// Stands alone.
+#pragma once

@@ -1,0 +1,3 @@
+#include "key.hpp"
+
+#include "lock.hpp"

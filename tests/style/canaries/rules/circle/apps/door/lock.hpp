@@ -1,0 +1,5 @@
+/// @file
+/// Includes what includes it.
+#pragma once
+
+#include "key.hpp"
