@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <repel/network/clean_stiffness.hpp>
+#include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/scene/module_kinds.hpp>
 
