@@ -303,7 +303,8 @@ int run(const Arguments& arguments) {
   is_whole = wrote(html, result, teleop::write_html) && is_whole;
   const teleop::ReplayReport& replay = result.replay;
   if (replay.same != replay.ticks) return 3;
-  return is_whole ? 0 : 4;
+  if (!is_whole) return 4;
+  return teleop::gained_energy(result) ? 5 : 0;
 }
 
 }  // namespace

@@ -118,6 +118,18 @@ void print_status(const ArmResult& arm, std::FILE* out) {
   }
 }
 
+/// What to do where an arm gained energy from its own control.
+void print_gain(const RunResult& r, std::FILE* out) {
+  if (!gained_energy(r)) return;
+  std::fputs(
+      "  The arm gained energy from its own control, more than braking could take back: the mass "
+      "of\n"
+      "  the model is not that of the arm, its drive is late ('robot: drive_delay'), or its "
+      "readings\n"
+      "  are. The run ends with exit code 5.\n",
+      out);
+}
+
 /// Every obstacle; its nearest distance is null if none of its pairs was ever evaluated.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -252,6 +264,7 @@ void print_report(const RunResult& r, std::FILE* out) {
     print_stops(arm, out);
     print_status(arm, out);
   }
+  print_gain(r, out);
   host::print_machine(r.machine, out);
 }
 

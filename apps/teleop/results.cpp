@@ -1,7 +1,9 @@
 #include "results.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 
 #include <repel/network/modules/puma_joints.hpp>
 
@@ -55,6 +57,12 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
     results.push_back(result);
   }
   return results;
+}
+
+bool gained_energy(const RunResult& result) {
+  constexpr auto bit = static_cast<std::size_t>(std::countr_zero(status::energy_gain));
+  return std::any_of(result.arms.begin(), result.arms.end(),
+                     [&](const ArmResult& arm) { return arm.totals.status_ticks[bit] > 0; });
 }
 
 }  // namespace repel::teleop

@@ -89,6 +89,9 @@ struct RunResult {
   [[nodiscard]] const RunTotals& totals() const noexcept { return arms.front().totals; }
 };
 
+/// True when an arm gained energy from its own control (`status::energy_gain`).
+[[nodiscard]] bool gained_energy(const RunResult& result);
+
 /// How many support pairs this machine computes in one period, extrapolated from the support pairs
 /// and the computing time of the run, which includes all other work of the ticks. 0 if unknown.
 [[nodiscard]] double support_pairs_per_period(const RunResult& result);

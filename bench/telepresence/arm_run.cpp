@@ -24,7 +24,7 @@ std::string text_of(const ArmScene& scene) {
          "laws: {wall: {range: 20 mm, surface_force: 200 N, damping: 100 N s/m}}\n"
          "tool: [" +
          scene.tool + "]\nobstacles: [" + scene.obstacles + "]\nnetwork: [" + scene.network +
-         ", {module: obstacle, gain_check: warning}, {module: puma_kin}, "
+         ", {module: obstacle}, {module: puma_kin}, "
          "{module: limits}, {module: puma_joints}]\nscript: [" +
          scene.script + "]\n";
 }

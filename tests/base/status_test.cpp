@@ -15,7 +15,7 @@ constexpr Status every_bit[] = {
     status::expired_pairs, status::silent_device, status::saturated,          status::joint_limit,
     status::network_fault, status::speed_limit,   status::implausible_joints, status::frozen_joints,
     status::clock_gap,     status::bad_torque,    status::torque_rate,        status::tool_speed,
-    status::arm_stopped,   status::pushed_out};
+    status::arm_stopped,   status::pushed_out,    status::energy_gain};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");
@@ -47,11 +47,12 @@ TEST(Status, SeveralBitsAreListedCommaByComma) {
 }
 
 TEST(Status, FailsafeIsEveryFaultThatLeavesSomethingUnknownAndNothingElse) {
-  EXPECT_EQ(status::failsafe,
-            status::bad_pose | status::bad_command | status::bad_joints | status::clock_fault |
-                status::expired_pairs | status::silent_device | status::network_fault |
-                status::implausible_joints | status::frozen_joints | status::clock_gap |
-                status::bad_torque | status::arm_stopped | status::pushed_out);
+  EXPECT_EQ(status::failsafe, status::bad_pose | status::bad_command | status::bad_joints |
+                                  status::clock_fault | status::expired_pairs |
+                                  status::silent_device | status::network_fault |
+                                  status::implausible_joints | status::frozen_joints |
+                                  status::clock_gap | status::bad_torque | status::arm_stopped |
+                                  status::pushed_out | status::energy_gain);
 }
 
 TEST(Status, BlindIsWhatJointsCanHideAndAlwaysAFault) {

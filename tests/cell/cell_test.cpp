@@ -101,10 +101,21 @@ TEST(CellRefuses, ANetworkThatDoesNotEndInTheArm) {
 }
 
 TEST(CellRefuses, GainsOutOfTheirBounds) {
-  expect_refused([](CellDescription& cell) { cell.arms[0].model.links[0].viscous_friction = 1.0; },
-                 {"wall too stiff", "N/m; the clean-stiffness limit is", "'wall'"});
+  // Whatever the friction of the arm.
   EXPECT_EQ(refusal_of([](CellDescription& cell) {
-              cell.arms[0].model.links[0].viscous_friction = 1.0;
+              for (ArmLink& link : cell.arms[0].model.links) link.viscous_friction = 0.0;
+            }),
+            "");
+  expect_refused([](CellDescription& cell) { cell.obstacles[0].law.damping = 1.0; },
+                 {"wall too stiff: 'wall'", "N/m; with its damping of 1 N s/m", "allowed: "});
+  expect_refused(
+      [](CellDescription& cell) {
+        cell.arms[0].options.drive_delay = 2.0;
+        cell.rate_hz = 400.0;
+      },
+      {"wall too stiff", "a drive delay of 2 ticks"});
+  EXPECT_EQ(refusal_of([](CellDescription& cell) {
+              cell.obstacles[0].law.damping = 1.0;
               cell.gain_check = network::GainCheck::warning;
             }),
             "");

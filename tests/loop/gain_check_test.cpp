@@ -38,7 +38,7 @@ TEST(GainCheck, JointThatTurnsFreelyLeavesNoDamping) {
   EXPECT_DOUBLE_EQ(damping_of({5.0, 0.0, 9.0}, unmoved), 5.0);
 }
 
-/// A ball and two walls, 4 and 10 kN/m, with a damping of 1 N s/m each.
+/// A ball and two walls, 4 and 10 kN/m, with a damping of 10 N s/m each.
 World two_walls() {
   World world;
   const BodyId tool = world.add_body("tool");
@@ -48,22 +48,54 @@ World two_walls() {
     X.translation().x() = 1.0;
     const PartId wall = world.add_part(World::fixed, "wall of " + to_text(force) + " N",
                                        Shape::box({0.1, 1.0, 1.0}), X);
-    world.add_pair(ball, wall, {.range = 0.02, .surface_force = force, .damping = 1.0});
+    world.add_pair(ball, wall, {.range = 0.02, .surface_force = force, .damping = 10.0});
   }
   return world;
 }
 
-TEST(GainCheck, WallAboveTheLimitIsSaidWithTheNumbersAndTheOtherIsNot) {
+// It once compared with the friction of the arm alone: 0 N/m for every wall that has more damping
+// than the arm has friction, so that each scene switched it off.
+TEST(GainCheck, WallThatIsTooStiffIsSaidWithWhatWouldDoAndTheOtherIsNot) {
   const World world = two_walls();
-  // 7 - 1 N s/m over half a period of 2.5 ms: 4.8 kN/m.
-  const auto said = check_gains(world, 0.0025, 7.0, network::GainCheck::warning);
+  // 10 N s/m over half a period of 2.5 ms: 8 kN/m.
+  const auto said = check_gains(world, 0.0025, 0.0, 0.0, network::GainCheck::warning);
   ASSERT_EQ(said.size(), 1U);
-  for (const char* part : {"'wall of 100 N'", "10000 N/m", "4800 N/m", "2.5 ms", "7 N s/m",
-                           "1 N s/m in the wall", "13.5 N s/m"}) {
+  for (const char* part : {"'wall of 100 N'", "10000 N/m", "8000 N/m", "2.5 ms", "10 N s/m",
+                           "at least 12.5 N s/m", "at least 500 Hz"}) {
     EXPECT_NE(said[0].find(part), std::string::npos) << part << '\n' << said[0];
   }
-  EXPECT_THROW(check_gains(world, 0.0025, 7.0, network::GainCheck::error), SetupError);
-  EXPECT_TRUE(check_gains(world, 0.001, 7.0, network::GainCheck::error).empty());
+  EXPECT_THROW(check_gains(world, 0.0025, 0.0, 0.0, network::GainCheck::error), SetupError);
+  EXPECT_TRUE(check_gains(world, 0.002, 0.0, 0.0, network::GainCheck::error).empty());
+}
+
+TEST(GainCheck, FrictionOfTheArmAloneMayDoAsWell) {
+  const World world = two_walls();
+  // 10 N s/m for the wall itself, 12.5 for its spring.
+  EXPECT_TRUE(check_gains(world, 0.0025, 0.0, 22.6, network::GainCheck::error).empty());
+  EXPECT_THROW(check_gains(world, 0.0025, 0.0, 22.4, network::GainCheck::error), SetupError);
+}
+
+TEST(GainCheck, DelayOfTheDriveLowersTheLimit) {
+  const World world = two_walls();
+  const auto said = check_gains(world, 0.0011, 1.0, 0.0, network::GainCheck::warning);
+  ASSERT_EQ(said.size(), 2U);  // 10 / (2.5 * 1.1 ms): 3.6 kN/m
+  EXPECT_NE(said[1].find("drive delay of 1 ticks"), std::string::npos) << said[1];
+}
+
+TEST(GainCheck, LimitsOfTheJointsAreHeldToTheSame) {
+  const std::vector<network::JointRange> ranges{{-1.0, 1.0}};
+  network::Limits stiff({.stiffness = 2000.0, .damping = 2.0}, ranges);
+  const std::string said = check_gains(stiff, 0.0025, 0.0, network::GainCheck::warning);
+  for (const char* part :
+       {"joint limit stiffness is 2000 N m/rad", "1600 N m/rad", "2.5 N m s/rad"}) {
+    EXPECT_NE(said.find(part), std::string::npos) << part << '\n' << said;
+  }
+  EXPECT_THROW(check_gains(stiff, 0.0025, 0.0, network::GainCheck::error), SetupError);
+  stiff.prepare(0.0025);  // raises the damping as far as is needed without a delay
+  EXPECT_EQ(check_gains(stiff, 0.0025, 0.0, network::GainCheck::error), "");
+  EXPECT_THROW(check_gains(stiff, 0.0025, 1.0, network::GainCheck::error), SetupError);
+  const network::Limits usual({}, ranges);
+  EXPECT_EQ(check_gains(usual, 0.0025, 0.0, network::GainCheck::error), "");
 }
 
 }  // namespace gain_check_test

@@ -75,6 +75,8 @@ export class Controls {
   }
 
   refused({ what, why }) {
+    // Whoever asks again at once has read this answer.
+    if (what === "take") this.#askedAt = -Infinity;
     const asked = what === "take" ? "No controls" : `Not done (${what})`;
     toast(`${asked}: ${why || "no reason given"}`);
   }

@@ -49,6 +49,7 @@ const BITS = {
   bad_torque: ["bad", "a torque was not a number: gravity is held"],
   arm_stopped: ["bad", "the arm is stopped"],
   pushed_out: ["bad", "the arm is pushed out of what it started in"],
+  energy_gain: ["bad", "the arm gains energy from its own control"],
   torque_rate: ["warn", "a torque changed as fast as it may"],
   tool_speed: ["warn", "the tool is as fast as it may be"],
   speed_limit: ["warn", "a joint is as fast as it may be"],

@@ -66,13 +66,17 @@ inline constexpr Status tool_speed = 1U << 19;
 inline constexpr Status arm_stopped = 1U << 20;
 /// The run began inside an obstacle: the arm is pushed out slowly without operator force
 inline constexpr Status pushed_out = 1U << 21;
+/// The arm gained energy because its torques are held between ticks, more than braking could take
+/// back: the operator's force is removed; the mass of the model is not that of the arm, its drive
+/// is late, or its readings are: see TeleoperatorOptions::drive_delay
+inline constexpr Status energy_gain = 1U << 22;
 
 /// Faults of joint sensing: the present joint positions are unknown.
 inline constexpr Status blind = bad_joints | implausible_joints | frozen_joints;
 /// Faults that remove the operator's force.
 inline constexpr Status failsafe = bad_pose | bad_command | clock_fault | expired_pairs |
                                    silent_device | network_fault | clock_gap | bad_torque |
-                                   arm_stopped | pushed_out | blind;
+                                   arm_stopped | pushed_out | energy_gain | blind;
 }  // namespace status
 
 /// Reaction of the loop to faults, named after the stop categories of machine safety.
@@ -98,7 +102,7 @@ enum class Stop : std::uint8_t {
       "late_result",   "torque_limit", "crowded_pairs", "expired_pairs", "silent_device",
       "saturated",     "joint_limit",  "network_fault", "speed_limit",   "implausible_joints",
       "frozen_joints", "clock_gap",    "bad_torque",    "torque_rate",   "tool_speed",
-      "arm_stopped",   "pushed_out"};
+      "arm_stopped",   "pushed_out",   "energy_gain"};
   std::string text;
   for (unsigned i = 0; i < std::size(names); ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);

@@ -81,6 +81,7 @@ class Cell {
       controls_[i].sense(i < readings.size() ? readings[i] : ArmReadings{}, now);
     }
     forces_ = &coprocessor_->exchange();
+    contacts_->collect(*coprocessor_);
   }
 
   /// The second half of a tick: computes the commands to all arms.
@@ -89,7 +90,7 @@ class Cell {
   /// @return a record for each arm, in their order; valid until the next tick
   std::span<const TickRecord* const> act(std::span<const network::Command> hands) noexcept {
     for (std::size_t i = 0; i < controls_.size(); ++i) {
-      records_[i] = &controls_[i].act(*forces_, coprocessor_->workers(),
+      records_[i] = &controls_[i].act(*forces_, coprocessor_->workers(), contacts_->all(),
                                       i < hands.size() ? hands[i] : silent_);
     }
     return records_;
@@ -163,7 +164,8 @@ class Cell {
   [[nodiscard]] network::Network built_network(const ArmDescription& arm) const {
     const network::Plan plan = arm.network ? *arm.network : default_network(arm.model);
     try {
-      return plan.build(1.0 / description_.rate_hz);
+      return plan.build(1.0 / description_.rate_hz,
+                        network::PredictionOptions{.drive_delay = arm.options.drive_delay});
     } catch (const SetupError& error) {
       throw SetupError(std::string("network: ") + error.what());
     }
@@ -189,16 +191,35 @@ class Cell {
       }
       device_damping_ = std::min(device_damping_, repel::device_damping(arm.model, J));
     }
-    try {
-      warnings_ =
-          check_gains(world_, 1.0 / description_.rate_hz, device_damping_, description_.gain_check);
-    } catch (const SetupError& error) {
-      throw SetupError(std::string("wall too stiff: ") + error.what() +
-                       " (to run all the same: 'gain_check: warning' at the obstacle module)");
-    }
+    check_stiffness();
     const std::vector<std::string> inside = detail::overlaps(world_);
     if (description_.start_inside == StartInside::refuse) detail::require_clear_start(inside);
     warnings_.insert(warnings_.end(), inside.begin(), inside.end());
+  }
+
+  void check_stiffness() {
+    const double period = 1.0 / description_.rate_hz;
+    double delay = 0.0;
+    for (const ArmDescription& arm : description_.arms) {
+      delay = std::max(delay, arm.options.drive_delay);
+    }
+    const std::string cure = " (to run all the same: 'gain_check: warning' at the obstacle module)";
+    try {
+      warnings_ = check_gains(world_, period, delay, device_damping_, description_.gain_check);
+    } catch (const SetupError& error) {
+      throw SetupError(std::string("wall too stiff: ") + error.what() + cure);
+    }
+    for (std::size_t i = 0; i < controls_.size(); ++i) {
+      const auto* limits = controls_[i].network().find<network::Limits>();
+      if (limits == nullptr) continue;
+      try {
+        const std::string text = check_gains(
+            *limits, period, description_.arms[i].options.drive_delay, description_.gain_check);
+        if (!text.empty()) warnings_.push_back(text);
+      } catch (const SetupError& error) {
+        throw SetupError(std::string("limits too stiff: ") + error.what() + cure);
+      }
+    }
   }
 
   // Limits the number of threads to that of blocks: others would have no work.
@@ -208,6 +229,12 @@ class Cell {
     options.threads = std::min(options.threads, detail::PairPartition::blocks_of(world_));
     options.period = period_;
     coprocessor_.emplace(world_, options);
+    std::vector<BodyId> moved;
+    for (const ArmLayout& layout : layouts_) {
+      moved.push_back(layout.tool);
+      for (const LinkBody& link : layout.links) moved.push_back(link.body);
+    }
+    contacts_.emplace(world_, 256, moved);
   }
 
   CellDescription description_;
@@ -219,6 +246,7 @@ class Cell {
   std::deque<Teleoperator> controls_;
   std::vector<const TickRecord*> records_;
   std::optional<Coprocessor> coprocessor_;
+  std::optional<ActiveContacts> contacts_;
   const PairForces* forces_ = nullptr;
   network::Command silent_{
       .hand = {}, .sound = false, .silent_for = std::numeric_limits<double>::infinity()};

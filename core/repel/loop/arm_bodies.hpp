@@ -79,6 +79,17 @@ class ArmBodies {
     }
   }
 
+  /// Adds to `torques` [N m] those of the wrench `F` on `body`; nothing if it is not on the arm.
+  void add_torques(BodyId body, const Wrench& F,
+                   network::Vec<network::any_size>& torques) const noexcept {
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      if (links_[i].body != body) continue;
+      for (int joint = 0; joint <= links_[i].link; ++joint) {
+        torques.coeffRef(joint) += power(F, column_of(jacobians_[i], joint));
+      }
+    }
+  }
+
   /// Power that the bodies which push the links deliver by their own motion [W].
   [[nodiscard]] double carried(const PairForces& forces) const noexcept {
     double sum = 0.0;

@@ -37,14 +37,19 @@ class ArmCommand {
   ArmCommand(const ArmModel& model, double period, const TeleoperatorOptions& options)
       : options_(options),
         failsafe_(options.failsafe),
+        energy_watch_(options.energy),
         stop_control_(period, options.stop),
         torques_(model, period, options.torques) {
     walls_.setZero(static_cast<Eigen::Index>(model.links.size()));
+    asked_ = total_ = walls_;
   }
 
   /// Derives gain, stop, brakes and enable from the status of the tick, all in `record`.
-  /// @param state of the drive of the arm; @param elapsed [s]
-  void judge(TickRecord& record, const JointWatch& watch, ArmState state, double elapsed) noexcept {
+  /// @param state of the drive of the arm; @param network solved; @param elapsed [s]
+  void judge(TickRecord& record, const JointWatch& watch, ArmState state,
+             const network::Network& network, double elapsed) noexcept {
+    const double sampled = network.find<network::PumaJoints>()->sampling_energy();
+    record.status |= energy_watch_.step(sampled, elapsed);
     watch_drive(record, state, elapsed);
     if (is_poisoned_) record.status |= status::bad_torque;
     record.gain = failsafe_.step(record.status, elapsed);
@@ -59,10 +64,12 @@ class ArmCommand {
   /// Writes the command of the arm to `record`.
   void drive(const ArmMotion& motion, const ArmInertia& inertia, JointWatch& watch,
              TickRecord& record) noexcept {
-    gather_walls(motion);
     const auto* robot = motion.network.find<network::PumaJoints>();
     const TorqueShares shares = shares_of(motion, watch, record);
-    const Status found = torques_.compose(robot->torques(), walls_, shares, motion.v, inertia);
+    asked_ = robot->torques();
+    walls_ = motion.network.walls();
+    yield(motion.network, shares);
+    const Status found = torques_.compose(asked_, walls_, shares, motion.v, inertia);
     record.status |= found;
     is_poisoned_ = (found & status::bad_torque) != 0U;
     std::copy(torques_.torques().begin(), torques_.torques().end(), record.torques.begin());
@@ -105,7 +112,8 @@ class ArmCommand {
     shares.walls = record.brakes ? 0.0 : 1.0;
     if ((record.status & status::pushed_out) != 0U) shares.walls = exit_share(motion.tool_speed);
     shares.friction = let_go ? 0.0 : record.gain;
-    shares.brake = std::max(let_go ? 1.0 : 1.0 - record.gain, at_speed.brake);
+    shares.brake =
+        std::max({let_go ? 1.0 : 1.0 - record.gain, at_speed.brake, energy_watch_.brake()});
     if (!options_.has_brakes) return without_brakes(shares, watch);
     if (record.brakes) shares.brake = 0.0;
     if (record.stop == Stop::released) shares.gravity = 0.0;
@@ -126,19 +134,27 @@ class ArmCommand {
     return shares;
   }
 
-  // The part of the network's joint torques that comes from walls and limits.
-  void gather_walls(const ArmMotion& motion) noexcept {
-    walls_.setZero();
-    for (const network::Node& node : motion.network.nodes()) {
-      node.module->add_walls(motion.jacobian, walls_);
+  // Takes off the walls what they will not give where the arm moves within the horizon.
+  void yield(const network::Network& network, const TorqueShares& shares) noexcept {
+    for (Eigen::Index i = 0; i < walls_.size(); ++i) {
+      // A contribution of share zero may be NaN.
+      total_.coeffRef(i) = shares.walls > 0.0 ? shares.walls * walls_.coeff(i) : 0.0;
+      if (!(shares.operators > 0.0)) continue;
+      total_.coeffRef(i) += shares.operators * (asked_.coeff(i) - walls_.coeff(i));
     }
+    const auto less = network.given_up(total_);
+    asked_ = asked_ - less;
+    walls_ = walls_ - less;
   }
 
   TeleoperatorOptions options_;
   Failsafe failsafe_;
+  EnergyWatch energy_watch_;
   StopControl stop_control_;
   JointTorques torques_;
   network::Vec<network::any_size> walls_;  // [N m] of walls and limits on the joints
+  network::Vec<network::any_size> asked_;  // [N m] of the whole network
+  network::Vec<network::any_size> total_;  // [N m] the same, as far as it is sent
   double exit_share_ = 0.0;
   bool is_poisoned_ = false;
   bool is_enabled_ = true;    // the drive of the arm

@@ -1,5 +1,5 @@
 /// @file
-/// Checks whether the walls of a world are too stiff for the arm and the tick rate.
+/// Checks whether walls and joint limits are too stiff for the tick rate.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/network/machinery/clean_stiffness.hpp>
+#include <repel/network/modules/limits.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/world.hpp>
 
@@ -53,24 +54,77 @@ namespace detail {
   return greatest > 0.0 ? 1.0 / greatest : 0.0;
 }
 
-/// Checks every law of the world against the clean-stiffness limit for `period` [s] and `damping`
-/// [N s/m] of the device. Returns one sentence with the numbers for each pair of bodies whose wall
-/// is too stiff, equal sentences once; empty when there is none. Not for the tick.
+/// The largest stiffness [N/m] or [N m/rad] of a sampled spring with a damping of its own [N s/m]
+/// or [N m s/rad] that cannot make an arm oscillate, whatever the mass behind it: B / ((0.5 + 2 d)
+/// T). The damping is solved together with the mass of the arm (network/machinery/prediction.hpp)
+/// and may be as large as one likes; the spring acts by the position measured, half a tick late on
+/// average and d ticks more. @param period [s] @param drive_delay d [ticks]
+[[nodiscard]] constexpr double stable_stiffness(double damping, double period,
+                                                double drive_delay) noexcept {
+  return damping / ((0.5 + 2.0 * drive_delay) * period);
+}
+
+/// What is being checked: the spring of a wall or a limit.
+struct SampledSpring {
+  const char* what;        ///< "wall" or "joint limit"
+  const char* unit;        ///< of the stiffness; the damping has the same times s
+  double stiffness = 0.0;  ///< [N/m] or [N m/rad]
+  double damping = 0.0;    ///< [N s/m] or [N m s/rad]
+};
+
+/// Empty when the spring is stable; else one sentence with all numbers and what would do.
+[[nodiscard]] inline std::string complaint(const SampledSpring& at, double period,
+                                           double drive_delay) {
+  const double most = stable_stiffness(at.damping, period, drive_delay);
+  if (at.stiffness <= most) return {};
+  const auto text = [](double value) { return repel::to_text(value, 4); };
+  const std::string unit = at.unit;
+  const std::string damping_unit =
+      unit.substr(0, unit.find('/')) + " s" + unit.substr(unit.find('/'));
+  const double ticks = 0.5 + 2.0 * drive_delay;
+  return std::string(at.what) + " stiffness is " + text(at.stiffness) + ' ' + unit +
+         "; with its damping of " + text(at.damping) + ' ' + damping_unit + " it is stable up to " +
+         text(most) + ' ' + unit + " at a period of " + text(1e3 * period) +
+         " ms and a drive delay of " + text(drive_delay) +
+         " ticks; allowed: a damping of at least " + text(at.stiffness * ticks * period) + ' ' +
+         damping_unit + ", or a rate of at least " + text(at.stiffness * ticks / at.damping) +
+         " Hz";
+}
+
+/// Checks every law of the world for a tick of `period` [s] and arms whose drives are late by
+/// `drive_delay` [ticks]. Walls that `device_damping` [N s/m] alone makes passive pass as well
+/// (network/machinery/clean_stiffness.hpp). Returns one sentence with the numbers for each pair of
+/// bodies whose wall is too stiff, equal sentences once; empty when there is none. Not for the
+/// tick.
 /// @throws SetupError with the first of them when `check` is `error`
-inline std::vector<std::string> check_gains(const World& world, double period, double damping,
-                                            network::GainCheck check) {
+inline std::vector<std::string> check_gains(const World& world, double period, double drive_delay,
+                                            double device_damping, network::GainCheck check) {
   std::vector<std::string> complaints;
   std::vector<std::string> told;
   for (const Pair& pair : world.pairs()) {
-    const network::CleanStiffness at{
-        .period = period, .device_damping = damping, .wall_damping = pair.law.damping};
-    const std::string text = network::complaint(at, pair.law.stiffness());
+    const std::string text =
+        complaint({"wall", "N/m", pair.law.stiffness(), pair.law.damping}, period, drive_delay);
+    const network::CleanStiffness clean{.period = period,
+                                        .device_damping = device_damping,
+                                        .wall_damping = pair.law.damping,
+                                        .delay = drive_delay * period};
+    if (pair.law.stiffness() <= clean.limit()) continue;
     if (text.empty() || std::find(told.begin(), told.end(), text) != told.end()) continue;
     told.push_back(text);
     complaints.push_back("'" + world.part(pair.b).name + "': " + text);
     if (check == network::GainCheck::error) throw SetupError(complaints.back());
   }
   return complaints;
+}
+
+/// The same for the limits of the joints.
+inline std::string check_gains(const network::Limits& limits, double period, double drive_delay,
+                               network::GainCheck check) {
+  const network::JointLimits& law = limits.law();
+  const std::string text =
+      complaint({"joint limit", "N m/rad", law.stiffness, law.damping}, period, drive_delay);
+  if (check == network::GainCheck::error && !text.empty()) throw SetupError(text);
+  return text;
 }
 
 }  // namespace repel

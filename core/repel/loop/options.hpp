@@ -3,6 +3,7 @@
 #pragma once
 
 #include <repel/base/setup_error.hpp>
+#include <repel/loop/energy_watch.hpp>
 #include <repel/loop/failsafe.hpp>
 #include <repel/loop/joint_torques.hpp>
 #include <repel/loop/joint_watch.hpp>
@@ -19,6 +20,9 @@ struct TeleoperatorOptions {
   /// The drive of the arm engages its brakes where TickRecord::brakes says so. Without brakes the
   /// motors hold the weight for as long as a pose is known.
   bool has_brakes = false;
+  double drive_delay = 0.0;  ///< [ticks] from a torque to its effect, beyond its being held for one
+                             ///< tick; 0 to 10: the longer, the softer the arm follows
+  EnergyWatchOptions energy;
   FailsafeOptions failsafe;
   StopOptions stop;
   JointTorqueOptions torques;
@@ -29,6 +33,7 @@ struct TeleoperatorOptions {
 [[nodiscard]] inline const TeleoperatorOptions& checked(const TeleoperatorOptions& options) {
   checked("tool speed", options.tool_speed, 1e-3, 10.0, "m/s");
   checked("longest gap", options.longest_gap, 0.0, 1e6, "s");
+  checked("drive delay", options.drive_delay, 0.0, 10.0, "ticks");
   checked("exit speed", options.exit_speed, 0.0, 10.0, "m/s");
   return options;
 }

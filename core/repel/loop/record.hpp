@@ -40,7 +40,7 @@ struct TickRecord {
   double gain = 1.0;          ///< of the fail-safe
   std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
-  std::array<float, network::Plan::most_modules> energy{};
+  std::array<float, network::Plan::most_nodes> energy{};
   std::chrono::nanoseconds network_time{0};  ///< compute time of the network; not reproducible
   PairTotals pairs;
   WorkerReport workers;

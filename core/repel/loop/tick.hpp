@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <repel/loop/active_contacts.hpp>
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
@@ -82,15 +83,17 @@ class Teleoperator {
   }
 
   /// The second half: writes the command of the arm to the record.
-  /// @param forces of the world in which all arms have been placed @param workers that ran
+  /// @param forces of the world in which all arms have been placed, and the `contacts` they are of
   const TickRecord& act(const PairForces& forces, const WorkerReport& workers,
+                        std::span<const ActiveContact> contacts,
                         const network::Command& command) noexcept {
     push_away(forces, workers);  // world -> virtual forces on tool and links
-    follow(command);             // operator's input
-    run_network();               // operator's input, walls, joint rates -> torques
-    command_.judge(record_, watch_, drive_state_, signals_.elapsed);  // -> stop, operator's share
-    drive();                                                          // torques for the arm
-    finish_tick();                                                    // everything -> record
+    gather_damping(contacts, tool_, jacobian_, links_, signals_.wall_damping);
+    follow(command);  // operator's input
+    run_network();    // operator's input, walls, joint rates -> torques
+    command_.judge(record_, watch_, drive_state_, network_, signals_.elapsed);  // -> stop
+    drive();        // torques for the arm
+    finish_tick();  // everything -> record
     return record_;
   }
 
@@ -211,6 +214,7 @@ class Teleoperator {
     signals_.rates = flow_.flow();
     signals_.mean_rates = flow_.mean();
     signals_.jacobian = jacobian_;
+    signals_.inertia = inertia_.matrix();
     signals_.X_WT = X_WT_;
     if (!network_.run(signals_)) record_.status |= status::network_fault;
     note_limits();
@@ -265,10 +269,6 @@ class Teleoperator {
       const std::vector<double>& values) noexcept {
     return Eigen::Map<const network::Vec<network::any_size>>(
         values.data(), static_cast<Eigen::Index>(values.size()));
-  }
-
-  [[nodiscard]] static std::chrono::nanoseconds in_nanoseconds(double seconds) noexcept {
-    return std::chrono::nanoseconds(std::llround(1e9 * seconds));
   }
 
   TeleoperatorOptions options_;

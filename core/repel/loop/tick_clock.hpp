@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 
 #include <repel/base/status.hpp>
 
 namespace repel {
+
+/// `seconds` [s], rounded.
+[[nodiscard]] inline std::chrono::nanoseconds in_nanoseconds(double seconds) noexcept {
+  return std::chrono::nanoseconds(std::llround(1e9 * seconds));
+}
 
 /// Counts the periods of a grid that starts at the first tick. A tick up to three quarters of a
 /// period late counts as one period; a later one also stands for those that were missed.

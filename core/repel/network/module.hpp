@@ -43,10 +43,16 @@ namespace repel::network {
 ///     bool saturated() const noexcept;               // something was clamped to its limit
 ///     PassivityReport passivity() const noexcept;
 ///     void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept;
+///     void add_wall_damping(const Jacobian& of_tool, Mat<any_size>& damping) const noexcept;
+///     void predict(const Signals& signals, const Vec<any_size>& walls,
+///                  const Mat<any_size>& damping) noexcept;
 ///
 /// `add_walls` adds the joint torques of a wall or a limit [N m]: they stay active when the
-/// fail-safe removes the operator's force. Only `fit` and `prepare` may throw or allocate. A
-/// missing function is reported at compile time. Cost: a virtual call for each.
+/// fail-safe removes the operator's force. `add_wall_damping` adds how much they fall with the
+/// joint rates [N m s/rad], besides the walls of the world model. `predict` is called for the
+/// element `prediction` after every module has read its signals, with the sums of both. Only `fit`
+/// and `prepare` may throw or allocate. A missing function is reported at compile time. Cost: a
+/// virtual call for each.
 class Module {
  public:
   template <class M>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <repel/network/machinery/ledger.hpp>
+#include <repel/network/machinery/prediction.hpp>
 #include <repel/network/module.hpp>
 
 namespace repel::network {
@@ -54,6 +55,7 @@ class Network {
   /// one back; one inversion of size 6 at a coupling.
   bool run(const Signals& signals) noexcept {
     for (Node& node : nodes_) node.module->read(signals);
+    predict(signals);
     for (const Step& step : upward_) {
       if (!show(step)) return stuck(step);
     }
@@ -65,6 +67,11 @@ class Network {
     keep_accounts(signals.period);
     return true;
   }
+
+  /// Torques of all walls and limits on the joints, as of the last `run` [N m].
+  [[nodiscard]] const Vec<any_size>& walls() const noexcept { return walls_; }
+  /// Prediction::given_up of the torques `total` [N m]; zero without a prediction.
+  [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept;
 
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
   [[nodiscard]] std::span<const Connection> connections() const noexcept { return connections_; }
@@ -105,6 +112,22 @@ class Network {
     Side side = Side::left;  ///< of a line: which end
   };
 
+  void predict(const Signals& signals) noexcept {
+    const Eigen::Index n = signals.joints.size();
+    walls_.setZero(n);
+    wall_damping_.setZero(n, n);
+    const bool is_told = signals.wall_damping.rows() == n;
+    for (Eigen::Index i = 0; is_told && i < n * n; ++i) {
+      wall_damping_.data()[i] = signals.wall_damping.data()[i];
+    }
+    for (const Node& node : nodes_) {
+      node.module->add_walls(signals.jacobian, walls_);
+      node.module->add_wall_damping(signals.jacobian, wall_damping_);
+    }
+    if (prediction_ >= 0) {
+      nodes_[static_cast<std::size_t>(prediction_)].module->predict(signals, walls_, wall_damping_);
+    }
+  }
   bool stuck(const Step& step) noexcept {
     stuck_ = step.node;
     return false;
@@ -240,7 +263,15 @@ class Network {
   std::vector<Step> upward_;    // leaves first, without the roots
   std::vector<Step> downward_;  // the same in reverse order
   std::vector<Step> roots_;     // one for each part between lines
+  int prediction_ = -1;         // index of its node
+  Vec<any_size> walls_;         // [N m] of walls and limits on the joints
+  Mat<any_size> wall_damping_;  // [N m s/rad] theirs
   int stuck_ = 0;
 };
+
+inline Vec<any_size> Network::given_up(const Vec<any_size>& total) const noexcept {
+  if (prediction_ < 0) return Vec<any_size>::Zero(total.size());
+  return nodes_[static_cast<std::size_t>(prediction_)].module.as<Prediction>()->given_up(total);
+}
 
 }  // namespace repel::network

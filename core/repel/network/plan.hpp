@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +45,8 @@ struct To {
 class Plan {
  public:
   static constexpr std::size_t most_modules = 32;
+  /// Nodes of a network: its modules and a prediction.
+  static constexpr std::size_t most_nodes = most_modules + 1;
 
   /// @param name unique; `to` what its right port is connected to
   Plan& add(std::string name, Module module, To to = {}) & {
@@ -59,7 +62,12 @@ class Plan {
   /// at a port or none, spaces or sizes that do not match, a delay-free loop, two modules that both
   /// impose their flow, a nonlinear module whose flow is not measured, and a rigid or slack part
   /// that makes the network singular
-  [[nodiscard]] Network build(double period) const;
+  [[nodiscard]] Network build(double period) const { return build(period, std::nullopt); }
+  /// The same with a module `prediction` after the others: it stands between the module that
+  /// measures its flow, with the walls that need this flow, and all else. Without a module that
+  /// measures its flow: as above.
+  [[nodiscard]] Network build(double period,
+                              const std::optional<PredictionOptions>& prediction) const;
 
  private:
   struct Entry {
@@ -69,6 +77,8 @@ class Plan {
   };
   [[nodiscard]] std::ptrdiff_t find(const std::string& name) const;
   void lay_out(Network& network, detail::Planner& planner) const;
+  static bool insert(const PredictionOptions& options, std::vector<Node>& nodes,
+                     std::vector<Connection>& connections);
   static void require_solvable(const Network& network, const Signals& rest);
 
   std::vector<Entry> entries_;
@@ -130,11 +140,45 @@ inline void Plan::lay_out(Network& network, detail::Planner& planner) const {
   }
 }
 
-inline Network Plan::build(double period) const {
+// Moves the left end of the connection that leads from the walls, or from the module that measures
+// its flow where there are none, to everything else.
+inline bool Plan::insert(const PredictionOptions& options, std::vector<Node>& nodes,
+                         std::vector<Connection>& connections) {
+  const auto measures = [](const Node& node) { return node.traits.measures_flow; };
+  int at = static_cast<int>(std::find_if(nodes.begin(), nodes.end(), measures) - nodes.begin());
+  int boundary = -1;
+  for (const int count = static_cast<int>(nodes.size()); at < count;) {
+    const auto to_left = std::find_if(connections.begin(), connections.end(),
+                                      [&](const Connection& c) { return c.right_node == at; });
+    if (to_left == connections.end()) break;
+    const Traits& traits = nodes[at].traits;
+    if (traits.measures_flow || traits.needs_flow) {
+      boundary = static_cast<int>(to_left - connections.begin());
+    }
+    if (!traits.measures_flow && !traits.keeps_flow) break;
+    at = to_left->left_node;
+  }
+  if (boundary < 0) return false;
+  const int own = static_cast<int>(nodes.size());
+  const Prediction prediction(options);
+  nodes.push_back({"prediction", prediction, Prediction::traits, -1, {}, -1, {}});
+  Connection& before = connections[boundary];
+  Connection after = before;
+  after.left = before.right = nodes.back().name;
+  after.left_node = before.right_node = own;
+  connections.push_back(after);
+  return true;
+}
+
+inline Network Plan::build(double period,
+                           const std::optional<PredictionOptions>& prediction) const {
   checked("number of modules", static_cast<double>(entries_.size()), 1, most_modules, "");
   Network network;
   detail::Planner planner(network.nodes_, network.connections_);
   lay_out(network, planner);
+  if (prediction && insert(*prediction, network.nodes_, network.connections_)) {
+    network.prediction_ = static_cast<int>(network.nodes_.size()) - 1;
+  }
   planner.check_ports();
   planner.find_spaces();
   planner.find_sizes();

@@ -35,6 +35,8 @@ struct Signals {
   Vec<any_size> arm_torques;  ///< [N m], [N] of the world model on the links, sum of J^T F
   double walls_power = 0.0;   ///< [W] supplied to the tool by moving obstacles
   double arm_power = 0.0;     ///< [W] and to the links
+  Mat<any_size> inertia;  ///< [kg m^2] or [kg] of the joints, symmetric; of size 0: not known
+  Mat<any_size> wall_damping;  ///< [N m s/rad] of the world model at the joints; of size 0: none
   HandInput hand;
   double period = 0.0025;  ///< [s]
   double elapsed = 0.0;    ///< [s] since the last tick, more after missed ticks; 0: one period

@@ -166,6 +166,10 @@ class AnyModule {
   [[nodiscard]] virtual double left_weight() const noexcept = 0;
   [[nodiscard]] virtual bool saturated() const noexcept = 0;
   virtual void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept = 0;
+  virtual void add_wall_damping(const Jacobian& jacobian,
+                                Mat<any_size>& damping) const noexcept = 0;
+  virtual void predict(const Signals& signals, const Vec<any_size>& walls,
+                       const Mat<any_size>& damping) noexcept = 0;
   [[nodiscard]] virtual std::optional<PassivityReport> passivity() const noexcept = 0;
 
  protected:
@@ -252,6 +256,17 @@ class ModuleOf final : public AnyModule {
   void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept override {
     if constexpr (requires { module_.add_walls(jacobian, torques); }) {
       module_.add_walls(jacobian, torques);
+    }
+  }
+  void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept override {
+    if constexpr (requires { module_.add_wall_damping(jacobian, damping); }) {
+      module_.add_wall_damping(jacobian, damping);
+    }
+  }
+  void predict(const Signals& signals, const Vec<any_size>& walls,
+               const Mat<any_size>& damping) noexcept override {
+    if constexpr (requires { module_.predict(signals, walls, damping); }) {
+      module_.predict(signals, walls, damping);
     }
   }
   [[nodiscard]] std::optional<PassivityReport> passivity() const noexcept override {

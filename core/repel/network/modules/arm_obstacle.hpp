@@ -41,13 +41,13 @@ class ArmObstacle {
     if (signals.released) {
       controller_.reset();
       effort_.setZero();
-      supplied_ = 0.0;
+      supplied_ = damping_ = 0.0;
       return;
     }
     supplied_ = signals.arm_power;
-    const double damping = controller_.step(effort_, signals.rates, signals.mean_rates,
-                                            signals.period, supplied_, signals.since_last());
-    if (damping > 0.0) effort_ += damping * signals.rates;
+    damping_ = controller_.step(effort_, signals.rates, signals.mean_rates, signals.period,
+                                supplied_, signals.since_last());
+    if (damping_ > 0.0) effort_ += damping_ * signals.rates;
   }
 
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
@@ -64,6 +64,10 @@ class ArmObstacle {
   void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
     torques += this->torques();
   }
+  /// Adds the damping of the passivity controller.
+  void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept {
+    for (Eigen::Index i = 0; i < damping.rows(); ++i) damping.coeffRef(i, i) += damping_;
+  }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by moving obstacles
 
@@ -76,6 +80,7 @@ class ArmObstacle {
   PassivityController<any_size> controller_;
   Vec<any_size> effort_;  // into the module [N m]
   double supplied_ = 0.0;
+  double damping_ = 0.0;  // [N m s/rad] of the passivity controller in this tick
 };
 
 }  // namespace repel::network

@@ -73,8 +73,9 @@ class Kbb2 {
     shown = behind;
     if (root_ == Side::right) add_shunt(shown);
     shown.add_admittance(conductance_.asDiagonal(), -product(conductance_, wave_));
+    if (!has_shunt_ || root_ == Side::right) return true;
     if (!shown.take_form(Form::impedance)) return false;
-    if (root_ == Side::left) add_shunt(shown);
+    add_shunt(shown);
     return true;
   }
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,

@@ -17,7 +17,7 @@ namespace repel::network {
 struct JointLimits {
   double range = 0.1;         ///< [rad] or [m] distance before the limit at which it begins to act
   double stiffness = 2000.0;  ///< [N m/rad] or [N/m]
-  double damping = 20.0;      ///< [N m s/rad] or [N s/m]
+  double damping = 20.0;      ///< [N m s/rad] or [N s/m]; at low tick rates raised to K T / 2
 
   /// The torque [N m] at position `q` moving at `v`, for a joint between `lower` and `upper`.
   [[nodiscard]] double operator()(double q, double v, double lower, double upper) const noexcept {
@@ -47,7 +47,7 @@ class Limits {
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
 
   /// @throws SetupError for a number out of range or an upper limit below the lower one
-  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) {
+  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) : law_(law) {
     checked("range", law.range, 1e-6, 1e3, "rad");
     checked("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
     checked("damping", law.damping, 0.0, 1e6, "N m s/rad");
@@ -57,12 +57,17 @@ class Limits {
       if (!std::isinf(range.upper)) checked("upper limit", range.upper, range.lower, 1e6, "rad");
       JointLimits own = law;
       if (range.zone) own.range = checked("zone", *range.zone, 1e-6, 1e3, "rad or m");
-      joints_.push_back({own, range, PassivityController<1>({.lever = 1.0}, Vec<1>::Ones())});
+      joints_.push_back({own, range, PassivityController<1>({.lever = 1.0}, Vec<1>::Ones()), 0.0});
     }
     effort_.setZero(static_cast<Eigen::Index>(ranges.size()));
   }
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(joints_.size()); }
+  /// Raises the damping to K T / 2, below which a sampled spring gives energy.
+  void prepare(double period) {
+    law_.damping = std::max(law_.damping, 0.5 * detail::checked_period(period) * law_.stiffness);
+    for (Joint& joint : joints_) joint.law.damping = law_.damping;
+  }
 
   void read(const Signals& signals) noexcept {
     active_ = false;
@@ -70,10 +75,14 @@ class Limits {
       Joint& joint = joints_[static_cast<std::size_t>(i)];
       const double rate = signals.rates(i);
       Vec<1> effort(-joint.law(signals.joints(i), rate, joint.range.lower, joint.range.upper));
-      active_ = active_ || effort(0) != 0.0;
-      effort(0) += rate * joint.controller.step(effort, Vec<1>(rate), Vec<1>(signals.mean_rates(i)),
-                                                signals.period, 0.0, signals.since_last());
+      const bool acts = effort(0) != 0.0;
+      active_ = active_ || acts;
+      const double damping =
+          joint.controller.step(effort, Vec<1>(rate), Vec<1>(signals.mean_rates(i)), signals.period,
+                                0.0, signals.since_last());
+      effort(0) += rate * damping;
       effort_(i) = effort(0);
+      joint.damping = damping + (acts ? joint.law.damping : 0.0);
     }
   }
 
@@ -91,6 +100,13 @@ class Limits {
   void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
     torques += this->torques();
   }
+  void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept {
+    for (Eigen::Index i = 0; i < damping.rows(); ++i) {
+      damping.coeffRef(i, i) += joints_[static_cast<std::size_t>(i)].damping;
+    }
+  }
+  /// The law of all joints, but for the range of each.
+  [[nodiscard]] const JointLimits& law() const noexcept { return law_; }
   /// True while a joint is within `range` of its limit and is pushed back.
   [[nodiscard]] bool active() const noexcept { return active_; }
   /// Sum over all joints.
@@ -108,7 +124,9 @@ class Limits {
     JointLimits law;
     JointRange range;
     PassivityController<1> controller;
+    double damping = 0.0;  // [N m s/rad] of law and controller in this tick
   };
+  JointLimits law_;
   std::vector<Joint> joints_;
   Vec<any_size> effort_;  // into the module [N m]
   bool active_ = false;

@@ -45,14 +45,14 @@ class Obstacle {
     if (signals.released) {
       controller_.reset();
       effort_.setZero(6);
-      supplied_ = 0.0;
+      supplied_ = damping_ = 0.0;
       return;
     }
     const Six mean = signals.mean_tool_flow();
     supplied_ = signals.walls_power;
-    const double damping =
+    damping_ =
         controller_.step(effort_, flow, mean, signals.period, supplied_, signals.since_last());
-    if (damping > 0.0) effort_ += damping * product(Vec<any_size>(controller_.weight()), flow);
+    if (damping_ > 0.0) effort_ += damping_ * product(Vec<any_size>(controller_.weight()), flow);
   }
 
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
@@ -73,6 +73,19 @@ class Obstacle {
       torques.coeffRef(i) += along_column(jacobian, i, F);
     }
   }
+  /// Adds J' D J, D the damping of the passivity controller.
+  void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept {
+    if (!(damping_ > 0.0)) return;
+    for (Eigen::Index i = 0; i < damping.rows(); ++i) {
+      for (Eigen::Index k = 0; k < damping.cols(); ++k) {
+        double sum = 0.0;
+        for (int row = 0; row < 6; ++row) {
+          sum += controller_.weight()[row] * jacobian.coeff(row, i) * jacobian.coeff(row, k);
+        }
+        damping.coeffRef(i, k) += damping_ * sum;
+      }
+    }
+  }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by moving obstacles
 
@@ -88,6 +101,7 @@ class Obstacle {
   PassivityController<6> controller_;
   Vec<any_size> effort_ = Vec<any_size>::Zero(6);  // into the module
   double supplied_ = 0.0;
+  double damping_ = 0.0;  // [N s/m] of the passivity controller in this tick
 };
 
 }  // namespace repel::network

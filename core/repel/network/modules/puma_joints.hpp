@@ -71,8 +71,9 @@ class PumaJoints {
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
 
   void read(const Signals& signals) noexcept {
-    sampling_energy_ += signals.period * effort_.dot(signals.mean_rates - flow_) +
-                        (signals.since_last() - signals.period) * effort_.dot(signals.mean_rates);
+    const double gained = signals.period * effort_.dot(signals.mean_rates - flow_) +
+                          (signals.since_last() - signals.period) * effort_.dot(signals.mean_rates);
+    if (gained - gained == 0.0) sampling_energy_ += gained;  // finite: a fault does not spoil it
     flow_ = signals.rates;
   }
   void equivalent(Equivalent<any_size>& shown) const noexcept {

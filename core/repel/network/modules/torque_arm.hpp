@@ -26,9 +26,10 @@ struct TorqueArmOptions {
 ///     R = 2 I / T + c + (k_h T / 2 + c_h)      b = b_I + b_k - (k_h T / 2 + c_h) v_hand
 ///
 /// with b_I and b_k the waves reflected by inertia and spring. The hand is an energy source; what
-/// it supplies is counted separately. The motor saturates in the wave domain: the lever takes a
-/// wave a' with |a'| <= |a| for which the torque stays within its limit, so that saturation
-/// dissipates.
+/// it supplies is counted separately. The motor never exceeds its limit: the lever takes the wave
+/// a' that goes with the torque it can give. Where the hand overpowers the motor, |a'| > |a|: what
+/// the lever then takes beyond the power of its port is the work of the hand and counts as
+/// supplied.
 class TorqueArm {
  public:
   static constexpr Traits traits{.right = Space::lever};
@@ -64,13 +65,15 @@ class TorqueArm {
     double a = wave(0);
     const double limit = options_.torque_limit;
     saturated_ = std::abs(a + b) > 2.0 * limit;
+    double overpowered = 0.0;  // [W]
     if (saturated_) {
-      const double wanted = 2.0 * std::copysign(limit, a + b) - b;
-      a = std::clamp(wanted, -std::abs(a), std::abs(a));
+      const double taken = 2.0 * std::copysign(limit, a + b) - b;
+      overpowered = std::max(0.0, (taken * taken - a * a) / (4.0 * resistance_(0)));
+      a = taken;
     }
     const double rate = (a - b) / (2.0 * resistance_(0));
     const double relative = rate - hand_rate_;
-    supplied_ = -(spring_wave_ + hand_resistance_ * relative) * hand_rate_;
+    supplied_ = overpowered - (spring_wave_ + hand_resistance_ * relative) * hand_rate_;
     mass_wave_ = -mass_wave_ + 2.0 * mass_resistance_ * rate;
     spring_wave_ += 2.0 * spring_resistance_ * relative;
     angle_ += 0.5 * period_ * (rate + rate_);

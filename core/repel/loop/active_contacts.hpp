@@ -1,0 +1,103 @@
+/// @file
+/// The contacts that push in a tick, with their directions and damping: what the implicit solution
+/// of the network needs to know about the walls.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <repel/base/spatial.hpp>
+#include <repel/loop/arm_bodies.hpp>
+#include <repel/network/elements/signals.hpp>
+#include <repel/schedule/coprocessor.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel {
+
+/// A pair that exerts a force in this tick.
+struct ActiveContact {
+  BodyId a, b;
+  Wrench on_a, on_b;     ///< [1, m] of a unit force that parts them, about each body's origin
+  double damping = 0.0;  ///< [N s/m] how much its force falls with the speed along that force
+};
+
+/// Collects the contacts of the bodies that arms move. Allocates at construction only; contacts
+/// beyond its capacity are left out.
+class ActiveContacts {
+ public:
+  /// @param capacity largest number of contacts @param moved the bodies that arms move
+  ActiveContacts(const World& world, std::size_t capacity, std::span<const BodyId> moved)
+      : world_(&world), is_moved_(static_cast<std::size_t>(world.body_count()), 0) {
+    for (const BodyId body : moved) is_moved_[static_cast<std::size_t>(body.index)] = 1;
+    contacts_.resize(capacity);
+  }
+
+  /// Collects those of the last exchange. Cost: a look at each near pair.
+  void collect(const Coprocessor& coprocessor) noexcept {
+    count_ = 0;
+    coprocessor.for_each_near([&](const NearPair& near) {
+      if (near.force > 0.0 && count_ < contacts_.size()) add(near);
+    });
+  }
+
+  [[nodiscard]] std::span<const ActiveContact> all() const noexcept {
+    return std::span(contacts_).first(count_);
+  }
+
+ private:
+  void add(const NearPair& near) noexcept {
+    const Pair& pair = world_->pair(near.pair);
+    const BodyId a = world_->part(pair.a).body;
+    const BodyId b = world_->part(pair.b).body;
+    const int moved = is_moved(a) + is_moved(b);
+    if (moved == 0) return;
+    const Motion& motion = world_->motion();
+    const Vec3& n = near.separation.extraction_W;
+    const auto about = [&](BodyId body, const Vec3& force) {
+      const Vec3 arm = near.separation.p_WA - origin(motion.bodies[body.index].X_WB);
+      return wrench_of_force(force, arm);
+    };
+    const double damping =
+        pair.law.passable ? pair.law.damping : pair.law.formula().damper(near.separation.distance);
+    // Where two arms meet, each is solved by itself: twice the damping covers the motion of the
+    // other.
+    contacts_[count_++] = {a, b, about(a, n), about(b, -n), moved * damping};
+  }
+  [[nodiscard]] int is_moved(BodyId body) const noexcept {
+    return is_moved_[static_cast<std::size_t>(body.index)];
+  }
+
+  const World* world_;
+  std::vector<std::uint8_t> is_moved_;  // by BodyId
+  std::vector<ActiveContact> contacts_;
+  std::size_t count_ = 0;
+};
+
+/// The damping of the contacts at the joints of one arm [N m s/rad], sum of c h h' with h the joint
+/// torques of the unit force of a contact. @param jacobian of the `tool`
+inline void gather_damping(std::span<const ActiveContact> contacts, BodyId tool,
+                           const Jacobian& jacobian, const ArmBodies& links,
+                           network::Mat<network::any_size>& damping) noexcept {
+  const Eigen::Index joints = jacobian.cols();
+  damping.setZero(joints, joints);
+  network::Vec<network::any_size> h(joints);
+  const auto add = [&](BodyId body, const Wrench& F) {
+    links.add_torques(body, F, h);
+    for (Eigen::Index i = 0; body == tool && i < joints; ++i) {
+      h.coeffRef(i) += power(F, column_of(jacobian, i));
+    }
+  };
+  for (const ActiveContact& contact : contacts) {
+    h.setZero(joints);
+    add(contact.a, contact.on_a);
+    add(contact.b, contact.on_b);
+    for (Eigen::Index k = 0; k < joints; ++k) {
+      const double share = contact.damping * h.coeff(k);
+      for (Eigen::Index i = 0; i < joints; ++i) damping.coeffRef(i, k) += share * h.coeff(i);
+    }
+  }
+}
+
+}  // namespace repel

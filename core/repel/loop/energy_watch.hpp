@@ -1,0 +1,57 @@
+/// @file
+/// Watches the energy that an arm gains because its torques are held while it moves on.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/base/status.hpp>
+
+namespace repel {
+
+struct EnergyWatchOptions {
+  double taken_back = 0.5;  ///< [J] gained in `memory` above which the arm is braked in proportion
+  double most = 2.0;        ///< [J] gained in `memory` above which it is a fault
+  double memory = 1.0;      ///< [s] time constant with which a gain is forgotten
+};
+
+/// The network counts the power that it gives to the arm at the rates it measured; the arm takes
+/// torque times the motion until the next tick. The difference, "by sampling", is below a tenth of
+/// a joule while a coupling suits the arm, and grows without bound where it does not. It is taken
+/// back by braking, which is stable at any rate and mass; what cannot be taken back is a fault.
+class EnergyWatch {
+ public:
+  /// @throws SetupError for an option out of range
+  explicit EnergyWatch(const EnergyWatchOptions& options = {}) : options_(options) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    checked("sampling energy taken back", options.taken_back, 0.0, 1e9, "J");
+    checked("most sampling energy", options.most, options.taken_back, never, "J");
+    checked("memory of the sampling energy", options.memory, 1e-3, 1e6, "s");
+  }
+
+  /// Advances by `elapsed` [s]. @param sampled [J] by sampling since the start,
+  /// finite
+  /// @return status bits
+  [[nodiscard]] Status step(double sampled, double elapsed) noexcept {
+    const double gain = sampled - last_;
+    last_ = sampled;
+    gained_ += gain - std::min(1.0, elapsed / options_.memory) * std::max(0.0, gained_);
+    gained_ = std::max(gained_, -options_.taken_back);
+    return gained_ > options_.most ? status::energy_gain : 0U;
+  }
+
+  /// Share of the damping against all motion that takes the energy back, 0 to 1.
+  [[nodiscard]] double brake() const noexcept {
+    const double room = std::max(options_.most - options_.taken_back, 1e-12);
+    return std::clamp((gained_ - options_.taken_back) / room, 0.0, 1.0);
+  }
+  [[nodiscard]] double gained() const noexcept { return gained_; }  ///< [J]
+
+ private:
+  EnergyWatchOptions options_;
+  double last_ = 0.0;    // [J]
+  double gained_ = 0.0;  // [J], forgotten over `memory`
+};
+
+}  // namespace repel

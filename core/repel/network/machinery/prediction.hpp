@@ -1,0 +1,190 @@
+/// @file
+/// PREDICTION: the motion of the arm in the next ticks, between the operator's side of a network
+/// and its walls.
+#pragma once
+
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+struct PredictionOptions {
+  double drive_delay = 0.0;  ///< [ticks] between a torque and its effect, beyond its being held for
+                             ///< one tick; 0 to 10
+};
+
+/// A series element at the same effort: the operator's side is solved for the flow that the arm
+/// will have after a `horizon` h, and not for the one measured at the start of the tick. Torques
+/// are held for a tick, so springs and dampers that are solved for the measured flow drive an arm
+/// into oscillation where they are stiff for its mass: for one joint of inertia m unless
+/// k T^2 / m / 2 < b T / m < 2. With the torques of the walls w and their damping C,
+///
+///     u = J G (J' f + w + e),   G = (M / h + C)^-1,   v_left = v_right + u
+///
+/// G is formed in the joints, where J is the identity. So the operator's side is connected to the
+/// mass of the arm, discretized by an implicit rule. The walls themselves depend on the measured
+/// pose and stay at the measured flow; what they will give less as the arm moves is in `given_up`.
+///
+/// e is what else acts on the arm: dry friction, contact that is not modelled, an effort at its
+/// limit. It is the low-passed difference of M dv / T and the torques sent, so that nothing is
+/// predicted for an arm that is held. Without errors the sum of T u is h v. What the sum is beyond
+/// that is taken back by `leak` per tick, so that springs on the left do not drift away from the
+/// arm.
+///
+/// Stability for one joint, by the eigenvalues of the closed loop: with h = 1.5 T no spring and
+/// damper on the left can make it oscillate while M is 0.3 to 2.5 times the true mass; with a drive
+/// delayed by d = 1 or 2 ticks and h = (1.5 + 2.5 d) T the same holds for 0.3 to 1.7. So it does
+/// with walls of stiffness K whose damping is at least (0.5 + 2 d) K T
+/// (tests/network/machinery/prediction_test.cpp).
+class Prediction {
+ public:
+  /// A mass: it takes energy and gives it back, to the walls as well.
+  static constexpr Traits traits{.passive = false};
+  /// Share of the error of the summed flow that is taken back in a tick.
+  static constexpr double leak = 0.1;
+  /// Share by which e follows in a tick.
+  static constexpr double adaptation = 0.01;
+
+  /// @throws SetupError for a delay out of range
+  explicit Prediction(const PredictionOptions& options = {})
+      : ticks_(horizon(checked("drive delay", options.drive_delay, 0.0, 10.0, "ticks"))) {}
+
+  /// h / T for a drive with a delay of so many ticks.
+  [[nodiscard]] static constexpr double horizon(double drive_delay) noexcept {
+    return 1.5 + 2.5 * drive_delay;
+  }
+
+  void fit(Space space, int size) {
+    in_joints_ = space == Space::joints;
+    offset_.setZero(size);
+    sum_.setZero(size);
+  }
+  void prepare(double period) { horizon_ = ticks_ * detail::checked_period(period); }
+
+  /// Second call of a tick, after all modules have read their signals. Cost: one Cholesky
+  /// factorization, and two products of the size of the joints.
+  /// @param walls [N m] torques of walls and limits on the joints @param damping [N m s/rad] theirs
+  void predict(const Signals& signals, const Vec<any_size>& walls,
+               const Mat<any_size>& damping) noexcept {
+    const Eigen::Index n = signals.inertia.rows();
+    is_known_ = n > 0 && n == walls.size();
+    if (!is_known_) return;
+    observe(signals);
+    walls_ = walls;
+    damping_ = damping;
+    mobility_.form = Form::impedance;
+    mobility_.matrix.resize(n, n);
+    for (Eigen::Index i = 0; i < n * n; ++i) {
+      mobility_.matrix.data()[i] = signals.inertia.data()[i] / horizon_ + damping.data()[i];
+    }
+    mobility_.offset = -(walls + others_);
+    is_known_ = mobility_.take_form(Form::admittance);
+    if (is_known_) move_to_port(signals);
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    shown = behind;
+    if (is_known_) shown.add_admittance(conductance_, -offset_);
+    return true;
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) noexcept {
+    at_leaf = at_root;
+    if (!is_known_) return;
+    const Vec<any_size> on_arm = -at_root.effort;
+    Vec<any_size> change = offset_;
+    dense::add_product(conductance_, on_arm, change);
+    for (Eigen::Index i = 0; i < change.size(); ++i) {
+      sum_.coeffRef(i) += period_ * change.coeff(i);
+      at_leaf.flow.coeffRef(i) += change.coeff(i);
+    }
+    Vec<any_size> total = walls_;
+    if (in_joints_) {
+      total += on_arm;
+    } else {
+      for (Eigen::Index i = 0; i < total.size(); ++i) {
+        total.coeffRef(i) += along_column(jacobian_, i, to_wrench(on_arm));
+      }
+    }
+    sent_ = total - given_up(total);
+  }
+
+  /// What is taken off the torques `total` on the joints, those of the walls included, because they
+  /// move the arm within the horizon and its walls and limits then give less: C G total [N m].
+  [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept {
+    if (!is_known_) return Vec<any_size>::Zero(total.size());
+    return dense::product<Vec<any_size>>(damping_,
+                                         dense::product<Vec<any_size>>(mobility_.matrix, total));
+  }
+
+  /// Torques on the joints besides those of network and gravity, as estimated [N m].
+  [[nodiscard]] const Vec<any_size>& others() const noexcept { return others_; }
+
+ private:
+  void observe(const Signals& signals) noexcept {
+    if (sent_.size() != signals.rates.size() || signals.at_rest) {
+      others_.setZero(signals.rates.size());
+    } else {
+      const Vec<any_size> change = signals.rates - last_rates_;
+      const Vec<any_size> momentum = dense::product<Vec<any_size>>(signals.inertia, change);
+      const double inverse = 1.0 / signals.since_last();
+      for (Eigen::Index i = 0; i < others_.size(); ++i) {
+        const double seen = inverse * momentum.coeff(i) - sent_.coeff(i);
+        others_.coeffRef(i) += adaptation * (seen - others_.coeff(i));
+      }
+    }
+    last_rates_ = signals.rates;
+  }
+
+  void move_to_port(const Signals& signals) noexcept {
+    const Vec<any_size> flow = in_joints_ ? signals.rates : signals.tool_flow();
+    if (in_joints_) {
+      conductance_ = mobility_.matrix;
+      offset_ = mobility_.offset;
+    } else {
+      jacobian_ = signals.jacobian;
+      through_jacobian();
+      offset_ = dense::product<Vec<any_size>>(jacobian_, mobility_.offset);
+    }
+    if (signals.at_rest) sum_ = horizon_ * flow;
+    period_ = signals.period;
+    const double share = leak / period_;
+    for (Eigen::Index i = 0; i < offset_.size(); ++i) {
+      offset_.coeffRef(i) += share * (horizon_ * flow.coeff(i) - sum_.coeff(i));
+    }
+  }
+
+  // J G J' in plain loops over columns, which compilers vectorize.
+  void through_jacobian() noexcept {
+    const Eigen::Index n = jacobian_.cols();
+    conductance_.setZero(6, 6);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      double column[6] = {};  // of J G
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const double share = mobility_.matrix.data()[k * n + j];
+        for (int i = 0; i < 6; ++i) column[i] += jacobian_.data()[6 * j + i] * share;
+      }
+      for (int j = 0; j < 6; ++j) {
+        const double share = jacobian_.data()[6 * k + j];
+        for (int i = 0; i < 6; ++i) conductance_.data()[6 * j + i] += column[i] * share;
+      }
+    }
+  }
+
+  double ticks_;          // h / T
+  double horizon_ = 0.0;  // h [s]
+  double period_ = 1.0;   // [s]
+  bool in_joints_ = false;
+  bool is_known_ = false;
+  Jacobian jacobian_;
+  Vec<any_size> walls_;            // w
+  Mat<any_size> damping_;          // C
+  Equivalent<any_size> mobility_;  // G and G (w + e), in the joints
+  Mat<any_size> conductance_;      // J G J'
+  Vec<any_size> offset_;           // J G (w + e), and the correction
+  Vec<any_size> sum_;              // of T u
+  Vec<any_size> others_;           // e
+  Vec<any_size> last_rates_, sent_;
+};
+
+}  // namespace repel::network

@@ -1,0 +1,57 @@
+#include <repel/loop/energy_watch.hpp>
+
+#include <gtest/gtest.h>
+
+namespace repel {
+namespace energy_watch_test {
+
+constexpr double T = 0.0025;
+
+/// Feeds a constant power by sampling [W] for a time [s]; returns the status bits seen.
+Status feed(EnergyWatch& watch, double& energy, double power, double time) {
+  Status seen = 0;
+  for (double t = 0.0; t < time; t += T) seen |= watch.step(energy += T * power, T);
+  return seen;
+}
+
+TEST(EnergyWatch, WhatIsGainedSlowlyIsNoFaultAndDoesNotBrake) {
+  EnergyWatch watch;
+  double energy = 0.0;
+  EXPECT_EQ(feed(watch, energy, 0.4, 60.0), 0U);
+  EXPECT_EQ(watch.brake(), 0.0);
+  EXPECT_NEAR(watch.gained(), 0.4, 0.01);  // of the last second
+}
+
+TEST(EnergyWatch, BrakesInProportionAndThenReports) {
+  EnergyWatch watch;
+  double energy = 0.0;
+  EXPECT_EQ(feed(watch, energy, 1.25, 10.0), 0U);
+  EXPECT_NEAR(watch.brake(), 0.5, 0.01);  // midway from 0.5 to 2 J
+  EXPECT_EQ(feed(watch, energy, 10.0, 1.0), status::energy_gain);
+  EXPECT_EQ(watch.brake(), 1.0);
+}
+
+TEST(EnergyWatch, ForgetsAFaultThatIsOver) {
+  EnergyWatch watch;
+  double energy = 0.0;
+  EXPECT_EQ(feed(watch, energy, 1000.0, 0.01), status::energy_gain);
+  (void)feed(watch, energy, 0.0, 5.0);
+  EXPECT_EQ(watch.step(energy, T), 0U);
+  EXPECT_EQ(watch.brake(), 0.0);
+}
+
+// An arm that gave a lot back may not gain as much unseen.
+TEST(EnergyWatch, WhatWasGivenBackIsNoCredit) {
+  EnergyWatch watch;
+  double energy = 0.0;
+  (void)feed(watch, energy, -100.0, 1.0);
+  EXPECT_EQ(feed(watch, energy, 100.0, 0.1), status::energy_gain);
+}
+
+TEST(EnergyWatch, OptionsOutOfRangeAreRefused) {
+  EXPECT_THROW(EnergyWatch({.taken_back = 3.0}), SetupError);
+  EXPECT_THROW(EnergyWatch({.memory = 0.0}), SetupError);
+}
+
+}  // namespace energy_watch_test
+}  // namespace repel
