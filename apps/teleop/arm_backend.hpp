@@ -15,7 +15,7 @@ namespace repel::teleop {
 /// One kind of simulated arm.
 struct ArmBackend {
   const char* name;
-  bool has_gravity;  ///< gravity acts on its arms
+  bool has_gravity;  ///< the links of its arms have masses, on which gravity acts
   bool has_contact;  ///< its arms can collide with obstacles physically
   /// Creates an arm that stops after `watchdog` [s] without torques.
   /// @throws SetupError if it is not built in, or cannot simulate the model

@@ -8,6 +8,7 @@
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
+#include <repel/world/changed_arm.hpp>
 
 namespace repel::teleop {
 namespace {
@@ -32,6 +33,7 @@ Robot load_robot(const scene::RobotChoice& choice, bool with_gravity) {
   ArmModel& model = robot.arm;
   model.X_WB = choice.X_WB * model.X_WB;
   model.X_LT = model.X_LT * choice.X_LT;
+  if (choice.payload_known) model = with_payload(std::move(model), choice.payload);
   if (!with_gravity) make_ideal(model);
   return robot;
 }

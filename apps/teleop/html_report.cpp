@@ -208,6 +208,9 @@ std::string summary(const RunResult& r) {
   std::string html = "<p class='soft'>";
   html += std::to_string(r.totals().ticks) + " ticks at " + to_text(r.options.rate_hz) + " Hz, " +
           to_text(seconds, 5) + " s; back end " + escaped(r.options.backend) + "; " +
+          (r.options.plant_inertia == 1.0
+               ? ""
+               : "plant inertia " + to_text(r.options.plant_inertia) + "; ") +
           std::to_string(r.pairs) + " pairs; " + std::to_string(r.threads) +
           " coprocessor threads" + (r.options.fast ? "; not by the clock" : "") +
           (r.interrupted ? "; interrupted" : "") + "</p>\n";

@@ -8,6 +8,8 @@
 #include <optional>
 #include <sstream>
 
+#include <repel/world/changed_arm.hpp>
+
 #include "arm_backend.hpp"
 #include "budget.hpp"
 #include "command_line.hpp"
@@ -135,6 +137,24 @@ std::vector<std::string> backend_names(const Wanted& wanted) {
   return names;
 }
 
+/// @throws CLI::ValidationError if an option asks the back end for what it does not simulate
+void require_able(const Arguments& a) {
+  const teleop::ArmBackend& chosen = teleop::arm_backend(a.run.backend);
+  const auto require = [&](const char* option, const char* trouble, auto&& able) {
+    if (able(chosen)) return;
+    throw CLI::ValidationError(option, "backend " + a.run.backend + " " + trouble + "; allowed: " +
+                                           CLI::detail::join(backend_names(able), ", "));
+  };
+  if (a.run.contact) {
+    require("--contact", "knows no contact",
+            [](const auto& backend) { return backend.has_contact; });
+  }
+  if (a.run.plant_inertia != 1.0) {
+    require("--plant-inertia", "has links without mass",
+            [](const auto& backend) { return backend.has_gravity; });
+  }
+}
+
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds,
@@ -157,16 +177,17 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("--contact", a.run.contact,
                "Of bullet and ode: obstacles that are not passable stop the arm by themselves, "
                "too, where no virtual force does it first");
+  app.add_option("--plant-inertia", a.run.plant_inertia,
+                 "Of bullet, ode and reference: how many times the inertia of its model a "
+                 "simulated arm has, at the same weight; to test the controller, which knows the "
+                 "model")
+      ->capture_default_str()
+      ->type_name("FACTOR")
+      ->check(host::between(least_inertia_factor, most_inertia_factor));
   app.final_callback([&a] {
     const std::string insecure = teleop::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);
-    if (!a.run.contact || teleop::arm_backend(a.run.backend).has_contact) return;
-    const auto knows_contact = [](const teleop::ArmBackend& backend) {
-      return backend.has_contact;
-    };
-    throw CLI::ValidationError("--contact",
-                               "backend " + a.run.backend + " knows no contact; allowed: " +
-                                   CLI::detail::join(backend_names(knows_contact), ", "));
+    require_able(a);
   });
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
@@ -200,7 +221,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--replay", a.replay,
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
-                 "--budget", "--every-pair", "--tool-alone", "--device");
+                 "--budget", "--every-pair", "--tool-alone", "--plant-inertia", "--device");
   app.footer(footer());
 }
 

@@ -135,7 +135,8 @@ class McapLog final : public TickLog {
             {"budget", options.budget},
             {"by_the_clock", word(!options.fast)},
             {"every_pair", word(options.every_pair)},
-            {"tool_alone", word(options.tool_alone)}};
+            {"tool_alone", word(options.tool_alone)},
+            {"plant_inertia", to_text(options.plant_inertia)}};
   }
 
   void attach_robot(const scene::RobotChoice& robot) {

@@ -62,6 +62,10 @@ scene::Scene as_run(const scene::Scene& scene, const RunOptions& options) {
     result.robot.links.emplace();
     for (scene::OtherArm& partner : result.partners) partner.robot.links.emplace();
   }
+  if (!arm_backend(options.backend).has_gravity) {  // nothing there has a weight
+    result.robot.payload = {};
+    for (scene::OtherArm& partner : result.partners) partner.robot.payload = {};
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include <repel/base/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
+#include <repel/world/changed_arm.hpp>
 
 #include "mcap_names.hpp"
 
@@ -178,9 +179,13 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
+    const std::string inertia = word("plant_inertia");  // older recordings do not have it
+    if (!inertia.empty()) options.plant_inertia = std::strtod(inertia.c_str(), nullptr);
     try {
       checked("rate_hz of the recording", options.rate_hz, 1.0, 1e5, "Hz");
       checked("threads of the recording", options.threads, 0.0, 16.0, "");
+      checked("plant_inertia of the recording", options.plant_inertia, least_inertia_factor,
+              most_inertia_factor, "");
     } catch (const SetupError& error) {
       throw SetupError(error.what(), recording.file);
     }

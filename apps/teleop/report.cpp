@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <utility>
 
 #include "figure.hpp"
 #include "network_report.hpp"
@@ -72,6 +73,29 @@ void print_contact(const RunResult& r, std::FILE* out) {
   }
 }
 
+/// Adds what the tool of an arm carries; whether it is known is null if that is nothing.
+void add_payload(const scene::RobotChoice& robot, ordered_json& report) {
+  const bool none = robot.payload.mass == 0.0;
+  report["payload_kg"] = robot.payload.mass;
+  report["payload_known"] = none ? ordered_json(nullptr) : ordered_json(robot.payload_known);
+}
+
+/// How the simulated arms differ from the robot files and from what their controllers know.
+void print_plant(const RunResult& r, std::FILE* out) {
+  if (r.options.plant_inertia != 1.0) {
+    print_line("plant inertia", to_text(r.options.plant_inertia) + " times that of the model", out);
+  }
+  for (std::size_t i = 0; i < r.arms.size(); ++i) {
+    const scene::RobotChoice& robot = r.scene.arm_setup(i).robot;
+    if (robot.payload.mass == 0.0) continue;
+    const std::string whose = r.arms[i].name.empty() ? "" : " of " + r.arms[i].name;
+    print_line("payload",
+               to_text(robot.payload.mass) + " kg" + whose +
+                   (robot.payload_known ? "" : ", unknown to the controller"),
+               out);
+  }
+}
+
 /// Number of ticks in each stop state.
 ordered_json stop_ticks(const RunTotals& totals) {
   ordered_json ticks;
@@ -86,12 +110,14 @@ ordered_json partner_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
   for (std::size_t i = 1; i < r.arms.size(); ++i) {
     const ArmResult& arm = r.arms[i];
-    list.push_back({{"name", arm.name},
-                    {"peak_force_n", arm.totals.peak_force},
-                    {"status_ticks", host::status_ticks(arm.totals)},
-                    {"stop", stop_ticks(arm.totals)},
-                    {"physical_contact", contact_to_json(r, arm)},
-                    {"modules", modules_to_json(arm.modules)}});
+    ordered_json partner = {{"name", arm.name},
+                            {"peak_force_n", arm.totals.peak_force},
+                            {"status_ticks", host::status_ticks(arm.totals)},
+                            {"stop", stop_ticks(arm.totals)},
+                            {"physical_contact", contact_to_json(r, arm)},
+                            {"modules", modules_to_json(arm.modules)}};
+    add_payload(r.scene.arm_setup(i).robot, partner);
+    list.push_back(std::move(partner));
   }
   return list;
 }
@@ -217,6 +243,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   // The most important facts first.
   if (!r.log_trouble.empty()) print_line("log is not whole", r.log_trouble, out);
   for (const std::string& warning : r.warnings) print_line("warning", warning, out);
+  print_plant(r, out);
   host::print_times("compute of the tick", r.deadline.compute(), out);
   if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
   host::print_times("simulated arm", r.arm_step, out);
@@ -304,6 +331,8 @@ void write_json(const RunResult& r, std::ostream& file) {
   }
   report["simulated_arm_us"] = host::percentiles(r.arm_step);
   report["every_pair"] = r.options.every_pair;
+  report["plant_inertia"] = r.options.plant_inertia;
+  add_payload(r.scene.robot, report);
   report["budget"] = budget_list(r);
   report.update(host::to_json(r.totals(), r.pairs));
   report["support_pairs_most"] = r.most_support_pairs;

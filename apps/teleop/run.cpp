@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <repel/base/complaint.hpp>
+#include <repel/world/changed_arm.hpp>
 
 #include "arm_backend.hpp"
 #include "contact.hpp"
@@ -202,6 +203,16 @@ double watchdog_of(const RunOptions& options) {
   return std::max(0.1, 5.0 / options.rate_hz);
 }
 
+/// The arm that is simulated: that of the controller, with what the controller does not know. The
+/// payload comes first, since a change of the inertia keeps the weight of what there is.
+ArmModel simulated_model(const PreparedRun& prepared, std::size_t arm) {
+  ArmModel model = prepared.cell.description().arms[arm].model;
+  const scene::RobotChoice& robot = prepared.scene.arm_setup(arm).robot;
+  if (!robot.payload_known) model = with_payload(std::move(model), robot.payload);
+  const double factor = prepared.options.plant_inertia;
+  return factor == 1.0 ? model : with_inertia(std::move(model), factor);
+}
+
 /// Creates the arms of the cell, at their start positions.
 std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepared,
                                                         const Recording* recording) {
@@ -217,7 +228,8 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
     if (prepared.options.contact) {
       parts = contact_parts(prepared.scene, prepared.scene.arm_setup(i), prepared.robots[i]);
     }
-    arms.push_back(backend.make(arm.model, arm.start, watchdog_of(prepared.options), parts));
+    arms.push_back(backend.make(simulated_model(prepared, i), arm.start,
+                                watchdog_of(prepared.options), parts));
   }
   return arms;
 }

@@ -15,9 +15,10 @@ struct RunOptions {
   std::string budget;              ///< budget name; empty: the scene's own
   bool every_pair = false;         ///< also evaluate pairs that cannot be within range
   bool tool_alone = false;         ///< apply the walls to tools only, whatever the scene says
-  bool contact = false;       ///< with "bullet" and "ode": solid obstacles stop the arms physically
-  bool keep_records = false;  ///< for the HTML report
-  std::string log;            ///< file to which every tick is written; empty: none
+  bool contact = false;  ///< with "bullet" and "ode": solid obstacles stop the arms physically
+  double plant_inertia = 1.0;  ///< inertia of the simulated arms as a multiple of their models'
+  bool keep_records = false;   ///< for the HTML report
+  std::string log;             ///< file to which every tick is written; empty: none
 };
 
 }  // namespace repel::teleop

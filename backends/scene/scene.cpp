@@ -221,9 +221,21 @@ void read_start(const Value& value, RobotChoice& robot) {
   }
 }
 
+void read_payload(const Value& value, RobotChoice& robot) {
+  constexpr double furthest = Payload::furthest;
+  const Map map(value);
+  map.allow({"mass", "position", "known"});
+  robot.payload.mass = map.at("mass").number({unit::mass, 0.0, Payload::heaviest});
+  map.read("position", {unit::length, -furthest, furthest}, robot.payload.p_TC);
+  if (const Value* known = map.find("known")) {
+    robot.payload_known = known->word_of({"yes", "no"}) == "yes";
+  }
+}
+
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
-  map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf"});
+  map.allow(
+      {"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf", "payload"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
@@ -232,6 +244,7 @@ RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& fi
   read_start(map.at("start"), robot);
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");
+  if (const Value* payload = map.find("payload")) read_payload(*payload, robot);
   if (const Value* links = map.find("links")) {
     robot.links.emplace();
     for (const Value& link : links->list()) robot.links->push_back(link.text());

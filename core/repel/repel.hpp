@@ -34,6 +34,7 @@
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
+#include <repel/world/changed_arm.hpp>
 #include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>

@@ -9,7 +9,7 @@ TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   for (const char* words :
        {"anderson_4x8", "--tool-alone", "bullet", "ode", "reference", "ideal", "spaceball",
         "torque_arm", "Exit status", "--fast", "--report", "--log", "--threads", "--budget", "i860",
-        "--every-pair", "--contact", "--html"}) {
+        "--every-pair", "--contact", "--plant-inertia", "--html"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }

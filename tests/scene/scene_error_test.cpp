@@ -247,6 +247,20 @@ TEST(SceneError, ARobotFileThatIsNotThereIsRefused) {
   expect_refused(changed("../robots/puma560.urdf", "../robots"), 2, {"none at robots"});
 }
 
+TEST(SceneError, APayloadThatIsNotAllowedIsRefused) {
+  const auto payload = [](const std::string& text) {
+    return changed("tool:", "  payload: {" + text + "}\ntool:");
+  };
+  expect_refused(payload("position: 0 0 0 m"), 4, {"'mass' is missing"});
+  expect_refused(payload("mass: 100.1 kg"), 4, {"'mass'", "100.1", "0 to 100 kg"});
+  expect_refused(payload("mass: -1 g"), 4, {"'mass'", "0 to 100 kg"});
+  expect_refused(payload("mass: 2"), 4, {"'mass'", "kg"});
+  expect_refused(payload("mass: 2 kg, position: 0 0 10.1 m"), 4, {"'position'", "-10 to 10 m"});
+  expect_refused(payload("mass: 2 kg, position: 0 0 nan m"), 4, {"'position'"});
+  expect_refused(payload("mass: 2 kg, known: maybe"), 4, {"'known' is 'maybe'", "yes, no"});
+  expect_refused(payload("mas: 2 kg"), 4, {"'mas'", "mean 'mass'"});
+}
+
 TEST(SceneError, AHullOfTooManyPointsIsRefusedAtItsLine) {
   std::string points = "0 0 0 m";
   for (int i = 0; i < 10000; ++i) points += ", 0 0 0 m";

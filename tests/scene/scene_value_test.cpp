@@ -82,6 +82,22 @@ TEST(SceneValue, StartsOfJointsThatSlideAreLengths) {
   EXPECT_THROW((void)parsed(changed("0 45 180 0 45 0 deg", "[50 kg]")), SetupError);
 }
 
+TEST(SceneValue, APayloadHasAMassAPlaceAndIsKnownUnlessItSaysOtherwise) {
+  const auto robot = [](const std::string& payload) {
+    return parsed(changed("tool:", payload + "tool:")).robot;
+  };
+  EXPECT_EQ(robot("").payload.mass, 0.0);
+  const auto grams = robot("  payload: {mass: 500 g}\n");
+  EXPECT_EQ(grams.payload.mass, 0.5);
+  EXPECT_EQ(grams.payload.p_TC, Vec3(0, 0, 0));
+  EXPECT_TRUE(grams.payload_known);
+  const auto placed = robot("  payload: {mass: 100 kg, position: 1 -2 30 cm, known: no}\n");
+  EXPECT_EQ(placed.payload.mass, 100.0);
+  EXPECT_EQ(placed.payload.p_TC, Vec3(0.01, -0.02, 0.3));
+  EXPECT_FALSE(placed.payload_known);
+  EXPECT_TRUE(robot("  payload: {mass: 0 kg, known: yes}\n").payload_known);
+}
+
 TEST(SceneValue, AnObstacleMayMove) {
   EXPECT_FALSE(parsed(base_scene).obstacles[0].motion.has_value());
   const Scene scene =

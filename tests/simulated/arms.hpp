@@ -228,12 +228,12 @@ std::vector<double> velocities(const Arm& arm) {
   return v;
 }
 
-/// The acceleration under `torques` at `q`, `v`, from one sub-step of a microsecond.
+/// The acceleration under `torques` at `q`, `v`, from one step of `period` [s]. Free bodies with
+/// constraints need a longer one: rounding of their positions counts by its inverse square.
 template <class Arm>
 std::vector<double> accelerations(Arm& arm, const std::vector<double>& q,
-                                  const std::vector<double>& v,
-                                  const std::vector<double>& torques) {
-  constexpr double period = 1e-6;
+                                  const std::vector<double>& v, const std::vector<double>& torques,
+                                  double period = 1e-6) {
   arm.reset(q, v);
   arm.set_torques(torques);
   arm.step(period);

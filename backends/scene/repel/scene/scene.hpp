@@ -21,6 +21,7 @@
 #include <repel/scene/network.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/arm.hpp>
+#include <repel/world/changed_arm.hpp>
 
 namespace repel::scene {
 
@@ -59,7 +60,9 @@ struct RobotChoice {
   std::optional<std::vector<std::string>> links;
   /// Law between parts of the arm that no joint connects; without it, no such pairs.
   std::optional<ForceLaw> self_law;
-  std::string srdf;  ///< path of a file with the link pairs to omit; empty: none
+  std::string srdf;           ///< path of a file with the link pairs to omit; empty: none
+  Payload payload;            ///< what the tool carries; mass 0: nothing
+  bool payload_known = true;  ///< to the controller too, not only to the simulated arm
 };
 
 /// Limits on the work of the distance queries in one tick.

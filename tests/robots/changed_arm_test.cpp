@@ -1,0 +1,26 @@
+// The reference arm with another inertia than its model, and with a payload.
+#include <gtest/gtest.h>
+
+#include <repel/robots/dynamics.hpp>
+
+#include "simulated/changed_arms.hpp"
+
+namespace repel {
+namespace changed_arm_test {
+
+constexpr auto make = [](const ArmModel& model) { return ReferenceArm(model); };
+
+TEST(ReferenceArmWithAnotherInertia, AcceleratesInInverseProportion) {
+  simulated::expect_inertia_to_divide_the_acceleration(make, 1e-5);
+}
+
+TEST(ReferenceArmWithAnotherInertia, IsHeldByTheTorquesThatHoldItsModel) {
+  simulated::expect_to_be_held(make);
+}
+
+TEST(ReferenceArmWithAPayload, AcceleratesByTheWeightAndInertiaOfBoth) {
+  simulated::expect_the_payload_to_pull(make, 1e-5);
+}
+
+}  // namespace changed_arm_test
+}  // namespace repel
