@@ -83,7 +83,8 @@ std::optional<fs::path> above(const fs::path& file, const std::string& package,
   for (const std::string& path : folders.package_paths) where += "'" + path + "', ";
   throw SetupError("mesh '" + uri + "' is not found in " + where + "or the folders above '" +
                    folders.file.string() +
-                   "'; allowed: an existing file (a package path says where packages are)");
+                   "'; allowed: an existing file (`packages` of a scene and --package-path say "
+                   "where packages are)");
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
 #include <repel/robots/urdf.hpp>
 
-#include <algorithm>
 #include <limits>
-#include <set>
 
 #include <urdf_parser/urdf_parser.h>
 #include <Eigen/Eigenvalues>
 
 #include <repel/base/setup_error.hpp>
 
+#include "chain_choice.hpp"
+#include "held_joints.hpp"
 #include "mesh.hpp"
 #include "urdf_document.hpp"
 
@@ -73,10 +73,13 @@ class ArmBuilder {
  public:
   ArmBuilder(const detail::UrdfDocument& document, const urdf::ModelInterface& model,
              const UrdfOptions& options, const std::string& file)
-      : document_(document), options_(options), meshes_({file, options.package_paths}) {
+      : document_(document),
+        chain_(document, model, options),
+        joints_(document, model, chain_),
+        meshes_({file, options.package_paths}) {
     robot_.arm.name = model.getName();
-    require_known(model);
-    find_chain(model);
+    robot_.end = chain_.end().link;
+    robot_.end_reason = chain_.end().reason;
     add(*model.getRoot(), -1, Pose::Identity());
     if (robot_.arm.links.empty()) {
       document_.fail_at_link(model.getRoot()->name, "carries no moving joint; allowed: 1 or more");
@@ -88,51 +91,6 @@ class ArmBuilder {
   Robot take() { return std::move(robot_); }
 
  private:
-  bool moves(const urdf::Joint& joint) const {
-    return joint.type != urdf::Joint::FIXED &&
-           std::find(options_.hold.begin(), options_.hold.end(), joint.name) == options_.hold.end();
-  }
-
-  void require_known(const urdf::ModelInterface& model) const {
-    for (const std::string& name : options_.hold) {
-      if (!model.getJoint(name)) {
-        document_.fail_at_link(model.getRoot()->name, "has no joint '" + name + "' to hold");
-      }
-    }
-    if (!options_.tip.empty() && !model.getLink(options_.tip)) {
-      document_.fail_at_link(model.getRoot()->name, "leads to no tip '" + options_.tip + "'");
-    }
-  }
-
-  /// The link with the most moving joints above it; among equals the root, else the first by name.
-  /// Visits each link once.
-  urdf::LinkConstSharedPtr farthest(const urdf::ModelInterface& model) const {
-    struct Reached {
-      urdf::LinkConstSharedPtr link;
-      int joints;  ///< moving joints above it
-    };
-    Reached best{model.getRoot(), 0};
-    std::vector<Reached> open{best};
-    while (!open.empty()) {
-      const Reached at = open.back();
-      open.pop_back();
-      const bool is_before = at.joints > 0 && at.link->name < best.link->name;
-      if (at.joints > best.joints || (at.joints == best.joints && is_before)) best = at;
-      for (const auto& child : at.link->child_links) {
-        open.push_back({child, at.joints + (moves(*child->parent_joint) ? 1 : 0)});
-      }
-    }
-    return best.link;
-  }
-
-  /// Finds the links from the root to the chosen tip, or to the farthest link.
-  void find_chain(const urdf::ModelInterface& model) {
-    urdf::LinkConstSharedPtr end =
-        options_.tip.empty() ? farthest(model) : model.getLink(options_.tip);
-    end_ = end->name;
-    for (; end; end = end->getParent()) chain_.insert(end->name);
-  }
-
   /// Adds `node`, fixed to arm link `link` at `X_LN`, and its subtree.
   // NOLINTNEXTLINE(misc-no-recursion): the tree is no deeper than UrdfDocument allows
   void add(const urdf::Link& node, int link, const Pose& X_LN) {
@@ -153,13 +111,26 @@ class ArmBuilder {
   void add_child(const urdf::Link& child, int link, const Pose& X_LN) {
     const urdf::Joint& joint = *child.parent_joint;
     const Pose X_LJ = X_LN * from_urdf(joint.parent_to_joint_origin_transform);
-    if (!moves(joint)) return add(child, link, X_LJ);
-    if (!chain_.contains(child.name)) {
-      document_.fail_at_joint(joint.name, "moves beside the chain to '" + end_ +
-                                              "'; allowed: a joint of the chain, or one to hold");
+    if (joint.type == urdf::Joint::FIXED) return add(child, link, X_LJ);
+    if (joints_.moves(joint)) {
+      robot_.arm.links.push_back(moving_link(child, joint, X_LJ));
+      return add(child, link + 1, Pose::Identity());
     }
-    robot_.arm.links.push_back(moving_link(child, joint, X_LJ));
-    add(child, link + 1, Pose::Identity());
+    const HeldJoint& held = joints_.held(joint);
+    require_no_gap(joint, link);
+    robot_.held.push_back(held);
+    add(child, link, X_LJ * joints_.displacement(joint, held.position));
+  }
+
+  /// A joint with several coordinates may say where the base stands, but is not part of an arm.
+  void require_no_gap(const urdf::Joint& joint, int link) const {
+    const bool has_one = joint.type != urdf::Joint::PLANAR && joint.type != urdf::Joint::FLOATING;
+    if (has_one || link < 0 || chain_.hold_of(joint) || !chain_.contains(joint.child_link_name)) {
+      return;
+    }
+    document_.fail_at_joint(joint.name, "is '" + document_.type_of(joint.name) +
+                                            "' and between joints of the arm; allowed: revolute, "
+                                            "continuous, prismatic, fixed, or one to hold");
   }
 
   ArmLink moving_link(const urdf::Link& child, const urdf::Joint& joint, const Pose& X_PJ) const {
@@ -168,12 +139,8 @@ class ArmBuilder {
     link.joint_name = joint.name;
     link.type = joint.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
     link.X_PJ = X_PJ;
-    const double axis_length = from_urdf(joint.axis).norm();
-    if (!(axis_length > 1e-6)) {
-      document_.fail_at_joint(joint.name, "has an axis of length " + to_text(axis_length) +
-                                              "; allowed: more than 1e-06");
-    }
-    link.axis_J = from_urdf(joint.axis) / axis_length;
+    document_.require_range(joint.name);
+    link.axis_J = detail::axis_of(joint, document_);
     const bool endless = joint.type == urdf::Joint::CONTINUOUS;
     link.lower = endless ? -std::numeric_limits<double>::infinity() : joint.limits->lower;
     link.upper = endless ? std::numeric_limits<double>::infinity() : joint.limits->upper;
@@ -221,34 +188,32 @@ class ArmBuilder {
     }
   }
 
-  /// Sets the tool frame: the chosen tip, the only tip on the last moving link, or that link.
+  /// Sets the tool frame.
   void choose_tool() {
     const int last = static_cast<int>(robot_.arm.links.size()) - 1;
-    const std::set<std::string> all_tips(robot_.tips.begin(), robot_.tips.end());
-    const RobotLink* only = nullptr;
-    int tips = 0;
+    std::vector<std::string> still;  // fixed to the last moving link, which is the first of them
     for (const RobotLink& link : robot_.links) {
-      const bool chosen = link.name == options_.tip;
-      const bool is_tip = all_tips.contains(link.name);
-      if (!(options_.tip.empty() ? is_tip && link.link == last : chosen)) continue;
-      only = &link;
-      ++tips;
+      if (link.link == last) still.push_back(link.name);
     }
-    if (tips == 1) robot_.arm.X_LT = only->X_LN;
+    const detail::ChosenLink tool = chain_.tool(still);
+    robot_.tool = tool.link;
+    robot_.tool_reason = tool.reason;
+    for (const RobotLink& link : robot_.links) {
+      if (link.name == tool.link) robot_.arm.X_LT = link.X_LN;
+    }
   }
 
   const detail::UrdfDocument& document_;
-  const UrdfOptions& options_;
+  detail::ChainChoice chain_;
+  detail::HeldJoints joints_;
   detail::MeshReader meshes_;
-  std::string end_;
-  std::set<std::string> chain_;
   Robot robot_;
 };
 
 }  // namespace
 
 Robot parse_arm(std::string_view urdf, const UrdfOptions& options, const std::string& file) {
-  detail::UrdfDocument document(urdf, file, options.hold);
+  detail::UrdfDocument document(urdf, file);
   const auto model = urdf::parseURDF(document.text_for_urdfdom());
   if (!model) throw SetupError("urdfdom cannot read this file; it has said why on stderr", file);
   document.require_all_collisions(*model);

@@ -48,6 +48,8 @@ constexpr NumberRule number_rules[] = {
     {"limit", "effort", 1, 0.0, 1e9, true, "N m or N"},
     {"dynamics", "damping", 1, 0.0, 1e9, false, "N m s/rad or N s/m"},
     {"dynamics", "friction", 1, 0.0, 1e9, false, "N m or N"},
+    {"mimic", "multiplier", 1, -1e6, 1e6, false, ""},
+    {"mimic", "offset", 1, -1e4, 1e4, false, "rad or m"},
     {"drake:rotor_inertia", "value", 1, 0.0, 1e6, true, "kg m^2"},
     {"drake:gear_ratio", "value", 1, -1e6, 1e6, true, ""},
 };
@@ -139,9 +141,7 @@ std::string text_of_description(const std::string& path) {
   return text;
 }
 
-UrdfDocument::UrdfDocument(std::string_view text, std::string file,
-                           const std::vector<std::string>& held)
-    : file_(std::move(file)) {
+UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std::move(file)) {
   if (text.size() > most_description_bytes) refuse_size(text.size(), file_);
   if (xml_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw SetupError(std::string("not well-formed XML: ") + xml_.ErrorStr(), file_,
@@ -160,14 +160,13 @@ UrdfDocument::UrdfDocument(std::string_view text, std::string file,
     if (name == "link" || name == "joint" || name == "transmission") {
       check_numbers(*child, label(*child));
     }
-    const bool is_held = std::find(held.begin(), held.end(), text_of(child, "name")) != held.end();
-    if (name == "joint" && !is_held) check_joint(*child);
+    if (name == "joint") check_joint(*child);
   }
   require_tree();
+  require_leaders();
 }
 
 void UrdfDocument::require_plain_urdf() const {
-  if (text_of(robot_, "name").empty()) fail(robot_, "the <robot> has no name; allowed: one");
   for (const auto* e = robot_->FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string_view name = e->Name();
     if (name.substr(0, 6) != "xacro:") continue;
@@ -329,18 +328,67 @@ void UrdfDocument::require_modest(const Element& element, Counts& counts) const 
 void UrdfDocument::check_joint(const Element& joint) const {
   const std::string type = text_of(&joint, "type");
   if (type == "fixed") return;
-  if (type != "revolute" && type != "continuous" && type != "prismatic") {
+  if (type == "continuous" || type == "planar" || type == "floating") return;
+  if (type != "revolute" && type != "prismatic") {
     fail(&joint, label(joint) + ": type is '" + type +
-                     "'; allowed: revolute, continuous, prismatic, fixed");
+                     "'; allowed: revolute, continuous, prismatic, fixed; beside the arm also "
+                     "planar, floating");
   }
-  if (const auto* mimic = joint.FirstChildElement("mimic")) {
-    fail(mimic, label(joint) + " mimics '" + text_of(mimic, "joint") +
-                    "', which is not supported; allowed: joints that move by themselves, or "
-                    "that are held");
+  if (!joint.FirstChildElement("limit")) {
+    fail(&joint, label(joint) + ": <limit> is missing; allowed: one");
   }
-  if (type == "continuous") return;
+}
+
+/// The <mimic> of a joint that can move; null without one.
+const Element* UrdfDocument::mimic_of(const Element& joint) const {
+  return text_of(&joint, "type") == "fixed" ? nullptr : joint.FirstChildElement("mimic");
+}
+
+/// The joint that `joint`, which has a <mimic>, mimics.
+const Element& UrdfDocument::leader_of(const Element& joint) const {
+  const Element* mimic = mimic_of(joint);
+  const std::string name = text_of(mimic, "joint");
+  const auto found = joints_.find(name);
+  if (found == joints_.end()) {
+    fail(mimic,
+         label(joint) + " mimics '" + name + "', which is not in the file; allowed: another joint");
+  }
+  const std::string type = text_of(found->second, "type");
+  if (type == "planar" || type == "floating") {
+    fail(mimic, label(joint) + " mimics '" + name + "', which is " + type +
+                    "; allowed: a joint with one coordinate");
+  }
+  return *found->second;
+}
+
+/// Checks that every joint that mimics leads, in a few steps, to one that does not.
+void UrdfDocument::require_leaders() const {
+  constexpr std::size_t most_steps = 64;
+  for (const auto& [name, joint] : joints_) {
+    std::vector<const Element*> line{joint};
+    while (mimic_of(*line.back())) {
+      const Element* leader = &leader_of(*line.back());
+      const Element* mimic = mimic_of(*line.back());
+      if (std::find(line.begin(), line.end(), leader) != line.end()) {
+        fail(mimic, label(*line.back()) + " mimics '" + text_of(leader, "name") +
+                        "', which in the end mimics this one; allowed: no circle");
+      }
+      line.push_back(leader);
+      if (line.size() <= most_steps) continue;
+      fail(mimic, label(*joint) + " mimics through more than " + std::to_string(most_steps) +
+                      " joints; allowed: up to " + std::to_string(most_steps));
+    }
+  }
+}
+
+std::string UrdfDocument::type_of(const std::string& joint) const {
+  return text_of(joints_.at(joint), "type");
+}
+
+void UrdfDocument::require_range(const std::string& name) const {
+  const Element& joint = *joints_.at(name);
   const auto* limit = joint.FirstChildElement("limit");
-  if (!limit) fail(&joint, label(joint) + ": <limit> is missing; allowed: one");
+  if (!limit || text_of(&joint, "type") == "continuous") return;
   const auto lower = numbers_in(text_of(limit, "lower"));
   const auto upper = numbers_in(text_of(limit, "upper"));
   if (lower->empty() || upper->empty() || !(lower->front() < upper->front())) {
@@ -352,7 +400,12 @@ void UrdfDocument::check_joint(const Element& joint) const {
 std::string UrdfDocument::text_for_urdfdom() const {
   tinyxml2::XMLDocument copy;
   xml_.DeepCopy(&copy);
-  for (auto* link = copy.FirstChildElement("robot")->FirstChildElement("link"); link;
+  auto* robot = copy.FirstChildElement("robot");
+  if (text_of(robot, "name").empty()) {
+    const std::string stem = std::filesystem::path(file_).stem().string();
+    robot->SetAttribute("name", stem.empty() ? "robot" : stem.c_str());
+  }
+  for (auto* link = robot->FirstChildElement("link"); link;
        link = link->NextSiblingElement("link")) {
     for (auto* e = link->FirstChildElement("collision"); e;
          e = e->NextSiblingElement("collision")) {

@@ -29,12 +29,12 @@ class UrdfDocument {
   using Element = tinyxml2::XMLElement;
 
   /// @throws SetupError if the text is not XML, exceeds the limits above on bytes, links or depth,
-  ///   a number is malformed, not finite or out of range, a joint lacks a limit or cannot be part
-  ///   of a serial arm, or two links or joints share a name. Types and limits of the joints in
-  ///   `held` are not checked.
-  UrdfDocument(std::string_view text, std::string file, const std::vector<std::string>& held = {});
+  ///   a number is malformed, not finite or out of range, a joint is of an unknown type, lacks a
+  ///   limit or mimics itself or none, or two links or joints share a name
+  UrdfDocument(std::string_view text, std::string file);
 
-  /// The text for urdfdom, which does not support capsules: each is replaced by a cylinder.
+  /// The text for urdfdom, which does not support capsules: each is replaced by a cylinder. A robot
+  /// without a name gets that of its file.
   [[nodiscard]] std::string text_for_urdfdom() const;
 
   /// @throws SetupError naming the first collision element that is missing in `model`
@@ -42,6 +42,12 @@ class UrdfDocument {
 
   /// Whether collision element `index` of `link` is a capsule in the file.
   [[nodiscard]] bool is_capsule(const std::string& link, std::size_t index) const;
+
+  /// The type of `joint`, as in the file.
+  [[nodiscard]] std::string type_of(const std::string& joint) const;
+
+  /// @throws SetupError unless `joint`, if it has limits, can move between them
+  void require_range(const std::string& joint) const;
 
   /// Motor and gear inertia reflected to `joint` [kg m^2] or [kg]: the Drake elements rotor_inertia
   /// * gear_ratio^2 of its transmission; 0 without any.
@@ -69,6 +75,9 @@ class UrdfDocument {
   void require_reached(const std::string& root, const Tree& children) const;
   void check_numbers(const Element& element, const std::string& owner) const;
   void check_joint(const Element& joint) const;
+  void require_leaders() const;
+  [[nodiscard]] const Element* mimic_of(const Element& joint) const;
+  [[nodiscard]] const Element& leader_of(const Element& joint) const;
   void require_modest(const Element& element, Counts& counts) const;
   [[nodiscard]] const Element* shape_of(const Element& collision, const std::string& owner) const;
 

@@ -2,9 +2,13 @@
 /// Shows the content of a robot description: joints, links, convex parts and tips.
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -21,8 +25,29 @@ using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::string urdf, srdf, json;
+  std::vector<std::string> hold;
   UrdfOptions options;
 };
+
+/// A joint to hold from "joint" or "joint=value"; none from other text.
+std::optional<Hold> hold_of(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) return Hold(text);
+  const std::string name = text.substr(0, equals);
+  const char* const end = text.data() + text.size();
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(text.data() + equals + 1, end, value);
+  std::string unit(rest, end);
+  std::erase(unit, ' ');
+  constexpr double degree = std::numbers::pi / 180.0;
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
+  if (unit.empty()) return Hold(name, value);
+  if (unit == "rad") return Hold(name, value, JointType::revolute);
+  if (unit == "deg") return Hold(name, value * degree, JointType::revolute);
+  if (unit == "m") return Hold(name, value, JointType::prismatic);
+  if (unit == "mm") return Hold(name, value / 1000.0, JointType::prismatic);
+  return std::nullopt;
+}
 
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("urdf", a.urdf, "Robot description, plain URDF")->required()->type_name("FILE");
@@ -32,11 +57,19 @@ void describe(CLI::App& app, Arguments& a) {
                  "Where package:// leads: a package, or a folder with packages; may be repeated")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--tip", a.options.tip, "Link whose frame is the tool, at a branch")
+  app.add_option("--tip", a.options.tip,
+                 "Link whose frame is the tool; the arm is the joints that lead to it")
       ->type_name("LINK");
-  app.add_option("--hold", a.options.hold, "Joints to hold at zero, fingers for example")
-      ->type_name("JOINT,JOINT")
-      ->delimiter(',');
+  app.add_option("--hold", a.hold,
+                 "Joints to hold, and where: rad, deg, m or mm; without a unit rad or m. Those "
+                 "beside the arm are held without being named here")
+      ->type_name("JOINT[=VALUE],JOINT")
+      ->delimiter(',')
+      ->check([](const std::string& text) {
+        return hold_of(text) ? std::string()
+                             : "'" + text + "'; allowed: JOINT, or JOINT=VALUE with a number and " +
+                                   "rad, deg, m, mm or no unit";
+      });
   app.add_option("--json", a.json, "Write what is shown, and more, as JSON to FILE")
       ->type_name("FILE");
   app.footer(std::string("Collision meshes become their convex hulls") +
@@ -86,6 +119,22 @@ std::vector<Tip> tips_at_zero(const Robot& robot) {
   return tips;
 }
 
+bool slides(const HeldJoint& joint) {
+  return joint.type == "prismatic";
+}
+
+/// The joints that do not move, and the choices that the file leaves open.
+void print_choices(const Robot& robot) {
+  if (!robot.held.empty()) std::printf("\n%-32s %-10s %10s\n", "held joint", "type", "at");
+  for (const HeldJoint& joint : robot.held) {
+    const double unit = slides(joint) ? 1000.0 : 180.0 / std::numbers::pi;
+    std::printf("%-32s %-10s %10.4g %-3s  %s\n", joint.name.c_str(), joint.type.c_str(),
+                unit * joint.position, slides(joint) ? "mm" : "deg", joint.reason.c_str());
+  }
+  std::printf("\nchain to %s: %s\n", robot.end.c_str(), robot.end_reason.c_str());
+  std::printf("tool %s: %s\n", robot.tool.c_str(), robot.tool_reason.c_str());
+}
+
 void print(const Robot& robot, const std::vector<Tip>& tips) {
   std::printf("%s: %zu degrees of freedom, %zu links, %zu collision parts\n\n",
               robot.arm.name.c_str(), robot.arm.links.size(), robot.links.size(),
@@ -99,6 +148,7 @@ void print(const Robot& robot, const std::vector<Tip>& tips) {
                 type_of(joint), unit * joint.lower, unit * joint.upper, unit * joint.velocity_limit,
                 joint.effort_limit, slides ? "mm, mm/s, N" : "deg, deg/s, N m");
   }
+  print_choices(robot);
   std::printf("\n%-32s %10s  %s\n", "link", "mass [kg]", "collision parts (corners)");
   for (const RobotLink& link : robot.links) {
     std::printf("%-32s %10.4g ", link.name.c_str(), link.mass);
@@ -130,7 +180,9 @@ Json numbers(const Matrix& m) {
 Json report_of(const Robot& robot, const std::vector<Tip>& tips,
                const std::vector<DisabledCollision>& disabled) {
   Json report{{"name", robot.arm.name}, {"dof", robot.arm.links.size()}};
-  for (const char* list : {"joints", "links", "tips", "disabled_collisions"}) {
+  report["chain"] = {{"end", robot.end}, {"reason", robot.end_reason}};
+  report["tool"] = {{"link", robot.tool}, {"reason", robot.tool_reason}};
+  for (const char* list : {"joints", "held_joints", "links", "tips", "disabled_collisions"}) {
     report[list] = Json::array();
   }
   for (const ArmLink& joint : robot.arm.links) {
@@ -141,6 +193,13 @@ Json report_of(const Robot& robot, const std::vector<Tip>& tips,
                                 {"velocity", joint.velocity_limit},
                                 {"effort", joint.effort_limit},
                                 {"link", joint.name}});
+  }
+  for (const HeldJoint& joint : robot.held) {
+    report["held_joints"].push_back({{"name", joint.name},
+                                     {"type", joint.type},
+                                     {"position", joint.position},
+                                     {"unit", slides(joint) ? "m" : "rad"},
+                                     {"reason", joint.reason}});
   }
   for (const RobotLink& link : robot.links) {
     Json parts = Json::array();
@@ -165,7 +224,9 @@ Json report_of(const Robot& robot, const std::vector<Tip>& tips,
 
 int run(const Arguments& arguments) {
   host::Output json(arguments.json);
-  const Robot robot = load_arm(arguments.urdf, arguments.options);
+  UrdfOptions options = arguments.options;
+  for (const std::string& text : arguments.hold) options.hold.push_back(hold_of(text).value());
+  const Robot robot = load_arm(arguments.urdf, options);
   const std::vector<DisabledCollision> disabled =
       arguments.srdf.empty() ? std::vector<DisabledCollision>{}
                              : load_disabled_collisions(arguments.srdf, robot);

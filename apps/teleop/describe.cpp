@@ -29,6 +29,11 @@ void make_ideal(ArmModel& model) {
 Robot load_robot(const scene::RobotChoice& choice, bool with_gravity) {
   UrdfOptions options;
   options.tip = choice.tip_link;
+  options.package_paths = choice.packages;
+  for (const scene::JointHold& hold : choice.hold) {
+    options.hold.push_back(hold.position ? Hold(hold.joint, *hold.position, hold.type)
+                                         : Hold(hold.joint));
+  }
   Robot robot = load_arm(choice.urdf, options);
   ArmModel& model = robot.arm;
   model.X_WB = choice.X_WB * model.X_WB;

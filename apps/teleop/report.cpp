@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <ostream>
 #include <utility>
 
@@ -105,6 +106,34 @@ ordered_json stop_ticks(const RunTotals& totals) {
   return ticks;
 }
 
+/// The joints of an arm's robot that are held, and where.
+ordered_json held_list(const ArmResult& arm) {
+  ordered_json list = ordered_json::array();
+  for (const HeldJoint& joint : arm.held) {
+    list.push_back({{"name", joint.name},
+                    {"type", joint.type},
+                    {"position", joint.position},
+                    {"unit", joint.type == "prismatic" ? "m" : "rad"},
+                    {"reason", joint.reason}});
+  }
+  return list;
+}
+
+void print_held(const RunResult& r, std::FILE* out) {
+  for (const ArmResult& arm : r.arms) {
+    std::string text;
+    for (const HeldJoint& joint : arm.held) {
+      const bool slides = joint.type == "prismatic";
+      text += (text.empty() ? "" : ", ") + joint.name + " at ";
+      text += figure((slides ? 1e3 : 180.0 / std::numbers::pi) * joint.position, 2);
+      text += slides ? " mm" : " deg";
+    }
+    if (text.empty()) continue;
+    if (!arm.name.empty()) text += " (of " + arm.name + ")";
+    print_line("held joints", text, out);
+  }
+}
+
 /// Results of the partners; those of the arm of the scene itself are top-level keys of the report.
 ordered_json partner_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -115,6 +144,7 @@ ordered_json partner_list(const RunResult& r) {
                             {"status_ticks", host::status_ticks(arm.totals)},
                             {"stop", stop_ticks(arm.totals)},
                             {"physical_contact", contact_to_json(r, arm)},
+                            {"held_joints", held_list(arm)},
                             {"modules", modules_to_json(arm.modules)}};
     add_payload(r.scene.arm_setup(i).robot, partner);
     list.push_back(std::move(partner));
@@ -280,6 +310,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   print_line("peak virtual force", figure(t.peak_force, 2) + " N", out);
   print_obstacles(r, out);
+  print_held(r, out);
   print_contact(r, out);
   print_network(r, out);
   print_counts(r, out);
@@ -345,6 +376,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["device_damping_n_s_per_m"] = r.device_damping;
   report["stop"] = stop_ticks(r.totals());
   report["brake_ticks"] = r.totals().brake_ticks;
+  report["held_joints"] = held_list(r.arms.front());
   report["modules"] = modules_to_json(r.arms.front().modules);
   report["partners"] = partner_list(r);
   report["nearest_pair"] = r.nearest_pair;

@@ -10,6 +10,7 @@
 #include <repel/loop/record.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/network/network.hpp>
+#include <repel/robots/robot.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>
@@ -44,6 +45,7 @@ struct ModuleResult {
 struct ArmResult {
   std::string name;  ///< of the partner; empty for the arm of the scene itself
   std::vector<JointType> joints;
+  std::vector<HeldJoint> held;        ///< joints of its robot that do not move
   RunTotals totals;                   ///< of this arm; those on pairs are of the whole world
   std::vector<ModuleResult> modules;  ///< of its network, in the same order
   std::vector<TickRecord> records;

@@ -232,15 +232,52 @@ void read_payload(const Value& value, RobotChoice& robot) {
   }
 }
 
+/// The path of an existing folder, relative to the scene's `file`.
+std::string folder_of(const Value& value, const std::string& file) {
+  const auto path = std::filesystem::path(file).parent_path() / value.text();
+  std::error_code unused;
+  if (!std::filesystem::is_directory(path, unused)) {
+    value.fail_with_value("a folder; there is none at " + path.lexically_normal().string());
+  }
+  return path.lexically_normal().string();
+}
+
+std::vector<std::string> packages_of(const Value& value, const std::string& file) {
+  std::vector<std::string> folders;
+  if (!value.is_list()) return {folder_of(value, file)};
+  for (const Value& entry : value.list()) folders.push_back(folder_of(entry, file));
+  return folders;
+}
+
+/// A list of joints, or a map from joints to angles and lengths.
+std::vector<JointHold> holds_of(const Value& value) {
+  std::vector<JointHold> holds;
+  if (value.is_list()) {
+    for (const Value& entry : value.list()) holds.push_back({entry.text()});
+    return holds;
+  }
+  const Map map(value);
+  for (const auto& [joint, at] : map.entries()) {
+    if (quantity(at.text(), unit::length)) {
+      holds.push_back({joint, at.number(position), JointType::prismatic});
+    } else {
+      holds.push_back({joint, at.number(angles), JointType::revolute});
+    }
+  }
+  return holds;
+}
+
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
-  map.allow(
-      {"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf", "payload"});
+  map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
+             "payload", "hold", "packages"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
   if (map.find("self_law")) robot.self_law = law_called(laws, map, "self_law");
   map.read("tip_link", robot.tip_link);
+  if (const Value* hold = map.find("hold")) robot.hold = holds_of(*hold);
+  if (const Value* packages = map.find("packages")) robot.packages = packages_of(*packages, file);
   read_start(map.at("start"), robot);
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");

@@ -52,6 +52,58 @@ TEST(RobotInfo, AFileThatCannotBeTakenWholeEndsWithOneAndTheReason) {
   EXPECT_TRUE(ending.says("<cone>")) << ending;
 }
 
+/// An arm with one joint and a hand with two fingers, the second of which mimics the first.
+std::string arm_with_hand() {
+  const auto slide = [](const std::string& name, const std::string& child,
+                        const std::string& mimic) {
+    return "<link name='" + child + "'/><joint name='" + name +
+           "' type='prismatic'><parent link='hand'/><child link='" + child +
+           "'/><axis xyz='1 0 0'/><limit lower='0.01' upper='0.04' velocity='1' effort='1'/>" +
+           mimic + "</joint>";
+  };
+  return "<robot><link name='base'/><link name='arm'/><link name='hand'/>"
+         "<joint name='shoulder' type='continuous'><parent link='base'/><child link='arm'/></joint>"
+         "<joint name='flange' type='fixed'><parent link='arm'/><child link='hand'/></joint>" +
+         slide("finger_1", "left", "") + slide("finger_2", "right", "<mimic joint='finger_1'/>") +
+         "</robot>";
+}
+
+TEST(RobotInfo, SaysWhatIsHeldWhereAndWhy) {
+  const Folder folder;
+  const std::string file = quoted(folder.with("pincher.urdf", arm_with_hand()));
+  const Ending ending = robot_info(file + " --json " + quoted(folder / "i"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("pincher: 1 degrees of freedom")) << ending;
+  EXPECT_TRUE(ending.says("mimics finger_1")) << ending;
+  EXPECT_TRUE(ending.says("chain to arm: the longest chain")) << ending;
+  EXPECT_TRUE(ending.says("tool hand: ")) << ending;
+  const json info = json::parse(text_of(folder / "i"));
+  EXPECT_EQ(info.at("chain").at("end"), "arm");
+  EXPECT_EQ(info.at("tool").at("link"), "hand");
+  ASSERT_EQ(info.at("held_joints").size(), 2U);
+  EXPECT_EQ(info.at("held_joints")[0].at("name"), "finger_1");
+  EXPECT_EQ(info.at("held_joints")[0].at("position"), 0.01) << "its limit nearest to zero";
+  EXPECT_EQ(info.at("held_joints")[1].at("unit"), "m");
+}
+
+TEST(RobotInfo, HoldsJointsWhereItIsTold) {
+  const Folder folder;
+  const std::string file = quoted(folder.with("r.urdf", arm_with_hand()));
+  for (const char* value : {"finger_1=20mm", "'finger_1=20 mm,finger_2'", "finger_1=0.02"}) {
+    const Ending ending = robot_info(file + " --hold " + value + " --json " + quoted(folder / "i"));
+    ASSERT_EQ(ending.status, 0) << ending;
+    for (const json& joint : json::parse(text_of(folder / "i")).at("held_joints")) {
+      EXPECT_EQ(joint.at("position"), 0.02) << value << joint;
+    }
+  }
+  const Ending turned = robot_info(file + " --hold finger_1=1deg");
+  EXPECT_EQ(turned.status, 1);
+  EXPECT_TRUE(turned.says("a length, since it slides")) << turned;
+  EXPECT_EQ(robot_info(file + " --hold finger_1=0.05").status, 1);
+  EXPECT_EQ(robot_info(file + " --hold finger_1=2kg").status, 2);
+  EXPECT_EQ(robot_info(file + " --hold finger_1=").status, 2);
+}
+
 TEST(RobotInfo, UsageErrorsEndWithTwo) {
   EXPECT_EQ(robot_info("").status, 2);
   EXPECT_EQ(robot_info("a.urdf --frobnicate").status, 2);

@@ -57,6 +57,36 @@ TEST(WholeArm, WithoutTheModuleTheToolAloneFeelsTheWallsAndTheReportSaysSo) {
   EXPECT_TRUE(ending.says("links of the arm")) << ending;
 }
 
+/// The robot of the repository, with a gripper on its flange.
+std::string robot_with_gripper() {
+  std::string urdf = text_of(REPEL_SOURCE "/robots/puma560.urdf");
+  const std::string more =
+      "<link name='stator'/><link name='mover'><inertial><mass value='0.1'/><inertia ixx='1e-4' "
+      "ixy='0' ixz='0' iyy='1e-4' iyz='0' izz='1e-4'/></inertial></link>"
+      "<joint name='mount' type='fixed'><parent link='flange'/><child link='stator'/></joint>"
+      "<joint name='gripper' type='revolute'><parent link='stator'/><child link='mover'/>"
+      "<axis xyz='1 0 0'/><limit lower='-2' upper='0' velocity='1' effort='1'/></joint>";
+  return urdf.replace(urdf.rfind("</robot>"), 0, more);
+}
+
+TEST(WholeArm, HoldsTheGripperWhereTheSceneSaysAndNamesItInTheReport) {
+  const Folder folder;
+  (void)folder.with("gripper.urdf", robot_with_gripper());
+  const std::string scene =
+      folder.with("gripper.yaml", robot_text("gripper.urdf", "  hold: {gripper: -90 deg}\n") +
+                                      table_text() + push_text());
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 2 --report " + quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json held = report_of(folder / "r.json").at("held_joints");
+  ASSERT_EQ(held.size(), 1U) << held;
+  EXPECT_EQ(held[0].at("name"), "gripper");
+  EXPECT_EQ(held[0].at("unit"), "rad");
+  EXPECT_NEAR(held[0].at("position").get<double>(), -1.5707963, 1e-6);
+  EXPECT_TRUE(ending.says("gripper at -90.00 deg")) << ending;
+  EXPECT_GT(report_of(folder / "r.json").at("peak_force_n"), 10.0);
+}
+
 TEST(WholeArm, OfTheDefaultSceneIsLeftOutOnRequest) {
   const Folder folder;
   for (const auto& [option, pairs] : {std::pair{"", 120}, {"--tool-alone ", 32}}) {

@@ -98,6 +98,37 @@ TEST(SceneValue, APayloadHasAMassAPlaceAndIsKnownUnlessItSaysOtherwise) {
   EXPECT_TRUE(robot("  payload: {mass: 0 kg, known: yes}\n").payload_known);
 }
 
+TEST(SceneValue, JointsToHoldAreAListOrAMapToAnglesAndLengths) {
+  const auto holds = [](const std::string& text) {
+    return parsed(changed("tool:", "  hold: " + text + "\ntool:")).robot.hold;
+  };
+  EXPECT_TRUE(parsed(base_scene).robot.hold.empty());
+  const auto named = holds("[a, b]");
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_EQ(named[1].joint, "b");
+  EXPECT_FALSE(named[1].position.has_value());
+  const auto placed = holds("{finger: 20 mm, wrist: -90 deg}");
+  ASSERT_EQ(placed.size(), 2U);
+  EXPECT_EQ(placed[0].joint, "finger");
+  EXPECT_EQ(placed[0].position, 0.02);
+  EXPECT_EQ(placed[0].type, JointType::prismatic);
+  EXPECT_DOUBLE_EQ(placed[1].position.value(), -pi / 2);
+  EXPECT_EQ(placed[1].type, JointType::revolute);
+  for (const char* wrong : {"finger", "{finger: 20}", "{finger: 20 kg}", "{finger: 1 2 mm}"}) {
+    EXPECT_THROW((void)holds(wrong), SetupError) << wrong;
+  }
+}
+
+TEST(SceneValue, PackagesAreFoldersRelativeToTheScene) {
+  const auto packages = [](const std::string& text) {
+    return parsed(changed("tool:", "  packages: " + text + "\ntool:")).robot.packages;
+  };
+  EXPECT_EQ(packages("../robots"), std::vector<std::string>{"robots"});
+  EXPECT_EQ(packages("[../robots, ../docs]"), (std::vector<std::string>{"robots", "docs"}));
+  EXPECT_THROW((void)packages("../no_such_folder"), SetupError);
+  EXPECT_THROW((void)packages("../robots/puma560.urdf"), SetupError);
+}
+
 TEST(SceneValue, AnObstacleMayMove) {
   EXPECT_FALSE(parsed(base_scene).obstacles[0].motion.has_value());
   const Scene scene =

@@ -7,57 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include <repel/base/types.hpp>
 #include <repel/robots/built_alike.hpp>
-#include <repel/world/arm.hpp>
+#include <repel/robots/robot.hpp>
 
 namespace repel {
 
-enum class PartKind { box, sphere, capsule, cylinder, hull };
-
-/// One convex part of a link.
-struct RobotPart {
-  std::string name;     ///< of the collision element; if it has none, made from link and index
-  std::string in_link;  ///< its link in the file
-  int link = -1;        ///< index in ArmModel::links; -1 for the base
-  PartKind kind = PartKind::box;
-  /// [m] box: half extents; sphere: radius, 0, 0; capsule and cylinder, along z: radius, half
-  /// length (of a capsule without its caps), 0; hull: unused.
-  Vec3 size = Vec3::Zero();
-  /// [m] hull only, in the frame of the part: the vertices of the convex hull of the mesh.
-  std::vector<Vec3> points;
-  Pose X_LP = Pose::Identity();  ///< [m] pose of the part in its link
-};
-
-/// One link of the file. A link behind a fixed or held joint moves with a link of the arm.
-struct RobotLink {
-  std::string name;
-  double mass = 0.0;  ///< [kg] of this link alone; 0 if the file gives none
-  int link = -1;      ///< index in ArmModel::links of the link it moves with; -1: the base
-  Pose X_LN = Pose::Identity();  ///< [m] pose of its frame in that link
-};
-
-/// The content of a robot description.
-struct Robot {
-  ArmModel arm;
-  std::vector<RobotLink> links;   ///< every link of the file, parents first
-  std::vector<std::string> tips;  ///< moving links without children, in the same order
-  std::vector<RobotPart> parts;   ///< one for each collision element
-};
-
-/// Choices that the file does not make.
-struct UrdfOptions {
-  /// Link whose frame is the tool frame. Empty: the only tip on the last moving link, or, if it has
-  /// several, that link itself.
-  std::string tip{};
-  std::vector<std::string> hold{};  ///< movable joints to hold at zero, such as fingers
-  /// Folders in which package://NAME/ is searched. Each is the package itself, under any name, or
-  /// contains it up to four levels down. The folders above the file are always searched.
-  std::vector<std::string> package_paths{};
-};
-
-/// Reads the URDF file at `path`. Fixed and held joints are merged into their parents, with mass
-/// and inertia; a collision mesh becomes its convex hull.
+/// Reads the URDF file at `path`. Joints beside the chain are held. What fixed and held joints
+/// carry is merged into their parents, with mass and inertia; a collision mesh becomes its convex
+/// hull. A robot without a name has that of its file.
 /// @throws SetupError naming file, line, link or joint, value and what is allowed, if the file
 ///   cannot be read as a serial arm or anything in it would be lost
 [[nodiscard]] Robot load_arm(const std::string& path, const UrdfOptions& options = {});

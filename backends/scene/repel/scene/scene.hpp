@@ -47,10 +47,19 @@ struct Obstacle {
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
 };
 
+/// A joint that does not move.
+struct JointHold {
+  std::string joint;
+  std::optional<double> position{};      ///< [rad] or [m]; none: left to the robot file
+  JointType type = JointType::revolute;  ///< which of the two units the position has
+};
+
 /// The robot file, its placement and its initial position.
 struct RobotChoice {
   std::string urdf;                    ///< path; in the scene file relative to that file
-  std::string tip_link;                ///< empty: the end of the chain
+  std::string tip_link;                ///< empty: the end of the longest chain
+  std::vector<JointHold> hold;         ///< joints to hold; those beside the chain are held anyway
+  std::vector<std::string> packages;   ///< folders where package:// leads; paths as that of urdf
   std::vector<double> start;           ///< [rad] or [m] one for each moving joint, base outward
   std::vector<JointType> start_types;  ///< which of the two units the file gives
   Pose X_WB = Pose::Identity();        ///< [m] pose of the base in the world

@@ -1,0 +1,87 @@
+/// @file
+/// A robot description as plain numbers and convex parts.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <repel/base/types.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+enum class PartKind { box, sphere, capsule, cylinder, hull };
+
+/// One convex part of a link.
+struct RobotPart {
+  std::string name;     ///< of the collision element; if it has none, made from link and index
+  std::string in_link;  ///< its link in the file
+  int link = -1;        ///< index in ArmModel::links; -1 for the base
+  PartKind kind = PartKind::box;
+  /// [m] box: half extents; sphere: radius, 0, 0; capsule and cylinder, along z: radius, half
+  /// length (of a capsule without its caps), 0; hull: unused.
+  Vec3 size = Vec3::Zero();
+  /// [m] hull only, in the frame of the part: the vertices of the convex hull of the mesh.
+  std::vector<Vec3> points;
+  Pose X_LP = Pose::Identity();  ///< [m] pose of the part in its link
+};
+
+/// One link of the file. A link behind a fixed or held joint moves with a link of the arm.
+struct RobotLink {
+  std::string name;
+  double mass = 0.0;  ///< [kg] of this link alone; 0 if the file gives none
+  int link = -1;      ///< index in ArmModel::links of the link it moves with; -1: the base
+  Pose X_LN = Pose::Identity();  ///< [m] pose of its frame in that link
+};
+
+/// A joint that could move and is held, because it is beside the arm or was chosen to be held.
+struct HeldJoint {
+  std::string name;
+  std::string type;       ///< revolute, continuous, prismatic, planar or floating
+  double position = 0.0;  ///< where: [rad], or [m] if prismatic
+  std::string reason;     ///< why it is held, and why there
+};
+
+/// The content of a robot description.
+struct Robot {
+  ArmModel arm;
+  std::vector<RobotLink> links;   ///< every link of the file, parents first
+  std::vector<std::string> tips;  ///< moving links without children, in the same order
+  std::vector<RobotPart> parts;   ///< one for each collision element
+  std::vector<HeldJoint> held;    ///< parents first
+  std::string end;                ///< the last link of the chosen chain
+  std::string end_reason;         ///< why that chain
+  std::string tool;               ///< the link whose frame is the tool frame
+  std::string tool_reason;        ///< why that link
+};
+
+/// A joint to hold still.
+struct Hold {
+  Hold(const char* name) : joint(name) {}
+  Hold(std::string name) : joint(std::move(name)) {}
+  Hold(std::string name, double at) : joint(std::move(name)), position(at) {}
+  Hold(std::string name, double at, JointType kind)
+      : joint(std::move(name)), position(at), type(kind) {}
+
+  std::string joint;
+  /// [rad] or [m] where. Without: where the joint that it mimics puts it, if that one does not move
+  /// either, else at zero, or at its limit nearest to zero.
+  std::optional<double> position;
+  std::optional<JointType> type;  ///< which of the two units it is; without, that of the joint
+};
+
+/// Choices that the file does not make.
+struct UrdfOptions {
+  /// Link whose frame is the tool frame; the joints between the root and this link are those of the
+  /// arm. Empty: the longest chain without its gripper, by the rules of docs/robots.md.
+  std::string tip{};
+  /// Joints that are not to move. Those beside the chain are held without being named here.
+  std::vector<Hold> hold{};
+  /// Folders in which package://NAME/ is searched. Each is the package itself, under any name, or
+  /// contains it up to four levels down. The folders above the file are always searched.
+  std::vector<std::string> package_paths{};
+};
+
+}  // namespace repel
