@@ -82,6 +82,9 @@ class ArmBodies {
   void gather(const PairForces& forces, BodyId tool, const Jacobian& of_tool,
               network::Vec<network::any_size>& torques) const noexcept {
     torques.setZero(drawn_.cols());
+    for (Eigen::Index joint = 0; forces.has_own && joint < torques.size(); ++joint) {
+      torques.coeffRef(joint) += power(forces.from_own[tool.index], column_of(of_tool, joint));
+    }
     for (std::size_t i = 0; i < links_.size(); ++i) {
       Wrench F = forces.on_body[links_[i].body.index];
       if (forces.has_own) F += forces.from_own[links_[i].body.index];
@@ -89,14 +92,9 @@ class ArmBodies {
         torques.coeffRef(joint) += power(F, column_of(jacobians_[i], joint));
       }
     }
-    if (!forces.has_own) return;
-    for (Eigen::Index joint = 0; joint < torques.size(); ++joint) {
-      torques.coeffRef(joint) += power(forces.from_own[tool.index], column_of(of_tool, joint));
-    }
   }
 
-  /// Power that the bodies which push the links deliver by their own motion [W]; those of the same
-  /// arm deliver none.
+  /// Power that the bodies which push the links deliver by their own motion [W].
   [[nodiscard]] double carried(const PairForces& forces) const noexcept {
     double sum = 0.0;
     for (const LinkBody& link : links_) sum += forces.carried[link.body.index];
