@@ -97,7 +97,8 @@ TEST(Results, SayThatThereIsNothingOfAKind) {
 
 /// What reports say of a module after these energies [J] into it.
 nlohmann::json report_of(bool claims_passive, std::initializer_list<double> energies) {
-  ModuleResult module{.name = "arm_obstacle", .claims_passive = claims_passive};
+  ModuleResult module;
+  module.claims_passive = claims_passive;
   for (const double energy : energies) module.ledger.add(energy, std::abs(energy), 0.0);
   return modules_to_json({module}).at(0);
 }
