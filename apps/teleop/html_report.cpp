@@ -63,14 +63,14 @@ std::string charts_of_the_world(const RunResult& r) {
   return to_html(distance) + to_html(pairs);
 }
 
-/// The passive modules with the largest ledger magnitudes, as many as there are colours, in the
-/// order of the network.
+/// The modules that claim to be passive with the largest ledger magnitudes, as many as there are
+/// colours, in the order of the network.
 std::vector<std::size_t> fullest(const ArmResult& arm) {
   constexpr std::size_t colours = 6;
   std::vector<std::size_t> modules;
   std::vector<float> most(arm.modules.size(), 0.0F);
   for (std::size_t m = 0; m < arm.modules.size(); ++m) {
-    if (!arm.modules[m].passive) continue;
+    if (!arm.modules[m].claims_passive) continue;
     modules.push_back(m);
     for (const TickRecord& k : arm.records) most[m] = std::max(most[m], std::abs(k.energy[m]));
   }
@@ -175,12 +175,13 @@ std::string obstacle_table(const RunResult& r) {
 }
 
 std::string module_table(const ArmResult& arm) {
-  std::vector<std::vector<std::string>> rows{
-      {"module", "energy [J]", "lowest [J]", "passed [J]", "supplied [J]", "controller took [J]"}};
+  std::vector<std::vector<std::string>> rows{{"module", "energy [J]", "lowest [J]", "passed [J]",
+                                              "supplied [J]", "controller took [J]", "passive"}};
   for (const ModuleResult& m : arm.modules) {
     rows.push_back({m.name, number(m.ledger.energy), number(m.ledger.least),
                     number(m.ledger.passed), number(m.ledger.supplied),
-                    number(m.passivity.dissipated)});
+                    number(m.passivity.dissipated),
+                    m.passive() ? "yes" : (m.claims_passive ? "NO" : "not claimed")});
   }
   return table(rows, 1);
 }

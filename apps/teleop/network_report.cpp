@@ -8,9 +8,11 @@ namespace {
 using host::figure;
 using nlohmann::ordered_json;
 
-/// Remark on a module whose ledger may fall below zero; empty for one that claims to be passive.
-const char* outside_of_claim(const ModuleResult& m) {
-  return m.passive ? "" : "   (the robot: takes and gives)";
+/// Remark on a module that is not passive: it does not claim to be, or its ledger shows otherwise.
+const char* remark_on(const ModuleResult& m) {
+  if (m.passive()) return "";
+  return m.claims_passive ? "   NOT PASSIVE: returned more than it took"
+                          : "   (claims nothing: takes and gives)";
 }
 
 void print_modules(const ArmResult& arm, std::FILE* out) {
@@ -30,7 +32,7 @@ void print_modules(const ArmResult& arm, std::FILE* out) {
     }
     if (m.passivity.owed > 0.0) std::fprintf(out, "   owed %.3g", m.passivity.owed);
     if (m.sampling_energy != 0.0) std::fprintf(out, "   by sampling %+.4g", m.sampling_energy);
-    std::fprintf(out, "%s\n", outside_of_claim(m));
+    std::fprintf(out, "%s\n", remark_on(m));
   }
 }
 
@@ -45,7 +47,8 @@ ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
   ordered_json list = ordered_json::array();
   for (const ModuleResult& m : modules) {
     list.push_back({{"name", m.name},
-                    {"passive", m.passive},
+                    {"passive", m.passive()},
+                    {"claims_passive", m.claims_passive},
                     {"energy_j", m.ledger.energy},
                     {"least_j", m.ledger.least},
                     {"passed_j", m.ledger.passed},

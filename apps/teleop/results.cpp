@@ -48,7 +48,7 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
   for (const network::Node& node : network.nodes()) {
     ModuleResult result;
     result.name = node.name;
-    result.passive = node.traits.passive && !node.traits.measures_flow;
+    result.claims_passive = node.traits.passive && !node.traits.measures_flow;
     result.ledger = node.ledger;
     result.passivity = node.module->passivity().value_or(network::PassivityReport{});
     if (const auto* joints = node.module.as<network::PumaJoints>()) {

@@ -35,10 +35,13 @@ struct ObstacleResult {
 /// The results of one module of the network.
 struct ModuleResult {
   std::string name;
-  bool passive = true;  ///< claimed to be passive: its ledger never falls below zero
+  bool claims_passive = true;  ///< by its traits: its ledger never falls below zero
   network::Ledger ledger;
   network::PassivityReport passivity;  ///< of the controller inside
   double sampling_energy = 0.0;  ///< [J] that holding the torques gave the arm; of puma_joints
+
+  /// It claims to be passive and was: what its ledger fell below zero is rounding.
+  [[nodiscard]] bool passive() const { return claims_passive && ledger.deficit() <= 1e-9; }
 };
 
 /// The results of one arm.

@@ -12,11 +12,12 @@ const json& module_of(const json& report, const std::string& name) {
   throw std::runtime_error("no module " + name);
 }
 
-/// The lowest ledger of a passive module, relative to the energy that passed through it.
+/// The lowest ledger of a module that claims to be passive, relative to the energy that passed
+/// through it.
 double worst_deficit(const json& report) {
   double worst = 0.0;
   for (const json& module : report.at("modules")) {
-    if (module.at("passive").get<bool>()) {
+    if (module.at("claims_passive").get<bool>()) {
       worst = std::max(worst, module.at("deficit").get<double>());
     }
   }

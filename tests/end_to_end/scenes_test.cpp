@@ -49,7 +49,7 @@ void expect_like_arm(const json& arm, const json& reference) {
   EXPECT_EQ(names_in(arm.at("status_ticks")), names_in(reference.at("status_ticks")));
   EXPECT_EQ(names_in(arm.at("modules")), names_in(reference.at("modules")));
   for (const json& module : arm.at("modules")) {
-    if (!module.at("passive").get<bool>()) continue;
+    if (!module.at("claims_passive").get<bool>()) continue;
     EXPECT_LE(module.at("deficit"), 1e-9) << module;
   }
 }

@@ -42,7 +42,7 @@ void expect_bounded(const Way& way) {
   EXPECT_LT(report.at("deepest_m"), 0.001);
   EXPECT_GT(report.at("obstacles").at(0).at("peak_force_n"), 5.0) << "a wall must push";
   for (const json& module : report.at("modules")) {
-    if (!module.at("passive").get<bool>()) continue;
+    if (!module.at("claims_passive").get<bool>()) continue;
     EXPECT_LE(module.at("deficit"), 1e-9) << module;
   }
   const Columns log = columns_of(folder / "log.csv");

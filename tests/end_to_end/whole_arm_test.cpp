@@ -32,7 +32,7 @@ TEST(WholeArm, StopsWhereItsForearmMeetsAPostAndTheOperatorFeelsIt) {
   EXPECT_GT(post.at("nearest_m"), -0.01);
   EXPECT_TRUE(ending.says("(link_3)")) << ending;
   for (const json& module : report.at("modules")) {
-    if (!module.at("passive").get<bool>()) continue;
+    if (!module.at("claims_passive").get<bool>()) continue;
     EXPECT_LE(module.at("deficit"), 1e-9) << module;
   }
   const Columns log = columns_of(folder / "log.csv");
@@ -223,7 +223,7 @@ TEST(WholeArm, TwoArmsInOneCellKeepOffEachOther) {
   ASSERT_EQ(report.at("partners").size(), 1U);
   for (const json& modules : {report.at("modules"), report.at("partners")[0].at("modules")}) {
     for (const json& module : modules) {
-      if (!module.at("passive").get<bool>()) continue;
+      if (!module.at("claims_passive").get<bool>()) continue;
       EXPECT_LE(module.at("deficit"), 1e-9) << module;
     }
   }
@@ -251,6 +251,45 @@ TEST(WholeArm, PartsOfOneArmAreKeptApartWhereTheSceneSaysSo) {
   }
   EXPECT_GT(peak, 20.0) << "the wrist must have been folded towards the forearm";
   EXPECT_EQ(report_with("").at("pairs"), 0);
+}
+
+// The cube turns the wrist towards the forearm while a post holds the forearm. Regression: a link
+// that moved towards another supplied it as a moving obstacle does, and ARM_OBSTACLE ended with
+// 0.3 J less than nothing, OBSTACLE with less than nothing on account of the cube and the wrist.
+TEST(WholeArm, PairsOfItsOwnLinksReturnNoMoreThanTheyTook) {
+  const Folder folder;
+  const std::string text =
+      "robot:\n  urdf: " REPEL_SOURCE
+      "/robots/puma560.urdf\n"
+      "  start: 0 45 -180 0 -45 0 deg\n  self_law: default\n"
+      "tool: [{name: cube, shape: box, size: 60 60 60 mm}]\n"
+      "laws:\n  default: {range: 30 mm, surface_force: 400 N, damping: 150 N s/m}\n"
+      "obstacles:\n"
+      "  - {name: post, shape: box, size: 40 40 1000 mm, position: 0.40 0.05 0.95 m}\n"
+      "network: [{module: torque_arm}, {module: multiplex}, {module: spaceball}, {module: kbb2}, "
+      "{module: obstacle, gain_check: warning}, {module: puma_kin}, {module: arm_obstacle}, "
+      "{module: limits}, {module: puma_joints}]\n"
+      "script:\n"
+      "  - {name: out, device: torque_arm, duration: 4 s, direction: 0 1 0, lever: 60 deg/s}\n"
+      "  - {name: back, device: torque_arm, duration: 3 s, direction: 0 1 0, lever: -60 deg/s}\n";
+  const Ending ending = teleop(quoted(folder.with("cube.yaml", text)) +
+                               " --fast --seconds 8 --report " + quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_FALSE(ending.says("NOT PASSIVE")) << ending;
+  const json report = report_of(folder / "r.json");
+  EXPECT_GT(report.at("nearest_m"), 0.0);
+  double own = 0.0;
+  for (const json& part : report.at("obstacles")) {
+    if (part.at("name") == "post") continue;
+    own = std::max(own, part.at("peak_force_n").get<double>());
+  }
+  EXPECT_GT(own, 50.0) << "links must have pushed each other";
+  for (const json& module : report.at("modules")) {
+    EXPECT_EQ(module.at("passive"), module.at("claims_passive")) << module;
+    const bool walls = module.at("name") == "obstacle" || module.at("name") == "arm_obstacle";
+    if (!walls) continue;
+    EXPECT_EQ(module.at("supplied_j"), 0.0) << module;
+  }
 }
 
 }  // namespace whole_arm_test

@@ -58,7 +58,9 @@ TEST(ArmBodies, TorquesDoTheWorkOfTheForcesOnEveryLink) {
   }
   ArmBodies bodies(links, 3);
   TurningKinematics kinematics;
+  const BodyId tool = world.add_body("tool");
   PairForces forces(world.body_count());
+  Jacobian of_tool = Jacobian::Zero(6, 3);
   network::Vec<network::any_size> torques;
   for (int sample = 0; sample < 1000; ++sample) {
     std::array<double, 3> q{};
@@ -67,6 +69,7 @@ TEST(ArmBodies, TorquesDoTheWorkOfTheForcesOnEveryLink) {
     for (double& x : v) x = families::uniform(rng, -3, 3);
     kinematics.update(q);
     ASSERT_TRUE(bodies.place(world, kinematics, v));
+    forces.has_own = sample % 2 == 1;
     double work = 0.0;
     for (int i = 0; i < 3; ++i) {
       const auto body = static_cast<std::size_t>(links[static_cast<std::size_t>(i)].body.index);
@@ -74,8 +77,16 @@ TEST(ArmBodies, TorquesDoTheWorkOfTheForcesOnEveryLink) {
       ASSERT_TRUE(state.X_WB.isApprox(kinematics.X_WL(i)));
       forces.on_body[body] = drawn_wrench(rng);
       work += power(forces.on_body[body], state.V_WB);
+      forces.from_own[body] = drawn_wrench(rng);
+      if (forces.has_own) work += power(forces.from_own[body], state.V_WB);
     }
-    bodies.gather(forces, torques);
+    kinematics.tool_jacobian(of_tool);
+    // Of the forces on the tool, only those from the links: the network has a module for the rest.
+    const auto at_tool = static_cast<std::size_t>(tool.index);
+    forces.on_body[at_tool] = drawn_wrench(rng);
+    forces.from_own[at_tool] = drawn_wrench(rng);
+    if (forces.has_own) work += power(forces.from_own[at_tool], twist_through(of_tool, v));
+    bodies.gather(forces, tool, of_tool, torques);
     const double at_joints = torques(0) * v[0] + torques(1) * v[1] + torques(2) * v[2];
     ASSERT_NEAR(at_joints, work, 1e-12 * (1.0 + std::abs(work))) << "seed " << seed;
   }

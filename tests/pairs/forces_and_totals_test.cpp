@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <utility>
+#include <vector>
 
 #include "support/families.hpp"
 
@@ -67,6 +68,39 @@ TEST(PairForces, PushesOfBodiesInMotionCarryWhatTheyDoNotSpend) {
     }
     ASSERT_NEAR(spent, -carried, 1e-12) << "seed " << seed;
   }
+}
+
+// Regression: the forearm that moved towards the upper arm counted as an obstacle that supplies the
+// arm, so that the pair spent the energy of each motion twice.
+TEST(PairForces, BodiesOfOneArmSupplyEachOtherNothing) {
+  Motion motion;
+  motion.bodies.resize(5);
+  for (const int body : {1, 2}) motion.bodies[static_cast<std::size_t>(body)].arm = {1};
+  for (const int body : {3, 4}) motion.bodies[static_cast<std::size_t>(body)].arm = {3};
+  for (BodyState& body : motion.bodies) body.V_WB.linear = Vec3(2.0, 0.0, 0.0);
+  const Wrench to_right{Vec3(10.0, 0.0, 0.0), Vec3::Zero()};
+  const Wrench to_left{Vec3(-10.0, 0.0, 0.0), Vec3::Zero()};
+  PairForces own(5);
+  own.push({1}, {2}, to_right, to_left, motion);
+  EXPECT_EQ(own.carried, std::vector<double>(5, 0.0));
+  EXPECT_EQ(own.on_body[1].force, Vec3::Zero());
+  EXPECT_EQ(own.from_own[1].force, to_right.force);
+  EXPECT_EQ(own.from_own[2].force, to_left.force);
+
+  PairForces others(5);
+  others.push({1}, {3}, to_right, to_left, motion);  // a link of another arm is an obstacle
+  others.push({0}, {4}, to_right, to_left, motion);  // two bodies of no arm are not one arm
+  EXPECT_FALSE(others.has_own);
+  EXPECT_EQ(others.carried[1], 20.0);
+  EXPECT_EQ(others.on_body[4].force, to_left.force);
+
+  others.add(own);
+  EXPECT_TRUE(others.has_own);
+  EXPECT_EQ(others.from_own[1].force, to_right.force);
+  EXPECT_EQ(others.on_body[1].force, to_right.force);
+  others.clear();
+  EXPECT_FALSE(others.has_own);
+  EXPECT_EQ(others.from_own[1].force, Vec3::Zero());
 }
 
 TEST(PairForces, ClearLeavesNoForceAndNoCount) {

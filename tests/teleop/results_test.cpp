@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "network_report.hpp"
 #include "report.hpp"
 
 namespace repel::teleop {
@@ -90,6 +93,28 @@ TEST(Results, SayThatThereIsNothingOfAKind) {
   EXPECT_TRUE(report.at("nearest_passable_m").is_null());
   EXPECT_EQ(report.at("deepest_passable_m"), 0.0);
   EXPECT_TRUE(Stage().report().at("nearest_wall_m").is_null());
+}
+
+/// What reports say of a module after these energies [J] into it.
+nlohmann::json report_of(bool claims_passive, std::initializer_list<double> energies) {
+  ModuleResult module;
+  module.claims_passive = claims_passive;
+  for (const double energy : energies) module.ledger.add(energy, std::abs(energy), 0.0);
+  return modules_to_json({module}).at(0);
+}
+
+// Regression: a module was called passive because it claims to be, with 0.1 J missing in its
+// ledger.
+TEST(Results, CallPassiveOnlyWhatReturnedNoMoreThanItTook) {
+  const nlohmann::json kept = report_of(true, {1.0, -1.0 - 1e-12});
+  EXPECT_TRUE(kept.at("passive")) << "rounding";
+  const nlohmann::json broken = report_of(true, {1.0, -1.1, 3.0});
+  EXPECT_FALSE(broken.at("passive")) << "whatever it took later";
+  EXPECT_TRUE(broken.at("claims_passive"));
+  EXPECT_NEAR(broken.at("least_j"), -0.1, 1e-12);
+  const nlohmann::json robot = report_of(false, {1.0});
+  EXPECT_FALSE(robot.at("passive")) << "it may return more at any time";
+  EXPECT_FALSE(robot.at("claims_passive"));
 }
 
 }  // namespace results_test

@@ -39,6 +39,14 @@ struct LinkBody {
   int link = 0;  ///< index in ArmModel::links
 };
 
+/// Makes the tool and the links one arm of the world. @return `links`
+[[nodiscard]] inline std::vector<LinkBody> joined(World& world, BodyId tool,
+                                                  std::vector<LinkBody> links) {
+  world.join(tool, tool);
+  for (const LinkBody& link : links) world.join(link.body, tool);
+  return links;
+}
+
 /// Moves the link bodies with the arm and collects the forces on them. Allocates at construction
 /// only. Cost: one Jacobian for each body.
 class ArmBodies {
@@ -68,11 +76,18 @@ class ArmBodies {
   }
 
   /// The torques [N m] or forces [N] on the joints, sum of J' F over the bodies, F the wrench on a
-  /// body about the origin of its link: they do the same work as all the forces.
-  void gather(const PairForces& forces, network::Vec<network::any_size>& torques) const noexcept {
+  /// body about the origin of its link: they do the same work as all the forces. With those on the
+  /// `tool` from links of the arm itself, `of_tool` the Jacobian of its frame: what a pair does to
+  /// both its bodies belongs to one energy account.
+  void gather(const PairForces& forces, BodyId tool, const Jacobian& of_tool,
+              network::Vec<network::any_size>& torques) const noexcept {
     torques.setZero(drawn_.cols());
+    for (Eigen::Index joint = 0; forces.has_own && joint < torques.size(); ++joint) {
+      torques.coeffRef(joint) += power(forces.from_own[tool.index], column_of(of_tool, joint));
+    }
     for (std::size_t i = 0; i < links_.size(); ++i) {
-      const Wrench& F = forces.on_body[links_[i].body.index];
+      Wrench F = forces.on_body[links_[i].body.index];
+      if (forces.has_own) F += forces.from_own[links_[i].body.index];
       for (int joint = 0; joint <= links_[i].link; ++joint) {  // joints beyond do not move it
         torques.coeffRef(joint) += power(F, column_of(jacobians_[i], joint));
       }

@@ -47,7 +47,7 @@ class Teleoperator {
         kinematics_(parts.kinematics),
         world_(parts.world),
         tool_(parts.tool),
-        links_(std::move(parts.links), static_cast<int>(parts.model.links.size())),
+        links_(joined(world_, tool_, parts.links), static_cast<int>(parts.model.links.size())),
         network_(std::move(parts.network)),
         clock_(period, in_nanoseconds(options.longest_gap)),
         period_(std::chrono::duration<double>(period).count()),
@@ -162,8 +162,9 @@ class Teleoperator {
     if (forces.totals.stale > 0) record_.status |= status::stale_pairs;
     if (forces.totals.crowded > 0) record_.status |= status::crowded_pairs;
     if (forces.totals.expired > 0) record_.status |= status::expired_pairs;
-    signals_.walls = forces.on_body[tool_.index];
-    links_.gather(forces, signals_.arm_torques);
+    signals_.walls = record_.virtual_force = forces.on_body[tool_.index];
+    record_.virtual_force += forces.from_own[tool_.index];
+    links_.gather(forces, tool_, jacobian_, signals_.arm_torques);
     signals_.walls_power = forces.carried[tool_.index];
     signals_.arm_power = links_.carried(forces);
     if (pushing_out_) push_out(forces.totals);
@@ -248,7 +249,6 @@ class Teleoperator {
     std::copy(read_v_.begin(), read_v_.end(), record_.v_read.begin());
     record_.p_WT = origin(X_WT_);
     record_.v_WT = V_WT_.linear;
-    record_.virtual_force = signals_.walls;
     record_.coupling = before_walls_ < 0
                            ? Wrench{}
                            : network::to_wrench(network_.connection(before_walls_).effort());

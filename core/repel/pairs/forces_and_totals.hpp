@@ -61,24 +61,39 @@ struct PairTotals {
 /// The forces of a set of pairs at one tick.
 struct PairForces {
   std::int64_t tick = -1;       ///< of the motion they belong to
-  std::vector<Wrench> on_body;  ///< [N, N m] by BodyId, about each body's origin, world axes
-  /// [W] by BodyId: the power delivered to it by the motion of the bodies acting on it, the sum of
-  /// f.v at the contact points, v of the other body. Bodies at rest add nothing.
+  std::vector<Wrench> on_body;  ///< [N, N m] by BodyId, about each body's origin, world axes; of
+                                ///< bodies that are not of the same arm
+  /// The same, of bodies of the same arm. What they do to the arm is one work of its joints; so
+  /// their motion is none that could be supplied from outside.
+  std::vector<Wrench> from_own;
+  bool has_own = false;  ///< some of `from_own` may differ from zero
+  /// [W] by BodyId: the power delivered to it by the motion of the bodies acting on it that are not
+  /// of the same arm, the sum of f.v at the contact points, v of the other body. Bodies at rest add
+  /// nothing.
   std::vector<double> carried;
   PairTotals totals;
 
   PairForces() = default;
-  explicit PairForces(int bodies) : on_body(bodies), carried(bodies, 0.0) {}
+  explicit PairForces(int bodies) : on_body(bodies), from_own(bodies), carried(bodies, 0.0) {}
 
   void clear() noexcept {
     std::fill(on_body.begin(), on_body.end(), Wrench{});
     std::fill(carried.begin(), carried.end(), 0.0);
+    if (has_own) std::fill(from_own.begin(), from_own.end(), Wrench{});
+    has_own = false;
     totals = {};
   }
 
   /// Adds the equal and opposite forces between A and B, each about the origin of its own body.
   void push(BodyId a, BodyId b, const Wrench& on_a, const Wrench& on_b,
             const Motion& motion) noexcept {
+    const BodyId arm = motion.bodies[a.index].arm;
+    if (arm.valid() && arm == motion.bodies[b.index].arm) {
+      from_own[a.index] += on_a;
+      from_own[b.index] += on_b;
+      has_own = true;
+      return;
+    }
     on_body[a.index] += on_a;
     on_body[b.index] += on_b;
     carried[a.index] -= power(on_b, motion.bodies[b.index].V_WB);
@@ -90,6 +105,10 @@ struct PairForces {
     for (std::size_t i = 0; i < on_body.size(); ++i) {
       on_body[i] += other.on_body[i];
       carried[i] += other.carried[i];
+    }
+    if (other.has_own) {
+      for (std::size_t i = 0; i < from_own.size(); ++i) from_own[i] += other.from_own[i];
+      has_own = true;
     }
     totals.add(other.totals);
   }

@@ -22,6 +22,7 @@ struct BodyState {
   Twist V_WB;                    ///< [m/s, rad/s] of the body's origin, world axes
   double travel = 0.0;  ///< [m] upper bound on the path of any point of the body since set-up
   double turn = 0.0;    ///< [m] the part of `travel` due to rotation
+  BodyId arm{};         ///< tool of the arm that the body belongs to; invalid: of none
 };
 
 /// All bodies at one instant: the input of the coprocessor.
@@ -89,6 +90,9 @@ class World {
     pairs_.push_back(pair);
     return {static_cast<std::int32_t>(pairs_.size()) - 1};
   }
+
+  /// Makes a body part of the arm with this `tool`, which is part of it itself. Set-up only.
+  void join(BodyId body, BodyId tool) { motion_.bodies[body.index].arm = tool; }
 
   /// Moves a body. False, with nothing changed, when the pose or twist is not finite or not rigid.
   bool place(BodyId body, const Pose& X_WB, const Twist& V_WB) noexcept {

@@ -28,7 +28,9 @@ struct PassivityReport {
 ///
 /// The port energy, E += T f.v, never becomes negative: where the effort of a tick would generate
 /// energy, it is damped along its flow just enough to leave E at zero. Because E was not negative
-/// before, the deficit is at most T |f.v|, and the correction never reverses the effort.
+/// before, the deficit is at most T |f.v|, and the correction never reverses the effort. Energy
+/// that a source other than the port supplies counts as well. Where the source takes more than is
+/// stored, the port returns nothing; what is still missing is not charged to it, and is owed.
 ///
 /// The sampled energy E_s += T f(k-1).(mean flow) pairs the effort held through a period with the
 /// motion of that period, and is known one tick late. Its damping is limited, never resists
@@ -62,13 +64,15 @@ class PassivityController {
   [[nodiscard]] double step(const Vec<N>& effort, const Vec<N>& flow, const Vec<N>& mean_flow,
                             double period, double supplied = 0.0, double elapsed = 0.0) noexcept {
     sampled_ += (elapsed > 0.0 ? elapsed : period) * (held_.dot(mean_flow) + supplied);
-    energy_ = std::max(0.0, energy_ + period * supplied);
+    energy_ += period * supplied;
     limit_damping(damped_.dot(mean_flow));
     const double square = product(flow, weight_).dot(flow);
     const double power = effort.dot(flow);
     double damping = 0.0;
     if (square > 1e-200) {
-      const double missing = -(energy_ / period + power) / square;
+      double missing = -(energy_ / period + power) / square;
+      // What the source takes beyond what is stored may cost the port its push, and no more.
+      if (energy_ < 0.0) missing = std::min(missing, -power / square);
       const double sampled = -(sampled_ / period + power) / square;
       // On retreat the damping may cancel the push of the element but not turn it into a pull; nor
       // may it create a pull where the element exerts no effort.
