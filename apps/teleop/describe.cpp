@@ -122,6 +122,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   arm.network = scene::plan_network(scene, setup, robot.arm);
   arm.options.tool_speed = scene.tool_speed;
   arm.options.has_brakes = true;
+  arm.options.drive_delay = setup.robot.drive_delay;
   return arm;
 }
 

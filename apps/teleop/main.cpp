@@ -184,6 +184,9 @@ void describe(CLI::App& app, Arguments& a) {
       ->capture_default_str()
       ->type_name("FACTOR")
       ->check(host::between(least_inertia_factor, most_inertia_factor));
+  app.add_flag("!--no-prediction", a.run.prediction,
+               "Solve the network for the measured rates, without the mass of the arm: to compare "
+               "with; arms with light wrists then explode");
   app.final_callback([&a] {
     const std::string insecure = teleop::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);
@@ -221,7 +224,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--replay", a.replay,
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
-                 "--budget", "--every-pair", "--tool-alone", "--plant-inertia", "--device");
+                 "--budget", "--every-pair", "--tool-alone", "--plant-inertia", "--no-prediction",
+                 "--device");
   app.footer(footer());
 }
 

@@ -77,7 +77,10 @@ std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions
   DescribedScene described =
       describe(changed, options.rate_hz, arm_backend(options.backend).has_gravity);
   described.cell.coprocessor = coprocessor_options(changed.budget, options);
-  for (ArmDescription& arm : described.cell.arms) arm.options.joints.touches = options.contact;
+  for (ArmDescription& arm : described.cell.arms) {
+    arm.options.joints.touches = options.contact;
+    arm.options.prediction = options.prediction;
+  }
   const bool refuses = described.cell.start_inside == StartInside::refuse;
   // A recorded run was allowed to start.
   if (recording != nullptr && refuses) described.cell.start_inside = StartInside::allow;

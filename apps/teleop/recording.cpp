@@ -179,6 +179,7 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
+    options.prediction = word("prediction") == "yes";   // older recordings had none
     const std::string inertia = word("plant_inertia");  // older recordings do not have it
     if (!inertia.empty()) options.plant_inertia = std::strtod(inertia.c_str(), nullptr);
     try {

@@ -363,6 +363,8 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["simulated_arm_us"] = host::percentiles(r.arm_step);
   report["every_pair"] = r.options.every_pair;
   report["plant_inertia"] = r.options.plant_inertia;
+  report["prediction"] = r.options.prediction;
+  report["drive_delay_ticks"] = r.scene.robot.drive_delay;
   add_payload(r.scene.robot, report);
   report["budget"] = budget_list(r);
   report.update(host::to_json(r.totals(), r.pairs));

@@ -9,6 +9,7 @@
 
 #include <repel/base/complaint.hpp>
 #include <repel/world/changed_arm.hpp>
+#include <repel/world/delayed_arm.hpp>
 
 #include "arm_backend.hpp"
 #include "contact.hpp"
@@ -228,8 +229,9 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
     if (prepared.options.contact) {
       parts = contact_parts(prepared.scene, prepared.scene.arm_setup(i), prepared.robots[i]);
     }
-    arms.push_back(backend.make(simulated_model(prepared, i), arm.start,
-                                watchdog_of(prepared.options), parts));
+    arms.push_back(std::make_unique<DelayedArm>(
+        backend.make(simulated_model(prepared, i), arm.start, watchdog_of(prepared.options), parts),
+        arm.model.links.size(), prepared.scene.arm_setup(i).robot.drive_delay));
   }
   return arms;
 }

@@ -270,7 +270,7 @@ std::vector<JointHold> holds_of(const Value& value) {
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
   map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
-             "payload", "hold", "packages"});
+             "payload", "hold", "packages", "drive_delay"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
@@ -282,6 +282,9 @@ RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& fi
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");
   if (const Value* payload = map.find("payload")) read_payload(*payload, robot);
+  if (const Value* delay = map.find("drive_delay")) {
+    robot.drive_delay = static_cast<int>(delay->integer(0, 10));
+  }
   if (const Value* links = map.find("links")) {
     robot.links.emplace();
     for (const Value& link : links->list()) robot.links->push_back(link.text());

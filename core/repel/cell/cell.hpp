@@ -164,6 +164,7 @@ class Cell {
   [[nodiscard]] network::Network built_network(const ArmDescription& arm) const {
     const network::Plan plan = arm.network ? *arm.network : default_network(arm.model);
     try {
+      if (!arm.options.prediction) return plan.build(1.0 / description_.rate_hz);
       return plan.build(1.0 / description_.rate_hz,
                         network::PredictionOptions{.drive_delay = arm.options.drive_delay});
     } catch (const SetupError& error) {

@@ -22,6 +22,8 @@ struct TeleoperatorOptions {
   bool has_brakes = false;
   double drive_delay = 0.0;  ///< [ticks] from a torque to its effect, beyond its being held for one
                              ///< tick; 0 to 10: the longer, the softer the arm follows
+  bool prediction = true;    ///< false: the network is solved for the measured rates, without the
+                             ///< mass of the arm, to compare with
   EnergyWatchOptions energy;
   FailsafeOptions failsafe;
   StopOptions stop;

@@ -72,6 +72,7 @@ struct RobotChoice {
   std::string srdf;           ///< path of a file with the link pairs to omit; empty: none
   Payload payload;            ///< what the tool carries; mass 0: nothing
   bool payload_known = true;  ///< to the controller too, not only to the simulated arm
+  int drive_delay = 0;        ///< [ticks] see TeleoperatorOptions::drive_delay
 };
 
 /// Limits on the work of the distance queries in one tick.

@@ -1,0 +1,53 @@
+/// @file
+/// A simulated arm whose drive is late.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// An arm whose torques act some calls of `set_torques` later; until then none act. Everything else
+/// is that of the arm it holds. Allocates at construction only.
+class DelayedArm final : public TorqueDrivenArm {
+ public:
+  /// @param joints of `arm` @param delay [calls] 0 to 100
+  /// @throws SetupError for a delay out of range
+  DelayedArm(std::unique_ptr<TorqueDrivenArm> arm, std::size_t joints, int delay)
+      : arm_(std::move(arm)),
+        joints_(joints),
+        under_way_(joints * static_cast<std::size_t>(checked("delay", delay, 0, 100, "ticks"))) {}
+
+  void set_torques(std::span<const double> torques) noexcept override {
+    if (under_way_.empty() || torques.size() != joints_) return arm_->set_torques(torques);
+    const std::span<double> oldest = std::span(under_way_).subspan(at_, joints_);
+    arm_->set_torques(oldest);
+    std::copy(torques.begin(), torques.end(), oldest.begin());
+    at_ = (at_ + joints_) % under_way_.size();
+  }
+  void step(double period) noexcept override { arm_->step(period); }
+  void read_positions(std::span<double> out) const noexcept override { arm_->read_positions(out); }
+  void read_velocities(std::span<double> out) const noexcept override {
+    arm_->read_velocities(out);
+  }
+  void enable() noexcept override { arm_->enable(); }
+  void stop() noexcept override { arm_->stop(); }
+  void engage_brakes(bool on) noexcept override { arm_->engage_brakes(on); }
+  [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
+  [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
+
+ private:
+  std::unique_ptr<TorqueDrivenArm> arm_;
+  std::size_t joints_;
+  std::vector<double> under_way_;  // a ring, `joints_` torques for each call
+  std::size_t at_ = 0;             // of the oldest
+};
+
+}  // namespace repel
