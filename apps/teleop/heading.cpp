@@ -20,7 +20,8 @@ Heading heading_of(const scene::Scene& scene, const Cell& cell) {
     for (const LinkBody& link : cell.layout(i).links) arm.links.push_back(link.body);
     for (const ArmLink& link : described.model.links) arm.joints.push_back(link.type);
     for (const network::Node& node : cell.control(i).network().nodes()) {
-      arm.modules.push_back(node.name);
+      // A prediction is not one of those that the scene lists, and the last.
+      if (node.module.as<network::Prediction>() == nullptr) arm.modules.push_back(node.name);
     }
     for (const network::Phase& phase : scene.arm_setup(i).script) arm.phases.push_back(phase.name);
   }

@@ -46,6 +46,8 @@ void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& r
 std::vector<ModuleResult> module_results(const network::Network& network) {
   std::vector<ModuleResult> results;
   for (const network::Node& node : network.nodes()) {
+    // Not one of those that the scene lists, and the last.
+    if (node.module.as<network::Prediction>() != nullptr) continue;
     ModuleResult result;
     result.name = node.name;
     result.claims_passive = node.traits.passive && !node.traits.measures_flow;

@@ -13,7 +13,7 @@ import xml.etree.ElementTree as xml
 
 here = pathlib.Path(__file__).resolve().parent
 
-# File, joints to hold, frame of the tool, ready pose [deg], place of the tool there [mm].
+# File, joints beside the arm that are held, frame of the tool, ready pose [deg], place of the tool there [mm].
 arms = [
     ("ur3", [], "tool0", [0, -90, 90, -90, -90, 0], (298.6, 112.35, 313.65)),
     ("ur5", [], "tool0", [0, -90, 90, -90, -90, 0], (486.9, 109.15, 431.859)),
@@ -85,8 +85,6 @@ def forward(robot, held, ready, tip):
 def faults(robot_info, name, held, tip, ready, place):
     path = here / f"{name}.urdf"
     command = [robot_info, str(path), "--tip", tip]
-    if held:
-        command += ["--hold", ",".join(held)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     if run.returncode != 0:
         yield run.stderr.strip() or f"robot_info exits with {run.returncode}"

@@ -106,16 +106,22 @@ TEST(CellRefuses, GainsOutOfTheirBounds) {
               for (ArmLink& link : cell.arms[0].model.links) link.viscous_friction = 0.0;
             }),
             "");
-  expect_refused([](CellDescription& cell) { cell.obstacles[0].law.damping = 1.0; },
-                 {"wall too stiff: 'wall'", "N/m; with its damping of 1 N s/m", "allowed: "});
+  const auto free_and_weak = [](CellDescription& cell) {
+    for (ArmLink& link : cell.arms[0].model.links) link.viscous_friction = 1.0;
+    cell.obstacles[0].law.damping = 1.0;
+  };
+  expect_refused(free_and_weak, {"wall too stiff: 'wall'", "N/m; with its damping of 1 N s/m",
+                                 "the limit is", "this wall needs", "in the device, which has 1"});
   expect_refused(
-      [](CellDescription& cell) {
+      [&](CellDescription& cell) {
+        free_and_weak(cell);
         cell.arms[0].options.drive_delay = 2.0;
-        cell.rate_hz = 400.0;
       },
       {"wall too stiff", "a drive delay of 2 ticks"});
-  EXPECT_EQ(refusal_of([](CellDescription& cell) {
-              cell.obstacles[0].law.damping = 1.0;
+  expect_refused([](CellDescription& cell) { cell.arms[0].options.drive_delay = 4.0; },
+                 {"limits too stiff", "a drive delay of 4 ticks"});
+  EXPECT_EQ(refusal_of([&](CellDescription& cell) {
+              free_and_weak(cell);
               cell.gain_check = network::GainCheck::warning;
             }),
             "");

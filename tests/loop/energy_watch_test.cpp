@@ -15,24 +15,31 @@ Status feed(EnergyWatch& watch, double& energy, double power, double time) {
 }
 
 TEST(EnergyWatch, WhatIsGainedSlowlyIsNoFaultAndDoesNotBrake) {
-  EnergyWatch watch;
+  EnergyWatch watch(T);
   double energy = 0.0;
-  EXPECT_EQ(feed(watch, energy, 0.4, 60.0), 0U);
+  EXPECT_EQ(feed(watch, energy, 0.8, 60.0), 0U);
   EXPECT_EQ(watch.brake(), 0.0);
-  EXPECT_NEAR(watch.gained(), 0.4, 0.01);  // of the last second
+  EXPECT_NEAR(watch.gained(), 0.8, 0.01);  // of the last second
 }
 
 TEST(EnergyWatch, BrakesInProportionAndThenReports) {
-  EnergyWatch watch;
+  EnergyWatch watch(T);
   double energy = 0.0;
-  EXPECT_EQ(feed(watch, energy, 1.25, 10.0), 0U);
-  EXPECT_NEAR(watch.brake(), 0.5, 0.01);  // midway from 0.5 to 2 J
-  EXPECT_EQ(feed(watch, energy, 10.0, 1.0), status::energy_gain);
+  EXPECT_EQ(feed(watch, energy, 3.0, 10.0), 0U);
+  EXPECT_NEAR(watch.brake(), 0.5, 0.01);  // midway from 1 to 5 J
+  EXPECT_EQ(feed(watch, energy, 20.0, 1.0), status::energy_gain);
   EXPECT_EQ(watch.brake(), 1.0);
 }
 
+// What a sampled arm gains by its own acceleration grows with the period.
+TEST(EnergyWatch, AllowsMoreAtLowRates) {
+  EnergyWatch slow(0.01);
+  EXPECT_EQ(slow.step(19.0, 0.01), 0U);
+  EXPECT_EQ(slow.step(22.0, 0.01), status::energy_gain);
+}
+
 TEST(EnergyWatch, ForgetsAFaultThatIsOver) {
-  EnergyWatch watch;
+  EnergyWatch watch(T);
   double energy = 0.0;
   EXPECT_EQ(feed(watch, energy, 1000.0, 0.01), status::energy_gain);
   (void)feed(watch, energy, 0.0, 5.0);
@@ -42,15 +49,15 @@ TEST(EnergyWatch, ForgetsAFaultThatIsOver) {
 
 // An arm that gave a lot back may not gain as much unseen.
 TEST(EnergyWatch, WhatWasGivenBackIsNoCredit) {
-  EnergyWatch watch;
+  EnergyWatch watch(T);
   double energy = 0.0;
   (void)feed(watch, energy, -100.0, 1.0);
   EXPECT_EQ(feed(watch, energy, 100.0, 0.1), status::energy_gain);
 }
 
 TEST(EnergyWatch, OptionsOutOfRangeAreRefused) {
-  EXPECT_THROW(EnergyWatch({.taken_back = 3.0}), SetupError);
-  EXPECT_THROW(EnergyWatch({.memory = 0.0}), SetupError);
+  EXPECT_THROW(EnergyWatch(T, {.taken_back = 6.0}), SetupError);
+  EXPECT_THROW(EnergyWatch(T, {.memory = 0.0}), SetupError);
 }
 
 }  // namespace energy_watch_test

@@ -235,7 +235,7 @@ class Cell {
       moved.push_back(layout.tool);
       for (const LinkBody& link : layout.links) moved.push_back(link.body);
     }
-    contacts_.emplace(world_, 256, moved);
+    contacts_.emplace(world_, std::min<std::size_t>(world_.pairs().size(), 4096), moved);
   }
 
   CellDescription description_;

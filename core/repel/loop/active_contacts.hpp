@@ -3,6 +3,7 @@
 /// of the network needs to know about the walls.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,13 +19,14 @@ namespace repel {
 
 /// A pair that exerts a force in this tick.
 struct ActiveContact {
+  PairId pair;
   BodyId a, b;
   Wrench on_a, on_b;     ///< [1, m] of a unit force that parts them, about each body's origin
   double damping = 0.0;  ///< [N s/m] how much its force falls with the speed along that force
 };
 
-/// Collects the contacts of the bodies that arms move. Allocates at construction only; contacts
-/// beyond its capacity are left out.
+/// Collects the contacts of the bodies that arms move, in the order of their pairs. Allocates at
+/// construction only; contacts beyond its capacity are left out.
 class ActiveContacts {
  public:
   /// @param capacity largest number of contacts @param moved the bodies that arms move
@@ -40,6 +42,9 @@ class ActiveContacts {
     coprocessor.for_each_near([&](const NearPair& near) {
       if (near.force > 0.0 && count_ < contacts_.size()) add(near);
     });
+    // Sums must not depend on how the pairs are shared out to threads.
+    std::sort(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(count_),
+              [](const auto& x, const auto& y) { return x.pair.index < y.pair.index; });
   }
 
   [[nodiscard]] std::span<const ActiveContact> all() const noexcept {
@@ -63,7 +68,7 @@ class ActiveContacts {
         pair.law.passable ? pair.law.damping : pair.law.formula().damper(near.separation.distance);
     // Where two arms meet, each is solved by itself: twice the damping covers the motion of the
     // other.
-    contacts_[count_++] = {a, b, about(a, n), about(b, -n), moved * damping};
+    contacts_[count_++] = {near.pair, a, b, about(a, n), about(b, -n), moved * damping};
   }
   [[nodiscard]] int is_moved(BodyId body) const noexcept {
     return is_moved_[static_cast<std::size_t>(body.index)];
@@ -76,11 +81,12 @@ class ActiveContacts {
 };
 
 /// The damping of the contacts at the joints of one arm [N m s/rad], sum of c h h' with h the joint
-/// torques of the unit force of a contact. @param jacobian of the `tool`
+/// torques of the unit force of a contact; of size 0 without contacts. @param jacobian of the
+/// `tool`
 inline void gather_damping(std::span<const ActiveContact> contacts, BodyId tool,
                            const Jacobian& jacobian, const ArmBodies& links,
                            network::Mat<network::any_size>& damping) noexcept {
-  const Eigen::Index joints = jacobian.cols();
+  const Eigen::Index joints = contacts.empty() ? 0 : jacobian.cols();
   damping.setZero(joints, joints);
   network::Vec<network::any_size> h(joints);
   const auto add = [&](BodyId body, const Wrench& F) {

@@ -37,7 +37,7 @@ class ArmCommand {
   ArmCommand(const ArmModel& model, double period, const TeleoperatorOptions& options)
       : options_(options),
         failsafe_(options.failsafe),
-        energy_watch_(options.energy),
+        energy_watch_(period, options.energy),
         stop_control_(period, options.stop),
         torques_(model, period, options.torques) {
     walls_.setZero(static_cast<Eigen::Index>(model.links.size()));

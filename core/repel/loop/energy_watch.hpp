@@ -11,8 +11,9 @@
 namespace repel {
 
 struct EnergyWatchOptions {
-  double taken_back = 0.5;  ///< [J] gained in `memory` above which the arm is braked in proportion
-  double most = 2.0;        ///< [J] gained in `memory` above which it is a fault
+  double taken_back = 1.0;  ///< [J] gained in `memory` above which the arm is braked in proportion
+  double most = 5.0;        ///< [J] gained in `memory` above which it is a fault; both are for 400
+                            ///< Hz and more, and in proportion to the period for lower rates
   double memory = 1.0;      ///< [s] time constant with which a gain is forgotten
 };
 
@@ -22,12 +23,15 @@ struct EnergyWatchOptions {
 /// back by braking, which is stable at any rate and mass; what cannot be taken back is a fault.
 class EnergyWatch {
  public:
-  /// @throws SetupError for an option out of range
-  explicit EnergyWatch(const EnergyWatchOptions& options = {}) : options_(options) {
+  /// @param period [s]; @throws SetupError for an option out of range
+  explicit EnergyWatch(double period, const EnergyWatchOptions& options = {}) : options_(options) {
     constexpr double never = std::numeric_limits<double>::infinity();
     checked("sampling energy taken back", options.taken_back, 0.0, 1e9, "J");
     checked("most sampling energy", options.most, options.taken_back, never, "J");
     checked("memory of the sampling energy", options.memory, 1e-3, 1e6, "s");
+    const double scale = std::max(1.0, 400.0 * period);
+    options_.taken_back *= scale;
+    options_.most *= scale;
   }
 
   /// Advances by `elapsed` [s]. @param sampled [J] by sampling since the start,

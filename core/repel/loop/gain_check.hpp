@@ -82,13 +82,16 @@ struct SampledSpring {
   const std::string damping_unit =
       unit.substr(0, unit.find('/')) + " s" + unit.substr(unit.find('/'));
   const double ticks = 0.5 + 2.0 * drive_delay;
-  return std::string(at.what) + " stiffness is " + text(at.stiffness) + ' ' + unit +
-         "; with its damping of " + text(at.damping) + ' ' + damping_unit + " it is stable up to " +
-         text(most) + ' ' + unit + " at a period of " + text(1e3 * period) +
-         " ms and a drive delay of " + text(drive_delay) +
-         " ticks; allowed: a damping of at least " + text(at.stiffness * ticks * period) + ' ' +
-         damping_unit + ", or a rate of at least " + text(at.stiffness * ticks / at.damping) +
-         " Hz";
+  std::string said = std::string(at.what) + " stiffness is " + text(at.stiffness) + ' ' + unit +
+                     "; with its damping of " + text(at.damping) + ' ' + damping_unit +
+                     " the limit is " + text(most) + ' ' + unit + " at a period of " +
+                     text(1e3 * period) + " ms and a drive delay of " + text(drive_delay) +
+                     " ticks; this " + at.what + " needs " + text(at.stiffness * ticks * period) +
+                     ' ' + damping_unit + " of damping";
+  if (at.damping > 0.0) {
+    said += ", or a rate of at least " + text(at.stiffness * ticks / at.damping) + " Hz";
+  }
+  return said;
 }
 
 /// Checks every law of the world for a tick of `period` [s] and arms whose drives are late by
@@ -102,13 +105,17 @@ inline std::vector<std::string> check_gains(const World& world, double period, d
   std::vector<std::string> complaints;
   std::vector<std::string> told;
   for (const Pair& pair : world.pairs()) {
-    const std::string text =
+    std::string text =
         complaint({"wall", "N/m", pair.law.stiffness(), pair.law.damping}, period, drive_delay);
     const network::CleanStiffness clean{.period = period,
                                         .device_damping = device_damping,
                                         .wall_damping = pair.law.damping,
                                         .delay = drive_delay * period};
     if (pair.law.stiffness() <= clean.limit()) continue;
+    if (!text.empty()) {
+      text += ", or " + repel::to_text(clean.needed_damping(pair.law.stiffness()), 4) +
+              " N s/m of damping in the device, which has " + repel::to_text(device_damping, 4);
+    }
     if (text.empty() || std::find(told.begin(), told.end(), text) != told.end()) continue;
     told.push_back(text);
     complaints.push_back("'" + world.part(pair.b).name + "': " + text);

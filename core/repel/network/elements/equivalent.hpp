@@ -102,54 +102,12 @@ struct Equivalent {
   }
 
  private:
-  // By the Cholesky factor L and its inverse (Eigen's would pull in heap allocation for sizes that
-  // cannot occur). Rounding makes the pivot of a rigid direction tiny instead of zero, the more so
-  // where its diagonal entry is a small part of the matrix. Each pivot is compared with its own
-  // diagonal entry, so that the test does not depend on units. Entries above the diagonal are not
-  // read.
   [[nodiscard]] bool invert() noexcept {
-    Mat<N> L = matrix;
-    if (!factor(L)) return false;
-    invert_triangle(L);
-    const Eigen::Index n = matrix.rows();
+    if (!dense::invert_positive(matrix.data(), matrix.rows())) return false;
     const Vec<N> b = offset;
     offset.setZero();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j <= i; ++j) {
-        double sum = 0.0;
-        for (Eigen::Index k = i; k < n; ++k) sum += L.coeff(k, i) * L.coeff(k, j);
-        matrix.coeffRef(i, j) = matrix.coeffRef(j, i) = sum;
-      }
-    }
     dense::add_product(matrix, b, offset, -1.0);
     return true;
-  }
-  // In-place Cholesky factorization, L L' = the given L. False when a pivot is too small.
-  [[nodiscard]] bool factor(Mat<N>& L) const noexcept {
-    const Eigen::Index n = L.rows();
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double pivot = L.coeff(k, k);
-      if (!(pivot > 1e-9 * matrix.coeff(k, k))) return false;
-      const double scale = 1.0 / std::sqrt(pivot);
-      for (Eigen::Index i = k; i < n; ++i) L.coeffRef(i, k) *= scale;
-      for (Eigen::Index j = k + 1; j < n; ++j) {
-        const double share = L.coeff(j, k);
-        for (Eigen::Index i = j; i < n; ++i) L.coeffRef(i, j) -= share * L.coeff(i, k);
-      }
-    }
-    return true;
-  }
-  // Inverts L in place, column by column.
-  static void invert_triangle(Mat<N>& L) noexcept {
-    const Eigen::Index n = L.rows();
-    for (Eigen::Index j = 0; j < n; ++j) {
-      L.coeffRef(j, j) = 1.0 / L.coeff(j, j);
-      for (Eigen::Index i = j + 1; i < n; ++i) {
-        double sum = 0.0;
-        for (Eigen::Index k = j; k < i; ++k) sum += L.coeff(i, k) * L.coeff(k, j);
-        L.coeffRef(i, j) = -sum / L.coeff(i, i);
-      }
-    }
   }
 
   // f = b + R v with v = v' + w + G f, or the same with the roles exchanged:

@@ -31,13 +31,13 @@ struct Signals {
   Vec<any_size> mean_rates;      ///< [rad/s], [m/s] (q - last q) / elapsed
   Jacobian jacobian;             ///< of the tool
   Pose X_WT = Pose::Identity();  ///< [m]
-  Wrench walls;               ///< [N, N m] of the world model on the tool, about its origin, in W,
-                              ///< without that of links of the same arm
-  Vec<any_size> arm_torques;  ///< [N m], [N] of the world model on the links, sum of J^T F, and of
-                              ///< the links on the tool of the same arm
-  double walls_power = 0.0;   ///< [W] supplied to the tool by moving obstacles
-  double arm_power = 0.0;     ///< [W] and to the links
-  Mat<any_size> inertia;  ///< [kg m^2] or [kg] of the joints, symmetric; of size 0: not known
+  Wrench walls;                ///< [N, N m] of the world model on the tool, about its origin, in W,
+                               ///< without that of links of the same arm
+  Vec<any_size> arm_torques;   ///< [N m], [N] of the world model on the links, sum of J^T F, and of
+                               ///< the links on the tool of the same arm
+  double walls_power = 0.0;    ///< [W] supplied to the tool by moving obstacles
+  double arm_power = 0.0;      ///< [W] and to the links
+  Mat<any_size> inertia;       ///< [kg m^2] or [kg] of the joints, symmetric; of size 0: not known
   Mat<any_size> wall_damping;  ///< [N m s/rad] of the world model at the joints; of size 0: none
   HandInput hand;
   double period = 0.0025;  ///< [s]

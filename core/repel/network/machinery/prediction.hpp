@@ -70,7 +70,9 @@ class Prediction {
     if (!is_known_) return;
     observe(signals);
     walls_ = walls;
-    damping_ = damping;
+    has_damping_ = false;
+    for (Eigen::Index i = 0; i < n; ++i) has_damping_ = has_damping_ || damping.coeff(i, i) > 0.0;
+    if (has_damping_) damping_ = damping;
     mobility_.form = Form::impedance;
     mobility_.matrix.resize(n, n);
     for (Eigen::Index i = 0; i < n * n; ++i) {
@@ -84,8 +86,13 @@ class Prediction {
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
-    if (is_known_) shown.add_admittance(conductance_, -offset_);
-    return true;
+    if (!is_known_) return true;
+    // Here, so that the elements on its right need not: what they share is the impedance.
+    if (!shown.take_form(Form::admittance)) return false;
+    for (Eigen::Index i = 0; i < offset_.size(); ++i) shown.offset.coeffRef(i) -= offset_.coeff(i);
+    const Eigen::Index entries = conductance_.size();
+    for (Eigen::Index i = 0; i < entries; ++i) shown.matrix.data()[i] += conductance_.data()[i];
+    return shown.take_form(Form::impedance);
   }
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
@@ -106,13 +113,14 @@ class Prediction {
         total.coeffRef(i) += along_column(jacobian_, i, to_wrench(on_arm));
       }
     }
-    sent_ = total - given_up(total);
+    sent_ = total;
+    if (has_damping_) sent_ = total - given_up(total);
   }
 
   /// What is taken off the torques `total` on the joints, those of the walls included, because they
   /// move the arm within the horizon and its walls and limits then give less: C G total [N m].
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept {
-    if (!is_known_) return Vec<any_size>::Zero(total.size());
+    if (!is_known_ || !has_damping_) return Vec<any_size>::Zero(total.size());
     return dense::product<Vec<any_size>>(damping_,
                                          dense::product<Vec<any_size>>(mobility_.matrix, total));
   }
@@ -176,6 +184,7 @@ class Prediction {
   double period_ = 1.0;   // [s]
   bool in_joints_ = false;
   bool is_known_ = false;
+  bool has_damping_ = false;  // some wall or limit pushes
   Jacobian jacobian_;
   Vec<any_size> walls_;            // w
   Mat<any_size> damping_;          // C

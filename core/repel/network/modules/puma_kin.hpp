@@ -20,8 +20,14 @@ class PumaKin {
 
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
-    return root_ == Side::right ? transformer::shown_at_b(behind, jacobian_, jacobian_, shown)
-                                : transformer::shown_at_a(behind, jacobian_, jacobian_, shown);
+    if (root_ == Side::left) return transformer::shown_at_a(behind, jacobian_, jacobian_, shown);
+    if (behind.form != Form::impedance) {
+      return transformer::shown_at_b(behind, jacobian_, jacobian_, shown);
+    }
+    shown.form = Form::impedance;
+    dense::congruence(jacobian_, behind.matrix, shown.matrix);
+    dense::transposed_product(jacobian_, behind.offset, shown.offset);
+    return true;
   }
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
                 PortState<any_size>& at_leaf) const noexcept {
