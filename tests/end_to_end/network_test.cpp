@@ -170,7 +170,8 @@ std::pair<double, json> held_over_a_line(const Folder& folder, const std::string
   const Ending ending =
       teleop(quoted(folder.with("held.yaml", text)) + " --fast --seconds 60 --log " +
              quoted(folder / "log.csv") + " --report " + quoted(folder / "report.json"));
-  EXPECT_EQ(ending.status, 0) << ending;
+  // 5: the plain line lets the arm gain energy, which is noticed.
+  EXPECT_EQ(ending.status, kind == "waves" ? 0 : 5) << ending;
   const Columns log = columns_of(folder / "log.csv");
   const auto& force = log.at("virtual_fz_n");
   double largest = 0.0;

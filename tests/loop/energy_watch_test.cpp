@@ -38,6 +38,12 @@ TEST(EnergyWatch, AllowsMoreAtLowRates) {
   EXPECT_EQ(slow.step(22.0, 0.01), status::energy_gain);
 }
 
+TEST(EnergyWatch, NothingIsWatchedBelowTenTicksASecond) {
+  EnergyWatch watch(1.0);
+  EXPECT_EQ(watch.step(1e9, 1.0), 0U);
+  EXPECT_EQ(watch.brake(), 0.0);
+}
+
 TEST(EnergyWatch, ForgetsAFaultThatIsOver) {
   EnergyWatch watch(T);
   double energy = 0.0;

@@ -13,7 +13,8 @@ namespace repel {
 struct EnergyWatchOptions {
   double taken_back = 1.0;  ///< [J] gained in `memory` above which the arm is braked in proportion
   double most = 5.0;        ///< [J] gained in `memory` above which it is a fault; both are for 400
-                            ///< Hz and more, and in proportion to the period for lower rates
+                            ///< Hz and more, in proportion to the period for lower rates, and
+                            ///< not watched below 10 Hz
   double memory = 1.0;      ///< [s] time constant with which a gain is forgotten
 };
 
@@ -29,7 +30,7 @@ class EnergyWatch {
     checked("sampling energy taken back", options.taken_back, 0.0, 1e9, "J");
     checked("most sampling energy", options.most, options.taken_back, never, "J");
     checked("memory of the sampling energy", options.memory, 1e-3, 1e6, "s");
-    const double scale = std::max(1.0, 400.0 * period);
+    const double scale = period > 0.1 ? never : std::max(1.0, 400.0 * period);
     options_.taken_back *= scale;
     options_.most *= scale;
   }
@@ -41,14 +42,15 @@ class EnergyWatch {
     const double gain = sampled - last_;
     last_ = sampled;
     gained_ += gain - std::min(1.0, elapsed / options_.memory) * std::max(0.0, gained_);
-    gained_ = std::max(gained_, -options_.taken_back);
+    gained_ = std::max(gained_, 0.0);
     return gained_ > options_.most ? status::energy_gain : 0U;
   }
 
   /// Share of the damping against all motion that takes the energy back, 0 to 1.
   [[nodiscard]] double brake() const noexcept {
+    if (!(gained_ > options_.taken_back)) return 0.0;
     const double room = std::max(options_.most - options_.taken_back, 1e-12);
-    return std::clamp((gained_ - options_.taken_back) / room, 0.0, 1.0);
+    return std::min((gained_ - options_.taken_back) / room, 1.0);
   }
   [[nodiscard]] double gained() const noexcept { return gained_; }  ///< [J]
 
