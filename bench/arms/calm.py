@@ -12,7 +12,9 @@ its ticks.
 import argparse
 import json
 import math
+import os
 import pathlib
+import platform
 import subprocess
 import sys
 import tempfile
@@ -122,6 +124,20 @@ def measure(program, text, rate, *options):
             "fault": sum(n for name, n in status.items() if name not in demands) / ticks}
 
 
+def heading():
+    """The lines above the table: how it was made, and where."""
+    said = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"],
+                          capture_output=True, text=True, check=False).stdout.strip()
+    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
+                if line.startswith("model name")), platform.machine())
+    gxx = subprocess.run(["g++", "-dumpfullversion"], capture_output=True, text=True,
+                         check=False).stdout.strip()
+    return ["# Arms that people have", "",
+            "`bench/arms/calm.py build/release/bin/teleop --write bench/results/arms.md`,",
+            f"{cpu}, {os.cpu_count()} processors, g++ {gxx}, commit {said or 'unknown'}. The runs do",
+            "not depend on the clock.", ""]
+
+
 def is_calm(row):
     return (row["exit"] == 0 and row["fault"] == 0 and row["energy_j"] < 2.0
             and row["limit"] <= 0.02)
@@ -161,7 +177,7 @@ def main():
                 print(lines[-1], flush=True)
     print(f"{restless} runs with the prediction are not calm")
     if arguments.write:
-        pathlib.Path(arguments.write).write_text("\n".join(lines) + "\n")
+        pathlib.Path(arguments.write).write_text("\n".join(heading() + lines) + "\n")
     return 1 if restless else 0
 
 
