@@ -17,7 +17,7 @@ struct RunOptions {
   bool tool_alone = false;         ///< apply the walls to tools only, whatever the scene says
   bool contact = false;  ///< with "bullet" and "ode": solid obstacles stop the arms physically
   double plant_inertia = 1.0;  ///< inertia of the simulated arms as a multiple of their models'
-  bool prediction = true;  ///< see TeleoperatorOptions
+  bool prediction = true;      ///< see TeleoperatorOptions
   bool keep_records = false;   ///< for the HTML report
   std::string log;             ///< file to which every tick is written; empty: none
 };
