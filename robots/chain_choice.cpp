@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
-#include <ranges>
 #include <string_view>
 
 namespace repel::detail {
@@ -94,8 +93,9 @@ int ChainChoice::reach_by(const Link& child) const {
 
 /// Sets `reach_`, without counting the joints in `uncounted`.
 void ChainChoice::measure(const std::set<std::string>& uncounted) {
-  const auto links = links_of(model_);
-  for (const Link& link : links | std::views::reverse) {
+  auto links = links_of(model_);
+  std::reverse(links.begin(), links.end());  // leaves first
+  for (const Link& link : links) {
     int most = 0;
     for (const auto& child : link->child_links) {
       const std::string& name = child->parent_joint->name;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
@@ -78,7 +77,8 @@ const HeldJoint& HeldJoints::held(const urdf::Joint& joint) {
     at = model_.getJoint(at->mimic->joint_name).get();
     if (at->type == urdf::Joint::FIXED) held_[at->name] = {at->name, "fixed", 0.0, ""};
   }
-  for (const urdf::Joint* at : open | std::views::reverse) {
+  std::reverse(open.begin(), open.end());
+  for (const urdf::Joint* at : open) {
     const Hold* hold = chain_.hold_of(*at);
     const auto leader = at->mimic ? held_.find(at->mimic->joint_name) : held_.end();
     if (hold != nullptr && hold->position) {
