@@ -155,19 +155,8 @@ void require_able(const Arguments& a) {
   }
 }
 
-void describe(CLI::App& app, Arguments& a) {
-  app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
-  app.add_option("--seconds", a.run.seconds,
-                 "Scene time to run [s]; with --view until it is stopped, unless it is given")
-      ->capture_default_str()
-      ->each([&a](const std::string&) { a.has_seconds = true; })
-      ->check(host::between(0.0, 1e6));
-  app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
-      ->check(host::between(1.0, 1e5));
-  app.add_flag(
-      "--fast", a.run.fast,
-      "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
-      "scene do not apply, counted ones do");
+/// The options of the simulated arm.
+void describe_arm(CLI::App& app, Arguments& a) {
   app.add_option(
          "--backend", a.run.backend,
          "Simulated arm: bullet or ode (dynamics, gravity, friction, stops), reference (the "
@@ -187,6 +176,22 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_flag("!--no-prediction", a.run.prediction,
                "Solve the network for the measured rates, without the mass of the arm: to compare "
                "with; arms with light wrists then explode");
+}
+
+void describe(CLI::App& app, Arguments& a) {
+  app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
+  app.add_option("--seconds", a.run.seconds,
+                 "Scene time to run [s]; with --view until it is stopped, unless it is given")
+      ->capture_default_str()
+      ->each([&a](const std::string&) { a.has_seconds = true; })
+      ->check(host::between(0.0, 1e6));
+  app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
+      ->check(host::between(1.0, 1e5));
+  app.add_flag(
+      "--fast", a.run.fast,
+      "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
+      "scene do not apply, counted ones do");
+  describe_arm(app, a);
   app.final_callback([&a] {
     const std::string insecure = teleop::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);

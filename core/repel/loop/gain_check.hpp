@@ -128,7 +128,7 @@ inline std::vector<std::string> check_gains(const World& world, double period, d
 inline std::string check_gains(const network::Limits& limits, double period, double drive_delay,
                                network::GainCheck check) {
   const network::JointLimits& law = limits.law();
-  const std::string text =
+  std::string text =
       complaint({"joint limit", "N m/rad", law.stiffness, law.damping}, period, drive_delay);
   if (check == network::GainCheck::error && !text.empty()) throw SetupError(text);
   return text;
