@@ -202,7 +202,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0, 16));
   app.add_option("--budget", a.run.budget,
                  "In place of the scene's budget: support pairs per tick, none, or i860, the "
-                 "processor of 1993, on which 4 by 8 parts just fit at 400 Hz")
+                 "processor of 1993, on which 4 by 8 parts all but fit at 400 Hz")
       ->check(CLI::Validator(teleop::budget_complaint, "UNITS, i860 or none"));
   app.add_flag("--every-pair", a.run.every_pair,
                "Ask also the pairs that cannot be within range: to compare with");

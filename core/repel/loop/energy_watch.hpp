@@ -19,9 +19,9 @@ struct EnergyWatchOptions {
 };
 
 /// The network counts the power that it gives to the arm at the rates it measured; the arm takes
-/// torque times the motion until the next tick. The difference, "by sampling", is below a tenth of
-/// a joule while a coupling suits the arm, and grows without bound where it does not. It is taken
-/// back by braking, which is stable at any rate and mass; what cannot be taken back is a fault.
+/// torque times the motion until the next tick. The difference, "by sampling", stays small while a
+/// coupling suits the arm (bench/results/arms.md) and grows without bound where it does not. It is
+/// taken back by the braking of the loop, in proportion to M; what cannot be taken back is a fault.
 class EnergyWatch {
  public:
   /// @param period [s]; @throws SetupError for an option out of range

@@ -60,8 +60,9 @@ class Prediction {
   }
   void prepare(double period) { horizon_ = ticks_ * detail::checked_period(period); }
 
-  /// Second call of a tick, after all modules have read their signals. Cost: one Cholesky
-  /// factorization, and two products of the size of the joints.
+  /// Second call of a tick, after all modules have read their signals. Cost: one
+  /// inversion and two products of the size of the joints. While M is not positive definite,
+  /// nothing is predicted.
   /// @param walls [N m] torques of walls and limits on the joints @param damping [N m s/rad] theirs
   void predict(const Signals& signals, const Vec<any_size>& walls,
                const Mat<any_size>& damping) noexcept {
