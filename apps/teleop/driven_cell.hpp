@@ -38,8 +38,7 @@ class DrivenCell {
     for (std::size_t i = 0; i < ports_.size(); ++i) readings_[i] = ports_[i].read();
     cell_.sense(readings_, now);
     for (std::size_t i = 0; i < operators_.size(); ++i) {
-      const Teleoperator& control = cell_.control(i);
-      commands_[i] = operators_[i].step(control.X_WT().linear(), control.elapsed());
+      commands_[i] = operators_[i].step(cell_.X_WT(i).linear(), cell_.elapsed());
     }
     const auto records = cell_.act(commands_);
     for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].apply(*records[i]);

@@ -19,7 +19,7 @@ Heading heading_of(const scene::Scene& scene, const Cell& cell) {
     arm.tool = cell.layout(i).tool;
     for (const LinkBody& link : cell.layout(i).links) arm.links.push_back(link.body);
     for (const ArmLink& link : described.model.links) arm.joints.push_back(link.type);
-    for (const network::Node& node : cell.control(i).network().nodes()) {
+    for (const network::Node& node : cell.network(i).nodes()) {
       // A prediction is not one of those that the scene lists, and the last.
       if (node.module.as<network::Prediction>() == nullptr) arm.modules.push_back(node.name);
     }

@@ -290,7 +290,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   make_ticks(driven, attached, stop, result, recorders, progress, usage);
   cell.stop();
   for (std::size_t i = 0; i < cell.arms(); ++i) {
-    result.arms[i].modules = module_results(cell.control(i).network());
+    result.arms[i].modules = module_results(cell.network(i));
     result.arms[i].records = recorders[i].records();
     result.arms[i].contact = driven.arm(i).contact();
   }

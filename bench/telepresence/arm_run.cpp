@@ -58,16 +58,15 @@ ArmEnd run_arm(const ArmScene& scene, double seconds,
   for (std::int64_t k = 1; k <= ticks; ++k) {
     const ArmReadings readings = port.read();
     cell.sense({&readings, 1}, k * cell.period());
-    const Teleoperator& control = cell.control(0);
-    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const network::Command& command = hands.step(cell.X_WT(0).linear(), cell.elapsed());
     const TickRecord& record = *cell.act({&command, 1}).front();
     port.apply(record);
-    each({record, control.X_WT(), readings.q, control.network()});
+    each({record, cell.X_WT(0), readings.q, cell.network(0)});
     arm.step(1.0 / scene.rate_hz);
     totals.add(record);
     finite = finite && std::isfinite(record.coupling.force.norm() + record.lever_torque);
   }
-  ArmEnd end{.complaint = complaint_of(cell.control(0).network(), finite),
+  ArmEnd end{.complaint = complaint_of(cell.network(0), finite),
              .status_ticks = totals.status_ticks};
   for (const ArmLink& link : model.links) end.ranges.push_back({link.lower, link.upper});
   return end;

@@ -1,5 +1,6 @@
 /// @file
-/// Everything of the core in one include.
+/// The core in one include. With `REPEL_COMPILED` without what a cell links then: the rooms `loop`,
+/// `pairs` and `schedule`.
 #pragma once
 
 #include <repel/base/complaint.hpp>
@@ -20,17 +21,13 @@
 #include <repel/force/law.hpp>
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
-#include <repel/loop/gain_check.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
-#include <repel/loop/tap.hpp>
-#include <repel/loop/tick.hpp>
 #include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/reduction/shape.hpp>
-#include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
@@ -39,3 +36,10 @@
 #include <repel/world/delayed_arm.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>
+
+#ifndef REPEL_COMPILED
+#include <repel/loop/gain_check.hpp>
+#include <repel/loop/tap.hpp>
+#include <repel/loop/tick.hpp>
+#include <repel/schedule/coprocessor.hpp>
+#endif

@@ -169,8 +169,7 @@ FaultRun run_slider(Fault fault, network::Script script, double before, double f
     now += (fault == Fault::late_loop && since == 0 ? 600 : 1) * SliderCell::period;
     const ArmReadings readings = port.read();
     cell.sense({&readings, 1}, now);
-    const Teleoperator& control = cell.control(0);
-    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const network::Command& command = hands.step(cell.X_WT(0).linear(), cell.elapsed());
     run.last = *cell.act({&command, 1}).front();
     port.apply(run.last);
     for (std::size_t i = 0; i < 3 && k > 0; ++i) {

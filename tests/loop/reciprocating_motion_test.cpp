@@ -50,7 +50,7 @@ TEST(ReciprocatingMotion, PushesAnArmAheadOfItAndTheLedgerSaysWhoPaid) {
   // 200 mm minus the gap of 30 mm; the hand at the ball resists until it slips.
   EXPECT_GT(farthest, 0.17);
   EXPECT_LT(farthest, 0.19);
-  const network::Node& walls = *cell.cell.control(0).network().node_of<network::Obstacle>();
+  const network::Node& walls = *cell.cell.network(0).node_of<network::Obstacle>();
   EXPECT_GT(walls.ledger.supplied, 0.05);
   EXPECT_LT(walls.ledger.energy, walls.ledger.supplied) << "some of it must have moved the ball";
   EXPECT_LE(walls.ledger.deficit(), 1e-9);

@@ -129,8 +129,7 @@ struct SliderCell {
     now += elapsed;
     const ArmReadings readings = port.read();
     cell.sense({&readings, 1}, now);
-    const Teleoperator& control = cell.control(0);
-    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const network::Command& command = hands.step(cell.X_WT(0).linear(), cell.elapsed());
     const TickRecord& record = *cell.act({&command, 1}).front();
     port.apply(record);
     return record;

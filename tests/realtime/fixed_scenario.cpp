@@ -109,8 +109,7 @@ int run() {
     CALLGRIND_ZERO_STATS;
     const ArmReadings readings = port.read();
     cell.sense({&readings, 1}, k * period);
-    const Teleoperator& control = cell.control(0);
-    const network::Command& command = hands.step(control.X_WT().linear(), control.elapsed());
+    const network::Command& command = hands.step(cell.X_WT(0).linear(), cell.elapsed());
     const TickRecord& record = *cell.act({&command, 1}).front();
     port.apply(record);
     CALLGRIND_DUMP_STATS;

@@ -153,7 +153,7 @@ Descent run_down(Fault fault, double speed, double before) {
     const ArmReadings readings = port.read();
     cell.sense({&readings, 1}, (k + 1) * cell.period());
     const network::Command& command =
-        hands.step(cell.control(0).X_WT().linear(), cell.control(0).elapsed());
+        hands.step(cell.X_WT(0).linear(), cell.elapsed());
     const TickRecord& record = *cell.act({&command, 1}).front();
     port.apply(record);
     arm.step(0.0025);

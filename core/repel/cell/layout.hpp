@@ -17,13 +17,6 @@
 
 namespace repel {
 
-/// The bodies and parts that represent an arm in a world.
-struct ArmLayout {
-  BodyId tool;
-  std::vector<LinkBody> links;  ///< only those that have parts
-  std::vector<PartId> parts;    ///< in the order of the description
-};
-
 namespace detail {
 
 /// The designation of an arm in messages.

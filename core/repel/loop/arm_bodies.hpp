@@ -33,12 +33,6 @@ namespace repel {
   return V;
 }
 
-/// A body of the world that is attached to a link of the arm; its frame is that of the link.
-struct LinkBody {
-  BodyId body;
-  int link = 0;  ///< index in ArmModel::links
-};
-
 /// Makes the tool and the links one arm of the world. @return `links`
 [[nodiscard]] inline std::vector<LinkBody> joined(World& world, BodyId tool,
                                                   std::vector<LinkBody> links) {

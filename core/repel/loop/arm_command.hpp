@@ -8,6 +8,7 @@
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/energy_watch.hpp>
 #include <repel/loop/failsafe.hpp>
 #include <repel/loop/joint_torques.hpp>
 #include <repel/loop/joint_watch.hpp>

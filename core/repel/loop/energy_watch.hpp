@@ -7,16 +7,9 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/base/status.hpp>
+#include <repel/loop/options.hpp>
 
 namespace repel {
-
-struct EnergyWatchOptions {
-  double taken_back = 1.0;  ///< [J] gained in `memory` above which the arm is braked in proportion
-  double most = 5.0;        ///< [J] gained in `memory` above which it is a fault; both are for 400
-                            ///< Hz and more, in proportion to the period for lower rates, and
-                            ///< not watched below 10 Hz
-  double memory = 1.0;      ///< [s] time constant with which a gain is forgotten
-};
 
 /// The network counts the power that it gives to the arm at the rates it measured; the arm takes
 /// torque times the motion until the next tick. The difference, "by sampling", stays small while a

@@ -5,14 +5,9 @@
 #include <algorithm>
 
 #include <repel/base/status.hpp>
+#include <repel/loop/options.hpp>
 
 namespace repel {
-
-struct FailsafeOptions {
-  double fall = 0.05;  ///< [s] in which the force ramps to zero after a fault
-  double hold = 0.25;  ///< [s] without a fault before the force comes back
-  double rise = 0.5;   ///< [s] in which the force comes back
-};
 
 /// The gain of the operator's force: 1 while inputs are valid, ramped to 0 by a fault of
 /// `status::failsafe`, held there until inputs have been valid for a while, then ramped back.

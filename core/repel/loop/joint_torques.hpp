@@ -12,16 +12,11 @@
 #include <repel/base/status.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/joint_speed.hpp>
+#include <repel/loop/options.hpp>
 #include <repel/network/elements/friction.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
-
-struct JointTorqueOptions {
-  double brake_time = 0.02;  ///< [s], at least four ticks, in which braking removes 63 % of a
-                             ///< speed, as far as the efforts of the joints allow
-  double slew_time = 0.005;  ///< [s] in which a torque may go from zero to its limit
-};
 
 /// The share of each contribution in a tick.
 struct TorqueShares {

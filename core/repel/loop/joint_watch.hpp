@@ -11,23 +11,10 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/base/status.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/options.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
-
-/// Tolerances for the readings of a sound arm. Angles; lengths likewise in [m] and [m/s].
-struct JointWatchOptions {
-  double position_noise = 1e-3;  ///< [rad] error of one reading relative to the next
-  double rate_noise = 0.2;       ///< [rad/s] error of one rate relative to the next
-  double resolution = 1e-5;      ///< [rad] smallest step of a position
-  double jitter = 1.0;           ///< [periods] by which the time between readings may be off
-  int repeats = 1;  ///< ticks for which a sound arm may report the same position of a moving joint;
-                    ///< more where it is read more often than it measures
-  double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
-  bool touches = false;  ///< the arm may press on objects that are not in the model: a joint that
-                         ///< stands still against a force is believed
-  int regain = 4;        ///< consecutive sound readings after which they are believed again
-};
 
 /// Compares every reading with the last one, with the torques sent in between and with the inertia
 /// of the arm, joint by joint:

@@ -3,14 +3,54 @@
 #pragma once
 
 #include <repel/base/setup_error.hpp>
-#include <repel/loop/energy_watch.hpp>
-#include <repel/loop/failsafe.hpp>
-#include <repel/loop/joint_torques.hpp>
-#include <repel/loop/joint_watch.hpp>
-#include <repel/loop/stop_control.hpp>
 
 namespace repel {
 
+/// Bounds of the energy that an arm gains by sampling (loop/energy_watch.hpp).
+struct EnergyWatchOptions {
+  double taken_back = 1.0;  ///< [J] gained in `memory` above which the arm is braked in proportion
+  double most = 5.0;        ///< [J] gained in `memory` above which it is a fault; both are for 400
+                            ///< Hz and more, in proportion to the period for lower rates, and
+                            ///< not watched below 10 Hz
+  double memory = 1.0;      ///< [s] time constant with which a gain is forgotten
+};
+
+/// Ramps of the operator's force (loop/failsafe.hpp).
+struct FailsafeOptions {
+  double fall = 0.05;  ///< [s] in which the force ramps to zero after a fault
+  double hold = 0.25;  ///< [s] without a fault before the force comes back
+  double rise = 0.5;   ///< [s] in which the force comes back
+};
+
+/// Handling of a motion that is not observed (loop/stop_control.hpp).
+struct StopOptions {
+  double predicted = 0.02;  ///< [s], at least three ticks, for which an unobserved motion is braked
+                            ///< by prediction before the brakes are requested
+  double released = 0.5;    ///< [s] after which an arm with unobserved motion is released
+};
+
+/// Time constants of the torques (loop/joint_torques.hpp).
+struct JointTorqueOptions {
+  double brake_time = 0.02;  ///< [s], at least four ticks, in which braking removes 63 % of a
+                             ///< speed, as far as the efforts of the joints allow
+  double slew_time = 0.005;  ///< [s] in which a torque may go from zero to its limit
+};
+
+/// Tolerances for the readings of a sound arm. Angles; lengths likewise in [m] and [m/s].
+struct JointWatchOptions {
+  double position_noise = 1e-3;  ///< [rad] error of one reading relative to the next
+  double rate_noise = 0.2;       ///< [rad/s] error of one rate relative to the next
+  double resolution = 1e-5;      ///< [rad] smallest step of a position
+  double jitter = 1.0;           ///< [periods] by which the time between readings may be off
+  int repeats = 1;  ///< ticks for which a sound arm may report the same position of a moving joint;
+                    ///< more where it is read more often than it measures
+  double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
+  bool touches = false;  ///< the arm may press on objects that are not in the model: a joint that
+                         ///< stands still against a force is believed
+  int regain = 4;        ///< consecutive sound readings after which they are believed again
+};
+
+/// Options of the control of one arm.
 struct TeleoperatorOptions {
   double tool_speed = 0.25;  ///< [m/s] up to which the operator may drive the tool; above it the
                              ///< driving power fades, from 1.2 times it the arm brakes; 1e-3 to 10

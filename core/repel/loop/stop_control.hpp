@@ -5,14 +5,9 @@
 #include <algorithm>
 
 #include <repel/base/status.hpp>
+#include <repel/loop/options.hpp>
 
 namespace repel {
-
-struct StopOptions {
-  double predicted = 0.02;  ///< [s], at least three ticks, for which an unobserved motion is braked
-                            ///< by prediction before the brakes are requested
-  double released = 0.5;    ///< [s] after which an arm with unobserved motion is released
-};
 
 /// State machine from faults to the stop of a tick.
 class StopControl {

@@ -46,6 +46,19 @@ struct Pair {
   ForceLaw law;  ///< its `depth` clamped to the deepest that the two shapes can have
 };
 
+/// A body that is attached to a link of an arm; its frame is that of the link.
+struct LinkBody {
+  BodyId body;
+  int link = 0;  ///< index in ArmModel::links
+};
+
+/// The bodies and parts that represent an arm.
+struct ArmLayout {
+  BodyId tool;
+  std::vector<LinkBody> links;  ///< only those that have parts
+  std::vector<PartId> parts;    ///< in the order of the description
+};
+
 /// Built at set-up, by the functions that throw; `place` is the one for the tick.
 class World {
  public:
