@@ -63,14 +63,15 @@ ask_for_packages() {
   exit 1
 }
 
-# build PRESET [TARGET]: configures when needed, then builds. Its first run takes a minute or more.
+# build PRESET [TARGET...]: configures when needed, then builds. Its first run takes minutes.
 build() {
   tree=$root/build/$1
   if ! is_configured "$tree"; then
     echo "Building in build/$1; the first time takes a while." >&2
     (cd "$root" && quietly cmake --preset "$1") || exit 1
   fi
-  quietly cmake --build "$tree" ${2:+--target "$2"} || exit 1
+  shift
+  quietly cmake --build "$tree" ${1:+--target "$@"} || exit 1
 }
 
 is_configured() {
