@@ -33,6 +33,11 @@ void print_modules(const ArmResult& arm, std::FILE* out) {
     if (m.passivity.owed > 0.0) std::fprintf(out, "   owed %.3g", m.passivity.owed);
     if (m.sampling_energy != 0.0) std::fprintf(out, "   by sampling %+.4g", m.sampling_energy);
     std::fprintf(out, "%s\n", remark_on(m));
+    if (m.coupling) {
+      std::fprintf(out, "    %20s %.4g N/m, %.4g N s/m; %.4g N m/rad, %.4g N m s/rad\n", "gains",
+                   m.coupling->stiffness, m.coupling->damping, m.coupling->angular_stiffness,
+                   m.coupling->angular_damping);
+    }
   }
 }
 
@@ -57,6 +62,11 @@ ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
                     {"dissipated_by_controller_j", m.passivity.dissipated},
                     {"owed_j", m.passivity.owed},
                     {"sampling_energy_j", m.sampling_energy}});
+    if (!m.coupling) continue;
+    list.back()["gains"] = {{"stiffness_n_per_m", m.coupling->stiffness},
+                            {"damping_n_s_per_m", m.coupling->damping},
+                            {"angular_stiffness_n_m_per_rad", m.coupling->angular_stiffness},
+                            {"angular_damping_n_m_s_per_rad", m.coupling->angular_damping}};
   }
   return list;
 }

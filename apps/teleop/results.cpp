@@ -56,6 +56,7 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
     if (const auto* joints = node.module.as<network::PumaJoints>()) {
       result.sampling_energy = joints->sampling_energy();
     }
+    if (const auto* kbb2 = node.module.as<network::Kbb2>()) result.coupling = kbb2->options();
     results.push_back(result);
   }
   return results;

@@ -9,6 +9,7 @@
 
 #include <repel/loop/record.hpp>
 #include <repel/loop/tap.hpp>
+#include <repel/network/modules/kbb2.hpp>
 #include <repel/network/network.hpp>
 #include <repel/robots/robot.hpp>
 #include <repel/scene/scene.hpp>
@@ -39,6 +40,7 @@ struct ModuleResult {
   network::Ledger ledger;
   network::PassivityReport passivity;  ///< of the controller inside
   double sampling_energy = 0.0;  ///< [J] that holding the torques gave the arm; of puma_joints
+  std::optional<network::Kbb2Options> coupling{};  ///< with the gains in use; of kbb2
 
   /// It claims to be passive and was: what its ledger fell below zero is rounding.
   [[nodiscard]] bool passive() const { return claims_passive && ledger.deficit() <= 1e-9; }

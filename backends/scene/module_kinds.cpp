@@ -24,6 +24,11 @@ void allow(const Map& map, Keys keys) {
   map.allow(all);
 }
 
+/// The rule of a gain that may be left to the arm.
+Rule gain(Units units, double low, double high) {
+  return {.units = units, .low = low, .high = high, .may_be_auto = true};
+}
+
 template <class M, class Options>
 network::Module make(const Options& options) {
   return M(options);
@@ -85,22 +90,23 @@ ReadModule relief_of(const Map& map) {
     options.frame = world ? network::ReliefFrame::world : network::ReliefFrame::tool;
   }
   map.read("stiffness", {unit::stiffness, 0.0, 1e7}, options.stiffness);
-  map.read("damping", {unit::damping, 0.0, 1e6}, options.damping);
+  map.read("damping", gain(unit::damping, 0.0, 1e6), options.damping);
   map.read("angular_stiffness", {unit::angular_stiffness, 0.0, 1e6}, options.angular_stiffness);
-  map.read("angular_damping", {unit::angular_damping, 0.0, 1e6}, options.angular_damping);
+  map.read("angular_damping", gain(unit::angular_damping, 0.0, 1e6), options.angular_damping);
   return made_of(options, make<network::Relief>);
 }
 
 ReadModule kbb2_of(const Map& map) {
   allow(map, {"stiffness", "damping", "shunt", "force_limit", "angular_stiffness",
               "angular_damping", "angular_shunt", "torque_limit"});
-  network::Kbb2Options options;
-  map.read("stiffness", {unit::stiffness, 1e-3, 1e7}, options.stiffness);
-  map.read("damping", {unit::damping, 0.0, 1e6}, options.damping);
+  network::Kbb2Options options = network::suited_coupling();
+  map.read("stiffness", gain(unit::stiffness, 1e-3, 1e7), options.stiffness);
+  map.read("damping", gain(unit::damping, 0.0, 1e6), options.damping);
   map.read("shunt", {unit::damping, 0.0, 1e6}, options.shunt);
   map.read("force_limit", {unit::force, 0.0, 1e6}, options.force_limit);
-  map.read("angular_stiffness", {unit::angular_stiffness, 1e-3, 1e6}, options.angular_stiffness);
-  map.read("angular_damping", {unit::angular_damping, 0.0, 1e6}, options.angular_damping);
+  map.read("angular_stiffness", gain(unit::angular_stiffness, 1e-3, 1e6),
+           options.angular_stiffness);
+  map.read("angular_damping", gain(unit::angular_damping, 0.0, 1e6), options.angular_damping);
   map.read("angular_shunt", {unit::angular_damping, 0.0, 1e6}, options.angular_shunt);
   map.read("torque_limit", {unit::torque, 0.0, 1e6}, options.torque_limit);
   return made_of(options, make<network::Kbb2>);
@@ -190,8 +196,8 @@ ReadModule limits_of(const Map& map) {
   allow(map, {"range", "stiffness", "damping"});
   network::JointLimits law;
   const LimitZones zones(map);
-  map.read("stiffness", {unit::angular_stiffness, 0.0, 1e6}, law.stiffness);
-  map.read("damping", {unit::angular_damping, 0.0, 1e6}, law.damping);
+  map.read("stiffness", gain(unit::angular_stiffness, 0.0, 1e6), law.stiffness);
+  map.read("damping", gain(unit::angular_damping, 0.0, 1e6), law.damping);
   return {law,
           [law, zones](const ArmModel& arm) { return network::Limits(law, zones.ranges(arm)); }};
 }

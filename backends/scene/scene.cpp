@@ -135,7 +135,11 @@ ForceLaw law_of(const Value& value) {
   if (!law.passable) map.allow({"range", "surface_force", "damping", "ceiling", "passable"});
   map.read("range", {unit::length, 1e-6, 1e3}, law.range);
   map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
-  map.read("damping", {unit::damping, 0.0, 1e6}, law.damping);
+  const Value* damping = map.find("damping");
+  law.damping_may_rise = damping == nullptr || damping->text() == "auto";
+  if (!law.damping_may_rise) {
+    law.damping = damping->number({.units = unit::damping, .high = 1e6, .may_be_auto = true});
+  }
   map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
   map.read("depth", {unit::length, 0.0, 1e6}, law.depth);
   map.read("plateau", {unit::none, 0.0, 1.0}, law.plateau);
@@ -147,7 +151,7 @@ ForceLaw law_of(const Value& value) {
 }
 
 Laws laws_of(const Map& scene) {
-  Laws laws{{"default", {}}};
+  Laws laws{{"default", {.damping_may_rise = true}}};
   if (const Value* value = scene.find("laws")) {
     const Map map(*value);
     for (const auto& [name, law] : map.entries()) laws[name] = law_of(law);

@@ -53,6 +53,7 @@ struct Rule {
   double low = 0.0;   ///< in the SI unit
   double high = 0.0;  ///< in the SI unit
   bool may_be_nan = false;
+  bool may_be_auto = false;  ///< the word "auto" is allowed, and read as network::automatic
 };
 
 /// The numbers at the start of `text`, in SI units; none unless the rest is one of `units`.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/network/elements/robot_end.hpp>
 
 namespace repel::scene {
 namespace {
@@ -88,6 +89,11 @@ std::int64_t Value::integer(std::int64_t low, std::int64_t high) const {
     fail_with_value("a whole number, " + std::to_string(low) + " to " + std::to_string(high));
   }
   return value;
+}
+
+double Value::number(const Rule& rule) const {
+  if (rule.may_be_auto && node_->text == "auto") return network::automatic;
+  return numbers(rule, 1, 1).front();
 }
 
 std::vector<double> Value::numbers(const Rule& rule, std::size_t least, std::size_t most) const {

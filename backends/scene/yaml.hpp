@@ -44,7 +44,7 @@ class Value {
     return word_of(std::span<const std::string_view>(words.begin(), words.size()));
   }
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
-  [[nodiscard]] double number(const Rule& rule) const { return numbers(rule, 1, 1).front(); }
+  [[nodiscard]] double number(const Rule& rule) const;
   [[nodiscard]] Vec3 vector(const Rule& rule) const;
   [[nodiscard]] std::vector<double> numbers(const Rule& rule, std::size_t least,
                                             std::size_t most) const;

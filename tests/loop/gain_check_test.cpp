@@ -82,20 +82,17 @@ TEST(GainCheck, DelayOfTheDriveLowersTheLimit) {
   EXPECT_NE(said[1].find("drive delay of 1 ticks"), std::string::npos) << said[1];
 }
 
-TEST(GainCheck, LimitsOfTheJointsAreHeldToTheSame) {
-  const std::vector<network::JointRange> ranges{{-1.0, 1.0}};
-  network::Limits stiff({.stiffness = 2000.0, .damping = 2.0}, ranges);
-  const std::string said = check_gains(stiff, 0.0025, 0.0, network::GainCheck::warning);
-  for (const char* part :
-       {"joint limit stiffness is 2000 N m/rad", "1600 N m/rad", "2.5 N m s/rad"}) {
-    EXPECT_NE(said.find(part), std::string::npos) << part << '\n' << said;
-  }
-  EXPECT_THROW(check_gains(stiff, 0.0025, 0.0, network::GainCheck::error), SetupError);
-  stiff.prepare(0.0025);  // raises the damping as far as is needed without a delay
-  EXPECT_EQ(check_gains(stiff, 0.0025, 0.0, network::GainCheck::error), "");
-  EXPECT_THROW(check_gains(stiff, 0.0025, 1.0, network::GainCheck::error), SetupError);
-  const network::Limits usual({}, ranges);
-  EXPECT_EQ(check_gains(usual, 0.0025, 0.0, network::GainCheck::error), "");
+TEST(GainCheck, DampingThatMayRiseIsAtLeastWhatTheWallNeeds) {
+  const ForceLaw soft{.range = 0.02, .surface_force = 100.0, .damping_may_rise = true};
+  ForceLaw stiff = soft;
+  stiff.surface_force = 1000.0;  // 1e5 N/m
+  EXPECT_EQ(settled(soft, 0.0025, 0.0).damping, 50.0);
+  EXPECT_DOUBLE_EQ(settled(stiff, 0.0025, 0.0).damping, 125.0);
+  EXPECT_DOUBLE_EQ(settled(stiff, 0.0025, 2.0).damping, 1125.0);
+  EXPECT_EQ(complaint(settled(stiff, 0.0025, 2.0), 0.0025, 2.0), "");
+  stiff.damping = 3.0;
+  stiff.damping_may_rise = false;
+  EXPECT_EQ(settled(stiff, 0.0025, 2.0).damping, 3.0);
 }
 
 }  // namespace gain_check_test

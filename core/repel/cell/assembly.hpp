@@ -18,6 +18,7 @@
 #include <repel/cell/default_network.hpp>
 #include <repel/cell/description.hpp>
 #include <repel/cell/layout.hpp>
+#include <repel/cell/robot_end.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/loop/tick_clock.hpp>
@@ -90,6 +91,7 @@ class CellAssembly {
 
  private:
   void lay_out() {
+    settle_laws();
     for (ArmDescription& arm : description_.arms) {
       start(arm);
       layouts_.push_back(add_arm(world_, arm));
@@ -112,6 +114,26 @@ class CellAssembly {
     }
   }
 
+  [[nodiscard]] double longest_delay() const {
+    double delay = 0.0;
+    for (const ArmDescription& arm : description_.arms) {
+      delay = std::max(delay, arm.options.drive_delay);
+    }
+    return delay;
+  }
+
+  void settle_laws() {
+    const double period = 1.0 / description_.rate_hz;
+    const double delay = longest_delay();
+    for (ArmDescription& arm : description_.arms) {
+      arm.law = settled(arm.law, period, delay);
+      if (arm.self_law) arm.self_law = settled(*arm.self_law, period, delay);
+    }
+    for (ObstacleDescription& obstacle : description_.obstacles) {
+      obstacle.law = settled(obstacle.law, period, delay);
+    }
+  }
+
   void add_controls() {
     for (std::size_t i = 0; i < layouts_.size(); ++i) {
       ArmDescription& arm = description_.arms[i];
@@ -126,10 +148,11 @@ class CellAssembly {
 
   [[nodiscard]] network::Network built_network(const ArmDescription& arm) const {
     const network::Plan plan = arm.network ? *arm.network : default_network(arm.model);
+    const double period = 1.0 / description_.rate_hz;
+    std::optional<network::PredictionOptions> prediction;
+    if (arm.options.prediction) prediction.emplace().drive_delay = arm.options.drive_delay;
     try {
-      if (!arm.options.prediction) return plan.build(1.0 / description_.rate_hz);
-      return plan.build(1.0 / description_.rate_hz,
-                        network::PredictionOptions{.drive_delay = arm.options.drive_delay});
+      return plan.build(period, prediction, robot_end(arm, period));
     } catch (const SetupError& error) {
       throw SetupError(std::string("network: ") + error.what());
     }
@@ -162,27 +185,12 @@ class CellAssembly {
   }
 
   void check_stiffness() {
-    const double period = 1.0 / description_.rate_hz;
-    double delay = 0.0;
-    for (const ArmDescription& arm : description_.arms) {
-      delay = std::max(delay, arm.options.drive_delay);
-    }
-    const std::string cure = " (to run all the same: 'gain_check: warning' at the obstacle module)";
     try {
-      warnings_ = check_gains(world_, period, delay, device_damping_, description_.gain_check);
+      warnings_ = check_gains(world_, 1.0 / description_.rate_hz, longest_delay(), device_damping_,
+                              description_.gain_check);
     } catch (const SetupError& error) {
-      throw SetupError(std::string("wall too stiff: ") + error.what() + cure);
-    }
-    for (std::size_t i = 0; i < controls_.size(); ++i) {
-      const auto* limits = controls_[i].network().find<network::Limits>();
-      if (limits == nullptr) continue;
-      try {
-        const std::string text = check_gains(
-            *limits, period, description_.arms[i].options.drive_delay, description_.gain_check);
-        if (!text.empty()) warnings_.push_back(text);
-      } catch (const SetupError& error) {
-        throw SetupError(std::string("limits too stiff: ") + error.what() + cure);
-      }
+      throw SetupError(std::string("wall too stiff: ") + error.what() +
+                       " (to run all the same: 'gain_check: warning' at the obstacle module)");
     }
   }
 

@@ -72,6 +72,7 @@ struct ForceLaw {
   double depth = most;   ///< D [m] penetration depth at which a passable body releases;
                          ///< World::add_pair clamps it to the deepest that the two shapes can have
   double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1
+  bool damping_may_rise = false;  ///< a cell raises c0 to what keeps the wall stable at its rate
 
   static constexpr double most = 1e9;  ///< upper bound of every number but the ceiling
 

@@ -1,5 +1,5 @@
 /// @file
-/// Checks whether walls and joint limits are too stiff for the tick rate.
+/// Checks whether walls are too stiff for the tick rate.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/network/machinery/clean_stiffness.hpp>
-#include <repel/network/modules/limits.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/world.hpp>
 
@@ -54,42 +53,44 @@ namespace detail {
   return greatest > 0.0 ? 1.0 / greatest : 0.0;
 }
 
-/// The largest stiffness [N/m] or [N m/rad] of a sampled spring with a damping of its own [N s/m]
-/// or [N m s/rad] that cannot make an arm oscillate, whatever the mass behind it: B / ((0.5 + 2 d)
-/// T). The damping is solved together with the mass of the arm (network/machinery/prediction.hpp)
-/// and may be as large as one likes; the spring acts by the position measured, half a tick late on
-/// average and d ticks more. @param period [s] @param drive_delay d [ticks]
-[[nodiscard]] constexpr double stable_stiffness(double damping, double period,
-                                                double drive_delay) noexcept {
-  return damping / ((0.5 + 2.0 * drive_delay) * period);
+/// B / (T K) [ticks] from which on a sampled spring K with a damping B of its own cannot make an
+/// arm oscillate, whatever the mass behind it: 0.5 + 2 d for a drive delayed by d [ticks]. The
+/// damping is solved together with the mass of the arm (network/machinery/prediction.hpp) and may
+/// be as large as one likes; the spring acts by the position measured, half a tick late on average
+/// and d ticks more. Springs in parallel keep it if each does.
+[[nodiscard]] constexpr double wall_ticks(double drive_delay) noexcept {
+  return 0.5 + 2.0 * drive_delay;
 }
 
-/// What is being checked: the spring of a wall or a limit.
-struct SampledSpring {
-  const char* what;        ///< "wall" or "joint limit"
-  const char* unit;        ///< of the stiffness; the damping has the same times s
-  double stiffness = 0.0;  ///< [N/m] or [N m/rad]
-  double damping = 0.0;    ///< [N s/m] or [N m s/rad]
-};
+/// The largest stable stiffness [N/m] or [N m/rad] for a damping [N s/m] or [N m s/rad]: B /
+/// (wall_ticks T). @param period [s] @param drive_delay d [ticks]
+[[nodiscard]] constexpr double stable_stiffness(double damping, double period,
+                                                double drive_delay) noexcept {
+  return damping / (wall_ticks(drive_delay) * period);
+}
 
-/// Empty when the spring is stable; else one sentence with all numbers and what would do.
-[[nodiscard]] inline std::string complaint(const SampledSpring& at, double period,
-                                           double drive_delay) {
-  const double most = stable_stiffness(at.damping, period, drive_delay);
-  if (at.stiffness <= most) return {};
+/// The law with its damping raised, where it may rise, to what is stable for a tick of `period` [s]
+/// and a drive delayed by `drive_delay` [ticks].
+[[nodiscard]] inline ForceLaw settled(ForceLaw law, double period, double drive_delay) noexcept {
+  if (law.damping_may_rise) {
+    law.damping = std::max(law.damping, wall_ticks(drive_delay) * period * law.stiffness());
+  }
+  return law;
+}
+
+/// Empty when the spring of a wall is stable; else one sentence with all numbers and what would do.
+[[nodiscard]] inline std::string complaint(const ForceLaw& law, double period, double drive_delay) {
+  const double most = stable_stiffness(law.damping, period, drive_delay);
+  if (law.stiffness() <= most) return {};
   const auto text = [](double value) { return repel::to_text(value, 4); };
-  const std::string unit = at.unit;
-  const std::string damping_unit =
-      unit.substr(0, unit.find('/')) + " s" + unit.substr(unit.find('/'));
-  const double ticks = 0.5 + 2.0 * drive_delay;
-  std::string said = std::string(at.what) + " stiffness is " + text(at.stiffness) + ' ' + unit +
-                     "; with its damping of " + text(at.damping) + ' ' + damping_unit +
-                     " the limit is " + text(most) + ' ' + unit + " at a period of " +
-                     text(1e3 * period) + " ms and a drive delay of " + text(drive_delay) +
-                     " ticks; this " + at.what + " needs " + text(at.stiffness * ticks * period) +
-                     ' ' + damping_unit + " of damping";
-  if (at.damping > 0.0) {
-    said += ", or a rate of at least " + text(at.stiffness * ticks / at.damping) + " Hz";
+  const double ticks = wall_ticks(drive_delay);
+  std::string said = "wall stiffness is " + text(law.stiffness()) + " N/m; with its damping of " +
+                     text(law.damping) + " N s/m the limit is " + text(most) +
+                     " N/m at a period of " + text(1e3 * period) + " ms and a drive delay of " +
+                     text(drive_delay) + " ticks; this wall needs " +
+                     text(law.stiffness() * ticks * period) + " N s/m of damping";
+  if (law.damping > 0.0) {
+    said += ", or a rate of at least " + text(law.stiffness() * ticks / law.damping) + " Hz";
   }
   return said;
 }
@@ -105,8 +106,7 @@ inline std::vector<std::string> check_gains(const World& world, double period, d
   std::vector<std::string> complaints;
   std::vector<std::string> told;
   for (const Pair& pair : world.pairs()) {
-    std::string text =
-        complaint({"wall", "N/m", pair.law.stiffness(), pair.law.damping}, period, drive_delay);
+    std::string text = complaint(pair.law, period, drive_delay);
     const network::CleanStiffness clean{.period = period,
                                         .device_damping = device_damping,
                                         .wall_damping = pair.law.damping,
@@ -122,16 +122,6 @@ inline std::vector<std::string> check_gains(const World& world, double period, d
     if (check == network::GainCheck::error) throw SetupError(complaints.back());
   }
   return complaints;
-}
-
-/// The same for the limits of the joints.
-inline std::string check_gains(const network::Limits& limits, double period, double drive_delay,
-                               network::GainCheck check) {
-  const network::JointLimits& law = limits.law();
-  std::string text =
-      complaint({"joint limit", "N m/rad", law.stiffness, law.damping}, period, drive_delay);
-  if (check == network::GainCheck::error && !text.empty()) throw SetupError(text);
-  return text;
 }
 
 }  // namespace repel

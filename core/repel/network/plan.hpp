@@ -65,9 +65,9 @@ class Plan {
   [[nodiscard]] Network build(double period) const { return build(period, std::nullopt); }
   /// The same with a module `prediction` after the others: it stands between the module that
   /// measures its flow, with the walls that need this flow, and all else. Without a module that
-  /// measures its flow: as above.
-  [[nodiscard]] Network build(double period,
-                              const std::optional<PredictionOptions>& prediction) const;
+  /// measures its flow: as above. Gains that are `automatic` suit the `robot`.
+  [[nodiscard]] Network build(double period, const std::optional<PredictionOptions>& prediction,
+                              const RobotEnd& robot = {}) const;
 
  private:
   struct Entry {
@@ -97,9 +97,11 @@ inline Signals neutral_signals(int joints, double period) {
   return signals;
 }
 
-/// Sets space, size, side of the root and period of a module.
-inline void ready(Node& node, const Connection& first, Side root, double period) {
+/// Sets the arm, space, size, side of the root and period of a module.
+inline void ready(Node& node, const Connection& first, Side root, double period,
+                  const RobotEnd& robot) {
   try {
+    node.module->suit(robot);
     node.module->fit(first.space, first.size);
     if (const int size = node.module->size(); size > 0) {
       checked("size, where '" + first.left + "' is joined to '" + first.right + "',", size,
@@ -170,8 +172,8 @@ inline bool Plan::insert(const PredictionOptions& options, std::vector<Node>& no
   return true;
 }
 
-inline Network Plan::build(double period,
-                           const std::optional<PredictionOptions>& prediction) const {
+inline Network Plan::build(double period, const std::optional<PredictionOptions>& prediction,
+                           const RobotEnd& robot) const {
   checked("number of modules", static_cast<double>(entries_.size()), 1, most_modules, "");
   Network network;
   detail::Planner planner(network.nodes_, network.connections_);
@@ -205,7 +207,8 @@ inline Network Plan::build(double period,
     const int first = node.branches.empty() ? node.toward_root : node.branches.front();
     const bool on_right =
         node.toward_root >= 0 && network.connection(node.toward_root).left_node == i;
-    detail::ready(node, network.connection(first), on_right ? Side::right : Side::left, period);
+    detail::ready(node, network.connection(first), on_right ? Side::right : Side::left, period,
+                  robot);
   }
   require_solvable(network, detail::neutral_signals(planner.joints(), period));
   return network;

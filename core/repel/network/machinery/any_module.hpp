@@ -11,6 +11,7 @@
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/junction.hpp>
 #include <repel/network/elements/passivity.hpp>
+#include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/signals.hpp>
 #include <repel/network/elements/two_port.hpp>
 
@@ -152,6 +153,7 @@ class AnyModule {
   virtual void fit(Space space, int size) = 0;
   [[nodiscard]] virtual int size() const noexcept = 0;
   virtual void face(Side root) noexcept = 0;
+  virtual void suit(const RobotEnd& robot) = 0;
   virtual void prepare(double period) = 0;
 
   virtual void read(const Signals& signals) noexcept = 0;
@@ -204,6 +206,9 @@ class ModuleOf final : public AnyModule {
   }
   void face(Side root) noexcept override {
     if constexpr (requires { module_.face(root); }) module_.face(root);
+  }
+  void suit(const RobotEnd& robot) override {
+    if constexpr (requires { module_.suit(robot); }) module_.suit(robot);
   }
   void prepare(double period) override {
     if constexpr (requires { module_.prepare(period); }) module_.prepare(period);

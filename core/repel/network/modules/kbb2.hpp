@@ -4,12 +4,13 @@
 
 #include <cmath>
 
+#include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
 
 /// Gains of the coupling, for translation and rotation. Lever and joint spaces, which have no such
-/// distinction, use the first group.
+/// distinction, use the first group. Stiffness and damping may be `automatic`: see `suited`.
 struct Kbb2Options {
   double stiffness = 2000.0;        ///< K [N/m]
   double damping = 120.0;           ///< B [N s/m]
@@ -20,6 +21,14 @@ struct Kbb2Options {
   double angular_shunt = 0.0;       ///< [N m s/rad]
   double torque_limit = 8.0;        ///< [N m]
 };
+
+/// The gains of a coupling of which nothing is said: as stiff as the arm allows.
+[[nodiscard]] constexpr Kbb2Options suited_coupling() noexcept {
+  return {.stiffness = automatic,
+          .damping = automatic,
+          .angular_stiffness = automatic,
+          .angular_damping = automatic};
+}
 
 /// The left side moves the far end of a spring and a parallel damper whose near end is on the
 /// right. R = K T / 2 + B. The shunt B2 to ground is on the left, where the waves of a line arrive:
@@ -34,16 +43,33 @@ class Kbb2 {
 
   /// @throws SetupError for a number out of range
   explicit Kbb2(const Kbb2Options& options = {}) : options_(options) {
-    checked("stiffness", options.stiffness, 1e-3, 1e7, "N/m");
-    checked("damping", options.damping, 0.0, 1e6, "N s/m");
+    detail::checked_gain("stiffness", options.stiffness, 1e-3, 1e7, "N/m");
+    detail::checked_gain("damping", options.damping, 0.0, 1e6, "N s/m");
     checked("shunt", options.shunt, 0.0, 1e6, "N s/m");
     checked("force limit", options.force_limit, 0.0, 1e6, "N");
-    checked("angular stiffness", options.angular_stiffness, 1e-3, 1e6, "N m/rad");
-    checked("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
+    detail::checked_gain("angular stiffness", options.angular_stiffness, 1e-3, 1e6, "N m/rad");
+    detail::checked_gain("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
     checked("angular shunt", options.angular_shunt, 0.0, 1e6, "N m s/rad");
     checked("torque limit", options.torque_limit, 0.0, 1e6, "N m");
   }
 
+  /// Chooses the gains that are `automatic`; those of the defaults for an arm without a known mass.
+  /// The damper has no limit of its own: at the greatest speed of the tool, and at 1 rad/s, it adds
+  /// no more than that of the spring, or it would push a blocked tool into a wall.
+  void suit(const RobotEnd& robot) noexcept {
+    constexpr Kbb2Options usual;
+    constexpr double turning = 1.0;  // [rad/s]
+    Kbb2Options& o = options_;
+    const Gains linear = suited({o.stiffness, o.damping}, robot.mass, robot.response,
+                                {usual.stiffness, usual.damping}, o.force_limit / robot.speed);
+    const Gains angular =
+        suited({o.angular_stiffness, o.angular_damping}, robot.inertia, robot.response,
+               {usual.angular_stiffness, usual.angular_damping}, o.torque_limit / turning);
+    o.stiffness = linear.stiffness;
+    o.damping = linear.damping;
+    o.angular_stiffness = angular.stiffness;
+    o.angular_damping = angular.damping;
+  }
   /// Sets the size of its port, and the gains for that space.
   void fit(Space space, int size) {
     const bool tool = space == Space::tool;
@@ -98,6 +124,8 @@ class Kbb2 {
   [[nodiscard]] double stored() const noexcept {
     return 0.5 * product(wave_, wave_).dot(inverse(stiffness_));
   }
+  /// With the gains in use.
+  [[nodiscard]] const Kbb2Options& options() const noexcept { return options_; }
   /// True when the spring was at its limit in this tick.
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 

@@ -9,15 +9,18 @@
 #include <vector>
 
 #include <repel/network/elements/passivity.hpp>
+#include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
 
-/// A one-sided spring-damper at each end of a joint's range. It only pushes inward.
+/// A one-sided spring-damper at each end of a joint's range. It only pushes inward. Stiffness and
+/// damping may be `automatic`: see `suited`, with the inertia of each joint.
 struct JointLimits {
   double range = 0.1;         ///< [rad] or [m] distance before the limit at which it begins to act
   double stiffness = 2000.0;  ///< [N m/rad] or [N/m]
-  double damping = 20.0;      ///< [N m s/rad] or [N s/m]; at low tick rates raised to K T / 2
+  double damping = 20.0;      ///< [N m s/rad] or [N s/m]; raised where the tick rate and the delay
+                              ///< of the drive need more
 
   /// The torque [N m] at position `q` moving at `v`, for a joint between `lower` and `upper`.
   [[nodiscard]] double operator()(double q, double v, double lower, double upper) const noexcept {
@@ -47,10 +50,10 @@ class Limits {
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
 
   /// @throws SetupError for a number out of range or an upper limit below the lower one
-  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) : law_(law) {
+  Limits(const JointLimits& law, const std::vector<JointRange>& ranges) {
     checked("range", law.range, 1e-6, 1e3, "rad");
-    checked("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
-    checked("damping", law.damping, 0.0, 1e6, "N m s/rad");
+    detail::checked_gain("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
+    detail::checked_gain("damping", law.damping, 0.0, 1e6, "N m s/rad");
     checked("number of joints", static_cast<double>(ranges.size()), 1, most_joints, "");
     for (const JointRange& range : ranges) {
       if (!std::isinf(range.lower)) checked("lower limit", range.lower, -1e6, 1e6, "rad");
@@ -63,10 +66,26 @@ class Limits {
   }
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(joints_.size()); }
-  /// Raises the damping to K T / 2, below which a sampled spring gives energy.
+  /// Chooses the gains that are `automatic`; those of the defaults for an arm without known masses.
+  void suit(const RobotEnd& robot) noexcept {
+    wall_ticks_ = robot.wall_ticks;
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+      JointLimits& law = joints_[i].law;
+      const auto joint = static_cast<Eigen::Index>(i);
+      const double inertia = joint < robot.joints.size() ? robot.joints.coeff(joint) : 0.0;
+      const Gains gains = suited({law.stiffness, law.damping}, inertia, robot.response,
+                                 {JointLimits{}.stiffness, JointLimits{}.damping});
+      law.stiffness = gains.stiffness;
+      law.damping = gains.damping;
+    }
+  }
+  /// Raises the damping of each joint to what keeps its sampled spring stable: K T / 2 and more
+  /// where the drive is late.
   void prepare(double period) {
-    law_.damping = std::max(law_.damping, 0.5 * detail::checked_period(period) * law_.stiffness);
-    for (Joint& joint : joints_) joint.law.damping = law_.damping;
+    const double least = wall_ticks_ * detail::checked_period(period);
+    for (Joint& joint : joints_) {
+      joint.law.damping = std::max(joint.law.damping, least * joint.law.stiffness);
+    }
   }
 
   void read(const Signals& signals) noexcept {
@@ -105,8 +124,10 @@ class Limits {
       damping.coeffRef(i, i) += joints_[static_cast<std::size_t>(i)].damping;
     }
   }
-  /// The law of all joints, but for the range of each.
-  [[nodiscard]] const JointLimits& law() const noexcept { return law_; }
+  /// The law of a joint, with the gains in use.
+  [[nodiscard]] const JointLimits& law(int joint) const noexcept {
+    return joints_[static_cast<std::size_t>(joint)].law;
+  }
   /// True while a joint is within `range` of its limit and is pushed back.
   [[nodiscard]] bool active() const noexcept { return active_; }
   /// Sum over all joints.
@@ -126,7 +147,7 @@ class Limits {
     PassivityController<1> controller;
     double damping = 0.0;  // [N m s/rad] of law and controller in this tick
   };
-  JointLimits law_;
+  double wall_ticks_ = 0.5;
   std::vector<Joint> joints_;
   Vec<any_size> effort_;  // into the module [N m]
   bool active_ = false;

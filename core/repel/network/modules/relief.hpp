@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
@@ -11,6 +12,7 @@ namespace repel::network {
 /// Frame in which the compliant directions are stated.
 enum class ReliefFrame { world, tool };
 
+/// Damping may be `automatic`: critical for the stiffness and the arm (see `suited`).
 struct ReliefOptions {
   /// Which of x, y, z, and rotation about x, y, z, are compliant.
   std::array<bool, 6> compliant{};
@@ -37,18 +39,29 @@ class Relief {
   /// nor damper
   explicit Relief(const ReliefOptions& options = {}) : options_(options) {
     checked("stiffness", options.stiffness, 0.0, 1e7, "N/m");
-    checked("damping", options.damping, 0.0, 1e6, "N s/m");
+    detail::checked_gain("damping", options.damping, 0.0, 1e6, "N s/m");
     checked("angular stiffness", options.angular_stiffness, 0.0, 1e6, "N m/rad");
-    checked("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
+    detail::checked_gain("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
     const auto& dof = options.compliant;
-    const bool slack = options.stiffness + options.damping <= 0.0;
-    const bool angular_slack = options.angular_stiffness + options.angular_damping <= 0.0;
+    const bool slack = options.stiffness == 0.0 && options.damping <= 0.0;
+    const bool angular_slack = options.angular_stiffness == 0.0 && options.angular_damping <= 0.0;
     if ((slack && (dof[0] || dof[1] || dof[2])) ||
         (angular_slack && (dof[3] || dof[4] || dof[5]))) {
       throw SetupError("a compliant direction has neither stiffness nor damping");
     }
   }
 
+  /// Chooses the dampings that are `automatic`; those of the defaults for an arm without a known
+  /// mass.
+  void suit(const RobotEnd& robot) noexcept {
+    options_.damping = suited({options_.stiffness, options_.damping}, robot.mass, robot.response,
+                              {0.0, ReliefOptions{}.damping})
+                           .damping;
+    options_.angular_damping =
+        suited({options_.angular_stiffness, options_.angular_damping}, robot.inertia,
+               robot.response, {0.0, ReliefOptions{}.angular_damping})
+            .damping;
+  }
   void prepare(double period) {
     (void)detail::checked_period(period);
     for (int i = 0; i < 6; ++i) {
