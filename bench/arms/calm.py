@@ -124,7 +124,7 @@ def measure(program, text, rate, *options):
             "fault": sum(n for name, n in status.items() if name not in demands) / ticks}
 
 
-def heading():
+def heading(script="calm.py", page="arms.md", title="# Arms that people have"):
     """The lines above the table: how it was made, and where."""
     said = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"],
                           capture_output=True, text=True, check=False).stdout.strip()
@@ -132,8 +132,8 @@ def heading():
                 if line.startswith("model name")), platform.machine())
     gxx = subprocess.run(["g++", "-dumpfullversion"], capture_output=True, text=True,
                          check=False).stdout.strip()
-    return ["# Arms that people have", "",
-            "`bench/arms/calm.py build/release/bin/teleop --write bench/results/arms.md`,",
+    return [title, "",
+            f"`bench/arms/{script} build/release/bin/teleop --write bench/results/{page}`,",
             f"{cpu}, {os.cpu_count()} processors, g++ {gxx}, commit {said or 'unknown'}. The runs do",
             "not depend on the clock.", ""]
 
