@@ -117,6 +117,11 @@ class Cell {
   [[nodiscard]] const Teleoperator& control(std::size_t arm) const noexcept {
     return controls_[arm];
   }
+  /// The leverage of the tools over a pair, 1 to `most_leverage`: what its force at the parts is
+  /// divided by to compare it with a force at the tool. Not for the tick.
+  [[nodiscard]] double leverage(PairId id) const {
+    return repel::leverage(world_, layouts_, world_.pair(id).a, world_.pair(id).b);
+  }
   /// The bodies of the moving obstacles.
   [[nodiscard]] std::span<const MovingBody> moving() const noexcept { return moving_; }
   /// The least viscous damping of any arm at its tool, in its start pose [N s/m].
@@ -139,7 +144,7 @@ class Cell {
       for (const PartId b : layouts_[second].parts) {
         for (std::size_t first = 0; first < second; ++first) {
           for (const PartId a : layouts_[first].parts) {
-            world_.add_pair(a, b, description_.arms[second].law);
+            detail::add_pair(world_, layouts_, a, b, description_.arms[second].law);
           }
         }
       }
