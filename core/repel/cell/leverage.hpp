@@ -39,7 +39,7 @@ namespace detail {
 template <class Visit>
 void for_each_side(const Shape& shape, const Pose& X_WP, const Vec3& axis, const Vec3& first,
                    const Visit& visit) {
-  constexpr int sides = 12;
+  constexpr int sides = 24;
   // Two directions about each: one alone has no single farthest point on a flat side.
   constexpr double tilt = 1e-3;  // [rad]
   const Vec3 second = axis.cross(first);
@@ -65,7 +65,7 @@ void for_each_side(const Shape& shape, const Pose& X_WP, const Vec3& axis, const
 
 /// The lever of a shape about a joint [m]: the greatest torque [N m] about the axis of the joint by
 /// which a force of 1 N can push against the surface of the shape, across the axis. 1 for a joint
-/// that slides. Within 4 percent for rounded shapes that are wide, exact for slender ones.
+/// that slides. Too small by up to 4 percent: directions 15 degrees apart are tried.
 /// @param column twist of the joint at 1 rad/s or 1 m/s, at the point `p_WC` [m]
 [[nodiscard]] inline double lever_of(const Shape& shape, const Pose& X_WP, const Twist& column,
                                      const Vec3& p_WC) {
@@ -155,13 +155,10 @@ class ArmLevers {
   [[nodiscard]] double between(int part, int other) const {
     const auto link_of = [&](int index) {
       const int link = links_[static_cast<std::size_t>(index)];
-      return link == ArmPart::on_tool ? std::numeric_limits<int>::max() : link;
+      return link == ArmPart::on_tool ? static_cast<int>(tool_.size()) : link;
     };
     const bool is_outer = link_of(part) > link_of(other);
-    const int inner_link = link_of(is_outer ? other : part);
-    return inner_link == std::numeric_limits<int>::max()
-               ? 1.0
-               : leverage(is_outer ? part : other, inner_link + 1);
+    return leverage(is_outer ? part : other, link_of(is_outer ? other : part) + 1);
   }
 
   /// The bound above for parts that meet a shape fixed in the world: its farthest point from the
