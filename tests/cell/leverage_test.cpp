@@ -177,6 +177,25 @@ TEST(Leverage, OfEachPairScalesItsLawAtSetUp) {
   EXPECT_NEAR(world.pairs()[2].law.surface_force, 600.0, 3.0);
 }
 
+TEST(Leverage, OfTwoArmsIsTheGreaterAndOverAMovingObstacleHasNoBound) {
+  World world;
+  ArmDescription arm = planar_arm();
+  std::vector<ArmLayout> arms{detail::add_arm(world, arm)};
+  arm.name = "other";
+  arms.push_back(detail::add_arm(world, arm));
+  const auto over = [&](PartId a, PartId b) { return leverage(world, arms, a, b); };
+  EXPECT_NEAR(over(arms[0].parts[1], arms[1].parts[3]), 2.5, 0.01);
+  EXPECT_NEAR(over(arms[0].parts[3], arms[1].parts[1]), 2.5, 0.01);
+  EXPECT_NEAR(over(arms[0].parts[0], arms[1].parts[3]), 2.0, 0.01) << "its tool on a link";
+  EXPECT_EQ(over(arms[0].parts[0], arms[1].parts[0]), 1.0);
+  EXPECT_NEAR(over(arms[1].parts[1], arms[1].parts[3]), 2.0, 0.01) << "of one arm";
+  ObstacleDescription door{"door", Shape::sphere(0.05), at(0.0, 0.2)};
+  door.motion = ReciprocatingMotion{Vec3::UnitX(), 2.0};
+  (void)detail::add_obstacle(world, door, arms);
+  const PartId last{static_cast<std::int32_t>(world.parts().size()) - 1};
+  EXPECT_NEAR(over(arms[0].parts[1], last), 2.5, 0.01);
+}
+
 TEST(Leverage, ThatALawCannotFollowIsRefusedWithWhatToDo) {
   ForceLaw law{.surface_force = 0.9 * ForceLaw::most, .given_at = GivenAt::tool};
   try {
