@@ -43,11 +43,13 @@ void for_each_side(const Shape& shape, const Pose& X_WP, const Vec3& axis, const
   // Two directions about each: one alone has no single farthest point on a flat side.
   constexpr double tilt = 1e-3;  // [rad]
   const Vec3 second = axis.cross(first);
-  for (int k = 0; k < 2 * sides; ++k) {
-    const double turn = (k / 2) * 2.0 * std::numbers::pi / sides + (k % 2 == 0 ? tilt : -tilt);
-    const Vec3 n = std::cos(turn) * first + std::sin(turn) * second;
-    const Vec<double> d = rotate_transposed(X_WP, Vec<double>(n[0], n[1], n[2]));
-    visit(n, X_WP * to_vec3(shape.level(0).core.support(d).p));
+  for (int side = 0; side < sides; ++side) {
+    for (const double aside : {tilt, -tilt}) {
+      const double turn = side * 2.0 * std::numbers::pi / sides + aside;
+      const Vec3 n = std::cos(turn) * first + std::sin(turn) * second;
+      const Vec<double> d = rotate_transposed(X_WP, Vec<double>(n[0], n[1], n[2]));
+      visit(n, X_WP * to_vec3(shape.level(0).core.support(d).p));
+    }
   }
 }
 
@@ -109,7 +111,8 @@ class ArmLevers {
 
   ArmLevers() = default;
   /// Leaves the kinematics of the arm at its `start`. Nothing is computed for an arm without link
-  /// parts. Cost: kinematics, and a support map for each part and joint, in each of the poses.
+  /// parts. Cost: kinematics, and 48 support maps for each part and joint, in each of the poses:
+  /// 20 ms for an arm of six joints.
   explicit ArmLevers(const ArmDescription& arm) {
     for (const ArmPart& part : arm.parts) links_.push_back(part.link);
     if (std::all_of(links_.begin(), links_.end(), [](int l) { return l == ArmPart::on_tool; })) {
