@@ -1,5 +1,7 @@
 #include "heading.hpp"
 
+#include <repel/cell/layout.hpp>
+
 namespace repel::teleop {
 
 std::string name_of(const World& world, PairId id) {

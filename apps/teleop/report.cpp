@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "figure.hpp"
+#include "link_laws.hpp"
 #include "network_report.hpp"
 #include "times.hpp"
 #include "unused.hpp"
@@ -32,6 +33,7 @@ void print_obstacles(const RunResult& r, std::FILE* out) {
                  touched[i].name.c_str(), figure(touched[i].extremes.peak_force, 2).c_str(),
                  figure(1e3 * touched[i].extremes.nearest, 3).c_str(), touched[i].part.c_str(),
                  touched[i].body.c_str());
+    print_link_laws(touched[i], out);
   }
   if (touched.size() > most) std::fprintf(out, "    and %zu more\n", touched.size() - most);
 }
@@ -195,7 +197,8 @@ ordered_json obstacle_list(const RunResult& r) {
                     {"deepest_m", o.extremes.deepest},
                     {"peak_force_n", o.extremes.peak_force},
                     {"part", o.part},
-                    {"body", o.body}});
+                    {"body", o.body},
+                    {"link_laws", link_laws_to_json(o)}});
   }
   return list;
 }

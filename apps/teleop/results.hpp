@@ -25,12 +25,27 @@
 
 namespace repel::teleop {
 
+/// The law of an obstacle on a link that it pushed, and what that amounts to at the tool.
+struct LinkLaw {
+  std::string body;  ///< the link
+  GivenAt given_at = GivenAt::part;
+  bool passable = false;
+  double leverage = 1.0;      ///< of the tool over the link, see Cell::leverage
+  double at_part = 0.0;       ///< [N] surface force on the link
+  double peak_force = 0.0;    ///< [N] on the link
+  double peak_at_tool = 0.0;  ///< [N] what it held there
+
+  /// The surface force in terms of a push at the tool [N].
+  [[nodiscard]] double at_tool() const noexcept { return at_part / leverage; }
+};
+
 /// The results of one obstacle.
 struct ObstacleResult {
   std::string name;
-  PairExtremes extremes{};  ///< of all pairs with it
-  std::string part{};       ///< of a tool or arm, in the pair with the largest force
-  std::string body{};       ///< the tool or link of that part
+  PairExtremes extremes{};           ///< of all pairs with it
+  std::string part{};                ///< of a tool or arm, in the pair with the largest force
+  std::string body{};                ///< the tool or link of that part
+  std::vector<LinkLaw> link_laws{};  ///< the weakest pair of each link that it pushed
 };
 
 /// The results of one module of the network.
@@ -66,7 +81,8 @@ struct RunResult {
   std::vector<ArmResult> arms;  ///< the arm of the scene itself, then its partners
   double device_damping = 0.0;  ///< [N s/m] minimum over the arms, at their tools at the start
   std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts that start
-                                      ///< in an obstacle, a log that ended early
+                                      ///< in an obstacle, a log that ended early, laws at links
+                                      ///< that the operator outweighs
   DurationHistogram network_time;     ///< of the networks alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
   std::int64_t most_support_pairs = 0;  ///< in one tick

@@ -16,6 +16,7 @@
 #include "driven_cell.hpp"
 #include "fade_out.hpp"
 #include "heap_guard.hpp"
+#include "link_laws.hpp"
 #include "machine.hpp"
 #include "pace.hpp"
 #include "replay.hpp"
@@ -295,6 +296,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
     result.arms[i].contact = driven.arm(i).contact();
   }
   note_pairs(cell.world(), cell.coprocessor(), result);
+  note_link_laws(cell, result);
   result.interrupted = stop;
   result.allocations_in_tick = host::HeapGuard::allocations();
   result.system_calls_in_tick = SystemCallGuard::calls();

@@ -127,12 +127,18 @@ std::vector<Part> tool_of(const Value& value, HullPoints& counted) {
 
 ForceLaw law_of(const Value& value) {
   const Map map(value);
-  map.allow({"range", "surface_force", "damping", "ceiling", "passable", "depth", "plateau"});
+  map.allow(
+      {"range", "surface_force", "damping", "ceiling", "given_at", "passable", "depth", "plateau"});
   ForceLaw law;
   if (const Value* passable = map.find("passable")) {
     law.passable = passable->word_of({"yes", "no"}) == "yes";
   }
-  if (!law.passable) map.allow({"range", "surface_force", "damping", "ceiling", "passable"});
+  if (!law.passable) {
+    map.allow({"range", "surface_force", "damping", "ceiling", "given_at", "passable"});
+  }
+  if (const Value* at = map.find("given_at")) {
+    law.given_at = at->word_of({"part", "tool"}) == "tool" ? GivenAt::tool : GivenAt::part;
+  }
   map.read("range", {unit::length, 1e-6, 1e3}, law.range);
   map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
   const Value* damping = map.find("damping");

@@ -2,6 +2,7 @@
 // the joints in its log by Wolfe's algorithm with 113 bits, not by the library's own distance.
 #include <describe.hpp>
 #include <repel/cell/cell.hpp>
+#include <repel/cell/layout.hpp>
 #include <repel/robots/kinematics.hpp>
 #include <support/wolfe.hpp>
 

@@ -57,6 +57,62 @@ TEST(WholeArm, WithoutTheModuleTheToolAloneFeelsTheWallsAndTheReportSaysSo) {
   EXPECT_TRUE(ending.says("links of the arm")) << ending;
 }
 
+/// A UR5 that swings its upper arm against a post near its base, driven at the tool.
+std::string swing_scene(const std::string& given_at) {
+  return "robot: {urdf: " REPEL_SOURCE
+         "/bench/arms/ur5.urdf, start: 0 -30 60 -120 -90 0 deg}\n"
+         "tool: [{name: rod, shape: capsule, radius: 15 mm, length: 60 mm}]\n"
+         "laws: {default: {range: 20 mm, surface_force: 120 N, damping: 200 N s/m" +
+         given_at +
+         "}}\n"
+         "obstacles: [{name: post, shape: capsule, radius: 30 mm, length: 0.6 m, position: 0.14 "
+         "0.22 0.3 m}]\n"
+         "network: [{module: torque_arm}, {module: multiplex}, {module: spaceball}, "
+         "{module: kbb2, stiffness: 3 N/mm, damping: 300 N s/m, force_limit: 120 N}, "
+         "{module: obstacle}, {module: puma_kin}, {module: arm_obstacle}, {module: limits}, "
+         "{module: puma_joints}]\n"
+         "script: [{name: swing, device: spaceball, duration: 6 s, linear: 0 100 0 mm/s}]\n";
+}
+
+/// The report on the post, and the warnings of the run.
+std::pair<json, json> swing(const std::string& given_at, const std::string& says) {
+  const Folder folder;
+  const std::string scene = folder.with("swing.yaml", swing_scene(given_at));
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 8 --report " + quoted(folder / "r.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says(says)) << ending;
+  const json report = report_of(folder / "r.json");
+  return {report.at("obstacles").at(0), report.at("warnings")};
+}
+
+TEST(WholeArm, APostNearTheBaseIsEnteredFarLessWithALawGivenAtTheTool) {
+  const auto [as_before, warnings] = swing("", "law given at the part: 120 N at the part, 3");
+  EXPECT_GT(as_before.at("deepest_m"), 0.04) << as_before;
+  const json& weak = as_before.at("link_laws").at(0);
+  EXPECT_EQ(weak.at("body"), "upper_arm_link");
+  EXPECT_EQ(weak.at("given_at"), "part");
+  EXPECT_EQ(weak.at("surface_force_at_part_n"), 120.0);
+  const double leverage = weak.at("leverage");
+  EXPECT_GT(leverage, 3.0) << "the tool reaches 0.95 m, the post is 0.29 m from the first axis";
+  EXPECT_LT(leverage, 3.6);
+  EXPECT_NEAR(weak.at("surface_force_at_tool_n").get<double>(), 120.0 / leverage, 1e-6);
+  EXPECT_NEAR(weak.at("peak_force_at_tool_n").get<double>() * leverage, weak.at("peak_force_n"),
+              1e-6);
+  ASSERT_EQ(warnings.size(), 1U) << warnings;
+  const std::string warning = warnings[0];
+  EXPECT_NE(warning.find("the law of 'post' is given at the part"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("pushes with up to 120 N"), std::string::npos) << warning;
+
+  const auto [scaled, none] = swing(", given_at: tool", "law given at the tool: 3");
+  EXPECT_LT(scaled.at("deepest_m").get<double>(), 0.3 * as_before.at("deepest_m").get<double>());
+  EXPECT_EQ(scaled.at("link_laws").at(0).at("given_at"), "tool");
+  EXPECT_NEAR(scaled.at("link_laws").at(0).at("leverage").get<double>(), leverage, 1e-9);
+  EXPECT_NEAR(scaled.at("link_laws").at(0).at("surface_force_at_tool_n").get<double>(), 120.0,
+              1e-6);
+  EXPECT_TRUE(none.empty()) << none;
+}
+
 /// The robot of the repository, with a gripper on its flange.
 std::string robot_with_gripper() {
   std::string urdf = text_of(REPEL_SOURCE "/robots/puma560.urdf");

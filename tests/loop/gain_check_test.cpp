@@ -39,7 +39,7 @@ TEST(GainCheck, JointThatTurnsFreelyLeavesNoDamping) {
 }
 
 /// A ball and two walls, 4 and 10 kN/m, with a damping of 10 N s/m each.
-World two_walls() {
+World two_walls(GivenAt given_at = GivenAt::part) {
   World world;
   const BodyId tool = world.add_body("tool");
   const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.05));
@@ -48,7 +48,8 @@ World two_walls() {
     X.translation().x() = 1.0;
     const PartId wall = world.add_part(World::fixed, "wall of " + to_text(force) + " N",
                                        Shape::box({0.1, 1.0, 1.0}), X);
-    world.add_pair(ball, wall, {.range = 0.02, .surface_force = force, .damping = 10.0});
+    world.add_pair(ball, wall,
+                   {.range = 0.02, .surface_force = force, .damping = 10.0, .given_at = given_at});
   }
   return world;
 }
@@ -66,6 +67,15 @@ TEST(GainCheck, WallThatIsTooStiffIsSaidWithWhatWouldDoAndTheOtherIsNot) {
   }
   EXPECT_THROW(check_gains(world, 0.0025, 0.0, 0.0, network::GainCheck::error), SetupError);
   EXPECT_TRUE(check_gains(world, 0.002, 0.0, 0.0, network::GainCheck::error).empty());
+}
+
+TEST(GainCheck, LawGivenAtTheToolIsSaidWithItsNumbersAtThePart) {
+  for (const GivenAt given_at : {GivenAt::part, GivenAt::tool}) {
+    const auto said =
+        check_gains(two_walls(given_at), 0.0025, 0.0, 0.0, network::GainCheck::warning);
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_EQ(said[0].ends_with("; these are its numbers at the part"), given_at == GivenAt::tool);
+  }
 }
 
 TEST(GainCheck, FrictionOfTheArmAloneMayDoAsWell) {

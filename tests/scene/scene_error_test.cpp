@@ -141,6 +141,12 @@ TEST(SceneError, APassableLawNeedsALowCeilingAndOnlyItHasADepth) {
   expect_refused(passable + "plateau: 1.1}}\n", 8, {"'1.1'", "0 to 1"});
 }
 
+TEST(SceneError, ALawIsGivenAtThePartOrAtTheTool) {
+  const std::string law = base_scene + "laws: {a: {given_at: ";
+  expect_refused(law + "hand}}\n", 8, {"'given_at' is 'hand'", "allowed: part", "tool"});
+  expect_refused(law + "[tool]}}\n", 8, {"'given_at'"});
+}
+
 TEST(SceneError, AnInfiniteRateOfTheOperatorIsRefused) {
   expect_refused(base_scene +
                      "script:\n"

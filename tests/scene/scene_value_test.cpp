@@ -238,6 +238,19 @@ TEST(SceneValue, AnObstacleMayBePassable) {
   EXPECT_EQ(scene.obstacles[1].law.plateau, 0.8);
 }
 
+TEST(SceneValue, ALawIsGivenAtThePartUnlessItSaysTheTool) {
+  const Scene scene =
+      parsed(base_scene +
+             "  - {name: post, shape: sphere, radius: 1 m, law: scaled}\n"
+             "  - {name: skin, shape: sphere, radius: 1 m, law: soft}\n"
+             "laws: {scaled: {given_at: tool}, soft: {ceiling: 5 N, passable: yes, given_at: "
+             "part}}\n");
+  EXPECT_EQ(scene.obstacles[0].law.given_at, GivenAt::part);
+  EXPECT_EQ(scene.obstacles[1].law.given_at, GivenAt::tool);
+  EXPECT_EQ(scene.obstacles[1].law.surface_force, 100.0) << "scaled by the cell";
+  EXPECT_EQ(scene.obstacles[2].law.given_at, GivenAt::part);
+}
+
 TEST(SceneValue, TheScriptIsReadPhaseByPhase) {
   const Scene scene =
       parsed(base_scene +

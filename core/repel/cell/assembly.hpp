@@ -85,6 +85,9 @@ class CellAssembly {
   [[nodiscard]] const Teleoperator& control(std::size_t arm) const noexcept {
     return controls_[arm];
   }
+  [[nodiscard]] double leverage(PairId id) const {
+    return repel::leverage(world_, layouts_, world_.pair(id).a, world_.pair(id).b);
+  }
   [[nodiscard]] std::span<const MovingBody> moving() const noexcept { return moving_; }
   [[nodiscard]] double device_damping() const noexcept { return device_damping_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
@@ -104,7 +107,7 @@ class CellAssembly {
       for (const PartId b : layouts_[second].parts) {
         for (std::size_t first = 0; first < second; ++first) {
           for (const PartId a : layouts_[first].parts) {
-            world_.add_pair(a, b, description_.arms[second].law);
+            add_pair(world_, layouts_, a, b, description_.arms[second].law);
           }
         }
       }

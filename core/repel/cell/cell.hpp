@@ -24,6 +24,7 @@ namespace repel {
 
 class Coprocessor;
 class Teleoperator;
+struct ArmLayout;
 namespace detail {
 class CellAssembly;
 }
@@ -83,7 +84,7 @@ class Cell {
   /// Forces and answers of the pairs (schedule/coprocessor.hpp).
   [[nodiscard]] const Coprocessor& coprocessor() const noexcept;
   [[nodiscard]] std::size_t arms() const noexcept;
-  /// The bodies and parts of an arm.
+  /// The bodies and parts of an arm (cell/layout.hpp).
   [[nodiscard]] const ArmLayout& layout(std::size_t arm) const noexcept;
   /// The network of an arm, with the states and accounts of its modules.
   [[nodiscard]] const network::Network& network(std::size_t arm) const noexcept;
@@ -93,6 +94,9 @@ class Cell {
   [[nodiscard]] double elapsed() const noexcept;
   /// The control of an arm (loop/tick.hpp).
   [[nodiscard]] const Teleoperator& control(std::size_t arm) const noexcept;
+  /// The leverage of the tools over a pair, 1 to `most_leverage`: what its force at the parts is
+  /// divided by to compare it with a force at the tool. Not for the tick.
+  [[nodiscard]] double leverage(PairId id) const;
   /// The bodies of the moving obstacles.
   [[nodiscard]] std::span<const MovingBody> moving() const noexcept;
   /// The least viscous damping of any arm at its tool, in its start pose [N s/m].
@@ -181,6 +185,9 @@ REPEL_DEFINITION double Cell::elapsed() const noexcept {
 }
 REPEL_DEFINITION const Teleoperator& Cell::control(std::size_t arm) const noexcept {
   return parts_->control(arm);
+}
+REPEL_DEFINITION double Cell::leverage(PairId id) const {
+  return parts_->leverage(id);
 }
 REPEL_DEFINITION std::span<const MovingBody> Cell::moving() const noexcept {
   return parts_->moving();

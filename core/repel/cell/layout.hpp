@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/cell/description.hpp>
+#include <repel/cell/leverage.hpp>
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
 #include <repel/reduction/separation.hpp>
@@ -17,7 +19,66 @@
 
 namespace repel {
 
+/// The bodies and parts that represent an arm in a world.
+struct ArmLayout {
+  BodyId tool;
+  std::vector<LinkBody> links;  ///< only those that have parts
+  std::vector<PartId> parts;    ///< in the order of the description, one after the other
+  ArmLevers levers;             ///< of the tool and the parts of the links
+};
+
+/// The leverage of the tools of these arms over a pair of parts, 1 to `most_leverage`: how many
+/// times a force at the tool the pair must exert to hold it. 1 where only tools and obstacles meet.
+/// Of two arms the one with more leverage counts; of two parts of one arm the outer one, about the
+/// joints between them. Not for the tick.
+[[nodiscard]] inline double leverage(const World& world, std::span<const ArmLayout> arms, PartId a,
+                                     PartId b) {
+  struct Side {
+    const ArmLayout* arm = nullptr;  // none: an obstacle
+    int part = 0;
+  };
+  const auto side_of = [&](PartId id) {
+    for (const ArmLayout& arm : arms) {
+      if (arm.parts.empty() || id.index < arm.parts.front().index) continue;
+      if (id.index <= arm.parts.back().index) return Side{&arm, id.index - arm.parts[0].index};
+    }
+    return Side{};
+  };
+  const Side first = side_of(a);
+  const Side second = side_of(b);
+  if (first.arm != nullptr && first.arm == second.arm) {
+    return first.arm->levers.between(first.part, second.part);
+  }
+  const auto over = [&](const Side& side, const Part& other) {
+    if (side.arm == nullptr) return 1.0;
+    const ArmLevers& levers = side.arm->levers;
+    if (other.body != World::fixed) return levers.leverage(side.part);
+    return levers.leverage(side.part, 0, levers.meeting(other.shape, other.X_BP));
+  };
+  return std::max(over(first, world.part(b)), over(second, world.part(a)));
+}
+
 namespace detail {
+
+/// Adds a pair with its law as it acts at the parts. @throws SetupError for a law out of range
+inline void add_pair(World& world, std::span<const ArmLayout> arms, PartId a, PartId b,
+                     const ForceLaw& law) {
+  if (checked(law).given_at == GivenAt::part) {
+    world.add_pair(a, b, law);
+    return;
+  }
+  const double times = leverage(world, arms, a, b);
+  const ForceLaw scaled = at_part(law, times);
+  try {
+    (void)checked(scaled);
+  } catch (const SetupError& error) {
+    throw SetupError("'" + world.part(a).name + "' and '" + world.part(b).name +
+                     "': their law is given at the tool and acts " + to_text(times, 3) +
+                     " times as strongly at the part: " + error.what() +
+                     ", or a law given at the part");
+  }
+  world.add_pair(a, b, scaled);
+}
 
 /// The designation of an arm in messages.
 [[nodiscard]] inline std::string named(const ArmDescription& arm) {
@@ -78,6 +139,7 @@ inline ArmLayout add_arm(World& world, const ArmDescription& arm) {
     }
     layout.parts.push_back(world.add_part(body, prefix + part.name, part.shape, part.X_FP));
   }
+  layout.levers = ArmLevers(arm);
   return layout;
 }
 
@@ -107,7 +169,7 @@ inline void add_own_pairs(World& world, const ArmDescription& arm, const ArmLayo
                          "' meet where the arm starts; allowed: another start, or links that "
                          "the srdf file disables");
       }
-      world.add_pair(layout.parts[i], layout.parts[k], *arm.self_law);
+      add_pair(world, {&layout, 1}, layout.parts[i], layout.parts[k], *arm.self_law);
     }
   }
 }
@@ -127,7 +189,7 @@ inline std::optional<MovingBody> add_obstacle(World& world, const ObstacleDescri
   }
   const PartId id = world.add_part(body, obstacle.name, obstacle.shape, X_BP);
   for (const ArmLayout& arm : arms) {
-    for (const PartId part : arm.parts) world.add_pair(part, id, obstacle.law);
+    for (const PartId part : arm.parts) add_pair(world, arms, part, id, obstacle.law);
   }
   return moving;
 }

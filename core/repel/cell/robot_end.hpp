@@ -3,12 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
 #include <repel/cell/description.hpp>
+#include <repel/cell/workspace.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/network/elements/dense.hpp>
@@ -18,33 +17,6 @@
 namespace repel {
 
 namespace detail {
-
-/// Number `index` of the van der Corput sequence of this base, 0 to 1: its digits behind the point,
-/// in reverse. One sequence for each joint, of different primes, fills the workspace evenly (J. H.
-/// Halton, 1960), and equally on every machine.
-[[nodiscard]] constexpr double van_der_corput(int index, int base) noexcept {
-  double sum = 0.0;
-  double share = 1.0;
-  for (; index > 0; index /= base) {
-    share /= base;
-    sum += share * (index % base);
-  }
-  return sum;
-}
-
-/// Pose `index` of the workspace; joints that turn without end, or slide so, within 3.14 rad or
-/// 1 m of the start.
-inline void place_joints(const ArmDescription& arm, int index, std::vector<double>& q) {
-  constexpr int primes[network::most_joints] = {2,  3,  5,  7,  11, 13, 17, 19,
-                                                23, 29, 31, 37, 41, 43, 47, 53};
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    const ArmLink& link = arm.model.links[i];
-    const double reach = link.type == JointType::revolute ? std::numbers::pi : 1.0;
-    const double lower = std::isfinite(link.lower) ? link.lower : arm.start[i] - reach;
-    const double upper = std::isfinite(link.upper) ? link.upper : arm.start[i] + reach;
-    q[i] = lower + (upper - lower) * van_der_corput(index, primes[i]);
-  }
-}
 
 /// The greatest eigenvalue of three rows and columns of J M^-1 J', from `row` on: 1 / the least
 /// mass or inertia over all directions.
@@ -79,7 +51,7 @@ inline void place_joints(const ArmDescription& arm, int index, std::vector<doubl
   network::Vec<network::any_size> joints;
   joints.setZero(size);
   for (int pose = 0; pose < poses; ++pose) {
-    if (pose > 0) detail::place_joints(arm, pose, q);
+    if (pose > 0) detail::draw_pose(arm, pose, q);
     arm.kinematics->update(q);
     arm.kinematics->tool_jacobian(J);
     inertia.update(*arm.kinematics);

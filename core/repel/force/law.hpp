@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <repel/base/setup_error.hpp>
@@ -46,6 +47,12 @@ struct LawFormula {
   }
 };
 
+/// Where the numbers of a law hold for a part of a link.
+enum class GivenAt : std::uint8_t {
+  part,  ///< at the point where the part is pushed
+  tool,  ///< at the tool: at the part a cell scales them by the leverage of the tool over it
+};
+
 /// The nonlinear spring-damper of one pair (Anderson 1993, section 2: zero outside a threshold
 /// region, a large force at the surface).
 ///
@@ -69,6 +76,7 @@ struct ForceLaw {
   double damping = 50.0;                                     ///< c0 [N s/m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [N] greatest force of the pair
   bool passable = false;                                     ///< may be entered
+  GivenAt given_at = GivenAt::part;                          ///< see repel/cell/leverage.hpp
   double depth = most;   ///< D [m] penetration depth at which a passable body releases;
                          ///< World::add_pair clamps it to the deepest that the two shapes can have
   double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1

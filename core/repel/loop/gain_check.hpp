@@ -118,6 +118,7 @@ inline std::vector<std::string> check_gains(const World& world, double period, d
     }
     if (text.empty() || std::find(told.begin(), told.end(), text) != told.end()) continue;
     told.push_back(text);
+    if (pair.law.given_at == GivenAt::tool) text += "; these are its numbers at the part";
     complaints.push_back("'" + world.part(pair.b).name + "': " + text);
     if (check == network::GainCheck::error) throw SetupError(complaints.back());
   }

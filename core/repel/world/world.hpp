@@ -52,13 +52,6 @@ struct LinkBody {
   int link = 0;  ///< index in ArmModel::links
 };
 
-/// The bodies and parts that represent an arm.
-struct ArmLayout {
-  BodyId tool;
-  std::vector<LinkBody> links;  ///< only those that have parts
-  std::vector<PartId> parts;    ///< in the order of the description
-};
-
 /// Built at set-up, by the functions that throw; `place` is the one for the tick.
 class World {
  public:
