@@ -128,4 +128,10 @@ class Shape {
   const Level* first_ = nullptr;  ///< the first level, cached
 };
 
+/// A shape at its pose, for the length of a call: it owns neither.
+struct PosedShape {
+  const Shape& shape;
+  const Pose& X_W;
+};
+
 }  // namespace repel
