@@ -91,7 +91,7 @@ class LadderWalk {
     options.ignore_beyond += at_start() ? depth() : std::numeric_limits<double>::infinity();
     Gap gap;
     if (a.core.is_polytope() && b.core.is_polytope() &&
-        is_quick({a.core, A_.X_W, b.core, B_.X_W}, options, gap)) {
+        find_quickly({a.core, A_.X_W, b.core, B_.X_W}, options, gap)) {
       return gap;
     }
     WarmStart start = warm_;
@@ -113,7 +113,7 @@ class LadderWalk {
   }
 
   /// True when the feature or corners that decided last still decide.
-  bool is_quick(const PosedPair& pair, const QueryOptions& options, Gap& gap) noexcept {
+  bool find_quickly(const PosedPair& pair, const QueryOptions& options, Gap& gap) noexcept {
     ++iterations_;
     if (apart_) {
       gap.meets = warm_.met_size == 4 && still_meets(pair, warm_);
@@ -122,7 +122,7 @@ class LadderWalk {
       return gap.meets;
     }
     if (warm_.size < 1 || warm_.size > 3) return false;
-    if (still_nearest(pair, warm_, options, options.ignore_beyond, gap)) return true;
+    if (confirm_nearest(pair, warm_, options, options.ignore_beyond, gap)) return true;
     const bool found = FeatureSearch(pair).run(options, warm_, gap);
     iterations_ += gap.iterations;
     return found;

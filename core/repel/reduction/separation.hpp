@@ -62,8 +62,9 @@ namespace detail {
 /// The result by the deepest common point of the cores; false when there is none or it takes more
 /// than `most_pivots`.
 /// @param doubted see DeepestPoint
-[[nodiscard]] inline bool at_deepest_point(PosedShape A, PosedShape B, int most_pivots,
-                                           bool doubted, WarmStart& warm, Separation& s) noexcept {
+[[nodiscard]] inline bool find_deepest_point(PosedShape A, PosedShape B, int most_pivots,
+                                             bool doubted, WarmStart& warm,
+                                             Separation& s) noexcept {
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
   const PosedPlanes planes_a{A.shape.planes(), A.X_W, a.core.reach()};
@@ -101,8 +102,8 @@ namespace detail {
 
 /// The result by the penetration depth; false for curved cores and for those without volume.
 /// @param warm names of four corners of A - B that enclose the origin
-[[nodiscard]] inline bool at_exact_depth(PosedShape A, PosedShape B, const WarmStart& warm,
-                                         Separation& s) noexcept {
+[[nodiscard]] inline bool find_exact_depth(PosedShape A, PosedShape B, const WarmStart& warm,
+                                           Separation& s) noexcept {
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
   if (!are_angular(a, b)) return false;
@@ -136,12 +137,12 @@ namespace detail {
 /// The result for an overlap of the cores by a measure other than their levels; false when the
 /// levels are the requested measure, or when the cores turn out not to overlap.
 /// @param spent support-map pairs evaluated; 0 when no search has found the overlap yet
-[[nodiscard]] inline bool in_overlap(PosedShape A, PosedShape B, const QueryOptions& options,
-                                     int spent, WarmStart& warm, Separation& s) noexcept {
+[[nodiscard]] inline bool measure_overlap(PosedShape A, PosedShape B, const QueryOptions& options,
+                                          int spent, WarmStart& warm, Separation& s) noexcept {
   if (is_by_planes(A.shape, B.shape, options)) {
-    return at_deepest_point(A, B, options.iterations - spent, spent == 0, warm, s);
+    return find_deepest_point(A, B, options.iterations - spent, spent == 0, warm, s);
   }
-  return options.measure == Measure::exact && at_exact_depth(A, B, warm, s) &&
+  return options.measure == Measure::exact && find_exact_depth(A, B, warm, s) &&
          s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
 }
 
@@ -166,7 +167,7 @@ namespace detail {
   // If the origin is deep inside but coplanar with all support points found, it looks like contact
   // to GJK.
   const bool meets = gap.meets || gap.end == QueryEnd::touching;
-  if (meets && in_overlap(A, B, options, gap.iterations, warm, s)) {
+  if (meets && measure_overlap(A, B, options, gap.iterations, warm, s)) {
     s.iterations += gap.iterations;
     return s;
   }
@@ -192,7 +193,7 @@ namespace detail {
   const Level& b = B.shape.level(0);
   if (overlapped(A.shape, B.shape, warm)) {
     Separation s;
-    if (in_overlap(A, B, options, 0, warm, s)) return s;
+    if (measure_overlap(A, B, options, 0, warm, s)) return s;
   }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
@@ -230,7 +231,7 @@ namespace detail {
     const Level& b = B.level(0);
     const double beyond = options.ignore_beyond + a.depth + b.depth;
     Gap gap;
-    if (detail::still_nearest({a.core, X_WA, b.core, X_WB}, warm, options, beyond, gap)) {
+    if (detail::confirm_nearest({a.core, X_WA, b.core, X_WB}, warm, options, beyond, gap)) {
       return detail::apart(gap, a.depth, b.depth, X_WA);
     }
   }
