@@ -8,7 +8,7 @@
 
 #include <repel/distance/feature_search.hpp>
 #include <repel/distance/gjk.hpp>
-#include <repel/reduction/answer.hpp>
+#include <repel/reduction/separation_result.hpp>
 #include <repel/reduction/way_out.hpp>
 
 namespace repel::detail {
