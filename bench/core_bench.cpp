@@ -11,7 +11,7 @@
 #include <random>
 #include <repel/repel.hpp>
 
-#include "main.hpp"
+#include "harness.hpp"
 
 namespace {
 

@@ -2,6 +2,10 @@
 # that installs them is printed.
 include(RepelDependencies)
 
+# What find_package offers: the target repel::PART of each. A back end is a folder of this name in
+# backends/.
+set(REPEL_COMPONENTS core compiled ideal devices record robots bullet ode scene visual)
+
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)
   file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/debian-packages.txt lines REGEX "^${part} ")
@@ -22,19 +26,15 @@ function(repel_say_if_left_out part)
   endif()
 endfunction()
 
-repel_find_core()
+foreach(part ${REPEL_COMPONENTS})
+  repel_find(${part})
+endforeach()
 if(NOT REPEL_HAS_CORE)
   repel_debian_packages(core packages)
   message(FATAL_ERROR "repel needs Eigen 3.4 or newer: apt-get install ${packages}")
 endif()
-repel_find_devices()
-repel_find_robots()
-repel_find_bullet()
-repel_find_ode()
-repel_find_scene()
-repel_find_visual()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
-foreach(part devices robots meshes bullet ode scene visual)
+foreach(part ${REPEL_COMPONENTS} meshes)
   repel_say_if_left_out(${part})
 endforeach()
 

@@ -1,21 +1,22 @@
 # What each part needs beyond the standard library. Included by the build and by the installed
 # package alike: a static library still needs its private dependencies where it is linked.
 #
-# repel_find_PART() finds them and sets REPEL_HAS_PART to say whether all of them were there.
-# These are macros because find_package must leave its targets with the caller.
+# repel_find(PART) finds them by repel_find_PART, if it needs any, and sets REPEL_HAS_PART to say
+# whether all of them were there. These are macros because find_package must leave its targets with
+# the caller.
+
+macro(repel_find part)
+  if(COMMAND repel_find_${part})
+    cmake_language(CALL repel_find_${part})
+  else()
+    repel_all_found(${part})
+  endif()
+endmacro()
 
 macro(repel_find_core)
   find_package(Eigen3 3.4 QUIET NO_MODULE)
   find_package(Threads QUIET)
   repel_all_found(CORE Eigen3_FOUND Threads_FOUND)
-endmacro()
-
-macro(repel_find_ideal)
-  repel_all_found(IDEAL)
-endmacro()
-
-macro(repel_find_record)
-  repel_all_found(RECORD)
 endmacro()
 
 macro(repel_find_devices)
@@ -70,6 +71,7 @@ macro(repel_pkg_config prefix module)
 endmacro()
 
 function(repel_all_found part)
+  string(TOUPPER ${part} part)
   set(all TRUE)
   foreach(found ${ARGN})
     if(NOT ${found})

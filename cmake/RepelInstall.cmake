@@ -21,7 +21,7 @@ endfunction()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/repel)
 set(REPEL_PACKAGES "")  # a line of the package file for each part: the Debian packages it needs
-foreach(part core ideal devices record robots bullet ode scene visual)
+foreach(part ${REPEL_COMPONENTS})
   repel_debian_packages(${part} packages)
   if(part STREQUAL robots AND REPEL_HAS_MESHES)
     repel_debian_packages(meshes meshes)

@@ -1,4 +1,4 @@
-# Sourced by ./run, ./test and .ci/run, which set `root` to the folder of this repository.
+# Sourced by scripts, which set `root` to the folder of this repository.
 # shellcheck shell=sh disable=SC2154
 
 # The packages of the named parts, see debian-packages.txt.
@@ -6,6 +6,15 @@ packages_of() {
   for part in "$@"; do
     awk -v part="$part" '$1 == part { print $2 }' "$root/cmake/debian-packages.txt"
   done
+}
+
+# The parts that a script needs: those of its heading in debian-packages.txt and of all above it.
+parts_for() {
+  awk -v script="$1" '
+    $1 == "for" { if (found) exit; found = $2 == script; next }
+    /^[a-z]/ && !listed[$1]++ { parts = parts " " $1 }
+    END { if (found) print parts }
+  ' "$root/cmake/debian-packages.txt"
 }
 
 # Runs a command; says nothing but a progress line on a terminal, and everything if it fails.
@@ -55,6 +64,14 @@ install_packages() {
   # shellcheck disable=SC2086
   quietly apt_as_root install -qy --no-install-recommends $missing || ask_for_packages
   reconfigure=yes  # a part that was left out may be possible now
+}
+
+# install_packages_for SCRIPT [PARTS...]: what the script needs, and more parts.
+install_packages_for() {
+  script=$1
+  shift
+  # shellcheck disable=SC2046
+  install_packages $(parts_for "$script") "$@"
 }
 
 ask_for_packages() {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "../main.hpp"
+#include "../harness.hpp"
 #include "rival.hpp"
 
 namespace repel::bench {

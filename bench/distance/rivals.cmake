@@ -3,7 +3,7 @@
 # and those from Debian, so that the tests are the same everywhere.
 add_library(repel_bench_compare STATIC
   distance/program.cpp distance/measurement.cpp distance/task.cpp distance/truth.cpp)
-target_link_libraries(repel_bench_compare PUBLIC repel_bench_main)
+target_link_libraries(repel_bench_compare PUBLIC repel_bench_harness)
 target_include_directories(repel_bench_compare PUBLIC distance ${PROJECT_SOURCE_DIR}/tests)
 add_library(repel_bench_rivals INTERFACE)
 target_link_libraries(repel_bench_rivals INTERFACE repel_bench_compare)

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "../distance/markdown.hpp"
-#include "../main.hpp"
+#include "../harness.hpp"
 
 namespace repel::scale {
 

@@ -50,7 +50,7 @@ inline std::vector<CrossingForce> forces_along(const Crossing& crossing, bool pa
     X_WA.translation() = Vec3(crossing.aside, 0.0, reach - way);
     const Separation s = separation(finger, X_WA, crossing.body, X_WB, {}, warm);
     int iterations = 0;
-    const double slope = slope_of(s, finger, X_WA, crossing.body, X_WB, {}, warm, iterations);
+    const double slope = slope_of(s, {finger, X_WA}, {crossing.body, X_WB}, {}, warm, iterations);
     const Vec3 f_W = passable
                          ? passage.force(law, s.distance, slope * s.extraction_W, way, Vec3::Zero())
                          : Vec3(law(s.distance, 0.0) * s.extraction_W);

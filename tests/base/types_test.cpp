@@ -140,6 +140,8 @@ TEST(Types, PartsOfPosesAndVectors) {
   EXPECT_EQ(transposed(rotation(X)), Mat3(X.linear().transpose()));
   for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(unit(axis), Vec3(Vec3::Unit(axis)));
   EXPECT_EQ(largest_entry({1.0, -3.0, 2.0}), 3.0);
+  EXPECT_TRUE(is_same({1.0, -3.0, 0.0}, {1.0, -3.0, -0.0}));
+  for (int k = 0; k < 3; ++k) EXPECT_FALSE(is_same(unit(k), {0.0, 0.0, 0.0}));
   EXPECT_EQ(direction_of({0, 0, 0}), Vec3(0, 0, 0));
   EXPECT_NEAR(direction_of({3e-200, 0.0, 4e-200}).norm(), 1.0, 1e-15);
 }

@@ -77,8 +77,8 @@ TEST(FeatureLanes, ProvesWhatTheProofOfOnePairProves) {
       SCOPED_TRACE(families::of_seed(seed, "group", i) + ", lane " + std::to_string(k));
       if (group.warm[k].size < 1 || group.warm[k].size > 3) continue;
       Gap one;
-      const bool holds = still_nearest({group.A[k], group.X_WA[k], group.B[k], group.X_WB[k]},
-                                       group.warm[k], {}, infinite, one);
+      const bool holds = confirm_nearest({group.A[k], group.X_WA[k], group.B[k], group.X_WB[k]},
+                                         group.warm[k], {}, infinite, one);
       if (holds != ((bits_of(lanes.proven) >> k & 1U) != 0U)) {
         ++disputed;
         continue;

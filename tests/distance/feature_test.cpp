@@ -61,13 +61,13 @@ TEST(Feature, WhatWasNearestIsConfirmedAndNothingElse) {
     WarmStart warm;
     ASSERT_EQ(gap_between(A, p.X_WA, B, p.X_WB, {}, warm).end, QueryEnd::converged);
     Gap gap;
-    confirmed += detail::still_nearest(posed(A, B, p), warm, {}, endless, gap) ? 1 : 0;
+    confirmed += detail::confirm_nearest(posed(A, B, p), warm, {}, endless, gap) ? 1 : 0;
     EXPECT_NEAR(gap.distance, truth, 2e-14 * families::size(p));
     // With any other corner instead of the first, the feature is not the answer and must not be
     // accepted.
     WarmStart other = warm;
     other.a[0] = (warm.a[0] + 1 + i % 7) % 8;
-    if (detail::still_nearest(posed(A, B, p), other, {}, endless, gap)) {
+    if (detail::confirm_nearest(posed(A, B, p), other, {}, endless, gap)) {
       EXPECT_LE(gap.lower, truth);
       EXPECT_GE(gap.upper, truth);
       EXPECT_NEAR(gap.distance, truth, 2e-14 * families::size(p));
@@ -95,7 +95,7 @@ TEST(Feature, ConfirmsNothingThatIsNotFinite) {
         warm.b = {0, 1, 2, 0};
         Gap gap;
         EXPECT_FALSE(
-            detail::still_nearest({box, Pose::Identity(), box, X_WB}, warm, {}, endless, gap))
+            detail::confirm_nearest({box, Pose::Identity(), box, X_WB}, warm, {}, endless, gap))
             << bad << " in entry " << entry;
       }
     }

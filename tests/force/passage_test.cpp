@@ -102,7 +102,7 @@ Felt felt(const Body& body, const Shape& tool, const Way& way, Measure measure, 
       X_WA.translation() = from + along * i / steps;
       travel += along.norm() / steps;
       const Separation s = separation(tool, X_WA, body.shape, X_WB, options, warm);
-      const double slope = slope_of(s, tool, X_WA, body.shape, X_WB, options, warm, iterations);
+      const double slope = slope_of(s, {tool, X_WA}, {body.shape, X_WB}, options, warm, iterations);
       const Vec3 gradient_W = slope * s.extraction_W;
       const Vec3 f = law.passable ? passage.force(law, s.distance, gradient_W, travel, Vec3::Zero())
                                   : Vec3(law(s.distance, 0.0) * s.extraction_W);
@@ -267,7 +267,7 @@ TEST(Passage, SlopeIsThatOfTheDistance) {
     WarmStart warm;
     int iterations = 0;
     const Separation s = separation(tool, X_WA, plate, Pose::Identity(), {}, warm);
-    return slope_of(s, tool, X_WA, plate, Pose::Identity(), {}, warm, iterations);
+    return slope_of(s, {tool, X_WA}, {plate, Pose::Identity()}, {}, warm, iterations);
   };
   EXPECT_EQ(slope_at(0.001), 1.0);
   EXPECT_NEAR(slope_at(-0.001), 1.0, 1e-6);

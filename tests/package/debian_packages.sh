@@ -3,6 +3,8 @@
 # file must come with a package of cmake/debian-packages.txt. What a machine happens to have besides
 # hides that one is missing: assimp names zlib, and its package does not ask for zlib1g-dev.
 set -eu
+root=$1
+. "$root/cmake/setup.sh"
 if ! command -v dpkg-query >/dev/null; then
   echo "skipped: no dpkg-query, so this is not Debian"
   exit 77
@@ -42,8 +44,8 @@ missing() {
 
 scratch=$(mktemp)
 trap 'rm -f "$scratch"' EXIT
-listed=$(awk '!/^#/ && NF && $1 !~ /^(ci|browser|fresh|rtsan)$/ { print $2 }' \
-  "$1/cmake/debian-packages.txt" | tr '\n' ' ')
+# shellcheck disable=SC2046
+listed=$(packages_of $(parts_for test) | tr '\n' ' ')
 files=$(grep -ohE '/usr/lib/[^ |:$]*\.(so[.0-9]*|a)( |$)' "$2/build.ninja" |
   grep -v libclang_rt | sort -u)
 # shellcheck disable=SC2086

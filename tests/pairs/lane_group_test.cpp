@@ -27,9 +27,9 @@ struct Sample {
     const Level& B = world.part(pair.b).shape.level(0);
     const Pose X_WA = test::pose_of(world, pair.a);
     Gap gap;
-    const bool holds = still_nearest({A.core, X_WA, B.core, test::pose_of(world, pair.b)},
-                                     scene.warm[static_cast<std::size_t>(id.index)], {},
-                                     std::numeric_limits<double>::infinity(), gap);
+    const bool holds = confirm_nearest({A.core, X_WA, B.core, test::pose_of(world, pair.b)},
+                                       scene.warm[static_cast<std::size_t>(id.index)], {},
+                                       std::numeric_limits<double>::infinity(), gap);
     const Separation one = apart(gap, A.depth, B.depth, X_WA);
     if (holds != has(group.proven(), k)) {
       ++disputed;

@@ -19,11 +19,11 @@ TEST(WayOut, AShapeMovedByTheOverlapTouches) {
     SCOPED_TRACE(families::of_seed(seed, "pair", i));
     test::PosedBoxes boxes = test::overlapping_boxes(rng);
     const Vec3 n = families::direction(rng);
-    const double overlap = detail::overlap_along(n, boxes.A, boxes.X_WA, boxes.B, boxes.X_WB);
+    const double overlap = detail::overlap_along(n, {boxes.A, boxes.X_WA}, {boxes.B, boxes.X_WB});
     EXPECT_GE(overlap, boxes.depth() - 1e-14 * boxes.size());
     boxes.X_WA.translation() += overlap * n;
     // A plane normal to n separates them now.
-    EXPECT_NEAR(detail::overlap_along(n, boxes.A, boxes.X_WA, boxes.B, boxes.X_WB), 0.0,
+    EXPECT_NEAR(detail::overlap_along(n, {boxes.A, boxes.X_WA}, {boxes.B, boxes.X_WB}), 0.0,
                 1e-14 * boxes.size());
   }
 }
@@ -33,15 +33,15 @@ TEST(WayOut, TheShortestAxisIsThatOfTheThinnestSide) {
   const Shape ball = Shape::sphere(0.3);
   Pose X_WB = Pose::Identity();
   X_WB.translation() = Vec3(0.1, 0.02, 0.0);
-  EXPECT_EQ(detail::shortest_axis(plate, Pose::Identity(), ball, X_WB), Vec3(0, -1, 0));
-  EXPECT_EQ(detail::shortest_axis(ball, X_WB, plate, Pose::Identity()), Vec3(0, 1, 0));
+  EXPECT_EQ(detail::shortest_axis({plate, Pose::Identity()}, {ball, X_WB}), Vec3(0, -1, 0));
+  EXPECT_EQ(detail::shortest_axis({ball, X_WB}, {plate, Pose::Identity()}), Vec3(0, 1, 0));
 }
 
 TEST(WayOut, APoseThatIsNotANumberStillNamesAnAxis) {
   const Shape box = Shape::box({0.5, 0.1, 0.5});
   Pose X = Pose::Identity();
   X.translation().x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(detail::shortest_axis(box, X, box, Pose::Identity()).norm(), 1.0);
+  EXPECT_EQ(detail::shortest_axis({box, X}, {box, Pose::Identity()}).norm(), 1.0);
 }
 
 }  // namespace way_out_test

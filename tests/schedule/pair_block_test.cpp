@@ -119,7 +119,7 @@ TEST(PairBlock, PassablePairIsPushedAsItsPassageSaysAndNeverJumps) {
     const Separation s = test::separation_now(boxes.world, pair);
     const double travel = boxes.world.motion().bodies[boxes.tool.index].travel;
     int iterations = 0;
-    const double slope = slope_of(s, tool, X_WA, obstacle, X_WB, {}, {}, iterations);
+    const double slope = slope_of(s, {tool, X_WA}, {obstacle, X_WB}, {}, {}, iterations);
     const Vec3 expected =
         s.distance < law.range
             ? passage.force(pair.law, s.distance, slope * s.extraction_W, travel, Vec3::Zero())

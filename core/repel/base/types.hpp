@@ -91,6 +91,11 @@ template <std::same_as<Vec3> V>
   return square > 0.0 ? v / std::sqrt(square) : v;
 }
 
+/// Equal in every entry.
+[[nodiscard]] inline bool is_same(const Vec3& a, const Vec3& b) noexcept {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /// The unit vector along axis 0, 1 or 2.
 [[nodiscard]] inline Vec3 unit(int axis) noexcept {
   return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};

@@ -81,10 +81,10 @@ struct Foot {
 /// proven to be larger than `beyond` [m]; `gap` is then the result. False for input that is not
 /// finite.
 /// @param least_vw the smallest dot product of `foot.v` with a point of A - B
-[[nodiscard, gnu::always_inline]] inline bool proves(const Feature& f, const Foot& foot,
-                                                     double least_vw, double margin,
-                                                     const QueryOptions& options, double beyond,
-                                                     Gap& gap) noexcept {
+[[nodiscard, gnu::always_inline]] inline bool prove(const Feature& f, const Foot& foot,
+                                                    double least_vw, double margin,
+                                                    const QueryOptions& options, double beyond,
+                                                    Gap& gap) noexcept {
   const double vv = dot(foot.v, foot.v);
   const double length = std::sqrt(vv);
   const double lower = (least_vw / length - margin) * (1.0 - 0x1p-51);
@@ -112,10 +112,10 @@ struct Foot {
 
 /// Replays the result of the last tick, one to three point pairs kept in `warm`: if they still
 /// contain the nearest point, a single evaluation of both support functions proves it.
-[[nodiscard, gnu::always_inline]] inline bool still_nearest(const PosedPair& pair,
-                                                            const WarmStart& warm,
-                                                            const QueryOptions& options,
-                                                            double beyond, Gap& gap) noexcept {
+[[nodiscard, gnu::always_inline]] inline bool confirm_nearest(const PosedPair& pair,
+                                                              const WarmStart& warm,
+                                                              const QueryOptions& options,
+                                                              double beyond, Gap& gap) noexcept {
   Feature f;
   f.size = std::min<int>(warm.size, 3);
   for (int i = 0; i < f.size; ++i) {
@@ -124,7 +124,7 @@ struct Foot {
   }
   const Foot foot = foot_on(f);
   gap.iterations = 1;
-  return proves(f, foot, pair.least_product(foot.v), pair.margin(), options, beyond, gap);
+  return prove(f, foot, pair.least_product(foot.v), pair.margin(), options, beyond, gap);
 }
 
 /// True when the four points of A - B named in `warm.met_a` and `warm.met_b` are proven to enclose

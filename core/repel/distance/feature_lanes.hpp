@@ -57,7 +57,7 @@ struct LaneGap {
   LaneMask proven;                   ///< lane k is a valid result for its pair
 };
 
-/// `still_nearest` for several pairs of boxes and polytopes. It evaluates vertex, edge and face
+/// `confirm_nearest` for several pairs of boxes and polytopes. It evaluates vertex, edge and face
 /// formulas for all lanes, as lanes may differ, and applies the same proof: an accepted result lies
 /// within the same bracket, the last bits of which may differ by the order of summation. The result
 /// of a lane does not depend on the others.

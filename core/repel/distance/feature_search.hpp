@@ -113,8 +113,8 @@ class FeatureSearch {
     const Feature f{{corners_[p].a, corners_[q].a, corners_[r].a},
                     {corners_[p].w, corners_[q].w, corners_[r].w},
                     in_use.count};
-    return proves(f, {scale_ * d_, foot_on(f).weights}, vw, margin_, options, options.ignore_beyond,
-                  gap);
+    return prove(f, {scale_ * d_, foot_on(f).weights}, vw, margin_, options, options.ignore_beyond,
+                 gap);
   }
 
   /// Moves to the nearest feature that contains `n`, the corner in the free slot; false when none

@@ -17,14 +17,14 @@ namespace repel {
 /// @param warm the warm start it left
 /// @param iterations is increased by the support-map pairs used
 /// Cost: in overlap a warm-started call of `separation`, else nothing.
-[[nodiscard]] inline double slope_of(const Separation& s, const Shape& A, const Pose& X_WA,
-                                     const Shape& B, const Pose& X_WB, const QueryOptions& options,
-                                     WarmStart warm, int& iterations) noexcept {
+[[nodiscard]] inline double slope_of(const Separation& s, PosedShape A, PosedShape B,
+                                     const QueryOptions& options, WarmStart warm,
+                                     int& iterations) noexcept {
   if (!(s.distance < 0.0)) return 1.0;
-  const double step = 1e-6 * (A.reach() + B.reach());
-  Pose X_WA_on = X_WA;
-  set_column(X_WA_on, 3, Vec<double>(origin(X_WA) + step * s.extraction_W));
-  const Separation on = separation(A, X_WA_on, B, X_WB, options, warm);
+  const double step = 1e-6 * (A.shape.reach() + B.shape.reach());
+  Pose X_WA_on = A.X_W;
+  set_column(X_WA_on, 3, Vec<double>(origin(A.X_W) + step * s.extraction_W));
+  const Separation on = separation(A.shape, X_WA_on, B.shape, B.X_W, options, warm);
   iterations += on.iterations;
   return std::clamp((on.distance - s.distance) / step, 0.0, 1.0);
 }

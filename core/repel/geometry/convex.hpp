@@ -199,11 +199,11 @@ class Convex {
     const auto candidates = table_.candidates(Vec<double>(d));
     std::uint32_t winner = candidates.front();
     T best = dot(Vec<T>(vertices_.vertex(winner)), d);
-    for (const std::uint32_t i : candidates.subspan(1)) {
-      const T along = dot(Vec<T>(vertices_.vertex(i)), d);
+    for (std::size_t k = 1; k < candidates.size(); ++k) {
+      const T along = dot(Vec<T>(vertices_.vertex(candidates[k])), d);
       if (along > best) {
         best = along;
-        winner = i;
+        winner = candidates[k];
       }
     }
     return winner;

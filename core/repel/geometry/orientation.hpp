@@ -24,7 +24,7 @@ class ExactSum {
       if (s.lo != 0.0) parts_[kept++] = s.lo;
       x = s.hi;
     }
-    parts_.resize(kept);
+    while (parts_.size() > kept) parts_.pop_back();
     if (x != 0.0) parts_.push_back(x);
   }
   void add_product(double x, double y) {

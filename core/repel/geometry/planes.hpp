@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <repel/base/lanes.hpp>
@@ -26,7 +25,7 @@ class Planes {
   Planes() = default;
   /// @param margin [m] largest distance from the set of a point below all planes: by rounding, and
   /// by the sagitta of a curved side
-  explicit Planes(std::span<const Facet> facets, double margin = 0.0, Tangents side = {})
+  explicit Planes(const std::vector<Facet>& facets, double margin = 0.0, Tangents side = {})
       : side_(side),
         margin_(margin),
         size_(facets.size()),
@@ -54,8 +53,8 @@ class Planes {
   /// A cylinder around the z axis, flat ends at +-`half_length` [m].
   static Planes cylinder(double radius, double half_length) {
     if (!(radius > 0.0)) return box({0.0, 0.0, half_length});
-    const std::array<Facet, 2> ends{{{{}, unit(2), half_length}, {{}, -unit(2), half_length}}};
-    return Planes(ends, Tangents::sagitta(radius), {1.0, 0.0, radius});
+    return Planes({{{}, unit(2), half_length}, {{}, -unit(2), half_length}},
+                  Tangents::sagitta(radius), {1.0, 0.0, radius});
   }
   /// A cone around the z axis, the base of `radius` [m] at -`half_length` [m], the apex at
   /// +`half_length`.
@@ -63,11 +62,11 @@ class Planes {
     if (!(radius > 0.0 && half_length > 0.0)) return cylinder(radius, half_length);
     const double length = 2.0 * half_length;
     const double side = std::hypot(radius, length);
-    const std::array<Facet, 1> base{{{{}, -unit(2), half_length}}};
     // At a sharp apex or rim, rounding of the planes enlarges the intersection most.
     const double sharp = std::min(radius, length) / side;
     const double margin = Tangents::sagitta(radius) + 4e-15 * side / sharp;
-    return Planes(base, margin, {length / side, radius / side, half_length * radius / side});
+    return Planes({{{}, -unit(2), half_length}}, margin,
+                  {length / side, radius / side, half_length * radius / side});
   }
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }

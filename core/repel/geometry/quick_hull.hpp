@@ -38,9 +38,9 @@ class QuickHull {
     // product underflows and all decisions are exact.
     const int exponent = size > 0.0 ? std::ilogb(size) : 0;
     for (Vec3& p : points_) {
-      for (double& x : p) {
-        x = std::ldexp(x, -exponent);
-        if (std::abs(x) < 0x1p-300) x = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        p[k] = std::ldexp(p[k], -exponent);
+        if (std::abs(p[k]) < 0x1p-300) p[k] = 0.0;
       }
     }
   }
@@ -48,14 +48,17 @@ class QuickHull {
   /// Empty when all points lie within 1e-14 of their largest coordinate from one plane.
   [[nodiscard]] std::vector<Face> build() {
     if (points_.size() < 4 || !start()) return {};
-    rim_face_.resize(points_.size());
+    rim_face_.assign(points_.size(), -1);
     // New faces are appended, so one pass visits all.
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       if (faces_[i].gone || faces_[i].outside.empty()) continue;
       add(faces_[i].outside.back(), static_cast<int>(i));
     }
-    std::erase_if(faces_, [](const Face& f) { return f.gone; });
-    return std::move(faces_);
+    std::vector<Face> left;
+    for (Face& f : faces_) {
+      if (!f.gone) left.push_back(std::move(f));
+    }
+    return left;
   }
 
  private:

@@ -50,8 +50,7 @@ class SupportTable {
   /// as computed in double or better; for a `d` that is zero or not finite, of some vertices. The
   /// table must not be empty.
   [[nodiscard]] std::span<const std::uint32_t> candidates(const Vec<double>& d) const noexcept {
-    const std::size_t cell = cell_of(d);
-    return {candidates_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+    return candidates_of(cell_of(d));
   }
 
  private:
@@ -86,8 +85,14 @@ class SupportTable {
   /// The directions at the corners of a cell of a face that is `width` cells wide.
   [[nodiscard]] static std::array<Vec3, 4> corners_of(std::size_t face, std::size_t width,
                                                       std::size_t row, std::size_t column);
-  [[nodiscard]] static List pruned(std::span<const Vec3> vertices, double margin, const List& list,
-                                   const std::array<Vec3, 4>& corners);
+  [[nodiscard]] std::span<const std::uint32_t> candidates_of(std::size_t cell) const noexcept {
+    return {candidates_.data() + first_[cell], first_[cell + 1] - first_[cell]};
+  }
+  /// The table of cells half as wide.
+  [[nodiscard]] SupportTable refined(std::span<const Vec3> vertices, double margin) const;
+  /// Adds a cell with those corners.
+  void add_cell(std::span<const Vec3> vertices, double margin, std::span<const std::uint32_t> list,
+                const std::array<Vec3, 4>& corners);
 
   std::size_t width_ = 1;             ///< cells along the edge of a face
   std::vector<std::uint32_t> first_;  ///< start of the candidates of each cell, and the end
@@ -109,48 +114,68 @@ inline std::array<Vec3, 4> SupportTable::corners_of(std::size_t face, std::size_
   return corners;
 }
 
-/// The vertices of `list` that no other one exceeds by `margin` along all four corners, or
-/// duplicates. Only the first 32 kept, by descending sum, are tested as dominating vertices; more
+/// Its candidates are the vertices of `list` that no other one exceeds by `margin` along all four
+/// corners, or duplicates. Only 32 vertices, by descending sum, are tested as dominating ones; more
 /// would hardly shorten a long list.
-inline SupportTable::List SupportTable::pruned(std::span<const Vec3> vertices, double margin,
-                                               const List& list,
-                                               const std::array<Vec3, 4>& corners) {
-  struct Reach {
-    std::uint32_t vertex = 0;
-    std::size_t place = 0;  // in `list`
-    double sum = 0.0;
-    std::array<double, 4> along{};
-  };
-  std::vector<Reach> order;
-  order.reserve(list.size());
-  for (const std::uint32_t i : list) {
-    Reach reach{i, order.size(), 0.0, {}};
-    for (std::size_t k = 0; k < 4; ++k) {
-      reach.along[k] = dot(corners[k], vertices[i]);
-      reach.sum += reach.along[k];
-    }
-    order.push_back(reach);
-  }
-  std::sort(order.begin(), order.end(), [](const Reach& a, const Reach& b) {
-    return a.sum > b.sum || (a.sum == b.sum && a.vertex < b.vertex);
-  });
-  std::vector<Reach> winners;
-  std::vector<char> is_kept(list.size());
-  for (const Reach& v : order) {
-    const bool beaten = std::any_of(winners.begin(), winners.end(), [&](const Reach& u) {
-      double least = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < 4; ++k) least = std::min(least, u.along[k] - v.along[k]);
-      return least > margin || vertices[u.vertex] == vertices[v.vertex];
-    });
-    if (beaten) continue;
-    if (winners.size() < 32) winners.push_back(v);
-    is_kept[v.place] = 1;
-  }
-  List kept;
+inline void SupportTable::add_cell(std::span<const Vec3> vertices, double margin,
+                                   std::span<const std::uint32_t> list,
+                                   const std::array<Vec3, 4>& corners) {
+  // For each vertex the products with the four corners, and their sum.
+  std::vector<double> reaches(5 * list.size());
+  const auto reach = [&](std::size_t i, std::size_t k) -> double& { return reaches[5 * i + k]; };
+  // The places in `list` of those that are neither dominating nor dominated, `count` of them.
+  List open(list.size());
+  std::size_t count = open.size();
+  std::size_t first = 0;  // of them, by descending sum
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (is_kept[i] != 0) kept.push_back(list[i]);
+    open[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t k = 0; k < 4; ++k) {
+      reach(i, k) = dot(corners[k], vertices[list[i]]);
+      reach(i, 4) += reach(i, k);
+    }
+    if (reach(i, 4) > reach(first, 4)) first = i;
   }
-  return kept;
+  std::vector<char> is_dominated(list.size());
+  for (int dominating = 0; dominating < 32 && count > 0; ++dominating) {
+    const std::size_t best = first;
+    const auto dominates = [&](std::size_t i) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (!(reach(best, k) - reach(i, k) > margin)) {
+          return is_same(vertices[list[best]], vertices[list[i]]);
+        }
+      }
+      return true;
+    };
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = open[k];
+      if (i == best) continue;
+      is_dominated[i] = dominates(i) ? 1 : 0;
+      if (is_dominated[i] != 0) continue;
+      if (left == 0 || reach(i, 4) > reach(first, 4)) first = i;
+      open[left++] = i;
+    }
+    count = left;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (is_dominated[i] == 0) candidates_.push_back(list[i]);
+  }
+  first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
+}
+
+inline SupportTable SupportTable::refined(std::span<const Vec3> vertices, double margin) const {
+  SupportTable finer;
+  finer.width_ = 2 * width_;
+  finer.first_.push_back(0);
+  const std::size_t width = finer.width_;
+  for (std::size_t i = 0; i < 6 * width * width; ++i) {
+    const std::size_t face = i / (width * width);
+    const std::size_t row = i / width % width;
+    const std::size_t column = i % width;
+    finer.add_cell(vertices, margin, candidates_of((face * width_ + row / 2) * width_ + column / 2),
+                   corners_of(face, width, row, column));
+  }
+  return finer;
 }
 
 inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
@@ -163,36 +188,18 @@ inline SupportTable::SupportTable(std::span<const Vec3> vertices) {
   // A dot product rounds by at most 9 half ulps of the size, a direction moves within its cell by 4
   // half ulps: together 60 half ulps between two vertices.
   const double margin = 64.0 * std::numeric_limits<double>::epsilon() * size;
-  std::vector<List> cells;
+  first_.push_back(0);
   for (std::size_t face = 0; face < 6; ++face) {
-    cells.push_back(pruned(vertices, margin, all, corners_of(face, 1, 0, 0)));
+    add_cell(vertices, margin, {all.data(), all.size()}, corners_of(face, 1, 0, 0));
   }
   while (width_ < finest_width(vertices.size())) {
-    std::size_t count = 0;
-    std::vector<List> finer;
-    finer.reserve(4 * cells.size());
-    const std::size_t width = 2 * width_;
-    for (std::size_t i = 0; i < 4 * cells.size(); ++i) {
-      const std::size_t face = i / (width * width);
-      const std::size_t row = i / width % width;
-      const std::size_t column = i % width;
-      const List& parent = cells[(face * width_ + row / 2) * width_ + column / 2];
-      finer.push_back(pruned(vertices, margin, parent, corners_of(face, width, row, column)));
-      count += finer.back().size();
-    }
-    if (count > most_candidates * vertices.size()) break;
-    cells = std::move(finer);
-    width_ = width;
+    SupportTable finer = refined(vertices, margin);
+    if (finer.candidates_.size() > most_candidates * vertices.size()) break;
+    *this = std::move(finer);
   }
-  std::size_t count = 0;
-  for (const List& cell : cells) count += cell.size();
-  first_.reserve(cells.size() + 1);
-  candidates_.reserve(count);
-  for (const List& cell : cells) {
-    first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
-    for (const std::uint32_t i : cell) candidates_.push_back(i);
-  }
-  first_.push_back(static_cast<std::uint32_t>(candidates_.size()));
+  // Copies hold no more memory than they need.
+  first_ = List(first_);
+  candidates_ = List(candidates_);
 }
 
 }  // namespace repel

@@ -33,7 +33,7 @@ namespace repel::network {
 /// other arguments. Optional functions of all kinds:
 ///
 ///     static constexpr Traits traits;                // or a function of that name
-///     void suit(const RobotEnd& robot);              // the arm, for gains that suit it; may throw
+///     void suit(const RobotEnd& robot);              // the arm, for gains that suit it
 ///     void fit(Space space, int size);               // of the connected port; may throw
 ///     int size() const noexcept;                     // of its port, if it is fixed
 ///     void face(Side root) noexcept;                 // the side of the root
@@ -51,9 +51,9 @@ namespace repel::network {
 /// `add_walls` adds the joint torques of a wall or a limit [N m]: they stay active when the
 /// fail-safe removes the operator's force. `add_wall_damping` adds how much they fall with the
 /// joint rates [N m s/rad], besides the walls of the world model. `predict` is called for the
-/// element `prediction` after every module has read its signals, with the sums of both. Only `suit`,
-/// `fit` and `prepare` may throw or allocate; they are called once, in this order. A missing function is reported at compile time. Cost: a
-/// virtual call for each.
+/// element `prediction` after every module has read its signals, with the sums of both. Only
+/// `suit`, `fit` and `prepare` may throw or allocate; they are called once, in this order. A
+/// missing function is reported at compile time. Cost: a virtual call for each.
 class Module {
  public:
   template <class M>

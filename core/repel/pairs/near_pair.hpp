@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include <repel/base/ids.hpp>
-#include <repel/reduction/answer.hpp>
+#include <repel/reduction/separation_result.hpp>
 
 namespace repel {
 

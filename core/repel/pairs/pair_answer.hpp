@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include <repel/pairs/pair_geometry.hpp>
-#include <repel/reduction/answer.hpp>
+#include <repel/reduction/separation_result.hpp>
 
 namespace repel::detail {
 

@@ -80,8 +80,8 @@ class SingleEvaluator {
   [[nodiscard]] double lower_bound_by_shapes(int slot, const Motion& motion,
                                              PartPoses& poses) const noexcept {
     const Pair& p = pair(slot);
-    return -overlap_along(memory_.answer(slot).last.extraction_W, world_->part(p.a).shape,
-                          poses.at(p.a, motion), world_->part(p.b).shape, poses.at(p.b, motion)) -
+    return -overlap_along(memory_.answer(slot).last.extraction_W, posed(p.a, motion, poses),
+                          posed(p.b, motion, poses)) -
            rounding;
   }
 
@@ -189,6 +189,11 @@ class SingleEvaluator {
   /// [m] Exceeds the difference between any two answers to the same query.
   static constexpr double rounding = 1e-9;
 
+  [[nodiscard]] PosedShape posed(PartId part, const Motion& motion,
+                                 PartPoses& poses) const noexcept {
+    return {world_->part(part).shape, poses.at(part, motion)};
+  }
+
   [[nodiscard]] Separation query(int slot, const Motion& motion, PartPoses& poses,
                                  WarmStart& warm) noexcept {
     const Pair& p = pair(slot);
@@ -203,8 +208,7 @@ class SingleEvaluator {
     PairTotals& totals = forces_.totals;
     if (p.law.passable) {
       int iterations = 0;
-      answer.slope = slope_of(answer.last, world_->part(p.a).shape, poses.at(p.a, motion),
-                              world_->part(p.b).shape, poses.at(p.b, motion), {},
+      answer.slope = slope_of(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses), {},
                               memory_.history(slot).warm, iterations);
       totals.iterations += iterations;
     } else if (answer.is_stale) {

@@ -43,9 +43,8 @@ class DeepestPoint {
                            bool doubted = false) noexcept {
     pivots_ = 0;
     doubted_ = doubted;
-    const End end = solved_in_double(warm, allowed);
-    return end == End::best ||
-           (end == End::unclear && solved_at_length(warm, allowed) == End::best);
+    const End end = solve_in_double(warm, allowed);
+    return end == End::best || (end == End::unclear && solve_at_length(warm, allowed) == End::best);
   }
 
   /// The depth of the point below the surface of A (0) or B (1) [m].
@@ -75,25 +74,25 @@ class DeepestPoint {
   /// Perturbation that separates multipliers that would all be 0 [-].
   static constexpr double tilt = 1e-20;
 
-  [[gnu::flatten, gnu::noinline]] End solved_in_double(WarmStart& warm, int allowed) noexcept {
-    return solved_in<double>(warm, allowed);
+  [[gnu::flatten, gnu::noinline]] End solve_in_double(WarmStart& warm, int allowed) noexcept {
+    return solve_in<double>(warm, allowed);
   }
-  [[gnu::noinline]] End solved_at_length(WarmStart& warm, int allowed) noexcept {
-    return solved_in<DoubleDouble>(warm, allowed);
+  [[gnu::noinline]] End solve_at_length(WarmStart& warm, int allowed) noexcept {
+    return solve_in<DoubleDouble>(warm, allowed);
   }
 
   template <class T>
-  End solved_in(WarmStart& warm, int allowed) noexcept {
+  End solve_in(WarmStart& warm, int allowed) noexcept {
     PlaneBasis<T> basis(A_, B_);
     End end = End::unclear;
     if (load(warm, basis) && basis.weigh() &&
         basis.least_multiplier() >= T(-Precision<T>::of_multiplier)) {
       const int before = pivots_;
-      end = improved(basis, std::min(allowed, pivots_ + Precision<T>::warm_pivots));
+      end = improve(basis, std::min(allowed, pivots_ + Precision<T>::warm_pivots));
       if (end == End::best && pivots_ == before) return end;
     }
     if (end == End::unclear && begin(warm, basis, allowed)) {
-      end = improved(basis, std::min(allowed, pivots_ + Precision<T>::cold_pivots));
+      end = improve(basis, std::min(allowed, pivots_ + Precision<T>::cold_pivots));
     }
     save(basis, warm);
     return end;
@@ -101,25 +100,25 @@ class DeepestPoint {
 
   /// Pivots until no plane is violated, or the number of pivots reaches `most`.
   template <class T>
-  End improved(PlaneBasis<T>& basis, int most) noexcept {
+  End improve(PlaneBasis<T>& basis, int most) noexcept {
     const T tolerance(Precision<T>::of_depth * size_);
     while (true) {
       const auto entry = basis.most_violated(tolerance);
-      if (!(entry.violation > tolerance) || basis.holds(entry)) return judged(basis, tolerance);
+      if (!(entry.violation > tolerance) || basis.holds(entry)) return judge(basis, tolerance);
       if (pivots_ >= most) return End::unclear;
-      if (!replaced(basis, entry)) return doubted_ ? End::none : End::unclear;
+      if (!replace(basis, entry)) return doubted_ ? End::none : End::unclear;
       if (!basis.weigh()) return End::unclear;
     }
   }
   template <class T>
-  bool replaced(PlaneBasis<T>& basis, const typename PlaneBasis<T>::Entry& entry) noexcept {
+  bool replace(PlaneBasis<T>& basis, const typename PlaneBasis<T>::Entry& entry) noexcept {
     ++pivots_;
     return basis.exchange(entry, Precision<T>::least_share, Precision<T>::of_multiplier);
   }
 
   /// Checks that the depths at the point reach their upper bound, and exceed rounding.
   template <class T>
-  End judged(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
+  End judge(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
     const T found = basis.depth(0) + basis.depth(1);
     // The perturbation can reduce a multiplier that is 0 by twice the tilt.
     if (!(basis.least_multiplier() >= T(-Precision<T>::of_multiplier - 2.0 * tilt)) ||
@@ -148,7 +147,7 @@ class DeepestPoint {
       if (!is_basis || pivots_ >= allowed || !basis.has_plane(side, name)) return;
       const auto entry = basis.entry(side, name);
       if (entry.violation > T(0.0) && !basis.holds(entry))
-        is_basis = replaced(basis, entry) && basis.weigh();
+        is_basis = replace(basis, entry) && basis.weigh();
     };
     if (warm.level_a == WarmStart::deepest_point) {
       for (std::size_t k = 0; k < PlaneBasis<T>::rows; ++k) {

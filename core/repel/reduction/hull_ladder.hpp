@@ -24,7 +24,7 @@ inline double depth_in(const std::vector<Facet>& facets, const Vec3& x) {
 
 inline Vec3 centroid_of(std::span<const Vec3> vertices) {
   Vec3 sum{0, 0, 0};
-  for (const Vec3& v : vertices) sum += v / static_cast<double>(vertices.size());
+  for (const Vec3& v : vertices) sum = sum + v / static_cast<double>(vertices.size());
   return sum;
 }
 
@@ -49,7 +49,7 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
   double best_depth = nearest.depth;
   double step = best_depth;
   for (int i = 0; i < 400; ++i) {
-    x -= step * nearest.facet->n;
+    x = x - step * nearest.facet->n;
     nearest = nearest_to(x);
     if (nearest.depth > best_depth) {
       best = x;
@@ -65,17 +65,17 @@ inline Vec3 deep_point(const std::vector<Facet>& facets, std::span<const Vec3> v
 /// in by `t` (Dykstra without memory), then a step toward `deep`, which is inside. Only nearby
 /// planes take part in the projections.
 inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, const Vec3& deep) {
-  std::vector<const Facet*> nearby;
+  std::vector<Facet> nearby;
   for (const Facet& f : facets) {
-    if (f.offset - dot(f.n, v) < 2.0 * t) nearby.push_back(&f);
+    if (f.offset - dot(f.n, v) < 2.0 * t) nearby.push_back(f);
   }
   bool moved = true;
   for (int sweep = 0; sweep < 60 && moved; ++sweep) {
     moved = false;
-    for (const Facet* f : nearby) {
-      const double excess = dot(f->n, v) - (f->offset - t);
+    for (const Facet& f : nearby) {
+      const double excess = dot(f.n, v) - (f.offset - t);
       if (excess <= 0.0) continue;
-      v -= excess * f->n;
+      v = v - excess * f.n;
       moved = true;
     }
   }
@@ -100,7 +100,7 @@ inline constexpr std::size_t most_leading = std::size_t{6} * leading_steps * lea
 inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
   constexpr int steps = leading_steps;
   if (corners.size() <= most_leading) return corners.size();
-  const VertexScan all(corners);
+  const VertexScan all({corners.data(), corners.size()});
   std::vector<char> leads(corners.size());
   const auto along = [](int step) { return (2.0 * step + 1.0) / steps - 1.0; };
   for (int i = 0; i < static_cast<int>(most_leading); ++i) {
@@ -139,13 +139,13 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
-  Ladder ladder{{Convex::polytope(vertices), 0.0, 0.0}};
-  vertices.resize(leading);
-  Vec3 centroid = centroid_of(vertices);
+  Ladder ladder = ladder_of(Convex::polytope({vertices.data(), vertices.size()}));
+  const std::span<const Vec3> moving(vertices.data(), leading);
+  Vec3 centroid = centroid_of(moving);
   double depth = 0.0;
   double taken = 0.0;
   for (int i = 1; i <= options.levels && !facets.empty(); ++i) {
-    const Vec3 deep = deep_point(facets, vertices);
+    const Vec3 deep = deep_point(facets, moving);
     const double room = depth_in(facets, deep);
     if (!(room > 0.0)) break;
     const double next = even_steps(i, options);
@@ -153,22 +153,22 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
         i == options.levels ? 0.95 * room : room * (next - taken) / (options.levels - taken);
     taken = next;
     double won = room;
-    for (Vec3& v : vertices) {
-      v = moved_inside(facets, v, target, deep);
-      won = std::min(won, depth_in(facets, v));
+    for (std::size_t k = 0; k < leading; ++k) {
+      vertices[k] = moved_inside(facets, vertices[k], target, deep);
+      won = std::min(won, depth_in(facets, vertices[k]));
     }
     // Subtracts a bound of the rounding error from the claimed depth.
     won -= 1e-12 * ladder.front().core.reach();
     if (!(won > 0.0)) break;
     depth += won;
-    append(ladder, Convex::polytope(vertices), depth, depth);
-    centroid = centroid_of(vertices);
-    facets = hull_facets(vertices);
+    append(ladder, Convex::polytope(moving), depth, depth);
+    centroid = centroid_of(moving);
+    facets = hull_facets(moving);
   }
   if (points.size() > 1) {
-    append(ladder, Convex::polytope(std::span(&centroid, 1)), depth, flat_order);
+    append(ladder, Convex::polytope({&centroid, 1}), depth, flat_order);
   }
-  return verified(std::move(ladder), sides);
+  return verified(std::move(ladder), {sides.data(), sides.size()});
 }
 
 /// [byte] Upper bound of the memory of the ladder of so many points, if all are vertices: no level

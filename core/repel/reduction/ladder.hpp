@@ -58,6 +58,13 @@ inline constexpr double flat_order = 1e9;
   return (static_cast<std::size_t>(options.levels) + 3) * sizeof(Level) + Convex::most_bytes(1);
 }
 
+/// A ladder of one level.
+inline Ladder ladder_of(Convex core, double depth = 0.0) {
+  Ladder ladder;
+  ladder.push_back({std::move(core), depth, 0.0});
+  return ladder;
+}
+
 /// Adds a level, ordered strictly after the last one: the walk along the chain fails when rounding
 /// makes orders equal.
 inline void append(Ladder& ladder, Convex core, double depth, double order) {
@@ -124,7 +131,7 @@ inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& optio
     return {std::max(half_extents[0] - t, 0.0), std::max(half_extents[1] - t, 0.0),
             std::max(half_extents[2] - t, 0.0)};
   };
-  Ladder ladder{{Convex::box(half_extents), 0.0, 0.0}};
+  Ladder ladder = ladder_of(Convex::box(half_extents));
   for (int i = 1; i <= options.levels && sorted[0] > 0.0; ++i) {
     const double t = depth_after(i, options, sorted[0]);
     append(ladder, Convex::box(eroded(t)), t, t);
@@ -135,18 +142,21 @@ inline Ladder box_ladder(const Vec3& half_extents, const ReductionOptions& optio
     append(ladder, Convex::box(eroded(t)), sorted[0], flat_order + t);
   }
   const Vec3 sides[] = {unit(0), unit(1), unit(2)};
-  return verified(std::move(ladder), sides);
+  return verified(std::move(ladder), {sides, 3});
 }
 
-/// Normals of the sides of a set around the z axis with equal ends.
-inline const Vec3 around_and_along[] = {{1, 0, 0}, {0, 0, 1}};
+/// `verified` for sets around the z axis with equal ends.
+inline Ladder verified_around_z(Ladder ladder) {
+  const Vec3 side_and_end[] = {unit(0), unit(2)};
+  return verified(std::move(ladder), {side_and_end, 2});
+}
 
 /// A long cylinder shrinks to its axis and then to a point; a flat one to a thin disc and then to a
 /// point (Figure 4 e, f).
 inline Ladder cylinder_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double thickness = std::min(radius, half_length);
   const double rest = std::max(radius, half_length);
-  Ladder ladder{{Convex::cylinder(radius, half_length), 0.0, 0.0}};
+  Ladder ladder = ladder_of(Convex::cylinder(radius, half_length));
   for (int i = 1; i <= options.levels && thickness > 0.0; ++i) {
     const double t = depth_after(i, options, thickness);
     append(ladder, Convex::cylinder(radius - t, half_length - t), t, t);
@@ -154,7 +164,7 @@ inline Ladder cylinder_ladder(double radius, double half_length, const Reduction
   if (rest > thickness) {
     append(ladder, Convex::box({0, 0, 0}), thickness, flat_order + rest);
   }
-  return verified(std::move(ladder), around_and_along);
+  return verified_around_z(std::move(ladder));
 }
 
 /// A cone keeps its opening angle and shrinks to the centre of its inscribed ball: moved in by t,
@@ -162,7 +172,7 @@ inline Ladder cylinder_ladder(double radius, double half_length, const Reduction
 inline Ladder cone_ladder(double radius, double half_length, const ReductionOptions& options) {
   const double length = 2.0 * half_length;
   const double side = std::hypot(radius, length);
-  Ladder ladder{{Convex::cone(radius, -half_length, half_length), 0.0, 0.0}};
+  Ladder ladder = ladder_of(Convex::cone(radius, -half_length, half_length));
   // The radius of the inscribed ball.
   const double thickness = radius > 0.0 ? length * radius / (side + radius) : 0.0;
   for (int i = 1; i < options.levels && thickness > 0.0; ++i) {
@@ -173,25 +183,25 @@ inline Ladder cone_ladder(double radius, double half_length, const ReductionOpti
   }
   if (radius > 0.0 || length > 0.0) {
     const Vec3 centre{0.0, 0.0, thickness > 0.0 ? thickness - half_length : 0.0};
-    append(ladder, Convex::polytope(std::span(&centre, 1)), thickness,
+    append(ladder, Convex::polytope({&centre, 1}), thickness,
            thickness > 0.0 ? thickness : flat_order + std::max(radius, half_length));
   }
   const Vec3 base_and_side[] = {-unit(2), direction_of({length, 0.0, radius})};
-  return verified(std::move(ladder), base_and_side);
+  return verified(std::move(ladder), {base_and_side, 2});
 }
 
 /// A sphere is a point with a depth (Figure 4 d).
 inline Ladder sphere_ladder(double radius) {
-  return {{Convex::box({0, 0, 0}), radius, 0.0}};
+  return ladder_of(Convex::box({0, 0, 0}), radius);
 }
 
 /// A capsule is a segment with a depth, then a point with the same depth.
 inline Ladder capsule_ladder(double radius, double half_length) {
-  Ladder ladder{{Convex::box({0.0, 0.0, half_length}), radius, 0.0}};
+  Ladder ladder = ladder_of(Convex::box({0.0, 0.0, half_length}), radius);
   if (half_length > 0.0) {
     append(ladder, Convex::box({0, 0, 0}), radius, flat_order + half_length);
   }
-  return verified(std::move(ladder), around_and_along);
+  return verified_around_z(std::move(ladder));
 }
 
 }  // namespace detail

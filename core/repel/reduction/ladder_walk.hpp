@@ -8,7 +8,7 @@
 
 #include <repel/distance/feature_search.hpp>
 #include <repel/distance/gjk.hpp>
-#include <repel/reduction/answer.hpp>
+#include <repel/reduction/separation_result.hpp>
 #include <repel/reduction/way_out.hpp>
 
 namespace repel::detail {
@@ -22,9 +22,8 @@ namespace repel::detail {
 /// and the first disjoint pair (d - T) can attain the minimum, wherever the walk starts.
 class LadderWalk {
  public:
-  LadderWalk(const Shape& A, const Pose& X_WA, const Shape& B, const Pose& X_WB,
-             const QueryOptions& options, WarmStart& warm) noexcept
-      : A_(A), B_(B), X_WA_(X_WA), X_WB_(X_WB), options_(options), warm_(warm) {}
+  LadderWalk(PosedShape A, PosedShape B, const QueryOptions& options, WarmStart& warm) noexcept
+      : A_(A), B_(B), options_(options), warm_(warm) {}
 
   /// @param first the result of a query on the levels of the warm start, or null
   Separation run(const Gap* first) noexcept {
@@ -35,7 +34,7 @@ class LadderWalk {
       iterations_ = first->iterations;
       if (first->meets) keep_meeting(warm_);
     }
-    const int longest = A_.levels() + B_.levels() + 2;
+    const int longest = A_.shape.levels() + B_.shape.levels() + 2;
     for (int step = 0; step < longest; ++step) {
       const Gap gap = step == 0 && first != nullptr ? *first : query();
       const bool meets = gap.meets || gap.end == QueryEnd::touching;
@@ -50,20 +49,24 @@ class LadderWalk {
 
  private:
   [[nodiscard]] double order_a(int i) const noexcept {
-    return i < A_.levels() ? A_.level(i).order : std::numeric_limits<double>::infinity();
+    return i < A_.shape.levels() ? A_.shape.level(i).order
+                                 : std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] double order_b(int j) const noexcept {
-    return j < B_.levels() ? B_.level(j).order : std::numeric_limits<double>::infinity();
+    return j < B_.shape.levels() ? B_.shape.level(j).order
+                                 : std::numeric_limits<double>::infinity();
   }
   [[nodiscard]] bool on_chain() const noexcept {
-    return i_ < A_.levels() && j_ < B_.levels() &&
+    return i_ < A_.shape.levels() && j_ < B_.shape.levels() &&
            std::max(order_a(i_), order_b(j_)) < std::min(order_a(i_ + 1), order_b(j_ + 1));
   }
   [[nodiscard]] bool at_start() const noexcept { return i_ == 0 && j_ == 0; }
   [[nodiscard]] bool at_end() const noexcept {
-    return i_ + 1 == A_.levels() && j_ + 1 == B_.levels();
+    return i_ + 1 == A_.shape.levels() && j_ + 1 == B_.shape.levels();
   }
-  [[nodiscard]] double depth() const noexcept { return A_.level(i_).depth + B_.level(j_).depth; }
+  [[nodiscard]] double depth() const noexcept {
+    return A_.shape.level(i_).depth + B_.shape.level(j_).depth;
+  }
 
   void step_in() noexcept {
     const double a = order_a(i_ + 1);
@@ -81,14 +84,14 @@ class LadderWalk {
   /// The distance of the current pair of levels, warm started from the last call on a disjoint or
   /// an intersecting pair.
   Gap query() noexcept {
-    const Level& a = A_.level(i_);
-    const Level& b = B_.level(j_);
+    const Level& a = A_.shape.level(i_);
+    const Level& b = B_.shape.level(j_);
     QueryOptions options = options_;
     options.iterations = std::max(1, options_.iterations - iterations_);
     options.ignore_beyond += at_start() ? depth() : std::numeric_limits<double>::infinity();
     Gap gap;
     if (a.core.is_polytope() && b.core.is_polytope() &&
-        is_quick({a.core, X_WA_, b.core, X_WB_}, options, gap)) {
+        find_quickly({a.core, A_.X_W, b.core, B_.X_W}, options, gap)) {
       return gap;
     }
     WarmStart start = warm_;
@@ -97,7 +100,7 @@ class LadderWalk {
       start.b = warm_.met_b;
       start.size = 4;
     }
-    gap = gap_between(a.core, X_WA_, b.core, X_WB_, options, start);
+    gap = gap_between(a.core, A_.X_W, b.core, B_.X_W, options, start);
     iterations_ += gap.iterations;
     if (gap.meets) {
       keep_meeting(start);
@@ -110,7 +113,7 @@ class LadderWalk {
   }
 
   /// True when the feature or corners that decided last still decide.
-  bool is_quick(const PosedPair& pair, const QueryOptions& options, Gap& gap) noexcept {
+  bool find_quickly(const PosedPair& pair, const QueryOptions& options, Gap& gap) noexcept {
     ++iterations_;
     if (apart_) {
       gap.meets = warm_.met_size == 4 && still_meets(pair, warm_);
@@ -119,7 +122,7 @@ class LadderWalk {
       return gap.meets;
     }
     if (warm_.size < 1 || warm_.size > 3) return false;
-    if (still_nearest(pair, warm_, options, options.ignore_beyond, gap)) return true;
+    if (confirm_nearest(pair, warm_, options, options.ignore_beyond, gap)) return true;
     const bool found = FeatureSearch(pair).run(options, warm_, gap);
     iterations_ += gap.iterations;
     return found;
@@ -172,10 +175,8 @@ class LadderWalk {
   [[nodiscard]] Separation answer() const noexcept;
   void choose_direction(Separation& s) const noexcept;
 
-  const Shape& A_;
-  const Shape& B_;
-  const Pose& X_WA_;
-  const Pose& X_WB_;
+  PosedShape A_;
+  PosedShape B_;
   const QueryOptions& options_;
   WarmStart& warm_;
   int i_ = 0;
@@ -194,20 +195,20 @@ class LadderWalk {
 
 /// For shapes that are both reduced to one common point: it is as deep as their levels.
 inline void LadderWalk::choose_direction(Separation& s) const noexcept {
-  s.extraction_W = shortest_axis(A_, X_WA_, B_, X_WB_);
-  const Vec3 common = X_WA_ * to_vec3(A_.level(i_).core.point(0).p);
-  s.p_WA = common - A_.level(i_).depth * s.extraction_W;
-  s.p_WB = common + B_.level(j_).depth * s.extraction_W;
+  s.extraction_W = shortest_axis(A_, B_);
+  const Vec3 common = A_.X_W * to_vec3(A_.shape.level(i_).core.point(0).p);
+  s.p_WA = common - A_.shape.level(i_).depth * s.extraction_W;
+  s.p_WB = common + B_.shape.level(j_).depth * s.extraction_W;
 }
 
 inline Separation LadderWalk::answer() const noexcept {
   const bool plain = apart_ && apart_i_ == 0 && apart_j_ == 0;
   const double none = std::numeric_limits<double>::infinity();
   const double met = meets_ ? -depth_met_ : none;
-  const double slack = 1e-14 * (A_.reach() + B_.reach());
+  const double slack = 1e-14 * (A_.shape.reach() + B_.shape.reach());
   Separation s;
   if (apart_) {
-    s = apart(gap_, A_.level(apart_i_).depth, B_.level(apart_j_).depth, X_WA_);
+    s = apart(gap_, A_.shape.level(apart_i_).depth, B_.shape.level(apart_j_).depth, A_.X_W);
     s.distance = std::min(s.distance, met);
     s.upper = std::min(s.upper, met + margin_);
   } else {
@@ -219,8 +220,7 @@ inline Separation LadderWalk::answer() const noexcept {
   s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
   s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
   if (!plain || !(gap_.lower > 0.0)) {
-    s.lower = widened(
-        std::min(s.distance, -overlap_along(s.extraction_W, A_, X_WA_, B_, X_WB_) - slack), -1.0);
+    s.lower = widened(std::min(s.distance, -overlap_along(s.extraction_W, A_, B_) - slack), -1.0);
   }
   if (!plain) s.upper = widened(s.upper + slack, 1.0);
   // A point deep inside but coplanar with all support points found looks like contact to GJK.

@@ -62,37 +62,37 @@ namespace detail {
 /// The result by the deepest common point of the cores; false when there is none or it takes more
 /// than `most_pivots`.
 /// @param doubted see DeepestPoint
-[[nodiscard]] inline bool at_deepest_point(const Shape& A, const Pose& X_WA, const Shape& B,
-                                           const Pose& X_WB, int most_pivots, bool doubted,
-                                           WarmStart& warm, Separation& s) noexcept {
-  const Level& a = A.level(0);
-  const Level& b = B.level(0);
-  const PosedPlanes planes_a{A.planes(), X_WA, a.core.reach()};
-  const PosedPlanes planes_b{B.planes(), X_WB, b.core.reach()};
+[[nodiscard]] inline bool find_deepest_point(PosedShape A, PosedShape B, int most_pivots,
+                                             bool doubted, WarmStart& warm,
+                                             Separation& s) noexcept {
+  const Level& a = A.shape.level(0);
+  const Level& b = B.shape.level(0);
+  const PosedPlanes planes_a{A.shape.planes(), A.X_W, a.core.reach()};
+  const PosedPlanes planes_b{B.shape.planes(), B.X_W, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
   if (!deepest.solve(warm, most_pivots, doubted)) return false;
   // The planes may enclose more than the shape, by their margin: it is subtracted from the depth.
   const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
-  const double sure = 1.0 - (A.planes().margin() + B.planes().margin()) / found;
+  const double sure = 1.0 - (A.shape.planes().margin() + B.shape.planes().margin()) / found;
   if (!(sure > 0.0)) return false;
   const double depth_a = sure * std::max(0.0, deepest.depth(0)) + a.depth;
   const double depth_b = sure * std::max(0.0, deepest.depth(1)) + b.depth;
-  const double slack = 1e-14 * (A.reach() + B.reach());
+  const double slack = 1e-14 * (A.shape.reach() + B.shape.reach());
   // The extraction direction is the negative gradient. The support maps take it unnormalized, so
   // that they need not wait for its length.
   const Vec<double> d = -deepest.gradient();
-  const double times_length = cores_overlap_along(d, A, X_WA, B, X_WB);
+  const double times_length = cores_overlap_along(d, A, B);
   const double length = std::sqrt(dot(d, d));
   // With a zero gradient, no direction is better by this measure.
   const bool flat = !(length > 1e-9);
-  s.extraction_W = flat ? shortest_axis(A, X_WA, B, X_WB) : to_vec3((1.0 / length) * d);
-  const Vec3 common = origin(X_WA) + to_vec3(deepest.point());
+  s.extraction_W = flat ? shortest_axis(A, B) : to_vec3((1.0 / length) * d);
+  const Vec3 common = origin(A.X_W) + to_vec3(deepest.point());
   s.p_WA = common - depth_a * s.extraction_W;
   s.p_WB = common + depth_b * s.extraction_W;
   s.distance = -(depth_a + depth_b);
   s.upper = widened(s.distance + slack, 1.0);
-  const double overlap = flat ? overlap_along(s.extraction_W, A, X_WA, B, X_WB)
-                              : times_length / length + a.depth + b.depth;
+  const double overlap =
+      flat ? overlap_along(s.extraction_W, A, B) : times_length / length + a.depth + b.depth;
   s.lower = widened(std::min(s.distance, -overlap - slack), -1.0);
   s.level = 0;
   s.iterations = 1 + deepest.pivots() + (flat ? 12 : 0);
@@ -102,13 +102,12 @@ namespace detail {
 
 /// The result by the penetration depth; false for curved cores and for those without volume.
 /// @param warm names of four corners of A - B that enclose the origin
-[[nodiscard]] inline bool at_exact_depth(const Shape& A, const Pose& X_WA, const Shape& B,
-                                         const Pose& X_WB, const WarmStart& warm,
-                                         Separation& s) noexcept {
-  const Level& a = A.level(0);
-  const Level& b = B.level(0);
+[[nodiscard]] inline bool find_exact_depth(PosedShape A, PosedShape B, const WarmStart& warm,
+                                           Separation& s) noexcept {
+  const Level& a = A.shape.level(0);
+  const Level& b = B.shape.level(0);
   if (!are_angular(a, b)) return false;
-  const PosedPair pair{a.core, X_WA, b.core, X_WB};
+  const PosedPair pair{a.core, A.X_W, b.core, B.X_W};
   const bool boxes = a.core.kind() == Convex::Kind::box && b.core.kind() == Convex::Kind::box;
   const Depth depth = boxes ? BoxDepth(pair).run() : ExpandingPolytope(pair).run(warm);
   if (!(depth.upper < std::numeric_limits<double>::infinity())) return false;
@@ -117,7 +116,7 @@ namespace detail {
   s.lower = std::min(s.distance, widened(-(depth.upper + rounded), -1.0));
   s.upper = std::max(s.distance, widened(-(depth.lower + rounded), 1.0));
   s.extraction_W = to_vec3(-depth.n_W);
-  const Vec3 p_WQ = origin(X_WA) + to_vec3(depth.p_AQa_W);
+  const Vec3 p_WQ = origin(A.X_W) + to_vec3(depth.p_AQa_W);
   s.p_WA = p_WQ - a.depth * s.extraction_W;
   s.p_WB = s.p_WA - s.distance * s.extraction_W;
   s.level = 0;
@@ -138,37 +137,37 @@ namespace detail {
 /// The result for an overlap of the cores by a measure other than their levels; false when the
 /// levels are the requested measure, or when the cores turn out not to overlap.
 /// @param spent support-map pairs evaluated; 0 when no search has found the overlap yet
-[[nodiscard]] inline bool in_overlap(const Shape& A, const Pose& X_WA, const Shape& B,
-                                     const Pose& X_WB, const QueryOptions& options, int spent,
-                                     WarmStart& warm, Separation& s) noexcept {
-  if (is_by_planes(A, B, options)) {
-    return at_deepest_point(A, X_WA, B, X_WB, options.iterations - spent, spent == 0, warm, s);
+[[nodiscard]] inline bool measure_overlap(PosedShape A, PosedShape B, const QueryOptions& options,
+                                          int spent, WarmStart& warm, Separation& s) noexcept {
+  if (is_by_planes(A.shape, B.shape, options)) {
+    return find_deepest_point(A, B, options.iterations - spent, spent == 0, warm, s);
   }
-  return options.measure == Measure::exact && at_exact_depth(A, X_WA, B, X_WB, warm, s) &&
-         s.upper < -(A.level(0).depth + B.level(0).depth);
+  return options.measure == Measure::exact && find_exact_depth(A, B, warm, s) &&
+         s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
 }
 
 /// The signed distance when the fast search, after `spent` support-map pairs, has no proof.
-[[gnu::noinline]] inline Separation carefully_searched(const Shape& A, const Pose& X_WA,
-                                                       const Shape& B, const Pose& X_WB,
+[[gnu::noinline]] inline Separation carefully_searched(PosedShape A, PosedShape B,
                                                        const QueryOptions& options, int spent,
                                                        WarmStart& warm) noexcept {
-  if (!are_usable(X_WA, X_WB)) return {};
-  const Level& a = A.level(0);
-  const Level& b = B.level(0);
-  if (!is_by_levels(A, B, options) && (warm.level_a != 0 || warm.level_b != 0)) warm = {};
-  LadderWalk walk(A, X_WA, B, X_WB, options, warm);
+  if (!are_usable(A.X_W, B.X_W)) return {};
+  const Level& a = A.shape.level(0);
+  const Level& b = B.shape.level(0);
+  if (!is_by_levels(A.shape, B.shape, options) && (warm.level_a != 0 || warm.level_b != 0)) {
+    warm = {};
+  }
+  LadderWalk walk(A, B, options, warm);
   if (warm.level_a != 0 || warm.level_b != 0) return walk.run(nullptr);
   QueryOptions of_cores = options_of_cores(a, b, options);
   of_cores.iterations = std::max(1, options.iterations - spent);
-  Gap gap = gap_between(a.core, X_WA, b.core, X_WB, of_cores, warm);
+  Gap gap = gap_between(a.core, A.X_W, b.core, B.X_W, of_cores, warm);
   gap.iterations += spent;
-  if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, X_WA);
+  if (!gap.meets && gap.lower > 0.0) return apart(gap, a.depth, b.depth, A.X_W);
   Separation s;
   // If the origin is deep inside but coplanar with all support points found, it looks like contact
   // to GJK.
   const bool meets = gap.meets || gap.end == QueryEnd::touching;
-  if (meets && in_overlap(A, X_WA, B, X_WB, options, gap.iterations, warm, s)) {
+  if (meets && measure_overlap(A, B, options, gap.iterations, warm, s)) {
     s.iterations += gap.iterations;
     return s;
   }
@@ -176,10 +175,10 @@ namespace detail {
   // The levels are the fallback for a measure that did not finish: report that, when the iterations
   // ran short or the levels find a depth above rounding.
   const double depth_of_cores = s.distance + a.depth + b.depth;
-  const double margin = A.planes().margin() + B.planes().margin();
-  const bool deep = depth_of_cores < -1e-13 * (A.reach() + B.reach()) - margin;
+  const double margin = A.shape.planes().margin() + B.shape.planes().margin();
+  const bool deep = depth_of_cores < -1e-13 * (A.shape.reach() + B.shape.reach()) - margin;
   const bool spent_early = options.iterations - gap.iterations < DeepestPoint::most_pivots;
-  if (meets && (deep || spent_early) && !is_by_levels(A, B, options) &&
+  if (meets && (deep || spent_early) && !is_by_levels(A.shape, B.shape, options) &&
       s.end == QueryEnd::converged) {
     s.end = QueryEnd::budget_spent;
   }
@@ -187,23 +186,23 @@ namespace detail {
 }
 
 /// The signed distance by search, starting from the warm start.
-[[gnu::noinline]] inline Separation searched(const Shape& A, const Pose& X_WA, const Shape& B,
-                                             const Pose& X_WB, const QueryOptions& options,
+[[gnu::noinline]] inline Separation searched(PosedShape A, PosedShape B,
+                                             const QueryOptions& options,
                                              WarmStart& warm) noexcept {
-  const Level& a = A.level(0);
-  const Level& b = B.level(0);
-  if (overlapped(A, B, warm)) {
+  const Level& a = A.shape.level(0);
+  const Level& b = B.shape.level(0);
+  if (overlapped(A.shape, B.shape, warm)) {
     Separation s;
-    if (in_overlap(A, X_WA, B, X_WB, options, 0, warm, s)) return s;
+    if (measure_overlap(A, B, options, 0, warm, s)) return s;
   }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
-    FeatureSearch search({a.core, X_WA, b.core, X_WB});
+    FeatureSearch search({a.core, A.X_W, b.core, B.X_W});
     if (search.run(options_of_cores(a, b, options), warm, gap)) {
-      return apart(gap, a.depth, b.depth, X_WA);
+      return apart(gap, a.depth, b.depth, A.X_W);
     }
   }
-  return carefully_searched(A, X_WA, B, X_WB, options, gap.iterations, warm);
+  return carefully_searched(A, B, options, gap.iterations, warm);
 }
 
 }  // namespace detail
@@ -232,11 +231,11 @@ namespace detail {
     const Level& b = B.level(0);
     const double beyond = options.ignore_beyond + a.depth + b.depth;
     Gap gap;
-    if (detail::still_nearest({a.core, X_WA, b.core, X_WB}, warm, options, beyond, gap)) {
+    if (detail::confirm_nearest({a.core, X_WA, b.core, X_WB}, warm, options, beyond, gap)) {
       return detail::apart(gap, a.depth, b.depth, X_WA);
     }
   }
-  return detail::searched(A, X_WA, B, X_WB, options, warm);
+  return detail::searched({A, X_WA}, {B, X_WB}, options, warm);
 }
 
 /// The same without a warm start.

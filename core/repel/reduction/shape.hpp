@@ -114,7 +114,8 @@ class Shape {
 
   Shape(Ladder ladder, Planes planes) {
     ladder.shrink_to_fit();
-    data_ = std::make_shared<const Data>(Data{std::move(ladder), std::move(planes)});
+    // make_shared would add a tenth of the time that all of Eigen takes to compile.
+    data_.reset(new Data{std::move(ladder), std::move(planes)});
     first_ = data_->ladder.data();
   }
 
@@ -126,6 +127,12 @@ class Shape {
 
   std::shared_ptr<const Data> data_;
   const Level* first_ = nullptr;  ///< the first level, cached
+};
+
+/// A shape at its pose, for the length of a call: it owns neither.
+struct PosedShape {
+  const Shape& shape;
+  const Pose& X_W;
 };
 
 }  // namespace repel

@@ -1,18 +1,18 @@
-#include <repel/reduction/answer.hpp>
+#include <repel/reduction/separation_result.hpp>
 
 #include <gtest/gtest.h>
 
 namespace repel {
-namespace answer_test {
+namespace separation_result_test {
 
-TEST(Answer, ADefaultOneClaimsNothing) {
+TEST(SeparationResult, ADefaultOneClaimsNothing) {
   const Separation s;
   EXPECT_EQ(s.end, QueryEnd::bad_input);
   EXPECT_EQ(s.lower, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(s.upper, std::numeric_limits<double>::infinity());
 }
 
-TEST(Answer, CoresApartGiveTheGapLessTheirDepths) {
+TEST(SeparationResult, CoresApartGiveTheGapLessTheirDepths) {
   Gap gap;
   gap.distance = gap.lower = gap.upper = 1.0;
   gap.n_BA_W = {0.0, 0.0, 1.0};
@@ -31,7 +31,7 @@ TEST(Answer, CoresApartGiveTheGapLessTheirDepths) {
   EXPECT_EQ(s.end, QueryEnd::converged);
 }
 
-TEST(Answer, LanesHaveTheBitsOfASinglePair) {
+TEST(SeparationResult, LanesHaveTheBitsOfASinglePair) {
   Gap gap;
   gap.distance = 0.1;
   gap.lower = 0.1 - 1e-15;
@@ -61,5 +61,5 @@ TEST(Answer, LanesHaveTheBitsOfASinglePair) {
   }
 }
 
-}  // namespace answer_test
+}  // namespace separation_result_test
 }  // namespace repel

@@ -1,6 +1,6 @@
 /// @file
-/// Common code of all benchmark programs: `--json FILE`, and the description of machine and build
-/// in that file.
+/// What the benchmark programs share: the description of machine and build, and for those of Google
+/// Benchmark the way from their arguments to `--json FILE` with that description in it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "main.hpp"
+#include "harness.hpp"
 
 #include <cstdio>
 #include <cstring>
