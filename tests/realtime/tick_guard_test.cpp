@@ -8,6 +8,8 @@
 
 #include <thread>
 
+#include <repel/schedule/worker_share.hpp>
+
 #include "heap_guard.hpp"
 #include "loop/slider.hpp"
 #include "pairs/boxes.hpp"
