@@ -99,7 +99,7 @@ ReadModule relief_of(const Map& map) {
 ReadModule kbb2_of(const Map& map) {
   allow(map, {"stiffness", "damping", "shunt", "force_limit", "angular_stiffness",
               "angular_damping", "angular_shunt", "torque_limit"});
-  network::Kbb2Options options = network::suited_coupling();
+  network::Kbb2Options options;
   map.read("stiffness", gain(unit::stiffness, 1e-3, 1e7), options.stiffness);
   map.read("damping", gain(unit::damping, 0.0, 1e6), options.damping);
   map.read("shunt", {unit::damping, 0.0, 1e6}, options.shunt);

@@ -11,8 +11,8 @@
 namespace repel {
 
 /// The modules of Anderson 1993, Figure 9, with their defaults: a force-feedback lever and six
-/// rates without feedback, coupled to the tool by a spring-damper as stiff as the arm allows; walls
-/// on tool and links; joint limits.
+/// rates without feedback, coupled to the tool by a spring-damper; walls on tool and links; joint
+/// limits.
 [[nodiscard]] inline network::Plan default_network(const ArmModel& arm) {
   std::vector<network::JointRange> ranges;
   for (const ArmLink& link : arm.links) ranges.push_back({link.lower, link.upper});
@@ -21,7 +21,7 @@ namespace repel {
       .add("multiplex", network::Multiplex())
       .add("spaceball", network::Spaceball())
       .add("relief", network::Relief())
-      .add("kbb2", network::Kbb2(network::suited_coupling()))
+      .add("kbb2", network::Kbb2())
       .add("obstacle", network::Obstacle())
       .add("puma_kin", network::PumaKin())
       .add("arm_obstacle", network::ArmObstacle())

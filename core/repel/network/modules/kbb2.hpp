@@ -22,14 +22,6 @@ struct Kbb2Options {
   double torque_limit = 8.0;        ///< [N m]
 };
 
-/// The gains of a coupling of which nothing is said: as stiff as the arm allows.
-[[nodiscard]] constexpr Kbb2Options suited_coupling() noexcept {
-  return {.stiffness = automatic,
-          .damping = automatic,
-          .angular_stiffness = automatic,
-          .angular_damping = automatic};
-}
-
 /// The left side moves the far end of a spring and a parallel damper whose near end is on the
 /// right. R = K T / 2 + B. The shunt B2 to ground is on the left, where the waves of a line arrive:
 /// with B2 equal to the impedance of the line, a right side that moves freely reflects nothing.
