@@ -76,7 +76,7 @@ def main():
     parser.add_argument("--write", metavar="FILE", help="write the table as Markdown")
     arguments = parser.parse_args()
     rate = 400
-    lines = [f"Stiffness in kN/m at {rate} Hz with {damping:g} N s/m of damping in the wall.", "",
+    lines = [f"Stiffness in kN/m, to 10 %, at {rate} Hz with {damping:g} N s/m of damping in the wall.", "",
              "| arm | with the prediction | allowed | without it | allowed by friction alone |",
              "|---|---|---|---|---|"]
     with tempfile.TemporaryDirectory() as folder:

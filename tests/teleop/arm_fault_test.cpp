@@ -152,8 +152,7 @@ Descent run_down(Fault fault, double speed, double before) {
     arm.begin_tick(k);
     const ArmReadings readings = port.read();
     cell.sense({&readings, 1}, (k + 1) * cell.period());
-    const network::Command& command =
-        hands.step(cell.X_WT(0).linear(), cell.elapsed());
+    const network::Command& command = hands.step(cell.X_WT(0).linear(), cell.elapsed());
     const TickRecord& record = *cell.act({&command, 1}).front();
     port.apply(record);
     arm.step(0.0025);
