@@ -25,9 +25,7 @@
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/world/world.hpp>
 
-namespace repel {
-
-namespace detail {
+namespace repel::detail {
 
 /// The parts of a cell, and the only place where they are put together and checked. The functions
 /// are those of `Cell` (cell/cell.hpp), which documents them.
@@ -231,6 +229,4 @@ class CellAssembly {
   std::int64_t periods_ = 0;  // since the first tick
 };
 
-}  // namespace detail
-
-}  // namespace repel
+}  // namespace repel::detail

@@ -132,6 +132,7 @@ void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 
 namespace repel {
 
+// NOLINTBEGIN(misc-definitions-in-headers): inline, or in one source
 REPEL_DEFINITION Cell::Cell(CellDescription description)
     : parts_(std::make_unique<detail::CellAssembly>(std::move(description))) {}
 REPEL_DEFINITION Cell::~Cell() = default;
@@ -198,6 +199,8 @@ REPEL_DEFINITION double Cell::device_damping() const noexcept {
 REPEL_DEFINITION const std::vector<std::string>& Cell::warnings() const noexcept {
   return parts_->warnings();
 }
+
+// NOLINTEND(misc-definitions-in-headers)
 
 }  // namespace repel
 
