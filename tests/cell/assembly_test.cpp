@@ -14,21 +14,8 @@
 namespace repel {
 namespace assembly_test {
 
-using network::Module;
+using test::plan_with;
 using test::sliders;
-
-/// A network from a hand to three joints, with these modules before and after the Jacobian.
-network::Plan plan_with(const std::vector<Module>& before, const std::vector<Module>& after,
-                        int joints = 3) {
-  network::Plan plan;
-  plan.add("hand", network::FlowSource<network::any_size>(network::Vec<network::any_size>::Zero(6)))
-      .add("kbb2", network::Kbb2());
-  for (std::size_t i = 0; i < before.size(); ++i) plan.add("wall " + std::to_string(i), before[i]);
-  plan.add("puma_kin", network::PumaKin());
-  for (std::size_t i = 0; i < after.size(); ++i) plan.add("link " + std::to_string(i), after[i]);
-  plan.add("puma_joints", network::PumaJoints(joints));
-  return plan;
-}
 
 /// Modifies the sliders. @return the error message of the cell; empty if it was built
 std::string refusal_of(const std::function<void(CellDescription&)>& change) {
@@ -136,6 +123,10 @@ TEST(CellRefuses, AnArmThatIsNotDescribed) {
   expect_refused([](CellDescription& cell) { cell.arms[0].kinematics = nullptr; },
                  {"no kinematics"});
   expect_refused([](CellDescription& cell) { cell.arms[0].model.links.clear(); }, {"no joint"});
+  // More than there is storage for: its Jacobian was written past the end before anything checked.
+  expect_refused(
+      [](CellDescription& cell) { cell.arms[0].model.links.resize(network::most_joints + 1); },
+      {"17 joints; allowed: 1 to 16"});
   expect_refused(
       [](CellDescription& cell) {
         cell.arms[0].start = {0.0, 0.0};

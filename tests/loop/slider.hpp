@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace repel::test {
 
@@ -87,6 +88,19 @@ inline ArmModel slider_model(double effort_limit) {
     model.links.push_back(link);
   }
   return model;
+}
+
+/// A network from a hand to the joints, with these modules before and after the Jacobian.
+inline network::Plan plan_with(const std::vector<network::Module>& before,
+                               const std::vector<network::Module>& after, int joints = 3) {
+  network::Plan plan;
+  plan.add("hand", network::FlowSource<network::any_size>(network::Vec<network::any_size>::Zero(6)))
+      .add("kbb2", network::Kbb2());
+  for (std::size_t i = 0; i < before.size(); ++i) plan.add("wall " + std::to_string(i), before[i]);
+  plan.add("puma_kin", network::PumaKin());
+  for (std::size_t i = 0; i < after.size(); ++i) plan.add("link " + std::to_string(i), after[i]);
+  plan.add("puma_joints", network::PumaJoints(joints));
+  return plan;
 }
 
 /// The network of Figure 9 of the paper on three rails; the ball acts without delay.

@@ -28,16 +28,9 @@ struct Scene {
   std::vector<LinkBody> links;
 };
 
-/// A network from a hand to three joints, with these modules before and after the Jacobian.
 network::Network network_with(const std::vector<network::Module>& before,
                               const std::vector<network::Module>& after, int joints = 3) {
-  network::Plan plan;
-  plan.add("hand", network::FlowSource<network::any_size>(network::Vec<network::any_size>::Zero(6)))
-      .add("kbb2", network::Kbb2());
-  for (std::size_t i = 0; i < before.size(); ++i) plan.add("wall " + std::to_string(i), before[i]);
-  plan.add("puma_kin", network::PumaKin());
-  for (std::size_t i = 0; i < after.size(); ++i) plan.add("link " + std::to_string(i), after[i]);
-  return plan.add("puma_joints", network::PumaJoints(joints)).build(period);
+  return test::plan_with(before, after, joints).build(period);
 }
 
 std::string complaint(const network::Network& network, Scene scene) {

@@ -89,7 +89,12 @@ inline void add_pair(World& world, std::span<const ArmLayout> arms, PartId a, Pa
 /// kinematics, or the start has a wrong number of joints or violates a joint limit
 inline void start(ArmDescription& arm) {
   const std::size_t joints = arm.model.links.size();
-  if (joints == 0) throw SetupError(named(arm) + ": it has no joint; allowed: 1 or more");
+  const std::string most = std::to_string(network::most_joints);
+  if (joints == 0) throw SetupError(named(arm) + ": it has no joint; allowed: 1 to " + most);
+  if (joints > network::most_joints) {
+    throw SetupError(named(arm) + ": it has " + std::to_string(joints) + " joints; allowed: 1 to " +
+                     most);
+  }
   if (arm.kinematics == nullptr) {
     throw SetupError(named(arm) + ": it has no kinematics; allowed: an ArmKinematics");
   }
