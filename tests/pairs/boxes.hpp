@@ -3,6 +3,7 @@
 #pragma once
 
 #include <repel/pairs/forces_and_totals.hpp>
+#include <repel/patch/patch.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/world/world.hpp>
 
@@ -145,20 +146,51 @@ inline Vec3 velocity_at(const World& world, BodyId body, const Vec3& p_WQ) {
   return state.V_WB.linear + state.V_WB.angular.cross(p_WQ - state.X_WB.translation());
 }
 
+/// The distance of a pair by its contact patch, and its gradient, from a cold start.
+struct DistanceNow {
+  double distance = 0.0;  ///< [m]
+  Wrench gradient;        ///< about the origin of body A
+};
+
+inline DistanceNow distance_now(const World& world, const Pair& pair) {
+  const Pose X_WA = pose_of(world, pair.a);
+  const Pose X_WB = pose_of(world, pair.b);
+  const Separation s = separation_now(world, pair);
+  ContactPatch patch;
+  patch.gradient.force = s.extraction_W;
+  if (pair.law.tilt > 0.0) {
+    (void)find_patch(s, {world.part(pair.a).shape, X_WA}, {world.part(pair.b).shape, X_WB},
+                     pair.law.tilt, patch);
+  }
+  const Vec3& f = patch.gradient.force;
+  const BodyId a = world.part(pair.a).body;
+  const Vec3 arm = s.p_WA - world.motion().bodies[a.index].X_WB.translation();
+  return {s.distance - patch.nearer, {f, patch.gradient.torque + arm.cross(f)}};
+}
+
+/// The force of a pair on its body A at the present motion, about the origin of that body.
+inline Wrench force_now(const World& world, const Pair& pair, bool at_rest = false) {
+  const DistanceNow now = distance_now(world, pair);
+  const BodyState& A = world.motion().bodies[world.part(pair.a).body.index];
+  const BodyState& B = world.motion().bodies[world.part(pair.b).body.index];
+  const Vec3 p_BA = A.X_WB.translation() - B.X_WB.translation();
+  const Vec3 v = A.V_WB.linear - B.V_WB.linear - B.V_WB.angular.cross(p_BA);
+  const Vec3 w = A.V_WB.angular - B.V_WB.angular;
+  const double rate = now.gradient.force.dot(v) + now.gradient.torque.dot(w);
+  return pair.law(now.distance, at_rest ? 0.0 : rate) * now.gradient;
+}
+
 /// The forces of all pairs at the present motion, each from a cold start; torques by definition.
 inline std::vector<Wrench> forces_now(const World& world, bool at_rest = false) {
   std::vector<Wrench> on_body(world.body_count());
   for (const Pair& pair : world.pairs()) {
-    const Separation s = separation_now(world, pair);
     const BodyId a = world.part(pair.a).body;
     const BodyId b = world.part(pair.b).body;
-    const Vec3 v = velocity_at(world, a, s.p_WA) - velocity_at(world, b, s.p_WA);
-    const Vec3 f = pair.law(s.distance, at_rest ? 0.0 : s.extraction_W.dot(v)) * s.extraction_W;
-    const auto arm = [&](BodyId id) -> Vec3 {
-      return s.p_WA - world.motion().bodies[id.index].X_WB.translation();
-    };
-    on_body[a.index] += {f, arm(a).cross(f)};
-    on_body[b.index] += {-f, arm(b).cross(-f)};
+    const Wrench on_a = force_now(world, pair, at_rest);
+    const Vec3 p_BA = world.motion().bodies[a.index].X_WB.translation() -
+                      world.motion().bodies[b.index].X_WB.translation();
+    on_body[a.index] += on_a;
+    on_body[b.index] += {-on_a.force, -on_a.torque - p_BA.cross(on_a.force)};
   }
   return on_body;
 }

@@ -8,8 +8,10 @@
 #include <limits>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include <repel/base/vec.hpp>
+#include <repel/geometry/faces.hpp>
 #include <repel/geometry/support_table.hpp>
 #include <repel/geometry/vertex_scan.hpp>
 
@@ -57,16 +59,21 @@ class Convex {
     return set;
   }
   /// The convex hull of at least one vertex [m].
-  static Convex polytope(std::span<const Vec3> vertices) {
+  /// @param faces of these vertices, or none: its flat features are then not known
+  static Convex polytope(std::span<const Vec3> vertices, Faces faces = {}) {
     Convex set(Kind::polytope);
+    set.faces_ = std::move(faces);
     set.vertices_ = VertexScan(vertices);
     if (vertices.size() > largest_scan) set.table_ = SupportTable(vertices);
     for (const Vec3& v : vertices) set.reach_ = std::max(set.reach_, norm(v));
     return set;
   }
 
-  /// [byte] Heap memory held, and the most that a polytope of so many vertices holds.
-  [[nodiscard]] std::size_t bytes() const noexcept { return vertices_.bytes() + table_.bytes(); }
+  /// [byte] Heap memory held, and the most that a polytope of so many vertices holds beside its
+  /// faces.
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return vertices_.bytes() + table_.bytes() + faces_.bytes();
+  }
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     return VertexScan::bytes_of(vertices) +
            (vertices > largest_scan ? SupportTable::most_bytes(vertices) : 0);
@@ -85,10 +92,14 @@ class Convex {
   [[nodiscard]] bool is_scanned() const noexcept {
     return kind_ == Kind::polytope && table_.empty();
   }
+  /// The faces of a polytope; empty for one that is flat, or was made without them.
+  [[nodiscard]] const Faces& faces() const noexcept { return faces_; }
   /// The vertices of a polytope.
   [[nodiscard]] VertexBlock vertices() const noexcept { return vertices_.block(); }
   /// [m] The half extents of a box.
   [[nodiscard]] Vec<double> half_extents() const noexcept { return size_; }
+  /// [m] Of a cylinder: radius, radius, half length; of a cone: radius, z of base, z of apex.
+  [[nodiscard]] Vec<double> round_size() const noexcept { return size_; }
   /// The name of a corner of a box by its signs, bit k set where coordinate k is positive. A corner
   /// of a flat box has several sign patterns; the lowest is its name.
   [[nodiscard]] std::uint32_t corner_name(std::uint32_t signs) const noexcept {
@@ -271,6 +282,7 @@ class Convex {
   Vec<double> size_{};  ///< [m] box: half extents; cylinder: radius, radius, half length; cone:
                         ///< radius, z of base, z of apex
   VertexScan vertices_;
+  Faces faces_;
   SupportTable table_;  ///< of a polytope with many vertices; otherwise empty
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 
@@ -12,6 +13,7 @@
 #include <repel/force/law_lanes.hpp>
 #include <repel/pairs/pair_answer.hpp>
 #include <repel/pairs/part_poses.hpp>
+#include <repel/patch/patch.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {
@@ -21,6 +23,7 @@ class LaneBodies {
  public:
   void set(const World& world, int k, PartId part) noexcept {
     parts_[index(k)] = part;
+    shapes_[index(k)] = &world.part(part).shape;
     bodies_[index(k)] = world.part(part).body;
     same_body_ = std::all_of(bodies_.begin(), bodies_.end(),
                              [&](BodyId body) { return body == bodies_[0]; });
@@ -35,6 +38,9 @@ class LaneBodies {
     for (std::size_t k = 0; k < X_WP.size(); ++k) X_WP[k] = &of.at(parts_[k], motion);
     return LanePose::of(X_WP);
   }
+  [[nodiscard]] PosedShape posed(int k, PartPoses& of, const Motion& motion) const noexcept {
+    return {*shapes_[index(k)], of.at(parts_[index(k)], motion)};
+  }
   [[nodiscard]] const BodyState& state(const Motion& motion, int k) const noexcept {
     return motion.bodies[bodies_[index(k)].index];
   }
@@ -44,6 +50,7 @@ class LaneBodies {
 
   std::array<PartId, lane_count> parts_{};
   std::array<BodyId, lane_count> bodies_{};
+  std::array<const Shape*, lane_count> shapes_{};
   bool same_body_ = false;
 };
 
@@ -62,6 +69,8 @@ class LaneGroup {
     features_.A.X_W.set(k, poses.last(pair.a));
     features_.B.X_W.set(k, poses.last(pair.b));
     law_.set(k, pair.law);
+    range_[k] = pair.range;
+    tilt_[k] = pair.law.tilt;
     depth_a_[k] = world.part(pair.a).shape.level(0).depth;
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
     nearest_[k] = std::numeric_limits<double>::infinity();
@@ -74,7 +83,7 @@ class LaneGroup {
   /// Changes the feature of the pair in lane k and discards its answer.
   void set_feature(const World& world, int k, const Pair& pair, const WarmStart& warm) noexcept {
     features_.set(k, world.part(pair.a).shape.level(0).core, world.part(pair.b).shape.level(0).core,
-                  warm);
+                  warm, flat_within(pair.law.tilt));
     fixed_are_turned_ = false;
     discard_answer(k);
   }
@@ -86,7 +95,10 @@ class LaneGroup {
     fixed_are_turned_ = true;
     const LaneGap gap = features_.prove(options);
     apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
-    compute_forces(motion, gap.proven & used_);
+    const LaneMask proven = gap.proven & used_;
+    const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
+    find_gradients(relative, bits_of(gap.flat & proven & (apart_.lower < range_)), motion, poses);
+    compute_forces(relative, proven);
     tick_ = motion.tick;
     fresh_ = true;
     stale_ = 0;
@@ -137,15 +149,9 @@ class LaneGroup {
 
   [[nodiscard]] PairAnswer answer(int k) const noexcept {
     PairAnswer answer;
-    answer.last = {apart_.distance[k],
-                   apart_.lower[k],
-                   apart_.upper[k],
-                   apart_.p_WA.at(k),
-                   apart_.p_WB.at(k),
-                   apart_.extraction_W.at(k),
-                   0,
-                   1,
-                   QueryEnd::converged};
+    answer.last = separation_in(k);
+    answer.nearer = nearer_[k];
+    answer.gradient = {gradient_W_.at(k), moment_W_.at(k)};
     answer.p_AQ_W = p_AQ_W_.at(k);
     answer.p_BA_W = p_BA_W_.at(k);
     answer.turn = turn_[k];
@@ -158,6 +164,18 @@ class LaneGroup {
 
  private:
   static constexpr QueryOptions options{};
+
+  [[nodiscard]] Separation separation_in(int k) const noexcept {
+    return {apart_.distance[k],
+            apart_.lower[k],
+            apart_.upper[k],
+            apart_.p_WA.at(k),
+            apart_.p_WB.at(k),
+            apart_.extraction_W.at(k),
+            0,
+            1,
+            QueryEnd::converged};
+  }
 
   void update_poses(const LaneBodies& bodies, LaneSets& sets, const Motion& motion,
                     PartPoses& poses) const noexcept {
@@ -177,20 +195,38 @@ class LaneGroup {
     return each;
   }
 
-  void compute_forces(const Motion& motion, const LaneMask& proven) noexcept {
-    const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
+  /// The gradients at the nearest points; of the pairs with a bit in `flat`, of their patches.
+  void find_gradients(const RelativeMotion<Lanes, LaneVec>& relative, unsigned flat,
+                      const Motion& motion, PartPoses& poses) noexcept {
     p_AQ_W_ = apart_.p_WA - relative.p_WoA;
+    gradient_W_ = apart_.extraction_W;
+    moment_W_ = cross(p_AQ_W_, apart_.extraction_W);
+    nearer_ = Lanes{};
+    for (; flat != 0U; flat &= flat - 1U) {
+      const int k = std::countr_zero(flat);
+      ContactPatch patch;
+      if (!find_patch(separation_in(k), of_a_.posed(k, poses, motion),
+                      of_b_.posed(k, poses, motion), tilt_[k], patch)) {
+        continue;
+      }
+      const Vec3 force = patch.gradient.force;
+      nearer_[k] = patch.nearer;
+      gradient_W_.set(k, Vec<double>(force));
+      moment_W_.set(k, Vec<double>(Vec3(patch.gradient.torque + p_AQ_W_.at(k).cross(force))));
+    }
+  }
+
+  void compute_forces(const RelativeMotion<Lanes, LaneVec>& relative,
+                      const LaneMask& proven) noexcept {
     p_BA_W_ = relative.p_BA_W;
     turn_ = relative.turn;
-    const Lanes distance = proven_distance(apart_.distance, apart_.lower);
-    const LaneMask in_range = proven & (distance < law_.range);
+    const Lanes distance = proven_distance(apart_.distance, apart_.lower) - nearer_;
+    const LaneMask in_range = proven & (apart_.lower < range_);
     proven_ = bits_of(proven);
     in_range_ = bits_of(in_range);
     const Lanes none{};
-    // With the lever arm p = p_AQ_W, the rate n.(v + w x p) equals n.v + w.(p x n); p x n is reused
-    // for the torque.
-    const LaneVec n = either(in_range, apart_.extraction_W, LaneVec{});
-    const LaneVec moment = either(in_range, cross(p_AQ_W_, apart_.extraction_W), LaneVec{});
+    const LaneVec n = either(in_range, gradient_W_, LaneVec{});
+    const LaneVec moment = either(in_range, moment_W_, LaneVec{});
     const Lanes rate = dot(n, relative.v_BA_W) + dot(relative.w_BA_W, moment);
     size_ = in_range ? law_(distance, rate) : none;
     force_W_ = size_ * n;
@@ -210,7 +246,10 @@ class LaneGroup {
   LaneMask used_{};
   Lanes depth_a_{}, depth_b_{};    ///< [m] rounding radius of the shapes
   Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
+  Lanes range_{}, tilt_{};         ///< [m] of the pairs, [rad] of their laws
   // The members of PairAnswer.
+  LaneVec gradient_W_{}, moment_W_{};
+  Lanes nearer_{};
   LaneVec p_AQ_W_{}, p_BA_W_{};
   Lanes turn_{};
   std::int64_t tick_ = PairAnswer::never;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include <repel/pairs/pair_geometry.hpp>
+#include <repel/base/spatial.hpp>
 #include <repel/reduction/separation_result.hpp>
 
 namespace repel::detail {
@@ -14,6 +15,8 @@ namespace repel::detail {
 struct PairAnswer {
   Separation last;
   double slope = 1.0;         ///< of the distance along the extraction; passable pairs only
+  double nearer = 0.0;        ///< [m] the distance minus that of the contact patch
+  Wrench gradient;            ///< of the patch's distance when A moves, about the origin of body A
   Vec3 p_AQ_W{0, 0, 0};       ///< [m] witness point on A, from the origin of body A
   Vec3 p_BA_W{0, 0, 0};       ///< [m] origin of body A from that of body B at the evaluation
   double turn = 0.0;          ///< [m] both bodies' BodyState::turn at the evaluation
@@ -29,27 +32,31 @@ struct PairAnswer {
   static constexpr std::int64_t never = INT64_MIN;
 
   [[nodiscard]] bool known() const noexcept { return tick > never; }
-  /// A signed distance [m] that is not larger than the true one. The measured distance of a query
+  /// A signed distance [m] of the contact patch that is not larger than the true one. The measured distance of a query
   /// that ran out of budget has no matching direction: only its lower bound is used.
   [[nodiscard]] double proven() const noexcept {
-    return cut_short() ? last.lower : proven_distance(last.distance, last.lower);
+    return (cut_short() ? last.lower : proven_distance(last.distance, last.lower)) - nearer;
   }
 
   /// Conservative lower bound of the signed distance [m] now. If the shapes were apart, the
   /// separating plane remains valid when shifted by the relative motion along its normal; in
   /// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
-  /// increase of `turn` in both cases. No answer is deeper than the last levels of both shapes.
+  /// increase of `turn` in both cases. No answer is deeper than the last levels of both shapes. A
+  /// patch has separating planes that lean by up to its tilt.
   /// @param deepest [m] largest penetration depth of any answer, positive
   [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B,
                                    double deepest) const noexcept {
     const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
     const bool separated = last.lower > 0.0 && !cut_short();
-    const double along = separated ? dot(last.extraction_W, moved) : -norm(moved);
+    const double lean = nearer > 0.0 ? widest_tilt * norm(moved) : 0.0;
+    const double along = separated ? dot(last.extraction_W, moved) - lean : -norm(moved);
     const double now = proven() + along - (A.turn + B.turn - turn);
     return now > 0.0 ? now : std::max(now, -deepest);
   }
 
  private:
+  static constexpr double widest_tilt = 0.05;  ///< [rad] of any law
+
   [[nodiscard]] bool cut_short() const noexcept { return last.end == QueryEnd::budget_spent; }
 };
 

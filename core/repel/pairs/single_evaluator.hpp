@@ -9,6 +9,7 @@
 #include <repel/pairs/near_pair.hpp>
 #include <repel/pairs/pair_memory.hpp>
 #include <repel/pairs/part_poses.hpp>
+#include <repel/patch/patch.hpp>
 #include <repel/reduction/separation.hpp>
 
 namespace repel::detail {
@@ -123,7 +124,7 @@ class SingleEvaluator {
     answer.last = query(slot, motion, poses, memory_.history(slot).warm);
     ++forces_.totals.evaluated;
     forces_.totals.iterations += answer.last.iterations;
-    if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).law.range + rounding) {
+    if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).range + rounding) {
       clear_history(slot);
       answer.last = query(slot, motion, poses, memory_.history(slot).warm);
       forces_.totals.iterations += answer.last.iterations;
@@ -220,8 +221,9 @@ class SingleEvaluator {
     answer.turn = relative.turn;
     answer.tick = motion.tick;
     answer.evaluated_at = now_;
-    answer.in_range = answer.proven() < p.law.range;
-    set_clearance(slot, motion, answer.last.lower - p.law.range);
+    answer.in_range = answer.last.lower < p.range;
+    set_clearance(slot, motion, answer.last.lower - p.range);
+    find_gradient(slot, motion, poses);
     const PairId id = memory_.tracking(slot).pair;
     const double deepest = std::max(0.0, -answer.last.lower);
     totals.deepest = std::max(totals.deepest, deepest);
@@ -230,6 +232,21 @@ class SingleEvaluator {
       totals.nearest = answer.last.distance;
       totals.nearest_pair = id;
     }
+  }
+
+  /// The contact patch of a new answer, or its nearest point.
+  void find_gradient(int slot, const Motion& motion, PartPoses& poses) noexcept {
+    const Pair& p = pair(slot);
+    PairAnswer& answer = memory_.answer(slot);
+    ContactPatch patch;
+    patch.gradient.force = answer.last.extraction_W;
+    if (answer.in_range && p.law.tilt > 0.0) {
+      (void)find_patch(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses),
+                       p.law.tilt, patch);
+    }
+    answer.nearer = patch.nearer;
+    answer.gradient = patch.gradient;
+    answer.gradient.torque += answer.p_AQ_W.cross(patch.gradient.force);
   }
 
   /// [m] The witness point of the last answer relative to the present origin of body B.
@@ -250,26 +267,32 @@ class SingleEvaluator {
     memory_.answer(slot).force = 0.0;
     if (!(distance < law.range)) return;
     const PairAnswer& answer = memory_.answer(slot);
-    const Vec3& n = answer.last.extraction_W;
-    const Vec3 v_BA = velocity(slot, motion);
+    const BodyState& A = body_a(slot, motion);
+    const BodyState& B = body_b(slot, motion);
     double size = 0.0;
-    Vec3 f;
+    Wrench on_a;
     if (law.passable) {
-      const double travel = body_a(slot, motion).travel + body_b(slot, motion).travel;
-      f = share *
-          memory_.history(slot).passage.force(law, distance, answer.slope * n, travel, v_BA);
+      const Vec3 f = share * memory_.history(slot).passage.force(
+                                 law, distance, answer.slope * answer.last.extraction_W,
+                                 A.travel + B.travel, velocity(slot, motion));
       size = norm(f);
+      on_a = wrench_of_force(f, answer.p_AQ_W);
     } else {
-      size = share * law(distance, dot(n, v_BA));
-      f = size * n;
+      const auto relative = relative_motion(A, B);
+      const Wrench& g = answer.gradient;
+      const double rate =
+          dot(g.force, to_vec3(relative.v_BA_W)) + dot(g.torque, to_vec3(relative.w_BA_W));
+      size = share * law(distance, rate);
+      on_a = {size * g.force, size * g.torque};
     }
     memory_.answer(slot).force = size;
     const PairTracking& tracking = memory_.tracking(slot);
     forces_.totals.note_force(size, tracking.pair);
     double& peak = memory_.extremes(tracking.pair).peak_force;
     peak = std::max(peak, size);
-    forces_.push(tracking.body_a, tracking.body_b, wrench_of_force(f, answer.p_AQ_W),
-                 wrench_of_force(-f, arm_b(slot, motion)), motion);
+    const Vec3 p_BA_W = origin(A.X_WB) - origin(B.X_WB);
+    forces_.push(tracking.body_a, tracking.body_b, on_a,
+                 {-on_a.force, -on_a.torque - p_BA_W.cross(on_a.force)}, motion);
   }
 
   const World* world_;

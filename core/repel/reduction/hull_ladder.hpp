@@ -139,7 +139,8 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
   std::vector<Vec3> vertices(points.begin(), points.end());
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
-  Ladder ladder = ladder_of(Convex::polytope({vertices.data(), vertices.size()}));
+  const std::span<const Vec3> all(vertices.data(), vertices.size());
+  Ladder ladder = ladder_of(Convex::polytope(all, Faces(points, facets, all)));
   const std::span<const Vec3> moving(vertices.data(), leading);
   Vec3 centroid = centroid_of(moving);
   double depth = 0.0;
@@ -176,7 +177,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
 [[nodiscard]] inline std::size_t most_ladder_bytes(std::size_t points,
                                                    const ReductionOptions& options) noexcept {
   const std::size_t moving = std::min(points, most_leading);
-  return most_ladder_bytes(options) + Convex::most_bytes(points) +
+  return most_ladder_bytes(options) + Convex::most_bytes(points) + Faces::most_bytes(points) +
          static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
 }
 

@@ -1,0 +1,230 @@
+/// @file
+/// The flat features of a convex set that face a direction.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include <repel/geometry/convex.hpp>
+#include <repel/patch/plane.hpp>
+
+namespace repel::detail {
+
+/// A flat feature: a point, a segment, or a convex polygon.
+struct Flat {
+  static constexpr int most = 16;
+
+  std::array<Vec<double>, most> corners;  ///< [m] from the origin of the set, world axes
+  int size = 0;
+  Vec<double> normal{};  ///< of a polygon, outward
+  bool is_disc = false;  ///< the polygon stands for a disc
+  double radius = 0.0;   ///< [m] of a segment: of curvature across it
+
+  void add(const Vec<double>& p) noexcept { corners[static_cast<std::size_t>(size++)] = p; }
+  [[nodiscard]] const Vec<double>& at(int i) const noexcept {
+    return corners[static_cast<std::size_t>(i)];
+  }
+};
+
+/// The flat feature of a set that is perpendicular to a direction within an angle.
+class FlatSearch {
+ public:
+  /// @param X the pose of the set
+  /// @param n_W unit
+  /// @param angle [rad] small
+  FlatSearch(const Convex& set, const Pose& X, const Vec<double>& n_W, double angle) noexcept
+      : set_(set), X_(X), n_(rotate_transposed(X, n_W)), angle_(angle) {}
+
+  [[nodiscard]] Flat run() const noexcept {
+    switch (set_.kind()) {
+      case Convex::Kind::box:
+        return of_box();
+      case Convex::Kind::cylinder:
+        return of_cylinder();
+      case Convex::Kind::cone:
+        return of_cone();
+      case Convex::Kind::polytope:
+        break;
+    }
+    return of_polytope();
+  }
+
+ private:
+  [[nodiscard]] Flat of_box() const noexcept {
+    const Vec<double> half = set_.half_extents();
+    const double n[3] = {n_.x(), n_.y(), n_.z()};
+    const double h[3] = {half.x(), half.y(), half.z()};
+    Flat flat;
+    Vec<double> middle{0.0, 0.0, 0.0};
+    std::array<Vec<double>, 2> free;
+    int count = 0;
+    int fixed = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec<double> edge = h[k] * column<double>(X_, k);
+      if (std::abs(n[k]) < angle_ && h[k] > 0.0 && count < 2) {
+        free[static_cast<std::size_t>(count++)] = edge;
+      } else {
+        fixed = k;
+        middle = n[k] > 0.0 ? middle + edge : middle - edge;
+      }
+    }
+    if (count == 0) {
+      flat.add(middle);
+    } else if (count == 1) {
+      flat.add(middle - free[0]);
+      flat.add(middle + free[0]);
+    } else {
+      flat.add(middle - free[0] - free[1]);
+      flat.add(middle + free[0] - free[1]);
+      flat.add(middle + free[0] + free[1]);
+      flat.add(middle - free[0] + free[1]);
+      flat.normal = (n[fixed] > 0.0 ? 1.0 : -1.0) * column<double>(X_, fixed);
+    }
+    return flat;
+  }
+
+  /// A disc at `z` [m] as a polygon with a corner where it is farthest along the direction.
+  [[nodiscard]] Flat of_disc(double radius, double z, double across) const noexcept {
+    const double x = across > 0.0 ? n_.x() / across : 1.0;
+    const double y = across > 0.0 ? n_.y() / across : 0.0;
+    Flat flat;
+    for (int i = 0; i < disc_corners; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / disc_corners;
+      const double c = radius * std::cos(angle);
+      const double s = radius * std::sin(angle);
+      flat.add(rotate(X_, Vec<double>(c * x - s * y, c * y + s * x, z)));
+    }
+    flat.normal = (n_.z() > 0.0 ? 1.0 : -1.0) * column<double>(X_, 2);
+    flat.is_disc = true;
+    return flat;
+  }
+
+  [[nodiscard]] Flat of_cylinder() const noexcept {
+    const Vec<double> size = set_.round_size();
+    const double across = std::sqrt(n_.x() * n_.x() + n_.y() * n_.y());
+    const double z = n_.z() > 0.0 ? size.z() : -size.z();
+    if (across < angle_ && size.x() > 0.0) return of_disc(size.x(), z, across);
+    const double scale = across > 0.0 ? size.x() / across : 0.0;
+    const Vec<double> rim{scale * n_.x(), scale * n_.y(), 0.0};
+    const Vec<double> half{0.0, 0.0, size.z()};
+    Flat flat;
+    if (std::abs(n_.z()) < angle_ && size.z() > 0.0) {
+      flat.add(rotate(X_, rim - half));
+      flat.add(rotate(X_, rim + half));
+      flat.radius = size.x();
+    } else {
+      flat.add(rotate(X_, rim + (n_.z() > 0.0 ? half : -half)));
+    }
+    return flat;
+  }
+
+  [[nodiscard]] Flat of_cone() const noexcept {
+    const double radius = set_.round_size().x();
+    const double base = set_.round_size().y();
+    const double apex = set_.round_size().z();
+    const double across = std::sqrt(n_.x() * n_.x() + n_.y() * n_.y());
+    if (across < angle_ && n_.z() < 0.0 && radius > 0.0) return of_disc(radius, base, across);
+    const double scale = across > 0.0 ? radius / across : 0.0;
+    const Vec<double> rim{scale * n_.x(), scale * n_.y(), base};
+    const Vec<double> tip{0.0, 0.0, apex};
+    const double slant = std::hypot(radius, apex - base);
+    const double off = across * radius - n_.z() * (apex - base);
+    Flat flat;
+    if (std::abs(off) < angle_ * slant && slant > 0.0) {
+      flat.add(rotate(X_, rim));
+      flat.add(rotate(X_, tip));
+      flat.radius = 0.5 * radius;
+    } else {
+      flat.add(rotate(X_, off > 0.0 ? rim : tip));
+    }
+    return flat;
+  }
+
+  /// The flattest face at the farthest vertex, or the flattest edge.
+  [[nodiscard]] Flat of_polytope() const noexcept {
+    const Faces& faces = set_.faces();
+    const std::uint32_t farthest = set_.support(n_).name;
+    const Vec<double> top = set_.place(farthest);
+    double flattest = std::sqrt(1.0 - angle_ * angle_);
+    double least_slope = angle_;
+    std::uint32_t face = none;
+    std::uint32_t other = none;
+    for (const std::uint32_t i : faces.at(farthest)) {
+      const double along = dot(faces.normal(i), n_);
+      if (along > flattest) {
+        flattest = along;
+        face = i;
+      }
+      const auto corners = faces.corners(i);
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        if (corners[k] != farthest) continue;
+        // Each edge is found from both of its faces.
+        const std::uint32_t next = corners[k + 1 < corners.size() ? k + 1 : 0];
+        const Vec<double> away = top - set_.place(next);
+        const double slope = dot(n_, away) / std::sqrt(dot(away, away));
+        if (slope < least_slope) {
+          least_slope = slope;
+          other = next;
+        }
+      }
+    }
+    if (face != none) return of_face(face, farthest);
+    Flat flat;
+    flat.add(rotate(X_, top));
+    if (other != none) flat.add(rotate(X_, set_.place(other)));
+    return flat;
+  }
+
+  /// A face; with many corners, those farthest along a few directions stand for it, the first of
+  /// which leads to the corner `farthest`.
+  [[nodiscard]] Flat of_face(std::uint32_t face, std::uint32_t farthest) const noexcept {
+    const Vec<double>& normal = set_.faces().normal(face);
+    const auto corners = set_.faces().corners(face);
+    Flat flat;
+    flat.normal = rotate(X_, normal);
+    if (corners.size() <= Flat::most) {
+      for (const std::uint32_t name : corners) flat.add(rotate(X_, set_.place(name)));
+      return flat;
+    }
+    const PlanarAxes axes(normal);
+    Planar middle;
+    for (const std::uint32_t name : corners) {
+      middle = middle + (1.0 / static_cast<double>(corners.size())) * axes.in_plane(set_.place(name));
+    }
+    const Planar to_farthest = axes.in_plane(set_.place(farthest)) - middle;
+    std::uint32_t last = none;
+    for (int k = 0; k < disc_corners; ++k) {
+      const double turn = 2.0 * std::numbers::pi * k / disc_corners;
+      const Planar d = std::cos(turn) * to_farthest +
+                       std::sin(turn) * Planar{-to_farthest.y, to_farthest.x};
+      std::uint32_t best = farthest;
+      double most = -std::numeric_limits<double>::infinity();
+      for (const std::uint32_t name : corners) {
+        const double along = dot(d, axes.in_plane(set_.place(name)));
+        if (k == 0 || along <= most) continue;
+        most = along;
+        best = name;
+      }
+      if (best != last) flat.add(rotate(X_, set_.place(best)));
+      last = best;
+    }
+    return flat;
+  }
+
+  static constexpr std::uint32_t none = 0xFFFFFFFFU;
+  /// Corners that stand for a disc. The one nearest to the other set is a point of the disc itself.
+  static constexpr int disc_corners = 12;
+
+  const Convex& set_;
+  const Pose& X_;
+  Vec<double> n_;  ///< in the frame of the set
+  double angle_;
+};
+
+}  // namespace repel::detail

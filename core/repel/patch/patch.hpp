@@ -1,0 +1,155 @@
+/// @file
+/// The contact patch of a pair: where nearly parallel features meet, in place of one point.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <repel/base/spatial.hpp>
+#include <repel/patch/overlap.hpp>
+#include <repel/patch/tilt_mean.hpp>
+#include <repel/reduction/separation_result.hpp>
+#include <repel/reduction/shape.hpp>
+
+namespace repel {
+
+/// The distance of two shapes as its mean over all small tilts of one against the other. The
+/// distance itself has a kink where features are parallel: its gradient, the line along which a
+/// force acts, jumps from corner to corner. The mean has none. It is never larger than the distance,
+/// and equal to it where the nearest point is the same under all tilts.
+struct ContactPatch {
+  double nearer = 0.0;  ///< [m] the distance minus its mean, at least 0
+  /// The gradient of the mean when A moves: the wrench on A of a unit force, [1] and [m] about
+  /// `Separation::p_WA`, world axes. That on B is the opposite.
+  Wrench gradient;
+};
+
+namespace detail {
+
+/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt, so
+/// that they come and go with weight zero.
+[[nodiscard]] inline double flat_within(double tilt) noexcept {
+  return 10.0 * tilt;
+}
+
+/// Two segments, nearly parallel, that lie across each other: the gap grows to both sides of the
+/// point where they cross, by `sine` `lean` x^2 / 2.
+struct Crossing {
+  double sine = 0.0;  ///< of the angle from B to A around the normal
+  double lean = 0.0;  ///< [1/m] how much the normal of the pair leans to the side along them
+  double tilt = 0.0;  ///< [rad] falls to zero where they are no longer parallel
+  double fall = 0.0;  ///< of `tilt` with the angle
+
+  static constexpr double widest = 0.2;        ///< [rad]
+  static constexpr double least_radius = 1e-3;  ///< [m] of two sharp edges that touch
+
+  Crossing() = default;
+  /// @param gap [m] between the segments
+  Crossing(const PlanarAxes& axes, const Flat& a, const Flat& b, double gap, double most) noexcept {
+    const Planar u = axes.in_plane(a.at(1) - a.at(0));
+    const Planar v = axes.in_plane(b.at(1) - b.at(0));
+    sine = (dot(u, v) < 0.0 ? -1.0 : 1.0) * cross(v, u) / (norm(u) * norm(v));
+    lean = sine / (std::max(least_radius, std::abs(gap)) + a.radius + b.radius);
+    const double inside = 1.0 - sine * sine / (widest * widest);
+    if (!(inside > 0.0)) return;
+    tilt = most * inside * inside;
+    fall = -4.0 * most * inside * sine / (widest * widest);
+  }
+};
+
+/// The slope of a feature against the tangent plane: how its height along n changes.
+[[nodiscard]] inline Planar slope_of(const Flat& flat, const PlanarAxes& axes) noexcept {
+  if (flat.size > 2) {
+    return (-1.0 / dot(flat.normal, axes.n)) * axes.in_plane(flat.normal);
+  }
+  const Vec<double> edge = flat.at(1) - flat.at(0);
+  const Planar along = axes.in_plane(edge);
+  return (dot(edge, axes.n) / dot(along, along)) * along;
+}
+
+/// h(s) [m]: how much nearer than at r = 0 the gap is somewhere. It is 0 where the nearest points
+/// are those of the features; in overlap, a measure may name others.
+[[nodiscard]] inline double farthest_along(const Outline& outline, const Planar& s) noexcept {
+  double most = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < outline.size; ++i) most = std::max(most, dot(s, outline.at(i).r));
+  return most;
+}
+
+/// In overlap, the features and the measure agree where nothing but the features bounds the depth.
+/// Elsewhere the patch has the distance of its features while they are nearly parallel, and that of
+/// the measure where they are not: this is the share of the latter.
+[[nodiscard]] inline double share_of_measure(double lean, double tilt) noexcept {
+  return std::clamp((lean - 2.0 * tilt) / (3.0 * tilt), 0.0, 1.0);
+}
+
+[[nodiscard]] inline Planar along(const Planar& unit, const Planar& v) noexcept {
+  return dot(unit, v) * unit;
+}
+
+}  // namespace detail
+
+/// The patch around the nearest points of two shapes.
+/// @param s their `separation` at these poses, by the shapes themselves (level 0)
+/// @param tilt [rad] radius of the disc of tilts, more than 0, a few thousandths
+/// @return false where there is none: the same point is nearest under all tilts, or no direction is
+/// known. `patch` is then unchanged
+/// Cost: without a patch a look at the nearest features, else about that of a warm `separation`. No
+/// heap, bounded.
+[[nodiscard]] inline bool find_patch(const Separation& s, PosedShape A, PosedShape B, double tilt,
+                                     ContactPatch& patch) noexcept {
+  using namespace detail;
+  if (s.level != 0 || !(norm(s.extraction_W) > 0.5)) return false;
+  const Level& level_a = A.shape.level(0);
+  const Level& level_b = B.shape.level(0);
+  const Vec<double> n(s.extraction_W);
+  const double angle = flat_within(tilt);
+  const Flat a = FlatSearch(level_a.core, A.X_W, -n, angle).run();
+  if (a.size < 2) return false;
+  const Flat b = FlatSearch(level_b.core, B.X_W, n, angle).run();
+  if (b.size < 2) return false;
+  const PlanarAxes axes(n);
+  const Vec<double> nearest_a = Vec<double>(s.p_WA) + level_a.depth * n;
+  const Vec<double> nearest_b = Vec<double>(s.p_WB) - level_b.depth * n;
+  Outline outline;
+  if (!find_overlap(axes, a, nearest_a - column<double>(A.X_W, 3), b,
+                    nearest_b - column<double>(B.X_W, 3), s.distance > 0.0, outline)) {
+    return false;
+  }
+  outline.is_exact = !a.is_disc && !b.is_disc;
+  Planar slope_a = slope_of(a, axes);
+  Planar slope_b = slope_of(b, axes);
+  Planar unit;
+  if (outline.size == 2) {
+    const Planar edge = outline.at(1).r - outline.at(0).r;
+    unit = (1.0 / norm(edge)) * edge;
+    slope_a = along(unit, slope_a);
+    slope_b = along(unit, slope_b);
+  }
+  Crossing crossing;
+  crossing.tilt = tilt;
+  if (a.size == 2 && b.size == 2) {
+    crossing = Crossing(axes, a, b, dot(n, nearest_a - nearest_b), tilt);
+    if (!(crossing.tilt > 0.0)) return false;
+    outline.bend = crossing.sine * crossing.lean;
+  }
+  const Planar lean = slope_b - slope_a;
+  const TiltMean mean(outline, lean, crossing.tilt);
+  const Planar& r = mean.point();
+  // Forces act normal to the surface of A, or of B where A ends; and off the normal where segments
+  // that cross are nearest beside the crossing.
+  const Vec<double> off = axes.in_world(slope_a);
+  const Planar aside = crossing.lean * dot(unit, r) * Planar{-unit.y, unit.x};
+  const double twist = crossing.lean * mean.square() - crossing.fall * mean.widened();
+  const Vec<double> force =
+      n - (1.0 - mean.held()) * off + axes.in_world(mean.pull() + aside);
+  const Vec<double> point = axes.in_world(r) + dot(slope_a, r) * n;
+  const Vec<double> torque = cross(point, n - off) + (mean.drill() + twist) * n +
+                             cross(n, axes.in_world(mean.lifted(slope_a)) + level_a.depth * force);
+  patch.nearer = std::max(0.0, mean.nearer() - share_of_measure(norm(lean), tilt) *
+                                                   farthest_along(outline, lean));
+  patch.gradient = {to_vec3(force), to_vec3(torque)};
+  return true;
+}
+
+}  // namespace repel

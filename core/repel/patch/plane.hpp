@@ -1,0 +1,73 @@
+/// @file
+/// Vectors and convex polygons in the tangent plane of a contact.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include <repel/base/vec.hpp>
+
+namespace repel::detail {
+
+/// A vector in the tangent plane.
+struct Planar {
+  double x = 0.0;
+  double y = 0.0;
+
+  friend Planar operator+(const Planar& a, const Planar& b) noexcept {
+    return {a.x + b.x, a.y + b.y};
+  }
+  friend Planar operator-(const Planar& a, const Planar& b) noexcept {
+    return {a.x - b.x, a.y - b.y};
+  }
+  friend Planar operator*(double s, const Planar& a) noexcept { return {s * a.x, s * a.y}; }
+  friend double dot(const Planar& a, const Planar& b) noexcept { return a.x * b.x + a.y * b.y; }
+  /// Positive when b is counter-clockwise of a.
+  friend double cross(const Planar& a, const Planar& b) noexcept { return a.x * b.y - a.y * b.x; }
+  friend double norm(const Planar& a) noexcept { return std::sqrt(dot(a, a)); }
+};
+
+/// Right-handed axes of the tangent plane with the unit normal n.
+struct PlanarAxes {
+  Vec<double> n, e1, e2;  ///< unit, world axes
+
+  explicit PlanarAxes(const Vec<double>& normal) noexcept : n(normal) {
+    const Vec<double> far =
+        std::abs(n.z()) < 0.7 ? Vec<double>(0.0, 0.0, 1.0) : Vec<double>(1.0, 0.0, 0.0);
+    const Vec<double> side = cross(far, n);
+    e1 = (1.0 / std::sqrt(dot(side, side))) * side;
+    e2 = cross(n, e1);
+  }
+  [[nodiscard]] Planar in_plane(const Vec<double>& v) const noexcept {
+    return {dot(e1, v), dot(e2, v)};
+  }
+  [[nodiscard]] Vec<double> in_world(const Planar& v) const noexcept { return v.x * e1 + v.y * e2; }
+};
+
+/// A convex polygon, counter-clockwise, or a segment with two corners. What bounds it belongs to
+/// one of two bodies: a side of a polygon, an end of a segment.
+struct Outline {
+  static constexpr int most = 48;
+
+  struct Corner {
+    Planar r;           ///< [m]
+    bool of_a = false;  ///< A bounds it: along the side to the next corner, or at this end
+  };
+  std::array<Corner, most> corners;
+  int size = 0;
+  /// How many sides, or ends, of A and B pass through r = 0.
+  int touching_a = 0;
+  int touching_b = 0;
+  bool is_exact = true;  ///< the point r = 0 is known to rounding: no curve was searched for it
+  double bend = 0.0;  ///< [1/m] of a segment: the second derivative of the gap along it
+
+  void add(const Planar& r, bool of_a) noexcept {
+    if (size < most) corners[static_cast<std::size_t>(size++)] = {r, of_a};
+  }
+  [[nodiscard]] const Corner& at(int i) const noexcept {
+    return corners[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] const Corner& after(int i) const noexcept { return at(i + 1 < size ? i + 1 : 0); }
+};
+
+}  // namespace repel::detail

@@ -1,0 +1,231 @@
+/// @file
+/// The mean over a disc of small tilts of the nearest point of two flat features.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <repel/patch/plane.hpp>
+
+namespace repel::detail {
+
+/// Over an outline P, the gap of two flat features is linear, g(r) = g(0) - s.r, and with A tilted
+/// by theta it is g(r) - theta.r. Its minimum, averaged over the disc |theta| <= e, is
+///
+///     g(0) - H(s)   with   H(s) = E[h(s + theta)]   and   h(y) = max of y.r over P
+///
+/// h is the support function of P; with y in the normal cone of corner i, corner i is the nearest.
+/// So the mean nearest point is the sum of the corners weighted by the share of the disc around s
+/// that lies in their cones. It moves continuously with s and with P, since it depends on nothing
+/// but the set P; it is the corner itself where the whole disc is in its cone, and the Steiner point
+/// of P where s is 0 and the disc is large. Where the boundary belongs to A, P moves with it: y
+/// is a sum of multiples of the outward normals of the two sides at the corner, and those of sides
+/// of A pull on A.
+class TiltMean {
+ public:
+  /// @param outline 2 or more corners, no two of them equal
+  /// @param slope s, minus the gradient of the gap
+  /// @param tilt e [rad], more than 0
+  TiltMean(const Outline& outline, const Planar& slope, double tilt) noexcept
+      : is_exact_(outline.is_exact), s_(slope), e_(tilt) {
+    if (outline.size == 2) {
+      average_segment(outline);
+    } else {
+      average_polygon(outline);
+    }
+  }
+
+  /// H [m]: how much the mean gap is less than that at r = 0.
+  [[nodiscard]] double nearer() const noexcept { return nearer_; }
+  /// [m] The mean nearest point.
+  [[nodiscard]] const Planar& point() const noexcept { return point_; }
+  /// The sum of the tangential forces t on A per unit of force, and [m] their moments r x t and
+  /// (slope of A).r t.
+  [[nodiscard]] const Planar& pull() const noexcept { return pull_; }
+  /// The share of the disc for which the point r = 0 is the nearest.
+  [[nodiscard]] double held() const noexcept { return held_; }
+  /// Of a segment: [m^2] the mean square of the distance of the nearest point from r = 0, and [m] how H
+  /// changes with the tilt.
+  [[nodiscard]] double square() const noexcept { return square_; }
+  [[nodiscard]] double widened() const noexcept { return widened_; }
+  [[nodiscard]] double drill() const noexcept { return drill_; }
+  [[nodiscard]] Planar lifted(const Planar& slope_of_a) const noexcept {
+    return slope_of_a.x * x_pull_ + slope_of_a.y * y_pull_;
+  }
+
+ private:
+  /// Returns the share if the corner is the nearest point without tilt, else 0. There the slope pulls
+  /// on nothing: the force is along the normal.
+  [[nodiscard]] double note_nearest(const Planar& r, double share) noexcept {
+    if (!is_exact_ || dot(r, r) > at_nearest * at_nearest) return 0.0;
+    held_ += share;
+    return share;
+  }
+
+  void pull_at(const Planar& r, const Planar& t) noexcept {
+    pull_ = pull_ + t;
+    drill_ += cross(r, t);
+    x_pull_ = x_pull_ + r.x * t;
+    y_pull_ = y_pull_ + r.y * t;
+  }
+
+  /// K and L at z, with w distributed as a coordinate on a disc of radius 1:
+  /// K = E[max(0, z + w)] and L = E[max(0, z + w)^2] / 2.
+  struct Excess {
+    double share, first, second;  ///< P(z + w > 0), K, L
+
+    explicit Excess(double z) noexcept {
+      if (z >= 1.0) {
+        share = 1.0;
+        first = z;
+        second = 0.5 * (z * z + 0.25);
+      } else if (z <= -1.0) {
+        share = first = second = 0.0;
+      } else {
+        const double half = std::sqrt(1.0 - z * z);
+        const double angle = std::asin(z);
+        const double mean = 2.0 / (3.0 * std::numbers::pi) * half * half * half;
+        const double spread =
+            0.125 + (angle - z * half * (1.0 - 2.0 * z * z)) / (4.0 * std::numbers::pi);
+        share = 0.5 + (z * half + angle) / std::numbers::pi;
+        first = z * share + mean;
+        second = 0.5 * (z * z * share + 2.0 * z * mean + spread);
+      }
+    }
+  };
+
+  /// With the coordinate x along the segment, the minimum over it of c x^2 / 2 - (s + theta) x.
+  void average_segment(const Outline& outline) noexcept {
+    const Outline::Corner& from = outline.at(0);
+    const Outline::Corner& to = outline.at(1);
+    const Planar edge = to.r - from.r;
+    const double length = norm(edge);
+    const Planar along = (1.0 / length) * edge;
+    const double s = dot(s_, along);
+    const double low = dot(along, from.r);
+    const double c = outline.bend;
+    const Excess first((s - c * low) / e_);
+    const Excess last((s - c * (low + length)) / e_);
+    const double width = c * length / e_;
+    // Differences divided by `width`; where it is small, derivatives within.
+    double once = 0.0;
+    double twice = 0.0;
+    double thrice = 0.0;
+    if (width < 1e-4) {
+      const Excess middle((s - c * (low + 0.5 * length)) / e_);
+      once = middle.share;
+      twice = middle.first;
+      thrice = 0.5 * middle.share;
+    } else {
+      once = (first.first - last.first) / width;
+      twice = (first.second - last.second) / width;
+      thrice = (twice - last.first) / width;
+    }
+    point_ = from.r + once * edge;
+    square_ = low * low + 2.0 * length * (low * once + length * thrice);
+    const Planar aside = from.r - low * along;
+    nearer_ = dot(s_, aside) + low * (s - 0.5 * c * low) + e_ * length * twice;
+    widened_ = length * (2.0 * twice - (s - c * low) / e_ * once - last.first);
+    const double at_end = note_nearest(to.r, last.share);
+    const double at_start = note_nearest(from.r, 1.0 - first.share);
+    const double beyond_end = e_ * last.first - at_end * s;
+    const double beyond_start = e_ * first.first - s + c * low + at_start * s;
+    const auto part_of_a = [&](const Outline::Corner& end, double held) {
+      const bool of_both = held > 0.0 && outline.touching_a > 0 && outline.touching_b > 0;
+      return of_both ? 0.5 : (end.of_a ? 1.0 : 0.0);
+    };
+    pull_at(to.r, -part_of_a(to, at_end) * beyond_end * along);
+    pull_at(from.r, part_of_a(from, at_start) * beyond_start * along);
+  }
+
+  /// The border between the cones of two corners: the ray along the outward normal of their side.
+  struct Ray {
+    Planar normal;        ///< unit
+    double share = 0.0;   ///< of the disc, from a fixed ray to this one, counter-clockwise
+    double moment = 0.0;  ///< half the integral of e^2 - |y - s|^2 along it, over the disc's area
+  };
+
+  [[nodiscard]] Ray ray_along(const Planar& normal, bool is_inside) const noexcept {
+    Ray ray{normal};
+    const double b = dot(s_, normal);
+    const double h = cross(normal, s_);
+    const double half = std::sqrt(std::max(0.0, e_ * e_ - h * h));
+    const double area = std::numbers::pi * e_ * e_;
+    if (is_inside) {
+      const double out = b + half;
+      const Planar at = out * normal - s_;
+      ray.share = 0.5 * (e_ * e_ * std::atan2(at.y, at.x) - out * h) / area;
+      ray.moment = 0.5 * (half * half * out - (half * half * half + b * b * b) / 3.0) / area;
+      return ray;
+    }
+    // The share clockwise of the ray.
+    ray.share = b > 0.0 ? Excess(-h / e_).share : (h > 0.0 ? 0.0 : 1.0);
+    if (b > 0.0) ray.moment = 2.0 / 3.0 * half * half * half / area;
+    return ray;
+  }
+
+  void average_polygon(const Outline& outline) noexcept {
+    const bool is_inside = dot(s_, s_) < e_ * e_;
+    std::array<Ray, Outline::most> rays;
+    const auto ray = [&](int i) -> Ray& { return rays[static_cast<std::size_t>(i)]; };
+    for (int i = 0; i < outline.size; ++i) {
+      const Planar edge = outline.after(i).r - outline.at(i).r;
+      const double length = norm(edge);
+      ray(i) = ray_along((1.0 / length) * Planar{edge.y, -edge.x}, is_inside);
+      nearer_ += ray(i).moment * length;
+    }
+    for (int i = 0; i < outline.size; ++i) {
+      const int before = i > 0 ? i - 1 : outline.size - 1;
+      const Ray& from = ray(before);
+      const Ray& to = ray(i);
+      double share = to.share - from.share;
+      if (share < -1e-9) share += 1.0;
+      const Planar& r = outline.at(i).r;
+      point_ = point_ + share * r;
+      const double held = note_nearest(r, share);
+      bool from_a = outline.at(before).of_a;
+      bool to_a = outline.at(i).of_a;
+      double part = 1.0;
+      if (held > 0.0 && outline.touching_a > 0 && outline.touching_b > 0) {
+        // With more than a side of each at a corner, rounding decides which two are found.
+        if (outline.touching_a + outline.touching_b > 2 || from_a == to_a) {
+          from_a = to_a = true;
+          part = 0.5;
+        }
+      }
+      if (!from_a && !to_a) continue;
+      // The mean of y over the cone.
+      const auto turned = [](const Planar& n) { return Planar{-n.y, n.x}; };
+      const Planar y = (share - held) * s_ + from.moment * turned(from.normal) -
+                       to.moment * turned(to.normal);
+      if (from_a && to_a) {
+        pull_at(r, -part * y);
+        continue;
+      }
+      const double sine = cross(from.normal, to.normal);
+      const double most = 4.0 * norm(y);
+      const double multiple = from_a ? cross(y, to.normal) : cross(from.normal, y);
+      const Planar& normal = from_a ? from.normal : to.normal;
+      pull_at(r, -(multiple < most * sine ? std::max(0.0, multiple / sine) : most) * normal);
+    }
+    nearer_ += dot(s_, point_);
+  }
+
+  static constexpr double at_nearest = 1e-7;  ///< [m] from r = 0
+
+  bool is_exact_;
+  Planar s_;
+  double e_;
+  double nearer_ = 0.0;
+  Planar point_;
+  Planar pull_;
+  double drill_ = 0.0;
+  double held_ = 0.0;
+  double square_ = 0.0;
+  double widened_ = 0.0;
+  Planar x_pull_, y_pull_;  ///< [m] sums of r.x t and r.y t
+};
+
+}  // namespace repel::detail
