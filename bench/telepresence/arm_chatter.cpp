@@ -65,7 +65,7 @@ Json ArmChatter::joints() const {
 }
 
 Json ArmChatter::curves() const {
-  const auto stride = static_cast<std::size_t>(std::llround(0.01 * rate_hz_));
+  const auto stride = static_cast<std::size_t>(std::llround(0.05 * rate_hz_));
   Json times = Json::array();
   Json torque = Json::array();
   Json jump = Json::array();

@@ -34,7 +34,7 @@ class ArmChatter {
   [[nodiscard]] std::vector<Json> row() const;
   /// Number, chatter and jump [N m] of each joint, base outward.
   [[nodiscard]] Json joints() const;
-  /// Curves for the plot: the largest torque of the walls in every 10 ms and its largest jump, both
+  /// Curves for the plot: the largest torque of the walls in every 50 ms and its largest jump, both
   /// as lengths of vectors.
   [[nodiscard]] Json curves() const;
 

@@ -31,6 +31,7 @@ struct Held {
 
 Chatter chatter_of(const std::vector<Sample>& samples, double Sample::*force, double rate_hz) {
   std::vector<double> forces;
+  forces.reserve(samples.size());
   for (const Sample& sample : samples) forces.push_back(sample.*force);
   return {rms_above(forces, rate_hz, audible), largest_jump(forces)};
 }
