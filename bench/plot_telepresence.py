@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """plot_telepresence.py RESULTS.json FOLDER: delay.svg, force against time over a line of waves and a
 plain one; transparency.svg, what the operator feels against frequency; zwidth.svg, the stiffest
-wall against its damping."""
+wall against its damping; align.svg, the torque of the walls on a plate that is pressed flat, and its
+jumps, against time. What has no results yet is left out."""
 
 import json
 import math
@@ -116,17 +117,34 @@ def zwidth(part):
     return picture([panel], colours)
 
 
+def align(part):
+    runs = {name: run for name, run in part["series"].items() if "torque [N m]" in run}
+    colours = dict(zip(runs, PALETTE))
+    if not runs:
+        return None
+    panels = []
+    for quantity, title in (("torque [N m]", "torque of the walls [N m], largest in 50 ms"),
+                            ("jump [N m]", "its largest jump from tick to tick [N m]")):
+        axes = Axes(WIDTH * len(panels), even(0, 6, 1), even(0, 25, 5))
+        panel = list(axes.lines(title, "time [s]"))
+        for name, colour in colours.items():
+            panel += axes.curve(zip(runs[name]["time [s]"], runs[name][quantity]), colour)
+        panels.append(panel)
+    return picture(panels, {name.split("Figure 8, ")[-1]: c for name, c in colours.items()})
+
+
 def main():
     if len(sys.argv) != 3 or "--help" in sys.argv:
         print(__doc__)
         sys.exit(0 if "--help" in sys.argv else 2)
     with open(sys.argv[1], encoding="utf-8") as file:
         parts = json.load(file)["parts"]
-    for draw in (delay, transparency, zwidth):
-        if draw.__name__ not in parts:
+    for draw in (delay, transparency, zwidth, align):
+        drawn = draw(parts[draw.__name__]) if draw.__name__ in parts else None
+        if drawn is None:
             continue
         with open(os.path.join(sys.argv[2], draw.__name__ + ".svg"), "w", encoding="utf-8") as file:
-            file.write("\n".join(draw(parts[draw.__name__])) + "\n")
+            file.write("\n".join(drawn) + "\n")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import textwrap
 from draw import phases_of, read_run
 
 KEPT = ("scene", "backend", "rate_hz", "ticks", "pairs", "nearest_m", "nearest_pair", "deepest_m",
-        "peak_force_n", "status_ticks")
+        "peak_force_n", "status_ticks", "chatter")
 MARKS = "<!-- Written by scenes/publish, from here -->\n", "<!-- to here -->\n"
 FELT = 1.0  # [N]
 
@@ -65,6 +65,23 @@ def obstacle_table(result):
         yield f"\nThe other {unfelt} push less than {FELT:g} N."
 
 
+def chatter_table(result):
+    """How rough the walls were on each arm: rms above 30 Hz, and the largest jump per tick."""
+    if result["pairs"] == 0:
+        return
+    above = result["chatter"]["above_hz"]
+    yield ""
+    yield (f"| chatter of the walls on | force above {above:g} Hz [N] | its largest jump [N] | "
+           f"torque above {above:g} Hz [N m] | its largest jump [N m] |")
+    yield "|---|---|---|---|---|"
+    for arm in [result, *result["partners"]]:
+        walls = arm["chatter"]["walls"]
+        cells = [f"{walls[key]:.3g}" if walls[key] is not None else "not known"
+                 for key in ("force_rms_n", "force_jump_n", "torque_rms_nm", "torque_jump_nm")]
+        name = f"the tool of `{arm['name']}`" if arm is not result else "the tool"
+        yield f"| {name} | {' | '.join(cells)} |"
+
+
 def concerns(arm, partners, pair):
     """Whether an arm is one of the two that a pair is of."""
     first, second = pair.split(" - ") if pair else ("", "")
@@ -95,6 +112,7 @@ def tables(result, arms):
     yield from summary(result)
     yield ""
     yield from obstacle_table(result)
+    yield from chatter_table(result)
     for arm in arms:
         yield ""
         yield from phase_table(arm, result["partners"])

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "chart.hpp"
+#include "chatter_report.hpp"
 #include "page.hpp"
 #include "unused.hpp"
 
@@ -174,6 +175,17 @@ std::string obstacle_table(const RunResult& r) {
   return table(rows, 3);
 }
 
+std::string chatter_table(const ArmResult& arm) {
+  const std::string whose = arm.name.empty() ? "" : arm.name + ": ";
+  std::vector<std::vector<std::string>> rows{
+      {whose + "chatter of", "root mean square", "largest jump"}};
+  for (const NamedChatter& each : chatter_list(arm)) {
+    rows.push_back({each.name, with_unit(each.chatter.rms, each.unit),
+                    with_unit(each.chatter.jump, each.unit)});
+  }
+  return table(rows, 1);
+}
+
 std::string module_table(const ArmResult& arm) {
   std::vector<std::vector<std::string>> rows{{"module", "energy [J]", "lowest [J]", "passed [J]",
                                               "supplied [J]", "controller took [J]", "passive"}};
@@ -231,7 +243,10 @@ void write_html(const RunResult& r, std::ostream& out) {
   out << "<h2>What was near</h2>\n" << charts_of_the_world(r);
   out << "<h2>What pushed</h2>\n";
   for (const ArmResult& arm : r.arms) out << charts_of(r, arm);
-  out << obstacle_table(r) << "<h2>Time</h2>\n"
+  out << obstacle_table(r) << "<p class='soft'>Chatter: " << about_chatter()
+      << "; of the walls that of the worst axis, their torque about the origin of the tool.</p>\n";
+  for (const ArmResult& arm : r.arms) out << chatter_table(arm);
+  out << "<h2>Time</h2>\n"
       << charts_of_time(r) << "<p class='soft'>The longest ticks:</p>\n"
       << slowest(r) << "<h2>What the ticks said</h2>\n"
       << status_table(r) << "<h2>Energy</h2>\n";

@@ -44,6 +44,9 @@ void write_names(const ArmHeading& arm, std::ostream& file) {
   for (const std::string& module : arm.modules) write("energy_", module, "_j");
   write("stop");
   write("brakes");
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    write("tau", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_nm" : "_n");
+  }
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
@@ -56,6 +59,7 @@ void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file
   for (std::size_t i = 0; i < arm.joints.size(); ++i) file << ',' << to_text(k.q[i]);
   for (std::size_t i = 0; i < arm.modules.size(); ++i) file << ',' << to_text(double{k.energy[i]});
   file << ',' << to_text(k.stop) << ',' << (k.brakes ? 1 : 0);
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) file << ',' << to_text(k.torques[i]);
 }
 
 class CsvLog final : public TickLog {

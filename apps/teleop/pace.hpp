@@ -51,6 +51,9 @@ class Pace {
   /// Total time for which the user has paused the run; does not count as time of the loop.
   [[nodiscard]] nanoseconds paused_for() const { return paused_for_; }
 
+  /// The user has paused the run before the last tick waited for, or runs it as a single step.
+  [[nodiscard]] bool was_paused() const { return was_paused_; }
+
   /// The run must start over: on a restart, or on a seek to before `time` [s], that of the next
   /// tick.
   [[nodiscard]] bool begins_anew(double time) const {
@@ -79,6 +82,7 @@ class Pace {
     const nanoseconds begin = host::steady_now();
     const bool is_step = sit_out(stop, on_pause, is_shown);
     if (is_shown) paused_for_ += host::steady_now() - begin;
+    was_paused_ = is_shown || is_step;
     if (is_step) return true;
     if (held_) {
       metronome_ = host::Metronome(period_);
@@ -139,6 +143,7 @@ class Pace {
   double base_time_ = 0.0;                      ///< [s]
   double speed_ = 1.0;
   nanoseconds paused_for_{0};
+  bool was_paused_ = false;
   bool held_ = false;  ///< ticks were missed during a pause: the metronome must restart
   bool has_arrived_ = false;
 };

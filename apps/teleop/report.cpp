@@ -6,6 +6,7 @@
 #include <ostream>
 #include <utility>
 
+#include "chatter_report.hpp"
 #include "figure.hpp"
 #include "link_laws.hpp"
 #include "network_report.hpp"
@@ -143,6 +144,7 @@ ordered_json partner_list(const RunResult& r) {
     const ArmResult& arm = r.arms[i];
     ordered_json partner = {{"name", arm.name},
                             {"peak_force_n", arm.totals.peak_force},
+                            {"chatter", chatter_to_json(arm)},
                             {"status_ticks", host::status_ticks(arm.totals)},
                             {"stop", stop_ticks(arm.totals)},
                             {"physical_contact", contact_to_json(r, arm)},
@@ -313,6 +315,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   print_line("peak virtual force", figure(t.peak_force, 2) + " N", out);
   print_obstacles(r, out);
+  print_chatter(r, out);
   print_held(r, out);
   print_contact(r, out);
   print_network(r, out);
@@ -371,6 +374,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   add_payload(r.scene.robot, report);
   report["budget"] = budget_list(r);
   report.update(host::to_json(r.totals(), r.pairs));
+  report["chatter"] = chatter_to_json(r.arms.front());
   report["support_pairs_most"] = r.most_support_pairs;
   report["pairs_skipped_per_tick"] = r.pairs - host::per_tick(r.totals(), r.totals().near);
   report["skipped"] = unused_parts(r);

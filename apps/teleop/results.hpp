@@ -19,6 +19,7 @@
 #include <repel/world/contact.hpp>
 #include <repel/world/world.hpp>
 
+#include "chatter.hpp"
 #include "machine.hpp"
 #include "replay.hpp"
 #include "run_options.hpp"
@@ -65,11 +66,13 @@ struct ModuleResult {
 struct ArmResult {
   std::string name;  ///< of the partner; empty for the arm of the scene itself
   std::vector<JointType> joints;
+  std::vector<std::string> joint_names;
   std::vector<HeldJoint> held;        ///< joints of its robot that do not move
   RunTotals totals;                   ///< of this arm; those on pairs are of the whole world
   std::vector<ModuleResult> modules;  ///< of its network, in the same order
   std::vector<TickRecord> records;
   ContactReport contact;  ///< physical contacts, with RunOptions::contact
+  ArmChatter chatter;
 };
 
 /// The results of a run.

@@ -8,10 +8,12 @@
 #include <thread>
 
 #include <repel/base/complaint.hpp>
+#include <repel/network/modules/torque_arm.hpp>
 #include <repel/world/changed_arm.hpp>
 #include <repel/world/delayed_arm.hpp>
 
 #include "arm_backend.hpp"
+#include "chatter.hpp"
 #include "contact.hpp"
 #include "driven_cell.hpp"
 #include "fade_out.hpp"
@@ -78,22 +80,33 @@ std::int64_t kept_ticks(const RunOptions& options, std::int64_t ticks) {
   return options.keep_records ? std::min<std::int64_t>(ticks, most_kept) : 0;
 }
 
-// Constructed one by one: a copy of an empty recorder would lose the reserved capacity.
-std::vector<Recorder> recorders_for(const RunOptions& options, std::size_t arms,
-                                    std::int64_t ticks) {
-  const std::int64_t kept = kept_ticks(options, ticks);
+/// What is measured of every tick of every arm, with memory from set-up on.
+struct Observers {
   std::vector<Recorder> recorders;
-  for (std::size_t i = 0; i < arms; ++i) recorders.emplace_back(static_cast<std::size_t>(kept));
-  return recorders;
+  std::vector<ArmChatterMeter> chatter;
+};
+
+// Constructed one by one: a copy of an empty recorder would lose the reserved capacity.
+Observers observers_for(const RunOptions& options, const Cell& cell, std::int64_t ticks) {
+  const std::int64_t kept = kept_ticks(options, ticks);
+  Observers observers;
+  for (std::size_t i = 0; i < cell.arms(); ++i) {
+    observers.recorders.emplace_back(static_cast<std::size_t>(kept));
+    const bool has_lever = cell.network(i).find<network::TorqueArm>() != nullptr;
+    observers.chatter.emplace_back(cell.description().arms[i].model.links.size(), has_lever,
+                                   options.rate_hz);
+  }
+  return observers;
 }
 
 /// Records the results of a tick, outside of the measured time.
 void note_tick(std::span<const TickRecord* const> records, const TickTimes& times,
-               RunResult& result, std::vector<Recorder>& recorders) {
+               RunResult& result, Observers& observers) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     result.arms[i].totals.add(*records[i]);
     result.network_time.record(records[i]->network_time);
-    if (result.options.keep_records) recorders[i].add(*records[i]);
+    observers.chatter[i].add(*records[i]);
+    if (result.options.keep_records) observers.recorders[i].add(*records[i]);
   }
   result.most_support_pairs =
       std::max(result.most_support_pairs, records.front()->pairs.iterations);
@@ -139,7 +152,7 @@ nanoseconds due_before(nanoseconds late) noexcept {
 
 /// Runs the ticks.
 void make_ticks(DrivenCell& driven, const Attachments& attached, const std::atomic<bool>& stop,
-                RunResult& result, std::vector<Recorder>& recorders, Mailbox<Progress>& progress,
+                RunResult& result, Observers& observers, Mailbox<Progress>& progress,
                 TickUsage& usage) {
   const RunOptions& options = result.options;
   const Coprocessor& coprocessor = driven.cell().coprocessor();
@@ -163,6 +176,9 @@ void make_ticks(DrivenCell& driven, const Attachments& attached, const std::atom
     if (pace.begins_anew(time)) break;
     const nanoseconds late = pace.wait(
         time, stop, [&] { driven.rehearse(); }, show_last);
+    if (recording == nullptr && pace.was_paused()) {
+      for (ArmChatterMeter& meter : observers.chatter) meter.gap();
+    }
     const nanoseconds due = due_before(late) - pace.paused_for();
     const std::int64_t lost = pace.catch_up();
     result.skipped_ticks += lost;
@@ -183,7 +199,7 @@ void make_ticks(DrivenCell& driven, const Attachments& attached, const std::atom
     const auto arm_begin = steady_clock::now();
     driven.move_arms(period_s, 1);
     result.arm_step.record(steady_clock::now() - arm_begin);
-    note_tick(records, times, result, recorders);
+    note_tick(records, times, result, observers);
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
     show_force(attached.device, *records.front());
     show_tick(attached, coprocessor, options.fast, records,
@@ -262,7 +278,10 @@ RunResult result_of(const PreparedRun& prepared) {
     ArmResult& added = result.arms.emplace_back();
     added.name = arm.name;
     added.held = prepared.robots[result.arms.size() - 1].held;
-    for (const ArmLink& link : arm.model.links) added.joints.push_back(link.type);
+    for (const ArmLink& link : arm.model.links) {
+      added.joints.push_back(link.type);
+      added.joint_names.push_back(link.joint_name);
+    }
   }
   return result;
 }
@@ -277,7 +296,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   DrivenCell driven(cell, make_arms(prepared, attached.recording),
                     make_operators(prepared, attached));
   const std::int64_t ticks = ticks_of(options, attached.recording);
-  std::vector<Recorder> recorders = recorders_for(options, cell.arms(), ticks);
+  Observers observers = observers_for(options, cell, ticks);
   result.times.reserve(static_cast<std::size_t>(kept_ticks(options, ticks)));
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
@@ -288,11 +307,12 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
   TickUsage usage;
-  make_ticks(driven, attached, stop, result, recorders, progress, usage);
+  make_ticks(driven, attached, stop, result, observers, progress, usage);
   cell.stop();
   for (std::size_t i = 0; i < cell.arms(); ++i) {
     result.arms[i].modules = module_results(cell.network(i));
-    result.arms[i].records = recorders[i].records();
+    result.arms[i].records = observers.recorders[i].records();
+    result.arms[i].chatter = observers.chatter[i].result();
     result.arms[i].contact = driven.arm(i).contact();
   }
   note_pairs(cell.world(), cell.coprocessor(), result);

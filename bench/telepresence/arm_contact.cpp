@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "arm_chatter.hpp"
 #include "arm_run.hpp"
 #include "part.hpp"
 #include "spectrum.hpp"
@@ -15,10 +16,11 @@ constexpr double speed = 0.06;  // [m/s] of the operator's command
 struct Contact {
   double peak = 0.0;  // [N]
   int losses = 0;     // number of contact losses after first contact
-  Trace force;        // [N] along the normal
-  Trace height;       // [m]
-  Trace along;        // [m] along the table
-  ArmEnd end;
+  Trace force{};      // [N] along the normal
+  Trace height{};     // [m]
+  Trace along{};      // [m] along the table
+  ArmChatter chatter;
+  ArmEnd end{};
 };
 
 Contact lean(double angle_deg, double rate_hz, double seconds) {
@@ -32,7 +34,7 @@ Contact lean(double angle_deg, double rate_hz, double seconds) {
   scene.script = "{name: lean, device: spaceball, duration: " + to_text(seconds) +
                  " s, linear: " + to_text(-speed * std::sin(angle)) + " 0 " +
                  to_text(-speed * std::cos(angle)) + " m/s}";
-  Contact contact;
+  Contact contact{.chatter = ArmChatter(rate_hz)};
   for (Trace* trace : {&contact.force, &contact.height, &contact.along}) trace->rate_hz = rate_hz;
   bool touched = false;
   contact.end = run_arm(scene, seconds, [&](const ArmTick& tick) {
@@ -43,6 +45,7 @@ Contact lean(double angle_deg, double rate_hz, double seconds) {
     contact.force.samples.push_back(force);
     contact.height.samples.push_back(tick.X_WT.translation().z());
     contact.along.samples.push_back(tick.X_WT.translation().x());
+    contact.chatter.add(tick);
   });
   return contact;
 }
@@ -56,7 +59,9 @@ Result contact(const Options& options) {
                             "slides [mm/s]", "contact lost"},
                 .notes = {"The operator commands 60 mm/s all the time; KBB2 saturates at 120 N. "
                           "Figures are of the last second. A row fails if contact is lost, or the "
-                          "chatter exceeds 1 % of the mean force."}};
+                          "chatter exceeds 1 % of the mean force.",
+                          ArmChatter::note}};
+  append(result.columns, ArmChatter::columns());
   result.fail("rms_above", check_rms_above());
   const std::vector<double> rates =
       options.quick ? std::vector{400.0} : std::vector{400.0, 1000.0, 4000.0};
@@ -70,8 +75,17 @@ Result contact(const Options& options) {
       result.fail(row, c.end.complaint);
       if (c.losses > 0) result.fail(row, "the tool lost contact");
       if (!(c.force.chatter() < 0.01 * c.force.mean())) result.fail(row, "it chatters");
-      result.rows.push_back({rate_hz, angle, c.peak, c.force.mean(), c.force.chatter(),
-                             1e6 * c.height.swing(), 1e3 * std::abs(c.along.drift()), c.losses});
+      std::vector<Json>& cells = result.rows.emplace_back();
+      cells = {rate_hz,
+               angle,
+               c.peak,
+               c.force.mean(),
+               c.force.chatter(),
+               1e6 * c.height.swing(),
+               1e3 * std::abs(c.along.drift()),
+               c.losses};
+      append(cells, c.chatter.row());
+      result.series[row] = {{"joints", c.chatter.joints()}};
       progress("contact", ++done, rates.size() * angles.size());
     }
   }

@@ -109,4 +109,8 @@ double Trace::chatter() const {
   return rms_above(last_second(), rate_hz, 30.0);
 }
 
+double Trace::jump() const {
+  return largest_jump(last_second());
+}
+
 }  // namespace repel::telepresence

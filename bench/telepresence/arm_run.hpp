@@ -64,6 +64,8 @@ struct Trace {
   [[nodiscard]] double drift() const;
   /// Root mean square of the content above 30 Hz, where a force is felt as roughness.
   [[nodiscard]] double chatter() const;
+  /// Largest change from one tick to the next, without sign.
+  [[nodiscard]] double jump() const;
 };
 
 }  // namespace repel::telepresence

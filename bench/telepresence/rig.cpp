@@ -62,8 +62,12 @@ Sample Rig::tick(double hand_speed) {
   sound_ = sound_ && std::isfinite(torque);
   slider_.move(torque);
   const TorqueArm& lever = *network_.find<TorqueArm>();
-  return {lever.angle(), lever.rate(), -lever.felt(), x,
-          -network_.find<Obstacle>()->on_tool().force.x()};
+  return {lever.angle(),
+          lever.rate(),
+          -lever.felt(),
+          x,
+          -network_.find<Obstacle>()->on_tool().force.x(),
+          torque};
 }
 
 double Rig::buffer() const {

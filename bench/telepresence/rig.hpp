@@ -48,6 +48,7 @@ struct Sample {
   double felt = 0.0;         ///< [N] of the lever's motor, against the hand
   double slider = 0.0;       ///< [m]
   double wall = 0.0;         ///< [N] of the wall on the slider, out of it
+  double drive = 0.0;        ///< [N] commanded to the joint of the slider
 };
 
 /// The modules between hand and joints as built by `Plan`: TORQUE ARM of one metre per radian,

@@ -36,6 +36,14 @@ double rms_above(std::span<const double> samples, double rate_hz, double above_h
   return std::sqrt(std::max(0.0, power / window));
 }
 
+double largest_jump(std::span<const double> samples) {
+  double jump = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    jump = std::max(jump, std::abs(samples[i] - samples[i - 1]));
+  }
+  return jump;
+}
+
 std::string check_rms_above() {
   constexpr double rate_hz = 400.0;
   std::vector<double> signal;

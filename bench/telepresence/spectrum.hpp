@@ -1,5 +1,5 @@
 /// @file
-/// The RMS of a signal above a frequency.
+/// How rough a signal is: its RMS above a frequency, and its jumps.
 #pragma once
 
 #include <span>
@@ -13,6 +13,9 @@ namespace repel::telepresence {
 /// below. Accurate to 1 % for content more than two lines, 2 rate_hz / samples, away from
 /// `above_hz`.
 [[nodiscard]] double rms_above(std::span<const double> samples, double rate_hz, double above_hz);
+
+/// Largest change from one sample to the next, without sign; 0 for fewer than two samples.
+[[nodiscard]] double largest_jump(std::span<const double> samples);
 
 /// Self-test: empty if rms_above finds a known sine in a signal with slower components; else the
 /// value it found.

@@ -70,6 +70,7 @@ TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
                           "nearest_passable_m",
                           "deepest_passable_m",
                           "peak_force_n",
+                          "chatter",
                           "allocations_in_tick",
                           "system_calls_in_tick",
                           "page_faults_in_tick",
