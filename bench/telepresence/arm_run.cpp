@@ -39,6 +39,44 @@ std::string complaint_of(const network::Network& network, bool finite) {
   return {};
 }
 
+// Reads angles in steps, and rates as their differences.
+class Encoders {
+ public:
+  Encoders(double step, double rate_hz, std::size_t joints)
+      : step_(step), rate_hz_(rate_hz), q_(joints), v_(joints) {}
+
+  [[nodiscard]] ArmReadings read(const ArmReadings& exact) {
+    if (!(step_ > 0.0)) return exact;
+    for (std::size_t i = 0; i < q_.size(); ++i) {
+      const double q = step_ * std::round(exact.q[i] / step_);
+      v_[i] = has_read_ ? (q - q_[i]) * rate_hz_ : 0.0;
+      q_[i] = q;
+    }
+    has_read_ = true;
+    return {q_, v_, exact.state};
+  }
+
+ private:
+  double step_;     // [rad]
+  double rate_hz_;  // of the readings
+  std::vector<double> q_, v_;
+  bool has_read_ = false;
+};
+
+// What the cell is told of an arm whose friction it does not know, and of its encoders: the watch
+// on the joints would take either for a fault.
+void tell(const ArmScene& scene, ArmDescription& arm) {
+  JointWatchOptions& watch = arm.options.joints;
+  if (!scene.compensates_friction) {
+    for (ArmLink& link : arm.model.links) link.coulomb_friction = 0.0;
+    watch.touches = true;
+  }
+  if (scene.encoder > 0.0) {
+    watch.resolution = scene.encoder;
+    watch.repeats = static_cast<int>(std::lround(scene.rate_hz));  // a second
+  }
+}
+
 }  // namespace
 
 ArmEnd run_arm(const ArmScene& scene, double seconds,
@@ -46,17 +84,19 @@ ArmEnd run_arm(const ArmScene& scene, double seconds,
   const scene::Scene parsed = scene::parse(text_of(scene), "scene");
   teleop::DescribedScene described = teleop::describe(parsed, scene.rate_hz);
   described.cell.coprocessor.lock_step = true;
+  const ArmModel model = described.cell.arms.front().model;
+  tell(scene, described.cell.arms.front());
   Cell cell(std::move(described.cell));
-  const ArmModel& model = cell.description().arms.front().model;
   bullet::Arm arm(model);
   arm.reset(parsed.robot.start);
   ArmPort port(arm, model.links.size());
+  Encoders encoders(scene.encoder, scene.rate_hz, model.links.size());
   network::ScriptedOperator hands(parsed.script);
   RunTotals totals;
   bool finite = true;
   const auto ticks = std::llround(seconds * scene.rate_hz);
   for (std::int64_t k = 1; k <= ticks; ++k) {
-    const ArmReadings readings = port.read();
+    const ArmReadings readings = encoders.read(port.read());
     cell.sense({&readings, 1}, k * cell.period());
     const network::Command& command = hands.step(cell.X_WT(0).linear(), cell.elapsed());
     const TickRecord& record = *cell.act({&command, 1}).front();
@@ -68,7 +108,10 @@ ArmEnd run_arm(const ArmScene& scene, double seconds,
   }
   ArmEnd end{.complaint = complaint_of(cell.network(0), finite),
              .status_ticks = totals.status_ticks};
-  for (const ArmLink& link : model.links) end.ranges.push_back({link.lower, link.upper});
+  for (const ArmLink& link : model.links) {
+    end.ranges.push_back({link.lower, link.upper});
+    end.dry_friction.push_back(link.coulomb_friction);
+  }
   return end;
 }
 

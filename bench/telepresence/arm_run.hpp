@@ -22,6 +22,10 @@ struct ArmScene {
   std::string script{};
   std::string start = "0 45 -180 0 -45 0 deg";  ///< the tool points down, at 0.60 -0.15 0.48 m
   double rate_hz = 400.0;
+  /// Without it the model that the cell has of the arm is without dry friction.
+  bool compensates_friction = true;
+  double encoder = 0.0;  ///< [rad] steps of the joint angles as read, rates being their
+                         ///< differences; 0: both exact
 
   /// The coupling of the default scene: stiff in translation, and soft enough in rotation that a
   /// face can align with a wall.
@@ -43,6 +47,7 @@ struct ArmTick {
 struct ArmEnd {
   std::string complaint;                        ///< fault of ledgers or forces; empty: none
   std::vector<network::JointRange> ranges{};    ///< [rad] of the joints
+  std::vector<double> dry_friction{};           ///< [N m] of the joints
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
 };
 

@@ -16,6 +16,7 @@ std::span<const Part> parts() {
       Part{"align", "a tilted tool pushed flat against a plate and into a corner", align},
       Part{"relief", "the PUMA made compliant in chosen directions", relief},
       Part{"limits", "a joint of the PUMA at its end, and the operator goes on", joint_limits},
+      Part{"friction", "the PUMA against the dry friction of its joints", friction},
       Part{"reflection", "what a line brings back, with and without KBB2", reflection},
 #endif
   };

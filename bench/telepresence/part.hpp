@@ -26,6 +26,7 @@ using bench::Result;
 [[nodiscard]] Result align(const Options& options);
 [[nodiscard]] Result relief(const Options& options);
 [[nodiscard]] Result joint_limits(const Options& options);
+[[nodiscard]] Result friction(const Options& options);
 [[nodiscard]] Result reflection(const Options& options);
 
 }  // namespace repel::telepresence

@@ -4,7 +4,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <cmath>
+#include <chrono>
 #include <cstdlib>
 #include <mutex>
 #include <string_view>
@@ -40,7 +40,10 @@ void disturb() {
 
 }  // namespace
 
-extern "C" double tanh(double x) noexcept {
+// A tick asks for the time before and after its network.
+std::chrono::steady_clock::time_point std::chrono::steady_clock::now() noexcept {
   disturb();
-  return 1.0 - 2.0 / (std::exp(2.0 * x) + 1.0);
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return time_point(seconds(now.tv_sec) + nanoseconds(now.tv_nsec));
 }

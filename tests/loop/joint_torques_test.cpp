@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "loop/slider.hpp"
+#include "support/families.hpp"
 
 namespace repel {
 namespace joint_torques_test {
@@ -120,6 +122,64 @@ TEST(JointTorques, SayHowFastEachJointIsExpectedToBe) {
   bench.model.links[0].coulomb_friction = 4.0;
   (void)bench.step({.friction = 0.0});
   EXPECT_NEAR(bench.torques.expected_rate()(0), period * 6.0 / 5.0, 1e-12);
+}
+
+// A joint at rest whose encoder toggles between two steps: its rate is their difference, and the
+// damping of the operator's coupling turns that into a torque that it is asked for.
+TEST(JointTorques, NoiseOfAnEncoderAtStandstillDoesNotSwitchTheCompensationOfFriction) {
+  constexpr unsigned seed = 7;
+  constexpr double step = 1e-5;      // [m]
+  constexpr double damping = 300.0;  // [N s/m]
+  constexpr double friction = 25.0;  // [N]
+  families::Rng random(seed);
+  Bench bench;
+  bench.model.links[0].coulomb_friction = friction;
+  double sent_last = 0.0;
+  double asked_last = 0.0;
+  double jump = 0.0;   // [N] of the compensation from tick to tick
+  double swing = 0.0;  // [N] of what it is asked for
+  double read = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    const double now = families::uniform(random, 0.0, 1.0) < 0.5 ? 0.0 : step;
+    bench.v[0] = (now - read) / period;
+    read = now;
+    bench.network(0) = -damping * bench.v[0];
+    EXPECT_EQ(bench.step(), 0U);
+    jump = std::max(jump, std::abs(bench.sent() - sent_last - bench.network(0) + asked_last));
+    swing = std::max(swing, std::abs(bench.network(0) - asked_last));
+    sent_last = bench.sent();
+    asked_last = bench.network(0);
+  }
+  EXPECT_LT(jump, 0.02 * friction) << "seed " << seed;
+  EXPECT_GT(jump, 0.0);
+  EXPECT_GT(swing, 0.05 * friction);
+}
+
+// The rate alone moves no torque.
+TEST(JointTorques, DoNotFollowTheRateOfAJointWithFriction) {
+  Bench bench;
+  bench.model.links[0].coulomb_friction = 25.0;
+  for (const double rate : {0.02, -0.02, 0.5, -0.5}) {
+    bench.v[0] = rate;
+    EXPECT_EQ(bench.step(), 0U);
+    EXPECT_EQ(bench.sent(), 0.0);
+  }
+}
+
+TEST(JointTorques, CompensateFrictionAnewAfterItWasSwitchedOff) {
+  Bench bench;
+  bench.model.links[0].coulomb_friction = 25.0;
+  bench.network << 10.0, 0.0, 0.0;
+  (void)bench.step();
+  const double first = bench.sent();
+  EXPECT_GT(first, 10.0);
+  for (int k = 0; k < 100; ++k) (void)bench.step();
+  EXPECT_NEAR(bench.sent(), 10.0 + 0.8 * 25.0, 1e-9);
+  (void)bench.step({.friction = 0.0});
+  (void)bench.step({.friction = 0.0});
+  EXPECT_EQ(bench.sent(), 10.0);
+  (void)bench.step();
+  EXPECT_EQ(bench.sent(), first);
 }
 
 }  // namespace joint_torques_test

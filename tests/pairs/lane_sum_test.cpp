@@ -58,15 +58,16 @@ TEST(LaneSum, IsTheSumOfThePairsOneByOne) {
       for (int k = 0; k < lane_count; ++k) {
         if ((group.in_range() >> k & 1U) == 0U) continue;
         const Vec3 f = group.force().at(k);
-        const Vec3 p_WQ = group.answer(k).last.p_WA;
-        plain[group.body_a(k).index] += wrench_of_force(f, p_WQ - all.origin(group.body_a(k)));
-        plain[group.body_b(k).index] += wrench_of_force(-f, p_WQ - all.origin(group.body_b(k)));
+        const Vec3 m = group.torque().at(k);
+        const Vec3 p_BA = all.origin(group.body_a(k)) - all.origin(group.body_b(k));
+        plain[group.body_a(k).index] += {f, m};
+        plain[group.body_b(k).index] += {-f, -m - p_BA.cross(f)};
         pushing += f.norm() > 1.0 ? 1 : 0;
       }
     }
     for (std::size_t body = 0; body < plain.size(); ++body) {
-      ASSERT_LE((all.sum[body].force - plain[body].force).norm(), 1e-6) << "seed " << seed + run;
-      ASSERT_LE((all.sum[body].torque - plain[body].torque).norm(), 1e-6) << "seed " << seed + run;
+      ASSERT_LE((all.sum[body].force - plain[body].force).norm(), 1e-9) << "seed " << seed + run;
+      ASSERT_LE((all.sum[body].torque - plain[body].torque).norm(), 1e-9) << "seed " << seed + run;
     }
   }
   EXPECT_GT(pushing, 200);
@@ -101,8 +102,8 @@ TEST(LaneSum, GroupsThatWereNotEvaluatedAtThisTickAddNothing) {
     all.groups[old].begin_tick();
     LaneSum(all.scene.world.motion(), some).add(all.groups);
     for (std::size_t body = 0; body < sum.size(); ++body) {
-      ASSERT_LE((sum[body].force - without[body].force).norm(), 1e-6) << "seed " << seed + run;
-      ASSERT_LE((sum[body].torque - without[body].torque).norm(), 1e-6) << "seed " << seed + run;
+      ASSERT_LE((sum[body].force - without[body].force).norm(), 1e-9) << "seed " << seed + run;
+      ASSERT_LE((sum[body].torque - without[body].torque).norm(), 1e-9) << "seed " << seed + run;
       most = std::max(most, (sum[body].force - all.sum[body].force).norm());
     }
   }

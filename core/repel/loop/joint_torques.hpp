@@ -42,6 +42,7 @@ class JointTorques {
   /// @param period [s]; @throws SetupError for an option out of range
   JointTorques(const ArmModel& model, double period, const JointTorqueOptions& options)
       : model_(model),
+        friction_(model.links.size()),
         period_(period),
         brake_time_(
             std::max(checked("brake time", options.brake_time, 1e-4, 10.0, "s"), 4.0 * period)),
@@ -118,9 +119,15 @@ class JointTorques {
       const double asked = within_speed(wish, v[i], link.velocity_limit);
       is_kept = is_kept || asked != wish;
       gravity_[i] *= s.gravity;
-      wanted_(index(i)) = asked + s.friction * friction_(link.coulomb_friction, v[i], asked);
+      wanted_(index(i)) = asked + compensation(i, asked, s.friction);
     }
     return is_kept;
+  }
+
+  // Of dry friction [N m]; starts anew after it was switched off.
+  [[nodiscard]] double compensation(std::size_t i, double asked, double share) noexcept {
+    if (!(share > 0.0)) return friction_[i].part = 0.0;
+    return share * friction_[i](model_.links[i].coulomb_friction, asked, period_);
   }
 
   // Returns the share of the damping M v / brake_time that is applied; its torques are in `brake_`.
@@ -183,7 +190,7 @@ class JointTorques {
   static constexpr double give_way = 4.0;
 
   const ArmModel& model_;
-  network::FrictionCompensation friction_;
+  std::vector<network::FrictionCompensation> friction_;
   double period_;               // [s]
   double brake_time_;           // [s]
   double slew_;                 // largest change in a tick, as a share of the effort

@@ -2,26 +2,41 @@
 /// Compensation of dry friction in the joints of a geared arm.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 
 namespace repel::network {
 
-/// Adds most of the dry friction of a joint in the direction of its motion or commanded torque:
+/// Adds most of the dry friction of a joint to the torque it is commanded, through a low-pass that
+/// is bounded, so that it does not wind up:
 ///
-///     tau = share mu tanh(v / v0 + tau_d / (r mu))
+///     tau = share mu s      time ds/dt = clamp(tau_d / mu, -1, 1) / (1 - share) - s,   |s| <= 1
 ///
-/// with mu the dry friction, v the joint rate, tau_d the commanded torque. The share stays below
-/// one, so that the remaining friction always dissipates: friction is reduced, never
-/// overcompensated.
+/// with mu the dry friction and tau_d the commanded torque, by the implicit Euler rule with the
+/// period T. A joint at rest breaks away at |tau_d| = (1 - share) mu, and moves steadily with as
+/// much: that is what is left of its friction. The measured rate does not enter: near standstill it
+/// is noise, and a compensation that follows its sign switches.
+///
+/// Continuous: in a tick tau changes with tau_d by at most share / (1 - share) T / (time + T) times
+/// as much, and altogether by at most mu share (2 - share) / (1 - share) T / (time + T).
+///
+/// Passive: |tau| <= share mu in every state, so that with the friction itself
+/// tau v - mu |v| <= -(1 - share) mu |v|. Compensation and friction together dissipate, at any
+/// instant and whatever the delay of the drive, as long as the true friction is above share mu.
+/// It is reduced, never overcompensated.
+///
+/// One for each joint, revolute or prismatic. Costs two divisions a tick.
 struct FrictionCompensation {
-  double share = 0.8;            ///< of the dry friction, 0 to 1
-  double rate = 0.02;            ///< v0 [rad/s] or [m/s], scale of the transition with the rate
-  double relative_torque = 0.5;  ///< r, scale of the transition with tau_d, relative to mu
+  double share = 0.8;  ///< of the dry friction, 0 or more, below 1
+  double time = 0.05;  ///< [s] time constant of the low-pass
+  double part = 0.0;   ///< s, what is compensated at present, -1 to 1
 
-  /// The torque to add [N m] or [N]. `asked` is tau_d.
-  [[nodiscard]] double operator()(double dry_friction, double v, double asked) const noexcept {
-    if (!(dry_friction > 0.0)) return 0.0;
-    return share * dry_friction * std::tanh(v / rate + asked / (relative_torque * dry_friction));
+  /// Advances by one period and returns the torque to add [N m] or [N]. `asked` is tau_d. Without
+  /// friction, and for an `asked` that is not finite, it is 0 and starts anew.
+  [[nodiscard]] double operator()(double dry_friction, double asked, double period) noexcept {
+    if (!(dry_friction > 0.0) || asked - asked != 0.0) return part = 0.0;
+    const double target = std::clamp(asked / dry_friction, -1.0, 1.0) / (1.0 - share);
+    part = std::clamp(part + period / (time + period) * (target - part), -1.0, 1.0);
+    return share * dry_friction * part;
   }
 };
 
