@@ -127,14 +127,14 @@ std::vector<Part> tool_of(const Value& value, HullPoints& counted) {
 
 ForceLaw law_of(const Value& value) {
   const Map map(value);
-  map.allow(
-      {"range", "surface_force", "damping", "ceiling", "given_at", "passable", "depth", "plateau"});
+  map.allow({"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "passable",
+             "depth", "plateau"});
   ForceLaw law;
   if (const Value* passable = map.find("passable")) {
     law.passable = passable->word_of({"yes", "no"}) == "yes";
   }
   if (!law.passable) {
-    map.allow({"range", "surface_force", "damping", "ceiling", "given_at", "passable"});
+    map.allow({"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "passable"});
   }
   if (const Value* at = map.find("given_at")) {
     law.given_at = at->word_of({"part", "tool"}) == "tool" ? GivenAt::tool : GivenAt::part;
@@ -148,6 +148,7 @@ ForceLaw law_of(const Value& value) {
   }
   map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
   map.read("depth", {unit::length, 0.0, 1e6}, law.depth);
+  map.read("tilt", {unit::angle, 0.0, 0.05}, law.tilt);
   map.read("plateau", {unit::none, 0.0, 1.0}, law.plateau);
   try {
     return checked(law);

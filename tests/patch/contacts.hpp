@@ -115,8 +115,8 @@ inline Contacts draw_contacts(const std::pair<std::string, std::string>& kinds, 
   const bool are_lines = kinds.second != "box" && kinds.second != "hull" && kinds.second != "cap";
   Contacts pair{above.shape, below.shape};
   // Lines are nearly parallel in the plane, too.
-  const double yaw = are_lines ? families::uniform(rng, -0.05, 0.05)
-                               : families::uniform(rng, -M_PI, M_PI);
+  const double yaw =
+      are_lines ? families::uniform(rng, -0.05, 0.05) : families::uniform(rng, -M_PI, M_PI);
   const double side = are_lines ? 0.0 : 0.05;
   const auto tilt = [&] { return families::uniform(rng, -2.0, 2.0) * pair.tilt; };
   const Mat3 flipped = Eigen::AngleAxisd(M_PI, Vec3::UnitX()).toRotationMatrix();
@@ -126,8 +126,8 @@ inline Contacts draw_contacts(const std::pair<std::string, std::string>& kinds, 
                 Eigen::AngleAxisd(tilt(), Vec3::UnitY()) * Eigen::AngleAxisd(yaw, Vec3::UnitZ()))
                    .toRotationMatrix() *
                above.R;
-  X.translation() = Vec3(families::uniform(rng, -0.05, 0.05),
-                         families::uniform(rng, -side, side), above.height + below.height + gap);
+  X.translation() = Vec3(families::uniform(rng, -0.05, 0.05), families::uniform(rng, -side, side),
+                         above.height + below.height + gap);
   pair.X_WA = X;
   const Pose X_WW = families::random_pose(rng, -1.0, 1.0);
   pair.X_WA = X_WW * pair.X_WA;

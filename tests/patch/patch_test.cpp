@@ -18,6 +18,10 @@ using test::Contacts;
 
 constexpr unsigned seed = 22;
 
+std::string of_pair(const std::pair<std::string, std::string>& kinds, int i) {
+  return kinds.first + " on " + kinds.second + ", " + families::of_seed(seed, "pair", i);
+}
+
 bool is_exact(const std::pair<std::string, std::string>& kinds) {
   const auto is_round = [](const std::string& kind) { return kind == "cap" || kind == "cone"; };
   return !is_round(kinds.first) && !is_round(kinds.second);
@@ -61,7 +65,7 @@ TEST(Patch, IsNeverFartherThanTheNearestPointAndNotMuchNearer) {
   int found = 0;
   for (const auto& kinds : test::kinds_of_contacts()) {
     for (int i = 0; i < 200; ++i) {
-      SCOPED_TRACE(kinds.first + " on " + kinds.second + ", " + families::of_seed(seed, "pair", i));
+      SCOPED_TRACE(of_pair(kinds, i));
       const Contacts pair = test::draw_contacts(kinds, families::uniform(rng, 0.001, 0.01), rng);
       const double d = separation(pair.A, pair.X_WA, pair.B, pair.X_WB).distance;
       const Contact contact = pair.find();
@@ -80,7 +84,7 @@ TEST(Patch, IsTheSameForTheOtherShape) {
   for (const auto& kinds : test::kinds_of_contacts()) {
     for (const double gap : {0.006, -0.003}) {
       for (int i = 0; i < 100; ++i) {
-        SCOPED_TRACE(kinds.first + " on " + kinds.second + ", " + families::of_seed(seed, "pair", i));
+        SCOPED_TRACE(of_pair(kinds, i));
         const Contacts pair = test::draw_contacts(kinds, gap, rng);
         const Contact one = pair.find();
         const Contact other = pair.swapped().find();
@@ -88,8 +92,8 @@ TEST(Patch, IsTheSameForTheOtherShape) {
         const Wrench opposite{-other.gradient.force,
                               -other.gradient.torque + p_BA.cross(other.gradient.force)};
         EXPECT_NEAR(one.distance, other.distance, is_exact(kinds) ? 1e-9 : 1e-5);
-        // Where a corner lies on an edge, rounding decides which side of A or B bounds the patch: the
-        // pull along the plane, of the size of the tilt, may then be split otherwise.
+        // Where a corner lies on an edge, rounding decides which side of A or B bounds the patch:
+        // the pull along the plane, of the size of the tilt, may then be split otherwise.
         EXPECT_LE(difference(one.gradient, opposite), is_exact(kinds) ? pair.tilt : 0.05);
       }
     }
@@ -100,7 +104,7 @@ TEST(Patch, DoesNotDependOnTheFrameOfTheWorld) {
   Rng rng(seed);
   for (const auto& kinds : test::kinds_of_contacts()) {
     for (int i = 0; i < 100; ++i) {
-      SCOPED_TRACE(kinds.first + " on " + kinds.second + ", " + families::of_seed(seed, "pair", i));
+      SCOPED_TRACE(of_pair(kinds, i));
       const Contacts pair = test::draw_contacts(kinds, 0.006, rng);
       const Pose X_VW = families::random_pose(rng, -2.0, 2.0);
       Contacts turned = pair;
@@ -119,10 +123,10 @@ TEST(Patch, DoesNotDependOnTheFrameOfTheWorld) {
 /// What a random motion of tiny steps did.
 struct Walk {
   int steps = 0;
-  int leaps = 0;        ///< of the nearest point, by more than a centimetre
-  double arm = 0.0;     ///< [m] largest change of the gradient's torque per step
-  double force = 0.0;   ///< largest change of its force per step
-  double wrong = 0.0;   ///< largest error of the gradient against the change of distance, per step
+  int leaps = 0;       ///< of the nearest point, by more than a centimetre
+  double arm = 0.0;    ///< [m] largest change of the gradient's torque per step
+  double force = 0.0;  ///< largest change of its force per step
+  double wrong = 0.0;  ///< largest error of the gradient against the change of distance, per step
 };
 
 // One micrometre and 20 microradians per step. The nearest point leaps from corner to corner; the
@@ -218,7 +222,7 @@ TEST(Patch, AClosedPathReturnsTheWorkOfItsFirstHalf) {
   for (const auto& kinds : test::kinds_of_contacts()) {
     if (!is_exact(kinds)) continue;
     for (int i = 0; i < 10; ++i) {
-      SCOPED_TRACE(kinds.first + " on " + kinds.second + ", " + families::of_seed(seed, "path", i));
+      SCOPED_TRACE(of_pair(kinds, i));
       Loop loop{test::draw_contacts(kinds, 0.009, rng), {}, {}, {}, {}};
       loop.d1 = 0.002 * families::direction(rng);
       loop.d2 = 0.004 * families::direction(rng);

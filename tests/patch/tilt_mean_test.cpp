@@ -18,7 +18,7 @@ constexpr double tilt = 0.01;
 /// The same mean by brute force: a grid over the disc.
 struct Brute {
   double nearer = 0.0;
-  Planar point;
+  Planar point{};
 };
 
 Brute brute(const Outline& outline, const Planar& s) {

@@ -77,8 +77,7 @@ struct FeatureLanes {
 
   /// @param warm left by the last query on the pair, with 1 to 3 corners
   /// @param within [rad] see `angle`
-  void set(int k, const Convex& a, const Convex& b, const WarmStart& warm,
-           double within) noexcept {
+  void set(int k, const Convex& a, const Convex& b, const WarmStart& warm, double within) noexcept {
     angle[k] = within;
     A.set(k, a, warm.a);
     B.set(k, b, warm.b);

@@ -80,15 +80,16 @@ struct ForceLaw {
   double depth = most;   ///< D [m] penetration depth at which a passable body releases;
                          ///< World::add_pair clamps it to the deepest that the two shapes can have
   double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1
-  /// e [rad] Where features are parallel within e, the force acts on the contact patch: its distance
-  /// is the mean over tilts up to e (repel/patch/patch.hpp). World::add_pair lowers it so that the
-  /// patch is at most `most_nearer` nearer than the nearest points, and to 0 for passable bodies. 0:
-  /// the force acts at the nearest point, which jumps between the corners of parallel faces.
+  /// e [rad], 0 to 0.05: where features are parallel within e, the force acts on the contact patch,
+  /// whose distance is the mean over tilts up to e (repel/patch/patch.hpp). World::add_pair lowers
+  /// it so that the patch is at most `most_nearer` nearer than the nearest points, and to 0 for
+  /// passable bodies. 0: the force acts at the nearest point, which jumps between the corners of
+  /// parallel faces.
   double tilt = 0.005;
   bool damping_may_rise = false;  ///< a cell raises c0 to what keeps the wall stable at its rate
 
   static constexpr double most_nearer = 0.5e-3;  ///< [m]
-  static constexpr double most = 1e9;  ///< upper bound of every number but the ceiling
+  static constexpr double most = 1e9;            ///< upper bound of every number but the ceiling
 
   [[nodiscard]] LawFormula<double> formula() const noexcept {
     return {range, surface_force, damping, ceiling};

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <repel/pairs/pair_geometry.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/pairs/pair_geometry.hpp>
 #include <repel/reduction/separation_result.hpp>
 
 namespace repel::detail {
@@ -32,8 +32,9 @@ struct PairAnswer {
   static constexpr std::int64_t never = INT64_MIN;
 
   [[nodiscard]] bool known() const noexcept { return tick > never; }
-  /// A signed distance [m] of the contact patch that is not larger than the true one. The measured distance of a query
-  /// that ran out of budget has no matching direction: only its lower bound is used.
+  /// A signed distance [m] of the contact patch that is not larger than the true one. The measured
+  /// distance of a query that ran out of budget has no matching direction: only its lower bound is
+  /// used.
   [[nodiscard]] double proven() const noexcept {
     return (cut_short() ? last.lower : proven_distance(last.distance, last.lower)) - nearer;
   }

@@ -238,8 +238,7 @@ class SingleEvaluator {
   void find_gradient(int slot, const Motion& motion, PartPoses& poses) noexcept {
     const Pair& p = pair(slot);
     PairAnswer& answer = memory_.answer(slot);
-    ContactPatch patch;
-    patch.gradient.force = answer.last.extraction_W;
+    ContactPatch patch{.gradient = {answer.last.extraction_W}};
     if (answer.in_range && p.law.tilt > 0.0) {
       (void)find_patch(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses),
                        p.law.tilt, patch);
@@ -249,16 +248,10 @@ class SingleEvaluator {
     answer.gradient.torque += answer.p_AQ_W.cross(patch.gradient.force);
   }
 
-  /// [m] The witness point of the last answer relative to the present origin of body B.
-  [[nodiscard]] Vec3 arm_b(int slot, const Motion& motion) const noexcept {
-    return memory_.answer(slot).p_AQ_W + origin(body_a(slot, motion).X_WB) -
-           origin(body_b(slot, motion).X_WB);
-  }
-
   /// Velocity of A relative to B [m/s] at the witness point of the last answer.
   [[nodiscard]] Vec3 velocity(int slot, const Motion& motion) const noexcept {
-    return moved_to(body_a(slot, motion).V_WB, memory_.answer(slot).p_AQ_W).linear -
-           moved_to(body_b(slot, motion).V_WB, arm_b(slot, motion)).linear;
+    const auto relative = relative_motion(body_a(slot, motion), body_b(slot, motion));
+    return to_vec3(relative.v_BA_W) + to_vec3(relative.w_BA_W).cross(memory_.answer(slot).p_AQ_W);
   }
 
   /// Adds the force of the pair at that distance [m], scaled by `share`.
@@ -283,7 +276,7 @@ class SingleEvaluator {
       const double rate =
           dot(g.force, to_vec3(relative.v_BA_W)) + dot(g.torque, to_vec3(relative.w_BA_W));
       size = share * law(distance, rate);
-      on_a = {size * g.force, size * g.torque};
+      on_a = size * g;
     }
     memory_.answer(slot).force = size;
     const PairTracking& tracking = memory_.tracking(slot);

@@ -32,6 +32,16 @@ struct Flat {
   }
 };
 
+/// False if a box has no edge, and a cylinder neither cap nor side, that is perpendicular to a
+/// direction within `angle` [rad].
+[[nodiscard]] inline bool may_be_flat(const Convex& set, const Pose& X, const Vec<double>& n_W,
+                                      double angle) noexcept {
+  if (set.kind() != Convex::Kind::box && set.kind() != Convex::Kind::cylinder) return true;
+  const Vec<double> n = magnitudes(rotate_transposed(X, n_W));
+  if (set.kind() == Convex::Kind::box) return std::min(std::min(n.x(), n.y()), n.z()) < angle;
+  return n.z() < angle || n.x() * n.x() + n.y() * n.y() < angle * angle;
+}
+
 /// The flat feature of a set that is perpendicular to a direction within an angle.
 class FlatSearch {
  public:
@@ -193,16 +203,17 @@ class FlatSearch {
       return flat;
     }
     const PlanarAxes axes(normal);
-    Planar middle;
+    Planar middle{};
     for (const std::uint32_t name : corners) {
-      middle = middle + (1.0 / static_cast<double>(corners.size())) * axes.in_plane(set_.place(name));
+      middle =
+          middle + (1.0 / static_cast<double>(corners.size())) * axes.in_plane(set_.place(name));
     }
     const Planar to_farthest = axes.in_plane(set_.place(farthest)) - middle;
     std::uint32_t last = none;
     for (int k = 0; k < disc_corners; ++k) {
       const double turn = 2.0 * std::numbers::pi * k / disc_corners;
-      const Planar d = std::cos(turn) * to_farthest +
-                       std::sin(turn) * Planar{-to_farthest.y, to_farthest.x};
+      const Planar d =
+          std::cos(turn) * to_farthest + std::sin(turn) * Planar{-to_farthest.y, to_farthest.x};
       std::uint32_t best = farthest;
       double most = -std::numeric_limits<double>::infinity();
       for (const std::uint32_t name : corners) {

@@ -11,27 +11,29 @@ namespace repel::detail {
 /// @param normal unit, outward; `offset` [m]; points with normal.r <= offset stay
 /// @param of_a whom the line belongs to
 inline void cut(Outline& outline, const Planar& normal, double offset, bool of_a) noexcept {
-  const Outline whole = outline;
   const auto beyond = [&](const Planar& r) { return dot(normal, r) - offset; };
   const auto crossing = [&](const Planar& from, const Planar& to) {
     const double start = beyond(from);
     return from + (start / (start - beyond(to))) * (to - from);
   };
-  if (whole.size == 2) {
-    const double first = beyond(whole.at(0).r);
-    const double last = beyond(whole.at(1).r);
+  if (outline.size == 2) {
+    const Planar from = outline.at(0).r;
+    const Planar to = outline.at(1).r;
+    const double first = beyond(from);
+    const double last = beyond(to);
     if (first > 0.0 && last > 0.0) {
       outline.size = 0;
     } else if (first > 0.0) {
-      outline.corners[0] = {crossing(whole.at(0).r, whole.at(1).r), of_a};
+      outline.corners[0] = {crossing(from, to), of_a};
     } else if (last > 0.0) {
-      outline.corners[1] = {crossing(whole.at(0).r, whole.at(1).r), of_a};
+      outline.corners[1] = {crossing(from, to), of_a};
     }
     return;
   }
   bool is_cut = false;
-  for (int i = 0; i < whole.size; ++i) is_cut = is_cut || beyond(whole.at(i).r) > 0.0;
+  for (int i = 0; i < outline.size; ++i) is_cut = is_cut || beyond(outline.at(i).r) > 0.0;
   if (!is_cut) return;
+  const Outline whole = outline;
   outline.size = 0;
   for (int i = 0; i < whole.size; ++i) {
     const Outline::Corner& here = whole.at(i);

@@ -16,8 +16,8 @@ namespace repel {
 
 /// The distance of two shapes as its mean over all small tilts of one against the other. The
 /// distance itself has a kink where features are parallel: its gradient, the line along which a
-/// force acts, jumps from corner to corner. The mean has none. It is never larger than the distance,
-/// and equal to it where the nearest point is the same under all tilts.
+/// force acts, jumps from corner to corner. The mean has none. It is never larger than the
+/// distance, and equal to it where the nearest point is the same under all tilts.
 struct ContactPatch {
   double nearer = 0.0;  ///< [m] the distance minus its mean, at least 0
   /// The gradient of the mean when A moves: the wrench on A of a unit force, [1] and [m] about
@@ -27,8 +27,8 @@ struct ContactPatch {
 
 namespace detail {
 
-/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt, so
-/// that they come and go with weight zero.
+/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
+/// so that they come and go with weight zero.
 [[nodiscard]] inline double flat_within(double tilt) noexcept {
   return 10.0 * tilt;
 }
@@ -41,7 +41,7 @@ struct Crossing {
   double tilt = 0.0;  ///< [rad] falls to zero where they are no longer parallel
   double fall = 0.0;  ///< of `tilt` with the angle
 
-  static constexpr double widest = 0.2;        ///< [rad]
+  static constexpr double widest = 0.2;         ///< [rad]
   static constexpr double least_radius = 1e-3;  ///< [m] of two sharp edges that touch
 
   Crossing() = default;
@@ -94,8 +94,8 @@ struct Crossing {
 /// @param tilt [rad] radius of the disc of tilts, more than 0, a few thousandths
 /// @return false where there is none: the same point is nearest under all tilts, or no direction is
 /// known. `patch` is then unchanged
-/// Cost: without a patch a look at the nearest features, else about that of a warm `separation`. No
-/// heap, bounded.
+/// Cost: without a patch a look at the nearest features, else several times that of a warm
+/// `separation` of boxes. No heap, bounded.
 [[nodiscard]] inline bool find_patch(const Separation& s, PosedShape A, PosedShape B, double tilt,
                                      ContactPatch& patch) noexcept {
   using namespace detail;
@@ -104,6 +104,9 @@ struct Crossing {
   const Level& level_b = B.shape.level(0);
   const Vec<double> n(s.extraction_W);
   const double angle = flat_within(tilt);
+  if (!may_be_flat(level_a.core, A.X_W, n, angle) || !may_be_flat(level_b.core, B.X_W, n, angle)) {
+    return false;
+  }
   const Flat a = FlatSearch(level_a.core, A.X_W, -n, angle).run();
   if (a.size < 2) return false;
   const Flat b = FlatSearch(level_b.core, B.X_W, n, angle).run();
@@ -111,27 +114,27 @@ struct Crossing {
   const PlanarAxes axes(n);
   const Vec<double> nearest_a = Vec<double>(s.p_WA) + level_a.depth * n;
   const Vec<double> nearest_b = Vec<double>(s.p_WB) - level_b.depth * n;
-  Outline outline;
-  if (!find_overlap(axes, a, nearest_a - column<double>(A.X_W, 3), b,
-                    nearest_b - column<double>(B.X_W, 3), s.distance > 0.0, outline)) {
-    return false;
-  }
-  outline.is_exact = !a.is_disc && !b.is_disc;
-  Planar slope_a = slope_of(a, axes);
-  Planar slope_b = slope_of(b, axes);
-  Planar unit;
-  if (outline.size == 2) {
-    const Planar edge = outline.at(1).r - outline.at(0).r;
-    unit = (1.0 / norm(edge)) * edge;
-    slope_a = along(unit, slope_a);
-    slope_b = along(unit, slope_b);
-  }
   Crossing crossing;
   crossing.tilt = tilt;
   if (a.size == 2 && b.size == 2) {
     crossing = Crossing(axes, a, b, dot(n, nearest_a - nearest_b), tilt);
     if (!(crossing.tilt > 0.0)) return false;
-    outline.bend = crossing.sine * crossing.lean;
+  }
+  Outline outline;
+  if (!find_overlap(axes, a, nearest_a - column<double>(A.X_W, 3), b,
+                    nearest_b - column<double>(B.X_W, 3), s.distance > 0.0, outline)) {
+    return false;
+  }
+  outline.bend = crossing.sine * crossing.lean;
+  outline.is_exact = !a.is_disc && !b.is_disc;
+  Planar slope_a = slope_of(a, axes);
+  Planar slope_b = slope_of(b, axes);
+  Planar unit{};
+  if (outline.size == 2) {
+    const Planar edge = outline.at(1).r - outline.at(0).r;
+    unit = (1.0 / norm(edge)) * edge;
+    slope_a = along(unit, slope_a);
+    slope_b = along(unit, slope_b);
   }
   const Planar lean = slope_b - slope_a;
   const TiltMean mean(outline, lean, crossing.tilt);
@@ -141,13 +144,12 @@ struct Crossing {
   const Vec<double> off = axes.in_world(slope_a);
   const Planar aside = crossing.lean * dot(unit, r) * Planar{-unit.y, unit.x};
   const double twist = crossing.lean * mean.square() - crossing.fall * mean.widened();
-  const Vec<double> force =
-      n - (1.0 - mean.held()) * off + axes.in_world(mean.pull() + aside);
+  const Vec<double> force = n - (1.0 - mean.held()) * off + axes.in_world(mean.pull() + aside);
   const Vec<double> point = axes.in_world(r) + dot(slope_a, r) * n;
   const Vec<double> torque = cross(point, n - off) + (mean.drill() + twist) * n +
                              cross(n, axes.in_world(mean.lifted(slope_a)) + level_a.depth * force);
-  patch.nearer = std::max(0.0, mean.nearer() - share_of_measure(norm(lean), tilt) *
-                                                   farthest_along(outline, lean));
+  patch.nearer = std::max(
+      0.0, mean.nearer() - share_of_measure(norm(lean), tilt) * farthest_along(outline, lean));
   patch.gradient = {to_vec3(force), to_vec3(torque)};
   return true;
 }

@@ -2,6 +2,7 @@
 /// Vectors and convex polygons in the tangent plane of a contact.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,10 +10,9 @@
 
 namespace repel::detail {
 
-/// A vector in the tangent plane.
+/// A vector in the tangent plane. `Planar v;` leaves it uninitialized, `Planar{}` is zero.
 struct Planar {
-  double x = 0.0;
-  double y = 0.0;
+  double x, y;
 
   friend Planar operator+(const Planar& a, const Planar& b) noexcept {
     return {a.x + b.x, a.y + b.y};
@@ -47,22 +47,34 @@ struct PlanarAxes {
 /// A convex polygon, counter-clockwise, or a segment with two corners. What bounds it belongs to
 /// one of two bodies: a side of a polygon, an end of a segment.
 struct Outline {
-  static constexpr int most = 48;
+  static constexpr int most = 32;
 
   struct Corner {
-    Planar r;           ///< [m]
-    bool of_a = false;  ///< A bounds it: along the side to the next corner, or at this end
+    Planar r;   ///< [m]
+    bool of_a;  ///< A bounds it: along the side to the next corner, or at this end
   };
-  std::array<Corner, most> corners;
+  std::array<Corner, most> corners;  ///< only the first `size` are set
   int size = 0;
   /// How many sides, or ends, of A and B pass through r = 0.
   int touching_a = 0;
   int touching_b = 0;
   bool is_exact = true;  ///< the point r = 0 is known to rounding: no curve was searched for it
-  double bend = 0.0;  ///< [1/m] of a segment: the second derivative of the gap along it
+  double bend = 0.0;     ///< [1/m] of a segment: the second derivative of the gap along it
 
   void add(const Planar& r, bool of_a) noexcept {
     if (size < most) corners[static_cast<std::size_t>(size++)] = {r, of_a};
+  }
+  Outline() = default;
+  Outline(const Outline& other) noexcept { *this = other; }
+  /// Copies the corners that are set.
+  Outline& operator=(const Outline& other) noexcept {
+    std::copy_n(other.corners.begin(), other.size, corners.begin());
+    size = other.size;
+    touching_a = other.touching_a;
+    touching_b = other.touching_b;
+    is_exact = other.is_exact;
+    bend = other.bend;
+    return *this;
   }
   [[nodiscard]] const Corner& at(int i) const noexcept {
     return corners[static_cast<std::size_t>(i)];

@@ -19,10 +19,10 @@ namespace repel::detail {
 /// h is the support function of P; with y in the normal cone of corner i, corner i is the nearest.
 /// So the mean nearest point is the sum of the corners weighted by the share of the disc around s
 /// that lies in their cones. It moves continuously with s and with P, since it depends on nothing
-/// but the set P; it is the corner itself where the whole disc is in its cone, and the Steiner point
-/// of P where s is 0 and the disc is large. Where the boundary belongs to A, P moves with it: y
-/// is a sum of multiples of the outward normals of the two sides at the corner, and those of sides
-/// of A pull on A.
+/// but the set P; it is the corner itself where the whole disc is in its cone, and the Steiner
+/// point of P where s is 0. Where the boundary belongs to A, P moves with it: y is a sum of
+/// multiples of the outward normals of the two sides at the corner, and those of sides of A pull on
+/// A.
 class TiltMean {
  public:
   /// @param outline 2 or more corners, no two of them equal
@@ -46,8 +46,8 @@ class TiltMean {
   [[nodiscard]] const Planar& pull() const noexcept { return pull_; }
   /// The share of the disc for which the point r = 0 is the nearest.
   [[nodiscard]] double held() const noexcept { return held_; }
-  /// Of a segment: [m^2] the mean square of the distance of the nearest point from r = 0, and [m] how H
-  /// changes with the tilt.
+  /// Of a segment: [m^2] the mean square of the distance of the nearest point from r = 0, and [m]
+  /// how H changes with the tilt.
   [[nodiscard]] double square() const noexcept { return square_; }
   [[nodiscard]] double widened() const noexcept { return widened_; }
   [[nodiscard]] double drill() const noexcept { return drill_; }
@@ -56,8 +56,8 @@ class TiltMean {
   }
 
  private:
-  /// Returns the share if the corner is the nearest point without tilt, else 0. There the slope pulls
-  /// on nothing: the force is along the normal.
+  /// Returns the share if the corner is the nearest point without tilt, else 0. There the slope
+  /// pulls on nothing: the force is along the normal.
   [[nodiscard]] double note_nearest(const Planar& r, double share) noexcept {
     if (!is_exact_ || dot(r, r) > at_nearest * at_nearest) return 0.0;
     held_ += share;
@@ -142,13 +142,13 @@ class TiltMean {
 
   /// The border between the cones of two corners: the ray along the outward normal of their side.
   struct Ray {
-    Planar normal;        ///< unit
-    double share = 0.0;   ///< of the disc, from a fixed ray to this one, counter-clockwise
-    double moment = 0.0;  ///< half the integral of e^2 - |y - s|^2 along it, over the disc's area
+    Planar normal;  ///< unit
+    double share;   ///< of the disc, from a fixed ray to this one, counter-clockwise
+    double moment;  ///< half the integral of e^2 - |y - s|^2 along it, over the disc's area
   };
 
   [[nodiscard]] Ray ray_along(const Planar& normal, bool is_inside) const noexcept {
-    Ray ray{normal};
+    Ray ray{normal, 0.0, 0.0};
     const double b = dot(s_, normal);
     const double h = cross(normal, s_);
     const double half = std::sqrt(std::max(0.0, e_ * e_ - h * h));
@@ -198,8 +198,8 @@ class TiltMean {
       if (!from_a && !to_a) continue;
       // The mean of y over the cone.
       const auto turned = [](const Planar& n) { return Planar{-n.y, n.x}; };
-      const Planar y = (share - held) * s_ + from.moment * turned(from.normal) -
-                       to.moment * turned(to.normal);
+      const Planar y =
+          (share - held) * s_ + from.moment * turned(from.normal) - to.moment * turned(to.normal);
       if (from_a && to_a) {
         pull_at(r, -part * y);
         continue;
@@ -219,13 +219,13 @@ class TiltMean {
   Planar s_;
   double e_;
   double nearer_ = 0.0;
-  Planar point_;
-  Planar pull_;
+  Planar point_{};
+  Planar pull_{};
   double drill_ = 0.0;
   double held_ = 0.0;
   double square_ = 0.0;
   double widened_ = 0.0;
-  Planar x_pull_, y_pull_;  ///< [m] sums of r.x t and r.y t
+  Planar x_pull_{}, y_pull_{};  ///< [m] sums of r.x t and r.y t
 };
 
 }  // namespace repel::detail

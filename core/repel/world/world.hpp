@@ -41,10 +41,10 @@ struct Part {
 
 /// Two parts to be kept apart, and how.
 struct Pair {
-  PartId a;      ///< the part that is pushed along the extraction direction
-  PartId b;      ///< the part it is pushed away from
-  ForceLaw law;  ///< its `depth` clamped to the deepest that the two shapes can have, and its `tilt`
-                 ///< to what their size allows
+  PartId a;            ///< the part that is pushed along the extraction direction
+  PartId b;            ///< the part it is pushed away from
+  ForceLaw law;        ///< its `depth` clamped to the deepest that the two shapes can have, and its
+                       ///< `tilt` to what their size allows
   double range = 0.0;  ///< [m] distance of the nearest points below which a force is possible: that
                        ///< of the law, and how much nearer the contact patch may be
 };
