@@ -49,7 +49,7 @@ struct PairAnswer {
                                    double deepest) const noexcept {
     const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
     const bool separated = last.lower > 0.0 && !cut_short();
-    const double lean = nearer > 0.0 ? widest_tilt * norm(moved) : 0.0;
+    const double lean = nearer != 0.0 ? widest_tilt * norm(moved) : 0.0;
     const double along = separated ? dot(last.extraction_W, moved) - lean : -norm(moved);
     const double now = proven() + along - (A.turn + B.turn - turn);
     return now > 0.0 ? now : std::max(now, -deepest);

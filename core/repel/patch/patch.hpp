@@ -16,10 +16,11 @@ namespace repel {
 
 /// The distance of two shapes as its mean over all small tilts of one against the other. The
 /// distance itself has a kink where features are parallel: its gradient, the line along which a
-/// force acts, jumps from corner to corner. The mean has none. It is never larger than the
-/// distance, and equal to it where the nearest point is the same under all tilts.
+/// force acts, jumps from corner to corner. The mean has none. It is the distance itself where the
+/// nearest point is the same under all tilts, and, with a term added for that, where faces are
+/// parallel; elsewhere it differs by at most ForceLaw::most_nearer.
 struct ContactPatch {
-  double nearer = 0.0;  ///< [m] the distance minus its mean, at least 0
+  double nearer = 0.0;  ///< [m] the distance minus that of the patch, of either sign
   /// The gradient of the mean when A moves: the wrench on A of a unit force, [1] and [m] about
   /// `Separation::p_WA`, world axes. That on B is the opposite.
   Wrench gradient;
@@ -30,7 +31,7 @@ namespace detail {
 /// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
 /// so that they come and go with weight zero.
 [[nodiscard]] inline double flat_within(double tilt) noexcept {
-  return 10.0 * tilt;
+  return TiltMean::faded * tilt;
 }
 
 /// Two segments, nearly parallel, that lie across each other: the gap grows to both sides of the
@@ -148,8 +149,7 @@ struct Crossing {
   const Vec<double> point = axes.in_world(r) + dot(slope_a, r) * n;
   const Vec<double> torque = cross(point, n - off) + (mean.drill() + twist) * n +
                              cross(n, axes.in_world(mean.lifted(slope_a)) + level_a.depth * force);
-  patch.nearer = std::max(
-      0.0, mean.nearer() - share_of_measure(norm(lean), tilt) * farthest_along(outline, lean));
+  patch.nearer = mean.nearer() - share_of_measure(norm(lean), tilt) * farthest_along(outline, lean);
   patch.gradient = {to_vec3(force), to_vec3(torque)};
   return true;
 }

@@ -23,13 +23,19 @@ namespace repel::detail {
 /// point of P where s is 0. Where the boundary belongs to A, P moves with it: y is a sum of
 /// multiples of the outward normals of the two sides at the corner, and those of sides of A pull on
 /// A.
+///
+/// Where faces are parallel, the mean is less than the gap by H(0). So that the distance is the gap
+/// there, w H(0) is added for polygons, with a weight w that is 1 at s = 0 and 0 from s = `faded`
+/// e.
 class TiltMean {
  public:
+  static constexpr double faded = 10.0;
+
   /// @param outline 2 or more corners, no two of them equal
   /// @param slope s, minus the gradient of the gap
   /// @param tilt e [rad], more than 0
   TiltMean(const Outline& outline, const Planar& slope, double tilt) noexcept
-      : is_exact_(outline.is_exact), s_(slope), e_(tilt) {
+      : is_exact_(outline.is_exact), s_(slope), e_(tilt), fade_(norm(slope), tilt) {
     if (outline.size == 2) {
       average_segment(outline);
     } else {
@@ -37,9 +43,10 @@ class TiltMean {
     }
   }
 
-  /// H [m]: how much the mean gap is less than that at r = 0.
+  /// H - w H(0) [m]: how much the mean gap is less than that at r = 0, but for what it is less
+  /// where s is 0. So it is 0 where the features are parallel.
   [[nodiscard]] double nearer() const noexcept { return nearer_; }
-  /// [m] The mean nearest point.
+  /// [m] Its gradient by s: the mean nearest point, and up to a seventh of the size of P beyond.
   [[nodiscard]] const Planar& point() const noexcept { return point_; }
   /// The sum of the tangential forces t on A per unit of force, and [m] their moments r x t and
   /// (slope of A).r t.
@@ -56,6 +63,19 @@ class TiltMean {
   }
 
  private:
+  /// w and its derivative [1/rad] where s has a length.
+  struct Fade {
+    double share = 0.0;
+    double slope = 0.0;
+
+    Fade(double length, double tilt) noexcept {
+      const double x = length / (faded * tilt);
+      if (x >= 1.0) return;
+      share = (1.0 - x * x) * (1.0 - x * x);
+      slope = -4.0 * x * (1.0 - x * x) / (faded * tilt);
+    }
+  };
+
   /// Returns the share if the corner is the nearest point without tilt, else 0. There the slope
   /// pulls on nothing: the force is along the normal.
   [[nodiscard]] double note_nearest(const Planar& r, double share) noexcept {
@@ -170,11 +190,16 @@ class TiltMean {
     const bool is_inside = dot(s_, s_) < e_ * e_;
     std::array<Ray, Outline::most> rays;
     const auto ray = [&](int i) -> Ray& { return rays[static_cast<std::size_t>(i)]; };
+    // By Cauchy's formula, H(0) is the perimeter times this.
+    const double flat = e_ / (3.0 * std::numbers::pi);
+    double perimeter = 0.0;
     for (int i = 0; i < outline.size; ++i) {
       const Planar edge = outline.after(i).r - outline.at(i).r;
       const double length = norm(edge);
       ray(i) = ray_along((1.0 / length) * Planar{edge.y, -edge.x}, is_inside);
+      ray(i).moment -= fade_.share * flat;
       nearer_ += ray(i).moment * length;
+      perimeter += length;
     }
     for (int i = 0; i < outline.size; ++i) {
       const int before = i > 0 ? i - 1 : outline.size - 1;
@@ -208,9 +233,11 @@ class TiltMean {
       const double most = 4.0 * norm(y);
       const double multiple = from_a ? cross(y, to.normal) : cross(from.normal, y);
       const Planar& normal = from_a ? from.normal : to.normal;
-      pull_at(r, -(multiple < most * sine ? std::max(0.0, multiple / sine) : most) * normal);
+      pull_at(r, -std::clamp(multiple / std::max(sine, 1e-12), -most, most) * normal);
     }
     nearer_ += dot(s_, point_);
+    const double length = norm(s_);
+    if (length > 0.0) point_ = point_ - fade_.slope * flat * perimeter / length * s_;
   }
 
   static constexpr double at_nearest = 1e-7;  ///< [m] from r = 0
@@ -218,6 +245,7 @@ class TiltMean {
   bool is_exact_;
   Planar s_;
   double e_;
+  Fade fade_;
   double nearer_ = 0.0;
   Planar point_{};
   Planar pull_{};
