@@ -104,12 +104,12 @@ TEST(LaneEvaluator, PairsMoveIntoLanesAndOutAgain) {
         const bool is = with_lanes.is_in_lane(slot);
         if (is) {
           ASSERT_FALSE(pair.law.passable);
-          ASSERT_LT(s.lower, pair.range);
+          ASSERT_LT(s.lower, pair.law.range);
           ASSERT_TRUE(scene.world.part(pair.a).shape.level(0).core.is_polytope());
           ASSERT_TRUE(scene.world.part(pair.b).shape.level(0).core.is_polytope());
         }
         came += is && !was[i] ? 1 : 0;
-        left_range += was[i] && !is && s.distance >= pair.range ? 1 : 0;
+        left_range += was[i] && !is && s.distance >= pair.law.range ? 1 : 0;
         overlapped += was[i] && !is && s.distance < 0.0 ? 1 : 0;
         was[i] = is;
         in_lanes += is ? 1 : 0;

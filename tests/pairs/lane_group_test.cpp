@@ -58,7 +58,7 @@ struct Sample {
     const Vec3& f = on_a.force;
     EXPECT_LE((group.force().at(k) - f).norm(), 1e-9);
     EXPECT_LE((group.torque().at(k) - on_a.torque).norm(), 1e-9);
-    EXPECT_EQ(has(group.in_range(), k), one.lower < pair.range);
+    EXPECT_EQ(has(group.in_range(), k), one.lower < pair.law.range);
     EXPECT_EQ(group.answer(k).in_range, has(group.in_range(), k));
     if (!has(group.in_range(), k)) {
       EXPECT_EQ(group.force().at(k), Vec3::Zero());

@@ -69,7 +69,6 @@ class LaneGroup {
     features_.A.X_W.set(k, poses.last(pair.a));
     features_.B.X_W.set(k, poses.last(pair.b));
     law_.set(k, pair.law);
-    range_[k] = pair.range;
     tilt_[k] = pair.law.tilt;
     depth_a_[k] = world.part(pair.a).shape.level(0).depth;
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
@@ -97,7 +96,8 @@ class LaneGroup {
     apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
     const LaneMask proven = gap.proven & used_;
     const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
-    find_gradients(relative, bits_of(gap.flat & proven & (apart_.lower < range_)), motion, poses);
+    find_gradients(relative, bits_of(gap.flat & proven & (apart_.lower < law_.range)), motion,
+                   poses);
     compute_forces(relative, proven);
     tick_ = motion.tick;
     fresh_ = true;
@@ -221,7 +221,7 @@ class LaneGroup {
     p_BA_W_ = relative.p_BA_W;
     turn_ = relative.turn;
     const Lanes distance = proven_distance(apart_.distance, apart_.lower) - nearer_;
-    const LaneMask in_range = proven & (apart_.lower < range_);
+    const LaneMask in_range = proven & (apart_.lower < law_.range);
     proven_ = bits_of(proven);
     in_range_ = bits_of(in_range);
     const Lanes none{};
@@ -246,7 +246,7 @@ class LaneGroup {
   LaneMask used_{};
   Lanes depth_a_{}, depth_b_{};    ///< [m] rounding radius of the shapes
   Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
-  Lanes range_{}, tilt_{};         ///< [m] of the pairs, [rad] of their laws
+  Lanes tilt_{};                   ///< [rad] of the laws
   // The members of PairAnswer.
   LaneVec gradient_W_{}, moment_W_{};
   Lanes nearer_{};

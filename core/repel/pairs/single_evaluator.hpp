@@ -124,7 +124,7 @@ class SingleEvaluator {
     answer.last = query(slot, motion, poses, memory_.history(slot).warm);
     ++forces_.totals.evaluated;
     forces_.totals.iterations += answer.last.iterations;
-    if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).range + rounding) {
+    if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).law.range + rounding) {
       clear_history(slot);
       answer.last = query(slot, motion, poses, memory_.history(slot).warm);
       forces_.totals.iterations += answer.last.iterations;
@@ -221,8 +221,8 @@ class SingleEvaluator {
     answer.turn = relative.turn;
     answer.tick = motion.tick;
     answer.evaluated_at = now_;
-    answer.in_range = answer.last.lower < p.range;
-    set_clearance(slot, motion, answer.last.lower - p.range);
+    answer.in_range = answer.last.lower < p.law.range;
+    set_clearance(slot, motion, answer.last.lower - p.law.range);
     find_gradient(slot, motion, poses);
     const PairId id = memory_.tracking(slot).pair;
     const double deepest = std::max(0.0, -answer.last.lower);

@@ -64,7 +64,7 @@ class PairBlock {
   bool take(PairId id, std::int32_t list, double distance, const Motion& motion,
             PartPoses& poses) noexcept {
     const int slot = memory().slot_for(id);
-    singles_.set_clearance(slot, motion, distance - singles_.pair(slot).range);
+    singles_.set_clearance(slot, motion, distance - singles_.pair(slot).law.range);
     if (memory().is_temporary(slot)) {
       PairTotals& totals = singles_.forces().totals;
       ++totals.crowded;
@@ -178,7 +178,7 @@ class PairBlock {
   [[nodiscard]] bool is_near(int slot, const Motion& motion, PartPoses& poses) noexcept {
     if (!singles_.is_due(slot, motion)) return false;
     if (memory().answer(slot).in_range) return true;
-    const double range = singles_.pair(slot).range;
+    const double range = singles_.pair(slot).law.range;
     double clearance = singles_.lower_bound(slot, motion) - range;
     if (!(clearance > 0.0) && clearance + singles_.lost_to_rotation(slot, motion) > 0.0) {
       clearance = singles_.lower_bound_by_shapes(slot, motion, poses) - range;

@@ -41,12 +41,10 @@ struct Part {
 
 /// Two parts to be kept apart, and how.
 struct Pair {
-  PartId a;            ///< the part that is pushed along the extraction direction
-  PartId b;            ///< the part it is pushed away from
-  ForceLaw law;        ///< its `depth` clamped to the deepest that the two shapes can have, and its
-                       ///< `tilt` to what their size allows
-  double range = 0.0;  ///< [m] distance of the nearest points below which a force is possible: that
-                       ///< of the law, and how much nearer the contact patch may be
+  PartId a;      ///< the part that is pushed along the extraction direction
+  PartId b;      ///< the part it is pushed away from
+  ForceLaw law;  ///< its `depth` clamped to the deepest that the two shapes can have, and its
+                 ///< `tilt` to what their size allows
 };
 
 /// A body that is attached to a link of an arm; its frame is that of the link.
@@ -94,7 +92,7 @@ class World {
     if (part(a).body == part(b).body) {
       throw SetupError("parts " + part(a).name + " and " + part(b).name + " are of one body");
     }
-    Pair pair{a, b, checked(law), law.range};
+    Pair pair{a, b, checked(law)};
     pair.law.depth = std::min(law.depth, part(a).shape.deepest() + part(b).shape.deepest());
     // Over tilts up to e, the distance of two sets differs by at most e times the radius of the
     // smaller around its nearest point, two thirds of it in the mean.
@@ -102,7 +100,6 @@ class World {
     const double nearer = 4.0 / 3.0 * law.tilt * radius;
     if (law.passable) pair.law.tilt = 0.0;
     if (nearer > ForceLaw::most_nearer) pair.law.tilt *= ForceLaw::most_nearer / nearer;
-    pair.range = law.range + 4.0 / 3.0 * pair.law.tilt * radius;
     pairs_.push_back(pair);
     return {static_cast<std::int32_t>(pairs_.size()) - 1};
   }
