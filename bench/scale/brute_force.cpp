@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <repel/pairs/pair_partition.hpp>
+#include <repel/patch/patch.hpp>
 
 namespace repel::scale {
 
@@ -64,26 +65,38 @@ void BruteForce::look(Found&& found) {
   }
 }
 
+std::pair<const Part&, const Part&> BruteForce::parts(std::int32_t pair) const {
+  return {scene_.parts()[pair / scene_.obstacles()],
+          scene_.parts()[scene_.tool_parts() + pair % scene_.obstacles()]};
+}
+
 Separation BruteForce::ask(std::int32_t pair, WarmStart& warm) {
   ++asked_;
-  const Part& a = scene_.parts()[pair / scene_.obstacles()];
-  const Part& b = scene_.parts()[scene_.tool_parts() + pair % scene_.obstacles()];
+  const auto [a, b] = parts(pair);
   return separation(a.shape, X_WB_[a.body.index] * a.X_BP, b.shape, X_WB_[b.body.index] * b.X_BP,
                     {}, warm);
 }
 
 void BruteForce::push(std::int32_t pair, const Separation& s) {
-  const std::size_t a = scene_.parts()[pair / scene_.obstacles()].body.index;
-  const std::size_t b = scene_.parts()[scene_.tool_parts() + pair % scene_.obstacles()].body.index;
-  const Vec3 p_AQ = s.p_WA - X_WB_[a].translation();
-  const Vec3 p_BQ = p_AQ + X_WB_[a].translation() - X_WB_[b].translation();
-  const Vec3 v = moved_to(V_WB_[a], p_AQ).linear - moved_to(V_WB_[b], p_BQ).linear;
-  const double distance = s.lower > 0.0 ? s.lower : s.distance;
-  const Vec3 f = scene_.law()(distance, s.extraction_W.dot(v)) * s.extraction_W;
+  const auto [part_a, part_b] = parts(pair);
+  const std::size_t a = part_a.body.index;
+  const std::size_t b = part_b.body.index;
+  const ForceLaw law = World::fitted(scene_.law(), part_a.shape, part_b.shape);
+  ContactPatch patch{.gradient = {s.extraction_W}};
+  const Pose X_WA = X_WB_[a] * part_a.X_BP;
+  const Pose X_WB = X_WB_[b] * part_b.X_BP;
+  (void)find_patch(s, {part_a.shape, X_WA}, {part_b.shape, X_WB}, law.tilt, patch);
+  const Vec3 p_QA = X_WB_[a].translation() - s.p_WA;
+  const Vec3 p_QB = X_WB_[b].translation() - s.p_WA;
+  const Twist v_A = moved_to(V_WB_[a], -p_QA);
+  const Twist v_B = moved_to(V_WB_[b], -p_QB);
+  const double distance = (s.lower > 0.0 ? s.lower : s.distance) - patch.nearer;
+  const Twist v_BA{v_A.linear - v_B.linear, v_A.angular - v_B.angular};
+  const Wrench on_a = law(distance, power(patch.gradient, v_BA)) * patch.gradient;
   std::vector<Wrench>& on_body =
       on_body_of_[detail::PairPartition::block_of({pair}, static_cast<int>(on_body_of_.size()))];
-  on_body[a] += wrench_of_force(f, p_AQ);
-  on_body[b] += wrench_of_force(-f, p_BQ);
+  on_body[a] += moved_to(on_a, p_QA);
+  on_body[b] += moved_to(-1.0 * on_a, p_QB);
 }
 
 void BruteForce::tick(std::span<const Placement> placements) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <repel/reduction/separation.hpp>
@@ -15,8 +16,8 @@ namespace repel::scale {
 
 /// Compares the bounding spheres of both parts of every pair, one by one, and queries every pair
 /// whose spheres are within range, with a warm start: in deep overlap witness points are not
-/// unique, and a cold start may find others. Shares the query and the force law with the world
-/// model, but nothing that decides which pairs are queried.
+/// unique, and a cold start may find others. Shares the query, the contact patch and the force law
+/// with the world model, but nothing that decides which pairs are queried.
 class BruteForce {
  public:
   /// Copies the present state of the scene.
@@ -49,6 +50,7 @@ class BruteForce {
   void place(std::span<const Placement> placements);
   template <class Found>
   void look(Found&& found);
+  [[nodiscard]] std::pair<const Part&, const Part&> parts(std::int32_t pair) const;
   [[nodiscard]] Separation ask(std::int32_t pair, WarmStart& warm);
   void push(std::int32_t pair, const Separation& s);
 

@@ -92,16 +92,19 @@ class World {
     if (part(a).body == part(b).body) {
       throw SetupError("parts " + part(a).name + " and " + part(b).name + " are of one body");
     }
-    Pair pair{a, b, checked(law)};
-    pair.law.depth = std::min(law.depth, part(a).shape.deepest() + part(b).shape.deepest());
+    pairs_.push_back({a, b, fitted(checked(law), part(a).shape, part(b).shape)});
+    return {static_cast<std::int32_t>(pairs_.size()) - 1};
+  }
+
+  /// The law that a pair of two shapes gets: `depth` and `tilt` lowered to what their size allows.
+  [[nodiscard]] static ForceLaw fitted(ForceLaw law, const Shape& a, const Shape& b) noexcept {
+    law.depth = std::min(law.depth, a.deepest() + b.deepest());
     // Over tilts up to e, the distance of two sets differs by at most e times the radius of the
     // smaller around its nearest point, two thirds of it in the mean.
-    const double radius = std::min(part(a).shape.reach(), part(b).shape.reach());
-    const double nearer = 4.0 / 3.0 * law.tilt * radius;
-    if (law.passable) pair.law.tilt = 0.0;
-    if (nearer > ForceLaw::most_nearer) pair.law.tilt *= ForceLaw::most_nearer / nearer;
-    pairs_.push_back(pair);
-    return {static_cast<std::int32_t>(pairs_.size()) - 1};
+    const double nearer = 4.0 / 3.0 * law.tilt * std::min(a.reach(), b.reach());
+    if (law.passable) law.tilt = 0.0;
+    if (nearer > ForceLaw::most_nearer) law.tilt *= ForceLaw::most_nearer / nearer;
+    return law;
   }
 
   /// Makes a body part of the arm with this `tool`, which is part of it itself. Set-up only.
