@@ -21,7 +21,7 @@ TEST(Faces, OfABoxAreSixRectangles) {
   std::set<std::uint32_t> all;
   for (std::uint32_t vertex = 0; vertex < 8; ++vertex) {
     EXPECT_EQ(faces.at(vertex).size(), 3U);
-    for (const std::uint32_t face : faces.at(vertex)) all.insert(face);
+    for (const Faces::Corner& corner : faces.at(vertex)) all.insert(corner.face);
   }
   ASSERT_EQ(all.size(), 6U);
   for (const std::uint32_t face : all) {
@@ -48,7 +48,7 @@ TEST(Faces, OfAnyHullSupportIt) {
     const Convex& core = hull.level(0).core;
     const std::uint32_t vertex = core.support(Vec<double>(families::direction(rng))).name;
     EXPECT_GE(core.faces().at(vertex).size(), 3U);
-    for (const std::uint32_t face : core.faces().at(vertex)) {
+    for (const auto& [face, next, previous] : core.faces().at(vertex)) {
       const Vec<double>& n = core.faces().normal(face);
       for (const std::uint32_t corner : core.faces().corners(face)) {
         EXPECT_NEAR(dot(core.place(corner), n), core.support_value(n), 1e-12);

@@ -82,6 +82,19 @@ inline Lying lying(const std::string& kind, families::Rng& rng) {
         families::prism(families::count_between(rng, 3, 9), length(0.03, 0.08), 0.04);
     return {Shape::hull(solid.vertices), upright, 0.04};
   }
+  if (kind == "cloud") {
+    // Any of its faces or edges is down; those beside it may face nearly the same way.
+    const Shape shape =
+        Shape::hull(families::cloud(rng, families::count_between(rng, 6, 60), 0.06).vertices);
+    const Convex& core = shape.level(0).core;
+    const auto corners = core.faces().at(core.support(Vec<double>(families::direction(rng))).name);
+    const double share = std::max(0.0, families::uniform(rng, -1.0, 1.0));
+    const Vec<double> n = (1.0 - share) * core.faces().normal(corners[0].face) +
+                          share * core.faces().normal(corners[1].face);
+    const Vec3 down = to_vec3(n).normalized();
+    const Mat3 R = Eigen::Quaterniond::FromTwoVectors(down, -Vec3::UnitZ()).toRotationMatrix();
+    return {shape, R, core.support_value(Vec<double>(down))};
+  }
   if (kind == "cap") {
     const double half = length(0.03, 0.08);
     return {Shape::cylinder(length(0.02, 0.06), half), upright, half};
@@ -101,9 +114,10 @@ inline Lying lying(const std::string& kind, families::Rng& rng) {
 /// The kinds of features that meet: A's over B's.
 inline const std::vector<std::pair<std::string, std::string>>& kinds_of_contacts() {
   static const std::vector<std::pair<std::string, std::string>> kinds{
-      {"box", "box"},     {"edge", "box"},        {"hull", "box"}, {"hull", "hull"},
-      {"cap", "box"},     {"cap", "cap"},         {"side", "box"}, {"side", "side"},
-      {"capsule", "box"}, {"capsule", "capsule"}, {"cone", "box"}, {"capsule", "side"}};
+      {"box", "box"},         {"edge", "box"},    {"hull", "box"},    {"hull", "hull"},
+      {"cloud", "box"},       {"cloud", "cloud"}, {"cloud", "side"},  {"cap", "box"},
+      {"cap", "cap"},         {"side", "box"},    {"side", "side"},   {"capsule", "box"},
+      {"capsule", "capsule"}, {"cone", "box"},    {"capsule", "side"}};
   return kinds;
 }
 

@@ -14,13 +14,13 @@ namespace flat_test {
 using detail::Flat;
 using detail::FlatSearch;
 
-constexpr double angle = 0.05;
+constexpr double tilt = 0.005;
 
 Flat below(const Shape& shape, double lean_x, double lean_y) {
   Pose X = Pose::Identity();
   X.linear() = (Eigen::AngleAxisd(lean_x, Vec3::UnitX()) * Eigen::AngleAxisd(lean_y, Vec3::UnitY()))
                    .toRotationMatrix();
-  return FlatSearch(shape.level(0).core, X, Vec<double>(0.0, 0.0, -1.0), angle).run();
+  return FlatSearch(shape.level(0).core, X, Vec<double>(0.0, 0.0, -1.0), tilt).run();
 }
 
 TEST(Flat, BoxShowsAFaceAnEdgeOrACorner) {

@@ -15,6 +15,10 @@ using namespace detail;
 
 constexpr double tilt = 0.01;
 
+TiltMean mean_of(const Outline& outline, const Planar& slope, double of_tilt) {
+  return {outline, slope, of_tilt, 0.0};
+}
+
 /// The same mean by brute force: a grid over the disc.
 struct Brute {
   double nearer = 0.0;
@@ -60,7 +64,7 @@ TEST(TiltMean, IsTheMeanOverTheDisc) {
     const Outline outline = polygon(rng, families::count_between(rng, 2, 7));
     const Planar s{families::uniform(rng, -1.5, 1.5) * tilt,
                    families::uniform(rng, -1.5, 1.5) * tilt};
-    const TiltMean mean(outline, s, tilt);
+    const TiltMean mean = mean_of(outline, s, tilt);
     const Brute truth = brute(outline, s);
     // Of a polygon, what it is without slope is taken off, with a weight that falls with the slope.
     const double x = norm(s) / (TiltMean::faded * tilt);
@@ -79,7 +83,7 @@ TEST(TiltMean, IsTheCornerItselfWhereEveryTiltFindsIt) {
   for (const Planar& r : {Planar{0.0, 0.0}, Planar{-0.1, 0.0}, Planar{-0.1, -0.1}}) {
     outline.add(r, true);
   }
-  const TiltMean mean(outline, {0.08, 0.08}, tilt);
+  const TiltMean mean = mean_of(outline, {0.08, 0.08}, tilt);
   EXPECT_EQ(mean.nearer(), 0.0);
   EXPECT_EQ(norm(mean.point()), 0.0);
   EXPECT_EQ(mean.held(), 1.0);
@@ -97,9 +101,9 @@ TEST(TiltMean, ThePointIsTheGradient) {
     const Planar s{families::uniform(rng, -2.0, 2.0) * tilt,
                    families::uniform(rng, -2.0, 2.0) * tilt};
     const auto at = [&](double x, double y) {
-      return TiltMean(outline, s + Planar{x, y}, tilt).nearer();
+      return mean_of(outline, s + Planar{x, y}, tilt).nearer();
     };
-    const Planar found = TiltMean(outline, s, tilt).point();
+    const Planar found = mean_of(outline, s, tilt).point();
     EXPECT_NEAR((at(h, 0.0) - at(-h, 0.0)) / (2.0 * h), found.x, 1e-6);
     EXPECT_NEAR((at(0.0, h) - at(0.0, -h)) / (2.0 * h), found.y, 1e-6);
   }
@@ -118,11 +122,11 @@ TEST(TiltMean, ThinPolygonsAndSmallBendsAreSegments) {
   Outline bent = segment;
   bent.bend = 1e-6;
   for (const double s : {-0.02, -0.007, 0.0, 0.003, 0.009, 0.02}) {
-    const TiltMean of_segment(segment, {s, 0.0}, tilt);
+    const TiltMean of_segment = mean_of(segment, {s, 0.0}, tilt);
     // A thin polygon has the middle taken off, beyond which its point lies by a seventh at most.
-    EXPECT_NEAR(of_segment.point().x, TiltMean(sliver, {s, 0.0}, tilt).point().x, 0.16 / 7.0);
-    EXPECT_NEAR(of_segment.point().x, TiltMean(bent, {s, 0.0}, tilt).point().x, 1e-5);
-    EXPECT_NEAR(of_segment.nearer(), TiltMean(bent, {s, 0.0}, tilt).nearer(), 1e-8);
+    EXPECT_NEAR(of_segment.point().x, mean_of(sliver, {s, 0.0}, tilt).point().x, 0.16 / 7.0);
+    EXPECT_NEAR(of_segment.point().x, mean_of(bent, {s, 0.0}, tilt).point().x, 1e-5);
+    EXPECT_NEAR(of_segment.nearer(), mean_of(bent, {s, 0.0}, tilt).nearer(), 1e-8);
   }
 }
 
@@ -132,7 +136,7 @@ TEST(TiltMean, ABendDrawsTheNearestPointToTheCrossing) {
   crossing.add({0.1, 0.0}, true);
   crossing.bend = 2.0;
   // Along it the gap is x^2 - s x: lowest at s / 2.
-  const TiltMean mean(crossing, {0.04, 0.0}, tilt);
+  const TiltMean mean = mean_of(crossing, {0.04, 0.0}, tilt);
   EXPECT_NEAR(mean.point().x, 0.02, 1e-12);
   EXPECT_NEAR(mean.square(), 0.02 * 0.02 + tilt * tilt / 4.0 / 4.0, 1e-9);
   EXPECT_NEAR(mean.nearer(), 0.04 * 0.02 - 0.02 * 0.02 + tilt * tilt / 16.0, 1e-9);

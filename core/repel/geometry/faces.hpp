@@ -21,6 +21,12 @@ namespace repel {
 /// facets.
 class Faces {
  public:
+  /// A corner of a face, at a vertex.
+  struct Corner {
+    std::uint32_t face;
+    std::uint32_t next, previous;  ///< the vertices beside it, around the face
+  };
+
   Faces() = default;
   /// @param points the hull's, as `facets` refers to them
   /// @param vertices the same points without those that are no vertices, in any order [m]
@@ -47,18 +53,22 @@ class Faces {
     first_.shrink_to_fit();
     corners_.shrink_to_fit();
     index(vertices.size());
+    find_room(vertices);
   }
 
   [[nodiscard]] bool empty() const noexcept { return normals_.empty(); }
   /// [byte] Heap memory held, and the most for a hull of so many vertices.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return normals_.capacity() * sizeof(Vec<double>) +
-           (first_.capacity() + corners_.capacity() + first_at_.capacity() + at_.capacity()) *
-               sizeof(std::uint32_t);
+           (first_.capacity() + corners_.capacity() + first_at_.capacity()) *
+               sizeof(std::uint32_t) +
+           at_.capacity() * sizeof(Corner) +
+           (face_room_.capacity() + vertex_room_.capacity()) * sizeof(float);
   }
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     // A closed surface of triangles has twice as many of them as vertices.
-    return 2 * vertices * sizeof(Vec<double>) + (15 * vertices + 2) * sizeof(std::uint32_t);
+    return 2 * vertices * sizeof(Vec<double>) + (9 * vertices + 2) * sizeof(std::uint32_t) +
+           6 * vertices * sizeof(Corner) + 3 * vertices * sizeof(float);
   }
   /// The unit normal of face `i`, outward.
   [[nodiscard]] const Vec<double>& normal(std::uint32_t i) const noexcept { return normals_[i]; }
@@ -67,10 +77,17 @@ class Faces {
     return {corners_.data() + first_[i], first_[i + 1] - first_[i]};
   }
   /// The faces that meet at a vertex, which must be valid; none when empty.
-  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t vertex) const noexcept {
+  [[nodiscard]] std::span<const Corner> at(std::uint32_t vertex) const noexcept {
     if (empty()) return {};
     return {at_.data() + first_at_[vertex], first_at_[vertex + 1] - first_at_[vertex]};
   }
+
+  /// [rad] How far around its normal a face is alone: a sixtieth of the angle to the nearest face
+  /// that shares a vertex, and no more than half the room at its own. At most 1.
+  [[nodiscard]] double room_of(std::uint32_t face) const noexcept { return face_room_[face]; }
+  /// [rad] The same for the edges at a vertex: a quarter of the angle between the directions that
+  /// two of them face, where they bound no common face.
+  [[nodiscard]] double room_at(std::uint32_t vertex) const noexcept { return vertex_room_[vertex]; }
 
  private:
   /// [rad] Facets that share an edge and differ by less are one face.
@@ -138,7 +155,35 @@ class Faces {
     at_.resize(corners_.size());
     std::vector<std::uint32_t> next = first_at_;
     for (std::uint32_t face = 0; face < normals_.size(); ++face) {
-      for (const std::uint32_t corner : corners(face)) at_[next[corner]++] = face;
+      const auto around = corners(face);
+      for (std::size_t k = 0; k < around.size(); ++k) {
+        at_[next[around[k]]++] = {face, around[k + 1 < around.size() ? k + 1 : 0],
+                                  around[k > 0 ? k - 1 : around.size() - 1]};
+      }
+    }
+  }
+
+  void find_room(std::span<const Vec3> vertices) {
+    face_room_.assign(normals_.size(), 1.0F);
+    vertex_room_.assign(vertices.size(), 1.0F);
+    const auto lower = [](float& room, double to) {
+      room = std::min(room, static_cast<float>(to));
+    };
+    for (std::uint32_t v = 0; v < vertices.size(); ++v) {
+      for (const Corner& one : at(v)) {
+        const Vec<double>& n = normals_[one.face];
+        for (const Corner& other : at(v)) {
+          if (other.face == one.face) continue;
+          const Vec<double> between = normals_[other.face] - n;
+          lower(face_room_[one.face], std::sqrt(dot(between, between)) / 60.0);
+          if (at(v).size() == 3 || other.next == one.previous) continue;
+          const Vec3 edge = vertices[other.next] - vertices[v];
+          lower(vertex_room_[v], -0.25 * dot(n, Vec<double>(edge)) / edge.norm());
+        }
+      }
+    }
+    for (std::uint32_t face = 0; face < normals_.size(); ++face) {
+      for (const std::uint32_t v : corners(face)) lower(face_room_[face], 0.5 * vertex_room_[v]);
     }
   }
 
@@ -146,7 +191,9 @@ class Faces {
   std::vector<std::uint32_t> first_;     ///< by face, where its corners begin
   std::vector<std::uint32_t> corners_;   ///< by face
   std::vector<std::uint32_t> first_at_;  ///< by vertex, where its faces begin
-  std::vector<std::uint32_t> at_;        ///< by vertex
+  std::vector<Corner> at_;               ///< by vertex
+  std::vector<float> face_room_;         ///< [rad] by face
+  std::vector<float> vertex_room_;       ///< [rad] by vertex
 };
 
 }  // namespace repel

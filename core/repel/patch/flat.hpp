@@ -13,6 +13,7 @@
 
 #include <repel/geometry/convex.hpp>
 #include <repel/patch/plane.hpp>
+#include <repel/patch/tilt_mean.hpp>
 
 namespace repel::detail {
 
@@ -25,12 +26,19 @@ struct Flat {
   Vec<double> normal{};  ///< of a polygon, outward
   bool is_disc = false;  ///< the polygon stands for a disc
   double radius = 0.0;   ///< [m] of a segment: of curvature across it
+  double tilt = 0.0;     ///< [rad] up to which no other feature of the set is nearest
 
   void add(const Vec<double>& p) noexcept { corners[static_cast<std::size_t>(size++)] = p; }
   [[nodiscard]] const Vec<double>& at(int i) const noexcept {
     return corners[static_cast<std::size_t>(i)];
   }
 };
+
+/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
+/// so that they come and go with weight zero.
+[[nodiscard]] inline double flat_within(double tilt) noexcept {
+  return TiltMean::faded * tilt;
+}
 
 /// False if a box has no edge, and a cylinder neither cap nor side, that is perpendicular to a
 /// direction within `angle` [rad].
@@ -47,11 +55,18 @@ class FlatSearch {
  public:
   /// @param X the pose of the set
   /// @param n_W unit
-  /// @param angle [rad] small
-  FlatSearch(const Convex& set, const Pose& X, const Vec<double>& n_W, double angle) noexcept
-      : set_(set), X_(X), n_(rotate_transposed(X, n_W)), angle_(angle) {}
+  /// @param tilt [rad] of which features are asked for, small
+  FlatSearch(const Convex& set, const Pose& X, const Vec<double>& n_W, double tilt) noexcept
+      : set_(set), X_(X), n_(rotate_transposed(X, n_W)), tilt_(tilt), angle_(flat_within(tilt)) {}
 
   [[nodiscard]] Flat run() const noexcept {
+    Flat flat = find();
+    if (set_.kind() != Convex::Kind::polytope) flat.tilt = tilt_;
+    return flat;
+  }
+
+ private:
+  [[nodiscard]] Flat find() const noexcept {
     switch (set_.kind()) {
       case Convex::Kind::box:
         return of_box();
@@ -65,7 +80,6 @@ class FlatSearch {
     return of_polytope();
   }
 
- private:
   [[nodiscard]] Flat of_box() const noexcept {
     const Vec<double> half = set_.half_extents();
     const double n[3] = {n_.x(), n_.y(), n_.z()};
@@ -157,46 +171,75 @@ class FlatSearch {
   }
 
   /// The flattest face at the farthest vertex, or the flattest edge.
+  ///
+  /// Where faces differ by little, the tilt is less, by so much that its disc around n meets one
+  /// face, or one edge, wherever n is: the least of what each face has room for, plus a share of
+  /// the angle from its normal to n. It changes continuously with n.
   [[nodiscard]] Flat of_polytope() const noexcept {
     const Faces& faces = set_.faces();
     const std::uint32_t farthest = set_.support(n_).name;
-    const Vec<double> top = set_.place(farthest);
-    double flattest = std::sqrt(1.0 - angle_ * angle_);
-    double least_slope = angle_;
+    Flat flat;
+    flat.tilt = tilt_;
+    double least = std::numeric_limits<double>::infinity();
+    Edge edge;
+    Edge second;
     std::uint32_t face = none;
-    std::uint32_t other = none;
-    for (const std::uint32_t i : faces.at(farthest)) {
-      const double along = dot(faces.normal(i), n_);
-      if (along > flattest) {
-        flattest = along;
-        face = i;
+    for (const Faces::Corner& corner : faces.at(farthest)) {
+      const double off = lower_tilt(corner.face, flat);
+      if (off < least) {
+        least = off;
+        face = corner.face;
       }
-      const auto corners = faces.corners(i);
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        if (corners[k] != farthest) continue;
-        // Each edge is found from both of its faces.
-        const std::uint32_t next = corners[k + 1 < corners.size() ? k + 1 : 0];
-        const Vec<double> away = top - set_.place(next);
-        const double slope = dot(n_, away) / std::sqrt(dot(away, away));
-        if (slope < least_slope) {
-          least_slope = slope;
-          other = next;
+      const Edge next{corner.next, slope_along(farthest, corner.next)};
+      if (next.slope < edge.slope) {
+        second = edge;
+        edge = next;
+      } else if (next.slope < second.slope) {
+        second = next;
+      }
+    }
+    if (least < flat_within(flat.tilt)) return of_face(face, farthest, flat);
+    // The disc also meets both edges of a sharp corner of a face that is farther off.
+    if (second.slope < flat.tilt) {
+      for (const Faces::Corner& corner : faces.at(farthest)) {
+        if ((corner.next == edge.to && corner.previous == second.to) ||
+            (corner.next == second.to && corner.previous == edge.to)) {
+          return of_face(corner.face, farthest, flat);
         }
       }
     }
-    if (face != none) return of_face(face, farthest);
-    Flat flat;
-    flat.add(rotate(X_, top));
-    if (other != none) flat.add(rotate(X_, set_.place(other)));
+    flat.add(rotate(X_, set_.place(farthest)));
+    if (!(edge.slope < flat.tilt)) return flat;
+    for (const Faces::Corner& corner : faces.at(edge.to)) (void)lower_tilt(corner.face, flat);
+    flat.tilt = std::min(flat.tilt, std::min(faces.room_at(farthest), faces.room_at(edge.to)));
+    flat.add(rotate(X_, set_.place(edge.to)));
     return flat;
+  }
+
+  /// An edge of the farthest vertex.
+  struct Edge {
+    std::uint32_t to = none;
+    double slope = std::numeric_limits<double>::infinity();  ///< along it, against the plane
+  };
+  [[nodiscard]] double slope_along(std::uint32_t from, std::uint32_t to) const noexcept {
+    const Vec<double> away = set_.place(from) - set_.place(to);
+    return dot(n_, away) / std::sqrt(dot(away, away));
+  }
+
+  /// Lowers the tilt to what a face leaves, and returns how far its normal is off [rad].
+  double lower_tilt(std::uint32_t face, Flat& flat) const noexcept {
+    constexpr double growth = 0.045;
+    const Vec<double> between = set_.faces().normal(face) - n_;
+    const double off = std::sqrt(dot(between, between));
+    flat.tilt = std::min(flat.tilt, set_.faces().room_of(face) + growth * off);
+    return off;
   }
 
   /// A face; with many corners, those farthest along a few directions stand for it, the first of
   /// which leads to the corner `farthest`.
-  [[nodiscard]] Flat of_face(std::uint32_t face, std::uint32_t farthest) const noexcept {
+  [[nodiscard]] Flat of_face(std::uint32_t face, std::uint32_t farthest, Flat flat) const noexcept {
     const Vec<double>& normal = set_.faces().normal(face);
     const auto corners = set_.faces().corners(face);
-    Flat flat;
     flat.normal = rotate(X_, normal);
     if (corners.size() <= Flat::most) {
       for (const std::uint32_t name : corners) flat.add(rotate(X_, set_.place(name)));
@@ -234,8 +277,8 @@ class FlatSearch {
 
   const Convex& set_;
   const Pose& X_;
-  Vec<double> n_;  ///< in the frame of the set
-  double angle_;
+  Vec<double> n_;        ///< in the frame of the set
+  double tilt_, angle_;  ///< [rad]
 };
 
 }  // namespace repel::detail

@@ -28,12 +28,6 @@ struct ContactPatch {
 
 namespace detail {
 
-/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
-/// so that they come and go with weight zero.
-[[nodiscard]] inline double flat_within(double tilt) noexcept {
-  return TiltMean::faded * tilt;
-}
-
 /// Two segments, nearly parallel, that lie across each other: the gap grows to both sides of the
 /// point where they cross, by `sine` `lean` x^2 / 2.
 struct Crossing {
@@ -108,10 +102,12 @@ struct Crossing {
   if (!may_be_flat(level_a.core, A.X_W, n, angle) || !may_be_flat(level_b.core, B.X_W, n, angle)) {
     return false;
   }
-  const Flat a = FlatSearch(level_a.core, A.X_W, -n, angle).run();
+  const Flat a = FlatSearch(level_a.core, A.X_W, -n, tilt).run();
   if (a.size < 2) return false;
-  const Flat b = FlatSearch(level_b.core, B.X_W, n, angle).run();
+  const Flat b = FlatSearch(level_b.core, B.X_W, n, a.tilt).run();
   if (b.size < 2) return false;
+  tilt = b.tilt;
+  if (!(tilt > 0.0)) return false;
   const PlanarAxes axes(n);
   const Vec<double> nearest_a = Vec<double>(s.p_WA) + level_a.depth * n;
   const Vec<double> nearest_b = Vec<double>(s.p_WB) - level_b.depth * n;
@@ -138,7 +134,7 @@ struct Crossing {
     slope_b = along(unit, slope_b);
   }
   const Planar lean = slope_b - slope_a;
-  const TiltMean mean(outline, lean, crossing.tilt);
+  const TiltMean mean(outline, lean, crossing.tilt, std::max(norm(slope_a), norm(slope_b)));
   const Planar& r = mean.point();
   // Forces act normal to the surface of A, or of B where A ends; and off the normal where segments
   // that cross are nearest beside the crossing.

@@ -25,8 +25,8 @@ namespace repel::detail {
 /// A.
 ///
 /// Where faces are parallel, the mean is less than the gap by H(0). So that the distance is the gap
-/// there, w H(0) is added for polygons, with a weight w that is 1 at s = 0 and 0 from s = `faded`
-/// e.
+/// there, w H(0) is added for polygons, with a weight w that is 1 at s = 0 and 0 where s, or the
+/// angle between a feature and the tangent plane, is `faded` e.
 class TiltMean {
  public:
   static constexpr double faded = 10.0;
@@ -34,8 +34,9 @@ class TiltMean {
   /// @param outline 2 or more corners, no two of them equal
   /// @param slope s, minus the gradient of the gap
   /// @param tilt e [rad], more than 0
-  TiltMean(const Outline& outline, const Planar& slope, double tilt) noexcept
-      : is_exact_(outline.is_exact), s_(slope), e_(tilt), fade_(norm(slope), tilt) {
+  /// @param off the larger slope of the two features against the tangent plane
+  TiltMean(const Outline& outline, const Planar& slope, double tilt, double off) noexcept
+      : is_exact_(outline.is_exact), s_(slope), e_(tilt), fade_(slope, off, tilt) {
     if (outline.size == 2) {
       average_segment(outline);
     } else {
@@ -63,16 +64,16 @@ class TiltMean {
   }
 
  private:
-  /// w and its derivative [1/rad] where s has a length.
+  /// w and its gradient [1/rad] by s.
   struct Fade {
     double share = 0.0;
-    double slope = 0.0;
+    Planar slope{};
 
-    Fade(double length, double tilt) noexcept {
-      const double x = length / (faded * tilt);
+    Fade(const Planar& s, double off, double tilt) noexcept {
+      const double x = std::max(norm(s), off) / (faded * tilt);
       if (x >= 1.0) return;
       share = (1.0 - x * x) * (1.0 - x * x);
-      slope = -4.0 * x * (1.0 - x * x) / (faded * tilt);
+      slope = -4.0 * (1.0 - x * x) / (faded * faded * tilt * tilt) * s;
     }
   };
 
@@ -236,8 +237,7 @@ class TiltMean {
       pull_at(r, -std::clamp(multiple / std::max(sine, 1e-12), -most, most) * normal);
     }
     nearer_ += dot(s_, point_);
-    const double length = norm(s_);
-    if (length > 0.0) point_ = point_ - fade_.slope * flat * perimeter / length * s_;
+    point_ = point_ - flat * perimeter * fade_.slope;
   }
 
   static constexpr double at_nearest = 1e-7;  ///< [m] from r = 0
