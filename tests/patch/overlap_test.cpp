@@ -28,8 +28,9 @@ double area_of(const Outline& outline) {
 }
 
 TEST(Cut, LeavesWhatIsInsideAndTellsWhoseEachSideIs) {
-  Outline outline = square(1.0, true);
-  cut(outline, {1.0, 0.0}, 0.5, false);
+  const Outline whole = square(1.0, true);
+  Outline outline;
+  ASSERT_TRUE(cut(whole, {3.0, 0.0}, 1.5, false, outline));
   EXPECT_NEAR(area_of(outline), 3.0, 1e-15);
   int others = 0;
   for (int i = 0; i < outline.size; ++i) {
@@ -39,9 +40,9 @@ TEST(Cut, LeavesWhatIsInsideAndTellsWhoseEachSideIs) {
     EXPECT_EQ(outline.after(i).r.x, 0.5);
   }
   EXPECT_EQ(others, 1);
-  cut(outline, {1.0, 0.0}, 2.0, false);
+  EXPECT_FALSE(cut(whole, {1.0, 0.0}, 2.0, false, outline));
   EXPECT_EQ(outline.size, 4);
-  cut(outline, {1.0, 0.0}, -3.0, false);
+  EXPECT_TRUE(cut(whole, {1.0, 0.0}, -3.0, false, outline));
   EXPECT_EQ(outline.size, 0);
 }
 
@@ -49,45 +50,41 @@ TEST(Cut, OfASegmentMovesItsEnd) {
   Outline segment;
   segment.add({-1.0, 0.0}, true);
   segment.add({1.0, 0.0}, true);
-  cut(segment, {1.0, 0.0}, 0.25, false);
+  cut_segment(segment, {1.0, 0.0}, 0.25, false);
   ASSERT_EQ(segment.size, 2);
   EXPECT_EQ(segment.at(1).r.x, 0.25);
   EXPECT_FALSE(segment.at(1).of_a);
   EXPECT_TRUE(segment.at(0).of_a);
 }
 
-Flat rectangle(double half_x, double half_y, double angle, const Vec3& centre) {
-  const Vec3 u = half_x * Vec3(std::cos(angle), std::sin(angle), 0.0);
-  const Vec3 v = half_y * Vec3(-std::sin(angle), std::cos(angle), 0.0);
-  Flat flat;
-  for (const Vec3& corner : {Vec3(-u - v), Vec3(u - v), Vec3(u + v), Vec3(v - u)}) {
-    flat.add(Vec<double>(Vec3(centre + corner)));
+Outline rectangle(double half_x, double half_y, double angle, const Planar& centre, bool of_a) {
+  const Planar u = half_x * Planar{std::cos(angle), std::sin(angle)};
+  const Planar v = half_y * Planar{-std::sin(angle), std::cos(angle)};
+  Outline outline;
+  for (const Planar& corner : {-1.0 * u - v, u - v, u + v, v - u}) {
+    outline.add(centre + corner, of_a);
   }
-  flat.normal = {0.0, 0.0, 1.0};
-  return flat;
+  return outline;
 }
 
 // The overlap has the area that counting points of both gives.
 TEST(Overlap, OfRectanglesHasTheirCommonArea) {
   constexpr unsigned seed = 5;
   families::Rng rng(seed);
-  const PlanarAxes axes({0.0, 0.0, 1.0});
   int overlapping = 0;
   for (int i = 0; i < 200; ++i) {
     SCOPED_TRACE(families::of_seed(seed, "pair", i));
     const auto u = [&](double low, double high) { return families::uniform(rng, low, high); };
-    const Flat a = rectangle(u(0.2, 1.0), u(0.2, 1.0), u(-3.0, 3.0), Vec3::Zero());
-    const Flat b = rectangle(u(0.2, 1.0), u(0.2, 1.0), u(-3.0, 3.0), Vec3(u(-1.0, 1.0), 0.3, 0.1));
+    const Outline a = rectangle(u(0.2, 1.0), u(0.2, 1.0), u(-3.0, 3.0), {0.0, 0.0}, true);
+    const Outline b = rectangle(u(0.2, 1.0), u(0.2, 1.0), u(-3.0, 3.0), {u(-1.0, 1.0), 0.3}, false);
     Outline outline;
-    const Vec<double> none{0.0, 0.0, 0.0};
-    const bool found = find_overlap(axes, a, none, b, none, false, outline);
-    const auto has = [](const Flat& flat, double x, double y) {
+    Sides sides;
+    const bool found = find_overlap(a, b, false, outline, sides);
+    const auto has = [](const Outline& rect, double x, double y) {
       bool inside = true;
       for (int k = 0; k < 4; ++k) {
-        const Vec3 from = to_vec3(flat.at(k));
-        const Vec3 to = to_vec3(flat.at((k + 1) % 4));
-        const Vec3 to_point = Vec3(x, y, from.z()) - from;
-        inside = inside && (to - from).cross(to_point).z() >= 0.0;
+        const Planar from = rect.at(k).r;
+        inside = inside && cross(rect.after(k).r - from, Planar{x, y} - from) >= 0.0;
       }
       return inside;
     };
@@ -105,16 +102,15 @@ TEST(Overlap, OfRectanglesHasTheirCommonArea) {
 }
 
 TEST(Overlap, OfTwoSegmentsLiesAlongTheirBisector) {
-  const PlanarAxes axes({0.0, 0.0, 1.0});
-  Flat a;
-  a.add({-1.0, -0.1, 0.0});
-  a.add({1.0, 0.1, 0.0});
-  Flat b;
-  b.add({0.5, -0.05, 0.0});
-  b.add({-2.0, 0.2, 0.0});
-  const Vec<double> none{0.0, 0.0, 0.0};
+  Outline a;
+  a.add({-1.0, -0.1}, true);
+  a.add({1.0, 0.1}, true);
+  Outline b;
+  b.add({0.5, -0.05}, false);
+  b.add({-2.0, 0.2}, false);
   Outline outline;
-  ASSERT_TRUE(find_overlap(axes, a, none, b, none, true, outline));
+  Sides sides;
+  ASSERT_TRUE(find_overlap(a, b, true, outline, sides));
   ASSERT_EQ(outline.size, 2);
   const double first = norm(outline.at(0).r);
   const double last = norm(outline.at(1).r);

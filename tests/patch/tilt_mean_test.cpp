@@ -16,7 +16,9 @@ using namespace detail;
 constexpr double tilt = 0.01;
 
 TiltMean mean_of(const Outline& outline, const Planar& slope, double of_tilt) {
-  return {outline, slope, of_tilt, 0.0};
+  Sides sides;
+  sides.find(outline);
+  return {outline, sides, slope, of_tilt, 0.0};
 }
 
 /// The same mean by brute force: a grid over the disc.

@@ -17,22 +17,20 @@
 
 namespace repel::detail {
 
-/// A flat feature: a point, a segment, or a convex polygon.
+/// A flat feature as seen along the normal of a contact: a point, a segment, or a convex polygon,
+/// counter-clockwise.
 struct Flat {
-  static constexpr int most = 16;
+  static constexpr int most = 16;  ///< corners
 
-  std::array<Vec<double>, most> corners;  ///< [m] from the origin of the set, world axes
-  int size = 0;
-  Vec<double> normal{};  ///< of a polygon, outward
+  Outline outline;       ///< of up to `most` corners, with the nearest point at r = 0
+  Planar slope{};        ///< how its height along the normal changes; of a point 0
   bool is_disc = false;  ///< the polygon stands for a disc
   double radius = 0.0;   ///< [m] of a segment: of curvature across it
   double tilt = 0.0;     ///< [rad] up to which no other feature of the set is nearest
-
-  void add(const Vec<double>& p) noexcept { corners[static_cast<std::size_t>(size++)] = p; }
-  [[nodiscard]] const Vec<double>& at(int i) const noexcept {
-    return corners[static_cast<std::size_t>(i)];
-  }
 };
+
+/// Which side of a contact a set is on: below, and its outward normal along n, or above.
+enum class Facing : std::int8_t { up = 1, down = -1 };
 
 /// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
 /// so that they come and go with weight zero.
@@ -50,14 +48,22 @@ struct Flat {
   return n.z() < angle || n.x() * n.x() + n.y() * n.y() < angle * angle;
 }
 
-/// The flat feature of a set that is perpendicular to a direction within an angle.
+/// The flat feature of a set that is perpendicular to the normal of a contact within an angle.
 class FlatSearch {
  public:
   /// @param X the pose of the set
-  /// @param n_W unit
+  /// @param nearest [m] its nearest point, from its origin, world axes
   /// @param tilt [rad] of which features are asked for, small
-  FlatSearch(const Convex& set, const Pose& X, const Vec<double>& n_W, double tilt) noexcept
-      : set_(set), X_(X), n_(rotate_transposed(X, n_W)), tilt_(tilt), angle_(flat_within(tilt)) {}
+  FlatSearch(const Convex& set, const Pose& X, const PlanarAxes& axes, Facing facing,
+             const Vec<double>& nearest, double tilt) noexcept
+      : set_(set),
+        X_(X),
+        axes_(axes),
+        is_up_(facing == Facing::up),
+        n_(rotate_transposed(X, is_up_ ? axes.n : -axes.n)),
+        nearest_(nearest),
+        tilt_(tilt),
+        angle_(flat_within(tilt)) {}
 
   [[nodiscard]] Flat run() const noexcept {
     Flat flat = find();
@@ -80,36 +86,61 @@ class FlatSearch {
     return of_polytope();
   }
 
+  [[nodiscard]] Planar in_plane(const Vec<double>& p) const noexcept {
+    return axes_.in_plane(p - nearest_);
+  }
+  /// Adds a corner at `p` [m], from the origin of the set in its frame.
+  void add(Flat& flat, const Vec<double>& p) const noexcept {
+    flat.outline.add(in_plane(rotate(X_, p)), !is_up_);
+  }
+  void add_segment(Flat& flat, const Vec<double>& from, const Vec<double>& to) const noexcept {
+    add(flat, from);
+    add(flat, to);
+    const Planar along = flat.outline.at(1).r - flat.outline.at(0).r;
+    const double rise = (is_up_ ? 1.0 : -1.0) * dot(to - from, n_);
+    flat.slope = (rise / dot(along, along)) * along;
+  }
+  void set_slope(Flat& flat, const Vec<double>& normal) const noexcept {
+    flat.slope = (-1.0 / dot(normal, axes_.n)) * axes_.in_plane(normal);
+  }
+
   [[nodiscard]] Flat of_box() const noexcept {
     const Vec<double> half = set_.half_extents();
     const double n[3] = {n_.x(), n_.y(), n_.z()};
     const double h[3] = {half.x(), half.y(), half.z()};
     Flat flat;
     Vec<double> middle{0.0, 0.0, 0.0};
-    std::array<Vec<double>, 2> free;
+    std::array<int, 2> free{};
     int count = 0;
     int fixed = 0;
     for (int k = 0; k < 3; ++k) {
-      const Vec<double> edge = h[k] * column<double>(X_, k);
       if (std::abs(n[k]) < angle_ && h[k] > 0.0 && count < 2) {
-        free[static_cast<std::size_t>(count++)] = edge;
+        free[static_cast<std::size_t>(count++)] = k;
       } else {
         fixed = k;
+        const Vec<double> edge = h[k] * column<double>(X_, k);
         middle = n[k] > 0.0 ? middle + edge : middle - edge;
       }
     }
+    const Planar centre = in_plane(middle);
     if (count == 0) {
-      flat.add(middle);
-    } else if (count == 1) {
-      flat.add(middle - free[0]);
-      flat.add(middle + free[0]);
-    } else {
-      flat.add(middle - free[0] - free[1]);
-      flat.add(middle + free[0] - free[1]);
-      flat.add(middle + free[0] + free[1]);
-      flat.add(middle - free[0] + free[1]);
-      flat.normal = (n[fixed] > 0.0 ? 1.0 : -1.0) * column<double>(X_, fixed);
+      flat.outline.add(centre, !is_up_);
+      return flat;
     }
+    const Planar u = h[free[0]] * axes_.in_plane(column<double>(X_, free[0]));
+    if (count == 1) {
+      flat.outline.add(centre - u, !is_up_);
+      flat.outline.add(centre + u, !is_up_);
+      flat.slope = ((is_up_ ? h[free[0]] : -h[free[0]]) * n[free[0]] / dot(u, u)) * u;
+      return flat;
+    }
+    Planar v = h[free[1]] * axes_.in_plane(column<double>(X_, free[1]));
+    if (cross(u, v) < 0.0) v = -1.0 * v;
+    flat.outline.add(centre - u - v, !is_up_);
+    flat.outline.add(centre + u - v, !is_up_);
+    flat.outline.add(centre + u + v, !is_up_);
+    flat.outline.add(centre - u + v, !is_up_);
+    set_slope(flat, column<double>(X_, fixed));
     return flat;
   }
 
@@ -117,14 +148,14 @@ class FlatSearch {
   [[nodiscard]] Flat of_disc(double radius, double z, double across) const noexcept {
     const double x = across > 0.0 ? n_.x() / across : 1.0;
     const double y = across > 0.0 ? n_.y() / across : 0.0;
+    const Vec<double> axis = column<double>(X_, 2);
+    const double way = dot(axis, axes_.n) > 0.0 ? radius : -radius;
+    const Planar centre = in_plane(z * axis);
+    const Planar u = radius * axes_.in_plane(rotate(X_, Vec<double>(x, y, 0.0)));
+    const Planar v = way * axes_.in_plane(rotate(X_, Vec<double>(-y, x, 0.0)));
     Flat flat;
-    for (int i = 0; i < disc_corners; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / disc_corners;
-      const double c = radius * std::cos(angle);
-      const double s = radius * std::sin(angle);
-      flat.add(rotate(X_, Vec<double>(c * x - s * y, c * y + s * x, z)));
-    }
-    flat.normal = (n_.z() > 0.0 ? 1.0 : -1.0) * column<double>(X_, 2);
+    for (const auto& [c, s] : dozen) flat.outline.add(centre + c * u + s * v, !is_up_);
+    set_slope(flat, axis);
     flat.is_disc = true;
     return flat;
   }
@@ -139,11 +170,10 @@ class FlatSearch {
     const Vec<double> half{0.0, 0.0, size.z()};
     Flat flat;
     if (std::abs(n_.z()) < angle_ && size.z() > 0.0) {
-      flat.add(rotate(X_, rim - half));
-      flat.add(rotate(X_, rim + half));
+      add_segment(flat, rim - half, rim + half);
       flat.radius = size.x();
     } else {
-      flat.add(rotate(X_, rim + (n_.z() > 0.0 ? half : -half)));
+      add(flat, rim + (n_.z() > 0.0 ? half : -half));
     }
     return flat;
   }
@@ -161,11 +191,10 @@ class FlatSearch {
     const double off = across * radius - n_.z() * (apex - base);
     Flat flat;
     if (std::abs(off) < angle_ * slant && slant > 0.0) {
-      flat.add(rotate(X_, rim));
-      flat.add(rotate(X_, tip));
+      add_segment(flat, rim, tip);
       flat.radius = 0.5 * radius;
     } else {
-      flat.add(rotate(X_, off > 0.0 ? rim : tip));
+      add(flat, off > 0.0 ? rim : tip);
     }
     return flat;
   }
@@ -208,11 +237,13 @@ class FlatSearch {
         }
       }
     }
-    flat.add(rotate(X_, set_.place(farthest)));
-    if (!(edge.slope < flat.tilt)) return flat;
+    if (!(edge.slope < flat.tilt)) {
+      add(flat, set_.place(farthest));
+      return flat;
+    }
     for (const Faces::Corner& corner : faces.at(edge.to)) (void)lower_tilt(corner.face, flat);
     flat.tilt = std::min(flat.tilt, std::min(faces.room_at(farthest), faces.room_at(edge.to)));
-    flat.add(rotate(X_, set_.place(edge.to)));
+    add_segment(flat, set_.place(farthest), set_.place(edge.to));
     return flat;
   }
 
@@ -240,12 +271,15 @@ class FlatSearch {
   [[nodiscard]] Flat of_face(std::uint32_t face, std::uint32_t farthest, Flat flat) const noexcept {
     const Vec<double>& normal = set_.faces().normal(face);
     const auto corners = set_.faces().corners(face);
-    flat.normal = rotate(X_, normal);
+    set_slope(flat, rotate(X_, normal));
     if (corners.size() <= Flat::most) {
-      for (const std::uint32_t name : corners) flat.add(rotate(X_, set_.place(name)));
+      const std::size_t last = corners.size() - 1;
+      for (std::size_t k = 0; k <= last; ++k) {
+        add(flat, set_.place(corners[is_up_ ? k : last - k]));
+      }
       return flat;
     }
-    const PlanarAxes axes(normal);
+    const PlanarAxes axes(is_up_ ? normal : -normal);
     Planar middle{};
     for (const std::uint32_t name : corners) {
       middle =
@@ -253,31 +287,45 @@ class FlatSearch {
     }
     const Planar to_farthest = axes.in_plane(set_.place(farthest)) - middle;
     std::uint32_t last = none;
-    for (int k = 0; k < disc_corners; ++k) {
-      const double turn = 2.0 * std::numbers::pi * k / disc_corners;
-      const Planar d =
-          std::cos(turn) * to_farthest + std::sin(turn) * Planar{-to_farthest.y, to_farthest.x};
+    for (const auto& [c, s] : dozen) {
+      const Planar d = c * to_farthest + s * Planar{-to_farthest.y, to_farthest.x};
       std::uint32_t best = farthest;
       double most = -std::numeric_limits<double>::infinity();
       for (const std::uint32_t name : corners) {
         const double along = dot(d, axes.in_plane(set_.place(name)));
-        if (k == 0 || along <= most) continue;
+        if (last == none || along <= most) continue;
         most = along;
         best = name;
       }
-      if (best != last) flat.add(rotate(X_, set_.place(best)));
+      if (best != last) add(flat, set_.place(best));
       last = best;
     }
     return flat;
   }
 
   static constexpr std::uint32_t none = 0xFFFFFFFFU;
-  /// Corners that stand for a disc. The one nearest to the other set is a point of the disc itself.
-  static constexpr int disc_corners = 12;
+  /// Corners that stand for a disc: cosines and sines. The one nearest to the other set is a point
+  /// of the disc itself.
+  static constexpr double half_root = 0.5 * std::numbers::sqrt3;
+  static constexpr std::array<Planar, 12> dozen{{{1.0, 0.0},
+                                                 {half_root, 0.5},
+                                                 {0.5, half_root},
+                                                 {0.0, 1.0},
+                                                 {-0.5, half_root},
+                                                 {-half_root, 0.5},
+                                                 {-1.0, 0.0},
+                                                 {-half_root, -0.5},
+                                                 {-0.5, -half_root},
+                                                 {0.0, -1.0},
+                                                 {0.5, -half_root},
+                                                 {half_root, -0.5}}};
 
   const Convex& set_;
   const Pose& X_;
-  Vec<double> n_;        ///< in the frame of the set
+  const PlanarAxes& axes_;
+  bool is_up_;
+  Vec<double> n_;  ///< outward, in the frame of the set
+  Vec<double> nearest_;
   double tilt_, angle_;  ///< [rad]
 };
 

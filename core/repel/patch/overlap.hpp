@@ -2,58 +2,70 @@
 /// The overlap of two flat features, seen along their common normal.
 #pragma once
 
-#include <repel/patch/flat.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
 #include <repel/patch/plane.hpp>
 
 namespace repel::detail {
 
-/// `outline` cut by a line: what lies beyond it is removed.
-/// @param normal unit, outward; `offset` [m]; points with normal.r <= offset stay
-/// @param of_a whom the line belongs to
-inline void cut(Outline& outline, const Planar& normal, double offset, bool of_a) noexcept {
-  const auto beyond = [&](const Planar& r) { return dot(normal, r) - offset; };
-  const auto crossing = [&](const Planar& from, const Planar& to) {
-    const double start = beyond(from);
-    return from + (start / (start - beyond(to))) * (to - from);
-  };
-  if (outline.size == 2) {
-    const Planar from = outline.at(0).r;
-    const Planar to = outline.at(1).r;
-    const double first = beyond(from);
-    const double last = beyond(to);
-    if (first > 0.0 && last > 0.0) {
-      outline.size = 0;
-    } else if (first > 0.0) {
-      outline.corners[0] = {crossing(from, to), of_a};
-    } else if (last > 0.0) {
-      outline.corners[1] = {crossing(from, to), of_a};
-    }
-    return;
-  }
-  bool is_cut = false;
-  for (int i = 0; i < outline.size; ++i) is_cut = is_cut || beyond(outline.at(i).r) > 0.0;
-  if (!is_cut) return;
-  const Outline whole = outline;
-  outline.size = 0;
-  for (int i = 0; i < whole.size; ++i) {
-    const Outline::Corner& here = whole.at(i);
-    const Outline::Corner& next = whole.after(i);
-    const bool here_out = beyond(here.r) > 0.0;
-    const bool next_out = beyond(next.r) > 0.0;
-    if (!here_out) outline.add(here.r, here.of_a);
-    if (here_out == next_out) continue;
-    // Leaving, the side to the next corner is the line; entering, the rest of the side.
-    outline.add(crossing(here.r, next.r), next_out ? of_a : here.of_a);
+/// `segment` cut by a line, as `cut`.
+inline void cut_segment(Outline& segment, const Planar& normal, double offset, bool of_a) noexcept {
+  const Planar from = segment.at(0).r;
+  const Planar to = segment.at(1).r;
+  const double first = dot(normal, from) - offset;
+  const double last = dot(normal, to) - offset;
+  if (first > 0.0 && last > 0.0) {
+    segment.size = 0;
+  } else if (first > 0.0) {
+    segment.set(0, {from + (first / (first - last)) * (to - from), of_a});
+  } else if (last > 0.0) {
+    segment.set(1, {from + (first / (first - last)) * (to - from), of_a});
   }
 }
 
-/// The corners of `outline` that differ from the one before by more than `least` [m].
-inline void remove_short_sides(Outline& outline, double least) noexcept {
-  const Outline whole = outline;
-  outline.size = 0;
+/// What of `polygon` does not lie beyond a line goes to `rest`.
+/// @param normal outward, of any length; points with normal.r <= offset stay
+/// @param of_a whom the line belongs to
+/// @return false, and `rest` is unchanged, if all of it stays
+[[nodiscard]] inline bool cut(const Outline& polygon, const Planar& normal, double offset,
+                              bool of_a, Outline& rest) noexcept {
+  std::array<double, Outline::most> beyond;
+  bool is_cut = false;
+  for (int i = 0; i < polygon.size; ++i) {
+    const double by = dot(normal, polygon.at(i).r) - offset;
+    is_cut = is_cut || by > 0.0;
+    beyond[static_cast<std::size_t>(i)] = by;
+  }
+  if (!is_cut) return false;
+  rest.size = 0;
+  int next = polygon.size > 1 ? 1 : 0;
+  double here_by = beyond[0];
+  for (int i = 0; i < polygon.size; ++i) {
+    const double next_by = beyond[static_cast<std::size_t>(next)];
+    const Outline::Corner here = polygon.at(i);
+    if (!(here_by > 0.0)) rest.add(here.r, here.of_a);
+    if ((here_by > 0.0) != (next_by > 0.0)) {
+      // Leaving, the side to the next corner is the line; entering, the rest of the side.
+      rest.add(here.r + (here_by / (here_by - next_by)) * (polygon.at(next).r - here.r),
+               next_by > 0.0 ? of_a : here.of_a);
+    }
+    here_by = next_by;
+    next = next + 1 < polygon.size ? next + 1 : 0;
+  }
+  return true;
+}
+
+/// The corners of a polygon whose sides to the next are longer than `least` [m].
+inline void remove_short_sides(Outline& polygon, const Sides& sides, double least) noexcept {
+  const Outline whole = polygon;
+  polygon.size = 0;
   for (int i = 0; i < whole.size; ++i) {
-    if (norm(whole.after(i).r - whole.at(i).r) > least) {
-      outline.add(whole.at(i).r, whole.at(i).of_a);
+    if (sides.length[static_cast<std::size_t>(i)] > least) {
+      polygon.add(whole.at(i).r, whole.at(i).of_a);
     }
   }
 }
@@ -81,60 +93,70 @@ inline void remove_short_sides(Outline& outline, double least) noexcept {
   return common;
 }
 
-/// Where the two features lie over each other; the nearest points are at r = 0.
+/// Whether a side, or the end of a segment, passes through r = 0.
+[[nodiscard]] inline bool is_touching(const Planar& from, const Planar& edge, int size) noexcept {
+  constexpr double touching = 1e-14;  // [m^2]
+  if (size == 2) return dot(from, from) < touching;
+  const double off = cross(edge, from);
+  return off * off < touching * dot(edge, edge);
+}
+[[nodiscard]] inline int count_touching(const Outline& outline) noexcept {
+  int count = 0;
+  for (int i = 0; i < outline.size; ++i) {
+    const Planar from = outline.at(i).r;
+    count += is_touching(from, outline.after(i).r - from, outline.size) ? 1 : 0;
+  }
+  return count;
+}
+
+/// `outline` cut by all sides of a polygon. The nearest points are at r = 0.
+/// @param holds_nearest keep r = 0
+inline void cut_by(const Outline& polygon, bool holds_nearest, Outline& outline) noexcept {
+  constexpr double least = 1e-9;  // [m] by which rounding may be wrong
+  Outline other;
+  Outline* whole = &outline;
+  Outline* rest = &other;
+  for (int i = 0; i < polygon.size; ++i) {
+    const Outline::Corner from = polygon.at(i);
+    const Planar edge = polygon.after(i).r - from.r;
+    const Planar normal{edge.y, -edge.x};
+    const double off = dot(normal, from.r);
+    const double offset =
+        (holds_nearest ? std::max(0.0, off) : off) + least * (std::abs(edge.x) + std::abs(edge.y));
+    if (outline.size == 2) {
+      cut_segment(outline, normal, offset, from.of_a);
+    } else if (cut(*whole, normal, offset, from.of_a, *rest)) {
+      std::swap(whole, rest);
+    }
+  }
+  if (whole != &outline) outline = *whole;
+}
+
+/// Where two features lie over each other; the nearest points are at r = 0.
 /// @param holds_nearest keep r = 0, which rounding, or a normal between those of the features, may
 /// leave outside: of shapes that are apart
+/// @param overlap,sides where they do, and its sides, none of which is shorter than 0.1 um
 /// @return false when that is a point
-[[nodiscard]] inline bool find_overlap(const PlanarAxes& axes, const Flat& a,
-                                       const Vec<double>& nearest_a, const Flat& b,
-                                       const Vec<double>& nearest_b, bool holds_nearest,
-                                       Outline& outline) noexcept {
-  const auto outlined = [&](const Flat& flat, const Vec<double>& nearest, bool of_a) {
-    Outline all;
-    for (int i = 0; i < flat.size; ++i) all.add(axes.in_plane(flat.at(i) - nearest), of_a);
-    if (all.size < 3) return all;
-    double area = 0.0;
-    for (int i = 0; i < all.size; ++i) area += cross(all.at(i).r, all.after(i).r);
-    if (area < 0.0) std::reverse(all.corners.begin(), all.corners.begin() + all.size);
-    return all;
-  };
-  constexpr double least = 1e-9;
-  constexpr double touching = 1e-7;
-  const auto count_touching = [](const Outline& other) {
-    int count = 0;
-    for (int i = 0; i < other.size; ++i) {
-      const Planar& r = other.at(i).r;
-      const Planar edge = other.after(i).r - r;
-      const double off = other.size == 2 ? norm(r) : std::abs(cross(edge, r)) / norm(edge);
-      count += off < touching ? 1 : 0;
-    }
-    return count;
-  };
-  const Outline first = outlined(a, nearest_a, true);
-  const Outline second = outlined(b, nearest_b, false);
-  const auto cut_by = [&](const Outline& other) {
-    for (int i = 0; i < other.size; ++i) {
-      const Planar edge = other.after(i).r - other.at(i).r;
-      const double length = norm(edge);
-      const Planar normal = (1.0 / length) * Planar{edge.y, -edge.x};
-      const double offset = dot(normal, other.at(i).r);
-      cut(outline, normal, (holds_nearest ? std::max(0.0, offset) : offset) + least,
-          other.at(i).of_a);
-    }
-  };
-  if (first.size > 2 && second.size == 2) {
-    outline = second;
-    cut_by(first);
-  } else if (first.size == 2 && second.size == 2) {
-    outline = common_segment(first, second);
+[[nodiscard]] inline bool find_overlap(const Outline& a, const Outline& b, bool holds_nearest,
+                                       Outline& overlap, Sides& sides) noexcept {
+  constexpr double shortest = 1e-7;
+  if (a.size > 2 && b.size == 2) {
+    overlap = b;
+    cut_by(a, holds_nearest, overlap);
+  } else if (a.size == 2 && b.size == 2) {
+    overlap = common_segment(a, b);
   } else {
-    outline = first;
-    cut_by(second);
+    overlap = a;
+    cut_by(b, holds_nearest, overlap);
   }
-  remove_short_sides(outline, touching);
-  outline.touching_a = count_touching(first);
-  outline.touching_b = count_touching(second);
-  return outline.size >= 2;
+  if (overlap.size < 2) return false;
+  overlap.touching_a = count_touching(a);
+  overlap.touching_b = count_touching(b);
+  sides.find(overlap);
+  if (sides.least_length(overlap.size) > shortest) return true;
+  remove_short_sides(overlap, sides, shortest);
+  sides.find(overlap);
+  return overlap.size >= 2;
 }
 
 }  // namespace repel::detail

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <repel/base/spatial.hpp>
+#include <repel/patch/flat.hpp>
 #include <repel/patch/overlap.hpp>
 #include <repel/patch/tilt_mean.hpp>
 #include <repel/reduction/separation_result.hpp>
@@ -41,27 +42,18 @@ struct Crossing {
 
   Crossing() = default;
   /// @param gap [m] between the segments
-  Crossing(const PlanarAxes& axes, const Flat& a, const Flat& b, double gap, double most) noexcept {
-    const Planar u = axes.in_plane(a.at(1) - a.at(0));
-    const Planar v = axes.in_plane(b.at(1) - b.at(0));
+  /// @param radius [m] sum of those of curvature across them
+  Crossing(const Outline& a, const Outline& b, double gap, double radius, double most) noexcept {
+    const Planar u = a.at(1).r - a.at(0).r;
+    const Planar v = b.at(1).r - b.at(0).r;
     sine = (dot(u, v) < 0.0 ? -1.0 : 1.0) * cross(v, u) / (norm(u) * norm(v));
-    lean = sine / (std::max(least_radius, std::abs(gap)) + a.radius + b.radius);
+    lean = sine / (std::max(least_radius, std::abs(gap)) + radius);
     const double inside = 1.0 - sine * sine / (widest * widest);
     if (!(inside > 0.0)) return;
     tilt = most * inside * inside;
     fall = -4.0 * most * inside * sine / (widest * widest);
   }
 };
-
-/// The slope of a feature against the tangent plane: how its height along n changes.
-[[nodiscard]] inline Planar slope_of(const Flat& flat, const PlanarAxes& axes) noexcept {
-  if (flat.size > 2) {
-    return (-1.0 / dot(flat.normal, axes.n)) * axes.in_plane(flat.normal);
-  }
-  const Vec<double> edge = flat.at(1) - flat.at(0);
-  const Planar along = axes.in_plane(edge);
-  return (dot(edge, axes.n) / dot(along, along)) * along;
-}
 
 /// h(s) [m]: how much nearer than at r = 0 the gap is somewhere. It is 0 where the nearest points
 /// are those of the features; in overlap, a measure may name others.
@@ -102,30 +94,31 @@ struct Crossing {
   if (!may_be_flat(level_a.core, A.X_W, n, angle) || !may_be_flat(level_b.core, B.X_W, n, angle)) {
     return false;
   }
-  const Flat a = FlatSearch(level_a.core, A.X_W, -n, tilt).run();
-  if (a.size < 2) return false;
-  const Flat b = FlatSearch(level_b.core, B.X_W, n, a.tilt).run();
-  if (b.size < 2) return false;
-  tilt = b.tilt;
-  if (!(tilt > 0.0)) return false;
   const PlanarAxes axes(n);
   const Vec<double> nearest_a = Vec<double>(s.p_WA) + level_a.depth * n;
   const Vec<double> nearest_b = Vec<double>(s.p_WB) - level_b.depth * n;
+  Flat a = FlatSearch(level_a.core, A.X_W, axes, Facing::down, nearest_a - column<double>(A.X_W, 3),
+                      tilt)
+               .run();
+  if (a.outline.size < 2) return false;
+  Flat b = FlatSearch(level_b.core, B.X_W, axes, Facing::up, nearest_b - column<double>(B.X_W, 3),
+                      a.tilt)
+               .run();
+  if (b.outline.size < 2) return false;
   Crossing crossing;
-  crossing.tilt = tilt;
-  if (a.size == 2 && b.size == 2) {
-    crossing = Crossing(axes, a, b, dot(n, nearest_a - nearest_b), tilt);
-    if (!(crossing.tilt > 0.0)) return false;
+  crossing.tilt = b.tilt;
+  if (a.outline.size == 2 && b.outline.size == 2) {
+    crossing =
+        Crossing(a.outline, b.outline, dot(n, nearest_a - nearest_b), a.radius + b.radius, b.tilt);
   }
+  if (!(crossing.tilt > 0.0)) return false;
   Outline outline;
-  if (!find_overlap(axes, a, nearest_a - column<double>(A.X_W, 3), b,
-                    nearest_b - column<double>(B.X_W, 3), s.distance > 0.0, outline)) {
-    return false;
-  }
+  Sides sides;
+  if (!find_overlap(a.outline, b.outline, s.distance > 0.0, outline, sides)) return false;
   outline.bend = crossing.sine * crossing.lean;
   outline.is_exact = !a.is_disc && !b.is_disc;
-  Planar slope_a = slope_of(a, axes);
-  Planar slope_b = slope_of(b, axes);
+  Planar slope_a = a.slope;
+  Planar slope_b = b.slope;
   Planar unit{};
   if (outline.size == 2) {
     const Planar edge = outline.at(1).r - outline.at(0).r;
@@ -134,7 +127,7 @@ struct Crossing {
     slope_b = along(unit, slope_b);
   }
   const Planar lean = slope_b - slope_a;
-  const TiltMean mean(outline, lean, crossing.tilt, std::max(norm(slope_a), norm(slope_b)));
+  const TiltMean mean(outline, sides, lean, crossing.tilt, std::max(norm(slope_a), norm(slope_b)));
   const Planar& r = mean.point();
   // Forces act normal to the surface of A, or of B where A ends; and off the normal where segments
   // that cross are nearest beside the crossing.
@@ -145,7 +138,8 @@ struct Crossing {
   const Vec<double> point = axes.in_world(r) + dot(slope_a, r) * n;
   const Vec<double> torque = cross(point, n - off) + (mean.drill() + twist) * n +
                              cross(n, axes.in_world(mean.lifted(slope_a)) + level_a.depth * force);
-  patch.nearer = mean.nearer() - share_of_measure(norm(lean), tilt) * farthest_along(outline, lean);
+  patch.nearer =
+      mean.nearer() - share_of_measure(norm(lean), b.tilt) * farthest_along(outline, lean);
   patch.gradient = {to_vec3(force), to_vec3(torque)};
   return true;
 }

@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 
+#include <repel/base/lanes.hpp>
 #include <repel/base/vec.hpp>
 
 namespace repel::detail {
@@ -46,14 +50,14 @@ struct PlanarAxes {
 
 /// A convex polygon, counter-clockwise, or a segment with two corners. What bounds it belongs to
 /// one of two bodies: a side of a polygon, an end of a segment.
-struct Outline {
+class Outline {
+ public:
   static constexpr int most = 32;
 
   struct Corner {
     Planar r;   ///< [m]
     bool of_a;  ///< A bounds it: along the side to the next corner, or at this end
   };
-  std::array<Corner, most> corners;  ///< only the first `size` are set
   int size = 0;
   /// How many sides, or ends, of A and B pass through r = 0.
   int touching_a = 0;
@@ -61,14 +65,15 @@ struct Outline {
   bool is_exact = true;  ///< the point r = 0 is known to rounding: no curve was searched for it
   double bend = 0.0;     ///< [1/m] of a segment: the second derivative of the gap along it
 
-  void add(const Planar& r, bool of_a) noexcept {
-    if (size < most) corners[static_cast<std::size_t>(size++)] = {r, of_a};
-  }
   Outline() = default;
   Outline(const Outline& other) noexcept { *this = other; }
   /// Copies the corners that are set.
   Outline& operator=(const Outline& other) noexcept {
-    std::copy_n(other.corners.begin(), other.size, corners.begin());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(other.size); ++i) {
+      x_[i] = other.x_[i];
+      y_[i] = other.y_[i];
+    }
+    of_a_ = other.of_a_;
     size = other.size;
     touching_a = other.touching_a;
     touching_b = other.touching_b;
@@ -76,10 +81,59 @@ struct Outline {
     bend = other.bend;
     return *this;
   }
-  [[nodiscard]] const Corner& at(int i) const noexcept {
-    return corners[static_cast<std::size_t>(i)];
+
+  void add(const Planar& r, bool of_a) noexcept {
+    if (size < most) set(size++, {r, of_a});
   }
-  [[nodiscard]] const Corner& after(int i) const noexcept { return at(i + 1 < size ? i + 1 : 0); }
+  void set(int i, const Corner& corner) noexcept {
+    x_[static_cast<std::size_t>(i)] = corner.r.x;
+    y_[static_cast<std::size_t>(i)] = corner.r.y;
+    const std::uint32_t bit = std::uint32_t{1} << i;
+    of_a_ = corner.of_a ? of_a_ | bit : of_a_ & ~bit;
+  }
+  [[nodiscard]] Corner at(int i) const noexcept {
+    return {{x_[static_cast<std::size_t>(i)], y_[static_cast<std::size_t>(i)]},
+            (of_a_ >> i & 1U) != 0U};
+  }
+  [[nodiscard]] Corner after(int i) const noexcept { return at(i + 1 < size ? i + 1 : 0); }
+
+ private:
+  std::array<double, most> x_, y_;  ///< only the first `size` are set
+  std::uint32_t of_a_ = 0;
+};
+
+/// The sides of an outline.
+struct Sides {
+  using Numbers = std::array<double, Outline::most + lane_count>;  ///< one per side
+
+  Numbers normal_x, normal_y;  ///< unit, outward
+  Numbers length;              ///< [m]
+
+  void find(const Outline& outline) noexcept {
+    for (int i = 0; i < outline.size; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Planar along = outline.after(i).r - outline.at(i).r;
+      length[k] = norm(along);
+      const double part = 1.0 / length[k];
+      normal_x[k] = part * along.y;
+      normal_y[k] = -part * along.x;
+    }
+  }
+  [[nodiscard]] Planar normal(int i) const noexcept {
+    return {normal_x[static_cast<std::size_t>(i)], normal_y[static_cast<std::size_t>(i)]};
+  }
+  /// [m] The shortest of `size` sides.
+  [[nodiscard]] double least_length(int size) const noexcept {
+    return *std::min_element(length.begin(), length.begin() + size);
+  }
+  static void store(Numbers& numbers, int i, const Lanes& lanes) noexcept {
+    std::memcpy(numbers.data() + i, &lanes, sizeof lanes);
+  }
+  [[nodiscard]] static Lanes some(const Numbers& numbers, int i) noexcept {
+    Lanes lanes;
+    std::memcpy(&lanes, numbers.data() + i, sizeof lanes);
+    return lanes;
+  }
 };
 
 }  // namespace repel::detail

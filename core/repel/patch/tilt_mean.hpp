@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <repel/patch/plane.hpp>
+#include <repel/patch/turn.hpp>
 
 namespace repel::detail {
 
@@ -32,15 +33,17 @@ class TiltMean {
   static constexpr double faded = 10.0;
 
   /// @param outline 2 or more corners, no two of them equal
+  /// @param sides of the outline, which must be closed
   /// @param slope s, minus the gradient of the gap
   /// @param tilt e [rad], more than 0
   /// @param off the larger slope of the two features against the tangent plane
-  TiltMean(const Outline& outline, const Planar& slope, double tilt, double off) noexcept
+  TiltMean(const Outline& outline, const Sides& sides, const Planar& slope, double tilt,
+           double off) noexcept
       : is_exact_(outline.is_exact), s_(slope), e_(tilt), fade_(slope, off, tilt) {
     if (outline.size == 2) {
       average_segment(outline);
     } else {
-      average_polygon(outline);
+      average_polygon(outline, sides);
     }
   }
 
@@ -119,8 +122,8 @@ class TiltMean {
 
   /// With the coordinate x along the segment, the minimum over it of c x^2 / 2 - (s + theta) x.
   void average_segment(const Outline& outline) noexcept {
-    const Outline::Corner& from = outline.at(0);
-    const Outline::Corner& to = outline.at(1);
+    const Outline::Corner from = outline.at(0);
+    const Outline::Corner to = outline.at(1);
     const Planar edge = to.r - from.r;
     const double length = norm(edge);
     const Planar along = (1.0 / length) * edge;
@@ -161,83 +164,90 @@ class TiltMean {
     pull_at(from.r, part_of_a(from, at_start) * beyond_start * along);
   }
 
-  /// The border between the cones of two corners: the ray along the outward normal of their side.
-  struct Ray {
-    Planar normal;  ///< unit
-    double share;   ///< of the disc, from a fixed ray to this one, counter-clockwise
-    double moment;  ///< half the integral of e^2 - |y - s|^2 along it, over the disc's area
+  /// The borders between the cones of two corners: the rays along the outward normals of the sides.
+  struct Rays {
+    Sides::Numbers share;   ///< of the disc, from a fixed ray to this one, counter-clockwise
+    Sides::Numbers moment;  ///< half the integral of e^2 - |y - s|^2 along it, over the disc's area
   };
 
-  [[nodiscard]] Ray ray_along(const Planar& normal, bool is_inside) const noexcept {
-    Ray ray{normal, 0.0, 0.0};
-    const double b = dot(s_, normal);
-    const double h = cross(normal, s_);
-    const double half = std::sqrt(std::max(0.0, e_ * e_ - h * h));
-    const double area = std::numbers::pi * e_ * e_;
-    if (is_inside) {
-      const double out = b + half;
-      const Planar at = out * normal - s_;
-      ray.share = 0.5 * (e_ * e_ * std::atan2(at.y, at.x) - out * h) / area;
-      ray.moment = 0.5 * (half * half * out - (half * half * half + b * b * b) / 3.0) / area;
-      return ray;
+  [[nodiscard]] Rays find_rays(int size, const Sides& sides) const noexcept {
+    const bool is_inside = dot(s_, s_) < e_ * e_;
+    const double of_area = 1.0 / (std::numbers::pi * e_ * e_);
+    const Lanes none{};
+    Rays rays;
+    for (int i = 0; i < size; i += lane_count) {
+      const Lanes x = Sides::some(sides.normal_x, i);
+      const Lanes y = Sides::some(sides.normal_y, i);
+      const Lanes b = s_.x * x + s_.y * y;
+      const Lanes h = x * s_.y - y * s_.x;
+      const Lanes half = roots(larger(e_ * e_ - h * h, none));
+      if (is_inside) {
+        const Lanes out = b + half;
+        const Lanes turn = turns_of(out * y - s_.y, out * x - s_.x);
+        Sides::store(rays.share, i, 0.5 * of_area * (e_ * e_ * turn - out * h));
+        Sides::store(rays.moment, i,
+                     0.5 * of_area * (half * half * out - (half * half * half + b * b * b) / 3.0));
+        continue;
+      }
+      // The share clockwise of the ray: of the disc beyond a line at -h.
+      const Lanes within = 0.5 + of_area * (e_ * e_ * turns_of(-h, half) - h * half);
+      const Lanes beside = h > 0.0 ? none : all_of(1.0);
+      Sides::store(rays.share, i, b > 0.0 && half > 0.0 ? within : beside);
+      Sides::store(rays.moment, i, b > 0.0 ? 2.0 / 3.0 * of_area * half * half * half : none);
     }
-    // The share clockwise of the ray.
-    ray.share = b > 0.0 ? Excess(-h / e_).share : (h > 0.0 ? 0.0 : 1.0);
-    if (b > 0.0) ray.moment = 2.0 / 3.0 * half * half * half / area;
-    return ray;
+    return rays;
   }
 
-  void average_polygon(const Outline& outline) noexcept {
-    const bool is_inside = dot(s_, s_) < e_ * e_;
-    std::array<Ray, Outline::most> rays;
-    const auto ray = [&](int i) -> Ray& { return rays[static_cast<std::size_t>(i)]; };
+  void average_polygon(const Outline& outline, const Sides& sides) noexcept {
+    const Rays rays = find_rays(outline.size, sides);
     // By Cauchy's formula, H(0) is the perimeter times this.
     const double flat = e_ / (3.0 * std::numbers::pi);
     double perimeter = 0.0;
     for (int i = 0; i < outline.size; ++i) {
-      const Planar edge = outline.after(i).r - outline.at(i).r;
-      const double length = norm(edge);
-      ray(i) = ray_along((1.0 / length) * Planar{edge.y, -edge.x}, is_inside);
-      ray(i).moment -= fade_.share * flat;
-      nearer_ += ray(i).moment * length;
-      perimeter += length;
+      const auto k = static_cast<std::size_t>(i);
+      nearer_ += rays.moment[k] * sides.length[k];
+      perimeter += sides.length[k];
     }
-    for (int i = 0; i < outline.size; ++i) {
-      const int before = i > 0 ? i - 1 : outline.size - 1;
-      const Ray& from = ray(before);
-      const Ray& to = ray(i);
-      double share = to.share - from.share;
-      if (share < -1e-9) share += 1.0;
-      const Planar& r = outline.at(i).r;
-      point_ = point_ + share * r;
-      const double held = note_nearest(r, share);
-      bool from_a = outline.at(before).of_a;
-      bool to_a = outline.at(i).of_a;
-      double part = 1.0;
-      if (held > 0.0 && outline.touching_a > 0 && outline.touching_b > 0) {
-        // With more than a side of each at a corner, rounding decides which two are found.
-        if (outline.touching_a + outline.touching_b > 2 || from_a == to_a) {
-          from_a = to_a = true;
-          part = 0.5;
-        }
-      }
-      if (!from_a && !to_a) continue;
-      // The mean of y over the cone.
-      const auto turned = [](const Planar& n) { return Planar{-n.y, n.x}; };
-      const Planar y =
-          (share - held) * s_ + from.moment * turned(from.normal) - to.moment * turned(to.normal);
-      if (from_a && to_a) {
-        pull_at(r, -part * y);
-        continue;
-      }
-      const double sine = cross(from.normal, to.normal);
-      const double most = 4.0 * norm(y);
-      const double multiple = from_a ? cross(y, to.normal) : cross(from.normal, y);
-      const Planar& normal = from_a ? from.normal : to.normal;
-      pull_at(r, -std::clamp(multiple / std::max(sine, 1e-12), -most, most) * normal);
-    }
+    nearer_ -= fade_.share * flat * perimeter;
+    for (int i = 0; i < outline.size; ++i) average_corner(outline, sides, rays, flat, i);
     nearer_ += dot(s_, point_);
     point_ = point_ - flat * perimeter * fade_.slope;
+  }
+
+  void average_corner(const Outline& outline, const Sides& sides, const Rays& rays, double flat,
+                      int i) noexcept {
+    const int before = i > 0 ? i - 1 : outline.size - 1;
+    const auto from = static_cast<std::size_t>(before);
+    const auto to = static_cast<std::size_t>(i);
+    double share = rays.share[to] - rays.share[from];
+    if (share < -1e-9) share += 1.0;
+    const Outline::Corner corner = outline.at(i);
+    point_ = point_ + share * corner.r;
+    const double held = note_nearest(corner.r, share);
+    bool from_a = outline.at(before).of_a;
+    bool to_a = corner.of_a;
+    double part = 1.0;
+    if (held > 0.0 && outline.touching_a > 0 && outline.touching_b > 0) {
+      // With more than a side of each at a corner, rounding decides which two are found.
+      if (outline.touching_a + outline.touching_b > 2 || from_a == to_a) {
+        from_a = to_a = true;
+        part = 0.5;
+      }
+    }
+    if (!from_a && !to_a) return;
+    // The mean of y over the cone.
+    const auto turned = [](const Planar& n) { return Planar{-n.y, n.x}; };
+    const double lessened = fade_.share * flat;
+    const Planar normal_from = sides.normal(before);
+    const Planar normal_to = sides.normal(i);
+    const Planar y = (share - held) * s_ + (rays.moment[from] - lessened) * turned(normal_from) -
+                     (rays.moment[to] - lessened) * turned(normal_to);
+    if (from_a && to_a) return pull_at(corner.r, -part * y);
+    const double sine = cross(normal_from, normal_to);
+    const double most = 4.0 * norm(y);
+    const double multiple = from_a ? cross(y, normal_to) : cross(normal_from, y);
+    pull_at(corner.r, -std::clamp(multiple / std::max(sine, 1e-12), -most, most) *
+                          (from_a ? normal_from : normal_to));
   }
 
   static constexpr double at_nearest = 1e-7;  ///< [m] from r = 0
