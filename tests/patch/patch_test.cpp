@@ -260,7 +260,7 @@ TEST(Patch, AClosedPathReturnsTheWorkOfItsFirstHalf) {
 
 TEST(Patch, OverlapByEveryMeasureHasOne) {
   Rng rng(seed);
-  for (const Measure measure : {Measure::deepest_point, Measure::exact}) {
+  for (const Measure measure : {Measure::deepest_point, Measure::exact, Measure::reduction}) {
     Walk seen;
     for (int i = 0; i < 100; ++i) {
       Contacts pair{Shape::box({0.05, 0.04, 0.03}), Shape::box({0.3, 0.3, 0.1})};

@@ -177,6 +177,33 @@ TEST(DeepestPoint, ChangesNoFasterThanTheShapesMoveAndWarmEqualsCold) {
   EXPECT_GT(seen.outside, 3000);
 }
 
+// Between parallel faces a whole area is deepest. A warm start used to name another point of it
+// than a cold one.
+TEST(DeepestPoint, OfManyThatAreAsDeepOneIsTheAnswerWarmAndCold) {
+  Rng rng(seed);
+  int many = 0;
+  for (int i = 0; i < draws(1000); ++i) {
+    SCOPED_TRACE(of_seed(seed, "pair", i));
+    const auto half = [&] { return families::uniform(rng, 0.03, 0.1); };
+    Posed pair{Shape::box({half(), half(), half()}), Shape::box({half(), half(), half()})};
+    pair.X_WA.translation() = 0.08 * families::direction(rng);
+    const Mat3 tilt = families::small_rotation(rng, 0.05);
+    Pose before = pair.X_WA;
+    before.linear() = tilt;
+    WarmStart warm;
+    (void)separation(pair.A, before, pair.B, pair.X_WB, by_deepest_point, warm);
+    const Separation s = separation(pair.A, pair.X_WA, pair.B, pair.X_WB, by_deepest_point, warm);
+    const Separation cold = separation(pair.A, pair.X_WA, pair.B, pair.X_WB, by_deepest_point);
+    if (!(cold.distance < -0.001)) continue;
+    ++many;
+    EXPECT_NEAR(s.distance, cold.distance, 1e-12);
+    EXPECT_LE((s.extraction_W - cold.extraction_W).norm(), 1e-9);
+    EXPECT_LE((s.p_WA - cold.p_WA).norm(), 1e-9);
+    EXPECT_LE((s.p_WB - cold.p_WB).norm(), 1e-9);
+  }
+  EXPECT_GT(many, draws(500));
+}
+
 TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
   Rng rng(seed);
   int at_levels = 0;

@@ -38,16 +38,6 @@ enum class Facing : std::int8_t { up = 1, down = -1 };
   return TiltMean::faded * tilt;
 }
 
-/// False if a box has no edge, and a cylinder neither cap nor side, that is perpendicular to a
-/// direction within `angle` [rad].
-[[nodiscard]] inline bool may_be_flat(const Convex& set, const Pose& X, const Vec<double>& n_W,
-                                      double angle) noexcept {
-  if (set.kind() != Convex::Kind::box && set.kind() != Convex::Kind::cylinder) return true;
-  const Vec<double> n = magnitudes(rotate_transposed(X, n_W));
-  if (set.kind() == Convex::Kind::box) return std::min(std::min(n.x(), n.y()), n.z()) < angle;
-  return n.z() < angle || n.x() * n.x() + n.y() * n.y() < angle * angle;
-}
-
 /// The flat feature of a set that is perpendicular to the normal of a contact within an angle.
 class FlatSearch {
  public:

@@ -29,6 +29,16 @@ struct ContactPatch {
 
 namespace detail {
 
+/// False if a box has no edge, and a cylinder neither cap nor side, that is perpendicular to a
+/// direction within `angle` [rad].
+[[nodiscard]] inline bool may_be_flat(const Convex& set, const Pose& X, const Vec<double>& n_W,
+                                      double angle) noexcept {
+  if (set.kind() != Convex::Kind::box && set.kind() != Convex::Kind::cylinder) return true;
+  const Vec<double> n = magnitudes(rotate_transposed(X, n_W));
+  if (set.kind() == Convex::Kind::box) return std::min(std::min(n.x(), n.y()), n.z()) < angle;
+  return n.z() < angle || n.x() * n.x() + n.y() * n.y() < angle * angle;
+}
+
 /// Two segments, nearly parallel, that lie across each other: the gap grows to both sides of the
 /// point where they cross, by `sine` `lean` x^2 / 2.
 struct Crossing {
@@ -77,7 +87,7 @@ struct Crossing {
 }  // namespace detail
 
 /// The patch around the nearest points of two shapes.
-/// @param s their `separation` at these poses, by the shapes themselves (level 0)
+/// @param s their `separation` at these poses
 /// @param tilt [rad] radius of the disc of tilts, more than 0, a few thousandths
 /// @return false where there is none: the same point is nearest under all tilts, or no direction is
 /// known. `patch` is then unchanged
@@ -86,9 +96,9 @@ struct Crossing {
 [[nodiscard]] inline bool find_patch(const Separation& s, PosedShape A, PosedShape B, double tilt,
                                      ContactPatch& patch) noexcept {
   using namespace detail;
-  if (s.level != 0 || !(norm(s.extraction_W) > 0.5)) return false;
-  const Level& level_a = A.shape.level(0);
-  const Level& level_b = B.shape.level(0);
+  if (!(norm(s.extraction_W) > 0.5)) return false;
+  const Level& level_a = A.shape.level(s.level_a);
+  const Level& level_b = B.shape.level(s.level_b);
   const Vec<double> n(s.extraction_W);
   const double angle = flat_within(tilt);
   if (!may_be_flat(level_a.core, A.X_W, n, angle) || !may_be_flat(level_b.core, B.X_W, n, angle)) {
@@ -97,6 +107,7 @@ struct Crossing {
   const PlanarAxes axes(n);
   const Vec<double> nearest_a = Vec<double>(s.p_WA) + level_a.depth * n;
   const Vec<double> nearest_b = Vec<double>(s.p_WB) - level_b.depth * n;
+  const double gap = dot(n, nearest_a - nearest_b);
   Flat a = FlatSearch(level_a.core, A.X_W, axes, Facing::down, nearest_a - column<double>(A.X_W, 3),
                       tilt)
                .run();
@@ -108,13 +119,12 @@ struct Crossing {
   Crossing crossing;
   crossing.tilt = b.tilt;
   if (a.outline.size == 2 && b.outline.size == 2) {
-    crossing =
-        Crossing(a.outline, b.outline, dot(n, nearest_a - nearest_b), a.radius + b.radius, b.tilt);
+    crossing = Crossing(a.outline, b.outline, gap, a.radius + b.radius, b.tilt);
   }
   if (!(crossing.tilt > 0.0)) return false;
   Outline outline;
   Sides sides;
-  if (!find_overlap(a.outline, b.outline, s.distance > 0.0, outline, sides)) return false;
+  if (!find_overlap(a.outline, b.outline, gap > 0.0, outline, sides)) return false;
   outline.bend = crossing.sine * crossing.lean;
   outline.is_exact = !a.is_disc && !b.is_disc;
   Planar slope_a = a.slope;

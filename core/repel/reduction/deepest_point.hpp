@@ -70,9 +70,11 @@ class DeepestPoint {
     static constexpr double of_depth = is_double ? 0x1p-49 : 0x1p-86;  ///< relative to the size
     static constexpr double of_multiplier = is_double ? 1e-14 : 1e-24;
     static constexpr double least_share = is_double ? 1e-9 : 1e-18;
+    /// Of the objective, a perturbation [-]: it separates multipliers that would all be 0, and
+    /// where several points are deepest, it makes one the answer, cold as well as warm. Above
+    /// rounding, and so little that the answer is the deepest point but for rounding.
+    static constexpr double tilt = is_double ? 1e-12 : 1e-20;
   };
-  /// Perturbation that separates multipliers that would all be 0 [-].
-  static constexpr double tilt = 1e-20;
 
   [[gnu::flatten, gnu::noinline]] End solve_in_double(WarmStart& warm, int allowed) noexcept {
     return solve_in<double>(warm, allowed);
@@ -84,6 +86,11 @@ class DeepestPoint {
   template <class T>
   End solve_in(WarmStart& warm, int allowed) noexcept {
     PlaneBasis<T> basis(A_, B_);
+    // Around a round side, the planes that are nearly right are many, and the tilt leads past them.
+    if (!Precision<T>::is_double || !(basis.is_round(0) || basis.is_round(1))) {
+      constexpr double tilt = Precision<T>::tilt;
+      basis.tilt(rotated<T>({0.7 * tilt, -0.4 * tilt, 0.5 * tilt}));
+    }
     End end = End::unclear;
     if (load(warm, basis) && basis.weigh() &&
         basis.least_multiplier() >= T(-Precision<T>::of_multiplier)) {
@@ -121,7 +128,7 @@ class DeepestPoint {
   End judge(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
     const T found = basis.depth(0) + basis.depth(1);
     // The perturbation can reduce a multiplier that is 0 by twice the tilt.
-    if (!(basis.least_multiplier() >= T(-Precision<T>::of_multiplier - 2.0 * tilt)) ||
+    if (!(basis.least_multiplier() >= T(-Precision<T>::of_multiplier - 2.0 * Precision<T>::tilt)) ||
         basis.bound() - found > T(4.0) * tolerance) {
       return End::unclear;
     }
@@ -141,7 +148,6 @@ class DeepestPoint {
     basis.clear();
     for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis<T>::first_bound + k);
     basis.add(1, PlaneBasis<T>::depth_bound);
-    if (!Precision<T>::is_double) basis.tilt({T(0.7 * tilt), T(-0.4 * tilt), T(0.5 * tilt)});
     bool is_basis = basis.weigh();
     const auto hint = [&](unsigned side, std::uint32_t name) {
       if (!is_basis || pivots_ >= allowed || !basis.has_plane(side, name)) return;
@@ -160,6 +166,12 @@ class DeepestPoint {
       }
     }
     return is_basis;
+  }
+  /// A vector in the frame of A, in world axes.
+  template <class T>
+  [[nodiscard]] Vec<T> rotated(const Vec3& v_A) const noexcept {
+    return T(v_A.x()) * column<T>(A_.X_W, 0) + T(v_A.y()) * column<T>(A_.X_W, 1) +
+           T(v_A.z()) * column<T>(A_.X_W, 2);
   }
   [[nodiscard]] static std::uint32_t name_in(const WarmStart& warm, std::size_t k) noexcept {
     return k < 4 ? warm.a[k] : warm.b[0];

@@ -217,7 +217,9 @@ inline Separation LadderWalk::answer() const noexcept {
     s.upper = met + margin_;
     s.end = at_end() ? QueryEnd::converged : QueryEnd::budget_spent;
   }
-  s.level = std::max(apart_ ? apart_i_ : i_, apart_ ? apart_j_ : j_);
+  s.level_a = apart_ ? apart_i_ : i_;
+  s.level_b = apart_ ? apart_j_ : j_;
+  s.level = std::max(s.level_a, s.level_b);
   s.iterations = iterations_ + (plain ? 0 : apart_ ? 1 : 13);
   if (!plain || !(gap_.lower > 0.0)) {
     s.lower = widened(std::min(s.distance, -overlap_along(s.extraction_W, A_, B_) - slack), -1.0);

@@ -25,6 +25,8 @@ struct Separation {
   int level = 0;               ///< 0: the shapes themselves; k: k-th step of the reduction
   int iterations = 0;          ///< support-map pairs evaluated
   QueryEnd end = QueryEnd::bad_input;
+  int level_a = 0, level_b = 0;  ///< of the shapes, on which the witness points are; `level` is
+                                 ///< the larger
 };
 
 namespace detail {
