@@ -13,7 +13,7 @@ std::vector<ContactPart> contact_parts(const scene::Scene& scene, const scene::A
   }
   for (const RobotPart& part : robot.parts) {
     if (part.link < 0) continue;  // the base is fixed, as the obstacles are
-    parts.push_back({part.name, part.link, shape_of(part), part.X_LP});
+    parts.push_back({part.name, part.link, shape_of(part, {.levels = 1}), part.X_LP});
   }
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     if (obstacle.law.passable) continue;

@@ -113,7 +113,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   for (int link = 0; link < static_cast<int>(robot.arm.links.size()); ++link) {
     for (const RobotPart& part : robot.parts) {
       if (part.link != link || !is_kept(setup, part)) continue;
-      arm.parts.push_back({part.name, shape_of(part), part.X_LP, link});
+      arm.parts.push_back({part.name, shape_of(part, {.levels = 1}), part.X_LP, link});
       links.push_back(part.in_link);
     }
   }
@@ -134,6 +134,8 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
   cell.rate_hz = rate_hz;
   cell.gain_check = scene.network.gain_check;
   cell.start_inside = scene.start_inside;
+  cell.measure = scene.measure;
+  cell.levels = scene.levels;
   for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
     const scene::ArmSetup& setup = scene.arm_setup(i);
     described.robots.push_back(load_robot(setup.robot, with_gravity));

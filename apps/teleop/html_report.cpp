@@ -224,6 +224,9 @@ std::string summary(const RunResult& r) {
           (r.options.plant_inertia == 1.0
                ? ""
                : "plant inertia " + to_text(r.options.plant_inertia) + "; ") +
+          (r.scene.measure == QueryOptions{}.measure
+               ? ""
+               : "overlaps by " + to_text(r.scene.measure) + "; ") +
           std::to_string(r.pairs) + " pairs; " + std::to_string(r.threads) +
           " coprocessor threads" + (r.options.fast ? "; not by the clock" : "") +
           (r.interrupted ? "; interrupted" : "") + "</p>\n";

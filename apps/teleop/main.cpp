@@ -178,6 +178,20 @@ void describe_arm(CLI::App& app, Arguments& a) {
                "with; arms with light wrists then explode");
 }
 
+/// The options of overlaps.
+void describe_measure(CLI::App& app, Arguments& a) {
+  std::vector<std::string> names;
+  for (const Measure measure : all_measures) names.push_back(to_text(measure));
+  app.add_option("--measure", a.run.measure,
+                 "How the depth of an overlap is measured: by the deepest common point, by the "
+                 "reduction, which is the paper's way, or exactly (default: the scene's)")
+      ->check(CLI::IsMember(names));
+  app.add_option("--levels", a.run.levels,
+                 "Steps in which shapes are reduced, where the measure needs them (default: the "
+                 "scene's)")
+      ->check(CLI::Range(1, ReductionOptions::most_levels));
+}
+
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds,
@@ -204,6 +218,7 @@ void describe(CLI::App& app, Arguments& a) {
                  "In place of the scene's budget: support pairs per tick, none, or i860, the "
                  "processor of 1993, on which 4 by 8 parts all but fit at 400 Hz")
       ->check(CLI::Validator(teleop::budget_complaint, "UNITS, i860 or none"));
+  describe_measure(app, a);
   app.add_flag("--every-pair", a.run.every_pair,
                "Ask also the pairs that cannot be within range: to compare with");
   app.add_flag("--tool-alone", a.run.tool_alone,
@@ -229,8 +244,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--replay", a.replay,
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
-                 "--budget", "--every-pair", "--tool-alone", "--plant-inertia", "--no-prediction",
-                 "--device");
+                 "--budget", "--measure", "--levels", "--every-pair", "--tool-alone",
+                 "--plant-inertia", "--no-prediction", "--device");
   app.footer(footer());
 }
 

@@ -133,6 +133,8 @@ class McapLog final : public TickLog {
             {"backend", options.backend},
             {"threads", std::to_string(options.threads)},
             {"budget", options.budget},
+            {"measure", options.measure.empty() ? to_text(scene.measure) : options.measure},
+            {"levels", std::to_string(options.levels > 0 ? options.levels : scene.levels)},
             {"by_the_clock", word(!options.fast)},
             {"every_pair", word(options.every_pair)},
             {"tool_alone", word(options.tool_alone)},

@@ -58,6 +58,8 @@ CoprocessorOptions coprocessor_options(const scene::Budget& budget, const RunOpt
 scene::Scene as_run(const scene::Scene& scene, const RunOptions& options) {
   scene::Scene result = scene;
   result.budget = budget_of(scene, options.budget, options.rate_hz);
+  result.measure = measure_named(options.measure).value_or(scene.measure);
+  if (options.levels > 0) result.levels = options.levels;
   if (options.tool_alone) {
     result.robot.links.emplace();
     for (scene::OtherArm& partner : result.partners) partner.robot.links.emplace();

@@ -159,6 +159,16 @@ const std::string& attachment(const McapReader& reader, const std::string& name,
   throw SetupError(text, file);
 }
 
+/// @throws SetupError if it is neither empty nor the name of a measure
+void require_measure(const std::string& name) {
+  if (name.empty() || measure_named(name)) return;
+  std::string allowed;
+  for (const Measure each : all_measures) {
+    allowed += (allowed.empty() ? "" : ", ") + to_text(each);
+  }
+  throw SetupError("measure of the recording is '" + name + "'; allowed: " + allowed);
+}
+
 void read_options(const McapReader& reader, Recording& recording, std::string& scene) {
   for (const record::McapMetadata& each : reader.metadata()) {
     if (each.name != mcap::run_metadata) continue;
@@ -179,7 +189,10 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
-    options.prediction = word("prediction") == "yes";   // older recordings had none
+    options.prediction = word("prediction") == "yes";  // older recordings had none
+    options.measure = word("measure");  // older recordings have neither: those of their scene
+    options.levels = static_cast<int>(std::clamp(std::strtol(word("levels").c_str(), nullptr, 10),
+                                                 -1L, ReductionOptions::most_levels + 1L));
     const std::string inertia = word("plant_inertia");  // older recordings do not have it
     if (!inertia.empty()) options.plant_inertia = std::strtod(inertia.c_str(), nullptr);
     try {
@@ -187,6 +200,8 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
       checked("threads of the recording", options.threads, 0.0, 16.0, "");
       checked("plant_inertia of the recording", options.plant_inertia, least_inertia_factor,
               most_inertia_factor, "");
+      checked("levels of the recording", options.levels, 0.0, ReductionOptions::most_levels, "");
+      require_measure(options.measure);
     } catch (const SetupError& error) {
       throw SetupError(error.what(), recording.file);
     }

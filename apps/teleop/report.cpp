@@ -100,6 +100,14 @@ void print_plant(const RunResult& r, std::FILE* out) {
   }
 }
 
+/// How overlaps were measured, if not in the default way.
+std::string measure_text(const RunResult& r) {
+  if (r.scene.measure == QueryOptions{}.measure) return {};
+  std::string text = to_text(r.scene.measure);
+  if (r.levels > 0) text += ", " + std::to_string(r.levels) + " levels";
+  return text;
+}
+
 /// Number of ticks in each stop state.
 ordered_json stop_ticks(const RunTotals& totals) {
   ordered_json ticks;
@@ -279,6 +287,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   if (!r.log_trouble.empty()) print_line("log is not whole", r.log_trouble, out);
   for (const std::string& warning : r.warnings) print_line("warning", warning, out);
   print_plant(r, out);
+  if (!measure_text(r).empty()) print_line("measure of overlaps", measure_text(r), out);
   host::print_times("compute of the tick", r.deadline.compute(), out);
   if (!r.options.fast) host::print_times("wake-up lateness", r.deadline.wakeup(), out);
   host::print_times("simulated arm", r.arm_step, out);
@@ -367,6 +376,8 @@ void write_json(const RunResult& r, std::ostream& file) {
     for (auto& share : report["wakeup_us"]) share = nullptr;
   }
   report["simulated_arm_us"] = host::percentiles(r.arm_step);
+  report["measure"] = to_text(r.scene.measure);
+  report["levels"] = r.levels > 0 ? ordered_json(r.levels) : ordered_json(nullptr);
   report["every_pair"] = r.options.every_pair;
   report["plant_inertia"] = r.options.plant_inertia;
   report["prediction"] = r.options.prediction;

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include <repel/base/complaint.hpp>
 #include <repel/network/modules/torque_arm.hpp>
+#include <repel/reduction/separation.hpp>
 #include <repel/world/changed_arm.hpp>
 #include <repel/world/delayed_arm.hpp>
 
@@ -270,6 +272,11 @@ RunResult result_of(const PreparedRun& prepared) {
   result.options = prepared.options;
   result.scene = prepared.scene;
   result.pairs = static_cast<int>(cell.world().pairs().size());
+  const std::vector<Part>& parts = cell.world().parts();
+  const bool has_levels = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+    return needs_levels(part.shape, prepared.scene.measure);
+  });
+  if (has_levels) result.levels = prepared.scene.levels;
   result.device_damping = cell.device_damping();
   result.warnings = cell.warnings();
   result.threads = cell.coprocessor().threads();

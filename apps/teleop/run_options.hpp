@@ -13,6 +13,8 @@ struct RunOptions {
   std::string backend = "bullet";  ///< "bullet", "ode", "reference" or "ideal"
   int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
   std::string budget;              ///< budget name; empty: the scene's own
+  std::string measure;             ///< of overlaps; empty: the scene's own
+  int levels = 0;                  ///< of the reduction; 0: the scene's own
   bool every_pair = false;         ///< also evaluate pairs that cannot be within range
   bool tool_alone = false;         ///< apply the walls to tools only, whatever the scene says
   bool contact = false;  ///< with "bullet" and "ode": solid obstacles stop the arms physically

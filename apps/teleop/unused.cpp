@@ -45,7 +45,7 @@ std::vector<std::string> unused_parts(const RunResult& r) {
   std::vector<std::string> parts = {
       unused_threads(r),
       r.pairs > 0 ? "" : "distance queries",
-      r.totals().nearest > 0.0 ? "reduction levels" : "",
+      r.levels > 0 && r.totals().nearest <= 0.0 ? "" : "reduction levels",
       passable ? "" : "passable bodies",
       any_setup(r.scene, has_links) ? "" : "links of the arm",
       any_setup(r.scene, [](const auto& s) { return s.robot.self_law.has_value(); })

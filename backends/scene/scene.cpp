@@ -65,8 +65,10 @@ std::vector<std::string_view> size_keys(std::string_view kind) {
   return {"radius", "length"};
 }
 
+/// With as few levels as possible: whoever needs more reduces it again.
 Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
-  if (kind == "box") return Shape::box(0.5 * map.at("size").vector(extent));
+  constexpr ReductionOptions coarse{.levels = 1};
+  if (kind == "box") return Shape::box(0.5 * map.at("size").vector(extent), coarse);
   if (kind == "hull") {
     const Value& list = map.at("points");
     std::vector<Vec3> points;
@@ -75,14 +77,14 @@ Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
     }
     // A single hull that is too large is refused by the shape itself.
     if (points.size() <= input_limits.entries) counted.add(list, points.size());
-    return Shape::hull(points);
+    return Shape::hull(points, coarse);
   }
   const double radius = map.at("radius").number(extent);
-  if (kind == "sphere") return Shape::sphere(radius);
+  if (kind == "sphere") return Shape::sphere(radius, coarse);
   const double half_length = 0.5 * map.at("length").number(extent);
-  if (kind == "capsule") return Shape::capsule(radius, half_length);
-  if (kind == "cone") return Shape::cone(radius, half_length);
-  return Shape::cylinder(radius, half_length);
+  if (kind == "capsule") return Shape::capsule(radius, half_length, coarse);
+  if (kind == "cone") return Shape::cone(radius, half_length, coarse);
+  return Shape::cylinder(radius, half_length, coarse);
 }
 
 /// Reads the keys common to tool parts and obstacles. `keys`: further keys that are allowed.
@@ -380,6 +382,18 @@ std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
   return partners;
 }
 
+void read_measure(const Map& map, Scene& scene) {
+  if (const Value* measure = map.find("measure")) {
+    std::vector<std::string> names;
+    for (const Measure each : all_measures) names.push_back(to_text(each));
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    scene.measure = *measure_named(measure->word_of(words));
+  }
+  if (const Value* levels = map.find("levels")) {
+    scene.levels = static_cast<int>(levels->integer(1, ReductionOptions::most_levels));
+  }
+}
+
 Budget budget_of(const Map& scene) {
   Budget budget;
   const Value* value = scene.find("budget");
@@ -403,7 +417,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   const Value document = Value::document(yaml, file);
   const Map map(document);
   map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "partners",
-             "budget", "start_inside", "tool_speed"});
+             "budget", "start_inside", "tool_speed", "measure", "levels"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -414,6 +428,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
     scene.start_inside = out ? StartInside::push_out : StartInside::refuse;
   }
   map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
+  read_measure(map, scene);
   const Laws laws = laws_of(map);
   HullPoints counted;
   const Shared shared{laws, file, kinds, counted};

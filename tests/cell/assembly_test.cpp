@@ -113,6 +113,22 @@ TEST(CellRefuses, GainsOutOfTheirBounds) {
                  {"tool speed is 100 m/s"});
 }
 
+TEST(CellRefuses, AMeasureOrLevelsOutOfRange) {
+  expect_refused([](CellDescription& cell) { cell.measure = static_cast<Measure>(3); },
+                 {"measure is 3", "allowed: 0 to 2"});
+  for (const int levels : {0, -1, 65}) {
+    // Also where the measure needs none.
+    for (const Measure measure : all_measures) {
+      expect_refused(
+          [&](CellDescription& cell) {
+            cell.measure = measure;
+            cell.levels = levels;
+          },
+          {"levels is " + std::to_string(levels), "allowed: 1 to 64"});
+    }
+  }
+}
+
 TEST(CellRefuses, AJointThatMovesNoMass) {
   expect_refused([](CellDescription& cell) { cell.arms[0].model.links[2].rotor_inertia = 0.0; },
                  {"joint 'z' moves no mass", "allowed: links with mass and inertia"});

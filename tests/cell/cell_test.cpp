@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <optional>
+
 #include "cell/sliders.hpp"
 
 namespace repel {
@@ -28,6 +31,41 @@ TEST(Cell, BringsAnArmToAWallAndNoFurtherInOneCallATick) {
   EXPECT_GT(arm.q[0], 0.17) << "the ball must come near the wall, which begins at 0.2 m";
   EXPECT_LT(arm.q[0], 0.2);
   EXPECT_GT(peak, 1.0);
+}
+
+/// The levels of the wall of a cell, which has one when it is built.
+int levels_of_wall(const std::function<void(CellDescription&)>& change) {
+  CellDescription description = sliders();
+  description.obstacles[0].shape = Shape::box({0.1, 1.0, 1.0}, {.levels = 1, .spacing = 2.0});
+  change(description);
+  const Cell cell(std::move(description));
+  EXPECT_EQ(cell.world().query_options().measure, cell.description().measure);
+  const Shape& wall = cell.world().parts().back().shape;
+  EXPECT_EQ(wall.reduction().spacing, 2.0);
+  return wall.reduction().levels;
+}
+
+TEST(Cell, BuildsTheLevelsThatItsMeasureNeedsAndNoOthers) {
+  EXPECT_EQ(levels_of_wall([](CellDescription& /*cell*/) {}), 1);
+  EXPECT_EQ(levels_of_wall([](CellDescription& cell) { cell.levels = 12; }), 1);
+  const auto reduced = [](CellDescription& cell) { cell.measure = Measure::reduction; };
+  EXPECT_EQ(levels_of_wall(reduced), 1) << "without a number, as the shapes were built";
+  const auto with = [](Measure measure, const std::optional<Shape>& other = {}) {
+    return [=](CellDescription& cell) {
+      cell.measure = measure;
+      cell.levels = 12;
+      Pose X_WP = Pose::Identity();
+      X_WP.translation().x() = -5.0;
+      if (!other) return;
+      cell.obstacles.insert(cell.obstacles.begin(), ObstacleDescription{"other", *other, X_WP});
+    };
+  };
+  EXPECT_EQ(levels_of_wall(with(Measure::reduction)), 12);
+  EXPECT_EQ(levels_of_wall(with(Measure::exact)), 1);
+  // Shapes that these measures cannot measure are measured by the levels.
+  EXPECT_EQ(levels_of_wall(with(Measure::exact, Shape::cylinder(0.1, 0.1))), 12);
+  const Shape flat = Shape::hull(std::vector<Vec3>{{0, 0, 1}, {0, -1, 0}, {1, 0, 0}});
+  EXPECT_EQ(levels_of_wall(with(Measure::deepest_point, flat)), 12);
 }
 
 TEST(Cell, LetsAnOperatorGoWhoseHandsAreNoNumbersOrMissing) {

@@ -19,6 +19,14 @@ TEST(Query, TheDefaultOptionsAreUsable) {
   EXPECT_EQ(options.ignore_beyond, std::numeric_limits<double>::infinity());
 }
 
+TEST(Query, MeasuresHaveNames) {
+  EXPECT_EQ(all_measures.front(), QueryOptions{}.measure);
+  for (const Measure measure : all_measures) EXPECT_EQ(measure_named(to_text(measure)), measure);
+  EXPECT_EQ(measure_named("reduction"), Measure::reduction);
+  EXPECT_EQ(measure_named("deepest point"), std::nullopt);
+  EXPECT_EQ(measure_named(""), std::nullopt);
+}
+
 TEST(Query, AWarmStartIsEmptyAtFirstAndSmallEnoughToKeepPerPair) {
   EXPECT_EQ(WarmStart{}.size, 0);
   static_assert(std::is_trivially_copyable_v<WarmStart>);

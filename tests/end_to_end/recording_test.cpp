@@ -3,8 +3,8 @@
 #include <fstream>
 
 #include <repel/record/mcap_reader.hpp>
-#include <repel/record/mcap_writer.hpp>
 
+#include "end_to_end/rewriting.hpp"
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {
@@ -123,27 +123,12 @@ TEST(Recording, RunThatIsKilledLeavesAllButTheLastHalfSecond) {
 }
 
 /// Copies the recording with `before` in its scene replaced by `after`.
-void rewrite(const std::string& from, const std::string& to, const std::string& before,
-             const std::string& after) {
-  record::McapReader reader(from);
-  record::McapWriter writer(to);
-  for (const auto& metadata : reader.metadata()) {
-    writer.add_metadata(metadata.name, metadata.entries);
-  }
-  for (const auto& attachment : reader.attachments()) {
-    std::string data = attachment.data;
-    const std::size_t at = data.find(before);
-    if (at != std::string::npos) data.replace(at, before.size(), after);
-    writer.attach(attachment.name, attachment.media_type, data, attachment.log_time_ns);
-  }
-  std::map<std::uint16_t, std::uint16_t> channels;
-  for (const auto& [id, channel] : reader.channels()) {
-    channels[id] = writer.add_channel(channel.topic, 0, channel.encoding);
-  }
-  record::McapMessage message;
-  while (reader.next(message)) {
-    writer.write(channels.at(message.channel), message.sequence, message.log_time_ns, message.data);
-  }
+void rewrite_scene(const std::string& from, const std::string& to, const std::string& before,
+                   const std::string& after) {
+  rewrite(from, to, {.attachment = [&](std::string& data) {
+            const std::size_t at = data.find(before);
+            if (at != std::string::npos) data.replace(at, before.size(), after);
+          }});
 }
 
 // With a different wall, the recorded forces cannot be reproduced.
@@ -152,9 +137,9 @@ TEST(Recording, ReplayThatDiffersIsSaidAndCounted) {
   const std::string file = folder / "run.mcap";
   const std::string scene = folder.with("scene.yaml", robot_text() + table_text() + push_text());
   record(quoted(scene) + " --fast --seconds 2", file);
-  rewrite(file, folder / "same.mcap", "no such words", "");
+  rewrite_scene(file, folder / "same.mcap", "no such words", "");
   EXPECT_EQ(replay(folder / "same.mcap").at("same"), 800);
-  rewrite(file, folder / "other.mcap", "surface_force: 40 N", "surface_force: 41 N");
+  rewrite_scene(file, folder / "other.mcap", "surface_force: 40 N", "surface_force: 41 N");
   const auto result = replay(folder / "other.mcap", 3);
   EXPECT_GT(result.at("same"), 20) << "before the table is felt";
   EXPECT_LT(result.at("same"), 800);

@@ -54,7 +54,9 @@ struct Boxes {
   families::Rng random;
   Pose X_WT = Pose::Identity();
 
-  Boxes(int tool_parts, int obstacles, const ForceLaw& law, unsigned seed) : random(seed) {
+  Boxes(int tool_parts, int obstacles, const ForceLaw& law, unsigned seed,
+        Measure measure = QueryOptions{}.measure)
+      : world({}, measure), random(seed) {
     tool = world.add_body("tool");
     std::vector<PartId> parts;
     for (int i = 0; i < tool_parts; ++i) {
@@ -134,10 +136,10 @@ inline Pose pose_of(const World& world, PartId id) {
   return world.motion().bodies[part.body.index].X_WB * part.X_BP;
 }
 
-/// The separation of a pair at the present motion, from a cold start.
+/// The separation of a pair at the present motion by the measure of the world, from a cold start.
 inline Separation separation_now(const World& world, const Pair& pair) {
   return separation(world.part(pair.a).shape, pose_of(world, pair.a), world.part(pair.b).shape,
-                    pose_of(world, pair.b));
+                    pose_of(world, pair.b), world.query_options());
 }
 
 /// Velocity of the body-fixed point that is now at `p_WQ`.

@@ -25,7 +25,8 @@ struct NearPairs {
   std::vector<BodyId> bodies{World::fixed};
   std::vector<WarmStart> warm;  ///< by PairId
 
-  NearPairs(int moving, unsigned seed) : random(seed) {
+  NearPairs(int moving, unsigned seed, Measure measure = QueryOptions{}.measure)
+      : world({}, measure), random(seed) {
     for (int i = 0; i < moving; ++i) {
       bodies.push_back(world.add_body("body", random_pose(random, 0.5)));
     }

@@ -101,6 +101,44 @@ TEST(SingleEvaluator, BeginsColdWhenAPairComesWithinRange) {
   EXPECT_GT(entered, 50);
 }
 
+// Also those of passable bodies, whose slope takes a second query.
+TEST(SingleEvaluator, EveryMeasureOfAWorldDecidesItsOverlaps) {
+  for (const Measure measure : all_measures) {
+    test::Boxes boxes(4, 200, {.range = 0.02, .ceiling = 20.0, .passable = true}, seed, measure);
+    Evaluator evaluator(boxes.world);
+    int overlaps = 0;
+    int others = 0;
+    for (int tick = 0; tick < 200; ++tick) {
+      boxes.move();
+      evaluator.begin_tick();
+      for (int slot = 0; slot < evaluator.count(); ++slot) {
+        const Pair& pair = boxes.world.pair({slot});
+        evaluator.pairs.evaluate(slot, evaluator.motion(), evaluator.poses);
+        const PairAnswer& answer = evaluator.pairs.memory().answer(slot);
+        ASSERT_NEAR(answer.last.distance, test::separation_now(boxes.world, pair).distance, 1e-9);
+        ASSERT_GE(answer.last.distance, -boxes.world.deepest(pair) - 1e-12) << to_text(measure);
+        if (answer.last.distance > -1e-3) continue;
+        ++overlaps;
+        const Pose X_WA = test::pose_of(boxes.world, pair.a);
+        const Separation by_default =
+            separation(boxes.world.part(pair.a).shape, X_WA, boxes.world.part(pair.b).shape,
+                       test::pose_of(boxes.world, pair.b));
+        others += std::abs(answer.last.distance - by_default.distance) > 1e-4 ? 1 : 0;
+        WarmStart warm = evaluator.pairs.memory().history(slot).warm;
+        int iterations = 0;
+        const PosedShape A{boxes.world.part(pair.a).shape, X_WA};
+        const Pose X_WB = test::pose_of(boxes.world, pair.b);
+        const PosedShape B{boxes.world.part(pair.b).shape, X_WB};
+        ASSERT_NEAR(answer.slope,
+                    slope_of(answer.last, A, B, boxes.world.query_options(), warm, iterations),
+                    1e-6);
+      }
+    }
+    EXPECT_GT(overlaps, 100);
+    EXPECT_EQ(others > 20, measure != QueryOptions{}.measure) << others << to_text(measure);
+  }
+}
+
 TEST(SingleEvaluator, ForceOfAnOldAnswerFadesAndIsGoneAtTwiceTheAge) {
   Balls balls({0.01});
   Evaluator evaluator(balls.world);

@@ -223,6 +223,30 @@ TEST(SeparationInOverlap, WarmEqualsColdAlongSweeps) {
   EXPECT_LT(warm_cost, cold_cost) << "the warm start saves nothing";
 }
 
+// Where the line within a finger decides, its distance from the plate is more than all depths: the
+// shapes look disjoint.
+TEST(SeparationInOverlap, TakesNoLongerWithMoreLevelsWhenWarm) {
+  for (const int levels : {2, 8, 64}) {
+    const Shape finger = Shape::box({0.01, 0.015, 0.06}, {.levels = levels});
+    const Shape plate = Shape::box({0.1, 0.1, 0.002}, {.levels = levels});
+    WarmStart warm;
+    int most = 0;
+    int deep = 0;
+    for (int step = 0; step < 400; ++step) {
+      Pose X_WA = Pose::Identity();
+      X_WA.translation() = Vec3(0.013, 0.007, 0.1 - 0.0005 * step);
+      const Separation s = separation(finger, X_WA, plate, Pose::Identity(), by_reduction, warm);
+      ASSERT_EQ(s.end, QueryEnd::converged);
+      const Separation cold = separation(finger, X_WA, plate, Pose::Identity(), by_reduction);
+      ASSERT_NEAR(s.distance, cold.distance, 1e-15);
+      most = std::max(most, s.iterations);
+      deep += s.distance < -0.0115 ? 1 : 0;
+    }
+    EXPECT_GT(deep, 100) << levels;
+    EXPECT_LE(most, 40) << levels;
+  }
+}
+
 TEST(SeparationInOverlap, HullsChangeNoFasterThanTheyMoveWarmOrCold) {
   Rng rng(seed);
   int inside = 0, total = 0;

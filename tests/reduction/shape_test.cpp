@@ -98,6 +98,69 @@ TEST(Shape, SpacingsThatAreNotAllowedAreNamed) {
   }
 }
 
+/// One of each kind, rounded, flat and with many vertices.
+std::vector<Shape> of_each_kind(const ReductionOptions& options) {
+  Rng rng(seed);
+  return {Shape::box({0.1, 0.3, 0.2}, options),
+          Shape::box({0.1, 0.0, 0.2}, options),
+          Shape::sphere(0.2, options),
+          Shape::sphere(0.0, options),
+          Shape::capsule(0.1, 0.4, options),
+          Shape::capsule(0.0, 0.4, options),
+          Shape::cylinder(0.1, 0.4, options),
+          Shape::cylinder(0.4, 0.1, options),
+          Shape::cone(0.3, 0.5, options),
+          Shape::hull(families::cloud(rng, 12, 0.3).vertices, options),
+          Shape::hull(families::cloud(rng, 200, 0.3).vertices, options),
+          Shape::hull(std::vector<Vec3>{{0, 0, 1}, {0, -2, 0}, {1, 0, 0}}, options)};
+}
+
+TEST(Shape, ReducedInAnotherWayIsTheShapeAsIfItWereBuiltSo) {
+  const std::vector<Shape> coarse = of_each_kind({.levels = 1});
+  const ReductionOptions options{.levels = 12, .spacing = 1.5};
+  const std::vector<Shape> fine = of_each_kind(options);
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    SCOPED_TRACE(i);
+    const Shape shape = coarse[i].reduced(options);
+    EXPECT_EQ(shape.reduction().levels, options.levels);
+    EXPECT_EQ(shape.reduction().spacing, options.spacing);
+    ASSERT_EQ(shape.levels(), fine[i].levels());
+    EXPECT_EQ(shape.reach(), coarse[i].reach());
+    EXPECT_EQ(shape.inscribed_radius() - shape.deepest() >= 0.0, true);
+    EXPECT_EQ(shape.planes().size(), coarse[i].planes().size());
+    for (int k = 0; k < shape.levels(); ++k) {
+      EXPECT_NEAR(shape.level(k).depth, fine[i].level(k).depth, 1e-3 * shape.reach());
+      EXPECT_EQ(shape.level(k).core.vertex_count(), fine[i].level(k).core.vertex_count());
+    }
+    expect_refused("reduction levels", "65", [&] { (void)shape.reduced({.levels = 65}); });
+    // All but the depth of an overlap by the levels is the same, bit by bit.
+    Rng rng(seed);
+    for (int trial = 0; trial < 50; ++trial) {
+      const Pose X_WB = random_pose(rng, 0.0, 0.6);
+      const Shape ball = Shape::sphere(0.05);
+      const Separation a = separation(shape, Pose::Identity(), ball, X_WB);
+      const Separation b = separation(coarse[i], Pose::Identity(), ball, X_WB);
+      if (a.distance < 0.0 && shape.planes().empty()) continue;
+      EXPECT_EQ(a.distance, b.distance);
+      EXPECT_EQ(a.extraction_W, b.extraction_W);
+    }
+  }
+}
+
+TEST(Shape, HasAnInscribedBallHoweverItIsReduced) {
+  const std::vector<Shape> coarse = of_each_kind({.levels = 1});
+  const std::vector<Shape> fine = of_each_kind({.levels = 64});
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    EXPECT_NEAR(coarse[i].inscribed_radius(), fine[i].inscribed_radius(), 1e-9) << i;
+    EXPECT_GE(coarse[i].inscribed_radius(), coarse[i].deepest()) << i;
+  }
+  EXPECT_EQ(Shape::box({2, 3, 6}).inscribed_radius(), 2.0);
+  EXPECT_EQ(Shape::capsule(0.25, 0.5).inscribed_radius(), 0.25);
+  EXPECT_NEAR(Shape::cone(3.0, 2.0).inscribed_radius(), 1.5, 1e-12);
+  const std::vector<Vec3> cube = families::box({1, 1, 1}).vertices;
+  EXPECT_NEAR(Shape::hull(cube, {.levels = 1}).inscribed_radius(), 1.0, 1e-9);
+}
+
 TEST(Shape, CopiesShareTheirLevels) {
   const Shape original = Shape::box({1, 2, 3});
   const Shape copy = original;  // NOLINT(performance-unnecessary-copy-initialization)

@@ -61,6 +61,17 @@ TEST(SceneError, AStartInsideOrAToolSpeedThatIsNotAllowedIsRefused) {
   expect_refused(base_scene + "tool_speed: 5 rad/s\n", 8, {"tool_speed", "m/s"});
 }
 
+TEST(SceneError, AMeasureThatIsNoneOrLevelsOutOfRangeAreRefused) {
+  expect_refused(base_scene + "measure: tree\n", 8,
+                 {"'tree'", "deepest_point", "reduction", "exact"});
+  expect_refused(base_scene + "measure: [exact]\n", 8, {"measure"});
+  expect_refused(base_scene + "levels: 0\n", 8, {"levels", "'0'", "1 to 64"});
+  expect_refused(base_scene + "levels: 65\n", 8, {"levels", "'65'", "1 to 64"});
+  expect_refused(base_scene + "levels: 2.5\n", 8, {"levels", "'2.5'"});
+  expect_refused(base_scene + "levels: 8 mm\n", 8, {"levels", "'8 mm'"});
+  expect_refused(base_scene + "mesure: exact\n", 8, {"mean 'measure'"});
+}
+
 TEST(SceneError, ASizeOfAnotherShapeIsRefused) {
   expect_refused(changed("radius: 20 mm", "radius: 20 mm, size: 1 1 1 m"), 5, {"'size'"});
   expect_refused(changed("size: 1 2 3 m", "size: 1 2 3 m, length: 1 m"), 7, {"'length'"});

@@ -218,6 +218,19 @@ TEST(SceneValue, AToolHasAMostSpeed) {
   EXPECT_EQ(read("tool_speed: 10 m/s\n"), 10.0);
 }
 
+TEST(SceneValue, ASceneMayMeasureOverlapsInAnotherWay) {
+  const auto read = [](const std::string& lines) { return parsed(base_scene + lines); };
+  EXPECT_EQ(read("").measure, Measure::deepest_point);
+  EXPECT_EQ(read("").levels, 8);
+  EXPECT_EQ(read("measure: deepest_point\n").measure, Measure::deepest_point);
+  EXPECT_EQ(read("measure: reduction\n").measure, Measure::reduction);
+  EXPECT_EQ(read("measure: exact\n").measure, Measure::exact);
+  EXPECT_EQ(read("levels: 1\n").levels, 1);
+  const Scene scene = read("measure: reduction\nlevels: 64\n");
+  EXPECT_EQ(scene.levels, 64);
+  EXPECT_EQ(scene.obstacles[0].shape.reduction().levels, 1) << "reduced by whoever needs it";
+}
+
 TEST(SceneValue, AnObstacleTakesTheLawItNamesOrTheDefault) {
   const Scene scene = parsed(base_scene +
                              "  - {name: skin, shape: sphere, radius: 1 m, law: soft}\n"

@@ -56,6 +56,28 @@ TEST(World, PairIsNoDeeperThanItsShapesCanBe) {
   EXPECT_TRUE(says(message_of([&] { world.add_pair(a, b, {.passable = true}); }), "ceiling"));
 }
 
+TEST(World, MeasuresAllOverlapsInOneWayWhichBoundsTheirDepth) {
+  EXPECT_EQ(World().query_options().measure, Measure::deepest_point);
+  for (const Measure measure : all_measures) {
+    World world({}, measure);
+    EXPECT_EQ(world.query_options().measure, measure);
+    EXPECT_EQ(world.query_options().iterations, QueryOptions{}.iterations);
+    const PartId a = world.add_part(world.add_body("tool"), "plate", Shape::box({0.1, 0.1, 0.01}));
+    const PartId b = world.add_part(World::fixed, "wall", Shape::box({0.02, 0.3, 0.3}));
+    const Pair& pair = world.pair(world.add_pair(a, b, {.ceiling = 5.0, .passable = true}));
+    const double inscribed = 0.01 + 0.02;
+    EXPECT_NEAR(pair.law.depth, inscribed, 1e-12);
+    // Plates that cross are farther from separation than they are thick.
+    if (measure == Measure::exact) {
+      EXPECT_GT(world.deepest(pair), 0.12);
+    } else {
+      EXPECT_NEAR(world.deepest(pair), inscribed, 1e-12);
+    }
+  }
+  const std::string refusal = message_of([] { World({}, static_cast<Measure>(7)); });
+  EXPECT_TRUE(says(refusal, "measure is 7") && says(refusal, "allowed: 0 to 2")) << refusal;
+}
+
 TEST(World, OverAnyLimitNamesTheFieldToRaise) {
   World bodies(Limits{.bodies = 2});
   bodies.add_body("one");

@@ -35,7 +35,7 @@ class CellAssembly {
       : description_(std::move(description)),
         period_(std::llround(1e9 / checked("rate", description_.rate_hz, 1.0, 1e5, "Hz"))),
         clock_(period_, std::chrono::nanoseconds::max()),
-        world_(description_.limits) {
+        world_(description_.limits, description_.measure) {
     if (description_.arms.empty()) throw SetupError("the cell has no arm; allowed: 1 or more");
     lay_out();
     add_controls();
@@ -93,6 +93,7 @@ class CellAssembly {
  private:
   void lay_out() {
     settle_laws();
+    reduce_shapes();
     for (ArmDescription& arm : description_.arms) {
       start(arm);
       layouts_.push_back(add_arm(world_, arm));
@@ -132,6 +133,26 @@ class CellAssembly {
     }
     for (ObstacleDescription& obstacle : description_.obstacles) {
       obstacle.law = settled(obstacle.law, period, delay);
+    }
+  }
+
+  void reduce_shapes() {
+    if (!description_.levels) return;
+    checked("levels", *description_.levels, 1.0, ReductionOptions::most_levels, "");
+    std::vector<Shape*> shapes;
+    for (ArmDescription& arm : description_.arms) {
+      for (ArmPart& part : arm.parts) shapes.push_back(&part.shape);
+    }
+    for (ObstacleDescription& each : description_.obstacles) shapes.push_back(&each.shape);
+    const bool needed = std::any_of(shapes.begin(), shapes.end(), [this](const Shape* shape) {
+      return needs_levels(*shape, description_.measure);
+    });
+    if (!needed) return;
+    for (Shape* shape : shapes) {
+      ReductionOptions reduction = shape->reduction();
+      if (reduction.levels == *description_.levels) continue;
+      reduction.levels = *description_.levels;
+      *shape = shape->reduced(reduction);
     }
   }
 

@@ -71,6 +71,13 @@ struct CellDescription {
   CoprocessorOptions coprocessor{};                           ///< its `period` is overwritten
   network::GainCheck gain_check = network::GainCheck::error;  ///< for walls that are too stiff
   StartInside start_inside = StartInside::refuse;
+  /// How the depth of an overlap is measured: the deepest common point, Anderson's reduction or the
+  /// penetration depth (docs/reduction.md, also for what each costs).
+  Measure measure = QueryOptions{}.measure;
+  /// Reduces every shape in so many steps, 1 to 64, if the measure needs levels at all; without a
+  /// number the shapes stay as they were built. For a measure that needs none, build them with
+  /// `{.levels = 1}`: each level takes memory and time at set-up, none in the tick.
+  std::optional<int> levels{};
 };
 
 }  // namespace repel

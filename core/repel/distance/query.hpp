@@ -5,6 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
 
 namespace repel {
 
@@ -28,6 +31,30 @@ enum class Measure : std::uint8_t {
   exact,  ///< the penetration depth itself; for boxes, hulls, spheres and capsules, others fall
           ///< back to `reduction`
 };
+
+[[nodiscard]] inline std::string to_text(Measure measure) {
+  switch (measure) {
+    case Measure::reduction:
+      return "reduction";
+    case Measure::deepest_point:
+      return "deepest_point";
+    case Measure::exact:
+      break;
+  }
+  return "exact";
+}
+
+/// All measures, the default first.
+inline constexpr std::array<Measure, 3> all_measures{Measure::deepest_point, Measure::reduction,
+                                                     Measure::exact};
+
+/// The measure of that name; none for another word.
+[[nodiscard]] inline std::optional<Measure> measure_named(std::string_view name) {
+  for (const Measure measure : all_measures) {
+    if (name == to_text(measure)) return measure;
+  }
+  return {};
+}
 
 struct QueryOptions {
   double tolerance = 1e-14;  ///< largest (v.v - v.w) / v.v, the relative duality gap

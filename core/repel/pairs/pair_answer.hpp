@@ -42,9 +42,8 @@ struct PairAnswer {
   /// Conservative lower bound of the signed distance [m] now. If the shapes were apart, the
   /// separating plane remains valid when shifted by the relative motion along its normal; in
   /// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
-  /// increase of `turn` in both cases. No answer is deeper than the last levels of both shapes. A
-  /// patch has separating planes that lean by up to its tilt.
-  /// @param deepest [m] largest penetration depth of any answer, positive
+  /// increase of `turn` in both cases. A patch has separating planes that lean by up to its tilt.
+  /// @param deepest [m] largest penetration depth of any answer, positive; see World::deepest
   [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B,
                                    double deepest) const noexcept {
     const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;

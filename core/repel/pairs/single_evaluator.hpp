@@ -66,9 +66,8 @@ class SingleEvaluator {
 
   /// Conservative lower bound of the signed distance [m] now, from the last answer.
   [[nodiscard]] double lower_bound(int slot, const Motion& motion) const noexcept {
-    const Pair& p = pair(slot);
-    const double deepest = world_->part(p.a).shape.deepest() + world_->part(p.b).shape.deepest();
-    return memory_.answer(slot).lower_bound(body_a(slot, motion), body_b(slot, motion), deepest);
+    return memory_.answer(slot).lower_bound(body_a(slot, motion), body_b(slot, motion),
+                                            world_->deepest(pair(slot)));
   }
 
   /// [m] The part of the reduction of that bound that is due to rotation of the bodies.
@@ -137,7 +136,7 @@ class SingleEvaluator {
     WarmStart warm = memory_.history(slot).warm;
     const Pair& p = pair(slot);
     (void)separation(world_->part(p.a).shape, poses.last(p.a), world_->part(p.b).shape,
-                     poses.last(p.b), {}, warm);
+                     poses.last(p.b), world_->query_options(), warm);
   }
 
   /// Adds the force of the pair on both bodies: at the distance of its answer if that is fresh,
@@ -199,7 +198,7 @@ class SingleEvaluator {
                                  WarmStart& warm) noexcept {
     const Pair& p = pair(slot);
     return separation(world_->part(p.a).shape, poses.at(p.a, motion), world_->part(p.b).shape,
-                      poses.at(p.b, motion), {}, warm);
+                      poses.at(p.b, motion), world_->query_options(), warm);
   }
 
   /// Fills in the rest of the answer after a new query and updates the totals.
@@ -209,8 +208,8 @@ class SingleEvaluator {
     PairTotals& totals = forces_.totals;
     if (p.law.passable) {
       int iterations = 0;
-      answer.slope = slope_of(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses), {},
-                              memory_.history(slot).warm, iterations);
+      answer.slope = slope_of(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses),
+                              world_->query_options(), memory_.history(slot).warm, iterations);
       totals.iterations += iterations;
     } else if (answer.is_stale) {
       add_refresh_energy(slot, answer.proven());

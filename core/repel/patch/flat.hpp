@@ -113,10 +113,8 @@ class FlatSearch {
       }
     }
     const Planar centre = in_plane(middle);
-    if (count == 0) {
-      flat.outline.add(centre, !is_up_);
-      return flat;
-    }
+    if (count == 0) flat.outline.add(centre, !is_up_);
+    if (count == 0) return flat;
     const Planar u = h[free[0]] * axes_.in_plane(column<double>(X_, free[0]));
     if (count == 1) {
       flat.outline.add(centre - u, !is_up_);

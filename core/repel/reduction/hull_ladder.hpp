@@ -123,24 +123,20 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
   return count;
 }
 
-/// The ladder of the hull of `points` with these facets.
+/// The ladder whose first level is `hull`, with these vertices and facets.
 ///
-/// The first level is the hull without the points that are not vertices. To get the next level,
-/// each vertex moves to the nearest point it finds that is `t` deeper; the next level is the hull
-/// of the moved vertices. So no level has more vertices than its parent, a vertex keeps its index
-/// from level to level, and the depth of a level is the sum of the measured depth gains of all
-/// steps. Of a hull with very many vertices only the leading thousand move. The last level with
-/// volume is followed by its centroid, and so is flat input, which has no depth.
-inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
-                          std::vector<Facet> facets) {
+/// To get the next level, each vertex moves to the nearest point it finds that is `t` deeper; the
+/// next level is the hull of the moved vertices. So no level has more vertices than its parent, a
+/// vertex keeps its index from level to level, and the depth of a level is the sum of the measured
+/// depth gains of all steps. Of a hull with very many vertices only the first `leading` move, a
+/// thousand. The last level with volume is followed by its centroid, and so is flat input, which
+/// has no depth.
+inline Ladder hull_ladder(Convex hull, std::vector<Vec3> vertices, std::size_t leading,
+                          const ReductionOptions& options, std::vector<Facet> facets) {
   std::vector<Vec3> sides;
   sides.reserve(facets.size());
   for (const Facet& f : facets) sides.push_back(f.n);
-  std::vector<Vec3> vertices(points.begin(), points.end());
-  if (!facets.empty()) vertices = hull_corners(points, facets);
-  const std::size_t leading = lead_with_extremes(vertices);
-  const std::span<const Vec3> all(vertices.data(), vertices.size());
-  Ladder ladder = ladder_of(Convex::polytope(all, Faces(points, facets, all)));
+  Ladder ladder = ladder_of(std::move(hull));
   const std::span<const Vec3> moving(vertices.data(), leading);
   Vec3 centroid = centroid_of(moving);
   double depth = 0.0;
@@ -166,10 +162,34 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
     centroid = centroid_of(moving);
     facets = hull_facets(moving);
   }
-  if (points.size() > 1) {
+  if (vertices.size() > 1) {
     append(ladder, Convex::polytope({&centroid, 1}), depth, flat_order);
   }
   return verified(std::move(ladder), {sides.data(), sides.size()});
+}
+
+/// The ladder of the hull of `points` with these facets; the first level lacks the points that are
+/// not vertices.
+inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
+                          std::vector<Facet> facets) {
+  std::vector<Vec3> vertices(points.begin(), points.end());
+  if (!facets.empty()) vertices = hull_corners(points, facets);
+  const std::size_t leading = lead_with_extremes(vertices);
+  const std::span<const Vec3> all(vertices.data(), vertices.size());
+  Convex hull = Convex::polytope(all, Faces(points, facets, all));
+  return hull_ladder(std::move(hull), std::move(vertices), leading, options, std::move(facets));
+}
+
+/// The ladder of that hull, a polytope, with its vertices in their order.
+inline Ladder hull_ladder(const Convex& hull, const ReductionOptions& options) {
+  std::vector<Vec3> vertices;
+  for (int i = 0; i < hull.vertex_count(); ++i) {
+    vertices.push_back(to_vec3(hull.place(static_cast<std::uint32_t>(i))));
+  }
+  std::vector<Vec3> led = vertices;
+  const std::size_t leading = lead_with_extremes(led);
+  std::vector<Facet> facets = hull_facets({vertices.data(), vertices.size()});
+  return hull_ladder(hull, std::move(vertices), leading, options, std::move(facets));
 }
 
 /// [byte] Upper bound of the memory of the ladder of so many points, if all are vertices: no level
@@ -181,14 +201,21 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
          static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
 }
 
+/// [m] The radius of the largest ball found in the hull of `points` with these facets; 0 for a flat
+/// one.
+inline double hull_inscribed_radius(std::span<const Vec3> points,
+                                    const std::vector<Facet>& facets) {
+  return facets.empty() ? 0.0 : std::max(0.0, depth_in(facets, deep_point(facets, points)));
+}
+
 /// The planes of the hull of `points` with these facets. Planes with an offset error d enclose at
-/// most the hull scaled by 1 + d / r about the centre of an inscribed ball of radius r; at the tip
-/// of a sliver this reaches far outside the hull.
-inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>& facets) {
+/// most the hull scaled by 1 + d / r about the centre of an inscribed ball of that radius r [m]; at
+/// the tip of a sliver this reaches far outside the hull.
+inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>& facets,
+                          double radius) {
   if (facets.empty()) return Planes();
   double reach = 0.0;
   for (const Vec3& p : points) reach = std::max(reach, norm(p));
-  const double radius = depth_in(facets, deep_point(facets, points));
   const double off = 4e-15 * reach;
   return Planes(facets, radius > off ? off * (1.0 + 2.0 * reach / radius) : 2.0 * reach);
 }

@@ -17,7 +17,9 @@ namespace repel {
 
 /// How a shape is reduced.
 struct ReductionOptions {
-  int levels = 8;  ///< steps until the shape has lost its thickness; 1 to 64
+  static constexpr int most_levels = 64;
+
+  int levels = 8;  ///< steps until the shape has lost its thickness; 1 to `most_levels`
   /// The first i of n steps take (i/n)^spacing of the thickness: 1 makes the steps even, a larger
   /// value concentrates them below the surface, a smaller one around the core; 0.25 to 4.
   double spacing = 1.0;

@@ -34,7 +34,7 @@ class LadderWalk {
       iterations_ = first->iterations;
       if (first->meets) keep_meeting(warm_);
     }
-    const int longest = A_.shape.levels() + B_.shape.levels() + 2;
+    const int longest = A_.shape.levels() + B_.shape.levels() + 3;
     for (int step = 0; step < longest; ++step) {
       const Gap gap = step == 0 && first != nullptr ? *first : query();
       const bool meets = gap.meets || gap.end == QueryEnd::touching;
@@ -137,6 +137,16 @@ class LadderWalk {
   /// The current pair intersects. True when the next one is known to be disjoint, or the walk must
   /// end.
   bool went_in(const Gap& gap) noexcept {
+    if (at_shapes_) {
+      at_shapes_ = false;
+      cut_short_ = spent();
+      if (gap.meets && !cut_short_) {
+        i_ = from_i_;
+        j_ = from_j_;
+        return false;
+      }
+      apart_ = cut_short_;
+    }
     meets_ = true;
     touches_ = at_start() && gap.end == QueryEnd::touching;
     depth_met_ = depth();
@@ -162,10 +172,12 @@ class LadderWalk {
     if (gap.distance <= here - depth()) return true;
     cut_short_ = spent() || gap.end == QueryEnd::budget_spent;
     if (cut_short_) return true;
-    if (far_out) {
-      // The shapes seem to be disjoint: restart with the shapes themselves.
+    if (far_out && !seen_shapes_) {
+      // The shapes seem to be disjoint: look at them first, and go on from here if they are not.
+      seen_shapes_ = at_shapes_ = true;
+      from_i_ = i_;
+      from_j_ = j_;
       i_ = j_ = 0;
-      apart_ = false;
     }
     return false;
   }
@@ -185,6 +197,10 @@ class LadderWalk {
   bool meets_ = false;
   bool apart_ = false;
   bool touches_ = false;
+  bool seen_shapes_ = false;  ///< the walk has skipped to the shapes themselves
+  bool at_shapes_ = false;    ///< it has just done so, from the pair below
+  int from_i_ = 0;
+  int from_j_ = 0;
   bool cut_short_ = false;  ///< the iterations were spent before the deciding pairs were found
   double depth_met_ = 0.0;  ///< [m] T of the last intersecting pair
   double margin_ = 0.0;     ///< [m] by which it may be disjoint, due to rounding

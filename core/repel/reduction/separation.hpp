@@ -207,6 +207,11 @@ namespace detail {
 
 }  // namespace detail
 
+/// True when the measure needs the levels of every shape that overlaps this one, and its own.
+[[nodiscard]] inline bool needs_levels(const Shape& shape, Measure measure) noexcept {
+  return detail::is_by_levels(shape, shape, {.measure = measure});
+}
+
 /// The signed distance of A and B.
 ///
 /// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from

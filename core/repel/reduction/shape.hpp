@@ -2,6 +2,7 @@
 /// Convex shapes: the interface for users.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -26,23 +27,23 @@ class Shape {
     checked("half extent x", half_extents.x(), 0.0, largest, "m");
     checked("half extent y", half_extents.y(), 0.0, largest, "m");
     checked("half extent z", half_extents.z(), 0.0, largest, "m");
-    return Shape(detail::box_ladder(half_extents, allowed(options)), Planes::box(half_extents));
+    return Shape(detail::box_ladder(half_extents, allowed(options)), Planes::box(half_extents),
+                 options);
   }
 
   /// A sphere of `radius` [m], 0 to 1e6. Exact: a point with a depth.
   static Shape sphere(double radius, const ReductionOptions& options = {}) {
-    (void)allowed(options);
-    return Shape(detail::sphere_ladder(checked("radius", radius, 0.0, largest, "m")),
-                 Planes::box({0, 0, 0}));
+    checked("radius", radius, 0.0, largest, "m");
+    return Shape(detail::sphere_ladder(radius), Planes::box({0, 0, 0}), allowed(options));
   }
 
   /// All points within `radius` [m] of the segment between +-`half_length` [m] on the z axis.
   /// Exact.
   static Shape capsule(double radius, double half_length, const ReductionOptions& options = {}) {
-    (void)allowed(options);
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
-    return Shape(detail::capsule_ladder(radius, half_length), Planes::box({0.0, 0.0, half_length}));
+    return Shape(detail::capsule_ladder(radius, half_length), Planes::box({0.0, 0.0, half_length}),
+                 allowed(options));
   }
 
   /// A cylinder around the z axis, flat ends at +-`half_length` [m]. The rim is an exact circle,
@@ -51,7 +52,7 @@ class Shape {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
     return Shape(detail::cylinder_ladder(radius, half_length, allowed(options)),
-                 Planes::cylinder(radius, half_length));
+                 Planes::cylinder(radius, half_length), options);
   }
 
   /// A cone: a disc of `radius` [m] at -`half_length` [m] on the z axis and the apex at
@@ -60,7 +61,7 @@ class Shape {
     checked("radius", radius, 0.0, largest, "m");
     checked("half length", half_length, 0.0, largest, "m");
     return Shape(detail::cone_ladder(radius, half_length, allowed(options)),
-                 Planes::cone(radius, half_length));
+                 Planes::cone(radius, half_length), options);
   }
 
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, be interior, collinear or
@@ -71,8 +72,15 @@ class Shape {
       for (int axis = 0; axis < 3; ++axis) checked("coordinate", p[axis], -largest, largest, "m");
     }
     const std::vector<Facet> facets = hull_facets(points);
+    const double radius = detail::hull_inscribed_radius(points, facets);
     return Shape(detail::hull_ladder(points, allowed(options), facets),
-                 detail::hull_planes(points, facets));
+                 detail::hull_planes(points, facets, radius), options, radius);
+  }
+
+  /// The same shape reduced in another way. The first level and the planes are the same, so only
+  /// the depth of an overlap by `Measure::reduction` differs. Costs what building the shape does.
+  [[nodiscard]] Shape reduced(const ReductionOptions& options) const {
+    return Shape(ladder(allowed(options)), planes(), options, inscribed_radius());
   }
 
   /// [byte] Upper bound of the heap memory of any shape except a hull, known before it is built.
@@ -103,24 +111,47 @@ class Shape {
   /// [m] Depth of the last level. By `Measure::reduction`, the signed distance of two shapes is
   /// never below minus the sum of theirs.
   [[nodiscard]] double deepest() const noexcept { return data_->ladder.back().depth; }
+  /// [m] How deep a point of the shape can be below its surface, however the shape is reduced; of a
+  /// hull, the radius of the largest ball found in it. At least `deepest()`.
+  [[nodiscard]] double inscribed_radius() const noexcept { return data_->inscribed_radius; }
+  [[nodiscard]] const ReductionOptions& reduction() const noexcept { return data_->reduction; }
 
  private:
   struct Data {
     Ladder ladder;
     Planes planes;
+    ReductionOptions reduction;
+    double inscribed_radius;  ///< [m]
   };
   /// [byte] Upper bound of the control block of a shared pointer.
   static constexpr std::size_t counters = 4 * sizeof(void*);
 
-  Shape(Ladder ladder, Planes planes) {
+  Shape(Ladder ladder, Planes planes, const ReductionOptions& reduction, double radius = 0.0) {
     ladder.shrink_to_fit();
+    radius = std::max(radius, ladder.back().depth);
     // make_shared would add a tenth of the time that all of Eigen takes to compile.
-    data_.reset(new Data{std::move(ladder), std::move(planes)});
+    data_.reset(new Data{std::move(ladder), std::move(planes), reduction, radius});
     first_ = data_->ladder.data();
   }
 
+  [[nodiscard]] Ladder ladder(const ReductionOptions& options) const {
+    const Convex& core = level(0).core;
+    if (level(0).depth > 0.0) return data_->ladder;  // exact, with any number of levels
+    switch (core.kind()) {
+      case Convex::Kind::box:
+        return detail::box_ladder(to_vec3(core.half_extents()), options);
+      case Convex::Kind::cylinder:
+        return detail::cylinder_ladder(core.round_size().x(), core.round_size().z(), options);
+      case Convex::Kind::cone:
+        return detail::cone_ladder(core.round_size().x(), core.round_size().z(), options);
+      case Convex::Kind::polytope:
+        break;
+    }
+    return detail::hull_ladder(core, options);
+  }
+
   static const ReductionOptions& allowed(const ReductionOptions& options) {
-    checked("reduction levels", options.levels, 1.0, 64.0, "");
+    checked("reduction levels", options.levels, 1.0, ReductionOptions::most_levels, "");
     checked("spacing of the levels", options.spacing, 0.25, 4.0, "");
     return options;
   }

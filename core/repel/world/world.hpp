@@ -11,6 +11,7 @@
 #include <repel/base/limits.hpp>
 #include <repel/base/spatial.hpp>
 #include <repel/base/vec.hpp>
+#include <repel/distance/query.hpp>
 #include <repel/force/law.hpp>
 #include <repel/reduction/shape.hpp>
 
@@ -56,7 +57,14 @@ struct LinkBody {
 /// Built at set-up, by the functions that throw; `place` is the one for the tick.
 class World {
  public:
-  explicit World(const Limits& limits = {}) : limits_(limits) { add_body("world"); }
+  /// @param measure of the overlaps of all pairs, see docs/reduction.md. `Measure::reduction` has
+  /// as many steps as the shapes have levels
+  /// @throws SetupError for a value that is no measure
+  explicit World(const Limits& limits = {}, Measure measure = QueryOptions{}.measure)
+      : limits_(limits), measure_(measure) {
+    checked("measure", static_cast<double>(measure), 0.0, all_measures.size() - 1.0, "");
+    add_body("world");
+  }
 
   /// The body that never moves: walls, tables, everything bolted down.
   static constexpr BodyId fixed{0};
@@ -98,7 +106,8 @@ class World {
 
   /// The law that a pair of two shapes gets: `depth` and `tilt` lowered to what their size allows.
   [[nodiscard]] static ForceLaw fitted(ForceLaw law, const Shape& a, const Shape& b) noexcept {
-    law.depth = std::min(law.depth, a.deepest() + b.deepest());
+    // By whatever measure, a passable body has let go where no common point can be deeper.
+    law.depth = std::min(law.depth, deepest_point(a, b));
     // Over tilts up to e, the distance of two sets differs by at most e times the radius of the
     // smaller around its nearest point, two thirds of it in the mean.
     const double nearer = 4.0 / 3.0 * law.tilt * std::min(a.reach(), b.reach());
@@ -134,6 +143,13 @@ class World {
   [[nodiscard]] Motion& motion() noexcept { return motion_; }
   [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
   [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
+  /// The options of every query of a pair.
+  [[nodiscard]] QueryOptions query_options() const noexcept { return {.measure = measure_}; }
+  /// [m] The penetration of a pair by the measure of the world is never deeper.
+  [[nodiscard]] double deepest(const Pair& pair) const noexcept {
+    if (measure_ != Measure::exact) return deepest_point(part(pair.a).shape, part(pair.b).shape);
+    return part(pair.a).shape.reach() + part(pair.b).shape.reach();
+  }
   [[nodiscard]] int body_count() const noexcept { return static_cast<int>(motion_.bodies.size()); }
   [[nodiscard]] const std::string& body_name(BodyId id) const noexcept {
     return body_names_[id.index];
@@ -144,6 +160,9 @@ class World {
   [[nodiscard]] const Pair& pair(PairId id) const noexcept { return pairs_[id.index]; }
 
  private:
+  [[nodiscard]] static double deepest_point(const Shape& a, const Shape& b) noexcept {
+    return a.inscribed_radius() + b.inscribed_radius();
+  }
   static void check_rigid(const std::string& name, const Pose& X) {
     if (!is_finite(X) || !is_rigid(X)) throw SetupError(name + ": its pose is not a rigid one");
   }
@@ -153,6 +172,7 @@ class World {
   }
 
   Limits limits_;
+  Measure measure_;
   std::vector<std::string> body_names_;
   std::vector<double> reach_;  ///< [m] farthest point of each body from its origin
   Motion motion_;

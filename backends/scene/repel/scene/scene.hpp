@@ -103,6 +103,9 @@ struct Scene : ArmSetup {
   double rate_hz = 400.0;    ///< [Hz] of the tick
   double tool_speed = 0.25;  ///< [m/s] speed limit of a tool
   StartInside start_inside = StartInside::refuse;
+  Measure measure = QueryOptions{}.measure;  ///< of overlaps
+  /// Of every shape, where the measure needs them: see CellDescription. The shapes read have one.
+  int levels = ReductionOptions{}.levels;
   std::vector<Obstacle> obstacles;
   std::vector<OtherArm> partners;
   Budget budget;
