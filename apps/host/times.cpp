@@ -28,6 +28,7 @@ ordered_json to_json(const DeadlineMonitor& deadline, std::int64_t skipped_ticks
           {"skipped_ticks", skipped_ticks},
           {"success_rate_last_100", deadline.success_rate()},
           {"success_rate_lowest", deadline.lowest_success_rate()},
+          {"response_us_max", 1e-3 * static_cast<double>(deadline.longest_response().count())},
           {"compute_us", percentiles(deadline.compute())},
           {"wakeup_us", percentiles(deadline.wakeup())}};
 }

@@ -17,6 +17,10 @@ namespace {
 
 using namespace host::page;
 
+double us(std::chrono::nanoseconds time) {
+  return 1e-3 * static_cast<double>(time.count());
+}
+
 std::string count_of(std::int64_t count) {
   return count < 0 ? "not counted" : std::to_string(count);
 }
@@ -30,6 +34,7 @@ std::string tiles(const RunResult& r) {
   if (!r.options.fast) {
     html += tile("deadline misses",
                  std::to_string(r.deadline.misses()) + " of " + std::to_string(r.deadline.ticks()));
+    html += tile("due to end, longest", with_unit(us(r.deadline.longest_response()), "us"));
     html += tile("wake-up lateness, p99", with_unit(r.deadline.wakeup().percentile_us(0.99), "us"));
   }
   html += tile("nearest", r.nearest_pair.empty() ? "none" : with_unit(1e3 * t.nearest, "mm"));
@@ -97,10 +102,6 @@ std::string charts_of(const RunResult& r, const ArmResult& arm) {
         {arm.modules[m].name, [&k, m](std::size_t i) { return double{k[i].energy[m]}; }});
   }
   return to_html(force) + to_html(energy);
-}
-
-double us(std::chrono::nanoseconds time) {
-  return 1e-3 * static_cast<double>(time.count());
 }
 
 std::string charts_of_time(const RunResult& r) {

@@ -1,5 +1,7 @@
 #include "network_report.hpp"
 
+#include <numbers>
+
 #include "figure.hpp"
 
 namespace repel::teleop {
@@ -13,6 +15,25 @@ const char* remark_on(const ModuleResult& m) {
   if (m.passive()) return "";
   return m.claims_passive ? "   NOT PASSIVE: returned more than it took"
                           : "   (claims nothing: takes and gives)";
+}
+
+constexpr const char* axes[] = {"x", "y", "z", "rx", "ry", "rz"};
+
+/// How far a compliance gave, or which joints a limit pushed back; nothing of other modules.
+void print_most(const ArmResult& arm, const ModuleResult& m, std::FILE* out) {
+  for (int i = 0; m.given && i < 6; ++i) {
+    const double most = m.given->coeff(i);
+    if (most == 0.0) continue;
+    const double shown = i < 3 ? 1e3 * most : 180.0 / std::numbers::pi * most;
+    std::fprintf(out, "    %20s %s %s in %s at most\n", "gave", figure(shown, 1).c_str(),
+                 i < 3 ? "mm" : "deg", axes[i]);
+  }
+  for (std::size_t i = 0; i < m.limit_torques.size(); ++i) {
+    if (m.limit_torques[i] == 0.0) continue;
+    std::fprintf(out, "    %20s %s with %s %s at most\n", "pushed", arm.joint_names[i].c_str(),
+                 figure(m.limit_torques[i], 1).c_str(),
+                 arm.joints[i] == JointType::prismatic ? "N" : "N m");
+  }
 }
 
 void print_modules(const ArmResult& arm, std::FILE* out) {
@@ -33,6 +54,7 @@ void print_modules(const ArmResult& arm, std::FILE* out) {
     if (m.passivity.owed > 0.0) std::fprintf(out, "   owed %.3g", m.passivity.owed);
     if (m.sampling_energy != 0.0) std::fprintf(out, "   by sampling %+.4g", m.sampling_energy);
     std::fprintf(out, "%s\n", remark_on(m));
+    print_most(arm, m, out);
     if (m.coupling) {
       std::fprintf(out, "    %20s %.4g N/m, %.4g N s/m; %.4g N m/rad, %.4g N m s/rad\n", "gains",
                    m.coupling->stiffness, m.coupling->damping, m.coupling->angular_stiffness,
@@ -62,6 +84,10 @@ ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
                     {"dissipated_by_controller_j", m.passivity.dissipated},
                     {"owed_j", m.passivity.owed},
                     {"sampling_energy_j", m.sampling_energy}});
+    if (m.given) {
+      for (int i = 0; i < 6; ++i) list.back()["most_given"][axes[i]] = m.given->coeff(i);
+    }
+    if (!m.limit_torques.empty()) list.back()["most_torques"] = m.limit_torques;
     if (!m.coupling) continue;
     list.back()["gains"] = {{"stiffness_n_per_m", m.coupling->stiffness},
                             {"damping_n_s_per_m", m.coupling->damping},

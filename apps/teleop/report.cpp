@@ -233,8 +233,10 @@ void print_work(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.most_support_pairs));
   const auto units = static_cast<long long>(r.scene.budget.work_units);
   if (units == 0) return;
-  std::fprintf(out, "  work budget            %lld support pairs per tick%s\n", units,
-               r.options.budget == "i860" ? ", that of the i860 at this rate" : "");
+  std::fprintf(out,
+               "  work budget            %lld support pairs per tick%s, %.0f %% used at most\n",
+               units, r.options.budget == "i860" ? ", that of the i860 at this rate" : "",
+               1e2 * static_cast<double>(r.most_support_pairs) / static_cast<double>(units));
   const double here = support_pairs_per_period(r);
   if (here == 0.0) return;
   std::fprintf(out,
@@ -266,6 +268,23 @@ ordered_json budget_list(const RunResult& r) {
           {"ticks_over_wall", r.options.fast ? 0 : r.over_budget},
           {"machine_units_per_period", here},
           {"machine_times_budget", times}};
+}
+
+/// Whether the rate was held. Without the clock nobody watched a deadline: then the share of the
+/// period that the slowest tick computed.
+void print_verdict(const RunResult& r, std::FILE* out) {
+  if (r.deadline.ticks() == 0) return;
+  const double period_us = 1e6 / r.options.rate_hz;
+  if (r.options.fast) {
+    std::fprintf(out,
+                 "%g Hz: not by the clock; the slowest tick computed for %.1f %% of a period\n",
+                 r.options.rate_hz, 1e2 * r.deadline.compute().max_us() / period_us);
+    return;
+  }
+  const double response_us = 1e-3 * static_cast<double>(r.deadline.longest_response().count());
+  std::fprintf(out, "%g Hz: met in %lld of %lld ticks, worst %.1f %% of the period\n",
+               r.options.rate_hz, static_cast<long long>(r.deadline.ticks() - r.deadline.misses()),
+               static_cast<long long>(r.deadline.ticks()), 1e2 * response_us / period_us);
 }
 
 void print_workers(const WorkerReport& w, std::FILE* out) {
@@ -339,6 +358,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   print_gain(r, out);
   host::print_machine(r.machine, out);
+  print_verdict(r, out);
 }
 
 void print_replay(const Recording& recording, const RunResult& result, std::FILE* out) {
@@ -370,7 +390,8 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["warnings"] = r.warnings;
   report.update(host::to_json(r.deadline, r.skipped_ticks));
   if (r.options.fast) {  // lateness is undefined without real time
-    for (const char* key : {"deadline_misses", "success_rate_last_100", "success_rate_lowest"}) {
+    for (const char* key :
+         {"deadline_misses", "success_rate_last_100", "success_rate_lowest", "response_us_max"}) {
       report[key] = nullptr;
     }
     for (auto& share : report["wakeup_us"]) share = nullptr;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/puma_joints.hpp>
+#include <repel/network/modules/relief.hpp>
 
 #include "heading.hpp"
 
@@ -57,6 +59,12 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
       result.sampling_energy = joints->sampling_energy();
     }
     if (const auto* kbb2 = node.module.as<network::Kbb2>()) result.coupling = kbb2->options();
+    if (const auto* relief = node.module.as<network::Relief>()) result.given = relief->most_given();
+    if (const auto* limits = node.module.as<network::Limits>()) {
+      for (int i = 0; i < limits->size(); ++i) {
+        result.limit_torques.push_back(limits->most_torque(i));
+      }
+    }
     results.push_back(result);
   }
   return results;

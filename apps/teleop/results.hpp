@@ -57,6 +57,9 @@ struct ModuleResult {
   network::PassivityReport passivity;  ///< of the controller inside
   double sampling_energy = 0.0;  ///< [J] that holding the torques gave the arm; of puma_joints
   std::optional<network::Kbb2Options> coupling{};  ///< with the gains in use; of kbb2
+  /// [m, rad] how far it gave along and about each axis at most; of relief
+  std::optional<Eigen::Matrix<double, 6, 1>> given{};
+  std::vector<double> limit_torques{};  ///< [N m, N] the largest on each joint; of limits
 
   /// It claims to be passive and was: what its ledger fell below zero is rounding.
   [[nodiscard]] bool passive() const { return claims_passive && ledger.deficit() <= 1e-9; }

@@ -39,7 +39,7 @@ TEST(NetworkOfAScene, ThoseOfThePaperAndOfTheArmKeepTheirLedgersAtEveryRate) {
     ASSERT_EQ(report.at("modules").size(), 11U);
     EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
     EXPECT_GT(module_of(report, "obstacle").at("passed_j"), 1.0);
-    EXPECT_GT(module_of(report, "spaceball").at("supplied_j"), 1.0);
+    EXPECT_GT(module_of(report, "spaceball").at("supplied_j"), 0.05) << "it also lets walls push";
     EXPECT_GT(module_of(report, "torque_arm").at("supplied_j"), 1.0);
     EXPECT_FALSE(report.at("status_ticks").contains("network_fault"));
     EXPECT_TRUE(report.at("network_us").at("p50").is_number());

@@ -39,6 +39,66 @@ TEST(Scene, TheDefaultOnePushesTheToolAndLetsItThroughTheMembraneOnly) {
   EXPECT_LT(intrusion, 0.001) << "a wall was entered";
 }
 
+const nlohmann::json& module_of(const nlohmann::json& report, const std::string& name) {
+  for (const nlohmann::json& module : report.at("modules")) {
+    if (module.at("name") == name) return module;
+  }
+  throw std::invalid_argument("no module " + name);
+}
+
+// A coupling at its limit drags its command along: the operator would feel the limit, not the law.
+TEST(Scene, TheDefaultOneLeadsWithTheLeverSlidesWithinTheLimitsAndUsesEveryModule) {
+  const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/anderson_4x8.yaml");
+  EXPECT_EQ(scene.script.front().master, network::Master::torque_arm);
+  double lever = 0.0, ball = 0.0;  // [s]
+  for (const network::Phase& phase : scene.script) {
+    (phase.master == network::Master::torque_arm ? lever : ball) += phase.duration;
+  }
+  EXPECT_GT(lever, 4.0 * ball);
+  EXPECT_GT(ball, 1.0);
+
+  const Folder folder;
+  for (const std::string backend : {"bullet", "ode", "reference", "ideal"}) {
+    SCOPED_TRACE(backend);
+    const Ending ending = teleop("--fast --seconds 20 --backend " + backend + " --report " +
+                                 quoted(folder / "report.json"));
+    if (ending.says("is not built in")) continue;
+    ASSERT_EQ(ending.status, 0) << ending;
+    const auto report = report_of(folder / "report.json");
+    EXPECT_TRUE(report.at("warnings").empty()) << report.at("warnings");
+    const auto& status = report.at("status_ticks");
+    EXPECT_FALSE(status.contains("saturated")) << status;
+    EXPECT_FALSE(status.contains("torque_limit")) << status;
+    EXPECT_GT(status.at("joint_limit"), 50);
+    EXPECT_LT(status.at("joint_limit"), 1000) << "it must be left again";
+    EXPECT_GT(module_of(report, "relief").at("most_given").at("z"), 0.03);
+    EXPECT_GT(module_of(report, "limits").at("most_torques").at(2), 5.0);
+    for (const auto& obstacle : report.at("obstacles")) {
+      EXPECT_GT(obstacle.at("peak_force_n"), 8.0) << obstacle;
+      EXPECT_EQ(obstacle.at("body") == "link_3", obstacle.at("name") == "post") << obstacle;
+    }
+    EXPECT_LT(report.at("chatter").at("walls").at("torque_rms_nm"), 0.05);
+    EXPECT_LT(report.at("chatter").at("walls").at("torque_jump_nm"), 0.8);
+    EXPECT_EQ(report.at("budget").at("work_units"), 256);
+    EXPECT_EQ(report.at("pairs_stale"), 0);
+    EXPECT_LE(report.at("support_pairs_most"), 256);
+  }
+}
+
+// The walls of the paper act on the tool alone, so its arm is not kept off the post.
+TEST(Scene, TheDefaultOneAsInThePaperStaysWithinTheLimitsToo) {
+  const Folder folder;
+  const auto furthest = [&folder](const std::string& options) {
+    const Ending ending = teleop("--fast --seconds 20 --log " + quoted(folder / "log.csv") +
+                                 options + " --report " + quoted(folder / "report.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    EXPECT_FALSE(report_of(folder / "report.json").at("status_ticks").contains("saturated"));
+    const Columns log = columns_of(folder / "log.csv");
+    return *std::max_element(log.at("y_m").begin(), log.at("y_m").end());
+  };
+  EXPECT_GT(furthest(" --tool-alone --budget i860"), furthest("") + 0.015);
+}
+
 TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
   const Folder folder;
   for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {

@@ -89,13 +89,33 @@ TEST(Words, RunThatIsNotByTheClockClaimsNoDeadline) {
       << fast.ending;
   EXPECT_FALSE(fast.ending.says("misses 0")) << "nor in the progress line\n" << fast.ending;
   EXPECT_EQ(fast.report.at("by_the_clock"), false);
-  for (const char* key : {"deadline_misses", "success_rate_last_100", "success_rate_lowest"}) {
+  for (const char* key :
+       {"deadline_misses", "success_rate_last_100", "success_rate_lowest", "response_us_max"}) {
     EXPECT_TRUE(fast.report.at(key).is_null()) << key;
   }
+  EXPECT_TRUE(std::regex_search(
+      fast.ending.out, std::regex("\n400 Hz: not by the clock; the slowest tick computed for "
+                                  "[0-9]+\\.[0-9] % of a period\n$")))
+      << fast.ending;
+  EXPECT_FALSE(fast.ending.says("met in")) << fast.ending;
   for (const auto& share : fast.report.at("wakeup_us")) EXPECT_TRUE(share.is_null());
   const Reported timed("plates --seconds 0.1");
   EXPECT_TRUE(timed.report.at("deadline_misses").is_number());
   EXPECT_EQ(timed.report.at("by_the_clock"), true);
+}
+
+TEST(Words, TheVerdictIsTheLastLineAndAgreesWithTheReport) {
+  const Reported run("plates --seconds 0.5");
+  std::smatch verdict;
+  ASSERT_TRUE(std::regex_search(
+      run.ending.out, verdict,
+      std::regex("\n400 Hz: met in ([0-9]+) of 200 ticks, worst ([0-9]+\\.[0-9]) % of the "
+                 "period\n$")))
+      << run.ending;
+  EXPECT_EQ(std::stoi(verdict[1]), 200 - run.report.at("deadline_misses").get<int>());
+  const double worst = run.report.at("response_us_max").get<double>() / 2500.0;
+  EXPECT_NEAR(std::stod(verdict[2]), 1e2 * worst, 0.051);
+  EXPECT_GE(run.report.at("response_us_max"), run.report.at("compute_us").at("max"));
 }
 
 TEST(Words, WarningsStandBeforeTheNumbers) {

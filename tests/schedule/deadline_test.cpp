@@ -77,6 +77,7 @@ TEST(DeadlineMonitor, MissesWhenLatenessAndComputeExceedThePeriod) {
   monitor.record(2ms, 1us);
   EXPECT_EQ(monitor.misses(), 3);
   EXPECT_EQ(monitor.ticks(), 4);
+  EXPECT_EQ(monitor.longest_response(), 2001us);
   EXPECT_EQ(monitor.compute().max_us(), 2000.0);
   EXPECT_EQ(monitor.wakeup().max_us(), 2000.0);
 }

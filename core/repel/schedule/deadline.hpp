@@ -76,7 +76,9 @@ class DeadlineMonitor {
   void record(std::chrono::nanoseconds lateness, std::chrono::nanoseconds compute) noexcept {
     wakeup_.record(lateness);
     compute_.record(compute);
-    count(lateness + compute > period_);
+    const std::chrono::nanoseconds response = lateness + compute;
+    if (response > longest_response_) longest_response_ = response;
+    count(response > period_);
   }
 
   /// Executed plus skipped ticks.
@@ -89,6 +91,10 @@ class DeadlineMonitor {
   }
   /// The lowest `success_rate` so far.
   [[nodiscard]] double lowest_success_rate() const noexcept { return lowest_; }
+  /// The longest time from when a tick was due to its end; skipped ticks have none.
+  [[nodiscard]] std::chrono::nanoseconds longest_response() const noexcept {
+    return longest_response_;
+  }
   [[nodiscard]] const DurationHistogram& compute() const noexcept { return compute_; }
   [[nodiscard]] const DurationHistogram& wakeup() const noexcept { return wakeup_; }
 
@@ -106,6 +112,7 @@ class DeadlineMonitor {
   }
 
   std::chrono::nanoseconds period_;
+  std::chrono::nanoseconds longest_response_{0};
   std::int64_t ticks_ = 0;
   std::int64_t misses_ = 0;
   std::int64_t recent_misses_ = 0;

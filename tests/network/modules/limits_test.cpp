@@ -119,6 +119,11 @@ TEST(Limits, SayWhenTheyAreFelt) {
   signals.joints(0) = 0.95;
   limits.read(signals);
   EXPECT_TRUE(limits.active());
+  EXPECT_NEAR(limits.most_torque(0), 0.05 * JointLimits{}.stiffness, 1e-9);
+  signals.joints(0) = 0.0;
+  limits.read(signals);
+  EXPECT_FALSE(limits.active());
+  EXPECT_NEAR(limits.most_torque(0), 0.05 * JointLimits{}.stiffness, 1e-9) << "the most of all";
   EXPECT_EQ(limits.size(), 1);
 }
 

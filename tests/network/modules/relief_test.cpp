@@ -100,6 +100,7 @@ TEST(Relief, StretchesByForceOverStiffnessAndReturns) {
     }
     EXPECT_LE(stretch.norm(), 1e-9);
     EXPECT_NEAR(cell.module.stored(), 0.0, 1e-12);
+    EXPECT_LE((cell.module.most_given() - expected).norm(), 1e-9) << "the most, also afterwards";
   }
 }
 
@@ -118,6 +119,7 @@ TEST(Relief, PureDamperCreepsAndDoesNotReturn) {
   ASSERT_TRUE(cell.run({}, ground(), push(Vector::Zero(6))));
   EXPECT_EQ(cell.at_root.flow.norm(), 0.0);
   EXPECT_EQ(cell.module.stored(), 0.0);
+  EXPECT_EQ(cell.module.most_given().norm(), 0.0);
 }
 
 // A spring stretched along the tool axis pulls along the tool axis also after it has rotated.

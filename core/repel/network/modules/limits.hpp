@@ -101,6 +101,7 @@ class Limits {
                                 0.0, signals.since_last());
       effort(0) += rate * damping;
       effort_(i) = effort(0);
+      joint.most = std::max(joint.most, std::abs(effort(0)));
       joint.damping = damping + (acts ? joint.law.damping : 0.0);
     }
   }
@@ -130,6 +131,10 @@ class Limits {
   }
   /// True while a joint is within `range` of its limit and is pushed back.
   [[nodiscard]] bool active() const noexcept { return active_; }
+  /// The largest torque [N m], or force [N], on a joint since set-up.
+  [[nodiscard]] double most_torque(int joint) const noexcept {
+    return joints_[static_cast<std::size_t>(joint)].most;
+  }
   /// Sum over all joints.
   [[nodiscard]] PassivityReport passivity() const noexcept {
     PassivityReport sum;
@@ -146,6 +151,7 @@ class Limits {
     JointRange range;
     PassivityController<1> controller;
     double damping = 0.0;  // [N m s/rad] of law and controller in this tick
+    double most = 0.0;     // [N m] torque
   };
   double wall_ticks_ = 0.5;
   std::vector<Joint> joints_;

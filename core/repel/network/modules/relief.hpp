@@ -100,6 +100,7 @@ class Relief {
     const Six effort = in_task(at_root.effort);
     const Six relative = product(conductance_, effort - wave_);
     wave_ += 2.0 * product(spring_resistance_, relative);
+    most_ = most_.cwiseMax(product(wave_, inverse_stiffness_).cwiseAbs());
     at_leaf.effort = at_root.effort;
     at_leaf.flow = at_root.flow - in_world(relative);
   }
@@ -108,6 +109,10 @@ class Relief {
   [[nodiscard]] double stored() const noexcept {
     return 0.5 * product(wave_, wave_).dot(inverse_stiffness_);
   }
+
+  /// How far it gave along, and about, each axis of the task frame at most since set-up [m, rad];
+  /// 0 where it is rigid or a pure damper.
+  [[nodiscard]] const Eigen::Matrix<double, 6, 1>& most_given() const noexcept { return most_; }
 
  private:
   using Six = Eigen::Matrix<double, 6, 1>;
@@ -135,6 +140,7 @@ class Relief {
   Six spring_resistance_ = Six::Zero(), conductance_ = Six::Zero();
   Six inverse_stiffness_ = Six::Zero();
   Six wave_ = Six::Zero();  // of the springs, in the task frame [N, N m]
+  Six most_ = Six::Zero();  // extension [m, rad]
 };
 
 }  // namespace repel::network
