@@ -32,7 +32,7 @@ using LaneMask = std::int64_t __attribute__((vector_size(lane_bytes)));
 /// f(k) in lane k.
 template <class F>
 [[nodiscard]] Lanes lanes_of(const F& f) noexcept {
-  Lanes lanes;
+  Lanes lanes{};
   for (int k = 0; k < lane_count; ++k) lanes[k] = f(k);
   return lanes;
 }

@@ -9,34 +9,12 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <span>
 
 #include <repel/geometry/convex.hpp>
 #include <repel/patch/plane.hpp>
 #include <repel/patch/tilt_mean.hpp>
 
 namespace repel::detail {
-
-/// A flat feature as seen along the normal of a contact: a point, a segment, or a convex polygon,
-/// counter-clockwise.
-struct Flat {
-  static constexpr int most = 16;  ///< corners
-
-  Outline outline;       ///< of up to `most` corners, with the nearest point at r = 0
-  Planar slope{};        ///< how its height along the normal changes; of a point 0
-  bool is_disc = false;  ///< the polygon stands for a disc
-  double radius = 0.0;   ///< [m] of a segment: of curvature across it
-  double tilt = 0.0;     ///< [rad] up to which no other feature of the set is nearest
-};
-
-/// Which side of a contact a set is on: below, and its outward normal along n, or above.
-enum class Facing : std::int8_t { up = 1, down = -1 };
-
-/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
-/// so that they come and go with weight zero.
-[[nodiscard]] inline double flat_within(double tilt) noexcept {
-  return TiltMean::faded * tilt;
-}
 
 /// The flat feature of a set that is perpendicular to the normal of a contact within an angle.
 class FlatSearch {
@@ -137,12 +115,15 @@ class FlatSearch {
     const double x = across > 0.0 ? n_.x() / across : 1.0;
     const double y = across > 0.0 ? n_.y() / across : 0.0;
     const Vec<double> axis = column<double>(X_, 2);
-    const double way = dot(axis, axes_.n) > 0.0 ? radius : -radius;
+    const double hand = dot(axis, axes_.n) > 0.0 ? radius : -radius;
     const Planar centre = in_plane(z * axis);
     const Planar u = radius * axes_.in_plane(rotate(X_, Vec<double>(x, y, 0.0)));
-    const Planar v = way * axes_.in_plane(rotate(X_, Vec<double>(-y, x, 0.0)));
+    const Planar v = hand * axes_.in_plane(rotate(X_, Vec<double>(-y, x, 0.0)));
     Flat flat;
-    for (const auto& [c, s] : dozen) flat.outline.add(centre + c * u + s * v, !is_up_);
+    for (std::size_t k = 0; k < disc_corners; ++k) {
+      const Planar way = disc_corner(k);
+      flat.outline.add(centre + way.x * u + way.y * v, !is_up_);
+    }
     set_slope(flat, axis);
     flat.is_disc = true;
     return flat;
@@ -268,20 +249,19 @@ class FlatSearch {
       return flat;
     }
     const PlanarAxes axes(is_up_ ? normal : -normal);
-    Planar middle{};
-    for (const std::uint32_t name : corners) {
-      middle =
-          middle + (1.0 / static_cast<double>(corners.size())) * axes.in_plane(set_.place(name));
-    }
+    Planar sum{};
+    for (const std::uint32_t name : corners) sum = sum + axes.in_plane(set_.place(name));
+    const Planar middle = (1.0 / static_cast<double>(corners.size())) * sum;
     const Planar to_farthest = axes.in_plane(set_.place(farthest)) - middle;
     std::uint32_t last = none;
-    for (const auto& [c, s] : dozen) {
-      const Planar d = c * to_farthest + s * Planar{-to_farthest.y, to_farthest.x};
+    for (std::size_t k = 0; k < disc_corners; ++k) {
+      const Planar way = disc_corner(k);
+      const Planar d = way.x * to_farthest + way.y * Planar{-to_farthest.y, to_farthest.x};
       std::uint32_t best = farthest;
       double most = -std::numeric_limits<double>::infinity();
       for (const std::uint32_t name : corners) {
         const double along = dot(d, axes.in_plane(set_.place(name)));
-        if (last == none || along <= most) continue;
+        if (k == 0 || along <= most) continue;
         most = along;
         best = name;
       }
@@ -292,21 +272,15 @@ class FlatSearch {
   }
 
   static constexpr std::uint32_t none = 0xFFFFFFFFU;
-  /// Corners that stand for a disc: cosines and sines. The one nearest to the other set is a point
-  /// of the disc itself.
-  static constexpr double half_root = 0.5 * std::numbers::sqrt3;
-  static constexpr std::array<Planar, 12> dozen{{{1.0, 0.0},
-                                                 {half_root, 0.5},
-                                                 {0.5, half_root},
-                                                 {0.0, 1.0},
-                                                 {-0.5, half_root},
-                                                 {-half_root, 0.5},
-                                                 {-1.0, 0.0},
-                                                 {-half_root, -0.5},
-                                                 {-0.5, -half_root},
-                                                 {0.0, -1.0},
-                                                 {0.5, -half_root},
-                                                 {half_root, -0.5}}};
+  /// The directions of the corners that stand for a disc, a twelfth of a turn apart, from the x
+  /// axis. The corner nearest to the other set is a point of the disc itself.
+  static constexpr std::size_t disc_corners = 12;
+  [[nodiscard]] static Planar disc_corner(std::size_t k) noexcept {
+    constexpr double c = 0.5 * std::numbers::sqrt3;
+    constexpr std::array<double, disc_corners> cosines{1.0,  c,  0.5,  0.0, -0.5, -c,
+                                                       -1.0, -c, -0.5, 0.0, 0.5,  c};
+    return {cosines[k], cosines[(k + 9) % disc_corners]};
+  }
 
   const Convex& set_;
   const Pose& X_;

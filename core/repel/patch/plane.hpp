@@ -102,6 +102,21 @@ class Outline {
   std::uint32_t of_a_ = 0;
 };
 
+/// A flat feature as seen along the normal of a contact: a point, a segment, or a convex polygon,
+/// counter-clockwise.
+struct Flat {
+  static constexpr int most = 16;  ///< corners
+
+  Outline outline;       ///< of up to `most` corners, with the nearest point at r = 0
+  Planar slope{};        ///< how its height along the normal changes; of a point 0
+  bool is_disc = false;  ///< the polygon stands for a disc
+  double radius = 0.0;   ///< [m] of a segment: of curvature across it
+  double tilt = 0.0;     ///< [rad] up to which no other feature of the set is nearest
+};
+
+/// Which side of a contact a set is on: below, and its outward normal along n, or above.
+enum class Facing : std::int8_t { up = 1, down = -1 };
+
 /// The sides of an outline.
 struct Sides {
   using Numbers = std::array<double, Outline::most + lane_count>;  ///< one per side

@@ -266,4 +266,10 @@ class TiltMean {
   Planar x_pull_{}, y_pull_{};  ///< [m] sums of r.x t and r.y t
 };
 
+/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
+/// so that they come and go with weight zero.
+[[nodiscard]] inline double flat_within(double tilt) noexcept {
+  return TiltMean::faded * tilt;
+}
+
 }  // namespace repel::detail
