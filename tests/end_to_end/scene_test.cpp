@@ -99,6 +99,43 @@ TEST(Scene, TheDefaultOneAsInThePaperStaysWithinTheLimitsToo) {
   EXPECT_GT(furthest(" --tool-alone --budget i860"), furthest("") + 0.015);
 }
 
+const nlohmann::json& obstacle_of(const nlohmann::json& report, const std::string& name) {
+  for (const nlohmann::json& obstacle : report.at("obstacles")) {
+    if (obstacle.at("name") == name) return obstacle;
+  }
+  throw std::invalid_argument("no obstacle " + name);
+}
+
+TEST(Scene, SoftTissueStiffensWithDepthOverBoneAndSkinGivesWay) {
+  const Folder folder;
+  const Ending ending =
+      teleop("soft_tissue --fast --seconds 20 --log " + quoted(folder / "log.csv") + " --report " +
+             quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const auto report = report_of(folder / "report.json");
+  EXPECT_TRUE(report.at("status_ticks").empty()) << report.at("status_ticks");
+  const Columns log = columns_of(folder / "log.csv");
+  constexpr double surface = 0.40;  // [m] where the tissue begins
+  constexpr double press = 1.0;     // phase of the script
+  const auto force_at = [&](double depth) {
+    for (std::size_t i = 0; i < log.at("tick").size(); ++i) {
+      const bool pressed = log.at("phase")[i] == press;
+      if (pressed && log.at("z_m")[i] < surface - depth) return log.at("virtual_fz_n")[i];
+    }
+    return 0.0;
+  };
+  EXPECT_GT(force_at(0.01), 0.5);
+  EXPECT_GT(force_at(0.02), 3.0 * force_at(0.01)) << "stiffer as it is pressed deeper";
+  EXPECT_LT(force_at(0.02), 6.0) << "and soft all the same";
+  EXPECT_GT(obstacle_of(report, "lump").at("peak_force_n"), 3.0);
+  EXPECT_GT(obstacle_of(report, "bone").at("peak_force_n"),
+            3.0 * obstacle_of(report, "tissue").at("peak_force_n").get<double>());
+  EXPECT_NEAR(obstacle_of(report, "skin").at("peak_force_n"), 3.0, 1e-6);
+  EXPECT_LT(obstacle_of(report, "skin").at("nearest_m"), -0.005) << "punctured";
+  EXPECT_LT(report.at("chatter").at("walls").at("force_rms_n"), 0.05);
+  EXPECT_LT(report.at("chatter").at("walls").at("torque_jump_nm"), 0.01);
+}
+
 TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
   const Folder folder;
   for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
