@@ -125,7 +125,8 @@ class DeepestPoint {
 
   /// Checks that the depths at the point reach their upper bound, and exceed rounding.
   template <class T>
-  End judge(const PlaneBasis<T>& basis, const T& tolerance) noexcept {
+  End judge(PlaneBasis<T>& basis, const T& tolerance) noexcept {
+    basis.untilt();
     const T found = basis.depth(0) + basis.depth(1);
     // The perturbation can reduce a multiplier that is 0 by twice the tilt.
     if (!(basis.least_multiplier() >= T(-Precision<T>::of_multiplier - 2.0 * Precision<T>::tilt)) ||
