@@ -1,6 +1,7 @@
 /// @file
 /// Cost of one query and one tick: pairs of boxes and hulls, cold and warm, and the tick of 4 tool
-/// parts against 8 obstacles, with every pair near and with most of them skipped.
+/// parts against 8 obstacles, with every pair near and with most of them skipped; and what the
+/// contact patch adds to a warm query.
 ///
 /// Warm means solved one tick earlier, then moved by 0.5 mm and 0.1 degree. Answers are checked
 /// before the timing: cold and warm must agree, and the bracket must contain both.
@@ -100,6 +101,72 @@ void pair_warm(benchmark::State& state) {
   }
 }
 
+/// Pairs over each other, a few mrad from parallel: faces of boxes, faces of hexagonal prisms, the
+/// side of a cylinder on a box; and boxes that are not parallel.
+std::vector<Case> contacts(std::int64_t kind) {
+  Rng rng(seed);
+  std::vector<Vec3> prism;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = M_PI / 3.0 * (i / 2);
+    prism.emplace_back(0.05 * std::cos(angle), 0.05 * std::sin(angle), i % 2 == 0 ? -0.04 : 0.04);
+  }
+  std::vector<Case> all;
+  for (int i = 0; i < 256; ++i) {
+    const Shape block = Shape::box({uniform(rng, 0.03, 0.08), uniform(rng, 0.03, 0.08), 0.04});
+    const Shape upper = kind == 1   ? Shape::hull(prism, {.levels = 1})
+                        : kind == 2 ? Shape::cylinder(0.04, uniform(rng, 0.03, 0.08))
+                                    : block;
+    Case c{.A = Shape::box({0.06, 0.06, 0.03}), .B = upper};
+    if (kind == 1) c.A = upper;
+    for (Pose& X : c.X_WB) {
+      const Mat3 up = kind == 2 ? Eigen::AngleAxisd(M_PI / 2.0, Vec3::UnitY()).toRotationMatrix()
+                                : Mat3(Eigen::AngleAxisd(uniform(rng, 0.0, 3.0), Vec3::UnitZ()));
+      X.linear() = kind == 3 ? turn(rng, uniform(rng, 0.5, 3.0)) : Mat3(turn(rng, 0.004) * up);
+      X.translation() = Vec3(uniform(rng, -0.04, 0.04), uniform(rng, -0.04, 0.04), 0.09);
+      if (kind == 3) X.translation().z() = 0.15;
+    }
+    c.X_WB[1].translation() = c.X_WB[0].translation() + 5e-4 * direction(rng);
+    c.X_WB[1].linear() = turn(rng, 0.1 * M_PI / 180.0) * c.X_WB[0].linear();
+    all.push_back(std::move(c));
+  }
+  return all;
+}
+
+/// A warm query and, with `with_patch`, the contact patch on its answer.
+void contact(benchmark::State& state, bool with_patch) {
+  std::vector<Case> all = contacts(state.range(0));
+  int patches = 0;
+  for (Case& c : all) {
+    const Separation s = separation(c.A, c.X_WA, c.B, c.X_WB[0], {}, c.warm);
+    ContactPatch patch;
+    if (!(s.distance > 0.0)) return state.SkipWithError("not apart");
+    if (!find_patch(s, {c.A, c.X_WA}, {c.B, c.X_WB[0]}, 0.005, patch)) continue;
+    ++patches;
+    if (std::abs(patch.gradient.force.norm() - 1.0) > 0.01) state.SkipWithError("wrong force");
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    Case& c = all[i % all.size()];
+    const Pose& X_WB = c.X_WB[i / all.size() % 2];
+    const Separation s = separation(c.A, c.X_WA, c.B, X_WB, {}, c.warm);
+    ContactPatch patch;
+    if (with_patch) (void)find_patch(s, {c.A, c.X_WA}, {c.B, X_WB}, 0.005, patch);
+    benchmark::DoNotOptimize(s);
+    benchmark::DoNotOptimize(patch);
+    ++i;
+  }
+  state.counters["with_patch"] = patches / static_cast<double>(all.size());
+  static const char* const names[] = {"box on box", "hull on hull", "cylinder side on box",
+                                      "not parallel"};
+  state.SetLabel(names[state.range(0)]);
+}
+void warm(benchmark::State& state) {
+  contact(state, false);
+}
+void patch(benchmark::State& state) {
+  contact(state, true);
+}
+
 /// 4 tool boxes and 8 obstacle boxes. `range` [m] decides how many of the 32 pairs are near.
 void tick_4x8(benchmark::State& state) {
   Rng rng(seed);
@@ -139,6 +206,8 @@ void tick_4x8(benchmark::State& state) {
 
 BENCHMARK(pair_cold)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
 BENCHMARK(pair_warm)->ArgName("vertices")->Arg(0)->Arg(8)->Arg(16)->Arg(32)->Arg(64)->Arg(256);
+BENCHMARK(warm)->ArgName("contact")->DenseRange(0, 3);
+BENCHMARK(patch)->ArgName("contact")->DenseRange(0, 3);
 BENCHMARK(tick_4x8)->ArgName("range_mm")->Arg(20)->Arg(2000);
 
 int main(int argc, char** argv) {
