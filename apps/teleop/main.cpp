@@ -181,7 +181,8 @@ void describe_arm(CLI::App& app, Arguments& a) {
 /// The options of overlaps.
 void describe_measure(CLI::App& app, Arguments& a) {
   std::vector<std::string> names;
-  for (const Measure measure : all_measures) names.push_back(to_text(measure));
+  names.reserve(std::size(all_measures));
+  for (const Measure measure : all_measures) names.emplace_back(to_text(measure));
   app.add_option("--measure", a.run.measure,
                  "How the depth of an overlap is measured: by the deepest common point, by the "
                  "reduction, which is the paper's way, or exactly (default: the scene's)")

@@ -385,7 +385,8 @@ std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
 void read_measure(const Map& map, Scene& scene) {
   if (const Value* measure = map.find("measure")) {
     std::vector<std::string> names;
-    for (const Measure each : all_measures) names.push_back(to_text(each));
+    names.reserve(std::size(all_measures));
+    for (const Measure each : all_measures) names.emplace_back(to_text(each));
     const std::vector<std::string_view> words(names.begin(), names.end());
     scene.measure = *measure_named(measure->word_of(words));
   }

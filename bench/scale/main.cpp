@@ -39,7 +39,7 @@ constexpr const char* about =
     "\n"
     "All ticks are timed first and checked after, over the same motion. At every tick the spheres\n"
     "around both parts of every pair are compared one by one, the pairs whose spheres are within\n"
-    "range are asked, and their forces must be ours on every body to 1e-9; a\n"
+    "range are asked, and their forces must be ours on every body to 1e-8; a\n"
     "rival must find the same pairs within range. In the first ticks, as many as 300 million\n"
     "evaluations allow (20 million in the sweep), ours must also be equal to itself with\n"
     "CoprocessorOptions::every_pair; JSON says how many (every_pair_ticks).\n"

@@ -183,6 +183,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
 /// The ladder of that hull, a polytope, with its vertices in their order.
 inline Ladder hull_ladder(const Convex& hull, const ReductionOptions& options) {
   std::vector<Vec3> vertices;
+  vertices.reserve(static_cast<std::size_t>(hull.vertex_count()));
   for (int i = 0; i < hull.vertex_count(); ++i) {
     vertices.push_back(to_vec3(hull.place(static_cast<std::uint32_t>(i))));
   }
