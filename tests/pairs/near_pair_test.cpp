@@ -24,7 +24,8 @@ std::map<int, NearPair> near_pairs(const Coprocessor& coprocessor) {
 // The data for the display are those used by the tick: their sum is the force on the tool.
 TEST(NearPair, TheListHasEveryPairThatPushesAndItsForce) {
   for (const int threads : {0, 2}) {
-    test::Boxes boxes(4, 80, {.range = 0.05, .damping = 0.0}, seed);
+    // At single points: the force of a patch is not quite along the extraction direction.
+    test::Boxes boxes(4, 80, {.range = 0.05, .damping = 0.0, .tilt = 0.0}, seed);
     CoprocessorOptions options;
     options.threads = threads;
     options.lock_step = true;

@@ -90,17 +90,18 @@ TEST(Coprocessor, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(Coprocessor, ForcesAreThoseOfADirectEvaluation) {
   for (const Measure measure : all_measures) {
     for (const int threads : {0, 2}) {
-      test::Boxes boxes(4, 8, {.range = 0.05}, seed, measure);
+      test::Boxes boxes(4, 60, {.range = 0.05}, seed, measure);
       Coprocessor coprocessor(boxes.world, lock_step(threads));
       double deepest = 0.0;
       for (int tick = 0; tick < 100; ++tick) {
         boxes.move();
         const PairForces& forces = coprocessor.exchange();
         const auto direct = test::forces_now(boxes.world);
+        // A patch turns with the normals divided by its tilt.
         for (std::size_t body = 0; body < direct.size(); ++body) {
-          ASSERT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-9)
+          ASSERT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-6)
               << to_text(measure);
-          ASSERT_LE((forces.on_body[body].torque - direct[body].torque).norm(), 1e-9)
+          ASSERT_LE((forces.on_body[body].torque - direct[body].torque).norm(), 1e-6)
               << to_text(measure);
         }
         deepest = std::max(deepest, forces.totals.deepest);
