@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <utility>
+
 #include <support/families.hpp>
 
 namespace repel {
@@ -37,6 +40,27 @@ TEST(Outline, TakesNoMoreCornersThanItHasRoomFor) {
   for (int i = 0; i < 2 * detail::Outline::most; ++i) outline.add({1.0 * i, 0.0}, true);
   EXPECT_EQ(outline.size, detail::Outline::most);
   EXPECT_EQ(outline.after(outline.size - 1).r.x, 0.0);
+}
+
+// What stood behind the last side used to be whatever was there before: with traps on, a run could
+// stop at it.
+TEST(Sides, FillTheRegistersThatAreRead) {
+  detail::Outline outline;
+  for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(2.0, 0.0), std::pair(0.0, 1.0)}) {
+    outline.add({x, y}, true);
+  }
+  detail::Sides sides;
+  sides.normal_x.fill(std::numeric_limits<double>::signaling_NaN());
+  sides.normal_y.fill(std::numeric_limits<double>::signaling_NaN());
+  sides.find(outline);
+  EXPECT_EQ(sides.length[0], 2.0);
+  EXPECT_EQ(sides.normal(0).y, -1.0);
+  EXPECT_EQ(sides.least_length(outline.size), 1.0);
+  for (int i = 0; i < outline.size; i += detail::lane_count) {
+    const detail::Lanes x = detail::Sides::some(sides.normal_x, i);
+    const detail::Lanes y = detail::Sides::some(sides.normal_y, i);
+    for (int k = 0; k < detail::lane_count; ++k) EXPECT_NEAR(x[k] * x[k] + y[k] * y[k], 1.0, 1e-15);
+  }
 }
 
 }  // namespace plane_test

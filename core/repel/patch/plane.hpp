@@ -133,6 +133,12 @@ struct Sides {
       normal_x[k] = part * along.y;
       normal_y[k] = -part * along.x;
     }
+    // Whole registers are read: behind the last side, too, stands a number, and no operation on it
+    // is invalid, also where a program has the processor stop at such.
+    for (auto k = static_cast<std::size_t>(outline.size); k % lane_count != 0; ++k) {
+      normal_x[k] = 1.0;
+      normal_y[k] = 0.0;
+    }
   }
   [[nodiscard]] Planar normal(int i) const noexcept {
     return {normal_x[static_cast<std::size_t>(i)], normal_y[static_cast<std::size_t>(i)]};
