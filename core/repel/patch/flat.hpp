@@ -180,7 +180,6 @@ class FlatSearch {
     flat.tilt = tilt_;
     double least = std::numeric_limits<double>::infinity();
     Edge edge;
-    Edge second;
     std::uint32_t face = none;
     for (const Faces::Corner& corner : faces.at(farthest)) {
       const double off = lower_tilt(corner.face, flat);
@@ -188,30 +187,32 @@ class FlatSearch {
         least = off;
         face = corner.face;
       }
-      const Edge next{corner.next, slope_along(farthest, corner.next)};
-      if (next.slope < edge.slope) {
-        second = edge;
-        edge = next;
-      } else if (next.slope < second.slope) {
-        second = next;
-      }
+      const double slope = slope_along(farthest, corner.next);
+      if (slope < edge.slope) edge = {corner.next, slope};
     }
     if (least < flat_within(flat.tilt)) return of_face(face, farthest, flat);
-    // The disc also meets both edges of a sharp corner of a face that is farther off.
-    if (second.slope < flat.tilt) {
-      for (const Faces::Corner& corner : faces.at(farthest)) {
-        if ((corner.next == edge.to && corner.previous == second.to) ||
-            (corner.next == second.to && corner.previous == edge.to)) {
-          return of_face(corner.face, farthest, flat);
-        }
-      }
-    }
     if (!(edge.slope < flat.tilt)) {
       add(flat, set_.place(farthest));
       return flat;
     }
     for (const Faces::Corner& corner : faces.at(edge.to)) (void)lower_tilt(corner.face, flat);
     flat.tilt = std::min(flat.tilt, std::min(faces.room_at(farthest), faces.room_at(edge.to)));
+    // At a sharp corner, the disc also meets the other edge of a face that is farther off.
+    double least_slope = flat.tilt;
+    face = none;
+    const auto look_at = [&](std::uint32_t vertex, std::uint32_t other) {
+      for (const Faces::Corner& corner : faces.at(vertex)) {
+        if (corner.next != other && corner.previous != other) continue;
+        const double slope =
+            slope_along(vertex, corner.next == other ? corner.previous : corner.next);
+        if (!(slope < least_slope)) continue;
+        least_slope = slope;
+        face = corner.face;
+      }
+    };
+    look_at(farthest, edge.to);
+    look_at(edge.to, farthest);
+    if (face != none) return of_face(face, farthest, flat);
     add_segment(flat, set_.place(farthest), set_.place(edge.to));
     return flat;
   }
