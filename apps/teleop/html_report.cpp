@@ -229,8 +229,10 @@ std::string summary(const RunResult& r) {
                ? ""
                : "overlaps by " + to_text(r.scene.measure) + "; ") +
           std::to_string(r.pairs) + " pairs; " + std::to_string(r.threads) +
-          " coprocessor threads" + (r.options.fast ? "; not by the clock" : "") +
-          (r.interrupted ? "; interrupted" : "") + "</p>\n";
+          " coprocessor threads" +
+          (r.threads > 0 ? " " + std::string(to_text(r.options.coprocessor)) : std::string()) +
+          (r.options.fast ? "; not by the clock" : "") + (r.interrupted ? "; interrupted" : "") +
+          "</p>\n";
   return html;
 }
 

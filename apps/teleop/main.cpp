@@ -34,6 +34,7 @@ struct Arguments {
   bool has_seconds = false;  ///< --seconds was given
   double rate_hz = 0.0;      ///< 0: the scene's own
   int threads = -1;          ///< -1: the scene's own
+  std::string coprocessor;   ///< empty: the scene's own
   teleop::RunOptions run;
   teleop::SessionOptions session;
   std::string replay;
@@ -215,6 +216,11 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--threads", a.threads,
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
       ->check(CLI::Range(0, 16));
+  app.add_option("--coprocessor", a.coprocessor,
+                 "What its threads do, at least one then: together, share the pairs of a tick with "
+                 "the tick's own thread, or beside, answer the last tick while this one goes on: "
+                 "the paper's way (default: the scene's)")
+      ->check(CLI::IsMember({"together", "beside"}));
   app.add_option("--budget", a.run.budget,
                  "In place of the scene's budget: support pairs per tick, none, or i860, the "
                  "processor of 1993, on which 4 by 8 parts all but fit at 400 Hz")
@@ -245,8 +251,8 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--replay", a.replay,
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
-                 "--budget", "--measure", "--levels", "--every-pair", "--tool-alone",
-                 "--plant-inertia", "--no-prediction", "--device");
+                 "--coprocessor", "--budget", "--measure", "--levels", "--every-pair",
+                 "--tool-alone", "--plant-inertia", "--no-prediction", "--device");
   app.footer(footer());
 }
 
@@ -284,7 +290,10 @@ Work work_of(const Arguments& arguments) {
     work.options = arguments.run;
     if (arguments.rate_hz <= 0.0) work.options.rate_hz = work.scene.rate_hz;
     if (arguments.rate_hz > 0.0) work.options.rate_hz = arguments.rate_hz;
-    work.options.threads = arguments.threads >= 0 ? arguments.threads : work.scene.budget.threads;
+    const auto mode = coprocessor_mode_named(arguments.coprocessor);
+    work.options.coprocessor = mode.value_or(work.scene.coprocessor);
+    const int threads = std::max(work.scene.budget.threads, mode ? 1 : 0);
+    work.options.threads = arguments.threads >= 0 ? arguments.threads : threads;
     const bool is_driven = arguments.session.view || !arguments.session.device.empty();
     if (is_driven && !arguments.has_seconds) work.options.seconds = 1e6;
   }

@@ -132,6 +132,7 @@ class McapLog final : public TickLog {
             {"rate_hz", to_text(options.rate_hz)},
             {"backend", options.backend},
             {"threads", std::to_string(options.threads)},
+            {"coprocessor", std::string(to_text(options.coprocessor))},
             {"budget", options.budget},
             {"measure", options.measure.empty() ? to_text(scene.measure) : options.measure},
             {"levels", std::to_string(options.levels > 0 ? options.levels : scene.levels)},

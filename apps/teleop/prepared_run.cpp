@@ -39,6 +39,7 @@ CoprocessorOptions coprocessor_options(const scene::Budget& budget, const RunOpt
   const nanoseconds period(std::llround(1e9 / options.rate_hz));
   CoprocessorOptions result;
   result.threads = options.threads;
+  result.mode = options.coprocessor;
   result.patience = period / 4;
   result.lock_step = options.fast;
   result.on_thread_start = options.fast ? &begin_worker_in_lock_step : &begin_worker;

@@ -185,6 +185,9 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     options.rate_hz = std::strtod(word("rate_hz").c_str(), nullptr);
     options.threads =
         static_cast<int>(std::clamp(std::strtol(word("threads").c_str(), nullptr, 10), -1L, 1000L));
+    // Older recordings do not have it.
+    options.coprocessor =
+        coprocessor_mode_named(word("coprocessor")).value_or(CoprocessorMode::together);
     options.backend = word("backend");
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";

@@ -287,10 +287,21 @@ void print_verdict(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.deadline.ticks()), 1e2 * response_us / period_us);
 }
 
-void print_workers(const WorkerReport& w, std::FILE* out) {
-  std::fprintf(
-      out, "  workers stood in for   in %lld ticks, longest %lld in a row, %d at the end\n",
-      static_cast<long long>(w.ticks), static_cast<long long>(w.longest_silence), w.stood_in);
+void print_workers(const RunResult& r, std::FILE* out) {
+  const WorkerReport& w = r.totals().workers;
+  const WorkerUsage& usage = r.worker_usage;
+  const auto count = [](std::int64_t n) { return static_cast<long long>(n); };
+  std::fprintf(out,
+               "  coprocessor threads    %d %s, at work in %lld ticks; oldest answer used %lld "
+               "ticks\n",
+               r.threads, std::string(to_text(r.options.coprocessor)).c_str(), count(w.shared),
+               count(w.oldest_age));
+  std::fprintf(out,
+               "  workers stood in for   in %lld ticks, longest %lld in a row, %d at the end; %lld "
+               "restarts\n",
+               count(w.ticks), count(w.longest_silence), w.stood_in, count(usage.restarts));
+  std::fprintf(out, "  workers disturbed      %lld page faults, %lld times off their processor\n",
+               count(usage.page_faults), count(usage.switches));
 }
 
 }  // namespace
@@ -326,7 +337,7 @@ void print_report(const RunResult& r, std::FILE* out) {
       "  stale pairs            most %d in a tick, oldest answer %lld ticks, given too much "
       "%.3g J\n",
       t.most_stale, static_cast<long long>(t.oldest_age), t.refresh_energy);
-  if (r.threads > 0) print_workers(t.workers, out);
+  if (r.threads > 0) print_workers(r, out);
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
     std::fprintf(out, "  wall budget            %g us, exceeded by the whole tick %lld times\n",
                  r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
@@ -410,9 +421,15 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["support_pairs_most"] = r.most_support_pairs;
   report["pairs_skipped_per_tick"] = r.pairs - host::per_tick(r.totals(), r.totals().near);
   report["skipped"] = unused_parts(r);
-  report["workers"] = {{"ticks_stood_in_for", r.totals().workers.ticks},
+  report["workers"] = {{"mode", to_text(r.options.coprocessor)},
+                       {"ticks_with_work", r.totals().workers.shared},
+                       {"oldest_answer_ticks", r.totals().workers.oldest_age},
+                       {"ticks_stood_in_for", r.totals().workers.ticks},
                        {"longest_silence_ticks", r.totals().workers.longest_silence},
-                       {"silent_at_end", r.totals().workers.stood_in}};
+                       {"silent_at_end", r.totals().workers.stood_in},
+                       {"restarts", r.worker_usage.restarts},
+                       {"page_faults", r.worker_usage.page_faults},
+                       {"switches", r.worker_usage.switches}};
   report["network_us"] = host::percentiles(r.network_time);
   report["device_damping_n_s_per_m"] = r.device_damping;
   report["stop"] = stop_ticks(r.totals());

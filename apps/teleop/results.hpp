@@ -83,8 +83,9 @@ struct RunResult {
   RunOptions options;
   scene::Scene scene;  ///< with the budget and the measure that were in force
   int pairs = 0;
-  int levels = 0;               ///< that the shapes were reduced in; 0: the measure needs none
-  int threads = 0;              ///< coprocessor threads that had work
+  int levels = 0;   ///< that the shapes were reduced in; 0: the measure needs none
+  int threads = 0;  ///< coprocessor threads that had work
+  WorkerUsage worker_usage;
   std::vector<ArmResult> arms;  ///< the arm of the scene itself, then its partners
   double device_damping = 0.0;  ///< [N s/m] minimum over the arms, at their tools at the start
   std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts that start

@@ -315,6 +315,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   if (grant.priority > 0) host::clear_own_processor();
   TickUsage usage;
   make_ticks(driven, attached, stop, result, observers, progress, usage);
+  result.worker_usage = cell.coprocessor().usage();
   cell.stop();
   for (std::size_t i = 0; i < cell.arms(); ++i) {
     result.arms[i].modules = module_results(cell.network(i));

@@ -26,7 +26,7 @@ bool has_master(const scene::Scene& scene, network::Master master) {
   });
 }
 
-/// Threads for which there is no block of pairs are not started.
+/// Threads for which there are no pairs, or no processor, are not started.
 std::string unused_threads(const RunResult& r) {
   if (r.threads == 0) return "coprocessor threads";
   const int unused = r.options.threads - r.threads;

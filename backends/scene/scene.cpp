@@ -418,7 +418,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   const Value document = Value::document(yaml, file);
   const Map map(document);
   map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "partners",
-             "budget", "start_inside", "tool_speed", "measure", "levels"});
+             "budget", "coprocessor", "start_inside", "tool_speed", "measure", "levels"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -437,6 +437,15 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, counted);
   scene.partners = partners_of(map, shared);
   scene.budget = budget_of(map);
+  if (const Value* mode = map.find("coprocessor")) {
+    const auto& names = coprocessor_mode_names;
+    const std::string word = mode->word_of({names.begin(), names.end()});
+    scene.coprocessor = *coprocessor_mode_named(word);
+    // Whoever names it wants it; how many threads it has may still be said.
+    const bool has_threads =
+        map.find("budget") != nullptr && Map(*map.find("budget")).find("threads");
+    if (!has_threads) scene.budget.threads = 1;
+  }
   return scene;
 }
 

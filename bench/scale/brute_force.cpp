@@ -28,10 +28,6 @@ BruteForce::BruteForce(const Scene& scene)
     s.radius[s.count] = static_cast<float>(part.shape.reach() + scene.law().range + 2e-5);
     ++s.count;
   }
-  // Forces are summed in the order of the coprocessor, so that sums can be bitwise equal.
-  on_body_of_.resize(
-      detail::PairPartition::blocks_of(scene.setting().pairs, scene.setting().most_threads),
-      on_body_);
 }
 
 void BruteForce::place(std::span<const Placement> placements) {
@@ -93,10 +89,8 @@ void BruteForce::push(std::int32_t pair, const Separation& s) {
   const double distance = (s.lower > 0.0 ? s.lower : s.distance) - patch.nearer;
   const Twist v_BA{v_A.linear - v_B.linear, v_A.angular - v_B.angular};
   const Wrench on_a = law(distance, power(patch.gradient, v_BA)) * patch.gradient;
-  std::vector<Wrench>& on_body =
-      on_body_of_[detail::PairPartition::block_of({pair}, static_cast<int>(on_body_of_.size()))];
-  on_body[a] += moved_to(on_a, p_QA);
-  on_body[b] += moved_to(-1.0 * on_a, p_QB);
+  on_body_[a] += moved_to(on_a, p_QA);
+  on_body_[b] += moved_to(-1.0 * on_a, p_QB);
 }
 
 void BruteForce::tick(std::span<const Placement> placements) {
@@ -108,17 +102,13 @@ void BruteForce::tick(std::span<const Placement> placements) {
     return true;
   });
   std::sort(found_.begin(), found_.end());
-  for (auto& block : on_body_of_) std::fill(block.begin(), block.end(), Wrench{});
+  std::fill(on_body_.begin(), on_body_.end(), Wrench{});
   for (const std::int32_t pair : found_) {
     const Separation s = ask(pair, warm_[pair]);
     if (!(s.distance < scene_.law().range)) continue;
     within_.push_back(pair);
     overlapping_ += s.distance < 0.0 ? 1 : 0;
     push(pair, s);
-  }
-  std::fill(on_body_.begin(), on_body_.end(), Wrench{});
-  for (const auto& block : on_body_of_) {
-    for (std::size_t i = 0; i < on_body_.size(); ++i) on_body_[i] += block[i];
   }
 }
 

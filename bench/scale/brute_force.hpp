@@ -62,7 +62,6 @@ class BruteForce {
   std::vector<std::int32_t> found_;
   std::vector<std::int32_t> within_;
   std::vector<Wrench> on_body_;
-  std::vector<std::vector<Wrench>> on_body_of_;  ///< by block of the summation
   std::int64_t asked_ = 0;
   std::int64_t overlapping_ = 0;
 };

@@ -26,7 +26,7 @@ bool is_crowded(const Scene& scene) {
 
 Scene crowded_scene(const Setting& setting) {
   Scene scene(setting);
-  double low = 0.02;
+  double low = 0.002;
   double high = 20.0;
   while (high > 1.01 * low) {
     const double middle = std::sqrt(low * high);

@@ -29,6 +29,8 @@ struct Run {
   double evaluated = 0.0;  ///< mean per tick
   double setup = 0.0;      ///< [s]
   double bytes = 0.0;      ///< heap growth during set-up
+  WorkerReport workers{};
+  WorkerUsage usage{};
   Record record{};
   Check check{};       ///< against brute force
   Check every_pair{};  ///< against repel evaluating every pair at every tick
@@ -59,6 +61,8 @@ struct Truth {
 [[nodiscard]] Truth truth_of(const Scene& scene, int ticks);
 
 /// Compares forces if both have forces, else the pairs within range, over the ticks that both have.
-[[nodiscard]] Check compare(const Record& record, const Record& truth, std::size_t bodies);
+/// @param more the record may have more pairs than are within range, but must have all that are
+[[nodiscard]] Check compare(const Record& record, const Record& truth, std::size_t bodies,
+                            bool more = false);
 
 }  // namespace repel::scale

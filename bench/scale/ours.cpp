@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <repel/schedule/coprocessor.hpp>
 
 #include "method.hpp"
@@ -16,10 +19,21 @@ class Ours final : public Method {
     for (const Placement& p : placements) world_.place(p.body, p.X_WB, p.V_WB);
     forces_ = &coprocessor_.exchange();
   }
+  void settle() noexcept override { (void)coprocessor_.wait_for_answer(std::chrono::seconds(1)); }
   void note(Record& record) const override {
-    record.on_body.insert(record.on_body.end(), forces_->on_body.begin(), forces_->on_body.end());
+    if (coprocessor_.mode() == CoprocessorMode::together || coprocessor_.threads() == 0) {
+      record.on_body.insert(record.on_body.end(), forces_->on_body.begin(), forces_->on_body.end());
+      return;
+    }
+    const auto first = static_cast<std::ptrdiff_t>(record.within.size());
+    coprocessor_.for_each_near(
+        [&](const NearPair& near) { record.within.push_back(near.pair.index); });
+    std::sort(record.within.begin() + first, record.within.end());
+    record.end.push_back(record.within.size());
   }
   [[nodiscard]] int evaluated() const override { return forces_->totals.evaluated; }
+  [[nodiscard]] WorkerReport workers() const override { return coprocessor_.workers(); }
+  [[nodiscard]] WorkerUsage usage() const override { return coprocessor_.usage(); }
 
  private:
   World world_;
@@ -29,8 +43,11 @@ class Ours final : public Method {
 
 Way way(const std::string& name, const CoprocessorOptions& options) {
   return {.name = name,
-          .settings = "World::place and Coprocessor::exchange, in lock step where threads work",
+          .settings =
+              "World::place and Coprocessor::exchange; beside, each tick begins when the "
+              "threads have answered the last",
           .threads = options.threads,
+          .mode = options.mode,
           .ours = true,
           .every_pair = options.every_pair,
           .load = [=](const Scene& scene) { return std::make_unique<Ours>(scene, options); }};
@@ -38,11 +55,13 @@ Way way(const std::string& name, const CoprocessorOptions& options) {
 
 }  // namespace
 
-Way ours(int threads) {
+Way ours(int threads, CoprocessorMode mode) {
   CoprocessorOptions options;
   options.threads = threads;
-  options.lock_step = true;
-  return way("repel", options);
+  options.mode = mode;
+  options.period = std::chrono::nanoseconds(std::llround(1e9 * Scene::period));
+  const bool beside = threads > 0 && mode == CoprocessorMode::beside;
+  return way(beside ? "repel, beside" : "repel", options);
 }
 
 Way every_pair() {

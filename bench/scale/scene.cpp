@@ -84,8 +84,9 @@ Scene::Scene(const Setting& setting)
     : setting_(setting), tool_parts_(tool_parts_for(setting.pairs)) {
   Rng rng(setting.seed);
   for (int i = 0; i < tool_parts_; ++i) {
-    parts_.push_back({"tool part", tool, draw_shape(rng, i % 2 == 0, 0.02),
-                      placed(rng, tool_radius(tool_parts_) * in_ball(rng))});
+    const Shape shape = draw_shape(rng, i % 2 == 0, 0.02);
+    tool_places_.push_back(in_ball(rng));
+    parts_.push_back({"tool part", tool, shape, placed(rng, Vec3::Zero())});
   }
   const int obstacles = (setting.pairs + tool_parts_ - 1) / tool_parts_;
   riding_ = std::min(riders, obstacles / 8);
@@ -99,12 +100,17 @@ Scene::Scene(const Setting& setting)
 }
 
 void Scene::spread(double radius) {
+  // Where the obstacles cannot come any closer, the parts of the tool do.
+  const double shrunk = std::min(1.0, radius / closest);
+  for (int i = 0; i < tool_parts_; ++i) {
+    parts_[i].X_BP.translation() = shrunk * tool_radius(tool_parts_) * tool_places_[i];
+  }
   for (int i = 0; i < obstacles(); ++i) {
     Part& part = parts_[tool_parts_ + i];
     const double share = part.body == World::fixed ? 1.0 : 1.0 * riding_ / obstacles();
     part.X_BP.translation() = std::cbrt(share) * radius * places_[i];
   }
-  const double region = std::clamp(0.4 * radius, 0.08, 0.4);
+  const double region = std::clamp(0.4 * radius, 0.08 * shrunk, 0.4);
   Rng rng(setting_.seed);
   paths_.clear();
   paths_.emplace_back(Vec3::Zero(), region, setting_.speed, rng());

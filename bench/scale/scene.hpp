@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::scale {
@@ -16,6 +17,7 @@ struct Setting {
   double near = 3.0;  ///< target for the mean number of pairs within range
   int ticks = 10000;
   int threads = 0;
+  CoprocessorMode mode = CoprocessorMode::together;
   int most_threads = 2;  ///< Limits::threads of the world; also the largest of the sweep
   int bodies = 2;        ///< moving bodies: the tool, and bodies that carry obstacles
   double speed = 0.28;   ///< [m/s] of the tool, root mean square
@@ -63,6 +65,7 @@ class Scene {
  public:
   static constexpr double period = 0.0025;  ///< [s] of a tick
   static constexpr double range = 0.03;     ///< [m] of the force
+  static constexpr double closest = 0.02;   ///< [m] radius below which the tool shrinks, too
 
   /// Draws the parts. The obstacles have no place before `spread`.
   explicit Scene(const Setting& setting);
@@ -94,8 +97,8 @@ class Scene {
   int tool_parts_;
   int riding_ = 0;  ///< obstacles on each moving body
   std::vector<Part> parts_;
-  std::vector<Vec3> places_;  ///< of the obstacles, in a ball of radius 1
-  std::vector<Path> paths_;   ///< by body, without the fixed one
+  std::vector<Vec3> tool_places_, places_;  ///< of tool parts and obstacles, in balls of radius 1
+  std::vector<Path> paths_;                 ///< by body, without the fixed one
   mutable std::vector<Placement> placements_;
 };
 

@@ -115,15 +115,16 @@ TEST(Replay, ReportSaysWhatTheRunDidWithout) {
     EXPECT_TRUE(plates.contains(part)) << part;
   }
   const auto full =
-      skipped("--threads 1 --budget 9 --seconds 0.1 --log " + quoted(folder / "log.csv"));
+      skipped("--coprocessor beside --budget 9 --seconds 0.1 --log " + quoted(folder / "log.csv"));
   for (const char* part : {"coprocessor threads", "passable bodies", "torque arm", "log",
                            "space ball", "counted budget"}) {
     EXPECT_FALSE(full.contains(part)) << part;
   }
   // There is no work for them.
   EXPECT_TRUE(skipped("empty --threads 2 --fast --seconds 0.1").contains("coprocessor threads"));
-  EXPECT_TRUE(skipped("--tool-alone --threads 2 --fast --seconds 0.1")
-                  .contains("1 of 2 coprocessor threads"));
+  EXPECT_TRUE(
+      skipped("--tool-alone --threads 2 --fast --seconds 0.1").contains("coprocessor threads"));
+  EXPECT_TRUE(skipped("--threads 2 --fast --seconds 0.1").contains("1 of 2 coprocessor threads"));
 }
 
 TEST(Replay, ThreadsHaveNames) {

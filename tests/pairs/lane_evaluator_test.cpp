@@ -34,7 +34,10 @@ struct EveryPair {
     for (int slot = 0; slot < count(); ++slot) {
       if (!is_in_lane(slot)) others.push_back(slot);
     }
-    for (int g = 0; evaluated && g < lanes.groups(); ++g) lanes.evaluate_group(g, motion, poses);
+    PairTotals& totals = singles.forces().totals;
+    for (int g = 0; evaluated && g < lanes.groups(); ++g) {
+      lanes.evaluate_group(g, motion, poses, totals);
+    }
     for (const int slot : others) {
       if (evaluated) singles.evaluate(slot, motion, poses);
     }

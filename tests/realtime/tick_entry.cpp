@@ -19,8 +19,16 @@ void one_update(SliderKinematics& kinematics, std::span<const double> q) noexcep
 }
 
 /// The work of a coprocessor thread in a tick.
-void one_answer(detail::WorkerShare& worker, Mailbox<Motion>& inbox) noexcept {
-  if (inbox.take()) worker.run(inbox.newest());
+bool one_answer(detail::SharedTick& pairs, detail::Evaluator& evaluator) noexcept {
+  return pairs.work(evaluator);
+}
+/// The work of a thread that leads others, and its answer.
+void one_whole_answer(detail::PairTeam& team, Mailbox<Motion>& inbox,
+                      Mailbox<detail::WholeAnswer>& outbox) noexcept {
+  if (!inbox.take()) return;
+  (void)team.run(inbox.newest());
+  outbox.draft().fill(team.pairs(), inbox.newest(), 1);
+  outbox.post();
 }
 
 /// The additional work of the loop around the tick.

@@ -8,7 +8,7 @@
 
 #include <thread>
 
-#include <repel/schedule/worker_share.hpp>
+#include <repel/schedule/pair_team.hpp>
 
 #include "heap_guard.hpp"
 #include "loop/slider.hpp"
@@ -152,14 +152,16 @@ TEST_F(SystemCallsOfTheTick, AreNoneWhenItWaitsForThreadsByTheClock) {
 TEST_F(SystemCallsOfTheTick, AreNoneInTheWorkOfACoprocessorThreadWhateverItsBudget) {
   for (const Budget& budget : {Budget{}, Budget{.work_units = 30}, Budget{.wall = 10us}}) {
     test::Boxes boxes(4, 60, {.range = 0.1}, 3);
-    detail::WorkerShare worker(boxes.world, std::make_shared<detail::PairIndex>(boxes.world),
-                               budget, 0, 1);
-    worker.prime(boxes.world.motion());
+    CoprocessorOptions options;
+    options.budget = budget;
+    detail::PairTeam team(boxes.world, std::make_shared<detail::PairIndex>(boxes.world),
+                          detail::PartPoses(boxes.world), options, 0, 0, 0.0);
+    team.prime(boxes.world.motion());
     const std::int64_t counted = calls_of([&] {
       for (int tick = 0; tick < 200; ++tick) {
         boxes.move();
         const SystemCallGuard guard;
-        worker.run(boxes.world.motion());
+        (void)team.run(boxes.world.motion());
       }
     });
     EXPECT_EQ(counted, 0);

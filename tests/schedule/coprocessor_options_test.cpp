@@ -7,6 +7,8 @@
 
 #include <repel/schedule/coprocessor.hpp>
 
+#include "pairs/boxes.hpp"
+
 namespace repel {
 namespace coprocessor_options_test {
 
@@ -25,17 +27,24 @@ std::atomic<unsigned> started{0};
 
 TEST(CoprocessorOptions, CallsTheStartFunctionInEachWorker) {
   started = 0;
-  World world;
+  const test::Boxes boxes(4, 48, {}, 1);  // enough pairs for three threads
   CoprocessorOptions options;
   options.threads = 3;
   options.lock_step = true;
   options.on_thread_start = [](int index) noexcept { started |= 1U << index; };
-  Coprocessor coprocessor(world, options);
+  Coprocessor coprocessor(boxes.world, options);
   const auto until = std::chrono::steady_clock::now() + 10s;
   while (started != 7U && std::chrono::steady_clock::now() < until) {
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_EQ(started, 7U);
+}
+
+TEST(CoprocessorOptions, ModesHaveNames) {
+  for (const CoprocessorMode mode : {CoprocessorMode::together, CoprocessorMode::beside}) {
+    EXPECT_EQ(coprocessor_mode_named(to_text(mode)), mode);
+  }
+  EXPECT_FALSE(coprocessor_mode_named("elsewhere"));
 }
 
 }  // namespace coprocessor_options_test

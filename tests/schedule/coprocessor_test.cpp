@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "pairs/boxes.hpp"
@@ -25,6 +26,12 @@ CoprocessorOptions lock_step(int threads, const Budget& budget = {}) {
   options.threads = threads;
   options.budget = budget;
   options.lock_step = true;
+  return options;
+}
+
+CoprocessorOptions beside(int threads) {
+  CoprocessorOptions options = lock_step(threads);
+  options.mode = CoprocessorMode::beside;
   return options;
 }
 
@@ -51,22 +58,36 @@ void expect_same_bits(const PairForces& a, const PairForces& b, const std::strin
   ASSERT_EQ(a.totals.hardest_pair, b.totals.hardest_pair);
 }
 
-/// The forces of every tick of one motion of 4 x 80 boxes.
-std::vector<PairForces> replay(int threads, const Budget& budget) {
-  test::Boxes boxes(4, 80, {.range = 0.05}, seed);
-  Coprocessor coprocessor(boxes.world, lock_step(threads, budget));
+/// The forces of every tick of one motion of 4 x 160 boxes.
+std::vector<PairForces> replay(const CoprocessorOptions& options) {
+  test::Boxes boxes(4, 160, {.range = 0.15}, seed);
+  Coprocessor coprocessor(boxes.world, options);
+  EXPECT_EQ(coprocessor.threads(), options.threads);
   std::vector<PairForces> run;
   for (int tick = 0; tick < 120; ++tick) {
     boxes.move();
     run.push_back(coprocessor.exchange());
     EXPECT_FALSE(coprocessor.late());
   }
+  const bool counted = options.budget.work_units > 0;
+  EXPECT_EQ(coprocessor.workers().shared > 0, options.threads > 0 && !counted);
   return run;
+}
+
+void expect_same_bits(const std::vector<PairForces>& a, const std::vector<PairForces>& b,
+                      int threads) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t tick = 0; tick < a.size(); ++tick) {
+    expect_same_bits(a[tick], b[tick],
+                     std::to_string(threads) + " threads, tick " + std::to_string(tick) +
+                         ", seed " + std::to_string(seed));
+    if (testing::Test::HasFatalFailure()) return;
+  }
 }
 
 TEST(Coprocessor, AnyNumberOfThreadsGivesTheSameBits) {
   for (const std::int64_t units : {0, 60}) {
-    const auto alone = replay(0, {.work_units = units});
+    const auto alone = replay(lock_step(0, {.work_units = units}));
     std::int64_t stale = 0;
     double peak = 0.0;
     for (const PairForces& forces : alone) {
@@ -76,13 +97,7 @@ TEST(Coprocessor, AnyNumberOfThreadsGivesTheSameBits) {
     EXPECT_EQ(stale > 0, units > 0) << "the budget is meant to bind, seed " << seed;
     EXPECT_GT(peak, 0.0);
     for (const int threads : {1, 2, 3}) {
-      const auto shared = replay(threads, {.work_units = units});
-      for (std::size_t tick = 0; tick < alone.size(); ++tick) {
-        expect_same_bits(alone[tick], shared[tick],
-                         std::to_string(threads) + " threads, tick " + std::to_string(tick) +
-                             ", seed " + std::to_string(seed));
-        if (testing::Test::HasFatalFailure()) return;
-      }
+      expect_same_bits(alone, replay(lock_step(threads, {.work_units = units})), threads);
     }
   }
 }
@@ -204,7 +219,7 @@ TEST(Coprocessor, SkippingChangesNoBit) {
 }
 
 TEST(Coprocessor, ForcesAreThoseOfAllPairsWhenMemoryIsShort) {
-  for (const int candidates : {0, 4, 20}) {
+  for (const int candidates : {0, 4, 10}) {
     for (const int threads : {0, 2}) {
       (void)expect_forces_of_all_pairs(threads, {.candidates = candidates}, true);
     }
@@ -238,18 +253,28 @@ TEST(Coprocessor, WorldWithoutPairsGivesNoForce) {
   }
 }
 
-/// The same pairs evaluated by threads and by the caller, on one motion.
+/// The same pairs evaluated with threads and by the caller alone, on one motion.
 struct Both {
   explicit Both(const CoprocessorOptions& options, int obstacles = 40)
       : boxes(4, obstacles, {.range = 0.2}, seed),
         here(boxes.world, lock_step(0)),
         there(boxes.world, options) {}
 
-  /// One tick; the forces must be those of its motion, whichever thread computed them.
+  /// One tick together; the forces must be those of its motion, whichever thread computed them.
   void tick() {
     boxes.move();
     const PairForces& expected = here.exchange();
+    expect_same_forces(expected, there.exchange());
+  }
+  /// One tick beside; an answer that is not widened must be that of its motion.
+  void tick_beside() {
+    boxes.move();
+    const PairForces& expected = here.exchange();
     const PairForces& forces = there.exchange();
+    EXPECT_EQ(forces.tick, boxes.world.motion().tick);
+    if (there.workers().age == 0) expect_same_forces(expected, forces);
+  }
+  void expect_same_forces(const PairForces& expected, const PairForces& forces) const {
     EXPECT_EQ(forces.tick, boxes.world.motion().tick);
     EXPECT_EQ(forces.totals.evaluated, forces.totals.near);
     for (std::size_t body = 0; body < expected.on_body.size(); ++body) {
@@ -274,29 +299,21 @@ bool comes_true(Condition&& condition) {
   return true;
 }
 
-/// Runs ticks until no worker is late.
-template <class Cell>
-bool is_on_time(Cell& cell) {
-  return comes_true([&] {
-    cell.tick();
-    return !cell.there.late();
-  });
-}
-
 TEST(Coprocessor, WhoeverIsLateTheForcesAreThoseOfThisMotion) {
   CoprocessorOptions options;
   options.threads = 1;
+  options.processors = 2;
   options.patience = 0ns;
   Both both(options, 1000);
-  // No patience: four thousand pairs cannot be evaluated between two statements.
-  int late = 0;
-  for (int tick = 0; tick < 20; ++tick) {
+  // No patience: sooner or later a thread is within a batch when the caller has no more to do.
+  std::int64_t late = 0;
+  EXPECT_TRUE(comes_true([&] {
     both.tick();
     late += both.there.late() ? 1 : 0;
     EXPECT_EQ(both.there.workers().stood_in, both.there.late() ? 1 : 0);
     EXPECT_EQ(both.there.workers().ticks, late);
-  }
-  EXPECT_GT(late, 0);
+    return late > 3;
+  }));
 }
 
 TEST(Coprocessor, NoPatienceAndNoPeriodAreDefined) {
@@ -304,12 +321,36 @@ TEST(Coprocessor, NoPatienceAndNoPeriodAreDefined) {
   const std::pair<std::chrono::nanoseconds, std::chrono::nanoseconds> waits[] = {
       {0ns, 0ns}, {-1s, -1s}, {-most, most}, {most, -most}};
   for (const auto& [patience, period] : waits) {
-    CoprocessorOptions options;
-    options.threads = 2;
-    options.patience = patience;
-    options.period = period;
-    Both both(options);
-    for (int tick = 0; tick < 20; ++tick) both.tick();
+    for (const CoprocessorMode mode : {CoprocessorMode::together, CoprocessorMode::beside}) {
+      CoprocessorOptions options;
+      options.threads = 2;
+      options.mode = mode;
+      options.processors = 3;
+      options.patience = patience;
+      options.period = period;
+      Both both(options);
+      for (int tick = 0; tick < 20; ++tick) both.tick_beside();
+    }
+  }
+}
+
+// A thread that has no processor of its own would only take that of the caller.
+TEST(Coprocessor, StartsNoMoreThreadsThanHaveProcessorsAndPairs) {
+  const test::Boxes boxes(4, 48, {}, seed);  // enough for three threads
+  for (const CoprocessorMode mode : {CoprocessorMode::together, CoprocessorMode::beside}) {
+    for (const int processors : {1, 2, 3, 8}) {
+      CoprocessorOptions options;
+      options.threads = 3;
+      options.mode = mode;
+      options.processors = processors;
+      const int least = mode == CoprocessorMode::beside ? 1 : 0;
+      EXPECT_EQ(Coprocessor(boxes.world, options).threads(), std::clamp(processors - 1, least, 3));
+    }
+    const World empty;
+    EXPECT_EQ(Coprocessor(empty, beside(2)).threads(), 0);
+    const test::Boxes few(1, 63, {}, seed);
+    EXPECT_EQ(Coprocessor(few.world, lock_step(2)).threads(), 0);
+    EXPECT_EQ(Coprocessor(few.world, beside(2)).threads(), 1);
   }
 }
 
@@ -319,10 +360,13 @@ struct Threads {
   static inline std::atomic<int> started{0};
   static inline std::atomic<int> caught{0};
   static inline std::atomic<bool> held{false};
+  static inline std::atomic<int> gone_on{0};
 
   /// @param handler of SIGUSR1 while this object lives
   explicit Threads(void (*handler)(int)) {
     started = 0;
+    caught = 0;
+    gone_on = 0;
     struct sigaction action {};
     action.sa_handler = handler;
     sigaction(SIGUSR1, &action, &before_);
@@ -331,10 +375,12 @@ struct Threads {
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
 
-  [[nodiscard]] static CoprocessorOptions options(int threads, const Budget& budget = {}) {
+  [[nodiscard]] static CoprocessorOptions options(
+      int threads, CoprocessorMode mode = CoprocessorMode::together) {
     CoprocessorOptions options;
     options.threads = threads;
-    options.budget = budget;
+    options.mode = mode;
+    options.processors = threads + 1;
     options.period = 1ms;
     options.patience = 5ms;
     options.on_thread_start = [](int index) noexcept {
@@ -343,27 +389,31 @@ struct Threads {
     };
     return options;
   }
-  /// Sends the signal to the last thread and waits until it is handled.
-  /// @param meanwhile called until then: ThreadSanitizer hands a signal over when the thread calls
-  /// the library of C, which one that sleeps for want of ticks never does
+  /// Sends the signal to a thread at some moment while `meanwhile` is called again and again.
+  /// Returns when it is handled.
   template <class Meanwhile>
-  [[nodiscard]] static bool strike(int threads, Meanwhile&& meanwhile) {
-    if (!comes_true([&] { return started == threads; })) return false;
+  [[nodiscard]] static bool strike(int index, Meanwhile&& meanwhile) {
     const int before = caught;
     held = true;
-    return pthread_kill(ids[threads - 1], SIGUSR1) == 0 && comes_true([&] {
-             meanwhile();
-             return caught > before;
-           });
-  }
-  [[nodiscard]] static bool strike(int threads) {
-    return strike(threads, [] {});
+    const std::jthread sender([index] {
+      std::this_thread::sleep_for(1ms);
+      pthread_kill(ids[index], SIGUSR1);
+    });
+    const auto until = std::chrono::steady_clock::now() + 60s;
+    while (caught == before && std::chrono::steady_clock::now() < until) meanwhile();
+    return caught > before;
   }
 
   static void hold(int /*signal*/) {
     ++caught;
     const timespec moment{0, 100000};
     while (held) nanosleep(&moment, nullptr);
+    ++gone_on;
+  }
+  /// Lets a held thread go on.
+  [[nodiscard]] static bool release() {
+    held = false;
+    return comes_true([] { return gone_on == caught; });
   }
   /// Ends this thread only, without any notification.
   static void leave(int /*signal*/) {
@@ -375,70 +425,80 @@ struct Threads {
   struct sigaction before_ {};
 };
 
-/// Runs ticks during which the last worker cannot answer.
-void expect_late(Both& both, int threads, int ticks) {
-  const std::int64_t before = both.there.workers().ticks;
-  const std::int64_t silent = both.there.workers().silence;
-  for (int k = 1; k <= ticks; ++k) {
-    SCOPED_TRACE(families::of_seed(seed, "tick", k));
-    both.tick();
-    const WorkerReport& workers = both.there.workers();
-    ASSERT_TRUE(both.there.late());
-    ASSERT_GE(workers.stood_in, 1);
-    ASSERT_LE(workers.stood_in, threads);
-    ASSERT_EQ(workers.silence, silent + k);
-    ASSERT_GE(workers.longest_silence, k);
-    ASSERT_EQ(workers.ticks, before + k);
-  }
-}
-
-// At any point: in the middle of a pair, in a mailbox, asleep.
-TEST(Coprocessor, StalledWorkerHasASubstituteUntilItGoesOn) {
+// At any point: in the middle of a pair, between batches, asleep.
+TEST(Coprocessor, StalledThreadIsStoodInForUntilItGoesOn) {
   for (const int threads : {1, 2}) {
     const Threads watched(&Threads::hold);
-    Both both(Threads::options(threads));
-    for (int round = 0; round < 5; ++round) {
-      ASSERT_TRUE(is_on_time(both)) << "round " << round;
-      EXPECT_EQ(both.there.workers().stood_in, 0);
-      EXPECT_EQ(both.there.workers().silence, 0);
-      ASSERT_TRUE(Threads::strike(threads, [&] { both.tick(); }));
-      expect_late(both, threads, 10);
-      Threads::held = false;
-    }
-    EXPECT_TRUE(is_on_time(both));
+    Both both(Threads::options(threads), 400);
+    ASSERT_TRUE(comes_true([&] { return Threads::started == threads; }));
+    int stalls = 0;  // within a batch; elsewhere nobody waits for it
+    EXPECT_TRUE(comes_true([&] {
+      both.tick();
+      EXPECT_TRUE(Threads::strike(threads - 1, [&] { both.tick(); }));
+      const std::int64_t silence = both.there.workers().silence;
+      const std::int64_t before = both.there.workers().ticks;
+      for (int k = 1; k <= 10; ++k) {
+        both.tick();
+        if (silence == 0) continue;
+        EXPECT_TRUE(both.there.late());
+        EXPECT_EQ(both.there.workers().silence, silence + k);
+        EXPECT_EQ(both.there.workers().ticks, before + k);
+      }
+      stalls += silence > 0 ? 1 : 0;
+      EXPECT_TRUE(Threads::release());
+      return stalls >= 1 || HasFailure();
+    }));
+    EXPECT_TRUE(comes_true([&] {
+      both.tick();
+      return !both.there.late();
+    }));
     EXPECT_GE(both.there.workers().longest_silence, 10);
   }
 }
 
-TEST(Coprocessor, KilledWorkerHasASubstituteFromThenOn) {
+TEST(Coprocessor, KilledThreadIsReplaced) {
 #ifdef REPEL_SANITIZED
   GTEST_SKIP() << "a sanitizer waits for every thread to say that it ends";
 #endif
-  for (const int threads : {1, 2}) {
-    const Threads watched(&Threads::leave);
-    Both both(Threads::options(threads));
-    ASSERT_TRUE(is_on_time(both));
-    ASSERT_TRUE(Threads::strike(threads));
-    expect_late(both, threads, 40);
-    // The others continue.
-    EXPECT_TRUE(comes_true([&] {
-      both.tick();
-      return both.there.workers().stood_in == 1;
-    }));
-    both.there.stop();
-    for (std::int32_t i = 0; i < 160; ++i) {
-      const double peak = both.here.extremes_of({i}).peak_force;
-      EXPECT_NEAR(both.there.extremes_of({i}).peak_force, peak, 1e-9 * (1.0 + peak));
+  for (const CoprocessorMode mode : {CoprocessorMode::together, CoprocessorMode::beside}) {
+    for (const int threads : {1, 2}) {
+      const Threads watched(&Threads::leave);
+      Both both(Threads::options(threads, mode), 400);
+      ASSERT_TRUE(comes_true([&] { return Threads::started == threads; }));
+      for (int victim = 0; victim < threads; ++victim) {
+        SCOPED_TRACE(std::string(to_text(mode)) + ", thread " + std::to_string(victim));
+        const std::int64_t restarts = both.there.usage().restarts;
+        const auto tick = [&] {
+          mode == CoprocessorMode::together ? both.tick() : both.tick_beside();
+        };
+        ASSERT_TRUE(Threads::strike(victim, tick));
+        EXPECT_TRUE(comes_true([&] {
+          tick();
+          return both.there.usage().restarts > restarts;
+        }));
+        EXPECT_TRUE(comes_true([&] {
+          tick();
+          return !both.there.late();
+        }));
+        const std::int64_t shared = both.there.workers().shared;
+        EXPECT_TRUE(comes_true([&] {
+          tick();
+          return both.there.workers().shared > shared + 20 && !both.there.late();
+        }));
+      }
+      both.there.stop();
+      for (std::int32_t i = 0; i < 160 && mode == CoprocessorMode::together; ++i) {
+        const double peak = both.here.extremes_of({i}).peak_force;
+        EXPECT_NEAR(both.there.extremes_of({i}).peak_force, peak, 1e-9 * (1.0 + peak));
+      }
     }
   }
 }
 
 /// Ten times as many pairs as the budget covers.
 struct Overload {
-  Overload(int threads, bool by_the_clock)
-      : boxes(4, 64, {.range = 2.0}, seed),
-        there(boxes.world,
-              by_the_clock ? Threads::options(threads, tenth()) : lock_step(threads, tenth())) {}
+  explicit Overload(int threads)
+      : boxes(4, 64, {.range = 2.0}, seed), there(boxes.world, lock_step(threads, tenth())) {}
 
   void tick() {
     boxes.move();
@@ -461,23 +521,20 @@ struct Overload {
   PairTotals totals;
 };
 
-// A block of 64 pairs evaluates at least one of them in each tick.
-constexpr std::int64_t longest_wait = detail::PairPartition::run;
-
 TEST(Coprocessor, OverloadIsAnsweredInTurnAndEnds) {
   for (const int threads : {0, 2}) {
-    Overload overload(threads, false);
+    Overload overload(threads);
     std::int64_t stale = 0;
     for (int tick = 0; tick < 300; ++tick) {
       overload.tick();
-      ASSERT_LE(overload.totals.oldest_age, longest_wait) << "tick " << tick << ", seed " << seed;
+      ASSERT_LE(overload.totals.oldest_age, 64) << "tick " << tick << ", seed " << seed;
       stale += overload.totals.stale;
     }
     EXPECT_GT(stale, 300 * 128);
     Pose away = Pose::Identity();
     away.translation().x() = 10.0;
     World& world = overload.boxes.world;
-    for (int tick = 0; tick <= longest_wait; ++tick) {
+    for (int tick = 0; tick <= 64; ++tick) {
       ++world.motion().tick;
       ASSERT_TRUE(world.place(overload.boxes.tool, away, {}));
       overload.totals = overload.there.exchange().totals;
@@ -488,32 +545,9 @@ TEST(Coprocessor, OverloadIsAnsweredInTurnAndEnds) {
   }
 }
 
-// Neither a substitute nor a worker that is in time again starts with outdated answers, whose
-// distances are reduced by all the motion since.
-TEST(Coprocessor, ChangingPlacesUnderOverloadBringsNoOldAnswers) {
-  constexpr int ticks = 200;
-  const Threads watched(&Threads::hold);
-  Overload overload(2, true);
-  std::int64_t oldest = 0;
-  const auto run = [&] {
-    for (int tick = 0; tick < ticks; ++tick) {
-      overload.tick();
-      oldest = std::max(oldest, overload.totals.oldest_age);
-    }
-  };
-  run();
-  ASSERT_TRUE(Threads::strike(2));
-  run();
-  EXPECT_GE(overload.there.workers().silence, ticks);
-  Threads::held = false;
-  EXPECT_TRUE(is_on_time(overload));
-  run();
-  EXPECT_LE(oldest, 2 * longest_wait) << "seed " << seed;
-}
-
-// Two bodies that move together keep their distance, however far they jump. A worker that saw them
+// Two bodies that move together keep their distance, however far they jump. A thread that saw them
 // at different ticks would report another distance.
-TEST(Coprocessor, WorkersNeverSeeAMixOfTwoTicks) {
+TEST(Coprocessor, ThreadsNeverSeeAMixOfTwoTicks) {
   World world;
   const BodyId a = world.add_body("a");
   const BodyId b = world.add_body("b");
@@ -522,24 +556,145 @@ TEST(Coprocessor, WorkersNeverSeeAMixOfTwoTicks) {
   const PartId ball_a = world.add_part(a, "a", Shape::sphere(0.1));
   const PartId ball_b = world.add_part(b, "b", Shape::sphere(0.1), X_BP);
   for (int i = 0; i < 192; ++i) world.add_pair(ball_a, ball_b, {.range = 0.02});
-  CoprocessorOptions options;
-  options.threads = 2;
-  options.period = 100us;
-  options.patience = 20us;
-  Coprocessor coprocessor(world, options);
-  families::Rng random(seed);
-  int answered = 0;
-  for (int tick = 0; tick < 20000; ++tick) {
-    Pose X = Pose::Identity();
-    X.translation() = families::uniform(random, 0.0, 5.0) * families::direction(random);
-    world.motion().tick = tick;
-    ASSERT_TRUE(world.place(a, X, {}) && world.place(b, X, {}));
-    const PairForces& forces = coprocessor.exchange();
-    ASSERT_NEAR(forces.totals.nearest, 0.01, 1e-9) << "tick " << tick << ", seed " << seed;
-    ASSERT_NEAR(forces.totals.peak_force, 25.0, 1e-6) << "tick " << tick << ", seed " << seed;
-    answered += coprocessor.late() ? 0 : 1;
+  for (const CoprocessorMode mode : {CoprocessorMode::together, CoprocessorMode::beside}) {
+    CoprocessorOptions options = lock_step(2);
+    options.mode = mode;
+    Coprocessor coprocessor(world, options);
+    families::Rng random(seed);
+    for (int tick = 0; tick < 2000; ++tick) {
+      Pose X = Pose::Identity();
+      X.translation() = families::uniform(random, 0.0, 5.0) * families::direction(random);
+      world.motion().tick = tick;
+      ASSERT_TRUE(world.place(a, X, {}) && world.place(b, X, {}));
+      const PairForces& forces = coprocessor.exchange();
+      ASSERT_FALSE(coprocessor.late());
+      ASSERT_NEAR(forces.totals.nearest, 0.01, 1e-9) << "tick " << tick << ", seed " << seed;
+      ASSERT_NEAR(forces.totals.peak_force, 25.0, 1e-6) << "tick " << tick << ", seed " << seed;
+    }
+    EXPECT_EQ(coprocessor.workers().age, mode == CoprocessorMode::beside ? 1 : 0);
   }
-  EXPECT_GT(answered, 0);
+}
+
+TEST(CoprocessorBeside, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto one = replay(beside(1));
+  for (const int threads : {2, 3}) expect_same_bits(one, replay(beside(threads)), threads);
+}
+
+// The answer is one tick old, and the distance used never larger than the true one.
+TEST(CoprocessorBeside, ForcesErrToTheSafeSide) {
+  // Single points: the mean over a patch may be a little farther than its nearest point.
+  constexpr ForceLaw law{.range = 0.05, .surface_force = 100.0, .damping = 0.0, .tilt = 0.0};
+  int pushed = 0;
+  for (unsigned run = 0; run < 20; ++run) {
+    test::Boxes boxes(1, 1, law, seed + run);
+    Coprocessor coprocessor(boxes.world, beside(1));
+    const Pair& pair = boxes.world.pairs().front();
+    for (int tick = 0; tick < 500; ++tick) {
+      boxes.move();
+      const double felt = coprocessor.exchange().on_body[boxes.tool.index].force.norm();
+      EXPECT_EQ(coprocessor.workers().age, 1);
+      const double truth = pair.law(test::separation_now(boxes.world, pair).distance, 0.0);
+      ASSERT_GE(felt, truth - 1e-9) << "tick " << tick << ", seed " << seed + run;
+      pushed += truth > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(pushed, 500) << "seed " << seed;
+}
+
+TEST(CoprocessorBeside, AtRestTheForcesAreThoseOfADirectEvaluation) {
+  test::Boxes boxes(4, 60, {.range = 0.05}, seed);
+  Coprocessor coprocessor(boxes.world, beside(2));
+  double most = 0.0;
+  for (int tick = 0; tick < 100; ++tick) {
+    boxes.move();
+    (void)coprocessor.exchange();
+    ++boxes.world.motion().tick;
+    const PairForces& forces = coprocessor.exchange();
+    const auto direct = test::forces_now(boxes.world);
+    for (std::size_t body = 0; body < direct.size(); ++body) {
+      ASSERT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-6);
+      ASSERT_LE((forces.on_body[body].torque - direct[body].torque).norm(), 1e-6);
+    }
+    most = std::max(most, forces.totals.peak_force);
+  }
+  EXPECT_GT(most, 10.0) << "seed " << seed;
+}
+
+// Slowly enough for the lookahead, a wall is felt at the very tick at which its range begins.
+TEST(CoprocessorBeside, PairThatComesIntoRangeIsNotMissed) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  Pose X = Pose::Identity();
+  X.translation().x() = -0.5;
+  const PartId ball = world.add_part(tool, "ball", Shape::sphere(0.1));
+  const PartId wall = world.add_part(World::fixed, "wall", Shape::box({0.1, 1.0, 1.0}));
+  world.add_pair(ball, wall, {.range = 0.02, .surface_force = 100.0, .damping = 0.0});
+  ASSERT_TRUE(world.place(tool, X, {}));
+  Coprocessor coprocessor(world, beside(1));
+  bool was_felt = false;
+  for (int tick = 0; tick < 160; ++tick) {
+    X.translation().x() += 0.8 / 400.0;
+    world.motion().tick = tick;
+    ASSERT_TRUE(world.place(tool, X, {{0.8, 0.0, 0.0}, {}}));
+    const double distance = -X.translation().x() - 0.2;
+    const bool is_felt = coprocessor.exchange().totals.peak_force > 0.0;
+    EXPECT_EQ(is_felt, distance < 0.02) << "at " << distance << " m";
+    was_felt = was_felt || is_felt;
+  }
+  EXPECT_TRUE(was_felt);
+}
+
+TEST(CoprocessorBeside, StalledThreadIsStoodInForUntilItGoesOn) {
+  const Threads watched(&Threads::hold);
+  Both both(Threads::options(1, CoprocessorMode::beside));
+  ASSERT_TRUE(comes_true([&] { return Threads::started == 1; }));
+  for (int round = 0; round < 3; ++round) {
+    ASSERT_TRUE(comes_true([&] {
+      both.tick_beside();
+      return !both.there.late();
+    }));
+    ASSERT_TRUE(Threads::strike(0, [&] { both.tick_beside(); }));
+    for (int k = 0; k < 20; ++k) {
+      both.tick_beside();
+      EXPECT_LE(both.there.workers().age, Coprocessor::greatest_age);
+    }
+    EXPECT_TRUE(both.there.late());
+    EXPECT_GE(both.there.workers().silence, 20 - Coprocessor::greatest_age);
+    EXPECT_TRUE(Threads::release());
+  }
+}
+
+TEST(CoprocessorBeside, PairsWithoutMemoryAreEvaluatedByTheCaller) {
+  test::Crowd crowd(seed, {.candidates = 4});
+  Coprocessor coprocessor(crowd.world, beside(1));
+  int crowded = 0;
+  for (int tick = 0; tick < 250; ++tick) {
+    crowd.move();
+    const PairForces& forces = coprocessor.exchange();
+    crowded += forces.totals.crowded > 0 ? 1 : 0;
+    if (coprocessor.workers().age > 0) continue;
+    const auto direct = test::forces_now(crowd.world);
+    for (std::size_t body = 0; body < direct.size(); ++body) {
+      ASSERT_LE((forces.on_body[body].force - direct[body].force).norm(), 1e-9);
+    }
+  }
+  EXPECT_GT(crowded, 200) << "seed " << seed;
+}
+
+TEST(CoprocessorBeside, ShowsWhatItUsed) {
+  test::Boxes boxes(4, 60, {.range = 0.05}, seed);
+  Coprocessor coprocessor(boxes.world, beside(1));
+  for (int tick = 0; tick < 50; ++tick) {
+    boxes.move();
+    const PairForces& forces = coprocessor.exchange();
+    double peak = 0.0;
+    coprocessor.for_each_near([&](const NearPair& near) {
+      peak = std::max(peak, near.force);
+      EXPECT_GE(near.age, 1);
+      EXPECT_EQ(coprocessor.separation_of(near.pair).distance, near.separation.distance);
+    });
+    EXPECT_EQ(peak, forces.totals.peak_force);
+  }
 }
 
 }  // namespace coprocessor_test

@@ -116,6 +116,13 @@ class CellAssembly {
     }
   }
 
+  /// [ticks] How late the force of a wall acts: as late as the slowest drive, and a tick more where
+  /// the coprocessor works beside.
+  [[nodiscard]] double wall_delay() const { return longest_delay() + (works_beside() ? 1.0 : 0.0); }
+  [[nodiscard]] bool works_beside() const {
+    const CoprocessorOptions& coprocessor = description_.coprocessor;
+    return coprocessor.mode == CoprocessorMode::beside && coprocessor.threads > 0;
+  }
   [[nodiscard]] double longest_delay() const {
     double delay = 0.0;
     for (const ArmDescription& arm : description_.arms) {
@@ -125,14 +132,30 @@ class CellAssembly {
   }
 
   void settle_laws() {
-    const double period = 1.0 / description_.rate_hz;
-    const double delay = longest_delay();
     for (ArmDescription& arm : description_.arms) {
-      arm.law = settled(arm.law, period, delay);
-      if (arm.self_law) arm.self_law = settled(*arm.self_law, period, delay);
+      settle(arm.law);
+      if (arm.self_law) settle(*arm.self_law);
     }
-    for (ObstacleDescription& obstacle : description_.obstacles) {
-      obstacle.law = settled(obstacle.law, period, delay);
+    for (ObstacleDescription& obstacle : description_.obstacles) settle(obstacle.law);
+  }
+
+  /// Raises the damping of a law where it may rise, and where a wall is stable but for the tick by
+  /// which answers are older beside.
+  void settle(ForceLaw& law) {
+    const double period = 1.0 / description_.rate_hz;
+    law = settled(law, period, wall_delay());
+    // Scaled to a part, stiffness and damping round differently.
+    constexpr double rounding = 1.0 + 1e-9;
+    const double needed = rounding * wall_ticks(wall_delay()) * period * law.stiffness();
+    const bool would_be_stable =
+        law.stiffness() <= stable_stiffness(law.damping, period, longest_delay());
+    if (!would_be_stable || law.damping >= needed) return;
+    std::string said = "beside, forces are one tick late: the damping of walls of " +
+                       repel::to_text(law.stiffness(), 4) + " N/m is " + repel::to_text(needed, 4) +
+                       " N s/m, not " + repel::to_text(law.damping, 4);
+    law.damping = needed;
+    if (std::find(raised_.begin(), raised_.end(), said) == raised_.end()) {
+      raised_.push_back(std::move(said));
     }
   }
 
@@ -208,19 +231,17 @@ class CellAssembly {
 
   void check_stiffness() {
     try {
-      warnings_ = check_gains(world_, 1.0 / description_.rate_hz, longest_delay(), device_damping_,
+      warnings_ = check_gains(world_, 1.0 / description_.rate_hz, wall_delay(), device_damping_,
                               description_.gain_check);
+      warnings_.insert(warnings_.end(), raised_.begin(), raised_.end());
     } catch (const SetupError& error) {
       throw SetupError(std::string("wall too stiff: ") + error.what() +
                        " (to run all the same: 'gain_check: warning' at the obstacle module)");
     }
   }
 
-  // Limits the number of threads to that of blocks: others would have no work.
   void start_coprocessor() {
     CoprocessorOptions options = description_.coprocessor;
-    checked("threads", options.threads, 0, description_.limits.threads, "");
-    options.threads = std::min(options.threads, PairPartition::blocks_of(world_));
     options.period = period_;
     coprocessor_.emplace(world_, options);
     std::vector<BodyId> moved;
@@ -246,6 +267,7 @@ class CellAssembly {
       .hand = {}, .sound = false, .silent_for = std::numeric_limits<double>::infinity()};
   double device_damping_ = std::numeric_limits<double>::infinity();  // [N s/m]
   std::vector<std::string> warnings_;
+  std::vector<std::string> raised_;  // of these, about laws whose damping was raised
   std::int64_t ticks_ = 0;
   std::int64_t periods_ = 0;  // since the first tick
 };

@@ -63,6 +63,14 @@ class LaneEvaluator {
     return NearPair{memory().tracking(slot).pair, group.answer(k).last, group.force(k), false, 0};
   }
 
+  /// What another thread needs to know of a pair for which `near_pair` is one.
+  [[nodiscard]] NearAnswer near_answer(int slot, const Motion& motion) const noexcept {
+    const int lane = lane_of(slot);
+    return singles_->near_answer(
+        slot, motion,
+        has_answer(lane) ? group_of(lane).answer(index_of(lane)) : memory().answer(slot));
+  }
+
   /// Puts the pair into a lane if it was evaluated at this tick and can be evaluated there.
   void add(int slot, const PartPoses& poses) noexcept {
     if (!singles_->is_fresh(slot) || !fits(slot)) return;
@@ -99,25 +107,25 @@ class LaneEvaluator {
   }
 
   /// Evaluates the pairs of a group; falls back to single evaluation where the nearest feature has
-  /// changed.
-  void evaluate_group(int g, const Motion& motion, PartPoses& poses) noexcept {
+  /// changed. Different groups may be evaluated by different threads at the same time, each with
+  /// `poses` and `totals` of its own.
+  void evaluate_group(int g, const Motion& motion, PartPoses& poses, PairTotals& totals) noexcept {
     LaneGroup& group = groups_[g];
     const unsigned stale = group.stale();
     for_each(stale, [&](int k) { singles_->note_assumed(slot_at(g, k), motion); });
     group.evaluate(motion, poses);
-    PairTotals& totals = singles_->forces().totals;
     const int answered = std::popcount(group.proven());
     totals.evaluated += answered;
     totals.iterations += answered;
     const unsigned unproven = group.used() & ~group.proven();
     if ((stale | unproven) == 0U) return;
     for_each(stale & group.proven(), [&](int k) {
-      singles_->add_refresh_energy(slot_at(g, k), group.answer(k).proven());
+      singles_->add_refresh_energy(slot_at(g, k), group.answer(k).proven(), totals);
       memory().answer(slot_at(g, k)).is_stale = false;
     });
     for_each(unproven, [&](int k) {
       const int slot = slot_at(g, k);
-      singles_->evaluate(slot, motion, poses);
+      singles_->evaluate(slot, motion, poses, totals);
       if (fits(slot)) {
         group.set_feature(singles_->world(), k, singles_->pair(slot), memory().history(slot).warm);
       }

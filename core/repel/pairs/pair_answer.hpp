@@ -39,6 +39,9 @@ struct PairAnswer {
     return (cut_short() ? last.lower : proven_distance(last.distance, last.lower)) - nearer;
   }
 
+  /// A plane separates the shapes, with the extraction direction as its normal.
+  [[nodiscard]] bool is_apart() const noexcept { return last.lower > 0.0 && !cut_short(); }
+
   /// Conservative lower bound of the signed distance [m] now. If the shapes were apart, the
   /// separating plane remains valid when shifted by the relative motion along its normal; in
   /// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
@@ -47,7 +50,7 @@ struct PairAnswer {
   [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B,
                                    double deepest) const noexcept {
     const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
-    const bool separated = last.lower > 0.0 && !cut_short();
+    const bool separated = is_apart();
     const double lean = nearer != 0.0 ? widest_tilt * norm(moved) : 0.0;
     const double along = separated ? dot(last.extraction_W, moved) - lean : -norm(moved);
     const double now = proven() + along - (A.turn + B.turn - turn);

@@ -57,7 +57,8 @@ struct PairIndex {
   /// An empty index.
   PairIndex() = default;
   /// Allocates: about 60 bytes for each box of a tree and 4 for each pair.
-  explicit PairIndex(const World& world) {
+  /// @param lookahead [m] added to the range of every pair
+  explicit PairIndex(const World& world, double lookahead = 0.0) : lookahead_(lookahead) {
     for (const Part& part : world.parts()) boxes_.push_back(box_of(part));
     std::vector<Entry> entries = entries_of(world);
     std::sort(entries.begin(), entries.end());
@@ -121,7 +122,7 @@ struct PairIndex {
       PairList list{boxes_[first->part_a], 0.0, 0, static_cast<std::int32_t>(pairs.size())};
       std::vector<std::int32_t> partners;
       for (const std::int32_t a = first->part_a; first != end && first->part_a == a; ++first) {
-        list.range = std::max(list.range, world.pair({first->pair}).law.range);
+        list.range = std::max(list.range, world.pair({first->pair}).law.range + lookahead_);
         partners.push_back(first->part_b);
         body_pair.partners.extend(boxes_[first->part_b]);
         pairs.push_back({first->pair});
@@ -146,6 +147,7 @@ struct PairIndex {
     return BoxTree(boxes);
   }
 
+  double lookahead_ = 0.0;  ///< [m]
   std::vector<Box> boxes_;  ///< [m] by PartId, while the index is built
 };
 
@@ -188,6 +190,14 @@ class PairSearch {
       }
       body_pairs_[m].next = next;
     }
+  }
+
+  /// Makes everything due, as if nothing had been found before: for a sink that has lost it.
+  void repeat() noexcept {
+    for (BodyPairState& state : body_pairs_) {
+      state.next = state.activate_at = never_searched;
+    }
+    for (ListState& list : lists_) list.search_at = never_searched;
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include <repel/pairs/near_answer.hpp>
 #include <repel/pairs/near_pair.hpp>
 #include <repel/pairs/pair_memory.hpp>
 #include <repel/pairs/part_poses.hpp>
@@ -20,8 +21,10 @@ class SingleEvaluator {
  public:
   /// @param slots largest number of pairs with a slot, at least 0
   /// @param max_age [ticks] `Budget::max_age`
-  SingleEvaluator(const World& world, PairPartition partition, int slots, std::int64_t max_age)
-      : world_(&world), max_age_(max_age), memory_(world, partition, slots) {
+  /// @param lookahead [m] by which a pair may be out of its range and yet be near
+  SingleEvaluator(const World& world, PairPartition partition, int slots, std::int64_t max_age,
+                  double lookahead = 0.0)
+      : world_(&world), max_age_(max_age), lookahead_(lookahead), memory_(world, partition, slots) {
     forces_ = PairForces(world.body_count());
   }
 
@@ -41,6 +44,8 @@ class SingleEvaluator {
   [[nodiscard]] const Pair& pair(int slot) const noexcept {
     return world_->pair(memory_.tracking(slot).pair);
   }
+  /// [m] The distance within which the pair is near.
+  [[nodiscard]] double reach(int slot) const noexcept { return pair(slot).law.range + lookahead_; }
   [[nodiscard]] const BodyState& body_a(int slot, const Motion& motion) const noexcept {
     return motion.bodies[memory_.tracking(slot).body_a.index];
   }
@@ -55,8 +60,8 @@ class SingleEvaluator {
            memory_.tracking(slot).due_at;
   }
 
-  /// Sets the summed travel [m] of both bodies before which the pair cannot be within range. A
-  /// larger clearance set earlier remains in force.
+  /// Sets the summed travel [m] of both bodies before which the pair cannot be near. A larger
+  /// clearance set earlier remains in force.
   void set_clearance(int slot, const Motion& motion, double clearance) noexcept {
     if (!(clearance > 0.0)) return;
     double& due_at = memory_.tracking(slot).due_at;
@@ -114,21 +119,26 @@ class SingleEvaluator {
   /// its motion within range, not on how often it was evaluated before.
   void clear_history(int slot) noexcept { memory_.history(slot) = {}; }
 
-  /// Evaluates the pair of a slot.
-  void evaluate(int slot, const Motion& motion, PartPoses& poses) noexcept {
+  /// Evaluates the pair of a slot. Different pairs may be evaluated by different threads at the
+  /// same time, each with `poses` and `totals` of its own.
+  void evaluate(int slot, const Motion& motion, PartPoses& poses, PairTotals& totals) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     note_assumed(slot, motion);
     const WarmStart& warm = memory_.history(slot).warm;
     const bool is_warm = warm.size > 0 || warm.level_a > 0;
     answer.last = query(slot, motion, poses, memory_.history(slot).warm);
-    ++forces_.totals.evaluated;
-    forces_.totals.iterations += answer.last.iterations;
+    ++totals.evaluated;
+    totals.iterations += answer.last.iterations;
     if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).law.range + rounding) {
       clear_history(slot);
       answer.last = query(slot, motion, poses, memory_.history(slot).warm);
-      forces_.totals.iterations += answer.last.iterations;
+      totals.iterations += answer.last.iterations;
     }
-    complete(slot, motion, poses);
+    complete(slot, motion, poses, totals);
+  }
+  /// The same, with the totals of all pairs.
+  void evaluate(int slot, const Motion& motion, PartPoses& poses) noexcept {
+    evaluate(slot, motion, poses, forces_.totals);
   }
 
   /// Repeats the query of the last tick to warm the CPU caches, without other effects.
@@ -156,8 +166,24 @@ class SingleEvaluator {
     ++totals.stale;
     totals.oldest_age = std::max(totals.oldest_age, age);
     totals.expired += age > max_age_ ? 1 : 0;
-    const double fade = static_cast<double>(age - max_age_) / static_cast<double>(max_age_);
-    push_at(lower_bound(slot, motion), 1.0 - std::clamp(fade, 0.0, 1.0), slot, motion);
+    push_at(lower_bound(slot, motion), share_at(age), slot, motion);
+  }
+
+  /// What another thread needs to know of the pair, of a tick at which it was `push`ed.
+  [[nodiscard]] NearAnswer near_answer(int slot, const Motion& motion,
+                                       const PairAnswer& answer) const noexcept {
+    const PairTracking& tracking = memory_.tracking(slot);
+    const bool stale = answer.tick != motion.tick;
+    const bool passable = pair(slot).law.passable;
+    return {.gradient = passable ? answer.force * answer.gradient : answer.gradient,
+            .bound = stale ? lower_bound(slot, motion) : answer.proven(),
+            .share = stale ? share_at(motion.tick - answer.waits_since) : 1.0,
+            .pair = tracking.pair,
+            .a = tracking.body_a,
+            .b = tracking.body_b,
+            .is_apart = answer.is_apart(),
+            .has_patch = answer.nearer != 0.0,
+            .is_passable = passable};
   }
 
   /// The pair for a display; nullopt if at the tick of `motion` it was neither evaluated nor
@@ -178,11 +204,10 @@ class SingleEvaluator {
   }
   /// Call after that evaluation: adds to `PairTotals::refresh_energy`.
   /// @param distance [m] the distance found
-  void add_refresh_energy(int slot, double distance) noexcept {
+  void add_refresh_energy(int slot, double distance, PairTotals& totals) const noexcept {
     const ForceLaw& law = pair(slot).law;
     const double assumed = memory_.answer(slot).assumed;
-    forces_.totals.refresh_energy +=
-        std::max(0.0, law.potential(assumed) - law.potential(distance));
+    totals.refresh_energy += std::max(0.0, law.potential(assumed) - law.potential(distance));
   }
 
  private:
@@ -202,17 +227,16 @@ class SingleEvaluator {
   }
 
   /// Fills in the rest of the answer after a new query and updates the totals.
-  void complete(int slot, const Motion& motion, PartPoses& poses) noexcept {
+  void complete(int slot, const Motion& motion, PartPoses& poses, PairTotals& totals) noexcept {
     const Pair& p = pair(slot);
     PairAnswer& answer = memory_.answer(slot);
-    PairTotals& totals = forces_.totals;
     if (p.law.passable) {
       int iterations = 0;
       answer.slope = slope_of(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses),
                               world_->query_options(), memory_.history(slot).warm, iterations);
       totals.iterations += iterations;
     } else if (answer.is_stale) {
-      add_refresh_energy(slot, answer.proven());
+      add_refresh_energy(slot, answer.proven(), totals);
     }
     const auto relative = relative_motion(body_a(slot, motion), body_b(slot, motion));
     answer.p_AQ_W = answer.last.p_WA - to_vec3(relative.p_WoA);
@@ -221,7 +245,7 @@ class SingleEvaluator {
     answer.tick = motion.tick;
     answer.evaluated_at = now_;
     answer.in_range = answer.last.lower < p.law.range;
-    set_clearance(slot, motion, answer.last.lower - p.law.range);
+    set_clearance(slot, motion, answer.last.lower - reach(slot));
     find_gradient(slot, motion, poses);
     const PairId id = memory_.tracking(slot).pair;
     const double deepest = std::max(0.0, -answer.last.lower);
@@ -247,6 +271,12 @@ class SingleEvaluator {
     answer.gradient.torque += answer.p_AQ_W.cross(patch.gradient.force);
   }
 
+  /// The share of its force that a stale pair exerts after so many ticks.
+  [[nodiscard]] double share_at(std::int64_t age) const noexcept {
+    const double fade = static_cast<double>(age - max_age_) / static_cast<double>(max_age_);
+    return 1.0 - std::clamp(fade, 0.0, 1.0);
+  }
+
   /// Velocity of A relative to B [m/s] at the witness point of the last answer.
   [[nodiscard]] Vec3 velocity(int slot, const Motion& motion) const noexcept {
     const auto relative = relative_motion(body_a(slot, motion), body_b(slot, motion));
@@ -269,6 +299,7 @@ class SingleEvaluator {
                                  A.travel + B.travel, velocity(slot, motion));
       size = norm(f);
       on_a = wrench_of_force(f, answer.p_AQ_W);
+      if (size > 0.0) memory_.answer(slot).gradient = 1.0 / size * on_a;
     } else {
       const auto relative = relative_motion(A, B);
       const Wrench& g = answer.gradient;
@@ -289,6 +320,7 @@ class SingleEvaluator {
 
   const World* world_;
   std::int64_t max_age_;  ///< [ticks]
+  double lookahead_;      ///< [m]
   std::int64_t now_ = 0;  ///< counts the ticks begun
   PairMemory memory_;
   PairForces forces_;

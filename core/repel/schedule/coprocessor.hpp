@@ -1,205 +1,274 @@
 /// @file
-/// The coprocessor: threads that compute pair forces from the newest poses. It is the counterpart
-/// of the attached processor of the paper (section 4).
+/// The coprocessor: evaluates the pairs of a world, with threads beside or together with the
+/// caller. It is the counterpart of the attached processor of the paper (Anderson 1993, section 4).
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include <repel/schedule/beside_worker.hpp>
 #include <repel/schedule/pair_forces.hpp>
-#include <repel/schedule/worker_thread.hpp>
+#include <repel/schedule/pair_team.hpp>
 
 namespace repel {
 
-/// Evaluates the pairs of a world in its worker threads, or in the calling thread.
+/// Computes the forces of all pairs, alone or with threads (`CoprocessorMode`).
 ///
-/// For each worker the caller has a substitute as a fallback: a second memory of the same pairs.
-/// When a worker misses its timeout (slow, stalled or terminated), the caller evaluates its pairs
-/// with the substitute, so that the forces always belong to the present motion. While the caller
-/// would otherwise wait, it runs the substitutes round-robin, so that each has been run with one of
-/// the last `threads` motions. Worker and substitute have not processed the same motions: their
-/// forces agree up to rounding, not bitwise; the difference is larger for the springs of passable
-/// pairs and for pairs that are stale because the budget does not cover all.
+/// Together: the threads take part where there are enough near pairs. The forces are those of the
+/// present motion, with the same bits for any number of threads.
+///
+/// Beside: the threads evaluate the motion of the last exchange while the caller goes on. It never
+/// waits: it takes their newest whole answer and computes the forces for the present motion from
+/// it, at distances that are not larger than the true ones.
+///
+/// Whenever threads are late, stalled or dead, the caller evaluates all pairs at the present motion
+/// by itself. Threads that do not go on are replaced after half a second. With threads, all memory
+/// of the pairs is allocated twice, with several threads beside three times.
 class Coprocessor {
  public:
-  /// Number of consecutive late ticks for which a worker is still given the full `patience`.
-  static constexpr std::int64_t patient_ticks = 4;
+  /// [ticks] Greatest age of an answer that is used beside.
+  static constexpr std::int64_t greatest_age = 4;
 
-  /// Evaluates every pair once (twice with threads) and starts the threads. Allocates; may throw.
+  /// Evaluates every pair once and starts the threads. Allocates.
+  /// @throws SetupError for a number of threads below 0 or above `Limits::threads`
   Coprocessor(const World& world, const CoprocessorOptions& options)
-      : world_(&world), options_(options) {
-    checked("threads", options.threads, 0, world.limits().threads, "");
-    const std::chrono::nanoseconds none{0};
-    options_.period = std::clamp(options.period, none, longest_wait);
-    options_.patience =
-        options.lock_step ? longest_wait : std::clamp(options.patience, none, longest_wait);
-    blocks_ = detail::PairPartition::blocks_of(world);
-    total_ = PairForces(world.body_count());
-    const auto pairs =
-        options.every_pair ? nullptr : std::make_shared<const detail::PairIndex>(world);
-    const int shares = std::max(1, options.threads);
-    for (int i = 0; i < shares; ++i) {
-      shares_.push_back(std::make_unique<Share>(world, pairs, options_, i, shares));
+      : world_(&world),
+        options_(checked_options(world, options)),
+        threads_(useful_threads()),
+        prototype_(world) {
+    const bool beside = works_beside();
+    lookahead_ = beside ? lookahead_for(options_.period) : 0.0;
+    if (!options_.every_pair) pairs_ = std::make_shared<const detail::PairIndex>(world, lookahead_);
+    const int helpers = beside ? 0 : threads_;
+    team_ = std::make_unique<detail::PairTeam>(world, pairs_, prototype_, options_, helpers, 0,
+                                               lookahead_);
+    team_->prime(world.motion());
+    if (beside) {
+      widened_ = std::make_unique<detail::WidenedForces>(world, most_near());
+      beside_.push_back(make_beside_worker(world.motion()));
+      current_ = beside_.back().get();
+      current_->prime();
+      current_->start();
     }
-    for (auto& share : shares_) {
-      if (share->worker != nullptr) share->worker->start();
+    team_->start();
+    if (threads_ > 0) {
+      supervisor_.start([this] { tend(); });
     }
   }
   Coprocessor(const Coprocessor&) = delete;
   Coprocessor& operator=(const Coprocessor&) = delete;
+  ~Coprocessor() { supervisor_.stop(); }
 
-  /// The forces at `world.motion()`. Cost with threads: one copy of the motion per thread, the
-  /// share of one worker, the wait, the share of each late worker, one sum. After `patient_ticks`
-  /// late ticks in a row, a worker's substitute runs first and the worker gets only patience / 16,
-  /// until it is in time again.
+  /// The forces at `world.motion()`. Cost alone: the search and the near pairs. Together: a part of
+  /// it, and the wait for a batch; if a thread is late, its patience, a search of all pairs and all
+  /// near pairs. Beside: two copies of the motion, and about 20 ns for each near pair.
   const PairForces& exchange() noexcept {
-    if (options_.threads == 0) {
-      shares_.front()->substitute.run(world_->motion());
+    ++exchanges_;
+    const Motion& motion = world_->motion();
+    if (works_beside()) {
+      forces_ = &beside(motion);
     } else {
-      exchange_with_workers(world_->motion());
+      const bool late = team_->run(motion);
+      report_.shared = team_->shared();
+      report_.count(late);
+      forces_ = &team_->pairs().forces();
     }
-    sum();
-    return total_;
+    return *forces_;
   }
 
-  /// Without threads: repeats queries of the last exchange and discards their answers, to warm the
-  /// CPU caches for the next. With threads: no effect.
+  /// Repeats queries of the last exchange and discards their answers, to warm the CPU caches for
+  /// the next. Beside: no effect.
   void rehearse() noexcept {
-    if (options_.threads == 0) shares_.front()->substitute.rehearse(world_->motion());
+    if (!works_beside()) team_->rehearse(world_->motion());
   }
 
-  /// True when some worker was late at the last exchange.
+  /// True when some thread was late at the last exchange, and the caller did its work.
   [[nodiscard]] bool late() const noexcept { return report_.stood_in > 0; }
-  /// Lateness statistics of the workers, as of the last exchange.
+  /// What the caller knows of the threads, as of the last exchange.
   [[nodiscard]] const WorkerReport& workers() const noexcept { return report_; }
-  [[nodiscard]] int threads() const noexcept { return options_.threads; }
+  /// What the operating system did to the threads, as of the last 50 ms, and how many have been
+  /// replaced. Callable from the thread that exchanges.
+  [[nodiscard]] WorkerUsage usage() const noexcept {
+    return {page_faults_.load(std::memory_order_relaxed), switches_.load(std::memory_order_relaxed),
+            restarts_.load(std::memory_order_relaxed)};
+  }
+  /// Number of threads at work: those asked for that have a processor, and enough pairs.
+  [[nodiscard]] int threads() const noexcept { return threads_; }
+  [[nodiscard]] CoprocessorMode mode() const noexcept { return options_.mode; }
 
-  /// Calls see(NearPair) for each pair that was near at the last exchange, in unspecified order.
-  /// Call it between exchanges and from the same thread: workers whose forces were used are idle
-  /// until the next exchange.
+  /// Beside: waits until the last motion has been answered; true at once in the other mode. For
+  /// programs that do not run by the clock, between ticks. False on timeout.
+  [[nodiscard]] bool wait_for_answer(std::chrono::nanoseconds timeout) noexcept {
+    if (!works_beside()) return true;
+    const auto until = std::chrono::steady_clock::now() + std::min(timeout, longest_wait);
+    return wait_for(exchanges_, until);
+  }
+
+  /// Calls see(NearPair) for each pair that was near at the last exchange, in an unspecified order.
+  /// Call it between exchanges and from the same thread.
   template <class See>
   void for_each_near(const See& see) const noexcept {
-    for (const auto& share : shares_) share->used().for_each_near(world_->motion(), see);
+    if (!uses_answer_) return team_->pairs().for_each_near(world_->motion(), see);
+    for (std::size_t i = 0; i < answer_->count; ++i) {
+      NearPair near = answer_->shown[i];
+      near.force = widened_->size(i);
+      near.age += report_.age;
+      see(near);
+    }
   }
 
   /// The last answer for a pair; a default `Separation`, which bounds nothing, if its slot has been
-  /// reused for another pair (`Limits::candidates`). Same calling condition, or after `stop`.
+  /// reused for another pair (`Limits::candidates`), or beside if it is not near. Same calling
+  /// condition, or after `stop`.
   [[nodiscard]] Separation separation_of(PairId id) const noexcept {
-    const auto [share, block] = place_of(id);
-    return share.used().blocks()[block].separation_of(id);
+    if (!uses_answer_) return team_->pairs().separation_of(id);
+    for (std::size_t i = 0; i < answer_->count; ++i) {
+      if (answer_->near[i].pair == id) return answer_->shown[i].separation;
+    }
+    return {};
   }
-  /// Least distance and largest force of a pair since set-up. Same calling condition.
+  /// Least distance and largest force of a pair since set-up. Same calling condition; beside, only
+  /// after `stop`.
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
-    const auto [share, block] = place_of(id);
-    const PairExtremes here = share.substitute.blocks()[block].extremes_of(id);
-    if (share.worker == nullptr) return here;
-    PairExtremes there = share.worker->share().blocks()[block].extremes_of(id);
-    if (share.has_been_late) there.add(here);
-    return there;
+    PairExtremes extremes = team_->extremes_of(id);
+    if (stopped_) {
+      for (const auto& worker : beside_) extremes.add(worker->team().extremes_of(id));
+    }
+    return extremes;
   }
 
   /// Joins the threads, as the destructor does. Each finishes its tick first: blocks for ever if
   /// one is stalled for ever, but not for a thread that was killed. Not real-time safe.
   void stop() {
-    for (auto& share : shares_) {
-      if (share->worker != nullptr) share->worker->stop();
-    }
+    supervisor_.stop();
+    team_->stop();
+    for (const auto& worker : beside_) worker->stop();
+    stopped_ = true;
   }
 
  private:
   using Clock = std::chrono::steady_clock;
-
-  /// Some of the blocks, with the worker and the substitute that evaluate them.
-  struct Share {
-    Share(const World& world, const std::shared_ptr<const detail::PairIndex>& pairs,
-          const CoprocessorOptions& options, int index, int shares)
-        : substitute(world, pairs, options.budget, index, shares) {
-      substitute.prime(world.motion());
-      if (options.threads == 0) return;
-      worker = std::make_unique<detail::WorkerThread>(world, pairs, options, index);
-    }
-    [[nodiscard]] const PairForces& forces(std::size_t block) const noexcept {
-      return in_time ? worker->forces()[block] : substitute.blocks()[block].forces();
-    }
-    [[nodiscard]] const detail::WorkerShare& used() const noexcept {
-      return in_time ? worker->share() : substitute;
-    }
-    [[nodiscard]] bool is_silent() const noexcept { return silence >= patient_ticks; }
-    /// A worker that is in time again has old answers if the budget does not cover all pairs. True
-    /// if its oldest answer is not older than that of the substitute. Requires that the substitute
-    /// has run at this exchange.
-    [[nodiscard]] bool has_caught_up() const noexcept {
-      std::int64_t here = 0, there = 0;
-      for (std::size_t b = 0; b < worker->forces().size(); ++b) {
-        here = std::max(here, substitute.blocks()[b].forces().totals.oldest_age);
-        there = std::max(there, worker->forces()[b].totals.oldest_age);
-      }
-      return there <= here;
-    }
-    detail::WorkerShare substitute;  ///< run by the caller; the only evaluator without threads
-    std::unique_ptr<detail::WorkerThread> worker;
-    std::int64_t silence = 0;    ///< [ticks] in a row the worker has been late
-    bool substituted = false;    ///< the substitute has run at this exchange
-    bool in_time = false;        ///< the worker's forces of this exchange are used
-    bool has_been_late = false;  ///< the worker was late at some exchange
-  };
-
-  [[nodiscard]] std::pair<const Share&, std::size_t> place_of(PairId id) const noexcept {
-    const auto block =
-        static_cast<std::size_t>(detail::PairPartition::block_of(id, static_cast<int>(blocks_)));
-    return {*shares_[block % shares_.size()], block / shares_.size()};
-  }
-
-  void exchange_with_workers(const Motion& motion) noexcept {
-    ++exchanges_;
-    const auto now = Clock::now();
-    for (auto& share : shares_) share->worker->post(exchanges_, now, motion);
-    const auto patiently = now + options_.patience;
-    const auto in_turn = static_cast<std::size_t>(exchanges_) % shares_.size();
-    for (std::size_t i = 0; i < shares_.size(); ++i) {
-      shares_[i]->substituted = i == in_turn || shares_[i]->is_silent();
-      if (shares_[i]->substituted) shares_[i]->substitute.run(motion);
-    }
-    const auto shortly = Clock::now() + options_.patience / 16;
-    report_ = {0, 0, report_.ticks, report_.longest_silence};
-    for (auto& share : shares_) {
-      share->in_time = share->is_silent()
-                           ? share->worker->wait(exchanges_, shortly) && share->has_caught_up()
-                           : share->worker->wait(exchanges_, patiently);
-      if (!share->in_time && !share->substituted) share->substitute.run(motion);
-      share->silence = share->in_time ? 0 : share->silence + 1;
-      share->has_been_late = share->has_been_late || !share->in_time;
-      report_.stood_in += share->in_time ? 0 : 1;
-      report_.silence = std::max(report_.silence, share->silence);
-    }
-    report_.ticks += late() ? 1 : 0;
-    report_.longest_silence = std::max(report_.longest_silence, report_.silence);
-  }
-
-  /// Adds up the blocks in a fixed order, independent of which thread evaluated them.
-  void sum() noexcept {
-    total_.clear();
-    total_.tick = world_->motion().tick;
-    for (std::size_t b = 0; b < blocks_; ++b) {
-      const PairForces& block = shares_[b % shares_.size()]->forces(b / shares_.size());
-      if (block.totals.near == 0 && block.totals.crowded == 0) continue;
-      total_.add(block);
-    }
-  }
-
   static constexpr std::chrono::nanoseconds longest_wait{std::chrono::seconds(1)};
+
+  static CoprocessorOptions checked_options(const World& world, CoprocessorOptions options) {
+    checked("threads", options.threads, 0, world.limits().threads, "");
+    const std::chrono::nanoseconds none{0};
+    options.period = std::clamp(options.period, none, longest_wait);
+    options.patience =
+        options.lock_step ? longest_wait : std::clamp(options.patience, none, longest_wait);
+    return options;
+  }
+  /// A thread without a processor of its own would take that of another thread or of the caller,
+  /// and one for which there are never enough pairs would wait for ever.
+  [[nodiscard]] int useful_threads() const noexcept {
+    const auto pairs = static_cast<int>(world_->pairs().size());
+    const int alone = options_.mode == CoprocessorMode::beside && pairs > 0 ? 1 : 0;
+    const int with_work = std::max(alone, pairs / detail::PairTeam::worth_sharing);
+    const int most = std::min(options_.threads, with_work);
+    if (options_.lock_step) return most;
+    const int processors = options_.processors > 0
+                               ? options_.processors
+                               : static_cast<int>(std::thread::hardware_concurrency());
+    return std::min(most, std::max(alone, processors - 1));
+  }
+  [[nodiscard]] bool works_beside() const noexcept {
+    return threads_ > 0 && options_.mode == CoprocessorMode::beside;
+  }
+  /// [m] What bodies that approach each other at 1 m/s move until the next but one answer: a pair
+  /// that is out of range by more cannot be within range when the answer is used.
+  [[nodiscard]] static double lookahead_for(std::chrono::nanoseconds period) noexcept {
+    return std::clamp(2.0 * std::chrono::duration<double>(period).count(), 1e-4, 5e-3);
+  }
+  [[nodiscard]] int most_near() const noexcept {
+    const int all = static_cast<int>(world_->pairs().size());
+    return options_.every_pair ? all : std::min(all, world_->limits().candidates);
+  }
+  [[nodiscard]] std::unique_ptr<detail::BesideWorker> make_beside_worker(const Motion& motion) {
+    return std::make_unique<detail::BesideWorker>(*world_, motion, pairs_, prototype_, options_,
+                                                  threads_ - 1, 0, lookahead_, most_near());
+  }
+
+  const PairForces& beside(const Motion& motion) noexcept {
+    if (auto* fresh = offered_.exchange(nullptr, std::memory_order_acq_rel)) current_ = fresh;
+    if (options_.lock_step) (void)wait_for(exchanges_ - 1, Clock::now() + longest_wait);
+    answer_ = &current_->newest();
+    current_->post(exchanges_, motion);
+    report_.age = exchanges_ - answer_->exchange;
+    ++report_.shared;
+    // A pair without memory has no answer that could be widened.
+    const bool is_usable = report_.age <= greatest_age && answer_->totals.crowded == 0;
+    if (!is_usable && uses_answer_) team_->skip_ticks();
+    uses_answer_ = is_usable;
+    if (uses_answer_) {
+      widened_->widen(*answer_, motion);
+    } else {
+      report_.age = 0;
+      (void)team_->run(motion);
+    }
+    report_.count(!uses_answer_ || current_->is_team_late());
+    return uses_answer_ ? widened_->forces() : team_->pairs().forces();
+  }
+
+  [[nodiscard]] bool wait_for(std::int64_t exchange, Clock::time_point until) noexcept {
+    for (unsigned spins = 1; current_->newest().exchange < exchange; ++spins) {
+      if (spins % 16 == 0 && Clock::now() >= until) return false;
+      if (spins % 4096 == 0) std::this_thread::yield();
+      detail::WorkerThread::pause();
+    }
+    return true;
+  }
+
+  /// Called by the supervisor.
+  void tend() {
+    team_->tend(usage_);
+    if (!beside_.empty()) {
+      beside_.back()->tend(usage_);
+      if (watch_.is_overdue(beside_.back()->beats())) replace_beside_worker();
+    }
+    page_faults_.store(usage_.page_faults, std::memory_order_relaxed);
+    switches_.store(usage_.switches, std::memory_order_relaxed);
+    restarts_.store(usage_.restarts, std::memory_order_relaxed);
+  }
+
+  void replace_beside_worker() {
+    beside_.back()->request_stop();
+    // The caller moves its world meanwhile: until it posts a motion, the new one has none.
+    Motion nowhere;
+    nowhere.bodies.resize(static_cast<std::size_t>(world_->body_count()));
+    beside_.push_back(make_beside_worker(nowhere));
+    beside_.back()->start();
+    watch_ = {};
+    offered_.store(beside_.back().get(), std::memory_order_release);
+    ++usage_.restarts;
+  }
 
   const World* world_;
   CoprocessorOptions options_;
-  PairForces total_;
+  int threads_;
+  double lookahead_ = 0.0;             ///< [m]
+  const detail::PartPoses prototype_;  ///< of the parts at set-up
+  std::shared_ptr<const detail::PairIndex> pairs_;
+  std::unique_ptr<detail::PairTeam> team_;  ///< of the caller
+  std::unique_ptr<detail::WidenedForces> widened_;
+  std::vector<std::unique_ptr<detail::BesideWorker>> beside_;  ///< the last one is in use
+  detail::BesideWorker* current_ = nullptr;                    ///< the one that the caller uses
+  std::atomic<detail::BesideWorker*> offered_{nullptr};
+  const detail::WholeAnswer* answer_ = nullptr;
+  bool uses_answer_ = false;  ///< at the last exchange
+  bool stopped_ = false;
+  const PairForces* forces_ = nullptr;
   WorkerReport report_;
   std::int64_t exchanges_ = 0;
-  std::size_t blocks_ = 0;  ///< of all shares
-  std::vector<std::unique_ptr<Share>> shares_;
+  detail::Watch watch_;
+  WorkerUsage usage_;  ///< of the supervisor; the next three are for the caller
+  std::atomic<std::int64_t> page_faults_{0}, switches_{0}, restarts_{0};
+  detail::Supervisor supervisor_;  // last member: joined before the data it uses is destroyed
 };
 
 }  // namespace repel

@@ -1,136 +1,137 @@
 /// @file
-/// A worker of the coprocessor: a thread that evaluates its share of the pairs at the newest
-/// motion.
+/// A thread of the coprocessor, and how it passes the time between ticks.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <memory>
 #include <thread>
-#include <vector>
+#include <utility>
 
-#include <repel/base/mailbox.hpp>
-#include <repel/schedule/worker_share.hpp>
+#include <repel/schedule/coprocessor_options.hpp>
+#include <repel/schedule/thread_usage.hpp>
 
 namespace repel::detail {
 
-/// The caller and the thread exchange motions and forces through wait-free mailboxes: the thread
-/// always takes a consistent snapshot of the newest motion, and the caller uses its forces only if
-/// they belong to the motion posted last. Exchanges are numbered separately, because the tick
-/// numbers are up to the caller.
-class WorkerThread {
+/// When the last tick with work began and how long after the one before: so a thread knows when it
+/// is wanted next. Written by one thread, read by all; wait-free.
+class Pace {
  public:
   using Clock = std::chrono::steady_clock;
+  using nanoseconds = std::chrono::nanoseconds;
 
-  /// Evaluates every pair of the share once. Does not start the thread: see `start`.
-  WorkerThread(const World& world, const std::shared_ptr<const PairIndex>& pairs,
-               const CoprocessorOptions& options, int index)
-      : options_(options),
-        index_(index),
-        share_(world, pairs, options.budget, index, options.threads),
-        inbox_({0, {}, world.motion()}),
-        outbox_(primed(world)) {}
+  /// @param period [ns] the interval until two ticks have been seen
+  explicit Pace(nanoseconds period) noexcept : interval_(period.count()) {}
 
-  void start() {
-    thread_ = std::jthread([this](const std::stop_token& stop) {
-      if (options_.on_thread_start != nullptr) options_.on_thread_start(index_);
-      serve(stop);
-    });
+  /// A tick with work begins. Reads the clock.
+  void tick() noexcept {
+    const std::int64_t now = Clock::now().time_since_epoch().count();
+    const std::int64_t last = begun_.load(std::memory_order_relaxed);
+    if (last != 0) interval_.store(std::min(now - last, longest), std::memory_order_relaxed);
+    begun_.store(now, std::memory_order_relaxed);
   }
-  /// Joins the thread after it has finished its tick: blocks for ever if it is stalled for ever,
-  /// but not if it was killed.
-  void stop() { thread_ = {}; }
-
-  /// Posts a motion to the thread. Cost: a copy of it.
-  void post(std::int64_t exchange, Clock::time_point now, const Motion& motion) noexcept {
-    Request& draft = inbox_.draft();
-    draft.exchange = exchange;
-    draft.posted = now;
-    draft.motion.tick = motion.tick;
-    std::copy(motion.bodies.begin(), motion.bodies.end(), draft.motion.bodies.begin());
-    inbox_.post();
+  [[nodiscard]] Clock::time_point begun() const noexcept {
+    return Clock::time_point(nanoseconds(begun_.load(std::memory_order_relaxed)));
   }
-  /// Spins until the forces of that exchange have arrived; false on timeout at `until`.
-  [[nodiscard]] bool wait(std::int64_t exchange, Clock::time_point until) noexcept {
-    for (unsigned spins = 0;; ++spins) {
-      outbox_.take();
-      if (outbox_.newest().exchange == exchange) return true;
-      if (spins % 16 == 15 && Clock::now() >= until) return false;
-      relax(spins);
-    }
+  [[nodiscard]] nanoseconds interval() const noexcept {
+    return nanoseconds(interval_.load(std::memory_order_relaxed));
   }
-
-  /// The forces of each block of the share, as last received.
-  [[nodiscard]] const std::vector<PairForces>& forces() const noexcept {
-    return outbox_.newest().blocks;
-  }
-  /// Only while the thread is idle: from a successful `wait` to the next `post`, or after `stop`.
-  [[nodiscard]] const WorkerShare& share() const noexcept { return share_; }
 
  private:
-  struct Request {
-    std::int64_t exchange = 0;
-    Clock::time_point posted;
-    Motion motion;
-  };
-  struct Result {
-    std::int64_t exchange = 0;
-    std::vector<PairForces> blocks;
-  };
+  static constexpr std::int64_t longest = 1'000'000'000;
 
-  [[nodiscard]] Result primed(const World& world) {
-    share_.prime(world.motion());
-    Result result;
-    for (const auto& block : share_.blocks()) result.blocks.push_back(block.forces());
-    return result;
+  std::atomic<std::int64_t> begun_{0};
+  std::atomic<std::int64_t> interval_;
+};
+
+/// A thread that calls a function again and again; when that finds nothing to do, it waits: it
+/// sleeps until shortly before the next tick is due, spins for it, and sleeps longer and longer
+/// while none comes. Nobody has to wake it, since that would be a system call in the tick.
+class WorkerThread {
+ public:
+  WorkerThread(const CoprocessorOptions& options, int index, const Pace& pace) noexcept
+      : options_(options), index_(index), pace_(&pace) {}
+
+  /// Starts the thread. @param work `bool work() noexcept`, false if there was nothing to do;
+  /// called in the thread, until `stop`
+  template <class Work>
+  void start(Work work) {
+    thread_ = std::jthread([this, work = std::move(work)](const std::stop_token& stop) mutable {
+      usage_.attach_to_this_thread();
+      if (options_.on_thread_start != nullptr) options_.on_thread_start(index_);
+      serve(stop, work);
+    });
   }
+  /// Asks the thread to end; it does so when `work` returns.
+  void request_stop() noexcept { thread_.request_stop(); }
+  /// Joins the thread: blocks for ever if it is stalled for ever, but not if it was killed.
+  void stop() { thread_ = {}; }
 
-  /// Thread loop: answers a motion, sleeps until shortly before the next is due, and spins for it.
-  void serve(const std::stop_token& stop) noexcept {
-    const auto nap = options_.period - std::min(options_.period / 2, awake_before);
-    for (unsigned spins = 0; !stop.stop_requested(); ++spins) {
-      if (!inbox_.take()) {
-        relax(spins);
-        if (!options_.lock_step && spins > spins_before_nap) {
-          std::this_thread::sleep_for(options_.period / 8);
-        }
-        continue;
-      }
-      answer();
-      spins = 0;
-      if (!options_.lock_step) std::this_thread::sleep_until(inbox_.newest().posted + nap);
-    }
+  /// Grows while the thread is alive and not within `work`.
+  [[nodiscard]] std::uint64_t beats() const noexcept {
+    return beats_.load(std::memory_order_relaxed);
   }
+  /// Page faults and switches since the start. Not for the tick.
+  [[nodiscard]] const ThreadUsage::Counts& look_at_usage() noexcept { return usage_.look(); }
 
-  void answer() noexcept {
-    share_.run(inbox_.newest().motion);
-    Result& draft = outbox_.draft();
-    draft.exchange = inbox_.newest().exchange;
-    // Same size as before, so the copies do not allocate.
-    for (std::size_t b = 0; b < draft.blocks.size(); ++b) {
-      draft.blocks[b] = share_.blocks()[b].forces();
-    }
-    outbox_.post();
-  }
-
-  /// One iteration of a spin wait. In lock step there may be more threads than processors, so it
-  /// yields from time to time; otherwise it makes no system call.
-  void relax(unsigned spins) const noexcept {
-    if (options_.lock_step && spins % 4096 == 4095) std::this_thread::yield();
+  /// One iteration of a spin wait.
+  static void pause() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
 #endif
   }
 
-  static constexpr std::chrono::nanoseconds awake_before{200000};
-  static constexpr unsigned spins_before_nap = 200000;
+ private:
+  using Clock = std::chrono::steady_clock;
+  using nanoseconds = std::chrono::nanoseconds;
+
+  template <class Work>
+  void serve(const std::stop_token& stop, Work& work) noexcept {
+    nap_ = shortest_nap;
+    for (unsigned spins = 1; !stop.stop_requested(); ++spins) {
+      beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+      if (work()) {
+        spins = 0;
+        nap_ = shortest_nap;
+        continue;
+      }
+      pause();
+      // In lock step there may be more threads than processors, and the ticks do not come by the
+      // clock.
+      if (options_.lock_step) {
+        if (spins % 4096 == 0) std::this_thread::yield();
+      } else if (spins % 64 == 0) {
+        sleep();
+      }
+    }
+  }
+
+  void sleep() noexcept {
+    const nanoseconds interval = pace_->interval();
+    const Clock::time_point due = pace_->begun() + interval;
+    const Clock::time_point now = Clock::now();
+    const Clock::time_point wake = due - std::min(interval / 2, awake_before);
+    if (now + worth_sleeping < wake) {
+      std::this_thread::sleep_until(wake);
+    } else if (now > due + interval / 2 + patience) {
+      std::this_thread::sleep_for(nap_);
+      nap_ = std::min(2 * nap_, longest_nap);
+    }
+  }
+
+  static constexpr nanoseconds awake_before{200'000};
+  static constexpr nanoseconds worth_sleeping{50'000};
+  static constexpr nanoseconds patience{300'000};
+  static constexpr nanoseconds shortest_nap{250'000};
+  static constexpr nanoseconds longest_nap{4'000'000};
 
   CoprocessorOptions options_;
   int index_;
-  WorkerShare share_;
-  Mailbox<Request> inbox_;
-  Mailbox<Result> outbox_;
+  const Pace* pace_;
+  nanoseconds nap_ = shortest_nap;
+  ThreadUsage usage_;
+  std::atomic<std::uint64_t> beats_{0};
   std::jthread thread_;  // last member: joined before the data it uses is destroyed
 };
 

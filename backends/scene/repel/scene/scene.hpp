@@ -79,7 +79,8 @@ struct RobotChoice {
 struct Budget {
   double wall_us = 0.0;         ///< [us] 0: no limit
   std::int64_t work_units = 0;  ///< support-map pairs; 0: no limit
-  int threads = 0;  ///< of the coprocessor; 0: the work is done in the tick's own thread
+  /// Of the coprocessor; 0: the work is done in the tick's own thread.
+  int threads = 0;
   std::int64_t max_age = repel::Budget{}.max_age;  ///< [ticks] after which a result expires
 };
 
@@ -109,6 +110,7 @@ struct Scene : ArmSetup {
   std::vector<Obstacle> obstacles;
   std::vector<OtherArm> partners;
   Budget budget;
+  CoprocessorMode coprocessor = CoprocessorMode::together;
 
   /// The scene's own setup for 0, then those of the partners.
   [[nodiscard]] const ArmSetup& arm_setup(std::size_t i) const {

@@ -1,36 +1,37 @@
 /// @file
-/// A block of pairs: selects the near pairs, schedules their evaluation, and sums their forces.
+/// The pairs of a world: selects the near ones, divides their evaluation into batches that several
+/// threads can share, and sums their forces.
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <limits>
-#include <span>
 #include <vector>
 
 #include <repel/pairs/candidates.hpp>
 #include <repel/pairs/lane_evaluator.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
-#include <repel/schedule/evaluation_order.hpp>
+#include <repel/schedule/evaluation_plan.hpp>
 
 namespace repel::detail {
 
-/// A subset of the world's pairs. Those that can soon come within range are its candidates; each
-/// has a slot of memory, which it keeps until another needs it. All memory is allocated at
-/// construction.
-class PairBlock {
+/// All pairs of a world. Those that can soon come within range are its candidates; each has a slot
+/// of memory, which it keeps until another needs it. A tick is `begin_tick`, the search, which
+/// calls `take` and `end`, then `select`, `evaluate` for each batch, and `finish`. Only `evaluate`
+/// may be called by several threads, each batch once; whichever thread does it, the forces have the
+/// same bits. All memory is allocated at construction.
+class PairSet {
  public:
   /// @param slots largest number of pairs with a slot, at least 0
-  PairBlock(const World& world, PairPartition partition, int slots, const Budget& budget = {})
-      : singles_(world, partition, slots, budget.max_age),
+  /// @param lookahead [m] by which a pair may be out of its range and yet be near
+  PairSet(const World& world, int slots, const Budget& budget = {}, double lookahead = 0.0)
+      : singles_(world, {}, slots, budget.max_age, lookahead),
         lanes_(singles_),
         candidates_(memory().slots()),
         near_singles_(memory().slots()),
-        order_(memory().slots()) {}
+        plan_(memory().slots() / lane_count + 1, memory().slots()) {}
   // lanes_ keeps a pointer to singles_.
-  PairBlock(const PairBlock&) = delete;
-  PairBlock& operator=(const PairBlock&) = delete;
+  PairSet(const PairSet&) = delete;
+  PairSet& operator=(const PairSet&) = delete;
 
   /// Evaluates every pair once, so that each has an answer at the first tick; clears the forces.
   void prime(const Motion& motion, PartPoses& poses) noexcept {
@@ -64,7 +65,7 @@ class PairBlock {
   bool take(PairId id, std::int32_t list, double distance, const Motion& motion,
             PartPoses& poses) noexcept {
     const int slot = memory().slot_for(id);
-    singles_.set_clearance(slot, motion, distance - singles_.pair(slot).law.range);
+    singles_.set_clearance(slot, motion, distance - singles_.reach(slot));
     if (memory().is_temporary(slot)) {
       PairTotals& totals = singles_.forces().totals;
       ++totals.crowded;
@@ -98,24 +99,62 @@ class PairBlock {
     return kept;
   }
 
-  /// Evaluates the near candidates until `work_units` are spent or `deadline` is reached, and
-  /// computes the forces of all. If the last tick could not evaluate all, half the number it
-  /// managed is selected by urgency; the others follow round-robin from where it stopped, so that
-  /// no pair starves. An evaluation is never cut short: half of one would cost most of a whole one
-  /// and might give a weaker bound than the old answer. A pair without any answer is evaluated in
-  /// any case.
-  void run(const Motion& motion, PartPoses& poses, std::int64_t work_units,
-           std::chrono::steady_clock::time_point deadline) noexcept {
-    const bool counted = work_units < std::numeric_limits<std::int64_t>::max();
+  /// Selects the near candidates and divides them into batches (EvaluationPlan). Returns the number
+  /// of these.
+  int select(const Motion& motion, PartPoses& poses, const EvaluationLimit& limit) noexcept {
     // Pairs in lanes are evaluated several at a time: too coarse for a budget in work units.
-    if (counted) lanes_.remove_all(poses);
+    if (limit.is_counted()) lanes_.remove_all(poses);
     find_near_singles(motion, poses);
-    evaluate(motion, poses, work_units, deadline);
-    // Summed in an order that does not depend on the order of evaluation.
+    return plan_.plan(
+        limit, lanes_.groups(), single_count_, [&](int k) { return pair_of_single(k); },
+        [&](std::int32_t k) { return singles_.time_to_touch(near_singles_[k], motion); });
+  }
+
+  /// Evaluates a batch until the limit of the tick is reached. An evaluation is never cut short:
+  /// half of one would cost most of a whole one and might give a weaker bound than the old answer.
+  /// A pair without any answer is evaluated in any case.
+  /// @param spent support-map pairs before it @return how many it took
+  std::int64_t evaluate(int batch, const Motion& motion, PartPoses& poses,
+                        std::int64_t spent = 0) noexcept {
+    return plan_.run(
+        batch, spent,
+        [&](int g, PairTotals& totals) { lanes_.evaluate_group(g, motion, poses, totals); },
+        [&](int k, bool allowed, PairTotals& totals) {
+          const std::int32_t slot = near_singles_[k];
+          if (!allowed && memory().answer(slot).known()) return;
+          singles_.evaluate(slot, motion, poses, totals);
+        });
+  }
+
+  /// Evaluates all batches in this thread.
+  void evaluate_all(const Motion& motion, PartPoses& poses) noexcept {
+    std::int64_t spent = singles_.forces().totals.iterations;
+    for (int k = 0; k < plan_.batches(); ++k) spent += evaluate(k, motion, poses, spent);
+  }
+
+  /// Computes and sums the forces of all near pairs, in an order that does not depend on that of
+  /// their evaluation.
+  void finish(const Motion& motion, const PartPoses& poses) noexcept {
+    plan_.finish(singles_.forces().totals, [&](int k) { return pair_of_single(k); });
     lanes_.push(motion);
     for (int k = 0; k < single_count_; ++k) singles_.push(near_singles_[k], motion);
     lanes_.remove_ended(poses);
-    for (int k = 0; !counted && k < single_count_; ++k) lanes_.add(near_singles_[k], poses);
+    if (plan_.limit().is_counted()) return;
+    for (int k = 0; k < single_count_; ++k) lanes_.add(near_singles_[k], poses);
+  }
+
+  /// Ticks have passed without this set: what waited for an evaluation does so no more.
+  void skip_ticks() noexcept { begin_tick(forces().tick); }
+
+  /// Drops all candidates, as if they were out of reach. The search must find them all again.
+  void forget(const PartPoses& poses) noexcept {
+    skip_ticks();
+    if (all_near_) return;
+    lanes_.remove_all(poses);
+    candidates_.remove_if([&](std::int32_t slot) {
+      singles_.remove_from_list(slot);
+      return true;
+    });
   }
 
   /// Repeats the work of the last tick on up to `most` near pairs to warm the CPU caches, without
@@ -128,6 +167,8 @@ class PairBlock {
     return done;
   }
 
+  /// Near pairs of this tick. After `select`.
+  [[nodiscard]] int near() const noexcept { return lanes_.count() + single_count_; }
   [[nodiscard]] const PairForces& forces() const noexcept { return singles_.forces(); }
   /// The last stored answer; the default one, which bounds nothing, if there is none.
   [[nodiscard]] Separation separation_of(PairId id) const noexcept {
@@ -137,7 +178,7 @@ class PairBlock {
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
     return lanes_.extremes_of(id);
   }
-  /// Calls see(NearPair) for each pair that was near at `run` with the same motion.
+  /// Calls see(NearPair) for each pair that was near at the tick of that motion.
   template <class See>
   void for_each_near(const Motion& motion, const See& see) const noexcept {
     for (const Candidate& candidate : candidates_.all()) {
@@ -145,15 +186,22 @@ class PairBlock {
       if (near) see(*near);
     }
   }
+  /// Calls see(NearPair, NearAnswer) for each of these.
+  template <class See>
+  void for_each_answer(const Motion& motion, const See& see) const noexcept {
+    for (const Candidate& candidate : candidates_.all()) {
+      const auto near = lanes_.near_pair(candidate.slot, motion);
+      if (near) see(*near, lanes_.near_answer(candidate.slot, motion));
+    }
+  }
   [[nodiscard]] const PairMemory& memory() const noexcept { return singles_.memory(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   [[nodiscard]] PairMemory& memory() noexcept { return singles_.memory(); }
 
-  [[nodiscard]] static bool is_over(Clock::time_point deadline) noexcept {
-    return deadline != Clock::time_point::max() && Clock::now() >= deadline;
+  /// The index of the pair of the k-th near single.
+  [[nodiscard]] std::int32_t pair_of_single(int k) const noexcept {
+    return memory().tracking(near_singles_[k]).pair.index;
   }
 
   void find_near_singles(const Motion& motion, PartPoses& poses) noexcept {
@@ -178,77 +226,15 @@ class PairBlock {
   [[nodiscard]] bool is_near(int slot, const Motion& motion, PartPoses& poses) noexcept {
     if (!singles_.is_due(slot, motion)) return false;
     if (memory().answer(slot).in_range) return true;
-    const double range = singles_.pair(slot).law.range;
-    double clearance = singles_.lower_bound(slot, motion) - range;
+    const double reach = singles_.reach(slot);
+    double clearance = singles_.lower_bound(slot, motion) - reach;
     if (!(clearance > 0.0) && clearance + singles_.lost_to_rotation(slot, motion) > 0.0) {
-      clearance = singles_.lower_bound_by_shapes(slot, motion, poses) - range;
+      clearance = singles_.lower_bound_by_shapes(slot, motion, poses) - reach;
     }
     singles_.set_clearance(slot, motion, clearance);
     if (clearance > 0.0) return false;
     singles_.clear_history(slot);
     return true;
-  }
-
-  /// Evaluates the pairs in lanes and the single pairs. When time does not suffice for all, the two
-  /// kinds alternate in going first.
-  void evaluate(const Motion& motion, PartPoses& poses, std::int64_t work_units,
-                Clock::time_point deadline) noexcept {
-    const int before = singles_.forces().totals.evaluated;
-    spent_ = false;
-    if (singles_first_) evaluate_singles(motion, poses, work_units, deadline);
-    evaluate_groups(motion, poses, deadline);
-    if (!singles_first_) evaluate_singles(motion, poses, work_units, deadline);
-    // A turn in which nothing could be evaluated does not count.
-    if (!spent_)
-      singles_first_ = false;
-    else if (singles_.forces().totals.evaluated > before)
-      singles_first_ = !singles_first_;
-  }
-
-  void evaluate_groups(const Motion& motion, PartPoses& poses,
-                       Clock::time_point deadline) noexcept {
-    const int groups = lanes_.groups();
-    if (next_group_ >= groups) next_group_ = 0;
-    for (int k = 0; k < groups; ++k) {
-      const int g = next_group_ + k < groups ? next_group_ + k : next_group_ + k - groups;
-      if (spent_ || is_over(deadline)) {
-        spent_ = true;
-        next_group_ = g;
-        return;
-      }
-      lanes_.evaluate_group(g, motion, poses);
-    }
-  }
-
-  void evaluate_singles(const Motion& motion, PartPoses& poses, std::int64_t work_units,
-                        Clock::time_point deadline) noexcept {
-    const PairTotals& totals = singles_.forces().totals;
-    const auto order = in_order(motion);
-    int evaluated = 0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const int slot = near_singles_[order[k]];
-      if (!spent_ && (totals.iterations >= work_units || is_over(deadline))) {
-        spent_ = true;
-        if (k >= static_cast<std::size_t>(urgent_)) next_ = memory().tracking(slot).pair;
-      }
-      if (spent_ && memory().answer(slot).known()) continue;
-      ++evaluated;
-      singles_.evaluate(slot, motion, poses);
-    }
-    urgent_ = spent_ ? evaluated / 2 : 0;
-  }
-
-  /// Evaluation order of the near single pairs, as indices into `near_singles_`; the most urgent
-  /// first if there was not enough time at the last tick.
-  [[nodiscard]] std::span<const std::int32_t> in_order(const Motion& motion) noexcept {
-    urgent_ = std::min(urgent_, single_count_);
-    const auto begin = near_singles_.begin();
-    const auto first = std::lower_bound(
-        begin, begin + single_count_, next_.index,
-        [&](std::int32_t slot, std::int32_t i) { return memory().tracking(slot).pair.index < i; });
-    return order_.arrange(
-        single_count_, static_cast<int>(first - begin), urgent_,
-        [&](std::int32_t k) { return singles_.time_to_touch(near_singles_[k], motion); });
   }
 
   SingleEvaluator singles_;
@@ -257,12 +243,7 @@ class PairBlock {
   bool all_near_ = false;
   std::vector<std::int32_t> near_singles_;  ///< slots of the near pairs that are in no lane
   int single_count_ = 0;                    ///< number of valid entries in `near_singles_`
-  EvaluationOrder order_;
-  bool spent_ = false;  ///< the budget of this tick is exhausted
-  bool singles_first_ = false;
-  PairId next_{0};      ///< round-robin start of the single pairs
-  int next_group_ = 0;  ///< round-robin start of the groups
-  int urgent_ = 0;      ///< number of single pairs selected by urgency
+  EvaluationPlan plan_;
 };
 
 }  // namespace repel::detail

@@ -1,0 +1,87 @@
+/// @file
+/// One tick of the pairs of a world that several threads evaluate together.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+
+#include <repel/schedule/pair_set.hpp>
+
+namespace repel::detail {
+
+/// What a thread needs of its own to evaluate pairs.
+struct Evaluator {
+  PartPoses poses;
+  std::int64_t round = -1;  ///< that `poses` belong to
+};
+
+/// A set of pairs whose batches are taken as they come: whoever is free takes the next. The leader,
+/// always the same thread, opens a round when the set is idle, and from then until all batches
+/// taken are finished it is not. Nobody waits in here; a thread that stalls in a batch keeps it,
+/// and the set is not idle until it has finished.
+class SharedTick {
+ public:
+  SharedTick(const World& world, int slots, const Budget& budget, double lookahead)
+      : pairs_(world, slots, budget, lookahead) {
+    motion_.bodies.resize(static_cast<std::size_t>(world.body_count()));
+  }
+
+  /// Of the leader, while the set is idle.
+  [[nodiscard]] PairSet& pairs() noexcept { return pairs_; }
+  [[nodiscard]] const PairSet& pairs() const noexcept { return pairs_; }
+  /// True when no thread is in a batch.
+  [[nodiscard]] bool is_idle() const noexcept {
+    return unfinished_.load(std::memory_order_acquire) == 0;
+  }
+
+  /// Leader: opens the batches that PairSet::select has made to all threads. Copies the motion,
+  /// which the caller may change while a late thread still reads it.
+  /// @param round larger than any before
+  void open(std::int64_t round, const Motion& motion, int batches) noexcept {
+    motion_.tick = motion.tick;
+    std::copy(motion.bodies.begin(), motion.bodies.end(), motion_.bodies.begin());
+    batches_ = batches;
+    unfinished_.store(batches, std::memory_order_relaxed);
+    left_.store(round << count_bits | batches, std::memory_order_release);
+  }
+
+  /// Any thread: takes batches of the open round and evaluates them until none is left. False if
+  /// there was none.
+  bool work(Evaluator& evaluator) noexcept {
+    bool any = false;
+    std::int64_t left = left_.load(std::memory_order_acquire);
+    while ((left & count_mask) > 0) {
+      if (!left_.compare_exchange_weak(left, left - 1, std::memory_order_acq_rel,
+                                       std::memory_order_acquire)) {
+        continue;
+      }
+      any = true;
+      evaluate_taken(left >> count_bits, batches_ - static_cast<int>(left & count_mask), evaluator);
+      left = left_.load(std::memory_order_acquire);
+    }
+    return any;
+  }
+
+ private:
+  static constexpr int count_bits = 20;  // more batches than a world can have
+  static constexpr std::int64_t count_mask = (1 << count_bits) - 1;
+
+  void evaluate_taken(std::int64_t round, int batch, Evaluator& evaluator) noexcept {
+    if (evaluator.round != round) {
+      evaluator.round = round;
+      evaluator.poses.begin_tick();
+    }
+    pairs_.evaluate(batch, motion_, evaluator.poses);
+    unfinished_.fetch_sub(1, std::memory_order_release);
+  }
+
+  PairSet pairs_;
+  Motion motion_;    ///< of the round
+  int batches_ = 0;  ///< of the round
+  // Each on a cache line of its own: all threads write to them.
+  alignas(64) std::atomic<std::int64_t> left_{0};  ///< round, and number of batches not yet taken
+  alignas(64) std::atomic<int> unfinished_{0};     ///< batches of the round that are not finished
+};
+
+}  // namespace repel::detail
