@@ -585,11 +585,11 @@ TEST(CoprocessorBeside, ForcesErrToTheSafeSide) {
   // Single points: the mean over a patch may be a little farther than its nearest point.
   constexpr ForceLaw law{.range = 0.05, .surface_force = 100.0, .damping = 0.0, .tilt = 0.0};
   int pushed = 0;
-  for (unsigned run = 0; run < 20; ++run) {
+  for (unsigned run = 0; run < 10; ++run) {
     test::Boxes boxes(1, 1, law, seed + run);
     Coprocessor coprocessor(boxes.world, beside(1));
     const Pair& pair = boxes.world.pairs().front();
-    for (int tick = 0; tick < 500; ++tick) {
+    for (int tick = 0; tick < 200; ++tick) {
       boxes.move();
       const double felt = coprocessor.exchange().on_body[boxes.tool.index].force.norm();
       EXPECT_EQ(coprocessor.workers().age, 1);
@@ -598,7 +598,7 @@ TEST(CoprocessorBeside, ForcesErrToTheSafeSide) {
       pushed += truth > 0.0 ? 1 : 0;
     }
   }
-  EXPECT_GT(pushed, 500) << "seed " << seed;
+  EXPECT_GT(pushed, 100) << "seed " << seed;
 }
 
 TEST(CoprocessorBeside, AtRestTheForcesAreThoseOfADirectEvaluation) {
