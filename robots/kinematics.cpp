@@ -72,10 +72,6 @@ struct Body {
     if (!turns) return {axis, {0, 0, 0}};
     return {cross(axis, q - p), axis};
   }
-  /// What the joint feels of `F` about the point `q` [m]: the power at a rate of 1.
-  [[nodiscard]] double share_of(const Wrench& F, const Vec3& q) const noexcept {
-    return turns ? dot(axis, F.torque + cross(q - p, F.force)) : dot(axis, F.force);
-  }
 
   ArmLink link;
   bool turns;
@@ -88,36 +84,41 @@ struct Body {
   Vec3 p{0, 0, 0};       // [m] origin
   Vec3 axis{0, 0, 1};    // of the joint
   Vec3 centre{0, 0, 0};  // [m] of mass
+  Twist at_tip{};        // of the origin of the last link, at a rate of 1
 };
 
 /// Links that move as one body.
 struct Composite {
-  double mass = 0.0;      // [kg]
-  Vec3 centre{0, 0, 0};   // [m]
-  Mat3 I = Mat3::Zero();  // [kg m^2] about the centre, world axes
+  double mass = 0.0;     // [kg]
+  Vec3 centre{0, 0, 0};  // [m]
+  double I[6] = {};      // [kg m^2] about the centre, world axes: xx, yy, zz, yz, zx, xy
 
   /// By the parallel-axis theorem.
   void add(const Body& body) noexcept {
-    const Mat3 I_W = body.R * body.link.I_C_L * transposed(body.R);
     const double sum = mass + body.link.mass;
     const double share = sum > 0.0 ? body.link.mass / sum : 0.0;
-    const double reduced = share * mass;
     const Vec3 d = body.centre - centre;
-    const Vec3 moment = reduced * d;
+    const Vec3 moment = share * mass * d;
     const double square = dot(moment, d);
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        I.data()[3 * i + k] += I_W.data()[3 * i + k] - moment[i] * d[k];
-      }
-      I.data()[4 * i] += square;
-    }
+    const Mat3 half = body.R * body.link.I_C_L;
+    const auto entry = [&](int i, int k) {  // of R I R' - moment d'
+      const double *h = half.data() + i, *r = body.R.data() + k;
+      return h[0] * r[0] + h[3] * r[3] + h[6] * r[6] - moment[i] * d[k];
+    };
+    I[0] += entry(0, 0) + square;
+    I[1] += entry(1, 1) + square;
+    I[2] += entry(2, 2) + square;
+    I[3] += entry(1, 2);
+    I[4] += entry(2, 0);
+    I[5] += entry(0, 1);
     centre = centre + share * d;
     mass = sum;
   }
 
-  /// The momentum and the angular momentum about the centre, at the twist `V` of the centre.
-  [[nodiscard]] Wrench momentum(const Twist& V) const noexcept {
-    return {mass * V.linear, I * V.angular};
+  /// I w [kg m^2/s].
+  [[nodiscard]] Vec3 spin(const Vec3& w) const noexcept {
+    return {I[0] * w[0] + I[5] * w[1] + I[4] * w[2], I[5] * w[0] + I[1] * w[1] + I[3] * w[2],
+            I[4] * w[0] + I[3] * w[1] + I[2] * w[2]};
   }
 };
 
@@ -144,6 +145,7 @@ struct Kinematics::Impl {
       R_WP = bodies[i].R;
       p_WP = bodies[i].p;
     }
+    for (Body& body : bodies) body.at_tip = body.twist_at(p_WP);
     X_WT = composed(pose_of(R_WP, p_WP), X_LT);
   }
 
@@ -211,19 +213,26 @@ void Kinematics::gravity_torques(std::span<double> out) noexcept {
   }
 }
 
-// The composite rigid body algorithm (Featherstone 2008, section 6.2), about the centres of mass.
+// The composite rigid body algorithm (Featherstone 2008, section 6.2): the momentum of all links
+// beyond a joint that turns at a rate of 1, along the axes before it. Momenta are about the origin
+// of the last link, where the inertias are least and rounding matters most.
 bool Kinematics::mass_matrix(Eigen::MatrixXd& M) const noexcept {
   const std::vector<Body>& bodies = impl_->bodies;
   const std::size_t n = bodies.size();
+  const Vec3& tip = bodies.back().p;
   M.resize(links(), links());
   Composite beyond;
   for (std::size_t i = n; i-- > 0;) {
-    beyond.add(bodies[i]);
-    const Wrench momentum = beyond.momentum(bodies[i].twist_at(beyond.centre));
+    const Body& body = bodies[i];
+    beyond.add(body);
+    const Twist V = body.twist_at(beyond.centre);
+    const Vec3 P = beyond.mass * V.linear;
+    const Vec3 L = beyond.spin(V.angular) + cross(beyond.centre - tip, P);
     for (std::size_t k = 0; k <= i; ++k) {
-      M.data()[n * i + k] = M.data()[n * k + i] = bodies[k].share_of(momentum, beyond.centre);
+      const Twist& along = bodies[k].at_tip;
+      M.data()[n * i + k] = M.data()[n * k + i] = dot(along.linear, P) + dot(along.angular, L);
     }
-    M.data()[n * i + i] += bodies[i].link.rotor_inertia;
+    M.data()[n * i + i] += body.link.rotor_inertia;
   }
   return true;
 }
