@@ -8,6 +8,9 @@
 
 #include <atomic>
 #include <cerrno>
+#if __has_include(<valgrind/valgrind.h>)
+#include <valgrind/valgrind.h>
+#endif
 
 #if defined(__x86_64__) && defined(PR_SET_SYSCALL_USER_DISPATCH) && !defined(REPEL_SANITIZED)
 #define REPEL_COUNTS_SYSTEM_CALLS 1
@@ -80,7 +83,16 @@ void* install_handler() noexcept {
   return kept.restorer;
 }
 
+bool is_under_valgrind() noexcept {
+#ifdef RUNNING_ON_VALGRIND
+  return RUNNING_ON_VALGRIND != 0;
+#else
+  return false;
+#endif
+}
+
 bool arm_this_thread() noexcept {
+  if (is_under_valgrind()) return false;  // its own system calls would be handed over, too
   constexpr unsigned long length_of_restorer = 16;
   void* const restorer = install_handler();
   return restorer != nullptr && prctl(PR_SET_SYSCALL_USER_DISPATCH, PR_SYS_DISPATCH_ON, restorer,

@@ -80,7 +80,8 @@ struct Held {
 Held hold(const Engine& engine, const std::vector<std::vector<double>>& poses) {
   const ArmModel model = armstrong_puma();
   const std::unique_ptr<SimulatedArm> arm = engine.make(model, 1);
-  Kinematics kinematics(model);
+  Dynamics dynamics(model);
+  const std::vector<double> at_rest(links, 0.0);
   Held held;
   const auto rows = static_cast<Eigen::Index>(links * poses.size());
   Eigen::MatrixXd factors(rows, 5);
@@ -88,8 +89,7 @@ Held hold(const Engine& engine, const std::vector<std::vector<double>>& poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Torques measured = holding_torques(*arm, poses[i]);
     Torques kdl;
-    kinematics.update(poses[i]);
-    kinematics.gravity_torques({kdl.data(), links});
+    dynamics.bias(poses[i], at_rest, {kdl.data(), links});
     const auto at = static_cast<Eigen::Index>(links * i);
     factors.middleRows<links>(at) = formula(poses[i]);
     torques.segment<links>(at) = measured;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/robots/dynamics.hpp>
 
 #include "arms.hpp"
 
@@ -101,6 +102,20 @@ TEST(Kinematics, GravityTorquesAreTheGradientOfPotentialEnergy) {
       const double slope = (ahead - potential_energy(arm, other)) / (2.0 * step);
       EXPECT_NEAR(torques[static_cast<std::size_t>(joint)], slope, 1e-6) << "joint " << joint;
     }
+  });
+}
+
+TEST(Kinematics, InertiaAndGravityTorquesAreThoseOfKdl) {
+  at_random_poses([](const ArmModel& arm, Kinematics& kinematics, const auto& q) {
+    Dynamics kdl(arm);
+    Eigen::MatrixXd M, expected(q.size(), q.size());
+    ASSERT_TRUE(kinematics.mass_matrix(M));
+    kdl.inertia(q, expected);
+    EXPECT_LT((M - expected).norm(), 1e-12 * expected.norm()) << M;
+    std::vector<double> torques(q.size()), balance(q.size());
+    kinematics.gravity_torques(torques);
+    kdl.bias(q, std::vector<double>(q.size(), 0.0), balance);
+    for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(torques[i], balance[i], 1e-11) << i;
   });
 }
 

@@ -56,10 +56,13 @@ template <std::same_as<Mat3> M, std::same_as<Vec3> V>
 template <std::same_as<Mat3> M>
 [[nodiscard]] M operator*(const M& a, const M& b) noexcept {
   M product;
+  const double* r = a.data();
   for (int column = 0; column < 3; ++column) {
     const double* c = b.data() + 3 * column;
-    const Vec3 v = a * Vec3(c[0], c[1], c[2]);
-    for (int row = 0; row < 3; ++row) product.data()[3 * column + row] = v[row];
+    double* p = product.data() + 3 * column;
+    p[0] = r[0] * c[0] + r[3] * c[1] + r[6] * c[2];
+    p[1] = r[1] * c[0] + r[4] * c[1] + r[7] * c[2];
+    p[2] = r[2] * c[0] + (r[5] * c[1] + r[8] * c[2]);
   }
   return product;
 }

@@ -83,9 +83,9 @@ class ActiveContacts {
 /// The damping of the contacts at the joints of one arm [N m s/rad], sum of c h h' with h the joint
 /// torques of the unit force of a contact; of size 0 without contacts. @param jacobian of the
 /// `tool`
-inline void gather_damping(std::span<const ActiveContact> contacts, BodyId tool,
-                           const Jacobian& jacobian, const ArmBodies& links,
-                           network::Mat<network::any_size>& damping) noexcept {
+[[gnu::noinline]] inline void gather_damping(std::span<const ActiveContact> contacts, BodyId tool,
+                                             const Jacobian& jacobian, const ArmBodies& links,
+                                             network::Mat<network::any_size>& damping) noexcept {
   const Eigen::Index joints = contacts.empty() ? 0 : jacobian.cols();
   damping.setZero(joints, joints);
   network::Vec<network::any_size> h(joints);

@@ -47,8 +47,8 @@ class ArmCommand {
 
   /// Derives gain, stop, brakes and enable from the status of the tick, all in `record`.
   /// @param state of the drive of the arm; @param network solved; @param elapsed [s]
-  void judge(TickRecord& record, const JointWatch& watch, ArmState state,
-             const network::Network& network, double elapsed) noexcept {
+  [[gnu::noinline]] void judge(TickRecord& record, const JointWatch& watch, ArmState state,
+                               const network::Network& network, double elapsed) noexcept {
     const double sampled = network.find<network::PumaJoints>()->sampling_energy();
     record.status |= energy_watch_.step(sampled, elapsed);
     watch_drive(record, state, elapsed);

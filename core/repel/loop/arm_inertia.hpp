@@ -61,11 +61,12 @@ class ArmInertia {
   void update(const ArmKinematics& kinematics) noexcept {
     const bool is_given =
         kinematics.mass_matrix(given_) && given_.rows() == size() && given_.cols() == size();
-    for (Eigen::Index i = 0; i < size(); ++i) {
-      for (Eigen::Index k = 0; k < size(); ++k)
-        M_.coeffRef(i, k) = is_given ? given_.coeff(i, k) : 0.0;
+    if (is_given) {
+      std::copy(given_.data(), given_.data() + given_.size(), M_.data());
+    } else {
+      M_.setZero(size(), size());
+      add_links(kinematics);
     }
-    if (!is_given) add_links(kinematics);
     missing_ = -1;
     for (Eigen::Index i = size() - 1; i >= 0; --i) {
       if (M_.coeff(i, i) > 1e-9) continue;
@@ -104,22 +105,21 @@ class ArmInertia {
     for (Eigen::Index i = 0; i < size(); ++i) {
       const auto joint = static_cast<std::size_t>(i);
       M_.coeffRef(i, i) += model_.links[joint].rotor_inertia;
-      for (Eigen::Index k = 0; k < i; ++k) M_.coeffRef(k, i) = M_.coeff(i, k);
+      for (Eigen::Index k = 0; k < i; ++k) M_.coeffRef(i, k) = M_.coeff(k, i);
     }
   }
 
-  // Adds a link to the lower triangle.
+  // Adds a link to the upper triangle.
   void add(const ArmKinematics& kinematics, const ArmLink& link, int index) noexcept {
     const Pose X_WL = kinematics.X_WL(index);
     kinematics.jacobian(index, X_WL * link.p_LC, drawn_);
     const Mat3 R_WL = rotation(X_WL);
     const Mat3 I_W = R_WL * link.I_C_L * transposed(R_WL);
-    for (Eigen::Index i = 0; i <= index; ++i) {
+    double* row = M_.data();
+    for (Eigen::Index i = 0; i <= index; ++i, row += size()) {
       const Twist column = column_of(drawn_, i);
       const Wrench inertial{link.mass * column.linear, I_W * column.angular};
-      for (Eigen::Index k = 0; k <= i; ++k) {
-        M_.coeffRef(i, k) += power(inertial, column_of(drawn_, k));
-      }
+      for (Eigen::Index k = 0; k <= i; ++k) row[k] += power(inertial, column_of(drawn_, k));
     }
   }
 

@@ -37,7 +37,11 @@ class JointWatch {
   /// @param period [s] from reading to reading
   /// @throws SetupError for an option out of range
   JointWatch(const ArmModel& model, double period, const JointWatchOptions& options = {})
-      : model_(model), options_(options), period_(period), joints_(model.links.size()) {
+      : model_(model),
+        options_(options),
+        period_(period),
+        joints_(model.links.size()),
+        change_(model.links.size()) {
     checked("JointWatchOptions::position_noise", options.position_noise, 0.0, 1e3, "rad");
     checked("JointWatchOptions::rate_noise", options.rate_noise, 0.0, 1e6, "rad/s");
     checked("JointWatchOptions::resolution", options.resolution, 0.0, 1e3, "rad");
@@ -124,6 +128,7 @@ class JointWatch {
   [[nodiscard]] Status compare(const std::vector<double>& q, const std::vector<double>& v,
                                double elapsed, const ArmInertia::Matrix& M) noexcept {
     Status found = 0;
+    for (std::size_t i = 0; i < joints_.size(); ++i) change_[i] = v[i] - joints_[i].read_v;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       if (!can_be_true(i, q, v, elapsed, M)) found |= status::implausible_joints;
       if (stands_still(joints_[i], model_.links[i], q[i], v[i], elapsed, M(index(i), index(i)))) {
@@ -139,13 +144,13 @@ class JointWatch {
     Joint& joint = joints_[i];
     const double limit = model_.links[i].velocity_limit;
     if (limit > 0.0 && !(std::abs(v[i]) <= 2.0 * limit + options_.rate_noise)) return false;
-    double passed_on = 0.0;  // momentum from the other joints [N m s]
+    const double* row = M.data() + i * joints_.size();  // M is symmetric
+    double passed_on = 0.0;                             // momentum from the other joints [N m s]
     for (std::size_t k = 0; k < joints_.size(); ++k) {
-      if (k != i) passed_on += std::abs(M(index(i), index(k)) * (v[k] - joints_[k].read_v));
+      if (k != i) passed_on += std::abs(row[k] * change_[k]);
     }
     const double push = elapsed * (std::abs(joint.net) + joint.effort) + passed_on;
-    const double gain =
-        options_.rate_noise + options_.mass_uncertainty * push / M(index(i), index(i));
+    const double gain = options_.rate_noise + options_.mass_uncertainty * push / row[i];
     if (!(std::abs(v[i]) <= std::abs(joint.read_v) + gain)) return false;
     // Between two readings the rate is assumed to lie between theirs; with readings missing, it may
     // have been higher for a while.
@@ -268,10 +273,11 @@ class JointWatch {
   JointWatchOptions options_;
   double period_;  // [s]
   std::vector<Joint> joints_;
-  Status blind_ = 0U;        // why the readings are not believed
-  int sound_ = 0;            // consecutive sound readings since
-  double blind_for_ = 0.0;   // [s] since the last believed reading
-  double lost_speed_ = 0.0;  // [rad/s] greatest joint speed when the readings failed
+  std::vector<double> change_;  // [rad/s] of the rates since the last reading
+  Status blind_ = 0U;           // why the readings are not believed
+  int sound_ = 0;               // consecutive sound readings since
+  double blind_for_ = 0.0;      // [s] since the last believed reading
+  double lost_speed_ = 0.0;     // [rad/s] greatest joint speed when the readings failed
   bool has_reading_ = false, has_believed_ = false, held_ = false;
 };
 

@@ -118,7 +118,7 @@ class Teleoperator {
     flow_.reset(joints_vec(q_));
   }
 
-  void begin_tick(std::chrono::nanoseconds now) noexcept {
+  [[gnu::noinline]] void begin_tick(std::chrono::nanoseconds now) noexcept {
     record_.status = clock_.step(now);
     record_.elapsed = clock_.elapsed();
     signals_.elapsed = period_ * static_cast<double>(clock_.elapsed());
@@ -126,7 +126,7 @@ class Teleoperator {
     if ((record_.status & status::clock_gap) != 0U || next_tick_ == 0) watch_.begin_anew();
   }
 
-  void read_joints(const ArmReadings& readings) noexcept {
+  [[gnu::noinline]] void read_joints(const ArmReadings& readings) noexcept {
     copy_readings(readings.q, read_q_);
     copy_readings(readings.v, read_v_);
     drive_state_ = readings.state;
@@ -138,7 +138,7 @@ class Teleoperator {
     }
   }
 
-  void place_bodies() noexcept {
+  [[gnu::noinline]] void place_bodies() noexcept {
     kinematics_.update(q_);
     kinematics_.tool_jacobian(new_jacobian_);
     const Pose X_WT = kinematics_.X_WT();
@@ -155,7 +155,7 @@ class Teleoperator {
     if (!links_.place(world_, kinematics_, v_)) record_.status |= status::bad_pose;
   }
 
-  void push_away(const PairForces& forces, const WorkerReport& workers) noexcept {
+  [[gnu::noinline]] void push_away(const PairForces& forces, const WorkerReport& workers) noexcept {
     record_.pairs = forces.totals;
     record_.workers = workers;
     if (workers.stood_in > 0) record_.status |= status::late_result;
@@ -183,7 +183,7 @@ class Teleoperator {
     signals_.arm_power += options_.exit_speed / lever * signals_.arm_torques.norm();
   }
 
-  void follow(const network::Command& command) noexcept {
+  [[gnu::noinline]] void follow(const network::Command& command) noexcept {
     record_.command = command;
     network::HandInput& hand = record_.command.hand;
     if (!is_finite(hand.ball) || !is_finite(hand.direction_W) ||
@@ -201,7 +201,7 @@ class Teleoperator {
     }
   }
 
-  void run_network() noexcept {
+  [[gnu::noinline]] void run_network() noexcept {
     const auto begin = std::chrono::steady_clock::now();
     // Without the operator's force, springs and accounts on that side restart at the present pose.
     signals_.released = record_.stop == Stop::released || command_.is_poisoned();
@@ -232,13 +232,13 @@ class Teleoperator {
     record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
   }
 
-  void drive() noexcept {
+  [[gnu::noinline]] void drive() noexcept {
     kinematics_.gravity_torques(command_.gravity());
     command_.drive({network_, signals_.jacobian, v_, V_WT_.linear.norm()}, inertia_, watch_,
                    record_);
   }
 
-  void finish_tick() noexcept {
+  [[gnu::noinline]] void finish_tick() noexcept {
     record_.tick = next_tick_++;
     if (record_.tick > 0) periods_ += record_.elapsed;
     record_.time = period_ * static_cast<double>(periods_);
@@ -265,10 +265,9 @@ class Teleoperator {
     }
   }
 
-  [[nodiscard]] static network::Vec<network::any_size> joints_vec(
+  [[nodiscard]] static Eigen::Map<const network::Vec<network::any_size>> joints_vec(
       const std::vector<double>& values) noexcept {
-    return Eigen::Map<const network::Vec<network::any_size>>(
-        values.data(), static_cast<Eigen::Index>(values.size()));
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
   }
 
   TeleoperatorOptions options_;

@@ -61,10 +61,12 @@ class Module {
       // NOLINTNEXTLINE(google-explicit-constructor): any module can stand for itself
       Module(M module)
       : ports_(detail::ports_of<M>()),
+        type_(&detail::type_mark<M>),
         held_(std::make_unique<detail::ModuleOf<M>>(std::move(module))) {
     detail::require_module<M>();
   }
-  Module(const Module& other) : ports_(other.ports_), held_(other.held_->copy()) {}
+  Module(const Module& other)
+      : ports_(other.ports_), type_(other.type_), held_(other.held_->copy()) {}
   Module(Module&&) noexcept = default;
   Module& operator=(const Module& other) {
     if (this != &other) *this = Module(other);
@@ -76,7 +78,8 @@ class Module {
   /// The module as an `M`; null if it is of another type.
   template <class M>
   [[nodiscard]] const M* as() const noexcept {
-    return static_cast<const M*>(held_->get(&detail::type_mark<M>));
+    if (type_ != &detail::type_mark<M>) return nullptr;
+    return &static_cast<const detail::ModuleOf<M>&>(*held_).module();
   }
 
   [[nodiscard]] Ports ports() const noexcept { return ports_; }
@@ -88,6 +91,7 @@ class Module {
 
  private:
   Ports ports_;
+  const void* type_;
   std::unique_ptr<detail::AnyModule> held_;
 };
 

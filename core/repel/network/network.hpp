@@ -22,6 +22,7 @@ struct Connection {
   bool root_on_right = true;
   Equivalent<any_size> shown;
   PortState<any_size> state;
+  double entering = 0.0;  ///< [W] into the side away from the root, as of the last `run`
 
   /// Effort that the left side exerts on the right [N], [N m].
   [[nodiscard]] Vec<any_size> effort() const noexcept {
@@ -236,12 +237,13 @@ class Network {
   }
 
   void keep_accounts(double period) noexcept {
+    for (Connection& connection : connections_) connection.entering = connection.state.power();
     for (Node& node : nodes_) {
-      const double left_weight = node.module->left_weight();
+      const double left_weight = node.left < 0 ? 1.0 : node.module->left_weight();
       double in = 0.0;
       double moved = 0.0;
       const auto count = [&](int index, double sign) {
-        const double power = (index == node.left ? left_weight : 1.0) * at(index).state.power();
+        const double power = (index == node.left ? left_weight : 1.0) * at(index).entering;
         in += sign * power;
         moved += std::abs(power);
       };

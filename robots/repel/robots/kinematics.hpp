@@ -1,5 +1,5 @@
 /// @file
-/// Forward kinematics, Jacobians and gravity compensation of an arm.
+/// Forward kinematics, Jacobians, gravity compensation and inertia of an arm.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,8 @@
 
 namespace repel {
 
-/// Forward kinematics, Jacobians and gravity torques of one arm. After construction nothing here
+/// Forward kinematics, Jacobians, gravity torques and inertia of one arm, in closed form: `update`
+/// places every link once, all else is read off these poses. After construction nothing here
 /// allocates, locks or throws. Not thread-safe: use one instance per thread.
 ///
 /// Spans have one entry per link, base outward. Joint positions that are not finite give poses,
@@ -46,6 +47,10 @@ class Kinematics final : public ArmKinematics {
 
   /// The torques [N m] or forces [N] that hold the arm still against gravity.
   void gravity_torques(std::span<double> out) noexcept override;
+
+  /// The joint-space inertia matrix [kg m^2] or [kg], rotors included. Allocates unless `M` has the
+  /// size of the arm. @return true
+  [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override;
 
  private:
   struct Impl;

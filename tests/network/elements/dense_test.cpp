@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "network/drawn.hpp"
 
 namespace repel::network {
@@ -29,6 +31,37 @@ TEST(Dense, ProductsAreThoseOfEigen) {
     test::Matrix product;
     dense::sandwich(A, S, B, product);
     EXPECT_LE((product - A.transpose() * S * B).norm(), 1e-12);
+  }
+}
+
+TEST(Dense, SixRowsAreAddedAndTransposedLikeAnyOther) {
+  test::Rng rng(seed);
+  for (int n = 1; n <= most_joints; ++n) {
+    SCOPED_TRACE(families::of_seed(seed, "columns", n));
+    Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints> J(6, n);
+    for (double& x : J.reshaped()) x = families::uniform(rng, -1.0, 1.0);
+    const test::Vector rates = test::drawn_vector(rng, n, 1.0);
+    const test::Vector effort = test::drawn_vector(rng, 6, 1.0);
+    EXPECT_LE((dense::product<test::Vector>(J, rates) - J * rates).norm(), 1e-14);
+    test::Vector torques;
+    dense::transposed_product(J, effort, torques);
+    EXPECT_LE((torques - J.transpose() * effort).norm(), 1e-14);
+  }
+}
+
+TEST(Dense, FactorsSolveAndRefuseWhatIsSingular) {
+  test::Rng rng(seed);
+  for (int n = 1; n <= most_joints; ++n) {
+    SCOPED_TRACE(families::of_seed(seed, "size", n));
+    const test::Matrix S = test::drawn_gain(rng, n, 0.1, 1.0);
+    const test::Vector x = test::drawn_vector(rng, n, 1.0);
+    test::Vector y = S * x;
+    dense::Factored factored;
+    ASSERT_TRUE(factored.factor(n, [&](Eigen::Index i) { return S.data()[i]; }));
+    factored.solve(y);
+    EXPECT_LE((y - x).norm(), 1e-12);
+    EXPECT_FALSE(factored.factor(n, [&](Eigen::Index) { return n > 1 ? 1.0 : 0.0; }));
+    EXPECT_FALSE(factored.factor(n, [](Eigen::Index) { return NAN; }));
   }
 }
 

@@ -205,5 +205,22 @@ TEST(Equivalent, UnitsMakeNoDifferenceToWhatIsRefused) {
   }
 }
 
+TEST(Equivalent, DiagonalAdmittanceIsAddedAsAnyOther) {
+  Rng rng(seed);
+  for (const Form form : {Form::impedance, Form::admittance}) {
+    const Equivalent<any_size> some = drawn(rng, 6, form, 0);
+    const Vector g = test::drawn_vector(rng, 6, 1.0).cwiseAbs();
+    const Vector w = test::drawn_vector(rng, 6, 1.0);
+    Equivalent<any_size> whole = some, diagonal = some;
+    whole.add_admittance(g.asDiagonal(), w);
+    diagonal.add_diagonal_admittance(g, w);
+    EXPECT_EQ(whole.matrix, diagonal.matrix);
+    EXPECT_EQ(whole.offset, diagonal.offset);
+    EXPECT_FALSE(some.is_source());
+    whole.matrix.setZero();
+    EXPECT_TRUE(whole.is_source());
+  }
+}
+
 }  // namespace equivalent_test
 }  // namespace repel::network

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -10,6 +11,8 @@
 #include <repel/network/elements/one_ports.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
+
+#include "network/drawn.hpp"
 
 namespace repel::network {
 namespace prediction_test {
@@ -226,6 +229,51 @@ TEST(Prediction, WithoutInertiaItChangesNothing) {
 TEST(Prediction, DelayOutOfRangeIsRefused) {
   EXPECT_THROW(Prediction({.drive_delay = 10.5}), SetupError);
   EXPECT_THROW(Prediction({.drive_delay = -1.0}), SetupError);
+}
+
+// The efforts and flows of its two ports satisfy the equations of the operator's side and of the
+// arm, for arms with fewer and with more joints than the tool has directions.
+TEST(Prediction, ShowsTheEffortAtTheMeasuredFlow) {
+  constexpr unsigned seed = 41;
+  test::Rng rng(seed);
+  for (const int joints : {1, 2, 6, 7, 16}) {
+    for (const Form form : {Form::admittance, Form::impedance}) {
+      SCOPED_TRACE(families::of_seed(seed, "joints", joints));
+      Signals signals = detail::neutral_signals(joints, T);
+      for (double& x : signals.jacobian.reshaped()) x = families::uniform(rng, -1.0, 1.0);
+      signals.rates = test::drawn_vector(rng, joints, 1.0);
+      signals.inertia = test::drawn_gain(rng, joints, 0.1, 10.0);
+      const test::Vector walls = test::drawn_vector(rng, joints, 10.0);
+      const test::Matrix damping = test::drawn_gain(rng, joints, 1.0, 10.0);
+      const Equivalent<any_size> behind{form, test::drawn_gain(rng, 6, 0.1, 10.0),
+                                        test::drawn_vector(rng, 6, 1.0)};
+      Prediction prediction;
+      prediction.fit(Space::tool, 6);
+      prediction.prepare(T);
+      prediction.predict(signals, walls, damping);
+      Equivalent<any_size> shown;
+      ASSERT_TRUE(prediction.reflected(behind, shown));
+      EXPECT_TRUE(shown.form == Form::impedance && shown.is_source());
+      const PortState<any_size> at_root{shown.offset, signals.tool_flow()};
+      PortState<any_size> at_leaf;
+      prediction.incident(at_root, behind, at_leaf);
+
+      const test::Vector& f = at_leaf.effort;
+      const test::Vector& v = at_leaf.flow;
+      EXPECT_EQ(f, shown.offset);
+      const test::Vector& x = form == Form::admittance ? f : v;
+      const test::Vector& y = form == Form::admittance ? v : f;
+      EXPECT_LE((y - behind.offset - behind.matrix * x).norm(), 1e-9 * (1.0 + y.norm()));
+      const double h = 1.5 * T;
+      const Eigen::MatrixXd held = signals.inertia / h + damping;
+      const Eigen::VectorXd on_arm = walls - signals.jacobian.transpose() * f;
+      const Eigen::VectorXd u = signals.jacobian * held.llt().solve(on_arm);
+      const Eigen::VectorXd taken_back = Prediction::leak / T * h * signals.tool_flow();
+      EXPECT_LE((v - at_root.flow - u - taken_back).norm(), 1e-9 * (1.0 + v.norm()));
+      const Eigen::VectorXd less = damping * held.llt().solve(on_arm);
+      EXPECT_LE((prediction.given_up(on_arm) - less).norm(), 1e-9 * (1.0 + less.norm()));
+    }
+  }
 }
 
 }  // namespace prediction_test

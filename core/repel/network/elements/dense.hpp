@@ -3,16 +3,68 @@
 /// sizes add seconds to the compile time of every source that includes a network.
 #pragma once
 
+#include <cstring>
+
 #include <Eigen/Core>
 
 namespace repel::network::dense {
 
+/// Rows of the largest matrix.
+inline constexpr int most_rows = 16;
+
+/// Six numbers, as many as a tool port has, in registers of two.
+class Six {
+ public:
+  Six() = default;
+  /// The six from `p` on.
+  explicit Six(const double* p) noexcept : a_(two(p)), b_(two(p + 2)), c_(two(p + 4)) {}
+  void store(double* p) const noexcept {
+    std::memcpy(p, &a_, sizeof a_);
+    std::memcpy(p + 2, &b_, sizeof b_);
+    std::memcpy(p + 4, &c_, sizeof c_);
+  }
+  /// Adds `scale` times the other six.
+  void add(double scale, const Six& other) noexcept {
+    a_ += scale * other.a_;
+    b_ += scale * other.b_;
+    c_ += scale * other.c_;
+  }
+  [[nodiscard]] double dot(const Six& other) const noexcept {
+    const Two sum = a_ * other.a_ + b_ * other.b_ + c_ * other.c_;
+    return sum[0] + sum[1];
+  }
+  [[nodiscard]] Six times(double scale) const noexcept {
+    Six multiple = *this;
+    multiple.a_ *= scale;
+    multiple.b_ *= scale;
+    multiple.c_ *= scale;
+    return multiple;
+  }
+
+ private:
+  using Two = double __attribute__((vector_size(16)));
+  static Two two(const double* p) noexcept {
+    Two loaded;
+    std::memcpy(&loaded, p, sizeof loaded);
+    return loaded;
+  }
+  Two a_{}, b_{}, c_{};
+};
+
 /// y += scale A x. Sizes must match; y must not alias A or x.
 template <class A, class X, class Y>
 void add_product(const A& matrix, const X& x, Y& y, double scale = 1.0) noexcept {
-  for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+  const double* column = matrix.data();
+  const Eigen::Index rows = matrix.rows();
+  if (rows == 6) {
+    Six sum(y.data());
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k)
+      sum.add(scale * x.coeff(k), Six(column + 6 * k));
+    return sum.store(y.data());
+  }
+  for (Eigen::Index k = 0; k < matrix.cols(); ++k, column += rows) {
     const double share = scale * x.coeff(k);
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) y.coeffRef(i) += share * matrix.coeff(i, k);
+    for (Eigen::Index i = 0; i < rows; ++i) y.data()[i] += share * column[i];
   }
 }
 
@@ -20,11 +72,8 @@ void add_product(const A& matrix, const X& x, Y& y, double scale = 1.0) noexcept
 template <class Y, class A, class X>
 [[nodiscard]] Y product(const A& matrix, const X& x) noexcept {
   Y y(matrix.rows());
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    double sum = 0.0;
-    for (Eigen::Index k = 0; k < matrix.cols(); ++k) sum += matrix.coeff(i, k) * x.coeff(k);
-    y.coeffRef(i) = sum;
-  }
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) y.coeffRef(i) = 0.0;
+  add_product(matrix, x, y);
   return y;
 }
 
@@ -32,6 +81,13 @@ template <class Y, class A, class X>
 template <class A, class X, class Y>
 void transposed_product(const A& matrix, const X& x, Y& y) noexcept {
   y.resize(matrix.cols());
+  if constexpr (A::RowsAtCompileTime == 6 && !A::IsRowMajor) {
+    const Six six(x.data());
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
+      y.coeffRef(k) = six.dot(Six(matrix.data() + 6 * k));
+    }
+    return;
+  }
   for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) sum += matrix.coeff(i, k) * x.coeff(i);
@@ -39,32 +95,51 @@ void transposed_product(const A& matrix, const X& x, Y& y) noexcept {
   }
 }
 
-/// The inverse of a symmetric positive definite n x n matrix by columns, in place. False, and the
-/// matrix is as it was, when it is singular. `fixed`: n, if it is known, so that loops are
-/// unrolled; 0: it is not.
+/// A = L D L' of a symmetric positive definite n x n matrix by columns, in place of which is L,
+/// with a diagonal of ones that is not written; the inverse of D is in `inverse`. False when the
+/// matrix is singular.
 ///
-/// By A = L D L', L with a diagonal of ones, and the inverse of L: without a square root, which the
-/// next pivot would wait for (Eigen's would pull in heap allocation for sizes that cannot occur).
-/// Rounding makes the pivot of a rigid direction tiny instead of zero, the more so where its
-/// diagonal entry is a small part of the matrix. Each pivot is compared with its own diagonal
-/// entry, so that the test does not depend on units. Entries above the diagonal are not read.
-template <int fixed>
-[[nodiscard]] bool invert_positive_of(double* A, Eigen::Index size) noexcept {
-  constexpr int capacity = fixed > 0 ? fixed : 16;
-  const int n = fixed > 0 ? fixed : static_cast<int>(size);
-  double L[capacity * capacity];
-  double inverse[capacity];  // of the pivots
-  for (int k = 0; k < n * n; ++k) L[k] = A[k];
+/// Without a square root, which the next pivot would wait for (Eigen's would pull in heap
+/// allocation for sizes that cannot occur). Rounding makes the pivot of a rigid direction tiny
+/// instead of zero, the more so where its diagonal entry is a small part of the matrix. Each pivot
+/// is compared with its own diagonal entry, so that the test does not depend on units. Entries
+/// above the diagonal do not matter.
+[[nodiscard]] inline bool factor_positive(double* L, double* inverse, int n) noexcept {
+  double least[most_rows];  // of the pivots
+  for (int k = 0; k < n; ++k) least[k] = 1e-9 * L[n * k + k];
   for (int k = 0; k < n; ++k) {
     double* const column = L + n * k;
-    if (!(column[k] > 1e-9 * A[n * k + k])) return false;
+    if (!(column[k] > least[k])) return false;
     inverse[k] = 1.0 / column[k];
+    if (n == 6) {  // whole columns: what is above the diagonal costs less than odd lengths
+      const Six pivot(column);
+      for (int j = k + 1; j < 6; ++j) {
+        Six other(L + 6 * j);
+        other.add(-column[j] * inverse[k], pivot);
+        other.store(L + 6 * j);
+      }
+      pivot.times(inverse[k]).store(column);
+      continue;
+    }
     for (int j = k + 1; j < n; ++j) {
       const double share = column[j] * inverse[k];
       for (int i = j; i < n; ++i) L[n * j + i] -= share * column[i];
     }
     for (int i = k + 1; i < n; ++i) column[i] *= inverse[k];
   }
+  return true;
+}
+
+/// The inverse of a symmetric positive definite n x n matrix by columns, in place, from its factors
+/// and the inverse of L. False, and the matrix is as it was, when it is singular.
+template <int fixed>
+[[nodiscard]] bool invert_positive_of(double* A, Eigen::Index size) noexcept {
+  constexpr int capacity = fixed > 0 ? fixed : most_rows;
+  const int n = fixed > 0 ? fixed : static_cast<int>(size);
+  double L[capacity * capacity];
+  double inverse[capacity];  // of the pivots
+  for (int k = 0; k < n * n; ++k) L[k] = A[k];
+  if (!factor_positive(L, inverse, n)) return false;
   for (int j = 0; j < n; ++j) {
     for (int i = j + 1; i < n; ++i) {
       double sum = L[n * j + i];
@@ -93,6 +168,49 @@ template <int fixed>
       return invert_positive_of<0>(A, n);
   }
 }
+
+/// A symmetric positive definite matrix as L D L', for solutions where its inverse is not needed.
+class Factored {
+ public:
+  /// Factors the n x n matrix whose entries, by columns, are entry(0), entry(1) and so on. False
+  /// when it is singular.
+  template <class Entry>
+  [[nodiscard]] bool factor(Eigen::Index n, const Entry& entry) noexcept {
+    L_.resize(n, n);
+    inverse_.resize(n);
+    for (Eigen::Index k = 0; k < n * n; ++k) L_.data()[k] = entry(k);
+    return factor_positive(L_.data(), inverse_.data(), static_cast<int>(n));
+  }
+
+  [[nodiscard]] int size() const noexcept { return static_cast<int>(inverse_.size()); }
+  /// Entry i, k of L, below the diagonal.
+  [[nodiscard]] double L(int i, int k) const noexcept { return L_.data()[size() * k + i]; }
+  /// Entry k of D^-1.
+  [[nodiscard]] double inverse(int k) const noexcept { return inverse_.data()[k]; }
+
+  /// x = L^-1 x.
+  template <class X>
+  void descend(X& x) const noexcept {
+    for (int k = 0; k < size(); ++k) {
+      const double share = x.coeff(k);
+      for (int i = k + 1; i < size(); ++i) x.coeffRef(i) -= share * L(i, k);
+    }
+  }
+  /// x = A^-1 x.
+  template <class X>
+  void solve(X& x) const noexcept {
+    descend(x);
+    for (int i = size() - 1; i >= 0; --i) {
+      double sum = inverse(i) * x.coeff(i);
+      for (int k = i + 1; k < size(); ++k) sum -= L(k, i) * x.coeff(k);
+      x.coeffRef(i) = sum;
+    }
+  }
+
+ private:
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most_rows, most_rows> L_;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_rows, 1> inverse_;
+};
 
 /// C = A' S A, S symmetric. Sizes must match; C must not alias the others. Cost: half of
 /// `sandwich`.

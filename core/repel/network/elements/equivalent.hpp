@@ -42,6 +42,15 @@ struct Equivalent {
     offset = w;
   }
 
+  /// True for an effort, or a flow, that does not depend on the other: the diagonal of the matrix
+  /// is zero, and so is all of it.
+  [[nodiscard]] bool is_source() const noexcept {
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      if (matrix.coeff(i, i) != 0.0) return false;
+    }
+    return true;
+  }
+
   /// Adds an effort source at the same flow: a common-flow junction with f = `b`, no resistance.
   void add_effort(const Vec<N>& b) noexcept {
     if (form == Form::impedance) {
@@ -78,6 +87,14 @@ struct Equivalent {
       combine(G, w);
     }
   }
+  /// The same with the diagonal `g` of G.
+  void add_diagonal_admittance(const Vec<N>& g, const Vec<N>& w) noexcept {
+    if (form != Form::admittance) return combine(g.asDiagonal(), w);
+    for (Eigen::Index i = 0; i < g.size(); ++i) {
+      matrix.coeffRef(i, i) += g.coeff(i);
+      offset.coeffRef(i) += w.coeff(i);
+    }
+  }
 
   /// Converts to the form `wanted`. False, and nothing is changed, when the matrix is singular:
   /// some direction is rigid (G singular) or free (R singular). Cost: n^3 multiplications.
@@ -92,7 +109,7 @@ struct Equivalent {
   void at_flow(const Vec<N>& v, PortState<N>& state) const noexcept {
     state.flow = v;
     state.effort = offset;
-    dense::add_product(matrix, v, state.effort);
+    if (!is_source()) dense::add_product(matrix, v, state.effort);
   }
   /// Effort and flow for the imposed effort `f` (admittance form only).
   void at_effort(const Vec<N>& f, PortState<N>& state) const noexcept {

@@ -63,6 +63,10 @@ class PassivityController {
   /// since the last step, 0: one period. All finite.
   [[nodiscard]] double step(const Vec<N>& effort, const Vec<N>& flow, const Vec<N>& mean_flow,
                             double period, double supplied = 0.0, double elapsed = 0.0) noexcept {
+    if (is_idle_ && supplied == 0.0 && effort.isZero(0.0)) {  // all sums below stay as they are
+      taken_ *= 0.9;
+      return 0.0;
+    }
     sampled_ += (elapsed > 0.0 ? elapsed : period) * (held_.dot(mean_flow) + supplied);
     energy_ += period * supplied;
     limit_damping(damped_.dot(mean_flow));
@@ -86,7 +90,8 @@ class PassivityController {
       damped_.coeffRef(i) = damping * (weight_.coeff(i) * flow.coeff(i));
       held_.coeffRef(i) = effort.coeff(i) + damped_.coeff(i);
     }
-    if (held_.isZero(0.0)) reset();
+    is_idle_ = held_.isZero(0.0);
+    if (is_idle_) reset();
     report_.owed = std::max(0.0, -sampled_);
     return damping;
   }
@@ -105,8 +110,9 @@ class PassivityController {
 
   PassivityOptions options_;
   Vec<N> weight_;
-  Vec<N> held_;    // effort of the last tick
-  Vec<N> damped_;  // part of it that is damping
+  Vec<N> held_;           // effort of the last tick
+  Vec<N> damped_;         // part of it that is damping
+  bool is_idle_ = false;  // nothing held, and no energy at the port
   double most_damping_;
   double taken_ = 0.0;    // [W] by damping, leaky sum over about ten ticks
   double energy_ = 0.0;   // [J] port energy, never negative

@@ -138,7 +138,11 @@ struct PortState {
   Vec<N> flow;    ///< [m/s], [rad/s]
 
   /// Power into the element [W].
-  [[nodiscard]] double power() const noexcept { return effort.dot(flow); }
+  [[nodiscard]] double power() const noexcept {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < flow.size(); ++i) sum += effort.coeff(i) * flow.coeff(i);
+    return sum;
+  }
   /// The wave a into the element, for the port resistance `R` [N s/m], [N m s/rad].
   [[nodiscard]] Vec<N> incident(const Mat<N>& R) const noexcept {
     return effort + dense::product<Vec<N>>(R, flow);

@@ -9,13 +9,6 @@ namespace repel::network {
 /// Six rows, linear then angular, world axes; a column for each joint. In storage of fixed size.
 using Jacobian = Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joints>;
 
-/// The torque [N m] or force [N] on joint `i` due to `F` at the point of the Jacobian: (J' F)_i.
-[[nodiscard]] inline double along_column(const Jacobian& J, Eigen::Index i,
-                                         const Wrench& F) noexcept {
-  const double* c = J.data() + 6 * i;
-  return power(F, {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}});
-}
-
 /// The operator's input in one tick.
 struct HandInput {
   Twist ball;                 ///< [m/s, rad/s] raw rates of the force ball, world axes

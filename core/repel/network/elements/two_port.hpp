@@ -35,22 +35,25 @@ template <class V, class F>
 
 /// State at A from that at B and the equivalent `at_a` of side A.
 template <class V>
-void to_a(const PortState<any_size>& at_b, Equivalent<any_size> at_a, const V& flow_map,
+void to_a(const PortState<any_size>& at_b, const Equivalent<any_size>& at_a, const V& flow_map,
           PortState<any_size>& state) noexcept {
-  (void)at_a.take_form(Form::impedance);
-  Vec<any_size> flow;
-  dense::transposed_product(flow_map.transpose(), at_b.flow, flow);
-  at_a.at_flow(flow, state);
+  const auto flow = dense::product<Vec<any_size>>(flow_map, at_b.flow);
+  if (at_a.form == Form::impedance) return at_a.at_flow(flow, state);
+  Equivalent<any_size> turned = at_a;
+  (void)turned.take_form(Form::impedance);
+  turned.at_flow(flow, state);
 }
 
 /// State at B from that at A and the equivalent `at_b` of side B.
 template <class F>
-void to_b(const PortState<any_size>& at_a, Equivalent<any_size> at_b, const F& effort_map,
+void to_b(const PortState<any_size>& at_a, const Equivalent<any_size>& at_b, const F& effort_map,
           PortState<any_size>& state) noexcept {
-  (void)at_b.take_form(Form::admittance);
   Vec<any_size> effort;
   dense::transposed_product(effort_map, at_a.effort, effort);
-  at_b.at_effort(effort, state);
+  if (at_b.form == Form::admittance) return at_b.at_effort(effort, state);
+  Equivalent<any_size> turned = at_b;
+  (void)turned.take_form(Form::admittance);
+  turned.at_effort(effort, state);
 }
 
 }  // namespace transformer

@@ -148,7 +148,6 @@ class AnyModule {
   virtual ~AnyModule() = default;
 
   [[nodiscard]] virtual std::unique_ptr<AnyModule> copy() const = 0;
-  [[nodiscard]] virtual const void* get(const void* type) const noexcept = 0;
   [[nodiscard]] virtual Traits traits() const noexcept = 0;
   virtual void fit(Space space, int size) = 0;
   [[nodiscard]] virtual int size() const noexcept = 0;
@@ -190,11 +189,10 @@ class ModuleOf final : public AnyModule {
  public:
   explicit ModuleOf(M module) : module_(std::move(module)) {}
 
+  [[nodiscard]] const M& module() const noexcept { return module_; }
+
   [[nodiscard]] std::unique_ptr<AnyModule> copy() const override {
     return std::make_unique<ModuleOf>(module_);
-  }
-  [[nodiscard]] const void* get(const void* type) const noexcept override {
-    return type == &type_mark<M> ? &module_ : nullptr;
   }
   [[nodiscard]] Traits traits() const noexcept override { return traits_of(module_); }
   void fit(Space space, int size) override {

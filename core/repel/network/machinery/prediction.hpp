@@ -60,9 +60,9 @@ class Prediction {
   }
   void prepare(double period) { horizon_ = ticks_ * detail::checked_period(period); }
 
-  /// Second call of a tick, after all modules have read their signals. Cost: one
-  /// inversion and two products of the size of the joints. While M is not positive definite,
-  /// nothing is predicted.
+  /// Second call of a tick, after all modules have read their signals. Cost: one factorization of
+  /// the size of the joints, and its solution for the six rows of J. While M is not positive
+  /// definite, nothing is predicted.
   /// @param walls [N m] torques of walls and limits on the joints @param damping [N m s/rad] theirs
   void predict(const Signals& signals, const Vec<any_size>& walls,
                const Mat<any_size>& damping) noexcept {
@@ -74,26 +74,28 @@ class Prediction {
     has_damping_ = false;
     for (Eigen::Index i = 0; i < n; ++i) has_damping_ = has_damping_ || damping.coeff(i, i) > 0.0;
     if (has_damping_) damping_ = damping;
-    mobility_.form = Form::impedance;
-    mobility_.matrix.resize(n, n);
-    for (Eigen::Index i = 0; i < n * n; ++i) {
-      mobility_.matrix.data()[i] = signals.inertia.data()[i] / horizon_ + damping.data()[i];
-    }
-    mobility_.offset = -(walls + others_);
-    is_known_ = mobility_.take_form(Form::admittance);
+    const double rate = 1.0 / horizon_;
+    is_known_ = held_.factor(n, [&](Eigen::Index i) {  // M / h + C
+      return rate * signals.inertia.data()[i] + damping.data()[i];
+    });
     if (is_known_) move_to_port(signals);
   }
 
+  /// What is on the right measures its flow, so that only the effort at this flow is shown.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
     if (!is_known_) return true;
-    // Here, so that the elements on its right need not: what they share is the impedance.
     if (!shown.take_form(Form::admittance)) return false;
-    for (Eigen::Index i = 0; i < offset_.size(); ++i) shown.offset.coeffRef(i) -= offset_.coeff(i);
-    const Eigen::Index entries = conductance_.size();
-    for (Eigen::Index i = 0; i < entries; ++i) shown.matrix.data()[i] += conductance_.data()[i];
-    return shown.take_form(Form::impedance);
+    const Eigen::Index n = conductance_.rows();
+    const double *own = conductance_.data(), *added = shown.matrix.data();
+    dense::Factored both;
+    if (!both.factor(n, [=](Eigen::Index i) { return own[i] + added[i]; })) return false;
+    shown.form = Form::impedance;
+    shown.matrix.setZero(n, n);
+    shown.offset = flow_ + offset_ - shown.offset;
+    both.solve(shown.offset);
+    return true;
   }
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
@@ -106,24 +108,22 @@ class Prediction {
       sum_.coeffRef(i) += period_ * change.coeff(i);
       at_leaf.flow.coeffRef(i) += change.coeff(i);
     }
-    Vec<any_size> total = walls_;
     if (in_joints_) {
-      total += on_arm;
+      sent_ = on_arm;
     } else {
-      for (Eigen::Index i = 0; i < total.size(); ++i) {
-        total.coeffRef(i) += along_column(jacobian_, i, to_wrench(on_arm));
-      }
+      dense::transposed_product(jacobian_, on_arm, sent_);
     }
-    sent_ = total;
-    if (has_damping_) sent_ = total - given_up(total);
+    sent_ += walls_;
+    if (has_damping_) sent_ -= given_up(sent_);
   }
 
   /// What is taken off the torques `total` on the joints, those of the walls included, because they
   /// move the arm within the horizon and its walls and limits then give less: C G total [N m].
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept {
     if (!is_known_ || !has_damping_) return Vec<any_size>::Zero(total.size());
-    return dense::product<Vec<any_size>>(damping_,
-                                         dense::product<Vec<any_size>>(mobility_.matrix, total));
+    Vec<any_size> moved = total;
+    held_.solve(moved);
+    return dense::product<Vec<any_size>>(damping_, moved);
   }
 
   /// Torques on the joints besides those of network and gravity, as estimated [N m].
@@ -146,38 +146,53 @@ class Prediction {
   }
 
   void move_to_port(const Signals& signals) noexcept {
-    const Vec<any_size> flow = in_joints_ ? signals.rates : signals.tool_flow();
+    flow_ = in_joints_ ? signals.rates : signals.tool_flow();
+    offset_ = walls_ + others_;
     if (in_joints_) {
-      conductance_ = mobility_.matrix;
-      offset_ = mobility_.offset;
+      held_.solve(offset_);
+      invert();
     } else {
       jacobian_ = signals.jacobian;
       through_jacobian();
-      offset_ = dense::product<Vec<any_size>>(jacobian_, mobility_.offset);
     }
-    if (signals.at_rest) sum_ = horizon_ * flow;
+    if (signals.at_rest) sum_ = horizon_ * flow_;
     period_ = signals.period;
     const double share = leak / period_;
     for (Eigen::Index i = 0; i < offset_.size(); ++i) {
-      offset_.coeffRef(i) += share * (horizon_ * flow.coeff(i) - sum_.coeff(i));
+      offset_.coeffRef(i) += share * (horizon_ * flow_.coeff(i) - sum_.coeff(i));
     }
   }
 
-  // J G J' in plain loops over columns, which compilers vectorize.
-  void through_jacobian() noexcept {
-    const Eigen::Index n = jacobian_.cols();
-    conductance_.setZero(6, 6);
+  void invert() noexcept {
+    const Eigen::Index n = held_.size();
+    conductance_.resize(n, n);
     for (Eigen::Index k = 0; k < n; ++k) {
-      double column[6] = {};  // of J G
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const double share = mobility_.matrix.data()[k * n + j];
-        for (int i = 0; i < 6; ++i) column[i] += jacobian_.data()[6 * j + i] * share;
-      }
-      for (int j = 0; j < 6; ++j) {
-        const double share = jacobian_.data()[6 * k + j];
-        for (int i = 0; i < 6; ++i) conductance_.data()[6 * j + i] += column[i] * share;
-      }
+      Vec<any_size> column = Vec<any_size>::Zero(n);
+      column.coeffRef(k) = 1.0;
+      held_.solve(column);
+      for (Eigen::Index i = 0; i < n; ++i) conductance_.coeffRef(i, k) = column.coeff(i);
     }
+  }
+
+  // With W = L^-1 J' by rows of six, J G J' = W' D^-1 W, and J G w = W' D^-1 L^-1 w.
+  void through_jacobian() noexcept {
+    using dense::Six;
+    const int n = held_.size();
+    held_.descend(offset_);
+    double W[6 * most_joints];
+    Six flow, columns[6];
+    for (int k = 0; k < n; ++k) {
+      Six row(jacobian_.data() + 6 * k);
+      for (int j = 0; j < k; ++j) row.add(-held_.L(k, j), Six(W + 6 * j));
+      row.store(W + 6 * k);
+      const Six scaled = row.times(held_.inverse(k));
+      for (int j = 0; j < 6; ++j) columns[j].add(W[6 * k + j], scaled);
+      flow.add(offset_.coeff(k), scaled);
+    }
+    conductance_.resize(6, 6);
+    for (int j = 0; j < 6; ++j) columns[j].store(conductance_.data() + 6 * j);
+    offset_.resize(6);
+    flow.store(offset_.data());
   }
 
   double ticks_;          // h / T
@@ -187,13 +202,14 @@ class Prediction {
   bool is_known_ = false;
   bool has_damping_ = false;  // some wall or limit pushes
   Jacobian jacobian_;
-  Vec<any_size> walls_;            // w
-  Mat<any_size> damping_;          // C
-  Equivalent<any_size> mobility_;  // G and G (w + e), in the joints
-  Mat<any_size> conductance_;      // J G J'
-  Vec<any_size> offset_;           // J G (w + e), and the correction
-  Vec<any_size> sum_;              // of T u
-  Vec<any_size> others_;           // e
+  Vec<any_size> walls_;        // w
+  Mat<any_size> damping_;      // C
+  dense::Factored held_;       // G^-1, in the joints
+  Mat<any_size> conductance_;  // J G J'
+  Vec<any_size> offset_;       // J G (w + e), and the correction
+  Vec<any_size> flow_;         // measured
+  Vec<any_size> sum_;          // of T u
+  Vec<any_size> others_;       // e
   Vec<any_size> last_rates_, sent_;
 };
 

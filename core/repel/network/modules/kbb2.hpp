@@ -90,7 +90,7 @@ class Kbb2 {
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
     if (root_ == Side::right) add_shunt(shown);
-    shown.add_admittance(conductance_.asDiagonal(), -product(conductance_, wave_));
+    shown.add_diagonal_admittance(conductance_, -product(conductance_, wave_));
     if (!has_shunt_ || root_ == Side::right) return true;
     if (!shown.take_form(Form::impedance)) return false;
     add_shunt(shown);

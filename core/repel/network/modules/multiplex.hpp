@@ -53,8 +53,21 @@ class Multiplex {
 
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
-    return root_ == Side::right ? transformer::shown_at_a(behind, flow_map_, effort_map_, shown)
-                                : transformer::shown_at_b(behind, flow_map_, effort_map_, shown);
+    if (root_ != Side::right) {
+      return transformer::shown_at_b(behind, flow_map_, effort_map_, shown);
+    }
+    Equivalent<any_size> lever = behind;
+    if (!lever.take_form(Form::admittance)) return false;
+    shown.form = Form::admittance;
+    shown.matrix.resize(6, 6);
+    shown.offset.resize(6);
+    const dense::Six flow(flow_map_.data());
+    for (int k = 0; k < 6; ++k) {
+      const double share = lever.matrix.coeff(0, 0) * effort_map_[k];
+      flow.times(share).store(shown.matrix.data() + 6 * k);
+    }
+    flow.times(lever.offset.coeff(0)).store(shown.offset.data());
+    return true;
   }
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
                 PortState<any_size>& at_leaf) const noexcept {

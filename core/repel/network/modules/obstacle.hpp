@@ -68,10 +68,9 @@ class Obstacle {
   [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
   /// Adds the same as joint torques.
   void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept {
-    const Wrench F = on_tool();
-    for (Eigen::Index i = 0; i < torques.size(); ++i) {
-      torques.coeffRef(i) += along_column(jacobian, i, F);
-    }
+    Vec<any_size> at_joints;
+    dense::transposed_product(jacobian, effort_, at_joints);
+    torques -= at_joints;
   }
   /// Adds J' D J, D the damping of the passivity controller.
   void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept {

@@ -25,7 +25,11 @@ class PumaKin {
       return transformer::shown_at_b(behind, jacobian_, jacobian_, shown);
     }
     shown.form = Form::impedance;
-    dense::congruence(jacobian_, behind.matrix, shown.matrix);
+    if (behind.is_source()) {
+      shown.matrix.setZero(jacobian_.cols(), jacobian_.cols());
+    } else {
+      dense::congruence(jacobian_, behind.matrix, shown.matrix);
+    }
     dense::transposed_product(jacobian_, behind.offset, shown.offset);
     return true;
   }

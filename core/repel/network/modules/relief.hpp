@@ -82,6 +82,7 @@ class Relief {
                                Equivalent<any_size>& shown) const noexcept {
     Mat<any_size> G = Mat<any_size>::Zero(6, 6);
     for (int block = 0; block < 6; block += 3) {
+      if (is_rigid(block)) continue;
       for (int row = 0; row < 3; ++row) {
         const Vec3 left = times_gains(row, block);
         for (int column = 0; column < 3; ++column) {
@@ -127,6 +128,11 @@ class Relief {
   }
   [[nodiscard]] Vec<any_size> in_world(const Six& task) const noexcept {
     return to_vec(turn_ * three(task, 0), turn_ * three(task, 3));
+  }
+  /// Along, or about, all three axes.
+  [[nodiscard]] bool is_rigid(int block) const noexcept {
+    const double* g = conductance_.data() + block;
+    return g[0] == 0.0 && g[1] == 0.0 && g[2] == 0.0;
   }
   /// Row `row` of `turn_`, times the conductances along the axes of the task frame.
   [[nodiscard]] Vec3 times_gains(int row, int block) const noexcept {
