@@ -49,7 +49,7 @@ class PairSearch {
  public:
   /// [m] Motion until the next search of a list, and until the next search of two bodies for active
   /// lists. Larger margins mean fewer searches and more candidates.
-  static constexpr double margin = 0.03;
+  static constexpr double margin = 0.02;
   static constexpr double margin_of_bodies = 0.2;
 
   explicit PairSearch(std::shared_ptr<const PairIndex> index)
