@@ -12,33 +12,6 @@ namespace pair_search_test {
 
 constexpr unsigned seed = 905;
 
-TEST(BoxOf, HoldsThePartAndTouchesIt) {
-  families::Rng random(seed);
-  World world;
-  const BodyId body = world.add_body("body");
-  const std::vector<Vec3> corners{{0, 0, 0}, {0.3, 0, 0}, {0, 0.2, 0}, {0, 0, 0.1}};
-  for (const Shape& shape :
-       {Shape::box({0.1, 0.2, 0.3}), Shape::sphere(0.1), Shape::capsule(0.1, 0.2),
-        Shape::cylinder(0.1, 0.3), Shape::cone(0.2, 0.1), Shape::hull(corners)}) {
-    const PartId id = world.add_part(body, "part", shape, test::random_pose(random, 0.5));
-    const Part& part = world.part(id);
-    const Box box = box_of(part);
-    // A plane far away along an axis is equally far from the box and from the part.
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double side : {-1.0, 1.0}) {
-        Pose X = Pose::Identity();
-        X.translation() = box.center();
-        X.translation()[axis] = side * 1e4;
-        Vec3 half(1e5, 1e5, 1e5);
-        half[axis] = 0.0;
-        const double gap = separation(shape, part.X_BP, Shape::box(half), X).distance;
-        const double reach = side > 0 ? box.max()[axis] : -box.min()[axis];
-        EXPECT_NEAR(1e4 - gap, reach, 1e-6);
-      }
-    }
-  }
-}
-
 /// Keeps the lists as a block does.
 struct Lists {
   bool take(PairId id, std::int32_t list, double distance) noexcept {
@@ -91,6 +64,116 @@ TEST(PairSearch, EveryPairThatIsInRangeIsOnAList) {
   // The sample is meaningful: some pairs were near, and most were left out.
   EXPECT_GT(in_range, 1000);
   EXPECT_LT(listed, pairs / 2);
+}
+
+/// Moves three bodies in one of several ways: a random walk, to and fro, turning on the spot,
+/// together, or by jumps out of reach and back.
+class Motions {
+ public:
+  Motions(World& world, unsigned of) : world_(&world), random_(of) {
+    for (std::int32_t i = 1; i < world.body_count(); ++i) homes_.push_back(X_WB(i));
+  }
+  void move() {
+    if (families::count_between(random_, 0, 39) == 0) begin();
+    const Pose together = moved(Pose::Identity(), 0.01, 0.02);
+    for (std::int32_t i = 1; i < world_->body_count(); ++i) {
+      Pose X = X_WB(i);
+      const Pose& home = homes_[i - 1];
+      if (way_ == 0) X = moved(X, 0.01, 0.05);
+      if (way_ == 1) X = moved(home, size_, size_);
+      if (way_ == 2) X.linear() = moved(X, 0.0, 0.3).linear();
+      if (way_ == 3) X = together * X;
+      if (way_ == 4) X.translation().z() += away_ ? -3.0 : 3.0;
+      X.linear() = Eigen::Quaterniond(X.linear()).normalized().toRotationMatrix();
+      if (way_ != 4) X.translation() *= std::min(1.0, 0.5 / std::max(1e-9, X.translation().norm()));
+      EXPECT_TRUE(world_->place({i}, X, {}));
+      if (way_ == 4) break;  // only the first of them
+    }
+    away_ = way_ == 4 && !away_;
+  }
+
+ private:
+  void begin() {
+    if (away_) return;
+    way_ = families::count_between(random_, 0, 4);
+    size_ = families::log_uniform(random_, 1e-4, 0.1);
+    for (std::int32_t i = 1; i < world_->body_count(); ++i) homes_[i - 1] = X_WB(i);
+  }
+  [[nodiscard]] Pose X_WB(std::int32_t i) const { return world_->motion().bodies[i].X_WB; }
+  [[nodiscard]] Pose moved(Pose X, double by, double angle) {
+    X.linear() =
+        families::small_rotation(random_, families::uniform(random_, 0.0, angle)) * X.linear();
+    X.translation() += families::uniform(random_, 0.0, by) * families::direction(random_);
+    return X;
+  }
+
+  World* world_;
+  families::Rng random_;
+  std::vector<Pose> homes_;
+  int way_ = 0;
+  double size_ = 0.0;  ///< [m, rad]
+  bool away_ = false;
+};
+
+TEST(PairSearch, EveryPairThatIsInRangeIsOnAListHoweverBodiesMove) {
+  std::int64_t in_range = 0, listed = 0, pairs = 0;
+  for (unsigned run = 0; run < 6; ++run) {
+    test::Crowd crowd(seed + run);
+    Motions motions(crowd.world, seed + run);
+    PairSearch search(std::make_shared<PairIndex>(crowd.world));
+    Lists lists(crowd.world);
+    for (int tick = 0; tick < 400; ++tick) {
+      motions.move();
+      search.run(crowd.world.motion(), lists);
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(crowd.world.pairs().size()); ++i) {
+        const Pair& pair = crowd.world.pair({i});
+        const bool near = test::separation_now(crowd.world, pair).distance <= pair.law.range;
+        ASSERT_TRUE(!near || lists.holds(i))
+            << "pair " << i << ", tick " << tick << ", seed " << seed + run;
+        in_range += near ? 1 : 0;
+        listed += lists.holds(i) ? 1 : 0;
+        ++pairs;
+      }
+    }
+  }
+  EXPECT_GT(in_range, 1000);
+  EXPECT_LT(listed, pairs / 2);
+}
+
+TEST(PairSearch, DoesNotSearchAgainWhileBodiesMoveToAndFroOrTogether) {
+  families::Rng random(seed);
+  World world;
+  std::vector<PartId> parts;
+  for (const char* name : {"tool", "table"}) {
+    const BodyId body = world.add_body(name);
+    for (int i = 0; i < 20; ++i) {
+      parts.push_back(
+          world.add_part(body, "part", test::random_box(random), test::random_pose(random, 0.3)));
+    }
+  }
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 20; j < 40; ++j) world.add_pair(parts[i], parts[j], {});
+  }
+  PairSearch search(std::make_shared<PairIndex>(world));
+  Lists lists(world);
+  int first = 0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    // The first margins are shorter.
+    if (tick == 500) first = lists.asked;
+    const bool together = tick % 2 == 0;
+    const Pose X = together ? test::random_pose(random, 0.5) : Pose::Identity();
+    for (const BodyId body : {BodyId{1}, BodyId{2}}) {
+      Pose X_WB = X;
+      if (!together) {
+        X_WB.linear() = families::small_rotation(random, 0.005);
+        X_WB.translation() = 0.002 * families::direction(random);
+      }
+      ASSERT_TRUE(world.place(body, X_WB, {}));
+    }
+    search.run(world.motion(), lists);
+  }
+  EXPECT_GT(first, 10) << "seed " << seed;
+  EXPECT_EQ(lists.asked, first) << "seed " << seed;
 }
 
 TEST(PairSearch, DoesNotSearchAgainWithinItsMargin) {
@@ -182,6 +265,37 @@ TEST(PairSearch, ListIsActiveWhilePairsOfItAreKept) {
   EXPECT_EQ(ended, 1);
 }
 
+// Of two pairs found, one remains a candidate when their part jumps away, the other does not.
+TEST(PairSearch, PairsOfAListOfWhichSomeWereKeptAreFoundWhenItsPartReturns) {
+  World world;
+  const BodyId tool = world.add_body("tool");
+  const auto at = [](double x) {
+    Pose X = Pose::Identity();
+    X.translation().x() = x;
+    return X;
+  };
+  const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
+  const PartId far = world.add_part(tool, "far part", Shape::sphere(0.1), at(3.0));
+  for (const double x : {0.0, 0.05}) {
+    const PartId wall = world.add_part(World::fixed, "wall", Shape::sphere(0.1), at(x));
+    for (const PartId id : {part, far}) world.add_pair(id, wall, {});
+  }
+  PairSearch search(std::make_shared<PairIndex>(world));
+  Lists lists(world);
+  const auto found_at = [&](double x) {
+    EXPECT_TRUE(world.place(tool, at(x), {}));
+    lists.taken = 0;
+    search.run(world.motion(), lists);
+    return lists.taken;
+  };
+  for (const int keeps : {1, 0, 1, 1}) {
+    EXPECT_EQ(found_at(0.1), 2) << keeps;
+    lists.keeps = keeps;
+    EXPECT_EQ(found_at(-30.0), 0);
+    lists.keeps = 0;
+  }
+}
+
 TEST(PairSearch, PairThatWasNotTakenIsOfferedAgain) {
   test::Boxes boxes(1, 4, {.range = 2.0}, seed);
   PairSearch search(std::make_shared<PairIndex>(boxes.world));
@@ -195,33 +309,6 @@ TEST(PairSearch, PairThatWasNotTakenIsOfferedAgain) {
   search.run(boxes.world.motion(), lists);
   search.run(boxes.world.motion(), lists);
   EXPECT_EQ(lists.taken, 16);
-}
-
-TEST(PairIndex, ListsWithTheSamePartnersShareATree) {
-  const test::Boxes boxes(4, 100, {}, seed);
-  const PairIndex index(boxes.world);
-  EXPECT_EQ(index.body_pairs.size(), 1U);
-  EXPECT_EQ(index.lists.size(), 100U);
-  EXPECT_EQ(index.trees.size(), 1U);
-  EXPECT_EQ(index.pairs.size(), 400U);
-}
-
-TEST(PairIndex, TheBodyWhosePartsAreSpreadWiderHasTheListsWhicheverIsNamedFirst) {
-  for (const bool wall_first : {false, true}) {
-    World world;
-    const BodyId tool = world.add_body("tool");
-    const PartId part = world.add_part(tool, "part", Shape::sphere(0.1));
-    for (int i = 0; i < 5; ++i) {
-      Pose X = Pose::Identity();
-      X.translation().y() = 0.3 * i;
-      const PartId wall = world.add_part(World::fixed, "wall", Shape::sphere(0.1), X);
-      world.add_pair(wall_first ? wall : part, wall_first ? part : wall, {});
-    }
-    const PairIndex index(world);
-    ASSERT_EQ(index.body_pairs.size(), 1U);
-    EXPECT_EQ(index.body_pairs[0].a, World::fixed);
-    EXPECT_EQ(index.lists.size(), 5U);
-  }
 }
 
 }  // namespace pair_search_test
