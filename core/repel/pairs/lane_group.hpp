@@ -39,6 +39,7 @@ class LaneGroup {
     has_patch_[k] = pair.law.tilt > 0.0 ? -1 : 0;
     pointed_a_.set(k, {});
     pointed_b_.set(k, {});
+    had_patch_ &= ~(1U << k);
     depth_a_[k] = world.part(pair.a).shape.level(0).depth;
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
     nearest_[k] = std::numeric_limits<double>::infinity();
@@ -187,13 +188,26 @@ class LaneGroup {
   }
 
   /// The gradients of the patches of the pairs in `flat`.
-  void find_patches(const LaneMask& flat, const LaneGap& gap, const Motion& motion,
+  void find_patches(LaneMask flat, const LaneGap& gap, const Motion& motion,
                     PartPoses& poses) noexcept {
+    const unsigned to_look_at = bits_of(flat) & ~had_patch_;
+    for (unsigned bits = to_look_at; bits != 0U; bits &= bits - 1U) {
+      const int k = std::countr_zero(bits);
+      pointed_a_.set(k, PointedSearch(*features_.A.sets[static_cast<std::size_t>(k)],
+                                      Vec<double>(gap.n_A.at(k)), tilt_[k])
+                            .run());
+      pointed_b_.set(k, PointedSearch(*features_.B.sets[static_cast<std::size_t>(k)],
+                                      Vec<double>(gap.n_B.at(k)), tilt_[k])
+                            .run());
+    }
+    if (to_look_at != 0U) flat &= may_be_flat(gap);
+    had_patch_ = bits_of(flat);
+    if (had_patch_ == 0U) return;
     PolygonSearch search(features_, gap, tilt_);
     search.find_flats(
         flat, [&](int k) -> const Pose& { return of_a_.posed(k, poses, motion).X_W; },
         [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; });
-    unsigned left = bits_of(flat);
+    unsigned left = had_patch_;
     for (const std::size_t sides : {std::size_t{4}, PolygonLanes::most}) {
       const PolygonPatches found = search.patches(sides, flat, depth_a_);
       left &= ~bits_of(found.valid);
@@ -201,27 +215,20 @@ class LaneGroup {
       gradient_W_ = either(found.valid, found.force, gradient_W_);
       moment_W_ = either(found.valid, found.torque + cross(p_AQ_W_, found.force), moment_W_);
     }
-    for (; left != 0U; left &= left - 1U)
-      find_patch_alone(std::countr_zero(left), gap, motion, poses);
+    for (; left != 0U; left &= left - 1U) find_patch_alone(std::countr_zero(left), motion, poses);
   }
 
-  void find_patch_alone(int k, const LaneGap& gap, const Motion& motion,
-                        PartPoses& poses) noexcept {
-    const PosedShape A = of_a_.posed(k, poses, motion);
-    const PosedShape B = of_b_.posed(k, poses, motion);
+  void find_patch_alone(int k, const Motion& motion, PartPoses& poses) noexcept {
     ContactPatch patch;
-    if (find_patch(separation_in(k), A, B, tilt_[k], patch)) {
-      const Vec3 force = patch.gradient.force;
-      nearer_[k] = patch.nearer;
-      gradient_W_.set(k, Vec<double>(force));
-      moment_W_.set(k, Vec<double>(Vec3(patch.gradient.torque + p_AQ_W_.at(k).cross(force))));
+    if (!find_patch(separation_in(k), of_a_.posed(k, poses, motion), of_b_.posed(k, poses, motion),
+                    tilt_[k], patch)) {
+      had_patch_ &= ~(1U << k);
       return;
     }
-    const auto look = [&](PointedLanes& pointed, const Shape& shape, const LaneVec& n) {
-      pointed.set(k, PointedSearch(shape.level(0).core, Vec<double>(n.at(k)), tilt_[k]).run());
-    };
-    look(pointed_a_, A.shape, gap.n_A);
-    look(pointed_b_, B.shape, gap.n_B);
+    const Vec3 force = patch.gradient.force;
+    nearer_[k] = patch.nearer;
+    gradient_W_.set(k, Vec<double>(force));
+    moment_W_.set(k, Vec<double>(Vec3(patch.gradient.torque + p_AQ_W_.at(k).cross(force))));
   }
 
   void compute_forces(const RelativeMotion<Lanes, LaneVec>& relative,
@@ -257,6 +264,7 @@ class LaneGroup {
   Lanes tilt_{};                   ///< [rad] of the laws
   LaneMask has_patch_{};           ///< it is more than 0
   PointedLanes pointed_a_, pointed_b_;
+  unsigned had_patch_ = 0;  ///< bit k: at the last evaluation; it is then not looked whether not
   // The members of PairAnswer.
   LaneVec gradient_W_{}, moment_W_{};
   Lanes nearer_{};

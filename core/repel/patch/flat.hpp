@@ -181,14 +181,16 @@ class FlatSearch {
     double least = std::numeric_limits<double>::infinity();
     Edge edge;
     std::uint32_t face = none;
-    for (const Faces::Corner& corner : faces.at(farthest)) {
-      const double off = lower_tilt(corner.face, flat);
+    const auto corners = faces.at(farthest);
+    const auto edges = faces.edges_to(farthest);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const double off = lower_tilt(corners[k].face, flat);
       if (off < least) {
         least = off;
-        face = corner.face;
+        face = corners[k].face;
       }
-      const double slope = slope_along(farthest, corner.next);
-      if (slope < edge.slope) edge = {corner.next, slope};
+      const double slope = dot(n_, edges[k]);
+      if (slope < edge.slope) edge = {corners[k].next, slope};
     }
     if (least < flat_within(flat.tilt)) return of_face(face, farthest, flat);
     if (!(edge.slope < flat.tilt)) {

@@ -92,12 +92,10 @@ class PointedSearch {
 
   void add_edges(std::uint32_t from, TwoLeast& edges,
                  std::uint32_t without = std::numeric_limits<std::uint32_t>::max()) const noexcept {
-    const Vec<double> p = set_.place(from);
-    for (const Faces::Corner& corner : set_.faces().at(from)) {
-      if (corner.next == without) continue;
-      const Vec<double> away = p - set_.place(corner.next);
-      const Vec<double> edge = (1.0 / std::sqrt(dot(away, away))) * away;
-      edges.add(dot(n_, edge), edge, corner.next);
+    const auto corners = set_.faces().at(from);
+    const auto unit = set_.faces().edges_to(from);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (corners[k].next != without) edges.add(dot(n_, unit[k]), unit[k], corners[k].next);
     }
   }
   /// [1] How far the normal of the nearest face at a corner is from n.
