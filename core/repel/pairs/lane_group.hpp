@@ -36,7 +36,6 @@ class LaneGroup {
     features_.B.X_W.set(k, poses.last(pair.b));
     law_.set(k, pair.law);
     tilt_[k] = pair.law.tilt;
-    has_patch_[k] = pair.law.tilt > 0.0 ? -1 : 0;
     pointed_a_.set(k, {});
     pointed_b_.set(k, {});
     had_patch_ &= ~(1U << k);
@@ -66,7 +65,10 @@ class LaneGroup {
     apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
     const LaneMask proven = gap.proven & used_;
     const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
-    set_to_nearest(relative);
+    p_AQ_W_ = apart_.p_WA - relative.p_WoA;
+    gradient_W_ = apart_.extraction_W;
+    moment_W_ = cross(p_AQ_W_, apart_.extraction_W);
+    nearer_ = Lanes{};
     const LaneMask flat = proven & (apart_.lower < law_.range) & may_be_flat(gap);
     if (bits_of(flat) != 0U) find_patches(flat, gap, motion, poses);
     compute_forces(relative, proven);
@@ -166,25 +168,18 @@ class LaneGroup {
     return each;
   }
 
-  /// The gradients at the nearest points.
-  void set_to_nearest(const RelativeMotion<Lanes, LaneVec>& relative) noexcept {
-    p_AQ_W_ = apart_.p_WA - relative.p_WoA;
-    gradient_W_ = apart_.extraction_W;
-    moment_W_ = cross(p_AQ_W_, apart_.extraction_W);
-    nearer_ = Lanes{};
-  }
-
   /// False in lanes where one side is known to show a corner, or both an edge and these cross.
   [[nodiscard]] LaneMask may_be_flat(const LaneGap& gap) const noexcept {
     const LaneMask a = pointed_a_.holds(gap.n_A);
     const LaneMask b = pointed_b_.holds(gap.n_B);
     const LaneMask corner = (a & ~pointed_a_.is_edge()) | (b & ~pointed_b_.is_edge());
     const LaneMask edges = a & b & ~corner;
-    if (bits_of(edges & used_) == 0U) return has_patch_ & ~corner;
+    const LaneMask has_patch = tilt_ > Lanes{};
+    if (bits_of(edges & used_) == 0U) return has_patch & ~corner;
     const LaneVec along_a = features_.A.X_W.rotate(pointed_a_.along());
     const LaneVec along_b = features_.B.X_W.rotate(pointed_b_.along());
     const Lanes sine = magnitudes(dot(cross(along_a, along_b), gap.n_BA_W));
-    return has_patch_ & ~(corner | (edges & (sine > Crossing::widest)));
+    return has_patch & ~(corner | (edges & (sine > Crossing::widest)));
   }
 
   /// The gradients of the patches of the pairs in `flat`.
@@ -208,13 +203,14 @@ class LaneGroup {
         flat, [&](int k) -> const Pose& { return of_a_.posed(k, poses, motion).X_W; },
         [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; });
     unsigned left = had_patch_;
-    for (const std::size_t sides : {std::size_t{4}, PolygonLanes::most}) {
-      const PolygonPatches found = search.patches(sides, flat, depth_a_);
+    const auto take = [&](const PolygonPatches& found) {
       left &= ~bits_of(found.valid);
       nearer_ = found.valid ? found.nearer : nearer_;
       gradient_W_ = either(found.valid, found.force, gradient_W_);
       moment_W_ = either(found.valid, found.torque + cross(p_AQ_W_, found.force), moment_W_);
-    }
+    };
+    take(search.patches<4>(flat, depth_a_));
+    if (left != 0U) take(search.patches<PolygonLanes::most>(flat, depth_a_));
     for (; left != 0U; left &= left - 1U) find_patch_alone(std::countr_zero(left), motion, poses);
   }
 
@@ -262,7 +258,6 @@ class LaneGroup {
   Lanes depth_a_{}, depth_b_{};    ///< [m] rounding radius of the shapes
   Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
   Lanes tilt_{};                   ///< [rad] of the laws
-  LaneMask has_patch_{};           ///< it is more than 0
   PointedLanes pointed_a_, pointed_b_;
   unsigned had_patch_ = 0;  ///< bit k: at the last evaluation; it is then not looked whether not
   // The members of PairAnswer.

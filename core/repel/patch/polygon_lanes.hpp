@@ -78,8 +78,8 @@ struct PolygonLanes {
     const auto& columns = X_W.columns;
     valid = ((x & y) | (x & z) | (y & z)) & ~(x & y & z);
     const LaneVec side = either(x & y, columns[2], either(x, columns[1], columns[0]));
-    const Lanes height = x & y ? half.z : (x ? half.y : half.x);
-    const Lanes facing = x & y ? n.z : (x ? n.y : n.x);
+    const Lanes height = (x & y) ? half.z : (x ? half.y : half.x);
+    const Lanes facing = (x & y) ? n.z : (x ? n.y : n.x);
     const PlanarLanes centre = axes.in_plane((facing > none ? height : -height) * side - nearest);
     // Lanes without one hold a square, so that nothing invalid is computed in them.
     const Lanes one = all_of(1.0);

@@ -12,31 +12,32 @@
 
 namespace repel::detail {
 
-/// TiltMean for polygons, with their overlap.
+/// TiltMean for polygons of that many sides, with their overlap.
+template <std::size_t sides>
 class PolygonMean {
  public:
   /// @param slope s; `tilt` e [rad] and `off` as in TiltMean
   PolygonMean(const PolygonLanes& a, const PolygonLanes& b, const PlanarLanes& slope,
               const Lanes& tilt, const Lanes& off) noexcept
-      : s_(slope), e_(tilt), a_(a.size), b_(b.size) {
+      : s_(slope), e_(tilt) {
     const Lanes x = larger(roots(dot(s_, s_)), off) / (TiltMean::faded * e_);
     const Lanes left = larger(1.0 - x * x, Lanes{});
     of_area_ = 1.0 / (std::numbers::pi * e_ * e_);
     flat_ = (1.0 / (3.0 * std::numbers::pi)) * e_;
     share_ = left * left;
     fall_ = (-4.0 / (TiltMean::faded * TiltMean::faded)) * left / (e_ * e_);
-    for (std::size_t i = 0; i < a_; ++i) set(a, i, sides_a_[i]);
-    for (std::size_t j = 0; j < b_; ++j) set(b, j, sides_b_[j]);
-    for (std::size_t i = 0; i < a_; ++i) join(sides_a_, a_, i);
-    for (std::size_t j = 0; j < b_; ++j) {
-      join(sides_b_, b_, j);
+    for (std::size_t i = 0; i < sides; ++i) set(a, i, sides_a_[i]);
+    for (std::size_t j = 0; j < sides; ++j) set(b, j, sides_b_[j]);
+    for (std::size_t i = 0; i < sides; ++i) join(sides_a_, i);
+    for (std::size_t j = 0; j < sides; ++j) {
+      join(sides_b_, j);
       grow(j);
     }
-    for (std::size_t i = 0; i < a_; ++i) {
-      for (std::size_t j = 0; j < b_; ++j) cut(sides_a_[i], sides_b_[j]);
+    for (std::size_t i = 0; i < sides; ++i) {
+      for (std::size_t j = 0; j < sides; ++j) cut(sides_a_[i], sides_b_[j]);
     }
-    for (std::size_t i = 0; i < a_; ++i) add_of_a(sides_a_[i]);
-    for (std::size_t j = 0; j < b_; ++j) add(sides_b_[j]);
+    for (std::size_t i = 0; i < sides; ++i) add_of_a(sides_a_[i]);
+    for (std::size_t j = 0; j < sides; ++j) add(sides_b_[j]);
     finish();
   }
 
@@ -73,7 +74,7 @@ class PolygonMean {
       return {from.x - t * ray.normal.y, from.y + t * ray.normal.x};
     }
   };
-  using Sides8 = std::array<Side, PolygonLanes::most>;
+  using All = std::array<Side, sides>;
 
   static Ray chosen(const LaneMask& first, const Ray& a, const Ray& b) noexcept {
     return {either(first, a.normal, b.normal), first ? a.share : b.share,
@@ -82,7 +83,7 @@ class PolygonMean {
 
   void set(const PolygonLanes& polygon, std::size_t i, Side& side) noexcept {
     side.from = polygon.corners[i];
-    const PlanarLanes along = polygon.corners[i + 1 < polygon.size ? i + 1 : 0] - side.from;
+    const PlanarLanes along = polygon.corners[i + 1 < sides ? i + 1 : 0] - side.from;
     side.length = roots(dot(along, along));
     const Lanes part = 1.0 / side.length;
     side.ray.normal = {part * along.y, -part * along.x};
@@ -113,12 +114,12 @@ class PolygonMean {
     ray.across = h;
   }
 
-  static void join(Sides8& sides, std::size_t size, std::size_t i) noexcept {
-    Side& side = sides[i];
+  static void join(All& all, std::size_t i) noexcept {
+    Side& side = all[i];
     side.begin = Lanes{};
     side.end = side.length;
-    side.before = sides[i > 0 ? i - 1 : size - 1].ray;
-    side.after = sides[i + 1 < size ? i + 1 : 0].ray;
+    side.before = all[i > 0 ? i - 1 : sides - 1].ray;
+    side.after = all[i + 1 < sides ? i + 1 : 0].ray;
   }
 
   /// Moves a side of B outward by what rounding may be wrong, as cut_by does.
@@ -153,7 +154,7 @@ class PolygonMean {
     const LaneMask enters = leaves & (at_b > b.begin);
     b.begin = enters ? at_b : b.begin;
     b.before.share = enters ? a.ray.share : b.before.share;
-    b.end = ~leaves & (at_b < b.end) ? at_b : b.end;
+    b.end = (~leaves & (at_b < b.end)) ? at_b : b.end;
   }
 
   struct Corner {
@@ -182,7 +183,7 @@ class PolygonMean {
     perimeter_ = perimeter_ + length;
     closing_ = closing_ + length * side.ray.normal;
     const Lanes far = dot(s_, start.r);
-    farthest_ = is_left & (far > farthest_) ? far : farthest_;
+    farthest_ = (is_left & (far > farthest_)) ? far : farthest_;
     return start;
   }
 
@@ -241,10 +242,9 @@ class PolygonMean {
 
   PlanarLanes s_;
   Lanes e_;
-  std::size_t a_, b_;  ///< sides
   Lanes of_area_, flat_;
   Lanes share_, fall_;  ///< as TiltMean::Fade
-  Sides8 sides_a_, sides_b_;
+  All sides_a_, sides_b_;
   Lanes nearer_{};
   PlanarLanes point_{};
   PlanarLanes pull_{};

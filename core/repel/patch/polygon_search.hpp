@@ -39,8 +39,8 @@ class PolygonSearch {
   }
 
   /// Of those lanes that need so many sides, `PolygonLanes::most` or the 4 of boxes.
-  [[nodiscard]] PolygonPatches patches(std::size_t sides, const LaneMask& lanes,
-                                       const Lanes& depth_a) noexcept {
+  template <std::size_t sides>
+  [[nodiscard]] PolygonPatches patches(const LaneMask& lanes, const Lanes& depth_a) noexcept {
     PolygonPatches patches;
     const LaneMask is_large = a_.is_large | b_.is_large;
     const LaneMask fits = lanes & a_.valid & b_.valid & (sides > 4 ? is_large : ~is_large);
@@ -51,7 +51,7 @@ class PolygonSearch {
     }
     const PlanarLanes lean = b_.slope - a_.slope;
     const Lanes off = roots(larger(dot(a_.slope, a_.slope), dot(b_.slope, b_.slope)));
-    const PolygonMean mean(a_, b_, lean, tilt_, off);
+    const PolygonMean<sides> mean(a_, b_, lean, tilt_, off);
     const LaneVec& n = axes_.n;
     const LaneVec slanted = axes_.in_world(a_.slope);
     patches.force = n - (1.0 - mean.held()) * slanted + axes_.in_world(mean.pull());
