@@ -47,7 +47,7 @@ struct Group {
   [[nodiscard]] LaneGap prove(const QueryOptions& options) const {
     FeatureLanes lanes;
     for (std::size_t k = 0; k < B.size(); ++k) {
-      lanes.set(static_cast<int>(k), A[k], B[k], warm[k], 0.015);
+      lanes.set(static_cast<int>(k), A[k], B[k], warm[k]);
     }
     for (std::size_t k = 0; k < B.size(); ++k) {
       lanes.A.X_W.set(static_cast<int>(k), X_WA[k]);

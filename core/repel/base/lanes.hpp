@@ -55,8 +55,14 @@ template <class F>
   return (Lanes)((LaneMask)a & std::int64_t{0x7FFFFFFFFFFFFFFF});
 }
 [[nodiscard]] inline Lanes roots(const Lanes& a) noexcept {
-#if defined(__AVX__) && !defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__clang__)
+  return __builtin_ia32_sqrtpd512(a, 4);
+#elif defined(__AVX512F__)
+  return __builtin_ia32_sqrtpd512_mask(a, a, -1, 4);
+#elif defined(__AVX__)
   return __builtin_ia32_sqrtpd256(a);
+#elif defined(__SSE2__)
+  return __builtin_ia32_sqrtpd(a);
 #else
   return lanes_of([&](int k) { return std::sqrt(a[k]); });
 #endif
@@ -73,8 +79,13 @@ template <class F>
 }
 /// Bit k is set when the mask of lane k is set.
 [[nodiscard]] inline unsigned bits_of(const LaneMask& mask) noexcept {
-#if defined(__AVX__) && !defined(__AVX512F__)
+#if defined(__AVX512DQ__)
+  using Long = long long __attribute__((vector_size(lane_bytes)));
+  return static_cast<unsigned char>(__builtin_ia32_cvtq2mask512((Long)mask));
+#elif defined(__AVX__) && !defined(__AVX512F__)
   return static_cast<unsigned>(__builtin_ia32_movmskpd256((Lanes)mask));
+#elif defined(__SSE2__) && !defined(__AVX512F__)
+  return static_cast<unsigned>(__builtin_ia32_movmskpd((Lanes)mask));
 #else
   unsigned bits = 0;
   for (int k = 0; k < lane_count; ++k) bits |= static_cast<unsigned>(mask[k] & 1) << k;

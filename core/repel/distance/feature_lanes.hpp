@@ -39,13 +39,6 @@ struct LaneSets {
     for (std::size_t i = 0; i < 3; ++i) turned[i] = X_W.rotate(corners[i]);
   }
 
-  /// False in lanes where no edge is perpendicular to `d` within `sine`: of boxes.
-  [[nodiscard]] LaneMask may_be_flat(const LaneVec& d, const Lanes& sine) const noexcept {
-    const LaneVec size = magnitudes(d);
-    const LaneMask flat = smaller(smaller(size.x, size.y), size.z) < sine * roots(dot(d, d));
-    return boxes ? flat : flat | ~flat;
-  }
-
   /// `Convex::support_value` of each set along `d`, given in its own frame.
   [[nodiscard]] Lanes support_values(const LaneVec& d) const noexcept {
     if (boxes) return dot(half_extents, magnitudes(d));
@@ -61,8 +54,8 @@ struct LaneSets {
 struct LaneGap {
   Lanes distance, lower, upper;      ///< [m]
   LaneVec n_BA_W, p_AQa_W, p_AQb_W;  ///< [1], [m], [m]
+  LaneVec n_A, n_B;                  ///< [1] unit, outward from each set, in its own frame
   LaneMask proven;                   ///< lane k is a valid result for its pair
-  LaneMask flat;  ///< lane k may have features of both sets perpendicular to n within `angle`
 };
 
 /// `confirm_nearest` for several pairs of boxes and polytopes. It evaluates vertex, edge and face
@@ -72,13 +65,10 @@ struct LaneGap {
 struct FeatureLanes {
   LaneSets A, B;
   Lanes size{};   ///< number of corners of the features
-  Lanes angle{};  ///< [rad] within which edges count as perpendicular to n
   Lanes reach{};  ///< [m] sum of the reaches of A and B
 
   /// @param warm left by the last query on the pair, with 1 to 3 corners
-  /// @param within [rad] see `angle`
-  void set(int k, const Convex& a, const Convex& b, const WarmStart& warm, double within) noexcept {
-    angle[k] = within;
+  void set(int k, const Convex& a, const Convex& b, const WarmStart& warm) noexcept {
     A.set(k, a, warm.a);
     B.set(k, b, warm.b);
     size[k] = warm.size;
@@ -98,8 +88,9 @@ struct FeatureLanes {
     const LaneVec v_B = B.X_W.rotate_transposed(foot.v);
     const Lanes least_vw = -(A.support_values(v_A) + B.support_values(v_B) + dot(foot.v, p_AB));
     LaneGap gap;
-    gap.flat = A.may_be_flat(v_A, angle) & B.may_be_flat(v_B, angle);
     const Lanes inverse = 1.0 / length;
+    gap.n_A = inverse * v_A;
+    gap.n_B = inverse * v_B;
     gap.lower = (least_vw * inverse - margin) * (1.0 - 0x1p-50);
     const LaneVec mean_w = mean(w, foot);
     const Lanes off = sum(magnitudes(mean_w - foot.v));

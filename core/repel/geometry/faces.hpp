@@ -52,14 +52,14 @@ class Faces {
     normals_.shrink_to_fit();
     first_.shrink_to_fit();
     corners_.shrink_to_fit();
-    index(vertices.size());
+    index(vertices);
     find_room(vertices);
   }
 
   [[nodiscard]] bool empty() const noexcept { return normals_.empty(); }
   /// [byte] Heap memory held, and the most for a hull of so many vertices.
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return normals_.capacity() * sizeof(Vec<double>) +
+    return (normals_.capacity() + edges_.capacity()) * sizeof(Vec<double>) +
            (first_.capacity() + corners_.capacity() + first_at_.capacity()) *
                sizeof(std::uint32_t) +
            at_.capacity() * sizeof(Corner) +
@@ -67,7 +67,7 @@ class Faces {
   }
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     // A closed surface of triangles has twice as many of them as vertices.
-    return 2 * vertices * sizeof(Vec<double>) + (9 * vertices + 2) * sizeof(std::uint32_t) +
+    return 8 * vertices * sizeof(Vec<double>) + (9 * vertices + 2) * sizeof(std::uint32_t) +
            6 * vertices * sizeof(Corner) + 3 * vertices * sizeof(float);
   }
   /// The unit normal of face `i`, outward.
@@ -80,6 +80,12 @@ class Faces {
   [[nodiscard]] std::span<const Corner> at(std::uint32_t vertex) const noexcept {
     if (empty()) return {};
     return {at_.data() + first_at_[vertex], first_at_[vertex + 1] - first_at_[vertex]};
+  }
+
+  /// The unit vectors to a vertex from those after it, `Corner::next`, around the faces of `at`.
+  [[nodiscard]] std::span<const Vec<double>> edges_to(std::uint32_t vertex) const noexcept {
+    if (empty()) return {};
+    return {edges_.data() + first_at_[vertex], first_at_[vertex + 1] - first_at_[vertex]};
   }
 
   /// [rad] How far around its normal a face is alone: a sixtieth of the angle to the nearest face
@@ -148,17 +154,20 @@ class Faces {
   }
 
   /// Lists the faces at each vertex.
-  void index(std::size_t vertices) {
-    first_at_.assign(vertices + 1, 0);
+  void index(std::span<const Vec3> vertices) {
+    first_at_.assign(vertices.size() + 1, 0);
     for (const std::uint32_t corner : corners_) ++first_at_[corner + 1];
-    for (std::size_t i = 0; i < vertices; ++i) first_at_[i + 1] += first_at_[i];
+    for (std::size_t i = 0; i < vertices.size(); ++i) first_at_[i + 1] += first_at_[i];
     at_.resize(corners_.size());
+    edges_.resize(corners_.size());
     std::vector<std::uint32_t> next = first_at_;
     for (std::uint32_t face = 0; face < normals_.size(); ++face) {
       const auto around = corners(face);
       for (std::size_t k = 0; k < around.size(); ++k) {
-        at_[next[around[k]]++] = {face, around[k + 1 < around.size() ? k + 1 : 0],
-                                  around[k > 0 ? k - 1 : around.size() - 1]};
+        const std::uint32_t after = around[k + 1 < around.size() ? k + 1 : 0];
+        const std::uint32_t place = next[around[k]]++;
+        at_[place] = {face, after, around[k > 0 ? k - 1 : around.size() - 1]};
+        edges_[place] = Vec<double>(normalized(Vec3(vertices[around[k]] - vertices[after])));
       }
     }
   }
@@ -192,6 +201,7 @@ class Faces {
   std::vector<std::uint32_t> corners_;   ///< by face
   std::vector<std::uint32_t> first_at_;  ///< by vertex, where its faces begin
   std::vector<Corner> at_;               ///< by vertex
+  std::vector<Vec<double>> edges_;       ///< by vertex, as `at_`
   std::vector<float> face_room_;         ///< [rad] by face
   std::vector<float> vertex_room_;       ///< [rad] by vertex
 };

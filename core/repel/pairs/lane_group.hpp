@@ -11,48 +11,14 @@
 
 #include <repel/distance/feature_lanes.hpp>
 #include <repel/force/law_lanes.hpp>
+#include <repel/pairs/lane_bodies.hpp>
 #include <repel/pairs/pair_answer.hpp>
-#include <repel/pairs/part_poses.hpp>
 #include <repel/patch/patch.hpp>
+#include <repel/patch/pointed.hpp>
+#include <repel/patch/polygon_search.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {
-
-/// One side of the pairs of a group: the parts and the bodies they belong to.
-class LaneBodies {
- public:
-  void set(const World& world, int k, PartId part) noexcept {
-    parts_[index(k)] = part;
-    shapes_[index(k)] = &world.part(part).shape;
-    bodies_[index(k)] = world.part(part).body;
-    same_body_ = std::all_of(bodies_.begin(), bodies_.end(),
-                             [&](BodyId body) { return body == bodies_[0]; });
-  }
-  /// All lanes have the same body: that of lane 0.
-  [[nodiscard]] bool same_body() const noexcept { return same_body_; }
-  [[nodiscard]] BodyId body(int k) const noexcept { return bodies_[index(k)]; }
-  /// All lanes have the fixed body.
-  [[nodiscard]] bool are_fixed() const noexcept { return same_body_ && bodies_[0] == World::fixed; }
-  [[nodiscard]] LanePose poses(PartPoses& of, const Motion& motion) const noexcept {
-    std::array<const Pose*, lane_count> X_WP;
-    for (std::size_t k = 0; k < X_WP.size(); ++k) X_WP[k] = &of.at(parts_[k], motion);
-    return LanePose::of(X_WP);
-  }
-  [[nodiscard]] PosedShape posed(int k, PartPoses& of, const Motion& motion) const noexcept {
-    return {*shapes_[index(k)], of.at(parts_[index(k)], motion)};
-  }
-  [[nodiscard]] const BodyState& state(const Motion& motion, int k) const noexcept {
-    return motion.bodies[bodies_[index(k)].index];
-  }
-
- private:
-  [[nodiscard]] static std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
-
-  std::array<PartId, lane_count> parts_{};
-  std::array<BodyId, lane_count> bodies_{};
-  std::array<const Shape*, lane_count> shapes_{};
-  bool same_body_ = false;
-};
 
 /// As many pairs as there are lanes, their answers and forces at one tick. The result of a lane
 /// depends only on its own pair.
@@ -70,6 +36,9 @@ class LaneGroup {
     features_.B.X_W.set(k, poses.last(pair.b));
     law_.set(k, pair.law);
     tilt_[k] = pair.law.tilt;
+    pointed_a_.set(k, {});
+    pointed_b_.set(k, {});
+    had_patch_ &= ~(1U << k);
     depth_a_[k] = world.part(pair.a).shape.level(0).depth;
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
     nearest_[k] = std::numeric_limits<double>::infinity();
@@ -82,7 +51,7 @@ class LaneGroup {
   /// Changes the feature of the pair in lane k and discards its answer.
   void set_feature(const World& world, int k, const Pair& pair, const WarmStart& warm) noexcept {
     features_.set(k, world.part(pair.a).shape.level(0).core, world.part(pair.b).shape.level(0).core,
-                  warm, flat_within(pair.law.tilt));
+                  warm);
     fixed_are_turned_ = false;
     discard_answer(k);
   }
@@ -96,8 +65,12 @@ class LaneGroup {
     apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
     const LaneMask proven = gap.proven & used_;
     const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
-    find_gradients(relative, bits_of(gap.flat & proven & (apart_.lower < law_.range)), motion,
-                   poses);
+    p_AQ_W_ = apart_.p_WA - relative.p_WoA;
+    gradient_W_ = apart_.extraction_W;
+    moment_W_ = cross(p_AQ_W_, apart_.extraction_W);
+    nearer_ = Lanes{};
+    const LaneMask flat = proven & (apart_.lower < law_.range) & may_be_flat(gap);
+    if (bits_of(flat) != 0U) find_patches(flat, gap, motion, poses);
     compute_forces(relative, proven);
     tick_ = motion.tick;
     fresh_ = true;
@@ -195,25 +168,63 @@ class LaneGroup {
     return each;
   }
 
-  /// The gradients at the nearest points; of the pairs with a bit in `flat`, of their patches.
-  void find_gradients(const RelativeMotion<Lanes, LaneVec>& relative, unsigned flat,
-                      const Motion& motion, PartPoses& poses) noexcept {
-    p_AQ_W_ = apart_.p_WA - relative.p_WoA;
-    gradient_W_ = apart_.extraction_W;
-    moment_W_ = cross(p_AQ_W_, apart_.extraction_W);
-    nearer_ = Lanes{};
-    for (; flat != 0U; flat &= flat - 1U) {
-      const int k = std::countr_zero(flat);
-      ContactPatch patch;
-      if (!find_patch(separation_in(k), of_a_.posed(k, poses, motion),
-                      of_b_.posed(k, poses, motion), tilt_[k], patch)) {
-        continue;
-      }
-      const Vec3 force = patch.gradient.force;
-      nearer_[k] = patch.nearer;
-      gradient_W_.set(k, Vec<double>(force));
-      moment_W_.set(k, Vec<double>(Vec3(patch.gradient.torque + p_AQ_W_.at(k).cross(force))));
+  /// False in lanes where one side is known to show a corner, or both an edge and these cross.
+  [[nodiscard]] LaneMask may_be_flat(const LaneGap& gap) const noexcept {
+    const LaneMask a = pointed_a_.holds(gap.n_A);
+    const LaneMask b = pointed_b_.holds(gap.n_B);
+    const LaneMask corner = (a & ~pointed_a_.is_edge()) | (b & ~pointed_b_.is_edge());
+    const LaneMask edges = a & b & ~corner;
+    const LaneMask has_patch = tilt_ > Lanes{};
+    if (bits_of(edges & used_) == 0U) return has_patch & ~corner;
+    const LaneVec along_a = features_.A.X_W.rotate(pointed_a_.along());
+    const LaneVec along_b = features_.B.X_W.rotate(pointed_b_.along());
+    const Lanes sine = magnitudes(dot(cross(along_a, along_b), gap.n_BA_W));
+    return has_patch & ~(corner | (edges & (sine > Crossing::widest)));
+  }
+
+  /// The gradients of the patches of the pairs in `flat`.
+  void find_patches(LaneMask flat, const LaneGap& gap, const Motion& motion,
+                    PartPoses& poses) noexcept {
+    const unsigned to_look_at = bits_of(flat) & ~had_patch_;
+    for (unsigned bits = to_look_at; bits != 0U; bits &= bits - 1U) {
+      const int k = std::countr_zero(bits);
+      pointed_a_.set(k, PointedSearch(*features_.A.sets[static_cast<std::size_t>(k)],
+                                      Vec<double>(gap.n_A.at(k)), tilt_[k])
+                            .run());
+      pointed_b_.set(k, PointedSearch(*features_.B.sets[static_cast<std::size_t>(k)],
+                                      Vec<double>(gap.n_B.at(k)), tilt_[k])
+                            .run());
     }
+    if (to_look_at != 0U) flat &= may_be_flat(gap);
+    had_patch_ = bits_of(flat);
+    if (had_patch_ == 0U) return;
+    PolygonSearch search(features_, gap, tilt_);
+    search.find_flats(
+        flat, [&](int k) -> const Pose& { return of_a_.posed(k, poses, motion).X_W; },
+        [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; });
+    unsigned left = had_patch_;
+    const auto take = [&](const PolygonPatches& found) {
+      left &= ~bits_of(found.valid);
+      nearer_ = found.valid ? found.nearer : nearer_;
+      gradient_W_ = either(found.valid, found.force, gradient_W_);
+      moment_W_ = either(found.valid, found.torque + cross(p_AQ_W_, found.force), moment_W_);
+    };
+    take(search.patches<4>(flat, depth_a_));
+    if (left != 0U) take(search.patches<PolygonLanes::most>(flat, depth_a_));
+    for (; left != 0U; left &= left - 1U) find_patch_alone(std::countr_zero(left), motion, poses);
+  }
+
+  void find_patch_alone(int k, const Motion& motion, PartPoses& poses) noexcept {
+    ContactPatch patch;
+    if (!find_patch(separation_in(k), of_a_.posed(k, poses, motion), of_b_.posed(k, poses, motion),
+                    tilt_[k], patch)) {
+      had_patch_ &= ~(1U << k);
+      return;
+    }
+    const Vec3 force = patch.gradient.force;
+    nearer_[k] = patch.nearer;
+    gradient_W_.set(k, Vec<double>(force));
+    moment_W_.set(k, Vec<double>(Vec3(patch.gradient.torque + p_AQ_W_.at(k).cross(force))));
   }
 
   void compute_forces(const RelativeMotion<Lanes, LaneVec>& relative,
@@ -247,6 +258,8 @@ class LaneGroup {
   Lanes depth_a_{}, depth_b_{};    ///< [m] rounding radius of the shapes
   Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
   Lanes tilt_{};                   ///< [rad] of the laws
+  PointedLanes pointed_a_, pointed_b_;
+  unsigned had_patch_ = 0;  ///< bit k: at the last evaluation; it is then not looked whether not
   // The members of PairAnswer.
   LaneVec gradient_W_{}, moment_W_{};
   Lanes nearer_{};

@@ -181,16 +181,19 @@ class FlatSearch {
     double least = std::numeric_limits<double>::infinity();
     Edge edge;
     std::uint32_t face = none;
-    for (const Faces::Corner& corner : faces.at(farthest)) {
-      const double off = lower_tilt(corner.face, flat);
-      if (off < least) {
-        least = off;
-        face = corner.face;
+    const auto corners = faces.at(farthest);
+    const auto edges = faces.edges_to(farthest);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const double square = lower_tilt(corners[k].face, flat);
+      if (square < least) {
+        least = square;
+        face = corners[k].face;
       }
-      const double slope = slope_along(farthest, corner.next);
-      if (slope < edge.slope) edge = {corner.next, slope};
+      const double slope = dot(n_, edges[k]);
+      if (slope < edge.slope) edge = {corners[k].next, slope};
     }
-    if (least < flat_within(flat.tilt)) return of_face(face, farthest, flat);
+    const double within = flat_within(flat.tilt);
+    if (least < within * within) return of_face(face, farthest, flat);
     if (!(edge.slope < flat.tilt)) {
       add(flat, set_.place(farthest));
       return flat;
@@ -227,13 +230,15 @@ class FlatSearch {
     return dot(n_, away) / std::sqrt(dot(away, away));
   }
 
-  /// Lowers the tilt to what a face leaves, and returns how far its normal is off [rad].
+  /// Lowers the tilt to what a face leaves, and returns the square of how far its normal is off
+  /// [rad^2].
   double lower_tilt(std::uint32_t face, Flat& flat) const noexcept {
     constexpr double growth = 0.045;
     const Vec<double> between = set_.faces().normal(face) - n_;
-    const double off = std::sqrt(dot(between, between));
-    flat.tilt = std::min(flat.tilt, set_.faces().room_of(face) + growth * off);
-    return off;
+    const double square = dot(between, between);
+    const double room = set_.faces().room_of(face);
+    if (room < flat.tilt) flat.tilt = std::min(flat.tilt, room + growth * std::sqrt(square));
+    return square;
   }
 
   /// A face; with many corners, those farthest along a few directions stand for it, the first of

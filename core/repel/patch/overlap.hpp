@@ -121,8 +121,7 @@ inline void cut_by(const Outline& polygon, bool holds_nearest, Outline& outline)
     const Planar edge = polygon.after(i).r - from.r;
     const Planar normal{edge.y, -edge.x};
     const double off = dot(normal, from.r);
-    const double offset =
-        (holds_nearest ? std::max(0.0, off) : off) + least * (std::abs(edge.x) + std::abs(edge.y));
+    const double offset = (holds_nearest ? std::max(0.0, off) : off) + least * norm(edge);
     if (outline.size == 2) {
       cut_segment(outline, normal, offset, from.of_a);
     } else if (cut(*whole, normal, offset, from.of_a, *rest)) {

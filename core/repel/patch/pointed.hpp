@@ -1,0 +1,142 @@
+/// @file
+/// Directions that a set faces with a single corner or edge: where no contact patch can be.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <repel/base/lanes.hpp>
+#include <repel/geometry/convex.hpp>
+#include <repel/patch/plane.hpp>
+#include <repel/patch/tilt_mean.hpp>
+
+namespace repel::detail {
+
+/// A direction n of a polytope, around which `FlatSearch` finds nothing flat but one edge.
+struct Pointed {
+  Vec<double> n{0.0, 0.0, 0.0};      ///< unit, outward, in the frame of the set
+  Vec<double> along{0.0, 0.0, 0.0};  ///< unit, the edge; 0: not even that, a corner
+  double within = -1.0;              ///< [1] the same holds for all unit vectors nearer to n than
+                                     ///< this; negative: there may be a face, or several edges
+};
+
+/// What a box or polytope shows around n. Cost: about that of one support map.
+class PointedSearch {
+ public:
+  /// @param n unit, outward, in the frame of the set
+  /// @param tilt [rad] of the law
+  PointedSearch(const Convex& set, const Vec<double>& n, double tilt) noexcept
+      : set_(set), n_(n), tilt_(tilt) {}
+
+  [[nodiscard]] Pointed run() const noexcept {
+    Pointed pointed = set_.kind() == Convex::Kind::box ? of_box() : of_polytope();
+    pointed.n = n_;
+    pointed.within -= rounding;
+    return pointed;
+  }
+
+ private:
+  /// The two edges that are nearest to perpendicular to n, by how much they are not.
+  struct TwoLeast {
+    Vec<double> along{0.0, 0.0, 0.0};
+    double least = std::numeric_limits<double>::infinity();
+    double second = std::numeric_limits<double>::infinity();
+    std::uint32_t to = 0;
+
+    void add(double slope, const Vec<double>& edge, std::uint32_t vertex) noexcept {
+      if (slope < least) {
+        second = least;
+        least = slope;
+        along = edge;
+        to = vertex;
+      } else {
+        second = std::min(second, slope);
+      }
+    }
+    [[nodiscard]] Pointed beyond(double angle) const noexcept {
+      if (least > angle) return {.within = least - angle};
+      return {.along = along, .within = second - angle};
+    }
+  };
+
+  [[nodiscard]] Pointed of_box() const noexcept {
+    const Vec<double> half = set_.half_extents();
+    TwoLeast edges;
+    if (half.x() > 0.0) edges.add(std::abs(n_.x()), {1.0, 0.0, 0.0}, 0);
+    if (half.y() > 0.0) edges.add(std::abs(n_.y()), {0.0, 1.0, 0.0}, 0);
+    if (half.z() > 0.0) edges.add(std::abs(n_.z()), {0.0, 0.0, 1.0}, 0);
+    return edges.beyond(flat_within(tilt_));
+  }
+
+  [[nodiscard]] Pointed of_polytope() const noexcept {
+    const std::uint32_t corner = set_.support(n_).name;
+    TwoLeast edges;
+    add_edges(corner, edges);
+    double nearest_face = face_at(corner);
+    const bool is_edge = edges.least <= tilt_;
+    if (is_edge) {
+      TwoLeast there;
+      const std::uint32_t to = edges.to;
+      add_edges(to, there, corner);
+      edges.second = std::min(edges.second, there.least);
+      nearest_face = std::min(nearest_face, face_at(to));
+    }
+    Pointed pointed = edges.beyond(tilt_);
+    pointed.within = std::min(pointed.within, nearest_face - flat_within(tilt_));
+    return pointed;
+  }
+
+  void add_edges(std::uint32_t from, TwoLeast& edges,
+                 std::uint32_t without = std::numeric_limits<std::uint32_t>::max()) const noexcept {
+    const auto corners = set_.faces().at(from);
+    const auto unit = set_.faces().edges_to(from);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      if (corners[k].next != without) edges.add(dot(n_, unit[k]), unit[k], corners[k].next);
+    }
+  }
+  /// [1] How far the normal of the nearest face at a corner is from n.
+  [[nodiscard]] double face_at(std::uint32_t at) const noexcept {
+    double most = -1.0;
+    for (const Faces::Corner& corner : set_.faces().at(at)) {
+      most = std::max(most, dot(set_.faces().normal(corner.face), n_));
+    }
+    return std::sqrt(std::max(0.0, 2.0 - 2.0 * most));
+  }
+
+  static constexpr double rounding = 1e-9;
+
+  const Convex& set_;
+  Vec<double> n_;
+  double tilt_;  ///< [rad]
+};
+
+/// One side of several pairs, one lane per pair: what is known of its set around some direction.
+class PointedLanes {
+ public:
+  void set(int k, const Pointed& pointed) noexcept {
+    n_.set(k, pointed.n);
+    along_.set(k, pointed.along);
+    within_[k] = pointed.within;
+    const Vec<double>& edge = pointed.along;
+    is_edge_[k] = dot(edge, edge) > 0.0 ? -1 : 0;
+  }
+  /// True in lanes where it still holds for the unit vector n.
+  [[nodiscard]] LaneMask holds(const LaneVec& n) const noexcept {
+    const LaneVec off = n - n_;
+    const Lanes none{};
+    return (within_ > none) & (dot(off, off) < within_ * within_);
+  }
+  [[nodiscard]] const LaneMask& is_edge() const noexcept { return is_edge_; }
+  [[nodiscard]] const LaneVec& along() const noexcept { return along_; }
+
+ private:
+  LaneVec n_{}, along_{};
+  Lanes within_ = all_of(-1.0);
+  LaneMask is_edge_{};
+};
+
+}  // namespace repel::detail

@@ -1,0 +1,92 @@
+/// @file
+/// The contact patches of several pairs at once that show a polygon to each other.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+
+#include <repel/distance/feature_lanes.hpp>
+#include <repel/patch/patch.hpp>
+#include <repel/patch/polygon_mean.hpp>
+
+namespace repel::detail {
+
+/// The members of ContactPatch, one pair per lane.
+struct PolygonPatches {
+  Lanes nearer{};             ///< [m]
+  LaneVec force{}, torque{};  ///< [1], [m]
+  LaneMask valid{};           ///< the others are to be found alone
+};
+
+/// `find_patch` for the lanes whose features are polygons of few corners. The patch of a lane does
+/// not depend on the others.
+class PolygonSearch {
+ public:
+  /// @param tilt [rad] of the laws
+  PolygonSearch(const FeatureLanes& features, const LaneGap& gap, const Lanes& tilt) noexcept
+      : features_(features),
+        gap_(gap),
+        axes_(gap.n_BA_W),
+        tilt_(tilt > Lanes{} ? tilt : all_of(1.0)) {}
+
+  /// Finds the features of those lanes.
+  /// @param pose_a,pose_b called with k: the pose of the set in lane k
+  template <class PoseOfA, class PoseOfB>
+  void find_flats(const LaneMask& lanes, const PoseOfA& pose_a, const PoseOfB& pose_b) noexcept {
+    const LaneVec p_AB = features_.B.X_W.columns[3] - features_.A.X_W.columns[3];
+    find(features_.A, gap_.n_A, gap_.p_AQa_W, Facing::down, lanes, pose_a, a_);
+    find(features_.B, gap_.n_B, gap_.p_AQb_W - p_AB, Facing::up, lanes & a_.valid, pose_b, b_);
+  }
+
+  /// Of those lanes that need so many sides, `PolygonLanes::most` or the 4 of boxes.
+  template <std::size_t sides>
+  [[nodiscard]] PolygonPatches patches(const LaneMask& lanes, const Lanes& depth_a) noexcept {
+    PolygonPatches patches;
+    const LaneMask is_large = a_.is_large | b_.is_large;
+    const LaneMask fits = lanes & a_.valid & b_.valid & (sides > 4 ? is_large : ~is_large);
+    if (bits_of(fits) == 0U) return patches;
+    if (sides > 4) {
+      a_.extend();
+      b_.extend();
+    }
+    const PlanarLanes lean = b_.slope - a_.slope;
+    const Lanes off = roots(larger(dot(a_.slope, a_.slope), dot(b_.slope, b_.slope)));
+    const PolygonMean<sides> mean(a_, b_, lean, tilt_, off);
+    const LaneVec& n = axes_.n;
+    const LaneVec slanted = axes_.in_world(a_.slope);
+    patches.force = n - (1.0 - mean.held()) * slanted + axes_.in_world(mean.pull());
+    const LaneVec point = axes_.in_world(mean.point()) + dot(a_.slope, mean.point()) * n;
+    patches.torque = cross(point, n - slanted) + mean.drill() * n +
+                     cross(n, axes_.in_world(mean.lifted(a_.slope)) + depth_a * patches.force);
+    const Lanes share = smaller(
+        larger((roots(dot(lean, lean)) - 2.0 * tilt_) / (3.0 * tilt_), Lanes{}), all_of(1.0));
+    patches.nearer = mean.nearer() - share * mean.farthest();
+    patches.valid = fits & mean.is_sure();
+    return patches;
+  }
+
+ private:
+  template <class PoseOf>
+  void find(const LaneSets& side, const LaneVec& n, const LaneVec& nearest, Facing facing,
+            const LaneMask& lanes, const PoseOf& pose, PolygonLanes& polygons) noexcept {
+    polygons.set_boxes(side.half_extents, side.X_W, n, nearest, axes_, TiltMean::faded * tilt_);
+    if (side.boxes) return;
+    for (unsigned left = bits_of(lanes); left != 0U; left &= left - 1U) {
+      const int k = std::countr_zero(left);
+      const Convex& set = *side.sets[static_cast<std::size_t>(k)];
+      if (set.kind() == Convex::Kind::box) continue;
+      const PlanarAxes axes(Vec<double>(axes_.n.at(k)));
+      const Flat flat =
+          FlatSearch(set, pose(k), axes, facing, Vec<double>(nearest.at(k)), tilt_[k]).run();
+      if (flat.tilt > 0.0 && polygons.set(k, flat)) tilt_[k] = flat.tilt;
+    }
+  }
+
+  const FeatureLanes& features_;
+  const LaneGap& gap_;
+  PlanarLaneAxes axes_;
+  Lanes tilt_;  ///< [rad] up to which no other features are nearest
+  PolygonLanes a_, b_;
+};
+
+}  // namespace repel::detail

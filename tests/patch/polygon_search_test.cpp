@@ -1,0 +1,76 @@
+#include <repel/patch/polygon_search.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "patch/contacts.hpp"
+
+namespace repel::detail {
+namespace polygon_search_test {
+
+using families::Rng;
+
+constexpr unsigned seed = 43;
+
+/// Pairs of boxes and prisms over each other, one per lane, and what is known of each.
+struct Group {
+  std::vector<test::Contacts> pairs;
+  std::vector<Separation> found;
+  FeatureLanes features;
+  Lanes tilt{};
+
+  explicit Group(Rng& rng) {
+    const auto& kinds = test::kinds_of_contacts();
+    for (int k = 0; k < lane_count; ++k) {
+      const auto& kind = kinds[static_cast<std::size_t>(families::count_between(rng, 0, 3))];
+      pairs.push_back(test::draw_contacts(kind, families::uniform(rng, 0.002, 0.01), rng));
+      const test::Contacts& pair = pairs.back();
+      WarmStart warm;
+      found.push_back(separation(pair.A, pair.X_WA, pair.B, pair.X_WB, {}, warm));
+      features.set(k, pair.A.level(0).core, pair.B.level(0).core, warm);
+      features.A.X_W.set(k, pair.X_WA);
+      features.B.X_W.set(k, pair.X_WB);
+      tilt[k] = pair.tilt;
+    }
+    features.A.turn();
+    features.B.turn();
+  }
+};
+
+TEST(PolygonSearch, FindsThePatchOfEachPairAlone) {
+  Rng rng(seed);
+  int found = 0, all = 0;
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "group", i));
+    const Group group(rng);
+    const LaneGap gap = group.features.prove({});
+    const auto pair = [&](int k) -> const test::Contacts& {
+      return group.pairs[static_cast<std::size_t>(k)];
+    };
+    PolygonSearch search(group.features, gap, group.tilt);
+    search.find_flats(
+        gap.proven, [&](int k) -> const Pose& { return pair(k).X_WA; },
+        [&](int k) -> const Pose& { return pair(k).X_WB; });
+    const auto compare = [&](const PolygonPatches& patches) {
+      for (int k = 0; k < lane_count; ++k) {
+        if (patches.valid[k] == 0) continue;
+        ++found;
+        ContactPatch alone;
+        ASSERT_TRUE(find_patch(group.found[static_cast<std::size_t>(k)], {pair(k).A, pair(k).X_WA},
+                               {pair(k).B, pair(k).X_WB}, pair(k).tilt, alone));
+        EXPECT_NEAR(patches.nearer[k], alone.nearer, 1e-11);
+        EXPECT_LE((patches.force.at(k) - alone.gradient.force).norm(), 1e-10);
+        EXPECT_LE((patches.torque.at(k) - alone.gradient.torque).norm(), 1e-10);
+      }
+    };
+    compare(search.patches<4>(gap.proven, Lanes{}));
+    compare(search.patches<PolygonLanes::most>(gap.proven, Lanes{}));
+    all += lane_count;
+  }
+  EXPECT_GT(found, all / 2);
+}
+
+}  // namespace polygon_search_test
+}  // namespace repel::detail
