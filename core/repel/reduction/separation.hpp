@@ -136,14 +136,18 @@ namespace detail {
 
 /// The result for an overlap of the cores by a measure other than their levels; false when the
 /// levels are the requested measure, or when the cores turn out not to overlap.
-/// @param spent support-map pairs evaluated; 0 when no search has found the overlap yet
+/// @param spent support-map pairs evaluated
+/// @param doubted no search has proven the overlap
 [[nodiscard]] inline bool measure_overlap(PosedShape A, PosedShape B, const QueryOptions& options,
-                                          int spent, WarmStart& warm, Separation& s) noexcept {
-  if (is_by_planes(A.shape, B.shape, options)) {
-    return find_deepest_point(A, B, options.iterations - spent, spent == 0, warm, s);
-  }
-  return options.measure == Measure::exact && find_exact_depth(A, B, warm, s) &&
-         s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
+                                          int spent, bool doubted, WarmStart& warm,
+                                          Separation& s) noexcept {
+  const bool measured = is_by_planes(A.shape, B.shape, options)
+                            ? find_deepest_point(A, B, options.iterations - spent, doubted, warm, s)
+                            : options.measure == Measure::exact &&
+                                  find_exact_depth(A, B, warm, s) &&
+                                  s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
+  s.iterations += spent;
+  return measured;
 }
 
 /// The signed distance when the fast search, after `spent` support-map pairs, has no proof.
@@ -167,10 +171,7 @@ namespace detail {
   // If the origin is deep inside but coplanar with all support points found, it looks like contact
   // to GJK.
   const bool meets = gap.meets || gap.end == QueryEnd::touching;
-  if (meets && measure_overlap(A, B, options, gap.iterations, warm, s)) {
-    s.iterations += gap.iterations;
-    return s;
-  }
+  if (meets && measure_overlap(A, B, options, gap.iterations, false, warm, s)) return s;
   s = walk.run(&gap);
   // The levels are the fallback for a measure that did not finish: report that, when the iterations
   // ran short or the levels find a depth above rounding.
@@ -191,15 +192,19 @@ namespace detail {
                                              WarmStart& warm) noexcept {
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
-  if (overlapped(A.shape, B.shape, warm)) {
-    Separation s;
-    if (measure_overlap(A, B, options, 0, warm, s)) return s;
+  Separation s;
+  if (overlapped(A.shape, B.shape, warm) && measure_overlap(A, B, options, 0, true, warm, s)) {
+    return s;
   }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
     FeatureSearch search({a.core, A.X_W, b.core, B.X_W});
     if (search.run(options_of_cores(a, b, options), warm, gap)) {
       return apart(gap, a.depth, b.depth, A.X_W);
+    }
+    if (warm.size == 4 && are_usable(A.X_W, B.X_W) &&
+        measure_overlap(A, B, options, gap.iterations, true, warm, s)) {
+      return s;
     }
   }
   return carefully_searched(A, B, options, gap.iterations, warm);
