@@ -88,6 +88,9 @@ class Planes {
     return i < size_ ? numbers_[3 * stride_ + i] : side_.offset();
   }
 
+  /// True for the six planes of a box: plane 2 k and 2 k + 1 are normal to axis k, outward along it
+  /// and against it.
+  [[nodiscard]] bool is_box() const noexcept { return is_box_; }
   /// True when some planes are tangent to a curved side.
   [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0; }
   /// The two tangent planes that face along `x`, seen from the axis. Must be round.

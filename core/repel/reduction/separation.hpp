@@ -95,7 +95,7 @@ namespace detail {
       flat ? overlap_along(s.extraction_W, A, B) : times_length / length + a.depth + b.depth;
   s.lower = widened(std::min(s.distance, -overlap - slack), -1.0);
   s.level = 0;
-  s.iterations = 1 + deepest.pivots() + (flat ? 12 : 0);
+  s.iterations += 1 + deepest.pivots() + (flat ? 12 : 0);
   s.end = QueryEnd::converged;
   return true;
 }
@@ -120,7 +120,7 @@ namespace detail {
   s.p_WA = p_WQ - a.depth * s.extraction_W;
   s.p_WB = s.p_WA - s.distance * s.extraction_W;
   s.level = 0;
-  s.iterations = depth.iterations;
+  s.iterations += depth.iterations;
   s.end = depth.closed ? QueryEnd::converged : QueryEnd::budget_spent;
   return true;
 }
@@ -141,13 +141,12 @@ namespace detail {
 [[nodiscard]] inline bool measure_overlap(PosedShape A, PosedShape B, const QueryOptions& options,
                                           int spent, bool doubted, WarmStart& warm,
                                           Separation& s) noexcept {
-  const bool measured = is_by_planes(A.shape, B.shape, options)
-                            ? find_deepest_point(A, B, options.iterations - spent, doubted, warm, s)
-                            : options.measure == Measure::exact &&
-                                  find_exact_depth(A, B, warm, s) &&
-                                  s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
-  s.iterations += spent;
-  return measured;
+  s.iterations = spent;
+  if (is_by_planes(A.shape, B.shape, options)) {
+    return find_deepest_point(A, B, options.iterations - spent, doubted, warm, s);
+  }
+  return options.measure == Measure::exact && find_exact_depth(A, B, warm, s) &&
+         s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
 }
 
 /// The signed distance when the fast search, after `spent` support-map pairs, has no proof.
@@ -192,9 +191,9 @@ namespace detail {
                                              WarmStart& warm) noexcept {
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
-  Separation s;
-  if (overlapped(A.shape, B.shape, warm) && measure_overlap(A, B, options, 0, true, warm, s)) {
-    return s;
+  if (overlapped(A.shape, B.shape, warm)) {
+    Separation s;
+    if (measure_overlap(A, B, options, 0, true, warm, s)) return s;
   }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
@@ -202,9 +201,9 @@ namespace detail {
     if (search.run(options_of_cores(a, b, options), warm, gap)) {
       return apart(gap, a.depth, b.depth, A.X_W);
     }
-    if (warm.size == 4 && are_usable(A.X_W, B.X_W) &&
-        measure_overlap(A, B, options, gap.iterations, true, warm, s)) {
-      return s;
+    if (warm.size == 4 && are_usable(A.X_W, B.X_W)) {
+      Separation s;
+      if (measure_overlap(A, B, options, gap.iterations, true, warm, s)) return s;
     }
   }
   return carefully_searched(A, B, options, gap.iterations, warm);
