@@ -163,7 +163,7 @@ inline Planes::Nearest<double> Planes::nearest_of_listed(const Vec<double>& x) c
     here += detail::lane_count;
   }
   const double least = detail::least_of(best);
-  const Lanes first = best == Lanes{} + least ? winner : Lanes{} + none;
+  const Lanes first = best == detail::all_of(least) ? winner : Lanes{} + none;
   return {static_cast<std::uint32_t>(detail::least_of(first)), least};
 }
 
