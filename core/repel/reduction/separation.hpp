@@ -101,8 +101,9 @@ namespace detail {
 }
 
 /// The result by the penetration depth; false for curved cores and for those without volume.
-/// @param warm names of four corners of A - B that enclose the origin
-[[nodiscard]] inline bool find_exact_depth(PosedShape A, PosedShape B, const WarmStart& warm,
+/// @param warm the polytope of the last result, or names of four corners of A - B that enclose the
+/// origin
+[[nodiscard]] inline bool find_exact_depth(PosedShape A, PosedShape B, WarmStart& warm,
                                            Separation& s) noexcept {
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
@@ -129,7 +130,7 @@ namespace detail {
 /// corners that enclose the origin.
 [[nodiscard]] inline bool overlapped(const Shape& A, const Shape& B,
                                      const WarmStart& warm) noexcept {
-  if (warm.level_a == WarmStart::deepest_point) return true;
+  if (warm.level_a >= WarmStart::exact_depth) return true;
   return warm.size == 4 && warm.level_a == 0 && A.level(0).core.kind() == Convex::Kind::box &&
          B.level(0).core.kind() == Convex::Kind::box;
 }
