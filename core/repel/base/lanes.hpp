@@ -81,6 +81,8 @@ template <class F>
 #elif defined(__AVX512DQ__)
   using Numbers = long long __attribute__((vector_size(lane_bytes)));
   return static_cast<std::uint8_t>(__builtin_ia32_cvtq2mask512((Numbers)mask));
+#elif defined(__SSE2__) && !defined(__AVX__)
+  return static_cast<unsigned>(__builtin_ia32_movmskpd((Lanes)mask));
 #else
   unsigned bits = 0;
   for (int k = 0; k < lane_count; ++k) bits |= static_cast<unsigned>(mask[k] & 1) << k;
