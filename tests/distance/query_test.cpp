@@ -30,7 +30,7 @@ TEST(Query, MeasuresHaveNames) {
 TEST(Query, AWarmStartIsEmptyAtFirstAndSmallEnoughToKeepPerPair) {
   EXPECT_EQ(WarmStart{}.size, 0);
   static_assert(std::is_trivially_copyable_v<WarmStart>);
-  static_assert(sizeof(WarmStart) <= 72);
+  static_assert(sizeof(WarmStart) <= 128);
 }
 
 }  // namespace query_test

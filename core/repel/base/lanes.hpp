@@ -67,15 +67,18 @@ template <class F>
   return lanes_of([&](int k) { return std::sqrt(a[k]); });
 #endif
 }
-[[nodiscard]] inline double largest_of(const Lanes& a) noexcept {
-  double largest = a[0];
-  for (int k = 1; k < lane_count; ++k) largest = std::max(largest, a[k]);
-  return largest;
+// In halves: a chain through all lanes would be waited for.
+[[nodiscard]] inline double largest_of(Lanes a) noexcept {
+  for (int half = lane_count / 2; half > 0; half /= 2) {
+    for (int k = 0; k < half; ++k) a[k] = std::max(a[k], a[k + half]);
+  }
+  return a[0];
 }
-[[nodiscard]] inline double least_of(const Lanes& a) noexcept {
-  double least = a[0];
-  for (int k = 1; k < lane_count; ++k) least = std::min(least, a[k]);
-  return least;
+[[nodiscard]] inline double least_of(Lanes a) noexcept {
+  for (int half = lane_count / 2; half > 0; half /= 2) {
+    for (int k = 0; k < half; ++k) a[k] = std::min(a[k], a[k + half]);
+  }
+  return a[0];
 }
 /// Bit k is set when the mask of lane k is set.
 [[nodiscard]] inline unsigned bits_of(const LaneMask& mask) noexcept {
@@ -84,7 +87,7 @@ template <class F>
   return static_cast<unsigned char>(__builtin_ia32_cvtq2mask512((Long)mask));
 #elif defined(__AVX__) && !defined(__AVX512F__)
   return static_cast<unsigned>(__builtin_ia32_movmskpd256((Lanes)mask));
-#elif defined(__SSE2__) && !defined(__AVX512F__)
+#elif defined(__SSE2__) && !defined(__AVX__)
   return static_cast<unsigned>(__builtin_ia32_movmskpd((Lanes)mask));
 #else
   unsigned bits = 0;

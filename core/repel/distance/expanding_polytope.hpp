@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <repel/distance/depth.hpp>
 #include <repel/distance/feature.hpp>
@@ -24,12 +25,50 @@ class ExpandingPolytope {
 
   explicit ExpandingPolytope(const PosedPair& pair) noexcept : pair_(pair) {}
 
-  /// @param warm names of four corners that enclose the origin; with fewer, the support points of
-  /// four fixed directions are used
-  [[nodiscard, gnu::noinline]] Depth run(const WarmStart& warm) noexcept {
-    Depth depth;
+  /// @param warm the polytope of the last result, or names of four corners that enclose the origin;
+  /// without either, the support points of four fixed directions are used. Receives the polytope,
+  /// if it is small enough
+  [[nodiscard, gnu::noinline]] Depth run(WarmStart& warm) noexcept {
     const double margin = pair_.margin();
-    if (!begin(warm, margin)) return depth;
+    Depth depth;
+    if (restore(warm, margin)) {
+      depth = expand(margin);
+      // Mostly, nothing had to be added.
+      if (depth.closed && corner_count_ == warm.size) return depth;
+    }
+    if (!depth.closed) {
+      const int spent = depth.iterations;
+      depth = begin(warm, margin) ? expand(margin) : Depth();
+      depth.iterations += spent;
+    }
+    if (depth.closed) save(warm);
+    return depth;
+  }
+
+ private:
+  // Euler: with V corners there are 2 V - 4 faces, and each expansion adds as many faces as the rim
+  // (horizon) has edges.
+  static constexpr std::size_t most_corners = 4 + cap;
+  static constexpr std::size_t most_faces = 2 * most_corners;
+
+  struct Corner {
+    Vec<double> a;         ///< [m] point of A, from the origin of A, world axes
+    Vec<double> w;         ///< [m] a - b
+    std::uint32_t name_a;  ///< Convex::Point::name
+    std::uint32_t name_b;
+  };
+  struct Face {
+    Vec<double> n;                        ///< unit, outward
+    double offset;                        ///< [m]
+    std::array<std::uint8_t, 3> corners;  ///< counter-clockwise seen from outside
+  };
+  struct Edge {
+    std::uint8_t from, to;
+  };
+
+  /// Adds corners until the nearest face is on the boundary of A - B.
+  Depth expand(double margin) noexcept {
+    Depth depth;
     while (depth.iterations < cap) {
       const std::size_t nearest = nearest_face();
       const Face& face = faces_[nearest];
@@ -49,40 +88,85 @@ class ExpandingPolytope {
     return depth;
   }
 
- private:
-  // Euler: with V corners there are 2 V - 4 faces, and each expansion adds as many faces as the rim
-  // (horizon) has edges.
-  static constexpr std::size_t most_corners = 4 + cap;
-  static constexpr std::size_t most_faces = 2 * most_corners;
-
-  struct Corner {
-    Vec<double> a;  ///< [m] point of A, from the origin of A, world axes
-    Vec<double> w;  ///< [m] a - b
-  };
-  struct Face {
-    Vec<double> n;                        ///< unit, outward
-    double offset;                        ///< [m]
-    std::array<std::uint8_t, 3> corners;  ///< counter-clockwise seen from outside
-  };
-  struct Edge {
-    std::uint8_t from, to;
-  };
-
-  [[nodiscard]] Corner corner(const Vec<double>& a, const Vec<double>& b) const noexcept {
-    const Vec<double> turned = rotate(pair_.X_WA, a);
-    return {turned, turned - (rotate(pair_.X_WB, b) + pair_.p_AB)};
+  [[nodiscard]] Corner corner(const Convex::Point<double>& a,
+                              const Convex::Point<double>& b) const noexcept {
+    const Vec<double> turned = rotate(pair_.X_WA, a.p);
+    return {turned, turned - (rotate(pair_.X_WB, b.p) + pair_.p_AB), a.name, b.name};
+  }
+  [[nodiscard]] Corner named(std::uint32_t name_a, std::uint32_t name_b) const noexcept {
+    return corner(pair_.A.point(name_a), pair_.B.point(name_b));
   }
   /// The support point of A - B along d.
   [[nodiscard]] Corner support(const Vec<double>& d) const noexcept {
-    return corner(pair_.A.support(rotate_transposed(pair_.X_WA, d)).p,
-                  pair_.B.support(rotate_transposed(pair_.X_WB, -d)).p);
+    return corner(pair_.A.support(rotate_transposed(pair_.X_WA, d)),
+                  pair_.B.support(rotate_transposed(pair_.X_WB, -d)));
+  }
+
+  /// The names of corner i of the polytope kept in a warm start.
+  template <class Warm>
+  [[nodiscard]] static auto& word(Warm& warm, std::size_t i) noexcept {
+    const std::array words{&warm.a, &warm.b, &warm.met_a, &warm.met_b};
+    return (*words[i / 4])[i % 4];
+  }
+  /// The polytope of the last result at the poses of now. False when there is none, or when it no
+  /// longer encloses the origin. Where the faces are a closed surface and the origin is on the
+  /// inner side of all of them, they surround it at least once, and so every point that is nearer
+  /// than the nearest face: whether they are convex or not, that point is in A - B.
+  bool restore(const WarmStart& warm, double margin) noexcept {
+    if (warm.level_a != WarmStart::exact_depth) return false;
+    corner_count_ = std::clamp<std::size_t>(warm.size, 4, WarmStart::most_corners);
+    face_count_ = 0;
+    for (std::size_t i = 0; i < corner_count_; ++i) {
+      const std::uint32_t names = word(warm, i);
+      corners_[i] = named(names & 0xFFFFU, names >> 16U);
+    }
+    std::array<std::uint32_t, 32> to{};    // one bit for each corner that an edge leads to
+    std::array<std::uint32_t, 32> from{};  // and for each that one comes from
+    bool closed = true;
+    for (std::size_t f = 0; f < 2 * corner_count_ - 4; ++f) {
+      const std::uint32_t face = warm.faces[f];
+      const std::array<std::uint8_t, 3> at{static_cast<std::uint8_t>(face & 31U),
+                                           static_cast<std::uint8_t>(face >> 5U & 31U),
+                                           static_cast<std::uint8_t>(face >> 10U & 31U)};
+      if (std::max({at[0], at[1], at[2]}) >= corner_count_) return false;
+      for (const auto& [p, q] : {std::pair{at[0], at[1]}, {at[1], at[2]}, {at[2], at[0]}}) {
+        closed = closed && (to[p] >> q & 1U) == 0U;
+        to[p] |= 1U << q;
+        from[q] |= 1U << p;
+      }
+      if (!add_face(at[0], at[1], at[2]) || faces_[f].offset <= margin) return false;
+    }
+    return closed && to == from;
+  }
+
+  /// Keeps the corners that are in use and the faces, if they are few enough.
+  void save(WarmStart& warm) const noexcept {
+    WarmStart kept;
+    kept.level_a = kept.level_b = WarmStart::exact_depth;
+    std::array<std::uint8_t, most_corners> number{};  // from 1; 0 for a corner not in use
+    if (face_count_ > kept.faces.size()) return;
+    for (std::size_t f = 0; f < face_count_; ++f) {
+      std::uint32_t face = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint8_t i = faces_[f].corners[k];
+        const auto [p, w, name_a, name_b] = corners_[i];
+        if (number[i] == 0) {
+          if (kept.size == WarmStart::most_corners || std::max(name_a, name_b) > 0xFFFFU) return;
+          word(kept, kept.size) = name_a | name_b << 16U;
+          number[i] = ++kept.size;
+        }
+        face |= (number[i] - 1U) << 5U * k;
+      }
+      kept.faces[f] = static_cast<std::uint16_t>(face);
+    }
+    warm = kept;
   }
 
   bool begin(const WarmStart& warm, double margin) noexcept {
     const Vec<double> around[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     for (std::size_t i = 0; i < 4; ++i) {
-      corners_[i] = warm.size == 4 ? corner(pair_.A.place(warm.a[i]), pair_.B.place(warm.b[i]))
-                                   : support(around[i]);
+      corners_[i] =
+          warm.size == 4 && warm.level_a == 0 ? named(warm.a[i], warm.b[i]) : support(around[i]);
     }
     corner_count_ = 4;
     face_count_ = 0;

@@ -23,13 +23,16 @@ class FeatureSearch {
 
   /// True when `gap` is the proven result. In any case `warm`, which may hold points initially,
   /// receives the names of the last feature, and `gap` the number of support-map pairs evaluated.
+  /// Four names are of corners that enclose the origin but for rounding: the sets seem to
+  /// intersect.
   [[nodiscard, gnu::flatten, gnu::noinline]] bool run(const QueryOptions& options, WarmStart& warm,
                                                       Gap& gap) noexcept {
     gap.iterations = begin(warm);
     const int last = std::min(cap, options.iterations);
     const double beyond = options.ignore_beyond + 2.0 * margin_;
     bool found = false;
-    while (gap.iterations < last) {
+    bool stuck = false;
+    while (gap.iterations < last && !stuck) {
       Corner& n = corners_[slots().free];
       n = support(d_);
       ++gap.iterations;
@@ -41,13 +44,16 @@ class FeatureSearch {
         found = accept(vw, options, gap);
         break;
       }
-      if (!approach(n)) break;
+      stuck = !approach(n);
     }
     const Slots in_use = slots();
-    warm.size = in_use.count;
-    for (std::size_t i = 0; i < 3; ++i) {
-      warm.a[i] = corners_[in_use.older[i]].name_a;
-      warm.b[i] = corners_[in_use.older[i]].name_b;
+    const bool encloses = stuck && in_use.count == 3;
+    const std::array<std::uint8_t, 4> named{in_use.older[0], in_use.older[1], in_use.older[2],
+                                            encloses ? in_use.free : in_use.older[2]};
+    warm.size = encloses ? 4 : in_use.count;
+    for (std::size_t i = 0; i < 4; ++i) {
+      warm.a[i] = corners_[named[i]].name_a;
+      warm.b[i] = corners_[named[i]].name_b;
     }
     return found;
   }

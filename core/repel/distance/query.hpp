@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -70,9 +71,12 @@ struct QueryOptions {
 
 /// State that a query leaves for the next one on the same pair: the names of up to four point pairs
 /// and the pair of levels they belong to, or the names of the planes that meet at the deepest
-/// point. Any content is safe; good content saves iterations.
+/// point, or the polytope that an exact depth was found by. Any content is safe; good content saves
+/// iterations.
 struct WarmStart {
   static constexpr std::uint8_t deepest_point = 255;  ///< value of a level: the names are of planes
+  static constexpr std::uint8_t exact_depth = 254;    ///< value of a level: see `faces`
+  static constexpr std::size_t most_corners = 16;     ///< of the polytope
 
   std::array<std::uint32_t, 4> a{};  ///< Convex::Point::name on A
   std::array<std::uint32_t, 4> b{};  ///< Convex::Point::name on B
@@ -83,6 +87,10 @@ struct WarmStart {
   std::array<std::uint32_t, 4> met_a{};
   std::array<std::uint32_t, 4> met_b{};
   std::uint8_t met_size = 0;  ///< 4 when they are known
+  /// Of the polytope of an exact depth, whose `size` corners are named in `a`, `b`, `met_a` and
+  /// `met_b`, each by its point of A in the lower half and its point of B in the upper half: the
+  /// corners of each face, five bits each.
+  std::array<std::uint16_t, 2 * most_corners - 4> faces{};
 };
 
 }  // namespace repel

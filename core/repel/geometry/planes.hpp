@@ -88,6 +88,9 @@ class Planes {
     return i < size_ ? numbers_[3 * stride_ + i] : side_.offset();
   }
 
+  /// True for the six planes of a box: plane 2 k and 2 k + 1 are normal to axis k, outward along it
+  /// and against it.
+  [[nodiscard]] bool is_box() const noexcept { return is_box_; }
   /// True when some planes are tangent to a curved side.
   [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0; }
   /// The two tangent planes that face along `x`, seen from the axis. Must be round.
@@ -160,7 +163,7 @@ inline Planes::Nearest<double> Planes::nearest_of_listed(const Vec<double>& x) c
     here += detail::lane_count;
   }
   const double least = detail::least_of(best);
-  const Lanes first = best == Lanes{} + least ? winner : Lanes{} + none;
+  const Lanes first = best == detail::all_of(least) ? winner : Lanes{} + none;
   return {static_cast<std::uint32_t>(detail::least_of(first)), least};
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -99,28 +101,39 @@ class VertexScan {
   std::vector<Vec<double>> rows_;  ///< [m]
 };
 
-// Each lane keeps its best value and its index, the index in double as well, so that the code is
-// branchless.
+// The largest product first, then the vertices that have it: so that no vertex waits for a
+// comparison with the one before.
 inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept {
+  using detail::lane_count;
   using detail::Lanes;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  Lanes best = Lanes{} - none;
-  Lanes winner{};
-  Lanes here;
-  for (int k = 0; k < detail::lane_count; ++k) here[k] = k;
+  constexpr std::size_t at_once = 32;
+  double most = -std::numeric_limits<double>::infinity();
+  std::size_t winner = 0;
+  for (std::size_t first = 0; first < stride; first += at_once) {
+    const std::size_t count = std::min(stride - first, at_once);
+    std::array<Lanes, at_once / lane_count> along;
+    Lanes best = detail::all_of(most);
     // Unrolled, the end of a short block has its own branch, which is soon predicted correctly.
 #pragma GCC unroll 4
-  for (std::size_t i = 0; i < stride; i += lanes) {
-    for (std::size_t k = 0; k < lanes; k += detail::lane_count) {
-      const Lanes along = products(i + k, d.x(), d.y(), d.z());
-      const auto farther = along > best;
-      best = farther ? along : best;
-      winner = farther ? here : winner;
-      here += detail::lane_count;
+    for (std::size_t i = 0; i < count; i += lanes) {
+      for (std::size_t k = i; k < i + lanes; k += lane_count) {
+        along[k / lane_count] = products(first + k, d.x(), d.y(), d.z());
+        best = detail::larger(along[k / lane_count], best);
+      }
     }
+    const double farthest = detail::largest_of(best);
+    if (!(farthest > most)) continue;
+    most = farthest;
+    std::uint32_t found = 0;
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < count; i += lanes) {
+      for (std::size_t k = i; k < i + lanes; k += lane_count) {
+        found |= detail::bits_of(along[k / lane_count] == detail::all_of(farthest)) << k;
+      }
+    }
+    winner = first + static_cast<std::size_t>(std::countr_zero(found));
   }
-  const Lanes farthest = Lanes{} + detail::largest_of(best);
-  return static_cast<std::uint32_t>(detail::least_of(best == farthest ? winner : Lanes{} + none));
+  return static_cast<std::uint32_t>(winner);
 }
 
 inline double VertexBlock::largest_product(const Vec<double>& d) const noexcept {

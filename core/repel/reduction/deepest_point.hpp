@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include <repel/distance/query.hpp>
+#include <repel/reduction/box_start.hpp>
 #include <repel/reduction/plane_basis.hpp>
 
 namespace repel::detail {
@@ -146,6 +147,8 @@ class DeepestPoint {
   /// search for it would be long.
   template <class T>
   bool begin(const WarmStart& warm, PlaneBasis<T>& basis, int allowed) noexcept {
+    const bool cold = warm.level_a != WarmStart::deepest_point;
+    if (cold && A_.planes.is_box() && B_.planes.is_box() && begin_at_corner(basis)) return true;
     basis.clear();
     for (std::uint32_t k = 0; k < 4; ++k) basis.add(0, PlaneBasis<T>::first_bound + k);
     basis.add(1, PlaneBasis<T>::depth_bound);
@@ -167,6 +170,18 @@ class DeepestPoint {
       }
     }
     return is_basis;
+  }
+  /// The initial basis of two boxes, at a corner of one of them: below the surface of the other by
+  /// as much as that box has to move, and not at all below its own. False where, by rounding, a
+  /// multiplier is negative.
+  template <class T>
+  bool begin_at_corner(PlaneBasis<T>& basis) noexcept {
+    const BoxStart start = box_start(A_, B_, Vec<double>(basis.tilt()));
+    basis.clear();
+    basis.add(start.side, start.face);
+    for (const std::uint32_t face : start.corner) basis.add(1 - start.side, face);
+    basis.add(1 - start.side, PlaneBasis<T>::not_negative);
+    return basis.weigh() && basis.least_multiplier() >= T(-Precision<T>::of_multiplier);
   }
   /// A vector in the frame of A, in world axes.
   template <class T>

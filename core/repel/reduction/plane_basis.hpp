@@ -62,6 +62,7 @@ class PlaneBasis {
   /// Adds `tilt`.x to the objective: a perturbation against cycling, which separates multipliers
   /// that would all be 0.
   void tilt(const Vec<T>& tilt) noexcept { tilt_ = tilt; }
+  [[nodiscard]] const Vec<T>& tilt() const noexcept { return tilt_; }
   /// The multipliers without it; those of a basis that is optimal with it only may be negative.
   void untilt() noexcept { spread({}, {T(1.0), T(1.0)}, multiplier_); }
   /// Adds a constraint to fewer than five; false for an unknown name.

@@ -95,14 +95,15 @@ namespace detail {
       flat ? overlap_along(s.extraction_W, A, B) : times_length / length + a.depth + b.depth;
   s.lower = widened(std::min(s.distance, -overlap - slack), -1.0);
   s.level = 0;
-  s.iterations = 1 + deepest.pivots() + (flat ? 12 : 0);
+  s.iterations += 1 + deepest.pivots() + (flat ? 12 : 0);
   s.end = QueryEnd::converged;
   return true;
 }
 
 /// The result by the penetration depth; false for curved cores and for those without volume.
-/// @param warm names of four corners of A - B that enclose the origin
-[[nodiscard]] inline bool find_exact_depth(PosedShape A, PosedShape B, const WarmStart& warm,
+/// @param warm the polytope of the last result, or names of four corners of A - B that enclose the
+/// origin
+[[nodiscard]] inline bool find_exact_depth(PosedShape A, PosedShape B, WarmStart& warm,
                                            Separation& s) noexcept {
   const Level& a = A.shape.level(0);
   const Level& b = B.shape.level(0);
@@ -120,7 +121,7 @@ namespace detail {
   s.p_WA = p_WQ - a.depth * s.extraction_W;
   s.p_WB = s.p_WA - s.distance * s.extraction_W;
   s.level = 0;
-  s.iterations = depth.iterations;
+  s.iterations += depth.iterations;
   s.end = depth.closed ? QueryEnd::converged : QueryEnd::budget_spent;
   return true;
 }
@@ -129,18 +130,21 @@ namespace detail {
 /// corners that enclose the origin.
 [[nodiscard]] inline bool overlapped(const Shape& A, const Shape& B,
                                      const WarmStart& warm) noexcept {
-  if (warm.level_a == WarmStart::deepest_point) return true;
+  if (warm.level_a >= WarmStart::exact_depth) return true;
   return warm.size == 4 && warm.level_a == 0 && A.level(0).core.kind() == Convex::Kind::box &&
          B.level(0).core.kind() == Convex::Kind::box;
 }
 
 /// The result for an overlap of the cores by a measure other than their levels; false when the
 /// levels are the requested measure, or when the cores turn out not to overlap.
-/// @param spent support-map pairs evaluated; 0 when no search has found the overlap yet
+/// @param spent support-map pairs evaluated
+/// @param doubted no search has proven the overlap
 [[nodiscard]] inline bool measure_overlap(PosedShape A, PosedShape B, const QueryOptions& options,
-                                          int spent, WarmStart& warm, Separation& s) noexcept {
+                                          int spent, bool doubted, WarmStart& warm,
+                                          Separation& s) noexcept {
+  s.iterations = spent;
   if (is_by_planes(A.shape, B.shape, options)) {
-    return find_deepest_point(A, B, options.iterations - spent, spent == 0, warm, s);
+    return find_deepest_point(A, B, options.iterations - spent, doubted, warm, s);
   }
   return options.measure == Measure::exact && find_exact_depth(A, B, warm, s) &&
          s.upper < -(A.shape.level(0).depth + B.shape.level(0).depth);
@@ -167,10 +171,7 @@ namespace detail {
   // If the origin is deep inside but coplanar with all support points found, it looks like contact
   // to GJK.
   const bool meets = gap.meets || gap.end == QueryEnd::touching;
-  if (meets && measure_overlap(A, B, options, gap.iterations, warm, s)) {
-    s.iterations += gap.iterations;
-    return s;
-  }
+  if (meets && measure_overlap(A, B, options, gap.iterations, false, warm, s)) return s;
   s = walk.run(&gap);
   // The levels are the fallback for a measure that did not finish: report that, when the iterations
   // ran short or the levels find a depth above rounding.
@@ -193,13 +194,17 @@ namespace detail {
   const Level& b = B.shape.level(0);
   if (overlapped(A.shape, B.shape, warm)) {
     Separation s;
-    if (measure_overlap(A, B, options, 0, warm, s)) return s;
+    if (measure_overlap(A, B, options, 0, true, warm, s)) return s;
   }
   Gap gap;
   if (warm.level_a == 0 && warm.level_b == 0 && are_angular(a, b)) {
     FeatureSearch search({a.core, A.X_W, b.core, B.X_W});
     if (search.run(options_of_cores(a, b, options), warm, gap)) {
       return apart(gap, a.depth, b.depth, A.X_W);
+    }
+    if (warm.size == 4 && are_usable(A.X_W, B.X_W)) {
+      Separation s;
+      if (measure_overlap(A, B, options, gap.iterations, true, warm, s)) return s;
     }
   }
   return carefully_searched(A, B, options, gap.iterations, warm);
