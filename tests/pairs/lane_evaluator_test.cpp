@@ -15,7 +15,7 @@ struct EveryPair {
       : world(&the_world),
         use_lanes(in_lanes),
         poses(the_world),
-        singles(the_world, {}, static_cast<int>(the_world.pairs().size()), 1000),
+        singles(the_world, static_cast<int>(the_world.pairs().size()), 1000),
         lanes(singles) {
     for (std::int32_t i = 0; i < count(); ++i) EXPECT_EQ(memory().slot_for({i}), i);
   }

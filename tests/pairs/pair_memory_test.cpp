@@ -13,7 +13,7 @@ constexpr unsigned seed = 31;
 
 TEST(PairMemory, EveryPairHasASlotOfItsOwnWhileThereAreEnough) {
   const test::Boxes boxes(2, 5, {}, seed);
-  PairMemory memory(boxes.world, {}, 100);
+  PairMemory memory(boxes.world, 100);
   EXPECT_EQ(memory.slots(), 10);
   std::set<int> slots;
   for (std::int32_t i = 0; i < 10; ++i) {
@@ -26,7 +26,7 @@ TEST(PairMemory, EveryPairHasASlotOfItsOwnWhileThereAreEnough) {
 
 TEST(PairMemory, TakesSlotsOnlyFromPairsOnNoList) {
   const test::Boxes boxes(2, 5, {}, seed);
-  PairMemory memory(boxes.world, {}, 2);
+  PairMemory memory(boxes.world, 2);
   const int kept = memory.slot_for({3});
   EXPECT_TRUE(memory.add_to_list(kept, 7));
   EXPECT_FALSE(memory.add_to_list(kept, 7));
@@ -50,7 +50,7 @@ TEST(PairMemory, TakesSlotsOnlyFromPairsOnNoList) {
 
 TEST(PairMemory, ExtremesOutliveTheSlot) {
   const test::Boxes boxes(2, 5, {}, seed);
-  PairMemory memory(boxes.world, {}, 1);
+  PairMemory memory(boxes.world, 1);
   (void)memory.slot_for({3});
   memory.extremes({3}).peak_force = 4.0;
   (void)memory.slot_for({4});

@@ -15,7 +15,7 @@ struct Evaluator {
   explicit Evaluator(const World& the_world)
       : world(&the_world),
         poses(the_world),
-        pairs(the_world, {}, static_cast<int>(the_world.pairs().size()), max_age) {
+        pairs(the_world, static_cast<int>(the_world.pairs().size()), max_age) {
     for (std::int32_t i = 0; i < count(); ++i) EXPECT_EQ(pairs.memory().slot_for({i}), i);
   }
   [[nodiscard]] int count() const { return pairs.memory().slots(); }

@@ -1,5 +1,5 @@
 /// @file
-/// The state of the pairs of a block that is kept from tick to tick.
+/// The state of the pairs of a world that is kept from tick to tick.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 #include <repel/force/passage.hpp>
 #include <repel/pairs/forces_and_totals.hpp>
 #include <repel/pairs/pair_answer.hpp>
-#include <repel/pairs/pair_partition.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {
@@ -42,24 +41,20 @@ class PairMemory {
   static constexpr std::int32_t none = -1;
 
   /// @param slots largest number of pairs with a slot, at least 0
-  PairMemory(const World& world, PairPartition partition, int slots)
+  PairMemory(const World& world, int slots)
       : world_(&world),
-        partition_(partition),
-        slot_of_(partition.count_of(static_cast<int>(world.pairs().size())), none),
+        slot_of_(world.pairs().size(), none),
         extremes_(slot_of_.size()),
         slots_(std::min(slots, pairs())),
         tracking_(slots_ + 1),
         answers_(slots_ + 1),
         histories_(slots_ + 1) {}
 
-  /// How many pairs the block has.
+  /// How many pairs the world has.
   [[nodiscard]] int pairs() const noexcept { return static_cast<int>(slot_of_.size()); }
   [[nodiscard]] int slots() const noexcept { return slots_; }
-  [[nodiscard]] const PairPartition& partition() const noexcept { return partition_; }
   /// The slot of a pair, or none.
-  [[nodiscard]] int slot_of(PairId id) const noexcept {
-    return slot_of_[partition_.position_of(id)];
-  }
+  [[nodiscard]] int slot_of(PairId id) const noexcept { return slot_of_[index(id)]; }
   /// True for the one spare slot used when the memory is full: it is overwritten by the next pair
   /// that finds no other slot.
   [[nodiscard]] bool is_temporary(int slot) const noexcept { return slot == slots_; }
@@ -94,14 +89,16 @@ class PairMemory {
   [[nodiscard]] const PairAnswer& answer(int slot) const noexcept { return answers_[slot]; }
   [[nodiscard]] PairHistory& history(int slot) noexcept { return histories_[slot]; }
   [[nodiscard]] const PairHistory& history(int slot) const noexcept { return histories_[slot]; }
-  [[nodiscard]] PairExtremes& extremes(PairId id) noexcept {
-    return extremes_[partition_.position_of(id)];
-  }
+  [[nodiscard]] PairExtremes& extremes(PairId id) noexcept { return extremes_[index(id)]; }
   [[nodiscard]] const PairExtremes& extremes(PairId id) const noexcept {
-    return extremes_[partition_.position_of(id)];
+    return extremes_[index(id)];
   }
 
  private:
+  [[nodiscard]] static std::size_t index(PairId id) noexcept {
+    return static_cast<std::size_t>(id.index);
+  }
+
   [[nodiscard]] int free_slot() noexcept {
     for (int tried = 0; listed_ < slots_ && tried < slots_; ++tried) {
       const int slot = next_tried_;
@@ -114,8 +111,8 @@ class PairMemory {
   void assign(int slot, PairId id) noexcept {
     PairTracking& tracking = tracking_[slot];
     if (!is_temporary(slot)) {
-      if (tracking.pair.valid()) slot_of_[partition_.position_of(tracking.pair)] = none;
-      slot_of_[partition_.position_of(id)] = slot;
+      if (tracking.pair.valid()) slot_of_[index(tracking.pair)] = none;
+      slot_of_[index(id)] = slot;
     }
     const Pair& pair = world_->pair(id);
     tracking = {};
@@ -127,9 +124,8 @@ class PairMemory {
   }
 
   const World* world_;
-  PairPartition partition_;
-  std::vector<std::int32_t> slot_of_;   ///< by position in the block
-  std::vector<PairExtremes> extremes_;  ///< by position in the block
+  std::vector<std::int32_t> slot_of_;   ///< by PairId
+  std::vector<PairExtremes> extremes_;  ///< by PairId
   int slots_;
   std::vector<PairTracking> tracking_;  ///< by slot, as the next two
   std::vector<PairAnswer> answers_;

@@ -36,7 +36,7 @@ class PartPoses {
 
  private:
   static constexpr std::int64_t forever = INT64_MAX;
-  struct alignas(32) Cached {
+  struct alignas(64) Cached {
     Pose X_WP = Pose::Identity();  ///< [m]
     std::int64_t at = 0;           ///< the tick, on the scale of `now_`
   };

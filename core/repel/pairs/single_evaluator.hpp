@@ -22,9 +22,8 @@ class SingleEvaluator {
   /// @param slots largest number of pairs with a slot, at least 0
   /// @param max_age [ticks] `Budget::max_age`
   /// @param lookahead [m] by which a pair may be out of its range and yet be near
-  SingleEvaluator(const World& world, PairPartition partition, int slots, std::int64_t max_age,
-                  double lookahead = 0.0)
-      : world_(&world), max_age_(max_age), lookahead_(lookahead), memory_(world, partition, slots) {
+  SingleEvaluator(const World& world, int slots, std::int64_t max_age, double lookahead = 0.0)
+      : world_(&world), max_age_(max_age), lookahead_(lookahead), memory_(world, slots) {
     forces_ = PairForces(world.body_count());
   }
 
@@ -60,8 +59,7 @@ class SingleEvaluator {
            memory_.tracking(slot).due_at;
   }
 
-  /// Sets the summed travel [m] of both bodies before which the pair cannot be near. A larger
-  /// clearance set earlier remains in force.
+  /// Sets the summed travel [m] of both bodies before which the pair cannot be near, if later.
   void set_clearance(int slot, const Motion& motion, double clearance) noexcept {
     if (!(clearance > 0.0)) return;
     double& due_at = memory_.tracking(slot).due_at;

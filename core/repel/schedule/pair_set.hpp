@@ -24,7 +24,7 @@ class PairSet {
   /// @param slots largest number of pairs with a slot, at least 0
   /// @param lookahead [m] by which a pair may be out of its range and yet be near
   PairSet(const World& world, int slots, const Budget& budget = {}, double lookahead = 0.0)
-      : singles_(world, {}, slots, budget.max_age, lookahead),
+      : singles_(world, slots, budget.max_age, lookahead),
         lanes_(singles_),
         candidates_(memory().slots()),
         near_singles_(memory().slots()),
@@ -35,8 +35,7 @@ class PairSet {
 
   /// Evaluates every pair once, so that each has an answer at the first tick; clears the forces.
   void prime(const Motion& motion, PartPoses& poses) noexcept {
-    for (int position = 0; position < memory().pairs(); ++position) {
-      const PairId id = memory().partition().pair_at(position);
+    for (PairId id{0}; id.index < memory().pairs(); ++id.index) {
       singles_.evaluate(memory().slot_for(id), motion, poses);
     }
     singles_.forces().clear();
@@ -45,8 +44,7 @@ class PairSet {
   /// Makes every pair a permanent candidate, and every candidate near. Requires a slot for each.
   void track_all() noexcept {
     all_near_ = true;
-    for (int position = 0; position < memory().pairs(); ++position) {
-      const PairId id = memory().partition().pair_at(position);
+    for (PairId id{0}; id.index < memory().pairs(); ++id.index) {
       candidates_.add(id, memory().slot_for(id));
     }
     candidates_.sort();
