@@ -78,9 +78,13 @@ class PolygonSearch {
       const PlanarAxes axes(Vec<double>(axes_.n.at(k)));
       const Flat flat =
           FlatSearch(set, pose(k), axes, facing, Vec<double>(nearest.at(k)), tilt_[k]).run();
-      if (flat.tilt > 0.0 && polygons.set(k, flat)) tilt_[k] = flat.tilt;
+      if (flat.outline.size > largest || !(flat.tilt > 0.0)) continue;
+      if (polygons.set(k, flat)) tilt_[k] = flat.tilt;
     }
   }
+
+  /// Corners from which on a patch is found faster alone: all sides of A are cut by all of B.
+  static constexpr int largest = lane_count < 8 ? 4 : static_cast<int>(PolygonLanes::most);
 
   const FeatureLanes& features_;
   const LaneGap& gap_;
