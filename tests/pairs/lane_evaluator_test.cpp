@@ -39,7 +39,7 @@ struct EveryPair {
       lanes.evaluate_group(g, motion, poses, totals);
     }
     for (const int slot : others) {
-      if (evaluated) singles.evaluate(slot, motion, poses);
+      if (evaluated) singles.evaluate(slot, motion, poses, totals);
     }
     lanes.push(motion);
     for (const int slot : others) singles.push(slot, motion);

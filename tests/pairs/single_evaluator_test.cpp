@@ -24,10 +24,11 @@ struct Evaluator {
     poses.begin_tick();
     pairs.begin_tick(motion().tick);
   }
+  void evaluate(int slot) { pairs.evaluate(slot, motion(), poses, pairs.forces().totals); }
   /// One tick in which the pair of a slot is evaluated, or not.
   const PairForces& tick(int slot, bool evaluated) {
     begin_tick();
-    if (evaluated) pairs.evaluate(slot, motion(), poses);
+    if (evaluated) evaluate(slot);
     ++pairs.forces().totals.near;
     pairs.push(slot, motion());
     return pairs.forces();
@@ -76,13 +77,13 @@ TEST(SingleEvaluator, BeginsColdWhenAPairComesWithinRange) {
       always.begin_tick();
       seldom.begin_tick();
       for (int slot = 0; slot < always.count(); ++slot) {
-        always.pairs.evaluate(slot, always.motion(), always.poses);
+        always.evaluate(slot);
         always.pairs.push(slot, always.motion());
         const bool was_inside = seldom.pairs.memory().answer(slot).in_range;
         const bool far = always.pairs.memory().answer(slot).last.lower > 0.031;
         skipped += far && !was_inside ? 1 : 0;
         if (far && !was_inside) continue;
-        seldom.pairs.evaluate(slot, seldom.motion(), seldom.poses);
+        seldom.evaluate(slot);
         seldom.pairs.push(slot, seldom.motion());
         entered += !was_inside && seldom.pairs.memory().answer(slot).in_range ? 1 : 0;
       }
@@ -113,7 +114,7 @@ TEST(SingleEvaluator, EveryMeasureOfAWorldDecidesItsOverlaps) {
       evaluator.begin_tick();
       for (int slot = 0; slot < evaluator.count(); ++slot) {
         const Pair& pair = boxes.world.pair({slot});
-        evaluator.pairs.evaluate(slot, evaluator.motion(), evaluator.poses);
+        evaluator.evaluate(slot);
         const PairAnswer& answer = evaluator.pairs.memory().answer(slot);
         ASSERT_NEAR(answer.last.distance, test::separation_now(boxes.world, pair).distance, 1e-9);
         ASSERT_GE(answer.last.distance, -boxes.world.deepest(pair) - 1e-12) << to_text(measure);
@@ -188,7 +189,7 @@ TEST(SingleEvaluator, MostUrgentIsWhatTouchesFirst) {
   evaluator.begin_tick();
   std::vector<double> time;
   for (int slot = 0; slot < evaluator.count(); ++slot) {
-    evaluator.pairs.evaluate(slot, evaluator.motion(), evaluator.poses);
+    evaluator.evaluate(slot);
     time.push_back(evaluator.pairs.time_to_touch(slot, evaluator.motion()));
   }
   EXPECT_NEAR(time[0], 0.1, 1e-9);

@@ -1,5 +1,5 @@
 /// @file
-/// The list of the pairs of a block that can soon come within range: the broad-phase result.
+/// The list of the pairs of a world that can soon come within range: the broad-phase result.
 #pragma once
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 
 namespace repel {
 
-/// Counts and extremes of the pairs of a block, or of the world, at one tick. Walls and passable
+/// Counts and extremes of some pairs, or of all, at one tick. Walls and passable
 /// bodies alike: the law of the pair tells them apart.
 struct PairTotals {
   int near = 0;                 ///< pairs that may be within range; all with `every_pair`

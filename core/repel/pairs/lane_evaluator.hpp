@@ -1,5 +1,5 @@
 /// @file
-/// SIMD evaluation of those pairs of a block that are in range and whose nearest features are
+/// SIMD evaluation of those pairs of a world that are in range and whose nearest features are
 /// known.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <repel/pairs/lane_sum.hpp>
+#include <repel/pairs/near_answer.hpp>
 #include <repel/pairs/single_evaluator.hpp>
 
 namespace repel::detail {
@@ -66,9 +67,21 @@ class LaneEvaluator {
   /// What another thread needs to know of a pair for which `near_pair` is one.
   [[nodiscard]] NearAnswer near_answer(int slot, const Motion& motion) const noexcept {
     const int lane = lane_of(slot);
-    return singles_->near_answer(
-        slot, motion,
-        has_answer(lane) ? group_of(lane).answer(index_of(lane)) : memory().answer(slot));
+    const PairAnswer answer =
+        has_answer(lane) ? group_of(lane).answer(index_of(lane)) : memory().answer(slot);
+    const PairTracking& tracking = memory().tracking(slot);
+    const bool stale = answer.tick != motion.tick;
+    const bool passable = singles_->pair(slot).law.passable;
+    const std::int64_t age = motion.tick - answer.waits_since;
+    return {.gradient = passable ? answer.force * answer.gradient : answer.gradient,
+            .bound = stale ? singles_->lower_bound(slot, motion) : answer.proven(),
+            .share = stale ? share_of_stale(age, singles_->max_age()) : 1.0,
+            .pair = tracking.pair,
+            .a = tracking.body_a,
+            .b = tracking.body_b,
+            .is_apart = answer.is_apart(),
+            .has_patch = answer.nearer != 0.0,
+            .is_passable = passable};
   }
 
   /// Puts the pair into a lane if it was evaluated at this tick and can be evaluated there.

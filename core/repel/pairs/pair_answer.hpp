@@ -11,6 +11,13 @@
 
 namespace repel::detail {
 
+/// The share of its force that a pair still exerts when it has waited for an evaluation for `age`
+/// ticks: all of it up to `max_age`, then less, and nothing from twice that on.
+[[nodiscard]] inline double share_of_stale(std::int64_t age, std::int64_t max_age) noexcept {
+  const double fade = static_cast<double>(age - max_age) / static_cast<double>(max_age);
+  return 1.0 - std::clamp(fade, 0.0, 1.0);
+}
+
 /// The data the force of a pair is computed from, at the tick of its evaluation and later.
 struct PairAnswer {
   Separation last;

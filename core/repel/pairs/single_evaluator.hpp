@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 
-#include <repel/pairs/near_answer.hpp>
 #include <repel/pairs/near_pair.hpp>
 #include <repel/pairs/pair_memory.hpp>
 #include <repel/pairs/part_poses.hpp>
@@ -15,17 +14,19 @@
 
 namespace repel::detail {
 
-/// Owns the memory and the forces of a block of pairs. A pair is identified by its slot in the
-/// memory. All memory is allocated at construction.
+/// Owns the memory and the forces of all pairs. A pair is identified by its slot in the memory. All
+/// memory is allocated at construction.
 class SingleEvaluator {
  public:
   /// @param slots largest number of pairs with a slot, at least 0
   /// @param max_age [ticks] `Budget::max_age`
   /// @param lookahead [m] by which a pair may be out of its range and yet be near
   SingleEvaluator(const World& world, int slots, std::int64_t max_age, double lookahead = 0.0)
-      : world_(&world), max_age_(max_age), lookahead_(lookahead), memory_(world, slots) {
-    forces_ = PairForces(world.body_count());
-  }
+      : world_(&world),
+        max_age_(max_age),
+        lookahead_(lookahead),
+        memory_(world, slots),
+        forces_(world.body_count()) {}
 
   /// Begins a tick: clears the forces and marks all answers as not of this tick.
   void begin_tick(std::int64_t tick) noexcept {
@@ -35,6 +36,7 @@ class SingleEvaluator {
   }
 
   [[nodiscard]] const World& world() const noexcept { return *world_; }
+  [[nodiscard]] std::int64_t max_age() const noexcept { return max_age_; }
   [[nodiscard]] PairMemory& memory() noexcept { return memory_; }
   [[nodiscard]] const PairMemory& memory() const noexcept { return memory_; }
   [[nodiscard]] PairForces& forces() noexcept { return forces_; }
@@ -52,19 +54,21 @@ class SingleEvaluator {
     return motion.bodies[memory_.tracking(slot).body_b.index];
   }
 
+  /// [m] The summed travel of both bodies.
+  [[nodiscard]] double travel(int slot, const Motion& motion) const noexcept {
+    return body_a(slot, motion).travel + body_b(slot, motion).travel;
+  }
   /// False while the summed travel of both bodies is below the clearance of the pair: then it
   /// cannot have come within range. Cost: one comparison.
   [[nodiscard]] bool is_due(int slot, const Motion& motion) const noexcept {
-    return body_a(slot, motion).travel + body_b(slot, motion).travel >=
-           memory_.tracking(slot).due_at;
+    return travel(slot, motion) >= memory_.tracking(slot).due_at;
   }
 
   /// Sets the summed travel [m] of both bodies before which the pair cannot be near, if later.
   void set_clearance(int slot, const Motion& motion, double clearance) noexcept {
     if (!(clearance > 0.0)) return;
     double& due_at = memory_.tracking(slot).due_at;
-    const double travel = body_a(slot, motion).travel + body_b(slot, motion).travel;
-    due_at = std::max(due_at, travel + clearance);
+    due_at = std::max(due_at, travel(slot, motion) + clearance);
   }
 
   /// Conservative lower bound of the signed distance [m] now, from the last answer.
@@ -82,10 +86,8 @@ class SingleEvaluator {
   /// the last answer. Cost: one evaluation of both support maps.
   [[nodiscard]] double lower_bound_by_shapes(int slot, const Motion& motion,
                                              PartPoses& poses) const noexcept {
-    const Pair& p = pair(slot);
-    return -overlap_along(memory_.answer(slot).last.extraction_W, posed(p.a, motion, poses),
-                          posed(p.b, motion, poses)) -
-           rounding;
+    const PosedShape A = posed(pair(slot).a, motion, poses), B = posed(pair(slot).b, motion, poses);
+    return -overlap_along(memory_.answer(slot).last.extraction_W, A, B) - rounding;
   }
 
   /// Time to contact [s] at the present velocities: the key of urgency, smallest first. Negative in
@@ -124,21 +126,16 @@ class SingleEvaluator {
     note_assumed(slot, motion);
     const WarmStart& warm = memory_.history(slot).warm;
     const bool is_warm = warm.size > 0 || warm.level_a > 0;
-    answer.last = query(slot, motion, poses, memory_.history(slot).warm);
+    answer.last = query(slot, motion, poses);
     ++totals.evaluated;
     totals.iterations += answer.last.iterations;
     if (is_warm && !answer.in_range && answer.last.lower <= pair(slot).law.range + rounding) {
       clear_history(slot);
-      answer.last = query(slot, motion, poses, memory_.history(slot).warm);
+      answer.last = query(slot, motion, poses);
       totals.iterations += answer.last.iterations;
     }
     complete(slot, motion, poses, totals);
   }
-  /// The same, with the totals of all pairs.
-  void evaluate(int slot, const Motion& motion, PartPoses& poses) noexcept {
-    evaluate(slot, motion, poses, forces_.totals);
-  }
-
   /// Repeats the query of the last tick to warm the CPU caches, without other effects.
   void rehearse(int slot, const PartPoses& poses) const noexcept {
     WarmStart warm = memory_.history(slot).warm;
@@ -164,24 +161,7 @@ class SingleEvaluator {
     ++totals.stale;
     totals.oldest_age = std::max(totals.oldest_age, age);
     totals.expired += age > max_age_ ? 1 : 0;
-    push_at(lower_bound(slot, motion), share_at(age), slot, motion);
-  }
-
-  /// What another thread needs to know of the pair, of a tick at which it was `push`ed.
-  [[nodiscard]] NearAnswer near_answer(int slot, const Motion& motion,
-                                       const PairAnswer& answer) const noexcept {
-    const PairTracking& tracking = memory_.tracking(slot);
-    const bool stale = answer.tick != motion.tick;
-    const bool passable = pair(slot).law.passable;
-    return {.gradient = passable ? answer.force * answer.gradient : answer.gradient,
-            .bound = stale ? lower_bound(slot, motion) : answer.proven(),
-            .share = stale ? share_at(motion.tick - answer.waits_since) : 1.0,
-            .pair = tracking.pair,
-            .a = tracking.body_a,
-            .b = tracking.body_b,
-            .is_apart = answer.is_apart(),
-            .has_patch = answer.nearer != 0.0,
-            .is_passable = passable};
+    push_at(lower_bound(slot, motion), share_of_stale(age, max_age_), slot, motion);
   }
 
   /// The pair for a display; nullopt if at the tick of `motion` it was neither evaluated nor
@@ -217,11 +197,10 @@ class SingleEvaluator {
     return {world_->part(part).shape, poses.at(part, motion)};
   }
 
-  [[nodiscard]] Separation query(int slot, const Motion& motion, PartPoses& poses,
-                                 WarmStart& warm) noexcept {
-    const Pair& p = pair(slot);
-    return separation(world_->part(p.a).shape, poses.at(p.a, motion), world_->part(p.b).shape,
-                      poses.at(p.b, motion), world_->query_options(), warm);
+  [[nodiscard]] Separation query(int slot, const Motion& motion, PartPoses& poses) noexcept {
+    const auto [a, X_WA] = posed(pair(slot).a, motion, poses);
+    const auto [b, X_WB] = posed(pair(slot).b, motion, poses);
+    return separation(a, X_WA, b, X_WB, world_->query_options(), memory_.history(slot).warm);
   }
 
   /// Fills in the rest of the answer after a new query and updates the totals.
@@ -267,12 +246,6 @@ class SingleEvaluator {
     answer.nearer = patch.nearer;
     answer.gradient = patch.gradient;
     answer.gradient.torque += answer.p_AQ_W.cross(patch.gradient.force);
-  }
-
-  /// The share of its force that a stale pair exerts after so many ticks.
-  [[nodiscard]] double share_at(std::int64_t age) const noexcept {
-    const double fade = static_cast<double>(age - max_age_) / static_cast<double>(max_age_);
-    return 1.0 - std::clamp(fade, 0.0, 1.0);
   }
 
   /// Velocity of A relative to B [m/s] at the witness point of the last answer.

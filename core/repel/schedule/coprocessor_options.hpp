@@ -14,9 +14,9 @@ namespace repel {
 /// Budget for the pair evaluations of one tick. A pair that could not be evaluated keeps its last
 /// answer, with its distance reduced by the motion since.
 struct Budget {
-  std::int64_t work_units = 0;  ///< support-map pairs per tick, all blocks together; 0 = no limit.
-                                ///< Each block finishes the pair it has begun
-  std::chrono::nanoseconds wall{0};  ///< per tick and thread; 0 = no limit
+  std::int64_t work_units = 0;  ///< support-map pairs per tick; 0 = no limit. The pair that has
+                                ///< been begun is finished
+  std::chrono::nanoseconds wall{0};  ///< per tick, from its beginning; 0 = no limit
   /// [ticks] A near pair without a new answer for longer than this is expired: its force fades out
   /// linearly and is zero after twice that time.
   std::int64_t max_age = 100;
@@ -50,8 +50,8 @@ struct CoprocessorOptions {
   Budget budget;                              ///< per tick
   std::chrono::nanoseconds period{2500000};   ///< between ticks, so that idle threads can sleep
   std::chrono::nanoseconds patience{500000};  ///< how long the caller waits for a thread that has
-                                              ///< begun a block; this and the period are clamped to
-                                              ///< 0 to 1 s
+                                              ///< begun some work; this and the period are clamped
+                                              ///< to 0 to 1 s
   int processors = 0;  ///< that the caller and the threads share; 0: what the machine has. Threads
                        ///< for which there is none are not started, except one that works beside
   void (*on_thread_start)(int index) noexcept = nullptr;  ///< called in each thread: priority etc.

@@ -36,7 +36,7 @@ class PairSet {
   /// Evaluates every pair once, so that each has an answer at the first tick; clears the forces.
   void prime(const Motion& motion, PartPoses& poses) noexcept {
     for (PairId id{0}; id.index < memory().pairs(); ++id.index) {
-      singles_.evaluate(memory().slot_for(id), motion, poses);
+      singles_.evaluate(memory().slot_for(id), motion, poses, singles_.forces().totals);
     }
     singles_.forces().clear();
   }
@@ -69,7 +69,7 @@ class PairSet {
       ++totals.crowded;
       if (singles_.is_due(slot, motion)) {
         ++totals.near;
-        singles_.evaluate(slot, motion, poses);
+        singles_.evaluate(slot, motion, poses, totals);
         singles_.push(slot, motion);
       }
       return false;
