@@ -115,8 +115,9 @@ std::map<std::string, double> deepest_of(const json& report) {
 }
 
 struct Found {
-  double nearest = 1e9;  ///< [m] of the pairs within range
-  int met = 0;           ///< pairs that touch or overlap
+  double nearest = 1e9;         ///< [m] of the pairs within range
+  double nearest_of_all = 1e9;  ///< [m] of all that were looked at
+  int met = 0;                  ///< pairs that touch or overlap
 };
 
 /// Checks every pair that can be within its range.
@@ -129,6 +130,7 @@ void check_row(const Replay& replay, const std::map<std::string, double>& deepes
     if (apart > a.shape.reach() + b.shape.reach() + pair.law.range) continue;
     const double distance = distance_below(a, b);
     if (distance < pair.law.range) found.nearest = std::min(found.nearest, distance);
+    found.nearest_of_all = std::min(found.nearest_of_all, distance);
     if (distance > 0.0) continue;
     ++found.met;
     const std::string& name = replay.world().part(pair.b).name;
@@ -164,7 +166,9 @@ TEST(Intrusion, IsNeverDeeperThanTheReportSaysInAnyScene) {
       Found found;
       check_row(replay, deepest, rng, found);
       if (found.met > 0 || found.nearest > 1e8) continue;
-      ASSERT_NEAR(found.nearest, nearest[row], 1e-6) << "row " << row;
+      // A pair just out of its range may be evaluated or not.
+      ASSERT_LE(nearest[row], found.nearest + 1e-6) << "row " << row;
+      ASSERT_GE(nearest[row], found.nearest_of_all - 1e-6) << "row " << row;
       ++compared;
     }
     ++scenes;

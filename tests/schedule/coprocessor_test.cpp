@@ -583,7 +583,7 @@ TEST(CoprocessorBeside, AnyNumberOfThreadsGivesTheSameBits) {
 // The answer is one tick old, and the distance used never larger than the true one.
 TEST(CoprocessorBeside, ForcesErrToTheSafeSide) {
   // Single points: the mean over a patch may be a little farther than its nearest point.
-  constexpr ForceLaw law{.range = 0.05, .surface_force = 100.0, .damping = 0.0, .tilt = 0.0};
+  constexpr ForceLaw law{.range = 0.3, .surface_force = 100.0, .damping = 0.0, .tilt = 0.0};
   int pushed = 0;
   for (unsigned run = 0; run < 10; ++run) {
     test::Boxes boxes(1, 1, law, seed + run);

@@ -55,8 +55,9 @@ template <class F>
   return (Lanes)((LaneMask)a & std::int64_t{0x7FFFFFFFFFFFFFFF});
 }
 [[nodiscard]] inline Lanes roots(const Lanes& a) noexcept {
-#if defined(__AVX512F__) && defined(__clang__)
-  return __builtin_ia32_sqrtpd512(a, 4);
+#if defined(__clang__)
+  // The builtin functions differ from version to version.
+  return lanes_of([&](int k) { return std::sqrt(a[k]); });
 #elif defined(__AVX512F__)
   return __builtin_ia32_sqrtpd512_mask(a, a, -1, 4);
 #elif defined(__AVX__)

@@ -108,15 +108,15 @@ void transposed_product(const A& matrix, const X& x, Y& y) noexcept {
   double least[most_rows];  // of the pivots
   for (int k = 0; k < n; ++k) least[k] = 1e-9 * L[n * k + k];
   for (int k = 0; k < n; ++k) {
-    double* const column = L + n * k;
+    double* const column = L + std::ptrdiff_t{n} * k;
     if (!(column[k] > least[k])) return false;
     inverse[k] = 1.0 / column[k];
     if (n == 6) {  // whole columns: what is above the diagonal costs less than odd lengths
       const Six pivot(column);
       for (int j = k + 1; j < 6; ++j) {
-        Six other(L + 6 * j);
+        Six other(L + std::ptrdiff_t{6} * j);
         other.add(-column[j] * inverse[k], pivot);
-        other.store(L + 6 * j);
+        other.store(L + std::ptrdiff_t{6} * j);
       }
       pivot.times(inverse[k]).store(column);
       continue;
@@ -184,7 +184,7 @@ class Factored {
 
   [[nodiscard]] int size() const noexcept { return static_cast<int>(inverse_.size()); }
   /// Entry i, k of L, below the diagonal.
-  [[nodiscard]] double L(int i, int k) const noexcept { return L_.data()[size() * k + i]; }
+  [[nodiscard]] double lower(int i, int k) const noexcept { return L_.data()[size() * k + i]; }
   /// Entry k of D^-1.
   [[nodiscard]] double inverse(int k) const noexcept { return inverse_.data()[k]; }
 
@@ -193,7 +193,7 @@ class Factored {
   void descend(X& x) const noexcept {
     for (int k = 0; k < size(); ++k) {
       const double share = x.coeff(k);
-      for (int i = k + 1; i < size(); ++i) x.coeffRef(i) -= share * L(i, k);
+      for (int i = k + 1; i < size(); ++i) x.coeffRef(i) -= share * lower(i, k);
     }
   }
   /// x = A^-1 x.
@@ -202,7 +202,7 @@ class Factored {
     descend(x);
     for (int i = size() - 1; i >= 0; --i) {
       double sum = inverse(i) * x.coeff(i);
-      for (int k = i + 1; k < size(); ++k) sum -= L(k, i) * x.coeff(k);
+      for (int k = i + 1; k < size(); ++k) sum -= lower(k, i) * x.coeff(k);
       x.coeffRef(i) = sum;
     }
   }

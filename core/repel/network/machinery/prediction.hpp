@@ -177,20 +177,21 @@ class Prediction {
   // With W = L^-1 J' by rows of six, J G J' = W' D^-1 W, and J G w = W' D^-1 L^-1 w.
   void through_jacobian() noexcept {
     using dense::Six;
+    constexpr std::ptrdiff_t six = 6;
     const int n = held_.size();
     held_.descend(offset_);
     double W[6 * most_joints];
     Six flow, columns[6];
     for (int k = 0; k < n; ++k) {
-      Six row(jacobian_.data() + 6 * k);
-      for (int j = 0; j < k; ++j) row.add(-held_.L(k, j), Six(W + 6 * j));
-      row.store(W + 6 * k);
+      Six row(jacobian_.data() + six * k);
+      for (int j = 0; j < k; ++j) row.add(-held_.lower(k, j), Six(W + six * j));
+      row.store(W + six * k);
       const Six scaled = row.times(held_.inverse(k));
       for (int j = 0; j < 6; ++j) columns[j].add(W[6 * k + j], scaled);
       flow.add(offset_.coeff(k), scaled);
     }
     conductance_.resize(6, 6);
-    for (int j = 0; j < 6; ++j) columns[j].store(conductance_.data() + 6 * j);
+    for (int j = 0; j < 6; ++j) columns[j].store(conductance_.data() + six * j);
     offset_.resize(6);
     flow.store(offset_.data());
   }

@@ -64,7 +64,7 @@ class Multiplex {
     const dense::Six flow(flow_map_.data());
     for (int k = 0; k < 6; ++k) {
       const double share = lever.matrix.coeff(0, 0) * effort_map_[k];
-      flow.times(share).store(shown.matrix.data() + 6 * k);
+      flow.times(share).store(shown.matrix.col(k).data());
     }
     flow.times(lever.offset.coeff(0)).store(shown.offset.data());
     return true;
