@@ -41,8 +41,7 @@ TEST(SharedTick, ForcesHaveTheBitsOfOneThreadAlone) {
   Tick alone(boxes.world), together(boxes.world);
   std::atomic<bool> ends{false};
   std::int64_t taken = 0;
-  std::thread helper([&] {
-    Evaluator evaluator{PartPoses(boxes.world)};
+  std::thread helper([&, evaluator = Evaluator{PartPoses(boxes.world)}]() mutable {
     while (!ends) taken += together.shared.work(evaluator) ? 1 : 0;
   });
   for (int tick = 0; tick < 300; ++tick) {
