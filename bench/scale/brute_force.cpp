@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include <repel/pairs/pair_partition.hpp>
 #include <repel/patch/patch.hpp>
 
 namespace repel::scale {

@@ -23,7 +23,7 @@ calls = [
     ("begin_tick", "repel::Teleoperator::begin_tick"),
     ("read_joints", "repel::Teleoperator::read_joints"),
     ("place_bodies", "repel::Teleoperator::place_bodies"),
-    ("the pairs", "repel::detail::WorkerShare::run"),
+    ("the pairs", "repel::Coprocessor::exchange"),
     ("push_away", "repel::Teleoperator::push_away"),
     ("gather_damping", "repel::gather_damping"),
     ("follow", "repel::Teleoperator::follow"),

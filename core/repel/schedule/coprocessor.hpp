@@ -68,7 +68,7 @@ class Coprocessor {
   /// The forces at `world.motion()`. Cost alone: the search and the near pairs. Together: a part of
   /// it, and the wait for a batch; if a thread is late, its patience, a search of all pairs and all
   /// near pairs. Beside: two copies of the motion, and about 20 ns for each near pair.
-  const PairForces& exchange() noexcept {
+  [[gnu::noinline]] const PairForces& exchange() noexcept {
     ++exchanges_;
     const Motion& motion = world_->motion();
     if (works_beside()) {
