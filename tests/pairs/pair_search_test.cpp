@@ -41,8 +41,24 @@ struct Lists {
   int asked = 0;
 };
 
+/// Checks a search against all pairs, and counts what the sample had.
+struct Counts {
+  std::int64_t in_range = 0, listed = 0, pairs = 0;
+
+  void add(const World& world, const Lists& lists) {
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
+      const Pair& pair = world.pair({i});
+      const bool near = test::separation_now(world, pair).distance <= pair.law.range;
+      ASSERT_TRUE(!near || lists.holds(i)) << "pair " << i;
+      in_range += near ? 1 : 0;
+      listed += lists.holds(i) ? 1 : 0;
+      ++pairs;
+    }
+  }
+};
+
 TEST(PairSearch, EveryPairThatIsInRangeIsOnAList) {
-  std::int64_t listed = 0, in_range = 0, pairs = 0;
+  Counts counts;
   for (unsigned run = 0; run < 4; ++run) {
     test::Crowd crowd(seed + run);
     PairSearch search(std::make_shared<PairIndex>(crowd.world));
@@ -50,20 +66,13 @@ TEST(PairSearch, EveryPairThatIsInRangeIsOnAList) {
     for (int tick = 0; tick < 200; ++tick) {
       crowd.move();
       search.run(crowd.world.motion(), lists);
-      for (std::int32_t i = 0; i < static_cast<std::int32_t>(crowd.world.pairs().size()); ++i) {
-        const Pair& pair = crowd.world.pair({i});
-        const bool near = test::separation_now(crowd.world, pair).distance <= pair.law.range;
-        ASSERT_TRUE(!near || lists.holds(i))
-            << "pair " << i << ", tick " << tick << ", seed " << seed + run;
-        in_range += near ? 1 : 0;
-        listed += lists.holds(i) ? 1 : 0;
-        ++pairs;
-      }
+      SCOPED_TRACE(families::of_seed(seed + run, "tick", tick));
+      ASSERT_NO_FATAL_FAILURE(counts.add(crowd.world, lists));
     }
   }
   // The sample is meaningful: some pairs were near, and most were left out.
-  EXPECT_GT(in_range, 1000);
-  EXPECT_LT(listed, pairs / 2);
+  EXPECT_GT(counts.in_range, 1000);
+  EXPECT_LT(counts.listed, counts.pairs / 2);
 }
 
 /// Moves three bodies in one of several ways: a random walk, to and fro, turning on the spot,
@@ -116,7 +125,7 @@ class Motions {
 };
 
 TEST(PairSearch, EveryPairThatIsInRangeIsOnAListHoweverBodiesMove) {
-  std::int64_t in_range = 0, listed = 0, pairs = 0;
+  Counts counts;
   for (unsigned run = 0; run < 6; ++run) {
     test::Crowd crowd(seed + run);
     Motions motions(crowd.world, seed + run);
@@ -125,19 +134,12 @@ TEST(PairSearch, EveryPairThatIsInRangeIsOnAListHoweverBodiesMove) {
     for (int tick = 0; tick < 400; ++tick) {
       motions.move();
       search.run(crowd.world.motion(), lists);
-      for (std::int32_t i = 0; i < static_cast<std::int32_t>(crowd.world.pairs().size()); ++i) {
-        const Pair& pair = crowd.world.pair({i});
-        const bool near = test::separation_now(crowd.world, pair).distance <= pair.law.range;
-        ASSERT_TRUE(!near || lists.holds(i))
-            << "pair " << i << ", tick " << tick << ", seed " << seed + run;
-        in_range += near ? 1 : 0;
-        listed += lists.holds(i) ? 1 : 0;
-        ++pairs;
-      }
+      SCOPED_TRACE(families::of_seed(seed + run, "tick", tick));
+      ASSERT_NO_FATAL_FAILURE(counts.add(crowd.world, lists));
     }
   }
-  EXPECT_GT(in_range, 1000);
-  EXPECT_LT(listed, pairs / 2);
+  EXPECT_GT(counts.in_range, 1000);
+  EXPECT_LT(counts.listed, counts.pairs / 2);
 }
 
 TEST(PairSearch, DoesNotSearchAgainWhileBodiesMoveToAndFroOrTogether) {

@@ -14,11 +14,13 @@
 #include <utility>
 
 #include "pairs/boxes.hpp"
+#include "support/comes_true.hpp"
 
 namespace repel {
 namespace coprocessor_test {
 
 using namespace std::chrono_literals;
+using test::comes_true;
 constexpr unsigned seed = 560;
 
 CoprocessorOptions lock_step(int threads, const Budget& budget = {}) {
@@ -288,16 +290,6 @@ struct Both {
   Coprocessor here;
   Coprocessor there;
 };
-
-template <class Condition>
-bool comes_true(Condition&& condition) {
-  const auto until = std::chrono::steady_clock::now() + 60s;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > until) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
 
 TEST(Coprocessor, WhoeverIsLateTheForcesAreThoseOfThisMotion) {
   CoprocessorOptions options;

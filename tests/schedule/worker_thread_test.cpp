@@ -2,20 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "support/comes_true.hpp"
+
 namespace repel::detail {
 namespace worker_thread_test {
 
 using namespace std::chrono_literals;
-
-template <class Condition>
-bool comes_true(Condition&& condition) {
-  const auto until = std::chrono::steady_clock::now() + 60s;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > until) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
+using test::comes_true;
 
 // Whether it spins, naps or sleeps between two ticks, it comes back to look for work.
 TEST(WorkerThread, LooksForWorkUntilItIsStopped) {
