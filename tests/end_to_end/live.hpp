@@ -57,8 +57,6 @@ class LiveTeleop {
   /// Port of the live view; 0: none was reported.
   [[nodiscard]] std::uint16_t port() const { return port_; }
   [[nodiscard]] bool runs() const { return program_ > 0 && ::kill(program_, 0) == 0; }
-  /// Its output on stderr so far.
-  [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   /// Interrupts it as Ctrl-C does.
   Ending interrupt() { return end_with(SIGINT); }
 
