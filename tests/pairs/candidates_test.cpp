@@ -8,27 +8,33 @@
 namespace repel::detail {
 namespace candidates_test {
 
-TEST(Candidates, StayInTheOrderOfThePairsWhateverComesAndGoes) {
+TEST(Candidates, StayInTheOrderOfTheirListsAndPairsWhateverComesAndGoes) {
   constexpr unsigned seed = 12;
   std::mt19937 random(seed);
   Candidates candidates(100);
-  std::map<int, int> truth;  // pair to slot
+  std::map<std::pair<int, int>, int> truth;  // list and pair, to slot
   std::size_t most = 0;
-  for (int round = 0; round < 500; ++round) {
+  for (int round = 0; round < 2000; ++round) {
+    const auto list = static_cast<int>(random() % 5);
     const auto gone = static_cast<int>(random() % 3);
-    candidates.remove_if([&](std::int32_t slot) { return slot % 3 == gone; });
-    std::erase_if(truth, [&](const auto& item) { return item.second % 3 == gone; });
-    for (int tries = 0; tries < 20 && truth.size() < 100; ++tries) {
+    std::erase_if(truth, [&](const auto& item) {
+      return item.first.first == list && item.second % 3 == gone;
+    });
+    for (int tries = 0; tries < 9 && truth.size() < 80; ++tries) {
       const int pair = static_cast<int>(random() % 1000);
       const int slot = static_cast<int>(random() % 100);
-      if (truth.emplace(pair, slot).second) candidates.add({pair}, slot);
+      if (!truth.contains({list, pair})) {
+        if (slot % 3 != gone) truth.emplace(std::pair(list, pair), slot);
+        candidates.add({pair}, slot, list);
+      }
     }
-    candidates.sort();
+    candidates.update(list, [&](std::int32_t slot) { return slot % 3 == gone; });
     const auto all = candidates.all();
     ASSERT_EQ(all.size(), truth.size()) << "seed " << seed;
     std::size_t i = 0;
-    for (const auto& [pair, slot] : truth) {
-      ASSERT_EQ(all[i].pair.index, pair);
+    for (const auto& [place, slot] : truth) {
+      ASSERT_EQ(all[i].list, place.first);
+      ASSERT_EQ(all[i].pair.index, place.second);
       ASSERT_EQ(all[i++].slot, slot);
     }
     most = std::max(most, truth.size());
@@ -36,16 +42,19 @@ TEST(Candidates, StayInTheOrderOfThePairsWhateverComesAndGoes) {
   EXPECT_GT(most, 20U);
 }
 
-TEST(Candidates, ConditionIsCalledOnceForEach) {
-  Candidates candidates(4);
-  for (std::int32_t i = 0; i < 4; ++i) candidates.add({i}, i);
+TEST(Candidates, ConditionIsCalledOnceForEachOfTheList) {
+  Candidates candidates(6);
+  candidates.add({7}, 7, 1);
+  candidates.update(1, [](std::int32_t) { return false; });
+  for (std::int32_t i = 0; i < 4; ++i) candidates.add({i}, i, 2);
   std::vector<int> called;
-  candidates.remove_if([&](std::int32_t slot) {
+  candidates.update(2, [&](std::int32_t slot) {
     called.push_back(slot);
     return true;
   });
   EXPECT_EQ(called, (std::vector<int>{0, 1, 2, 3}));
-  EXPECT_TRUE(candidates.all().empty());
+  ASSERT_EQ(candidates.all().size(), 1U);
+  EXPECT_EQ(candidates.all()[0].slot, 7);
 }
 
 }  // namespace candidates_test

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "pairs/boxes.hpp"
+#include "support/comes_true.hpp"
 
 namespace repel::detail {
 namespace shared_tick_test {
@@ -17,7 +18,7 @@ struct Tick {
       : world(&the_world),
         shared(the_world, static_cast<int>(the_world.pairs().size()), {}, 0.0),
         leader{PartPoses(the_world)} {
-    shared.pairs().track_all();
+    shared.pairs().track_all(PairIndex(the_world));
   }
   int select() {
     leader.poses.begin_tick();
@@ -52,8 +53,9 @@ TEST(SharedTick, ForcesHaveTheBitsOfOneThreadAlone) {
     const int batches = together.select();
     ASSERT_GT(batches, 10);
     together.shared.open(together.round, boxes.world.motion(), batches);
-    (void)together.shared.work(together.leader);
-    while (!together.shared.is_idle()) std::this_thread::yield();
+    // On a busy machine the other thread may never be in time: the first tick is all its own.
+    if (tick > 0) (void)together.shared.work(together.leader);
+    ASSERT_TRUE(test::comes_true([&] { return together.shared.is_idle(); }));
     const PairForces& forces = together.finish();
     EXPECT_EQ(forces.totals.evaluated, 400);
     EXPECT_EQ(forces.on_body[1].force, expected.on_body[1].force) << "seed " << seed;

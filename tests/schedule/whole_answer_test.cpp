@@ -17,7 +17,7 @@ struct Answered {
         poses(the_world),
         answer(the_world, count()),
         widened(the_world, count()) {
-    set.track_all();
+    set.track_all(PairIndex(the_world));
   }
   [[nodiscard]] int count() const { return static_cast<int>(world->pairs().size()); }
   const PairForces& ask() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,52 +14,73 @@ namespace repel::detail {
 
 /// A pair and its slot in the PairMemory.
 struct Candidate {
+  /// [m] summed travel of both bodies below which the pair cannot be within range, or less
+  double due_at = -std::numeric_limits<double>::infinity();
   PairId pair;
   std::int32_t slot = -1;
+  std::int32_t list = -1;  ///< the neighbour list of the pair; all its pairs are of two bodies
+
+  /// Ascends in the order of the candidates.
+  [[nodiscard]] std::int64_t key() const noexcept {
+    return std::int64_t{list} << 32U | std::int64_t{pair.index};
+  }
 };
 
-/// Candidates, sorted by pair id after `sort`. All memory is allocated at construction.
+/// Candidates, sorted by list and, within a list, by pair. So a change of one list costs no look at
+/// the others. All memory is allocated at construction.
 class Candidates {
  public:
-  explicit Candidates(int most) : list_(most) {}
+  explicit Candidates(int most) : all_(most) {}
 
-  [[nodiscard]] std::span<const Candidate> all() const noexcept {
-    return {list_.data(), static_cast<std::size_t>(count_)};
+  [[nodiscard]] std::span<Candidate> all() noexcept { return {all_.data(), size()}; }
+  [[nodiscard]] std::span<const Candidate> all() const noexcept { return {all_.data(), size()}; }
+
+  /// Adds a pair, which is not in order before the next `update` of its list. Precondition: fewer
+  /// than `most` are stored.
+  void add(PairId pair, std::int32_t slot, std::int32_t list) noexcept {
+    all_[count_++] = {.pair = pair, .slot = slot, .list = list};
   }
 
-  /// Appends a pair. Precondition: fewer than `most` are stored.
-  void add(PairId pair, std::int32_t slot) noexcept { list_[count_++] = {pair, slot}; }
-
-  /// Removes the candidates for whose slot `condition` is true; it is called once for each.
+  /// Removes those candidates of a list for which `condition(slot)` is true; it is called once for
+  /// each. Sorts in those added since the last call, which are all of this list.
+  /// Cost: apart from these, one move of all candidates behind, if their number changes.
   template <class Condition>
-  void remove_if(Condition&& condition) noexcept {
-    int kept = 0;
-    int kept_in_order = 0;
-    for (int i = 0; i < count_; ++i) {
-      if (condition(list_[i].slot)) continue;
-      kept_in_order += i < in_order_ ? 1 : 0;
-      list_[kept++] = list_[i];
-    }
-    count_ = kept;
-    in_order_ = kept_in_order;
+  void update(std::int32_t list, const Condition& condition) noexcept {
+    const auto is_gone = [&](const Candidate& c) { return condition(c.slot); };
+    const auto added = all_.begin() + in_order_;
+    const auto begin = std::partition_point(all_.begin(), added,
+                                            [&](const Candidate& c) { return c.list < list; });
+    const auto end =
+        std::partition_point(begin, added, [&](const Candidate& c) { return c.list == list; });
+    const auto kept_end = std::remove_if(begin, end, is_gone);
+    const auto added_end = std::remove_if(added, all_.begin() + count_, is_gone);
+    count_ = in_order_ = static_cast<int>(added_end - all_.begin() - (end - kept_end));
+    // Behind the kept: a gap, the candidates of other lists, the added.
+    const auto others = std::rotate(end, added, added_end);
+    if (kept_end != end) std::move(end, added_end, kept_end);
+    merge(begin, kept_end, kept_end + (others - end));
   }
 
-  /// Sorts in the candidates added since the last call, by insertion.
-  /// Cost: for each of these, one move of all candidates behind it.
-  void sort() noexcept {
-    for (; in_order_ < count_; ++in_order_) {
-      const Candidate added = list_[in_order_];
-      const auto end = list_.begin() + in_order_;
-      const auto place = std::upper_bound(
-          list_.begin(), end, added,
-          [](const Candidate& a, const Candidate& b) { return a.pair.index < b.pair.index; });
-      std::move_backward(place, end, end + 1);
-      *place = added;
-    }
-  }
+  void clear() noexcept { count_ = in_order_ = 0; }
 
  private:
-  std::vector<Candidate> list_;
+  using Place = std::vector<Candidate>::iterator;
+
+  [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+
+  /// Sorts [middle, end), in any order, into [begin, middle), by insertion.
+  static void merge(Place begin, Place middle, Place end) noexcept {
+    const auto is_before = [](const Candidate& a, const Candidate& b) {
+      return a.pair.index < b.pair.index;
+    };
+    std::sort(middle, end, is_before);
+    for (; middle != end; ++middle) {
+      const auto place = std::upper_bound(begin, middle, *middle, is_before);
+      std::rotate(place, middle, middle + 1);
+    }
+  }
+
+  std::vector<Candidate> all_;
   int count_ = 0;
   int in_order_ = 0;  ///< length of the sorted prefix
 };

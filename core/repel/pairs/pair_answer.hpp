@@ -18,21 +18,22 @@ namespace repel::detail {
   return 1.0 - std::clamp(fade, 0.0, 1.0);
 }
 
-/// The data the force of a pair is computed from, at the tick of its evaluation and later.
-struct PairAnswer {
+/// The data the force of a pair is computed from, at the tick of its evaluation and later. What
+/// `lower_bound` needs comes first: it is asked of hundreds of pairs that are not near.
+struct alignas(64) PairAnswer {
   Separation last;
-  double slope = 1.0;         ///< of the distance along the extraction; passable pairs only
   double nearer = 0.0;        ///< [m] the distance minus that of the contact patch
-  Wrench gradient;            ///< of the patch's distance when A moves, about the origin of body A
-  Vec3 p_AQ_W{0, 0, 0};       ///< [m] witness point on A, from the origin of body A
   Vec3 p_BA_W{0, 0, 0};       ///< [m] origin of body A from that of body B at the evaluation
   double turn = 0.0;          ///< [m] both bodies' BodyState::turn at the evaluation
+  bool in_range = false;      ///< of its law, at the evaluation
+  bool is_stale = false;      ///< a force was computed from it at a later tick
+  double slope = 1.0;         ///< of the distance along the extraction; passable pairs only
+  Wrench gradient;            ///< of the patch's distance when A moves, about the origin of body A
+  Vec3 p_AQ_W{0, 0, 0};       ///< [m] witness point on A, from the origin of body A
   std::int64_t tick = never;  ///< of the motion that was evaluated
   std::int64_t evaluated_at = never;  ///< the same on the tick counter of the evaluator
   std::int64_t pushed_at = never;     ///< last time a force was computed from it, same counter
   std::int64_t waits_since = 0;       ///< [ticks] since when the pair is near but not evaluated
-  bool in_range = false;              ///< of its law, at the evaluation
-  bool is_stale = false;              ///< a force was computed from it at a later tick
   double assumed = 0.0;  ///< [m] for a stale pair about to be evaluated: see `note_assumed`
   double force = 0.0;    ///< [N] last computed from it
 
@@ -53,15 +54,13 @@ struct PairAnswer {
   /// separating plane remains valid when shifted by the relative motion along its normal; in
   /// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
   /// increase of `turn` in both cases. A patch has separating planes that lean by up to its tilt.
-  /// @param deepest [m] largest penetration depth of any answer, positive; see World::deepest
-  [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B,
-                                   double deepest) const noexcept {
+  /// No answer is deeper than World::deepest; this bound may be.
+  [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B) const noexcept {
     const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
     const bool separated = is_apart();
     const double lean = nearer != 0.0 ? widest_tilt * norm(moved) : 0.0;
     const double along = separated ? dot(last.extraction_W, moved) - lean : -norm(moved);
-    const double now = proven() + along - (A.turn + B.turn - turn);
-    return now > 0.0 ? now : std::max(now, -deepest);
+    return proven() + along - (A.turn + B.turn - turn);
   }
 
  private:

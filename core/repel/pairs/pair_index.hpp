@@ -51,8 +51,6 @@ struct PairIndex {
     double range = 0.0;      ///< [m] largest range of all its pairs
   };
 
-  /// An empty index.
-  PairIndex() = default;
   /// Allocates: about 60 bytes for each box of a tree and 4 for each pair.
   /// @param lookahead [m] added to the range of every pair
   explicit PairIndex(const World& world, double lookahead = 0.0) : lookahead_(lookahead) {

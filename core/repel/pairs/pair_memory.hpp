@@ -21,6 +21,7 @@ struct PairTracking {
   BodyId body_b;
   /// [m] summed travel of both bodies below which the pair cannot be within range
   double due_at = -std::numeric_limits<double>::infinity();
+  double reach = 0.0;  ///< [m] distance within which the pair is near
   PairId pair;
   std::int32_t list = -1;  ///< the neighbour list it is on; -1: none
   std::int32_t lane = -1;  ///< of the LaneEvaluator; -1: it is evaluated singly
@@ -41,8 +42,10 @@ class PairMemory {
   static constexpr std::int32_t none = -1;
 
   /// @param slots largest number of pairs with a slot, at least 0
-  PairMemory(const World& world, int slots)
+  /// @param lookahead [m] by which a pair may be out of its range and yet be near
+  PairMemory(const World& world, int slots, double lookahead = 0.0)
       : world_(&world),
+        lookahead_(lookahead),
         slot_of_(world.pairs().size(), none),
         extremes_(slot_of_.size()),
         slots_(std::min(slots, pairs())),
@@ -118,12 +121,14 @@ class PairMemory {
     tracking = {};
     tracking.body_a = world_->part(pair.a).body;
     tracking.body_b = world_->part(pair.b).body;
+    tracking.reach = pair.law.range + lookahead_;
     tracking.pair = id;
     answers_[slot] = {};
     histories_[slot] = {};
   }
 
   const World* world_;
+  double lookahead_;                    ///< [m]
   std::vector<std::int32_t> slot_of_;   ///< by PairId
   std::vector<PairExtremes> extremes_;  ///< by PairId
   int slots_;

@@ -24,8 +24,7 @@ class SingleEvaluator {
   SingleEvaluator(const World& world, int slots, std::int64_t max_age, double lookahead = 0.0)
       : world_(&world),
         max_age_(max_age),
-        lookahead_(lookahead),
-        memory_(world, slots),
+        memory_(world, slots, lookahead),
         forces_(world.body_count()) {}
 
   /// Begins a tick: clears the forces and marks all answers as not of this tick.
@@ -46,7 +45,7 @@ class SingleEvaluator {
     return world_->pair(memory_.tracking(slot).pair);
   }
   /// [m] The distance within which the pair is near.
-  [[nodiscard]] double reach(int slot) const noexcept { return pair(slot).law.range + lookahead_; }
+  [[nodiscard]] double reach(int slot) const noexcept { return memory_.tracking(slot).reach; }
   [[nodiscard]] const BodyState& body_a(int slot, const Motion& motion) const noexcept {
     return motion.bodies[memory_.tracking(slot).body_a.index];
   }
@@ -73,8 +72,9 @@ class SingleEvaluator {
 
   /// Conservative lower bound of the signed distance [m] now, from the last answer.
   [[nodiscard]] double lower_bound(int slot, const Motion& motion) const noexcept {
-    return memory_.answer(slot).lower_bound(body_a(slot, motion), body_b(slot, motion),
-                                            world_->deepest(pair(slot)));
+    const PairAnswer& answer = memory_.answer(slot);
+    const double now = answer.lower_bound(body_a(slot, motion), body_b(slot, motion));
+    return now > 0.0 ? now : std::max(now, -world_->deepest(pair(slot)));
   }
 
   /// [m] The part of the reduction of that bound that is due to rotation of the bodies.
@@ -291,7 +291,6 @@ class SingleEvaluator {
 
   const World* world_;
   std::int64_t max_age_;  ///< [ticks]
-  double lookahead_;      ///< [m]
   std::int64_t now_ = 0;  ///< counts the ticks begun
   PairMemory memory_;
   PairForces forces_;

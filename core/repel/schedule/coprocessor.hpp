@@ -44,7 +44,7 @@ class Coprocessor {
         prototype_(world) {
     const bool beside = works_beside();
     lookahead_ = beside ? lookahead_for(options_.period) : 0.0;
-    if (!options_.every_pair) pairs_ = std::make_shared<const detail::PairIndex>(world, lookahead_);
+    pairs_ = std::make_shared<const detail::PairIndex>(world, lookahead_);
     const int helpers = beside ? 0 : threads_;
     team_ = std::make_unique<detail::PairTeam>(world, pairs_, prototype_, options_, helpers, 0,
                                                lookahead_);

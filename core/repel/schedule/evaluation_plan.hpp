@@ -44,10 +44,10 @@ class EvaluationPlan {
   EvaluationPlan(int groups, int singles)
       : order_(singles), batches_(static_cast<std::size_t>(batches_of(groups + singles))) {}
 
-  /// Plans a tick. Returns the number of batches. @param pair_at(k) index of the pair of the k-th
-  /// single, ascending @param urgency(k) the key of its urgency, smallest first
-  template <class PairAt, class Urgency>
-  int plan(const EvaluationLimit& limit, int groups, int singles, const PairAt& pair_at,
+  /// Plans a tick. Returns the number of batches. @param key_at(k) of the k-th single: ascending,
+  /// and the same at every tick @param urgency(k) the key of its urgency, smallest first
+  template <class KeyAt, class Urgency>
+  int plan(const EvaluationLimit& limit, int groups, int singles, const KeyAt& key_at,
            const Urgency& urgency) noexcept {
     limit_ = limit;
     groups_ = groups;
@@ -60,7 +60,7 @@ class EvaluationPlan {
       int first = 0;
       for (int end = singles; first < end;) {  // lower bound
         const int middle = first + (end - first) / 2;
-        if (pair_at(middle) < first_pair_) {
+        if (key_at(middle) < first_key_) {
           first = middle + 1;
         } else {
           end = middle;
@@ -97,9 +97,9 @@ class EvaluationPlan {
   }
 
   /// After all batches: adds up what they did, in a fixed order, and notes where the next tick
-  /// begins. @param pair_at as in `plan`
-  template <class PairAt>
-  void finish(PairTotals& totals, const PairAt& pair_at) noexcept {
+  /// begins. @param key_at as in `plan`
+  template <class KeyAt>
+  void finish(PairTotals& totals, const KeyAt& key_at) noexcept {
     int stopped_at = -1;
     int evaluated = 0;
     evaluated_singles_ = 0;
@@ -118,7 +118,7 @@ class EvaluationPlan {
     if (!is_single(stopped_at)) {
       first_group_ = group_of(stopped_at);
     } else if (place_of(stopped_at) >= urgent_) {
-      first_pair_ = pair_at(single_of(stopped_at));
+      first_key_ = key_at(single_of(stopped_at));
     }
     // A turn in which nothing could be evaluated does not count.
     if (evaluated > 0) singles_first_ = !singles_first_;
@@ -163,10 +163,10 @@ class EvaluationPlan {
   std::span<const std::int32_t> in_order_;  ///< the singles of this tick; empty: in ascending order
   std::vector<Batch> batches_;
   bool singles_first_ = false;
-  std::int32_t first_pair_ = 0;  ///< round-robin start of the singles
-  int first_group_ = 0;          ///< round-robin start of the groups
-  int evaluated_singles_ = 0;    ///< at the last tick, if the time did not suffice for all
-  int urgent_ = 0;               ///< singles selected by urgency at this tick
+  std::int64_t first_key_ = 0;  ///< round-robin start of the singles
+  int first_group_ = 0;         ///< round-robin start of the groups
+  int evaluated_singles_ = 0;   ///< at the last tick, if the time did not suffice for all
+  int urgent_ = 0;              ///< singles selected by urgency at this tick
 };
 
 }  // namespace repel::detail

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <repel/pairs/candidates.hpp>
 #include <repel/pairs/lane_evaluator.hpp>
+#include <repel/pairs/pair_index.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/schedule/evaluation_plan.hpp>
 
@@ -27,7 +30,8 @@ class PairSet {
       : singles_(world, slots, budget.max_age, lookahead),
         lanes_(singles_),
         candidates_(memory().slots()),
-        near_singles_(memory().slots()),
+        due_(memory().slots()),
+        is_near_(memory().slots()),
         plan_(memory().slots() / lane_count + 1, memory().slots()) {}
   // lanes_ keeps a pointer to singles_.
   PairSet(const PairSet&) = delete;
@@ -42,12 +46,18 @@ class PairSet {
   }
 
   /// Makes every pair a permanent candidate, and every candidate near. Requires a slot for each.
-  void track_all() noexcept {
+  void track_all(const PairIndex& index) noexcept {
     all_near_ = true;
-    for (PairId id{0}; id.index < memory().pairs(); ++id.index) {
-      candidates_.add(id, memory().slot_for(id));
+    const auto end = [&](std::size_t list) {
+      return list < index.lists.size() ? index.lists[list].first : memory().pairs();
+    };
+    for (std::size_t list = 0; list < index.lists.size(); ++list) {
+      for (std::int32_t i = index.lists[list].first; i < end(list + 1); ++i) {
+        const PairId id = index.pairs[i];
+        candidates_.add(id, memory().slot_for(id), static_cast<std::int32_t>(list));
+      }
+      candidates_.update(static_cast<std::int32_t>(list), [](std::int32_t) { return false; });
     }
-    candidates_.sort();
   }
 
   /// Begins a tick: clears the forces.
@@ -75,7 +85,7 @@ class PairSet {
       return false;
     }
     memory().tracking(slot).found = true;
-    if (memory().add_to_list(slot, list)) candidates_.add(id, slot);
+    if (memory().add_to_list(slot, list)) candidates_.add(id, slot, list);
     return true;
   }
 
@@ -84,28 +94,27 @@ class PairSet {
   /// not depend on the search. Returns how many of these were kept.
   int end(std::int32_t list) noexcept {
     int kept = 0;
-    candidates_.remove_if([&](std::int32_t slot) {
+    candidates_.update(list, [&](std::int32_t slot) {
       PairTracking& tracking = memory().tracking(slot);
-      const bool missing = tracking.list == list && !tracking.found;
-      const bool leaves = missing && tracking.lane < 0;
-      kept += missing && !leaves ? 1 : 0;
+      const bool leaves = !tracking.found && tracking.lane < 0;
+      kept += !tracking.found && !leaves ? 1 : 0;
       if (leaves) singles_.remove_from_list(slot);
       tracking.found = false;
       return leaves;
     });
-    candidates_.sort();
     return kept;
   }
 
-  /// Selects the near candidates and divides them into batches (EvaluationPlan). Returns the number
-  /// of these.
+  /// Selects the candidates that are due, which may be near, and divides them into batches
+  /// (EvaluationPlan). Returns the number of these.
   int select(const Motion& motion, PartPoses& poses, const EvaluationLimit& limit) noexcept {
     // Pairs in lanes are evaluated several at a time: too coarse for a budget in work units.
     if (limit.is_counted()) lanes_.remove_all(poses);
-    find_near_singles(motion, poses);
+    find_due(motion);
+    singles_.forces().totals.near += lanes_.count();
     return plan_.plan(
-        limit, lanes_.groups(), single_count_, [&](int k) { return pair_of_single(k); },
-        [&](std::int32_t k) { return singles_.time_to_touch(near_singles_[k], motion); });
+        limit, lanes_.groups(), due_count_, [&](int k) { return due(k).key(); },
+        [&](std::int32_t k) { return singles_.time_to_touch(due(k).slot, motion); });
   }
 
   /// Evaluates a batch until the limit of the tick is reached. An evaluation is never cut short:
@@ -118,7 +127,10 @@ class PairSet {
         batch, spent,
         [&](int g, PairTotals& totals) { lanes_.evaluate_group(g, motion, poses, totals); },
         [&](int k, bool allowed, PairTotals& totals) {
-          const std::int32_t slot = near_singles_[k];
+          const std::int32_t slot = due(k).slot;
+          is_near_[k] = all_near_ || is_near(slot, motion, poses) ? 1 : 0;
+          if (is_near_[k] == 0) return;
+          ++totals.near;
           if (!allowed && memory().answer(slot).known()) return;
           singles_.evaluate(slot, motion, poses, totals);
         });
@@ -133,12 +145,12 @@ class PairSet {
   /// Computes and sums the forces of all near pairs, in an order that does not depend on that of
   /// their evaluation.
   void finish(const Motion& motion, const PartPoses& poses) noexcept {
-    plan_.finish(singles_.forces().totals, [&](int k) { return pair_of_single(k); });
+    plan_.finish(singles_.forces().totals, [&](int k) { return due(k).key(); });
     lanes_.push(motion);
-    for (int k = 0; k < single_count_; ++k) singles_.push(near_singles_[k], motion);
+    for_each_near_single([&](std::int32_t slot) { singles_.push(slot, motion); });
     lanes_.remove_ended(poses);
     if (plan_.limit().is_counted()) return;
-    for (int k = 0; k < single_count_; ++k) lanes_.add(near_singles_[k], poses);
+    for_each_near_single([&](std::int32_t slot) { lanes_.add(slot, poses); });
   }
 
   /// Ticks have passed without this set: what waited for an evaluation does so no more.
@@ -149,24 +161,22 @@ class PairSet {
     skip_ticks();
     if (all_near_) return;
     lanes_.remove_all(poses);
-    candidates_.remove_if([&](std::int32_t slot) {
-      singles_.remove_from_list(slot);
-      return true;
-    });
+    for (const Candidate& candidate : candidates_.all()) singles_.remove_from_list(candidate.slot);
+    candidates_.clear();
   }
 
   /// Repeats the work of the last tick on up to `most` near pairs to warm the CPU caches, without
   /// other effects. Returns the number of pairs.
   int rehearse(const Motion& motion, PartPoses& poses, int most) noexcept {
     int done = lanes_.rehearse(most, motion, poses);
-    for (int k = 0; k < single_count_ && done < most; ++k, ++done) {
-      singles_.rehearse(near_singles_[k], poses);
-    }
+    for_each_near_single([&](std::int32_t slot) {
+      if (done < most) singles_.rehearse(slot, poses), ++done;
+    });
     return done;
   }
 
-  /// Near pairs of this tick. After `select`.
-  [[nodiscard]] int near() const noexcept { return lanes_.count() + single_count_; }
+  /// Pairs that are in lanes or due, most of which are near. After `select`.
+  [[nodiscard]] int selected() const noexcept { return lanes_.count() + due_count_; }
   [[nodiscard]] const PairForces& forces() const noexcept { return singles_.forces(); }
   /// The last stored answer; the default one, which bounds nothing, if there is none.
   [[nodiscard]] Separation separation_of(PairId id) const noexcept {
@@ -197,32 +207,50 @@ class PairSet {
  private:
   [[nodiscard]] PairMemory& memory() noexcept { return singles_.memory(); }
 
-  /// The index of the pair of the k-th near single.
-  [[nodiscard]] std::int32_t pair_of_single(int k) const noexcept {
-    return memory().tracking(near_singles_[k]).pair.index;
-  }
+  /// The k-th of the due candidates.
+  [[nodiscard]] const Candidate& due(int k) const noexcept { return candidates_.all()[due_[k]]; }
 
-  void find_near_singles(const Motion& motion, PartPoses& poses) noexcept {
-    single_count_ = 0;
-    // Every pair in a lane is a candidate: if there are no other candidates, skip the scan.
-    if (candidates_.all().size() > static_cast<std::size_t>(lanes_.count()))
-      look_for_near_singles(motion, poses);
-    singles_.forces().totals.near += lanes_.count() + single_count_;
-  }
-
-  void look_for_near_singles(const Motion& motion, PartPoses& poses) noexcept {
-    for (const Candidate& candidate : candidates_.all()) {
-      const std::int32_t slot = candidate.slot;
-      if (memory().tracking(slot).lane >= 0) continue;
-      if (all_near_ || is_near(slot, motion, poses)) near_singles_[single_count_++] = slot;
+  /// Calls f(slot) for those of the due pairs that were found near. After `evaluate`.
+  template <class F>
+  void for_each_near_single(const F& f) const noexcept {
+    for (int k = 0; k < due_count_; ++k) {
+      if (is_near_[k] != 0) f(due(k).slot);
     }
   }
 
-  /// False if the pair is proven to be out of range. Tests, cheapest first: the travel of the
-  /// bodies; the last separating plane shifted by their motion; and, if the rotation term alone
-  /// spoils that bound, the present distance of the shapes along the last direction.
+  /// In two passes without branches: the first needs the candidates only, the second the tracking
+  /// of those that were due by what the candidate knows.
+  void find_due(const Motion& motion) noexcept {
+    due_count_ = 0;
+    const std::span<Candidate> all = candidates_.all();
+    // Every pair in a lane is a candidate: if there are no other candidates, skip the scan.
+    if (all.size() == static_cast<std::size_t>(lanes_.count())) return;
+    std::int32_t list = PairMemory::none;
+    double travel = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].list != list) {
+        list = all[i].list;
+        travel = singles_.travel(all[i].slot, motion);
+      }
+      due_[due_count_] = static_cast<std::int32_t>(i);
+      due_count_ += travel < all[i].due_at ? 0 : 1;
+    }
+    const int asked = std::exchange(due_count_, 0);
+    for (int k = 0; k < asked; ++k) {
+      const std::int32_t i = due_[k];
+      const PairTracking& tracking = memory().tracking(all[i].slot);
+      const bool is_due = all_near_ || singles_.is_due(all[i].slot, motion);
+      all[i].due_at = is_due ? all[i].due_at : tracking.due_at;
+      due_[due_count_] = i;
+      due_count_ += tracking.lane < 0 && is_due ? 1 : 0;
+    }
+  }
+
+  /// False if the pair, which is due, is proven to be out of range, and is then due later. Tests,
+  /// cheapest first: the last separating plane shifted by the motion of the bodies; and, if the
+  /// rotation term alone spoils that bound, the present distance of the shapes along the last
+  /// direction.
   [[nodiscard]] bool is_near(int slot, const Motion& motion, PartPoses& poses) noexcept {
-    if (!singles_.is_due(slot, motion)) return false;
     if (memory().answer(slot).in_range) return true;
     const double reach = singles_.reach(slot);
     double clearance = singles_.lower_bound(slot, motion) - reach;
@@ -239,8 +267,9 @@ class PairSet {
   LaneEvaluator lanes_;
   Candidates candidates_;
   bool all_near_ = false;
-  std::vector<std::int32_t> near_singles_;  ///< slots of the near pairs that are in no lane
-  int single_count_ = 0;                    ///< number of valid entries in `near_singles_`
+  std::vector<std::int32_t> due_;  ///< the candidates in no lane that may be near
+  int due_count_ = 0;              ///< number of valid entries in `due_`
+  std::vector<char> is_near_;      ///< those of them that are; written by whoever evaluates them
   EvaluationPlan plan_;
 };
 

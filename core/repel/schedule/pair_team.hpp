@@ -25,7 +25,8 @@ namespace repel::detail {
 /// memory it holds.
 class PairTeam {
  public:
-  /// Near pairs from which on sharing them is faster than evaluating them alone.
+  /// Pairs, near ones and ones that may be, from which on sharing them is faster than evaluating
+  /// them alone.
   static constexpr int worth_sharing = 64;
 
   /// Allocates. @param prototype poses of the parts at rest @param threads number of threads
@@ -38,7 +39,8 @@ class PairTeam {
         lookahead_(lookahead),
         prototype_(prototype),
         leader_{prototype_},
-        search_(pairs != nullptr ? std::move(pairs) : std::make_shared<const PairIndex>()),
+        pairs_(std::move(pairs)),
+        search_(pairs_),
         pace_(options.period),
         first_index_(first_index),
         helpers_(static_cast<std::size_t>(threads)) {
@@ -136,7 +138,7 @@ class PairTeam {
     const int slots = options_.every_pair ? static_cast<int>(world_->pairs().size())
                                           : world_->limits().candidates;
     sets_.push_back(std::make_unique<SharedTick>(*world_, slots, options_.budget, lookahead_));
-    if (options_.every_pair) sets_.back()->pairs().track_all();
+    if (options_.every_pair) sets_.back()->pairs().track_all(*pairs_);
     return sets_.back().get();
   }
 
@@ -188,9 +190,9 @@ class PairTeam {
     leader_.poses.begin_tick();
     leader_.round = ++round_;
     pairs.begin_tick(motion.tick);
-    search_.run(motion, Sink{pairs, motion, leader_.poses});
+    if (!options_.every_pair) search_.run(motion, Sink{pairs, motion, leader_.poses});
     const int batches = pairs.select(motion, leader_.poses, limit);
-    if (may_share && pairs.near() >= worth_sharing) {
+    if (may_share && pairs.selected() >= worth_sharing) {
       ++shared_;
       pace_.tick();
       current_->open(round_, motion, batches);
@@ -225,6 +227,7 @@ class PairTeam {
   double lookahead_;           ///< [m]
   const PartPoses prototype_;  ///< of the evaluators
   Evaluator leader_;
+  std::shared_ptr<const PairIndex> pairs_;
   PairSearch search_;
   Pace pace_;
   std::vector<std::unique_ptr<SharedTick>> sets_;  ///< of the leader until `start`, then of `tend`
