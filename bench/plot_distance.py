@@ -7,7 +7,7 @@ import math
 import chart
 
 COLOURS = {"repel": "#c1121f", "bullet": "#7f7f7f", "coal": "#2a6f97", "fcl": "#e09f3e",
-           "mujoco": "#588157"}
+           "mujoco": "#588157", "opengjk": "#8b5e34", "dgd": "#8e6bbf"}
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 360, 320, 60, 40, 50
 LOWEST = 1e-17  # an error of exactly 0 is drawn here
 

@@ -8,12 +8,12 @@ target_include_directories(repel_bench_compare PUBLIC distance ${PROJECT_SOURCE_
 add_library(repel_bench_rivals INTERFACE)
 target_link_libraries(repel_bench_rivals INTERFACE repel_bench_compare)
 
-# repel_rival(NAME FOUND HOW [INCLUDES dir...] [LIBRARIES lib...]): one library to measure ours
-# against. Where FOUND is false it is left out, and HOW says how to have it.
+# repel_rival(NAME FOUND HOW [VERSION version] [INCLUDES dir...] [LIBRARIES lib...]): one library to
+# measure ours against. Where FOUND is false it is left out, and HOW says how to have it.
 set(absent "")
 set(built "")
 function(repel_rival name found how)
-  cmake_parse_arguments(ARG "" "" "INCLUDES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "VERSION" "INCLUDES;LIBRARIES" ${ARGN})
   if(NOT found)
     message(STATUS "repel: ${name} is not measured. To have it: ${how}")
     set(absent "${absent}${name} is not measured. To have it: ${how}\\n" PARENT_SCOPE)
@@ -21,6 +21,9 @@ function(repel_rival name found how)
   endif()
   set(built ${built} ${name} PARENT_SCOPE)
   add_library(rival_${name} OBJECT distance/rivals/${name}.cpp)
+  if(ARG_VERSION)
+    target_compile_definitions(rival_${name} PRIVATE REPEL_RIVAL_VERSION="${ARG_VERSION}")
+  endif()
   target_include_directories(rival_${name} SYSTEM PRIVATE ${ARG_INCLUDES})
   target_link_libraries(rival_${name} PRIVATE repel_bench_compare ${ARG_LIBRARIES})
   target_sources(repel_bench_rivals INTERFACE $<TARGET_OBJECTS:rival_${name}>)
@@ -50,4 +53,51 @@ repel_rival(coal "${COAL_LIBRARY}" "${from_pypi}"
 file(GLOB MUJOCO_LIBRARY ${REPEL_BENCH_PYPI}/mujoco/libmujoco.so.*)
 repel_rival(mujoco "${MUJOCO_LIBRARY}" "${from_pypi}"
             INCLUDES ${REPEL_BENCH_PYPI}/mujoco/include LIBRARIES ${MUJOCO_LIBRARY})
+
+# What is in no package is compiled from its sources, wherever they are.
+set(REPEL_OPENGJK_DIR "" CACHE PATH "Sources of openGJK, to measure it")
+set(REPEL_DGD_DIR "" CACHE PATH "Sources of dgd, differentiable growth distance, to measure it")
+
+# repel_sources(VARIABLE OUT VERSIONED FILES...): the folder that VARIABLE names, if any, must have
+# FILES. OUT is the version that the project in its file VERSIONED states, or unknown.
+function(repel_sources variable out versioned)
+  set(folder "${${variable}}")
+  set(version unknown)
+  if(folder)
+    foreach(file ${ARGN})
+      if(NOT EXISTS "${folder}/${file}")
+        message(FATAL_ERROR "${variable} is wrong: there is no ${folder}/${file}")
+      endif()
+    endforeach()
+    if(EXISTS "${folder}/${versioned}")
+      file(STRINGS "${folder}/${versioned}" line REGEX "^ *VERSION +[0-9]" LIMIT_COUNT 1)
+      if(line MATCHES "([0-9][0-9.]*)")
+        set(version ${CMAKE_MATCH_1})
+      endif()
+    endif()
+  endif()
+  set(${out} "${version}" PARENT_SCOPE)
+endfunction()
+
+repel_sources(REPEL_OPENGJK_DIR opengjk_version scalar/CMakeLists.txt
+              scalar/openGJK.c scalar/include/openGJK/openGJK.h)
+if(REPEL_OPENGJK_DIR)
+  enable_language(C)
+  add_library(opengjk STATIC "${REPEL_OPENGJK_DIR}/scalar/openGJK.c")
+  target_include_directories(opengjk SYSTEM PUBLIC "${REPEL_OPENGJK_DIR}/scalar/include")
+  # Its complaints would be among the tables: the adapter takes them.
+  target_compile_definitions(opengjk PRIVATE printf=repel_bench_unheard)
+  target_compile_options(opengjk PRIVATE ${flags})
+  set_target_properties(opengjk PROPERTIES COMPILE_WARNING_AS_ERROR OFF)
+endif()
+repel_rival(opengjk "${REPEL_OPENGJK_DIR}"
+            "cmake -DREPEL_OPENGJK_DIR=FOLDER, the sources of MattiaMontanari/openGJK on GitHub"
+            VERSION "${opengjk_version}" LIBRARIES opengjk)
+
+repel_sources(REPEL_DGD_DIR dgd_version CMakeLists.txt
+              include/dgd/solvers/minimum_distance_impl.h)
+set(dgd_repository HybridRobotics/differentiable-growth-distance)
+repel_rival(dgd "${REPEL_DGD_DIR}"
+            "cmake -DREPEL_DGD_DIR=FOLDER, the sources of ${dgd_repository} on GitHub"
+            VERSION "${dgd_version}" INCLUDES "${REPEL_DGD_DIR}/include")
 target_compile_definitions(repel_bench_rivals INTERFACE REPEL_ABSENT_RIVALS="${absent}")
