@@ -128,6 +128,7 @@ TEST(Network, TickTakesNothingFromTheHeap) {
   met.expect_more_than(0);
   Rng rng(1);
   DrawnSignals drawn(rng, 6);
+  repel::test::is_counted = true;
   for (int tick = 0; tick < 2000; ++tick) {
     const Signals& signals = drawn.next();
     repel::test::calls = 0;

@@ -20,6 +20,7 @@ constexpr unsigned seed = 1201;
 TEST(SeparationHeap, TheCounterSeesTheHeap) {
   if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
   calls = 0;
+  test::is_counted = true;
   watched = true;
   int* volatile by_new = new int(1);
   delete by_new;
@@ -36,6 +37,7 @@ TEST(SeparationHeap, AQueryTakesNothingFromIt) {
       Shape::box({0.3, 0.4, 0.5}), Shape::sphere(0.3),
       Shape::capsule(0.1, 0.4),    Shape::cylinder(0.2, 0.5),
       Shape::box({0.5, 0, 0.5}),   Shape::hull(families::cloud(rng, 40, 0.5).vertices)};
+  test::is_counted = true;
   int overlaps = 0, total = 0;
   for (const Shape& A : shapes) {
     for (const Shape& B : shapes) {

@@ -1,7 +1,7 @@
 /// @file
 /// Counts every heap call of the program. Include it in exactly one of its files: it defines its
-/// own malloc. While `repel::test::watched` is set, it counts calls, blocks allocated and not
-/// freed, and their bytes, as rounded up by the heap.
+/// own malloc. While `repel::test::watched` is set, it counts the calls of some threads, and of all
+/// threads the blocks allocated and not freed and their bytes, as rounded up by the heap.
 #pragma once
 
 #include <atomic>
@@ -21,12 +21,17 @@ namespace repel::test {
 
 inline std::atomic<bool> watched{false};
 inline std::atomic<long> calls{0};
+/// Set it in a thread whose calls are to be counted. A thread that has not set it may still be
+/// about to begin, or look after others, and is free to allocate.
+inline thread_local bool is_counted = false;
 
 inline std::atomic<long> blocks_held{0};
 inline std::atomic<long> bytes_held{0};
 
 inline void count_call() noexcept {
-  if (watched.load(std::memory_order_relaxed)) calls.fetch_add(1, std::memory_order_relaxed);
+  if (is_counted && watched.load(std::memory_order_relaxed)) {
+    calls.fetch_add(1, std::memory_order_relaxed);
+  }
 }
 inline void* taken(void* memory, long sign = 1) noexcept {
   if (memory == nullptr || !watched.load(std::memory_order_relaxed)) return memory;
