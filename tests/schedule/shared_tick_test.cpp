@@ -17,7 +17,7 @@ struct Tick {
   explicit Tick(const World& the_world)
       : world(&the_world),
         shared(the_world, static_cast<int>(the_world.pairs().size()), {}, 0.0),
-        leader{PartPoses(the_world)} {
+        leader{.poses = PartPoses(the_world), .is_leader = true} {
     shared.pairs().track_all(PairIndex(the_world));
   }
   int select() {
@@ -42,7 +42,7 @@ TEST(SharedTick, ForcesHaveTheBitsOfOneThreadAlone) {
   Tick alone(boxes.world), together(boxes.world);
   std::atomic<bool> ends{false};
   std::int64_t taken = 0;
-  std::thread helper([&, evaluator = Evaluator{PartPoses(boxes.world)}]() mutable {
+  std::thread helper([&, evaluator = Evaluator{.poses = PartPoses(boxes.world)}]() mutable {
     while (!ends) taken += together.shared.work(evaluator) ? 1 : 0;
   });
   for (int tick = 0; tick < 300; ++tick) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -21,16 +22,14 @@ struct LaneSets {
   std::array<LaneVec, 3> corners{};  ///< [m] corners of the features, in the frames of the sets
   std::array<LaneVec, 3> turned{};   ///< [m] the same in world axes, from the origins of the sets
   LaneVec half_extents{};            ///< [m] of boxes
-  bool boxes = false;                ///< all sets are boxes
+  unsigned hulls = 0;                ///< bit k: the set of lane k is not a box
 
   /// @param names of the corners of the feature in the set
   void set(int k, const Convex& one, const std::array<std::uint32_t, 4>& names) noexcept {
     sets[static_cast<std::size_t>(k)] = &one;
     for (std::size_t i = 0; i < 3; ++i) corners[i].set(k, one.place(names[i]));
     half_extents.set(k, one.half_extents());
-    boxes = std::all_of(sets.begin(), sets.end(), [](const Convex* other) {
-      return other == nullptr || other->kind() == Convex::Kind::box;
-    });
+    hulls = (hulls & ~(1U << k)) | (one.kind() == Convex::Kind::box ? 0U : 1U << k);
   }
 
   /// To be called after `X_W` or a lane was set and before the next proof. Never inlined, because
@@ -41,12 +40,12 @@ struct LaneSets {
 
   /// `Convex::support_value` of each set along `d`, given in its own frame.
   [[nodiscard]] Lanes support_values(const LaneVec& d) const noexcept {
-    if (boxes) return dot(half_extents, magnitudes(d));
-    const std::array<Vec<double>, lane_count> each = d.each();
-    return lanes_of([&](int k) {
-      const auto i = static_cast<std::size_t>(k);
-      return sets[i]->support_value(each[i]);
-    });
+    Lanes values = dot(half_extents, magnitudes(d));
+    for (unsigned left = hulls; left != 0U; left &= left - 1U) {
+      const int k = std::countr_zero(left);
+      values[k] = sets[static_cast<std::size_t>(k)]->support_value(Vec<double>(d.at(k)));
+    }
+    return values;
   }
 };
 

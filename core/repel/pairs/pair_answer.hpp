@@ -21,6 +21,8 @@ namespace repel::detail {
 /// The data the force of a pair is computed from, at the tick of its evaluation and later. What
 /// `lower_bound` needs comes first: it is asked of hundreds of pairs that are not near.
 struct alignas(64) PairAnswer {
+  static constexpr std::size_t bytes_of_bound = 192;  ///< at its beginning
+
   Separation last;
   double nearer = 0.0;        ///< [m] the distance minus that of the contact patch
   Vec3 p_BA_W{0, 0, 0};       ///< [m] origin of body A from that of body B at the evaluation

@@ -70,11 +70,9 @@ class PolygonSearch {
   void find(const LaneSets& side, const LaneVec& n, const LaneVec& nearest, Facing facing,
             const LaneMask& lanes, const PoseOf& pose, PolygonLanes& polygons) noexcept {
     polygons.set_boxes(side.half_extents, side.X_W, n, nearest, axes_, TiltMean::faded * tilt_);
-    if (side.boxes) return;
-    for (unsigned left = bits_of(lanes); left != 0U; left &= left - 1U) {
+    for (unsigned left = bits_of(lanes) & side.hulls; left != 0U; left &= left - 1U) {
       const int k = std::countr_zero(left);
       const Convex& set = *side.sets[static_cast<std::size_t>(k)];
-      if (set.kind() == Convex::Kind::box) continue;
       const PlanarAxes axes(Vec<double>(axes_.n.at(k)));
       const Flat flat =
           FlatSearch(set, pose(k), axes, facing, Vec<double>(nearest.at(k)), tilt_[k]).run();

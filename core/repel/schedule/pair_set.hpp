@@ -128,6 +128,7 @@ class PairSet {
         [&](int g, PairTotals& totals) { lanes_.evaluate_group(g, motion, poses, totals); },
         [&](int k, bool allowed, PairTotals& totals) {
           const std::int32_t slot = due(k).slot;
+          if (k + ahead < due_count_) memory().prefetch(due(k + ahead).slot);
           is_near_[k] = all_near_ || is_near(slot, motion, poses) ? 1 : 0;
           if (is_near_[k] == 0) return;
           ++totals.near;
@@ -251,9 +252,11 @@ class PairSet {
   /// rotation term alone spoils that bound, the present distance of the shapes along the last
   /// direction.
   [[nodiscard]] bool is_near(int slot, const Motion& motion, PartPoses& poses) noexcept {
-    if (memory().answer(slot).in_range) return true;
+    const PairAnswer& answer = memory().answer(slot);
+    if (answer.in_range) return true;
     const double reach = singles_.reach(slot);
-    double clearance = singles_.lower_bound(slot, motion) - reach;
+    double clearance =
+        answer.lower_bound(singles_.body_a(slot, motion), singles_.body_b(slot, motion)) - reach;
     if (!(clearance > 0.0) && clearance + singles_.lost_to_rotation(slot, motion) > 0.0) {
       clearance = singles_.lower_bound_by_shapes(slot, motion, poses) - reach;
     }
@@ -262,6 +265,8 @@ class PairSet {
     singles_.clear_history(slot);
     return true;
   }
+
+  static constexpr int ahead = 3;  ///< pairs by which answers are fetched before they are read
 
   SingleEvaluator singles_;
   LaneEvaluator lanes_;

@@ -38,7 +38,7 @@ class PairTeam {
         options_(options),
         lookahead_(lookahead),
         prototype_(prototype),
-        leader_{prototype_},
+        leader_{.poses = prototype_, .is_leader = true},
         pairs_(std::move(pairs)),
         search_(pairs_),
         pace_(options.period),
@@ -148,7 +148,7 @@ class PairTeam {
         std::make_unique<WorkerThread>(options_, first_index_ + static_cast<int>(i), pace_);
     helper.watch = {};
     helper.seen = {};
-    helper.thread->start([this, evaluator = Evaluator{prototype_}]() mutable noexcept {
+    helper.thread->start([this, evaluator = Evaluator{.poses = prototype_}]() mutable noexcept {
       return open_to_all_.load(std::memory_order_acquire)->work(evaluator);
     });
   }

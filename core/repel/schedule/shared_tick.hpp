@@ -13,13 +13,15 @@ namespace repel::detail {
 /// What a thread needs of its own to evaluate pairs.
 struct Evaluator {
   PartPoses poses;
+  bool is_leader = false;
   std::int64_t round = -1;  ///< that `poses` belong to
 };
 
-/// A set of pairs whose batches are taken as they come: whoever is free takes the next. The leader,
-/// always the same thread, opens a round when the set is idle, and from then until all batches
-/// taken are finished it is not. Nobody waits in here; a thread that stalls in a batch keeps it,
-/// and the set is not idle until it has finished.
+/// A set of pairs whose batches are taken as they come: whoever is free takes the next, the leader
+/// the first one left, the others the last. So most pairs stay from tick to tick with the thread
+/// that has them in its cache. The leader, always the same thread, opens a round when the set is
+/// idle, and from then until all batches taken are finished it is not. Nobody waits in here; a
+/// thread that stalls in a batch keeps it, and the set is not idle until it has finished.
 class SharedTick {
  public:
   SharedTick(const World& world, int slots, const Budget& budget, double lookahead)
@@ -41,35 +43,47 @@ class SharedTick {
   void open(std::int64_t round, const Motion& motion, int batches) noexcept {
     motion_.tick = motion.tick;
     std::copy(motion.bodies.begin(), motion.bodies.end(), motion_.bodies.begin());
-    batches_ = batches;
+    round_ = round;
     unfinished_.store(batches, std::memory_order_relaxed);
-    left_.store(round << count_bits | batches, std::memory_order_release);
+    left_.store(span(0, static_cast<std::uint32_t>(batches)), std::memory_order_release);
   }
 
   /// Any thread: takes batches of the open round and evaluates them until none is left. False if
   /// there was none.
   bool work(Evaluator& evaluator) noexcept {
     bool any = false;
-    std::int64_t left = left_.load(std::memory_order_acquire);
-    while ((left & count_mask) > 0) {
-      if (!left_.compare_exchange_weak(left, left - 1, std::memory_order_acq_rel,
+    std::uint64_t left = left_.load(std::memory_order_acquire);
+    while (first_of(left) < end_of(left)) {
+      const std::uint32_t first = first_of(left);
+      const std::uint32_t last = end_of(left) - 1;
+      const bool takes_first = evaluator.is_leader;
+      const std::uint64_t rest = takes_first ? span(first + 1, last + 1) : span(first, last);
+      if (!left_.compare_exchange_weak(left, rest, std::memory_order_acq_rel,
                                        std::memory_order_acquire)) {
         continue;
       }
       any = true;
-      evaluate_taken(left >> count_bits, batches_ - static_cast<int>(left & count_mask), evaluator);
+      evaluate_taken(static_cast<int>(takes_first ? first : last), evaluator);
       left = left_.load(std::memory_order_acquire);
     }
     return any;
   }
 
  private:
-  static constexpr int count_bits = 20;  // more batches than a world can have
-  static constexpr std::int64_t count_mask = (1 << count_bits) - 1;
+  /// The batches not yet taken, in one number that is exchanged as a whole.
+  [[nodiscard]] static std::uint64_t span(std::uint32_t first, std::uint32_t end) noexcept {
+    return std::uint64_t{first} << 32U | end;
+  }
+  [[nodiscard]] static std::uint32_t first_of(std::uint64_t span) noexcept {
+    return static_cast<std::uint32_t>(span >> 32U);
+  }
+  [[nodiscard]] static std::uint32_t end_of(std::uint64_t span) noexcept {
+    return static_cast<std::uint32_t>(span);
+  }
 
-  void evaluate_taken(std::int64_t round, int batch, Evaluator& evaluator) noexcept {
-    if (evaluator.round != round) {
-      evaluator.round = round;
+  void evaluate_taken(int batch, Evaluator& evaluator) noexcept {
+    if (evaluator.round != round_) {
+      evaluator.round = round_;
       evaluator.poses.begin_tick();
     }
     pairs_.evaluate(batch, motion_, evaluator.poses);
@@ -77,11 +91,11 @@ class SharedTick {
   }
 
   PairSet pairs_;
-  Motion motion_;    ///< of the round
-  int batches_ = 0;  ///< of the round
+  Motion motion_;            ///< of the round
+  std::int64_t round_ = -1;  ///< that is open
   // Each on a cache line of its own: all threads write to them.
-  alignas(64) std::atomic<std::int64_t> left_{0};  ///< round, and number of batches not yet taken
-  alignas(64) std::atomic<int> unfinished_{0};     ///< batches of the round that are not finished
+  alignas(64) std::atomic<std::uint64_t> left_{0};  ///< the span of batches not yet taken
+  alignas(64) std::atomic<int> unfinished_{0};      ///< batches of the round that are not finished
 };
 
 }  // namespace repel::detail
