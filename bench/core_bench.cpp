@@ -9,8 +9,8 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <random>
 #include <repel/repel.hpp>
+#include <support/families.hpp>
 
 #include "harness.hpp"
 
@@ -19,18 +19,10 @@ namespace {
 using namespace repel;
 
 constexpr std::uint64_t seed = 20;
-using Rng = std::mt19937_64;
-
-double uniform(Rng& rng, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(rng);
-}
-Vec3 direction(Rng& rng) {
-  std::normal_distribution<double> normal;
-  return Vec3(normal(rng), normal(rng), normal(rng)).normalized();
-}
-Mat3 turn(Rng& rng, double angle) {
-  return Eigen::AngleAxisd(angle, direction(rng)).toRotationMatrix();
-}
+using families::direction;
+using families::Rng;
+using families::small_rotation;
+using families::uniform;
 
 /// `vertices` 0: a box, else a hull of that many points on a sphere.
 Shape random_shape(Rng& rng, std::int64_t vertices) {
@@ -55,12 +47,12 @@ std::vector<Case> cases(std::int64_t vertices) {
   std::vector<Case> all;
   for (int i = 0; i < 256; ++i) {
     Case c{.A = random_shape(rng, vertices), .B = random_shape(rng, vertices)};
-    c.X_WA.linear() = turn(rng, uniform(rng, 0.0, 3.0));
-    c.X_WB[0].linear() = turn(rng, uniform(rng, 0.0, 3.0));
+    c.X_WA.linear() = small_rotation(rng, uniform(rng, 0.0, 3.0));
+    c.X_WB[0].linear() = small_rotation(rng, uniform(rng, 0.0, 3.0));
     c.X_WB[0].translation() = uniform(rng, 1.4, 2.5) * direction(rng);
     c.X_WB[1] = c.X_WB[0];
     c.X_WB[1].translation() += 0.0005 * direction(rng);
-    c.X_WB[1].linear() = turn(rng, 0.1 * M_PI / 180.0) * c.X_WB[0].linear();
+    c.X_WB[1].linear() = small_rotation(rng, 0.1 * M_PI / 180.0) * c.X_WB[0].linear();
     all.push_back(std::move(c));
   }
   return all;
@@ -121,12 +113,13 @@ std::vector<Case> contacts(std::int64_t kind) {
     for (Pose& X : c.X_WB) {
       const Mat3 up = kind == 2 ? Eigen::AngleAxisd(M_PI / 2.0, Vec3::UnitY()).toRotationMatrix()
                                 : Mat3(Eigen::AngleAxisd(uniform(rng, 0.0, 3.0), Vec3::UnitZ()));
-      X.linear() = kind == 3 ? turn(rng, uniform(rng, 0.5, 3.0)) : Mat3(turn(rng, 0.004) * up);
+      X.linear() = kind == 3 ? small_rotation(rng, uniform(rng, 0.5, 3.0))
+                             : Mat3(small_rotation(rng, 0.004) * up);
       X.translation() = Vec3(uniform(rng, -0.04, 0.04), uniform(rng, -0.04, 0.04), 0.09);
       if (kind == 3) X.translation().z() = 0.15;
     }
     c.X_WB[1].translation() = c.X_WB[0].translation() + 5e-4 * direction(rng);
-    c.X_WB[1].linear() = turn(rng, 0.1 * M_PI / 180.0) * c.X_WB[0].linear();
+    c.X_WB[1].linear() = small_rotation(rng, 0.1 * M_PI / 180.0) * c.X_WB[0].linear();
     all.push_back(std::move(c));
   }
   return all;
@@ -182,7 +175,7 @@ void tick_4x8(benchmark::State& state) {
   for (int i = 0; i < 8; ++i) {
     Pose X = Pose::Identity();
     X.translation() = uniform(rng, 0.3, 0.5) * direction(rng);
-    X.linear() = turn(rng, uniform(rng, 0.0, 3.0));
+    X.linear() = small_rotation(rng, uniform(rng, 0.0, 3.0));
     const PartId wall = world.add_part(World::fixed, "wall", Shape::box({0.05, 0.1, 0.07}), X);
     for (const PartId part : parts) world.add_pair(part, wall, law);
   }

@@ -4,14 +4,15 @@
 /// A tool of many parts moves at 0.28 m/s and 400 ticks per second past as many obstacles; every
 /// pair stays within range. Each tick is timed, and beside it the warm queries of the same pairs at
 /// the same poses, one after the other. `raw_ns` and `tick_ns` are medians per near pair.
+/// Answers are checked before the timing: the force on the tool must be that of the queries.
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <random>
 #include <repel/repel.hpp>
+#include <support/families.hpp>
 
 #include "harness.hpp"
 
@@ -22,19 +23,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t seed = 20;
 constexpr std::size_t positions = 128;
-using Rng = std::mt19937_64;
-
-double uniform(Rng& rng, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(rng);
-}
-Vec3 direction(Rng& rng) {
-  std::normal_distribution<double> normal;
-  return Vec3(normal(rng), normal(rng), normal(rng)).normalized();
-}
-Mat3 any_turn(Rng& rng) {
-  return Eigen::Quaterniond(Eigen::Vector4d::Random()).normalized().toRotationMatrix() *
-         Eigen::AngleAxisd(uniform(rng, 0.0, 3.0), direction(rng));
-}
+using families::direction;
+using families::Rng;
+using families::uniform;
 
 struct Scene {
   const char* name;
@@ -86,8 +77,8 @@ struct Setting {
         X_A.translation() +=
             Vec3(uniform(rng, -0.03, 0.03), uniform(rng, -0.03, 0.03), overlaps ? 0.065 : 0.1);
       } else {
-        X_A.linear() = any_turn(rng);
-        X_B.linear() = any_turn(rng);
+        X_A.linear() = families::rotation(rng);
+        X_B.linear() = families::rotation(rng);
         const Vec3 away = direction(rng);
         const double wanted = overlaps ? -0.012 : 0.02;
         double low = 0.0, high = 1.0;
@@ -121,9 +112,47 @@ double median(std::vector<double>& all) {
   return all[all.size() / 2];
 }
 
+/// The force on the tool at rest, about its origin, by one query and one patch for each pair.
+Wrench force_by_queries(const World& world, const Pose& X_WT, std::vector<WarmStart>& warm) {
+  Wrench on_tool;
+  for (std::size_t i = 0; i < warm.size(); ++i) {
+    const Pair& pair = world.pairs()[i];
+    const Shape& A = world.part(pair.a).shape;
+    const Shape& B = world.part(pair.b).shape;
+    const Pose X_WA = X_WT * world.part(pair.a).X_BP;
+    const Pose& X_WB = world.part(pair.b).X_BP;
+    const Separation s = separation(A, X_WA, B, X_WB, world.query_options(), warm[i]);
+    ContactPatch patch{.gradient = {s.extraction_W}};
+    (void)find_patch(s, {A, X_WA}, {B, X_WB}, pair.law.tilt, patch);
+    const double distance = (s.lower > 0.0 ? s.lower : s.distance) - patch.nearer;
+    on_tool += moved_to(pair.law(distance, 0.0) * patch.gradient, X_WT.translation() - s.p_WA);
+  }
+  return on_tool;
+}
+
+/// Whether ticks give those forces, to 1e-8 of them or of 1 N.
+bool is_right(const Scene& scene, int pairs) {
+  Setting setting(scene, pairs);
+  World& world = setting.world;
+  Coprocessor coprocessor(world, {});
+  std::vector<WarmStart> warm(static_cast<std::size_t>(pairs));
+  for (std::size_t k = 0; k < positions; ++k) {
+    world.motion().tick = static_cast<std::int64_t>(k) + 1;
+    world.place(setting.tool, setting.X_WT[k], {});
+    const Wrench found = coprocessor.exchange().on_body[1];
+    const Wrench wanted = force_by_queries(world, setting.X_WT[k], warm);
+    const double off = norm(found.force - wanted.force) + norm(found.torque - wanted.torque);
+    if (!(off <= 1e-8 * (1.0 + norm(wanted.force) + norm(wanted.torque)))) return false;
+  }
+  return true;
+}
+
 void near_pair(benchmark::State& state) {
   const Scene& scene = scenes[state.range(0)];
   const auto pairs = static_cast<std::size_t>(state.range(1));
+  if (!is_right(scene, static_cast<int>(pairs))) {
+    return state.SkipWithError("the forces are not those of the queries");
+  }
   Setting setting(scene, static_cast<int>(pairs));
   World& world = setting.world;
   std::vector<std::vector<Pose>> X_WA(positions);
