@@ -204,6 +204,35 @@ TEST(DeepestPoint, OfManyThatAreAsDeepOneIsTheAnswerWarmAndCold) {
   EXPECT_GT(many, draws(500));
 }
 
+// Regression: where all points of a segment are as deep, the answer changes from one of its ends to
+// the other as it turns. The ratio test allowed for more rounding than there is, and so a warm
+// start kept the old end for ten milliradians longer than a cold one.
+TEST(DeepestPoint, OfASegmentThatTurnsTheSameEndIsTheAnswerWarmAndCold) {
+  const Shape A = Shape::box({0.009, 0.015, 0.018});
+  const Shape B = Shape::box({0.011, 0.016, 0.005});
+  constexpr double step = 2e-3;  // [rad]
+  WarmStart warm;
+  double first = 0.0, last = 0.0;  // [m] on which side of the middle
+  int differ = 0;
+  for (int k = 0; k < 200; ++k) {
+    const double angle = 0.5 + step * k;
+    // The planes halfway through both boxes meet in a line along this.
+    const Vec3 along(0.0, std::cos(angle), std::sin(angle));
+    const Vec3 thin = Vec3(0.3, 0.0, 0.0) + std::sqrt(0.91) * along.cross(Vec3::UnitX());
+    Pose X_WB = Pose::Identity();
+    X_WB.linear() << along, thin.cross(along), thin;
+    const Pose X_WA = Pose::Identity();
+    const Separation s = separation(A, X_WA, B, X_WB, by_deepest_point, warm);
+    EXPECT_NEAR(s.distance, -0.014, 1e-12);
+    const Vec3 cold = separation(A, X_WA, B, X_WB, by_deepest_point).p_WA;
+    differ += (s.p_WA - cold).norm() > 1e-6 ? 1 : 0;
+    last = cold.dot(along);
+    if (k == 0) first = last;
+  }
+  EXPECT_LT(first * last, 0.0) << "the end does not change";
+  EXPECT_LE(differ, 1);
+}
+
 TEST(DeepestPoint, IsMeasuredAlsoFromAWarmStartThatNamesLevels) {
   Rng rng(seed);
   int at_levels = 0;

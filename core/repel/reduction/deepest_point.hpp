@@ -69,7 +69,8 @@ class DeepestPoint {
     static constexpr int warm_pivots = is_double ? 24 : 40;
     static constexpr int cold_pivots = is_double ? 72 : 80;
     static constexpr double of_depth = is_double ? 0x1p-49 : 0x1p-86;  ///< relative to the size
-    static constexpr double of_multiplier = is_double ? 1e-14 : 1e-24;
+    /// Above the rounding of a multiplier, and far below the tilt, which it would hide.
+    static constexpr double of_multiplier = is_double ? 1e-15 : 1e-24;
     static constexpr double least_share = is_double ? 1e-9 : 1e-18;
     /// Of the objective, a perturbation [-]: it separates multipliers that would all be 0, and
     /// where several points are deepest, it makes one the answer, cold as well as warm. Above
