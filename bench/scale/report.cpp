@@ -106,7 +106,12 @@ std::string line(const Scenario& s, const Run& run) {
     out += text(" wrong at %lld of %lld ticks | | | |", static_cast<long long>(check.wrong),
                 static_cast<long long>(check.ticks));
   }
-  return out + text(" %.0f | %zu |\n", run.bytes / s.setting.pairs, run.ns.size());
+  out += text(" %.0f | %zu |", run.bytes / s.setting.pairs, run.ns.size());
+  const auto alone = std::find_if(s.runs.begin(), s.runs.end(), [](const Run& other) {
+    return other.way.ours && !other.way.every_pair && other.way.threads == 0;
+  });
+  const bool is_comparable = check.equal() && alone != s.runs.end() && alone->check.equal();
+  return out + (is_comparable ? text(" %.2f |\n", run.mean() / alone->mean()) : " |\n");
 }
 
 std::string small_table(const std::vector<SmallRun>& small) {
@@ -146,8 +151,9 @@ std::string to_json(const std::vector<Scenario>& scenarios, const std::vector<Sm
 
 std::string to_markdown(const std::vector<Scenario>& scenarios,
                         const std::vector<SmallRun>& small) {
-  std::string out = bench::heading({"method", "threads", "pairs", "near", "evaluated", "mean [ns]",
-                                    "p50", "p99", "p99.9", "bytes per pair", "ticks"});
+  std::string out =
+      bench::heading({"method", "threads", "pairs", "near", "evaluated", "mean [ns]", "p50", "p99",
+                      "p99.9", "bytes per pair", "ticks", "mean, times repel without threads"});
   for (const Scenario& scenario : scenarios) {
     for (const Run& run : scenario.runs) out += line(scenario, run);
   }
