@@ -6,8 +6,8 @@ import math
 
 import chart
 
-COLOURS = {"repel": "#c1121f", "repel, every pair": "#f77f00", "bullet": "#7f7f7f",
-           "coal": "#2a6f97", "fcl": "#e09f3e"}
+COLOURS = {"repel": "#c1121f", "repel, every pair": "#f77f00", "bullet, with forces": "#7f7f7f",
+           "coal, with forces": "#2a6f97", "fcl, with forces": "#e09f3e"}
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 330, 340, 60, 40, 50
 FEWEST, MOST = 32, 1000000
 
@@ -16,7 +16,9 @@ def curves(runs, near, value):
     """{method: [(pairs, value)]} in the caller's thread; a wrong answer earns no point."""
     methods = {}
     for run in runs:
-        if run.get("near") == near and run["threads"] == 0 and run["equal_to_brute_force"]:
+        if run.get("near") != near or run["method"] not in COLOURS:
+            continue
+        if run["threads"] == 0 and run["equal_to_brute_force"]:
             methods.setdefault(run["method"], []).append((run["pairs"], run[value]))
     return methods
 

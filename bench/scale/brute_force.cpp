@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <repel/patch/patch.hpp>
+#include "pair_force.hpp"
 
 namespace repel::scale {
 
@@ -77,19 +77,10 @@ void BruteForce::push(std::int32_t pair, const Separation& s) {
   const std::size_t a = part_a.body.index;
   const std::size_t b = part_b.body.index;
   const ForceLaw law = World::fitted(scene_.law(), part_a.shape, part_b.shape);
-  ContactPatch patch{.gradient = {s.extraction_W}};
   const Pose X_WA = X_WB_[a] * part_a.X_BP;
   const Pose X_WB = X_WB_[b] * part_b.X_BP;
-  (void)find_patch(s, {part_a.shape, X_WA}, {part_b.shape, X_WB}, law.tilt, patch);
-  const Vec3 p_QA = X_WB_[a].translation() - s.p_WA;
-  const Vec3 p_QB = X_WB_[b].translation() - s.p_WA;
-  const Twist v_A = moved_to(V_WB_[a], -p_QA);
-  const Twist v_B = moved_to(V_WB_[b], -p_QB);
-  const double distance = (s.lower > 0.0 ? s.lower : s.distance) - patch.nearer;
-  const Twist v_BA{v_A.linear - v_B.linear, v_A.angular - v_B.angular};
-  const Wrench on_a = law(distance, power(patch.gradient, v_BA)) * patch.gradient;
-  on_body_[a] += moved_to(on_a, p_QA);
-  on_body_[b] += moved_to(-1.0 * on_a, p_QB);
+  scale::push(s, {part_a.shape, X_WA, X_WB_[a], V_WB_[a]}, {part_b.shape, X_WB, X_WB_[b], V_WB_[b]},
+              law, on_body_[a], on_body_[b]);
 }
 
 void BruteForce::tick(std::span<const Placement> placements) {

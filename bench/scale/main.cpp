@@ -44,8 +44,9 @@ constexpr const char* about =
     "All ticks are timed first and checked after, over the same motion. At every tick the spheres\n"
     "around both parts of every pair are compared one by one, the pairs whose spheres are within\n"
     "range are asked, and their forces must be ours on every body to 1e-8; beside, no pair within\n"
-    "range may be missing. A rival must find the same pairs within range. In the first ticks, as "
-    "many as 300 million\n"
+    "range may be missing. A rival must find the same pairs within range or, with forces, give "
+    "the\n"
+    "same forces. In the first ticks, as many as 300 million\n"
     "evaluations allow (20 million in the sweep), ours must also be equal to itself with\n"
     "CoprocessorOptions::every_pair; JSON says how many (every_pair_ticks).\n"
     "Exit code 1 when an answer of ours is wrong, 2 for what is asked wrongly.\n";
@@ -137,7 +138,7 @@ Scenario measure_all(const Setting& setting, const std::vector<Way>& ways, doubl
 std::vector<Scenario> sweep(const Options& options) {
   std::vector<Way> ways{ours(0), ours(1), ours(2), ours(1, CoprocessorMode::beside), every_pair()};
   for (const Way& rival : rivals()) {
-    if (is_chosen(options.rivals, rival.name)) ways.push_back(rival);
+    if (is_chosen(options.rivals, rival.library())) ways.push_back(rival);
   }
   std::vector<Scenario> scenarios;
   for (const int pairs : {32, 100, 1000, 10000, 100000, 1000000}) {

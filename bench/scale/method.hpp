@@ -51,6 +51,8 @@ struct Way {
   bool every_pair = false;  ///< evaluates all pairs at every tick
   std::function<std::unique_ptr<Method>(const Scene&)> load;
 
+  /// The library, if it is not ours.
+  [[nodiscard]] std::string library() const { return name.substr(0, name.find(',')); }
   /// The forces are those of pairs one tick ago, at distances that are not larger than the true
   /// ones.
   [[nodiscard]] bool is_beside() const { return threads > 0 && mode == CoprocessorMode::beside; }

@@ -24,12 +24,13 @@ class BroadPhase {
 };
 
 /// The boxes of the parts that moved go to the broad phase, enlarged by the range for tool parts;
-/// every pair whose boxes overlap is queried with a warm start.
+/// every pair whose boxes overlap is queried with a warm start. With forces it gives what repel
+/// does; without, the pairs within range.
 class Sieve final : public Method {
  public:
   using Maker = std::unique_ptr<BroadPhase> (*)(std::span<const Box> boxes, int tool_parts);
 
-  Sieve(const Scene& scene, Maker make);
+  Sieve(const Scene& scene, Maker make, bool with_forces);
   void tick(std::int64_t tick, std::span<const Placement> placements) noexcept override;
   void note(Record& record) const override;
   [[nodiscard]] int evaluated() const override { return evaluated_; }
@@ -51,6 +52,9 @@ class Sieve final : public Method {
   std::vector<Pose> X_WP_;                   ///< by part
   std::vector<std::vector<Moving>> moving_;  ///< by body
   std::vector<WarmStart> warm_;              ///< by pair
+  std::vector<Placement> bodies_;            ///< where they are
+  std::vector<Wrench> on_body_;
+  std::vector<ForceLaw> laws_;  ///< by pair; empty: no forces
   std::unique_ptr<BroadPhase> broad_;
   std::vector<std::pair<int, int>> found_;
   std::vector<std::int32_t> within_;
