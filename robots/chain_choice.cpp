@@ -25,7 +25,7 @@ bool is_called_like_a_finger(const std::string& joint) {
 
 /// Whether a link of this name marks where a tool acts.
 bool is_called_like_a_tool(const std::string& link) {
-  std::string words = "_" + in_lower_case(link) + "_";
+  std::string words = in_lower_case("_" + link + "_");
   for (char& c : words) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   }
