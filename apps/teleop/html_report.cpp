@@ -220,19 +220,19 @@ std::string scene_text(const RunResult& r) {
 std::string summary(const RunResult& r) {
   const double seconds = static_cast<double>(r.totals().ticks) / r.options.rate_hz;
   std::string html = "<p class='soft'>";
-  html += std::to_string(r.totals().ticks) + " ticks at " + to_text(r.options.rate_hz) + " Hz, " +
-          to_text(seconds, 5) + " s; back end " + escaped(r.options.backend) + "; " +
-          (r.options.plant_inertia == 1.0
-               ? ""
-               : "plant inertia " + to_text(r.options.plant_inertia) + "; ") +
-          (r.scene.measure == QueryOptions{}.measure
-               ? ""
-               : "overlaps by " + to_text(r.scene.measure) + "; ") +
-          std::to_string(r.pairs) + " pairs; " + std::to_string(r.threads) +
-          " coprocessor threads" +
-          (r.threads > 0 ? " " + std::string(to_text(r.options.coprocessor)) : std::string()) +
-          (r.options.fast ? "; not by the clock" : "") + (r.interrupted ? "; interrupted" : "") +
-          "</p>\n";
+  html +=
+      std::to_string(r.totals().ticks) + " ticks at " + to_text(r.options.rate_hz) + " Hz, " +
+      to_text(seconds, 5) + " s; back end " + escaped(r.options.backend) + "; " +
+      (r.options.plant_inertia == 1.0
+           ? ""
+           : "plant inertia " + to_text(r.options.plant_inertia) + "; ") +
+      (r.scene.measure == QueryOptions{}.measure
+           ? ""
+           : "overlaps by " + to_text(r.scene.measure) + "; ") +
+      std::to_string(r.pairs) + " pairs; " + std::to_string(r.threads) + " coprocessor threads" +
+      (r.threads > 0 ? std::string(" ").append(to_text(r.options.coprocessor)) : std::string()) +
+      (r.options.fast ? "; not by the clock" : "") + (r.interrupted ? "; interrupted" : "") +
+      "</p>\n";
   return html;
 }
 

@@ -87,8 +87,8 @@ std::vector<std::string> names_of(bool v6_too) {
     } else if (v6_too && each->ifa_addr->sa_family == AF_INET6) {
       const auto* v6 = reinterpret_cast<const sockaddr_in6*>(each->ifa_addr);
       if (IN6_IS_ADDR_LINKLOCAL(&v6->sin6_addr)) continue;  // browsers refuse such ones
-      names.push_back("[" + std::string(inet_ntop(AF_INET6, &v6->sin6_addr, text, sizeof text)) +
-                      "]");
+      const std::string name = inet_ntop(AF_INET6, &v6->sin6_addr, text, sizeof text);
+      names.push_back(std::string("[").append(name).append("]"));
     }
   }
   return names;

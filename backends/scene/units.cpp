@@ -71,7 +71,7 @@ bool obeys(double value, const Rule& rule) {
 std::string range_text(const Rule& rule) {
   std::string text = to_text(rule.low) + " to " + to_text(rule.high);
   const std::string_view si = rule.units.front().name;
-  if (!si.empty()) text += " " + std::string(si);
+  if (!si.empty()) text.append(" ").append(si);
   return rule.may_be_auto ? text + ", or auto" : text;
 }
 

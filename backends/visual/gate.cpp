@@ -28,7 +28,8 @@ Gate::Gate(const std::string& address, std::uint16_t port)
 
 bool Gate::is_host(std::string_view host) const {
   if (port_ == 80 && is_name(host)) return true;
-  const std::string port = ":" + std::to_string(port_);
+  std::string port(":");
+  port += std::to_string(port_);
   return host.ends_with(port) && is_name(host.substr(0, host.size() - port.size()));
 }
 
