@@ -70,6 +70,7 @@ class PairTeam {
       if (helper.thread != nullptr) helper.thread->stop();
     }
     for (auto& thread : given_up_) thread->stop();
+    stopped_ = true;
   }
   [[nodiscard]] int threads() const noexcept { return static_cast<int>(helpers_.size()); }
 
@@ -105,9 +106,14 @@ class PairTeam {
   [[nodiscard]] const PairSet& pairs() const noexcept { return current_->pairs(); }
   /// Ticks whose pairs were shared.
   [[nodiscard]] std::int64_t shared() const noexcept { return shared_; }
+  /// Before `stop`, without what a memory knows that a late or dead thread holds.
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
     PairExtremes extremes = current_->pairs().extremes_of(id);
-    if (spare_ != nullptr && spare_->is_idle()) extremes.add(spare_->pairs().extremes_of(id));
+    if (stopped_) {
+      for (const auto& set : sets_) extremes.add(set->pairs().extremes_of(id));
+    } else if (spare_ != nullptr && spare_->is_idle()) {
+      extremes.add(spare_->pairs().extremes_of(id));
+    }
     return extremes;
   }
 
@@ -230,7 +236,9 @@ class PairTeam {
   std::shared_ptr<const PairIndex> pairs_;
   PairSearch search_;
   Pace pace_;
-  std::vector<std::unique_ptr<SharedTick>> sets_;  ///< of the leader until `start`, then of `tend`
+  /// Of the leader until `start` and after `stop`, between of `tend`.
+  std::vector<std::unique_ptr<SharedTick>> sets_;
+  bool stopped_ = false;
   SharedTick* current_ = nullptr;
   SharedTick* spare_ = nullptr;  ///< not idle while a thread is late
   std::int64_t round_ = 0;
