@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -49,10 +50,11 @@ TEST(PolygonSearch, FindsThePatchOfEachPairAlone) {
     const auto pair = [&](int k) -> const test::Contacts& {
       return group.pairs[static_cast<std::size_t>(k)];
     };
+    FaceLanes faces_a, faces_b;
     PolygonSearch search(group.features, gap, group.tilt);
     search.find_flats(
         gap.proven, [&](int k) -> const Pose& { return pair(k).X_WA; },
-        [&](int k) -> const Pose& { return pair(k).X_WB; });
+        [&](int k) -> const Pose& { return pair(k).X_WB; }, faces_a, faces_b);
     const auto compare = [&](const PolygonPatches& patches) {
       for (int k = 0; k < lane_count; ++k) {
         if (patches.valid[k] == 0) continue;
@@ -70,6 +72,50 @@ TEST(PolygonSearch, FindsThePatchOfEachPairAlone) {
     all += lane_count;
   }
   EXPECT_GT(found, all / 8);
+}
+
+// Pairs move from lane to lane, and what a lane knows is lost with that: it must not show.
+TEST(PolygonSearch, KnownFacesChangeNoBit) {
+  Rng rng(seed);
+  int known = 0;
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "group", i));
+    Group group(rng);
+    FaceLanes kept_a, kept_b;
+    for (int tick = 0; tick < 4; ++tick) {
+      const LaneGap gap = group.features.prove({});
+      const auto patches = [&](FaceLanes& faces_a, FaceLanes& faces_b) {
+        PolygonSearch search(group.features, gap, group.tilt);
+        search.find_flats(
+            gap.proven,
+            [&](int k) -> const Pose& { return group.pairs[static_cast<std::size_t>(k)].X_WA; },
+            [&](int k) -> const Pose& { return group.pairs[static_cast<std::size_t>(k)].X_WB; },
+            faces_a, faces_b);
+        return search.patches<PolygonLanes::most>(gap.proven, Lanes{});
+      };
+      if (tick > 0) {
+        known += std::popcount(bits_of(kept_a.holds(gap.n_A, group.tilt) & gap.proven) &
+                               group.features.A.hulls);
+      }
+      FaceLanes new_a, new_b;
+      const PolygonPatches with = patches(kept_a, kept_b);
+      const PolygonPatches without = patches(new_a, new_b);
+      ASSERT_EQ(bits_of(with.valid), bits_of(without.valid));
+      for (int k = 0; k < lane_count; ++k) {
+        if (with.valid[k] == 0) continue;
+        EXPECT_EQ(with.nearer[k], without.nearer[k]);
+        EXPECT_EQ(with.force.at(k), without.force.at(k));
+        EXPECT_EQ(with.torque.at(k), without.torque.at(k));
+      }
+      for (int k = 0; k < lane_count; ++k) {
+        Pose& X = group.pairs[static_cast<std::size_t>(k)].X_WA;
+        X.linear() = Eigen::AngleAxisd(0.002, families::direction(rng)) * X.linear();
+        group.features.A.X_W.set(k, X);
+      }
+      group.features.A.turn();
+    }
+  }
+  EXPECT_GT(known, 100);
 }
 
 }  // namespace polygon_search_test

@@ -70,6 +70,7 @@ class Faces {
     return 8 * vertices * sizeof(Vec<double>) + (9 * vertices + 2) * sizeof(std::uint32_t) +
            6 * vertices * sizeof(Corner) + 3 * vertices * sizeof(float);
   }
+  [[nodiscard]] std::size_t count() const noexcept { return normals_.size(); }
   /// The unit normal of face `i`, outward.
   [[nodiscard]] const Vec<double>& normal(std::uint32_t i) const noexcept { return normals_[i]; }
   /// The vertices of face `i`, in order around it.

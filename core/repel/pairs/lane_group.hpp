@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <limits>
@@ -38,6 +37,8 @@ class LaneGroup {
     tilt_[k] = pair.law.tilt;
     pointed_a_.set(k, {});
     pointed_b_.set(k, {});
+    faces_a_.remove(k);
+    faces_b_.remove(k);
     had_patch_ &= ~(1U << k);
     depth_a_[k] = world.part(pair.a).shape.level(0).depth;
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
@@ -61,7 +62,7 @@ class LaneGroup {
     update_poses(of_a_, features_.A, motion, poses);
     update_poses(of_b_, features_.B, motion, poses);
     fixed_are_turned_ = true;
-    const LaneGap gap = features_.prove(options);
+    const LaneGap gap = features_.prove({});
     apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
     const LaneMask proven = gap.proven & used_;
     const RelativeMotion<Lanes, LaneVec> relative = relative_motions(motion);
@@ -136,8 +137,6 @@ class LaneGroup {
   }
 
  private:
-  static constexpr QueryOptions options{};
-
   [[nodiscard]] Separation separation_in(int k) const noexcept {
     return {apart_.distance[k],
             apart_.lower[k],
@@ -201,7 +200,9 @@ class LaneGroup {
     PolygonSearch search(features_, gap, tilt_);
     search.find_flats(
         flat, [&](int k) -> const Pose& { return of_a_.posed(k, poses, motion).X_W; },
-        [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; });
+        [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; }, faces_a_,
+        faces_b_);
+    had_patch_ &= ~search.corners();
     unsigned left = had_patch_;
     const auto take = [&](const PolygonPatches& found) {
       left &= ~bits_of(found.valid);
@@ -259,6 +260,7 @@ class LaneGroup {
   Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
   Lanes tilt_{};                   ///< [rad] of the laws
   PointedLanes pointed_a_, pointed_b_;
+  FaceLanes faces_a_, faces_b_;
   unsigned had_patch_ = 0;  ///< bit k: at the last evaluation; it is then not looked whether not
   // The members of PairAnswer.
   LaneVec gradient_W_{}, moment_W_{};

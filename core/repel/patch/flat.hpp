@@ -233,11 +233,10 @@ class FlatSearch {
   /// Lowers the tilt to what a face leaves, and returns the square of how far its normal is off
   /// [rad^2].
   double lower_tilt(std::uint32_t face, Flat& flat) const noexcept {
-    constexpr double growth = 0.045;
     const Vec<double> between = set_.faces().normal(face) - n_;
     const double square = dot(between, between);
     const double room = set_.faces().room_of(face);
-    if (room < flat.tilt) flat.tilt = std::min(flat.tilt, room + growth * std::sqrt(square));
+    if (room < flat.tilt) flat.tilt = std::min(flat.tilt, tilt_beside(room, std::sqrt(square)));
     return square;
   }
 
@@ -247,6 +246,7 @@ class FlatSearch {
     const Vec<double>& normal = set_.faces().normal(face);
     const auto corners = set_.faces().corners(face);
     set_slope(flat, rotate(X_, normal));
+    flat.face = face;
     if (corners.size() <= Flat::most) {
       const std::size_t last = corners.size() - 1;
       for (std::size_t k = 0; k <= last; ++k) {

@@ -107,11 +107,14 @@ class Outline {
 struct Flat {
   static constexpr int most = 16;  ///< corners
 
-  Outline outline;       ///< of up to `most` corners, with the nearest point at r = 0
-  Planar slope{};        ///< how its height along the normal changes; of a point 0
-  bool is_disc = false;  ///< the polygon stands for a disc
-  double radius = 0.0;   ///< [m] of a segment: of curvature across it
-  double tilt = 0.0;     ///< [rad] up to which no other feature of the set is nearest
+  Outline outline;               ///< of up to `most` corners, with the nearest point at r = 0
+  Planar slope{};                ///< how its height along the normal changes; of a point 0
+  bool is_disc = false;          ///< the polygon stands for a disc
+  double radius = 0.0;           ///< [m] of a segment: of curvature across it
+  double tilt = 0.0;             ///< [rad] up to which no other feature of the set is nearest
+  std::uint32_t face = no_face;  ///< of a polytope: its name in the set
+
+  static constexpr std::uint32_t no_face = 0xFFFFFFFFU;
 };
 
 /// Which side of a contact a set is on: below, and its outward normal along n, or above.

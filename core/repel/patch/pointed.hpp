@@ -57,10 +57,6 @@ class PointedSearch {
         second = std::min(second, slope);
       }
     }
-    [[nodiscard]] Pointed beyond(double angle) const noexcept {
-      if (least > angle) return {.within = least - angle};
-      return {.along = along, .within = second - angle};
-    }
   };
 
   [[nodiscard]] Pointed of_box() const noexcept {
@@ -69,25 +65,25 @@ class PointedSearch {
     if (half.x() > 0.0) edges.add(std::abs(n_.x()), {1.0, 0.0, 0.0}, 0);
     if (half.y() > 0.0) edges.add(std::abs(n_.y()), {0.0, 1.0, 0.0}, 0);
     if (half.z() > 0.0) edges.add(std::abs(n_.z()), {0.0, 0.0, 1.0}, 0);
-    return edges.beyond(flat_within(tilt_));
+    const double angle = flat_within(tilt_);
+    if (edges.least > angle) return {.within = edges.least - angle};
+    return {.along = edges.along, .within = edges.second - angle};
   }
 
   [[nodiscard]] Pointed of_polytope() const noexcept {
     const std::uint32_t corner = set_.support(n_).name;
+    const FacesAt here = faces_at(corner);
     TwoLeast edges;
     add_edges(corner, edges);
-    double nearest_face = face_at(corner);
-    const bool is_edge = edges.least <= tilt_;
-    if (is_edge) {
-      TwoLeast there;
-      const std::uint32_t to = edges.to;
-      add_edges(to, there, corner);
-      edges.second = std::min(edges.second, there.least);
-      nearest_face = std::min(nearest_face, face_at(to));
+    if (edges.least > here.tilt) {
+      return {.within = std::min(before(edges.least, here.tilt), here.within)};
     }
-    Pointed pointed = edges.beyond(tilt_);
-    pointed.within = std::min(pointed.within, nearest_face - flat_within(tilt_));
-    return pointed;
+    const FacesAt there = faces_at(edges.to);
+    TwoLeast others;
+    add_edges(edges.to, others, corner);
+    return {.along = edges.along,
+            .within = std::min({before(edges.second, here.tilt), before(others.least, there.tilt),
+                                here.within, there.within})};
   }
 
   void add_edges(std::uint32_t from, TwoLeast& edges,
@@ -98,13 +94,30 @@ class PointedSearch {
       if (corners[k].next != without) edges.add(dot(n_, unit[k]), unit[k], corners[k].next);
     }
   }
-  /// [1] How far the normal of the nearest face at a corner is from n.
-  [[nodiscard]] double face_at(std::uint32_t at) const noexcept {
-    double most = -1.0;
-    for (const Faces::Corner& corner : set_.faces().at(at)) {
-      most = std::max(most, dot(set_.faces().normal(corner.face), n_));
+
+  /// Of the faces at a corner.
+  struct FacesAt {
+    double tilt;    ///< [rad] what they leave
+    double within;  ///< [1] as Pointed: up to where none is flat
+  };
+  [[nodiscard]] FacesAt faces_at(std::uint32_t corner) const noexcept {
+    const Faces& faces = set_.faces();
+    double least = std::numeric_limits<double>::infinity();
+    double tilt = tilt_;
+    for (const Faces::Corner& at : faces.at(corner)) {
+      const Vec<double> between = faces.normal(at.face) - n_;
+      const double square = dot(between, between);
+      least = std::min(least, square);
+      const double room = faces.room_of(at.face);
+      if (room < tilt) tilt = std::min(tilt, tilt_beside(room, std::sqrt(square)));
     }
-    return std::sqrt(std::max(0.0, 2.0 - 2.0 * most));
+    // The tilt, too, changes with n.
+    constexpr double growth = TiltMean::faded * tilt_growth;
+    return {tilt, (std::sqrt(least) - flat_within(tilt)) / (1.0 + growth)};
+  }
+  /// [1] How far n may turn before the slope of an edge is that tilt [rad].
+  [[nodiscard]] static double before(double slope, double tilt) noexcept {
+    return (slope - tilt) / (1.0 + tilt_growth);
   }
 
   static constexpr double rounding = 1e-9;

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include <repel/distance/feature_lanes.hpp>
+#include <repel/patch/face_lanes.hpp>
 #include <repel/patch/patch.hpp>
 #include <repel/patch/polygon_mean.hpp>
 
@@ -31,12 +32,17 @@ class PolygonSearch {
 
   /// Finds the features of those lanes.
   /// @param pose_a,pose_b called with k: the pose of the set in lane k
+  /// @param faces_a,faces_b what is known of the sets; updated
   template <class PoseOfA, class PoseOfB>
-  void find_flats(const LaneMask& lanes, const PoseOfA& pose_a, const PoseOfB& pose_b) noexcept {
+  void find_flats(const LaneMask& lanes, const PoseOfA& pose_a, const PoseOfB& pose_b,
+                  FaceLanes& faces_a, FaceLanes& faces_b) noexcept {
     const LaneVec p_AB = features_.B.X_W.columns[3] - features_.A.X_W.columns[3];
-    find(features_.A, gap_.n_A, gap_.p_AQa_W, Facing::down, lanes, pose_a, a_);
-    find(features_.B, gap_.n_B, gap_.p_AQb_W - p_AB, Facing::up, lanes & a_.valid, pose_b, b_);
+    find({features_.A, gap_.n_A, gap_.p_AQa_W, Facing::down}, lanes, pose_a, faces_a, a_);
+    find({features_.B, gap_.n_B, gap_.p_AQb_W - p_AB, Facing::up}, lanes & a_.valid, pose_b,
+         faces_b, b_);
   }
+  /// Bit k: one of the sets in lane k shows a corner, so that there is no patch.
+  [[nodiscard]] unsigned corners() const noexcept { return corners_; }
 
   /// Of those lanes that need so many sides, `PolygonLanes::most` or the 4 of boxes.
   template <std::size_t sides>
@@ -66,19 +72,43 @@ class PolygonSearch {
   }
 
  private:
+  /// One side of the pairs.
+  struct Side {
+    const LaneSets& sets;
+    const LaneVec& n;       ///< outward, in the frames of the sets
+    const LaneVec nearest;  ///< [m] from their origins, world axes
+    Facing facing;
+  };
+
   template <class PoseOf>
-  void find(const LaneSets& side, const LaneVec& n, const LaneVec& nearest, Facing facing,
-            const LaneMask& lanes, const PoseOf& pose, PolygonLanes& polygons) noexcept {
-    polygons.set_boxes(side.half_extents, side.X_W, n, nearest, axes_, TiltMean::faded * tilt_);
-    for (unsigned left = bits_of(lanes) & side.hulls; left != 0U; left &= left - 1U) {
-      const int k = std::countr_zero(left);
-      const Convex& set = *side.sets[static_cast<std::size_t>(k)];
-      const PlanarAxes axes(Vec<double>(axes_.n.at(k)));
-      const Flat flat =
-          FlatSearch(set, pose(k), axes, facing, Vec<double>(nearest.at(k)), tilt_[k]).run();
-      if (flat.outline.size > largest || !(flat.tilt > 0.0)) continue;
-      if (polygons.set(k, flat)) tilt_[k] = flat.tilt;
+  void find(const Side& side, const LaneMask& lanes, const PoseOf& pose, FaceLanes& faces,
+            PolygonLanes& polygons) noexcept {
+    const LaneSets& sets = side.sets;
+    polygons.set_boxes(sets.half_extents, sets.X_W, side.n, side.nearest, axes_,
+                       TiltMean::faded * tilt_);
+    const unsigned hulls = bits_of(lanes) & sets.hulls;
+    if (hulls == 0U) return;
+    LaneMask known = faces.holds(side.n, tilt_) & lanes;
+    for (unsigned left = hulls & ~bits_of(known); left != 0U; left &= left - 1U) {
+      find_flat(side, std::countr_zero(left), pose, faces, polygons);
     }
+    // Whether a face was known does not show in the result.
+    known = faces.holds(side.n, tilt_) & lanes;
+    if (bits_of(known) != 0U) faces.place(known, sets.X_W, side.nearest, axes_, polygons);
+  }
+
+  template <class PoseOf>
+  void find_flat(const Side& side, int k, const PoseOf& pose, FaceLanes& faces,
+                 PolygonLanes& polygons) noexcept {
+    const Convex& set = *side.sets.sets[static_cast<std::size_t>(k)];
+    const PlanarAxes axes(Vec<double>(axes_.n.at(k)));
+    const Flat flat =
+        FlatSearch(set, pose(k), axes, side.facing, Vec<double>(side.nearest.at(k)), tilt_[k])
+            .run();
+    if (flat.outline.size < 2) corners_ |= 1U << k;
+    if (flat.outline.size > largest || !(flat.tilt > 0.0)) return;
+    if (flat.face != Flat::no_face) faces.set(k, set, flat.face, side.facing);
+    if (polygons.set(k, flat)) tilt_[k] = flat.tilt;
   }
 
   /// Corners from which on a patch is found faster alone: all sides of A are cut by all of B.
@@ -89,6 +119,7 @@ class PolygonSearch {
   PlanarLaneAxes axes_;
   Lanes tilt_;  ///< [rad] up to which no other features are nearest
   PolygonLanes a_, b_;
+  unsigned corners_ = 0;
 };
 
 }  // namespace repel::detail

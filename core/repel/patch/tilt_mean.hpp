@@ -272,4 +272,13 @@ class TiltMean {
   return TiltMean::faded * tilt;
 }
 
+/// By how much of an angle `tilt_beside` grows.
+inline constexpr double tilt_growth = 0.045;
+/// [rad] The tilt that a face leaves around a direction.
+/// @param room [rad] Faces::room_of
+/// @param off [rad] from its normal to the direction
+[[nodiscard]] inline double tilt_beside(double room, double off) noexcept {
+  return room + tilt_growth * off;
+}
+
 }  // namespace repel::detail
