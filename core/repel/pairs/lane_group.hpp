@@ -3,7 +3,6 @@
 /// are computed together.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <limits>
