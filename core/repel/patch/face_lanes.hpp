@@ -63,9 +63,8 @@ class FaceLanes {
     const auto place = [&](std::size_t i) {
       return set.place(names[facing == Facing::up ? i : last - i]);
     };
-    // The last side is divided, as in PolygonLanes::set.
     is_large_[k] = names.size() > 4 ? -1 : 0;
-    const std::size_t all = names.size() > 4 ? PolygonLanes::most : 4;
+    const std::size_t all = PolygonLanes::sides_for(names.size());
     const Vec<double> step = (1.0 / static_cast<double>(all - last)) * (place(0) - place(last));
     for (std::size_t i = 0; i < all; ++i) {
       corners_[i].set(k, i <= last ? place(i) : place(last) + static_cast<double>(i - last) * step);

@@ -98,6 +98,11 @@ struct PolygonLanes {
     slope = (-1.0 / (valid ? dot(side, axes.n) : one)) * axes.in_plane(side);
   }
 
+  /// As how many sides a polygon is held: the last one is divided into as many as are missing.
+  [[nodiscard]] static constexpr std::size_t sides_for(std::size_t corners) noexcept {
+    return corners > 4 ? most : 4;
+  }
+
   /// Divides the last sides, so that there are `most` in every lane.
   void extend() noexcept {
     const PlanarLanes step =
@@ -109,13 +114,13 @@ struct PolygonLanes {
     size = most;
   }
 
-  /// Sets lane k to a polygon, the last side of which is divided into as many as are missing; false
-  /// for one of too many corners, and for less than a polygon.
+  /// Sets lane k to a polygon; false for one of too many corners, and for less than a polygon.
   bool set(int k, const Flat& flat) noexcept {
     const Outline& outline = flat.outline;
     if (outline.size < 3 || outline.size > static_cast<int>(most)) return false;
     is_large[k] = outline.size > 4 ? -1 : 0;
-    const int parts = (outline.size > 4 ? static_cast<int>(most) : 4) - outline.size + 1;
+    const int parts =
+        static_cast<int>(sides_for(static_cast<std::size_t>(outline.size))) - outline.size + 1;
     const Planar last = outline.at(outline.size - 1).r;
     const Planar step = (1.0 / parts) * (outline.at(0).r - last);
     for (int i = 0; i < outline.size + parts - 1; ++i) {
