@@ -236,7 +236,7 @@ TEST(LaneGroup, FeatureThatNoLongerHoldsIsNotProvenUntilItIsRenewed) {
   EXPECT_EQ(cubes.extremes().nearest(), std::numeric_limits<double>::infinity());
   cubes.find_feature();
   const World& world = cubes.scene.world;
-  cubes.group.set_feature(world, 0, world.pair({0}), cubes.scene.warm[0]);
+  cubes.group.set_feature(world, 0, world.pair({0}), {.warm = cubes.scene.warm[0]});
   cubes.place(X);
   EXPECT_EQ(cubes.group.proven(), 1U);
   EXPECT_GT(cubes.group.force().at(0).z(), 1.0);

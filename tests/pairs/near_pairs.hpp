@@ -84,7 +84,8 @@ struct NearPairs {
   /// Assigns a lane to a pair.
   void set(detail::LaneGroup& group, int k, PairId id, const detail::PartPoses& poses,
            bool used = true) const {
-    group.set(world, k, world.pair(id), warm[static_cast<std::size_t>(id.index)], poses, used);
+    group.set(world, k, world.pair(id), {.warm = warm[static_cast<std::size_t>(id.index)]}, poses,
+              used);
   }
 };
 

@@ -233,6 +233,11 @@ struct LanePose {
   [[nodiscard]] LaneVec rotate_transposed(const LaneVec& v) const noexcept {
     return {dot(columns[0], v), dot(columns[1], v), dot(columns[2], v)};
   }
+  /// The poses X Y.
+  friend LanePose composed(const LanePose& X, const LanePose& Y) noexcept {
+    return {X.rotate(Y.columns[0]), X.rotate(Y.columns[1]), X.rotate(Y.columns[2]),
+            X.rotate(Y.columns[3]) + X.columns[3]};
+  }
 };
 
 }  // namespace repel::detail

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include <repel/distance/depth.hpp>
 #include <repel/distance/feature.hpp>
+#include <repel/distance/planes_of_faces.hpp>
 
 namespace repel::detail {
 
@@ -120,23 +121,41 @@ class ExpandingPolytope {
       const std::uint32_t names = word(warm, i);
       corners_[i] = named(names & 0xFFFFU, names >> 16U);
     }
-    std::array<std::uint32_t, 32> to{};    // one bit for each corner that an edge leads to
-    std::array<std::uint32_t, 32> from{};  // and for each that one comes from
-    bool closed = true;
-    for (std::size_t f = 0; f < 2 * corner_count_ - 4; ++f) {
+    // One bit for each corner that an edge leads to.
+    std::array<std::uint32_t, WarmStart::most_corners> to{};
+    PlanesOfFaces<WarmStart::most_corners> planes;
+    face_count_ = 2 * corner_count_ - 4;
+    for (std::size_t f = 0; f < face_count_; ++f) {
       const std::uint32_t face = warm.faces[f];
       const std::array<std::uint8_t, 3> at{static_cast<std::uint8_t>(face & 31U),
                                            static_cast<std::uint8_t>(face >> 5U & 31U),
                                            static_cast<std::uint8_t>(face >> 10U & 31U)};
       if (std::max({at[0], at[1], at[2]}) >= corner_count_) return false;
-      for (const auto& [p, q] : {std::pair{at[0], at[1]}, {at[1], at[2]}, {at[2], at[0]}}) {
-        closed = closed && (to[p] >> q & 1U) == 0U;
-        to[p] |= 1U << q;
-        from[q] |= 1U << p;
-      }
-      if (!add_face(at[0], at[1], at[2]) || faces_[f].offset <= margin) return false;
+      to[at[0]] |= 1U << at[1];
+      to[at[1]] |= 1U << at[2];
+      to[at[2]] |= 1U << at[0];
+      faces_[f].corners = at;
+      planes.set(f, corners_[at[0]].w, corners_[at[1]].w, corners_[at[2]].w);
     }
-    return closed && to == from;
+    if (!planes.find(face_count_, margin)) return false;
+    for (std::size_t f = 0; f < face_count_; ++f) {
+      faces_[f].n = planes.normal(f);
+      faces_[f].offset = planes.offset(f);
+    }
+    return is_closed(to);
+  }
+
+  /// Every edge of every face is met by one in the other direction, and no two are the same.
+  [[nodiscard]] bool is_closed(
+      const std::array<std::uint32_t, WarmStart::most_corners>& to) const noexcept {
+    std::size_t different = 0;
+    for (const std::uint32_t ends : to) different += static_cast<std::size_t>(std::popcount(ends));
+    bool closed = different == 3 * face_count_;
+    for (std::size_t f = 0; f < face_count_; ++f) {
+      const auto [p, q, r] = faces_[f].corners;
+      closed = closed && (to[q] >> p & to[r] >> q & to[p] >> r & 1U) != 0U;
+    }
+    return closed;
   }
 
   /// Keeps the corners that are in use and the faces, if they are few enough.

@@ -22,14 +22,19 @@ struct LaneSets {
   std::array<LaneVec, 3> corners{};  ///< [m] corners of the features, in the frames of the sets
   std::array<LaneVec, 3> turned{};   ///< [m] the same in world axes, from the origins of the sets
   LaneVec half_extents{};            ///< [m] of boxes
-  unsigned hulls = 0;                ///< bit k: the set of lane k is not a box
+  std::array<VertexBlock, lane_count> vertices{};  ///< of hulls that are scanned
+  unsigned scanned = 0;  ///< bit k: the support map of lane k scans `vertices`
+  unsigned hulls = 0;    ///< bit k: the set of lane k is not a box
 
   /// @param names of the corners of the feature in the set
   void set(int k, const Convex& one, const std::array<std::uint32_t, 4>& names) noexcept {
     sets[static_cast<std::size_t>(k)] = &one;
     for (std::size_t i = 0; i < 3; ++i) corners[i].set(k, one.place(names[i]));
     half_extents.set(k, one.half_extents());
-    hulls = (hulls & ~(1U << k)) | (one.kind() == Convex::Kind::box ? 0U : 1U << k);
+    const unsigned bit = 1U << k;
+    hulls = (hulls & ~bit) | (one.kind() == Convex::Kind::box ? 0U : bit);
+    scanned = (scanned & ~bit) | (one.is_scanned() ? bit : 0U);
+    if (one.is_scanned()) vertices[static_cast<std::size_t>(k)] = one.vertices();
   }
 
   /// To be called after `X_W` or a lane was set and before the next proof. Never inlined, because
@@ -41,7 +46,11 @@ struct LaneSets {
   /// `Convex::support_value` of each set along `d`, given in its own frame.
   [[nodiscard]] Lanes support_values(const LaneVec& d) const noexcept {
     Lanes values = dot(half_extents, magnitudes(d));
-    for (unsigned left = hulls; left != 0U; left &= left - 1U) {
+    for (unsigned left = scanned; left != 0U; left &= left - 1U) {
+      const int k = std::countr_zero(left);
+      values[k] = vertices[static_cast<std::size_t>(k)].largest_product(Vec<double>(d.at(k)));
+    }
+    for (unsigned left = hulls & ~scanned; left != 0U; left &= left - 1U) {
       const int k = std::countr_zero(left);
       values[k] = sets[static_cast<std::size_t>(k)]->support_value(Vec<double>(d.at(k)));
     }

@@ -20,6 +20,7 @@ class LaneBodies {
     parts_[index(k)] = part;
     shapes_[index(k)] = &world.part(part).shape;
     bodies_[index(k)] = world.part(part).body;
+    X_BP_.set(k, world.part(part).X_BP);
     same_body_ = std::all_of(bodies_.begin(), bodies_.end(),
                              [&](BodyId body) { return body == bodies_[0]; });
   }
@@ -28,10 +29,17 @@ class LaneBodies {
   [[nodiscard]] BodyId body(int k) const noexcept { return bodies_[index(k)]; }
   /// All lanes have the fixed body.
   [[nodiscard]] bool are_fixed() const noexcept { return same_body_ && bodies_[0] == World::fixed; }
-  [[nodiscard]] LanePose poses(PartPoses& of, const Motion& motion) const noexcept {
-    std::array<const Pose*, lane_count> X_WP;
-    for (std::size_t k = 0; k < X_WP.size(); ++k) X_WP[k] = &of.at(parts_[k], motion);
-    return LanePose::of(X_WP);
+  /// The poses of the parts: those of `PartPoses` but for rounding.
+  [[nodiscard]] LanePose poses(const Motion& motion) const noexcept {
+    LanePose X_WB;
+    if (same_body_) {
+      X_WB = LanePose::all(state(motion, 0).X_WB);
+    } else {
+      std::array<const Pose*, lane_count> each;
+      for (int k = 0; k < lane_count; ++k) each[index(k)] = &state(motion, k).X_WB;
+      X_WB = LanePose::of(each);
+    }
+    return composed(X_WB, X_BP_);
   }
   [[nodiscard]] PosedShape posed(int k, PartPoses& of, const Motion& motion) const noexcept {
     return {*shapes_[index(k)], of.at(parts_[index(k)], motion)};
@@ -43,6 +51,7 @@ class LaneBodies {
  private:
   [[nodiscard]] static std::size_t index(int k) noexcept { return static_cast<std::size_t>(k); }
 
+  LanePose X_BP_{};  ///< [m]
   std::array<PartId, lane_count> parts_{};
   std::array<BodyId, lane_count> bodies_{};
   std::array<const Shape*, lane_count> shapes_{};

@@ -92,7 +92,7 @@ class LaneEvaluator {
     // The unused lanes behind it need valid data to compute with, too.
     for (int k = index_of(count_); k < lane_count; ++k) {
       groups_[count_ / lane_count].set(singles_->world(), k, singles_->pair(slot),
-                                       memory().history(slot).warm, poses, k == index_of(count_));
+                                       memory().history(slot), poses, k == index_of(count_));
     }
     ++count_;
   }
@@ -111,7 +111,7 @@ class LaneEvaluator {
     groups_[count_ / lane_count].remove(index_of(count_));
     if (lane < count_) {
       groups_[lane / lane_count].set(singles_->world(), index_of(lane), singles_->pair(last),
-                                     memory().history(last).warm, poses, true);
+                                     memory().history(last), poses, true);
     }
   }
 
@@ -138,9 +138,10 @@ class LaneEvaluator {
     });
     for_each(unproven, [&](int k) {
       const int slot = slot_at(g, k);
+      memory().history(slot).pointed = group.pointed(k);
       singles_->evaluate(slot, motion, poses, totals);
       if (fits(slot)) {
-        group.set_feature(singles_->world(), k, singles_->pair(slot), memory().history(slot).warm);
+        group.set_feature(singles_->world(), k, singles_->pair(slot), memory().history(slot));
       }
     });
   }
@@ -265,6 +266,7 @@ class LaneEvaluator {
   void store(int slot) noexcept {
     const int lane = lane_of(slot);
     memory().extremes(memory().tracking(slot).pair).add(extremes_in(lane));
+    memory().history(slot).pointed = group_of(lane).pointed(index_of(lane));
     if (!has_answer(lane)) return;
     LaneGroup& group = groups_[lane / lane_count];
     singles_->store(slot, group.answer(index_of(lane)));

@@ -10,9 +10,9 @@
 #include <repel/distance/feature_lanes.hpp>
 #include <repel/force/law_lanes.hpp>
 #include <repel/pairs/lane_bodies.hpp>
-#include <repel/pairs/pair_answer.hpp>
+#include <repel/pairs/pair_memory.hpp>
 #include <repel/patch/patch.hpp>
-#include <repel/patch/pointed.hpp>
+#include <repel/patch/pointed_pair.hpp>
 #include <repel/patch/polygon_search.hpp>
 #include <repel/world/world.hpp>
 
@@ -23,9 +23,9 @@ namespace repel::detail {
 class LaneGroup {
  public:
   /// Assigns lane k to a pair of polytopes, rounded or not, whose law is not passable.
-  /// @param warm with a known nearest feature of the level-0 shapes
+  /// @param history with a known nearest feature of the level-0 shapes
   /// @param used false for a lane without a pair, which only needs valid data to compute with
-  void set(const World& world, int k, const Pair& pair, const WarmStart& warm,
+  void set(const World& world, int k, const Pair& pair, const PairHistory& history,
            const PartPoses& poses, bool used) noexcept {
     used_[k] = used ? -1 : 0;
     of_a_.set(world, k, pair.a);
@@ -34,32 +34,35 @@ class LaneGroup {
     features_.B.X_W.set(k, poses.last(pair.b));
     law_.set(k, pair.law);
     tilt_[k] = pair.law.tilt;
-    pointed_a_.set(k, {});
-    pointed_b_.set(k, {});
     faces_a_.remove(k);
     faces_b_.remove(k);
-    had_patch_ &= ~(1U << k);
+    had_polygons_ &= ~(1U << k);
     depth_a_[k] = world.part(pair.a).shape.level(0).depth;
     depth_b_[k] = world.part(pair.b).shape.level(0).depth;
     nearest_[k] = std::numeric_limits<double>::infinity();
     peak_[k] = 0.0;
     deepest_[k] = 0.0;
     stale_ &= ~(1U << k);
-    set_feature(world, k, pair, warm);
+    set_feature(world, k, pair, history);
   }
 
-  /// Changes the feature of the pair in lane k and discards its answer.
-  void set_feature(const World& world, int k, const Pair& pair, const WarmStart& warm) noexcept {
+  /// Changes the features of the pair in lane k and discards its answer.
+  void set_feature(const World& world, int k, const Pair& pair,
+                   const PairHistory& history) noexcept {
+    pointed_.set(k, history.pointed);
     features_.set(k, world.part(pair.a).shape.level(0).core, world.part(pair.b).shape.level(0).core,
-                  warm);
+                  history.warm);
     fixed_are_turned_ = false;
     discard_answer(k);
   }
 
+  /// What is known of the pair in lane k.
+  [[nodiscard]] PointedPair pointed(int k) const noexcept { return pointed_.at(k); }
+
   /// Computes the answers and forces of all lanes.
   [[gnu::noinline, gnu::flatten]] void evaluate(const Motion& motion, PartPoses& poses) noexcept {
-    update_poses(of_a_, features_.A, motion, poses);
-    update_poses(of_b_, features_.B, motion, poses);
+    update_poses(of_a_, features_.A, motion);
+    update_poses(of_b_, features_.B, motion);
     fixed_are_turned_ = true;
     const LaneGap gap = features_.prove({});
     apart_ = {gap, depth_a_, depth_b_, features_.A.X_W.columns[3]};
@@ -69,8 +72,10 @@ class LaneGroup {
     gradient_W_ = apart_.extraction_W;
     moment_W_ = cross(p_AQ_W_, apart_.extraction_W);
     nearer_ = Lanes{};
-    const LaneMask flat = proven & (apart_.lower < law_.range) & may_be_flat(gap);
-    if (bits_of(flat) != 0U) find_patches(flat, gap, motion, poses);
+    const PointedPairLanes::Shown shown = pointed_.shown(features_, gap);
+    const LaneMask flat =
+        proven & (apart_.lower < law_.range) & (tilt_ > Lanes{}) & shown.may_be_flat;
+    if (bits_of(flat) != 0U) find_patches(flat, shown.edge, gap, motion, poses);
     compute_forces(relative, proven);
     tick_ = motion.tick;
     fresh_ = true;
@@ -148,10 +153,9 @@ class LaneGroup {
             QueryEnd::converged};
   }
 
-  void update_poses(const LaneBodies& bodies, LaneSets& sets, const Motion& motion,
-                    PartPoses& poses) const noexcept {
+  void update_poses(const LaneBodies& bodies, LaneSets& sets, const Motion& motion) const noexcept {
     const bool are_fixed = bodies.are_fixed();
-    if (!are_fixed) sets.X_W = bodies.poses(poses, motion);
+    if (!are_fixed) sets.X_W = bodies.poses(motion);
     if (!are_fixed || !fixed_are_turned_) sets.turn();
   }
 
@@ -166,59 +170,46 @@ class LaneGroup {
     return each;
   }
 
-  /// False in lanes where one side is known to show a corner, or both an edge and these cross.
-  [[nodiscard]] LaneMask may_be_flat(const LaneGap& gap) const noexcept {
-    const LaneMask a = pointed_a_.holds(gap.n_A);
-    const LaneMask b = pointed_b_.holds(gap.n_B);
-    const LaneMask corner = (a & ~pointed_a_.is_edge()) | (b & ~pointed_b_.is_edge());
-    const LaneMask edges = a & b & ~corner;
-    const LaneMask has_patch = tilt_ > Lanes{};
-    if (bits_of(edges & used_) == 0U) return has_patch & ~corner;
-    const LaneVec along_a = features_.A.X_W.rotate(pointed_a_.along());
-    const LaneVec along_b = features_.B.X_W.rotate(pointed_b_.along());
-    const Lanes sine = magnitudes(dot(cross(along_a, along_b), gap.n_BA_W));
-    return has_patch & ~(corner | (edges & (sine > Crossing::widest)));
-  }
-
   /// The gradients of the patches of the pairs in `flat`.
-  void find_patches(LaneMask flat, const LaneGap& gap, const Motion& motion,
+  void find_patches(LaneMask flat, LaneMask edge, const LaneGap& gap, const Motion& motion,
                     PartPoses& poses) noexcept {
-    const unsigned to_look_at = bits_of(flat) & ~had_patch_;
-    for (unsigned bits = to_look_at; bits != 0U; bits &= bits - 1U) {
-      const int k = std::countr_zero(bits);
-      pointed_a_.set(k, PointedSearch(*features_.A.sets[static_cast<std::size_t>(k)],
-                                      Vec<double>(gap.n_A.at(k)), tilt_[k])
-                            .run());
-      pointed_b_.set(k, PointedSearch(*features_.B.sets[static_cast<std::size_t>(k)],
-                                      Vec<double>(gap.n_B.at(k)), tilt_[k])
-                            .run());
+    const unsigned to_look_at = bits_of(flat) & ~had_polygons_;
+    if (to_look_at != 0U) {
+      pointed_.look_at(to_look_at, features_, gap, tilt_);
+      const PointedPairLanes::Shown now = pointed_.shown(features_, gap);
+      flat &= now.may_be_flat;
+      edge = now.edge;
     }
-    if (to_look_at != 0U) flat &= may_be_flat(gap);
-    had_patch_ = bits_of(flat);
-    if (had_patch_ == 0U) return;
-    PolygonSearch search(features_, gap, tilt_);
-    search.find_flats(
-        flat, [&](int k) -> const Pose& { return of_a_.posed(k, poses, motion).X_W; },
-        [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; }, faces_a_,
-        faces_b_);
-    had_patch_ &= ~search.corners();
-    unsigned left = had_patch_;
-    const auto take = [&](const PolygonPatches& found) {
-      left &= ~bits_of(found.valid);
-      nearer_ = found.valid ? found.nearer : nearer_;
-      gradient_W_ = either(found.valid, found.force, gradient_W_);
-      moment_W_ = either(found.valid, found.torque + cross(p_AQ_W_, found.force), moment_W_);
-    };
-    take(search.patches<4>(flat, depth_a_));
-    if (left != 0U) take(search.patches<PolygonLanes::most>(flat, depth_a_));
-    for (; left != 0U; left &= left - 1U) find_patch_alone(std::countr_zero(left), motion, poses);
+    unsigned corners = 0;
+    unsigned in_lanes = 0;
+    // An edge is no polygon.
+    const LaneMask polygons = flat & ~edge;
+    if (bits_of(polygons) != 0U) {
+      PolygonSearch search(features_, gap, tilt_);
+      search.find_flats(
+          polygons, [&](int k) -> const Pose& { return of_a_.posed(k, poses, motion).X_W; },
+          [&](int k) -> const Pose& { return of_b_.posed(k, poses, motion).X_W; }, faces_a_,
+          faces_b_);
+      corners = search.corners();
+      const auto take = [&](const PolygonPatches& found) {
+        in_lanes |= bits_of(found.valid);
+        nearer_ = found.valid ? found.nearer : nearer_;
+        gradient_W_ = either(found.valid, found.force, gradient_W_);
+        moment_W_ = either(found.valid, found.torque + cross(p_AQ_W_, found.force), moment_W_);
+      };
+      take(search.patches<4>(polygons, depth_a_));
+      take(search.patches<PolygonLanes::most>(polygons, depth_a_));
+    }
+    had_polygons_ = in_lanes;
+    for (unsigned left = bits_of(flat) & ~(corners | in_lanes); left != 0U; left &= left - 1U) {
+      find_patch_alone(std::countr_zero(left), motion, poses);
+    }
   }
 
   void find_patch_alone(int k, const Motion& motion, PartPoses& poses) noexcept {
     ContactPatch patch;
     if (!find_patch(separation_in(k), of_a_.posed(k, poses, motion), of_b_.posed(k, poses, motion),
                     tilt_[k], patch)) {
-      had_patch_ &= ~(1U << k);
       return;
     }
     const Vec3 force = patch.gradient.force;
@@ -258,9 +249,10 @@ class LaneGroup {
   Lanes depth_a_{}, depth_b_{};    ///< [m] rounding radius of the shapes
   Apart<Lanes, LaneVec> apart_{};  ///< of the last evaluation
   Lanes tilt_{};                   ///< [rad] of the laws
-  PointedLanes pointed_a_, pointed_b_;
+  PointedPairLanes pointed_;
   FaceLanes faces_a_, faces_b_;
-  unsigned had_patch_ = 0;  ///< bit k: at the last evaluation; it is then not looked whether not
+  /// Bit k: the patch was that of two polygons at the last evaluation. It likely still is.
+  unsigned had_polygons_ = 0;
   // The members of PairAnswer.
   LaneVec gradient_W_{}, moment_W_{};
   Lanes nearer_{};

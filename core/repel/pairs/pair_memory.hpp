@@ -10,6 +10,7 @@
 #include <repel/force/passage.hpp>
 #include <repel/pairs/forces_and_totals.hpp>
 #include <repel/pairs/pair_answer.hpp>
+#include <repel/patch/pointed_pair.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {
@@ -30,8 +31,9 @@ struct PairTracking {
 
 /// State passed from one evaluation to the next while the pair is within range.
 struct PairHistory {
-  WarmStart warm;
-  Passage passage;
+  WarmStart warm{};
+  Passage passage{};
+  PointedPair pointed{};
 };
 
 /// Answers and history of the pairs that have a slot, and the extremes of all pairs. A slot is

@@ -240,8 +240,8 @@ class SingleEvaluator {
     PairAnswer& answer = memory_.answer(slot);
     ContactPatch patch{.gradient = {answer.last.extraction_W}};
     if (answer.in_range && p.law.tilt > 0.0) {
-      (void)find_patch(answer.last, posed(p.a, motion, poses), posed(p.b, motion, poses),
-                       p.law.tilt, patch);
+      (void)memory_.history(slot).pointed.find_patch(answer.last, posed(p.a, motion, poses),
+                                                     posed(p.b, motion, poses), p.law.tilt, patch);
     }
     answer.nearer = patch.nearer;
     answer.gradient = patch.gradient;

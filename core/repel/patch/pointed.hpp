@@ -20,11 +20,23 @@ namespace repel::detail {
 struct Pointed {
   Vec<double> n{0.0, 0.0, 0.0};      ///< unit, outward, in the frame of the set
   Vec<double> along{0.0, 0.0, 0.0};  ///< unit, the edge; 0: not even that, a corner
+  double below = 0.0;                ///< [1] the edge is flat at most where its slope is less
   double within = -1.0;              ///< [1] the same holds for all unit vectors nearer to n than
                                      ///< this; negative: there may be a face, or several edges
+
+  /// It still holds for another unit vector.
+  [[nodiscard]] bool holds(const Vec<double>& other) const noexcept {
+    const Vec<double> off = other - n;
+    return within > 0.0 && dot(off, off) < within * within;
+  }
+  /// The edge may be flat for another unit vector, provided that it `holds`.
+  [[nodiscard]] bool has_edge(const Vec<double>& other) const noexcept {
+    return std::abs(dot(other, along)) < below;
+  }
 };
 
-/// What a box or polytope shows around n. Cost: about that of one support map.
+/// What a set shows around n; of sets with curved sides nothing is said. Cost: about that of one
+/// support map.
 class PointedSearch {
  public:
   /// @param n unit, outward, in the frame of the set
@@ -33,9 +45,12 @@ class PointedSearch {
       : set_(set), n_(n), tilt_(tilt) {}
 
   [[nodiscard]] Pointed run() const noexcept {
-    Pointed pointed = set_.kind() == Convex::Kind::box ? of_box() : of_polytope();
+    Pointed pointed;
+    if (set_.kind() == Convex::Kind::box) pointed = of_box();
+    if (set_.kind() == Convex::Kind::polytope) pointed = of_polytope();
     pointed.n = n_;
     pointed.within -= rounding;
+    if (pointed.below > 0.0) pointed.below += rounding;
     return pointed;
   }
 
@@ -66,8 +81,7 @@ class PointedSearch {
     if (half.y() > 0.0) edges.add(std::abs(n_.y()), {0.0, 1.0, 0.0}, 0);
     if (half.z() > 0.0) edges.add(std::abs(n_.z()), {0.0, 0.0, 1.0}, 0);
     const double angle = flat_within(tilt_);
-    if (edges.least > angle) return {.within = edges.least - angle};
-    return {.along = edges.along, .within = edges.second - angle};
+    return {.along = edges.along, .below = angle, .within = edges.second - angle};
   }
 
   [[nodiscard]] Pointed of_polytope() const noexcept {
@@ -75,15 +89,19 @@ class PointedSearch {
     const FacesAt here = faces_at(corner);
     TwoLeast edges;
     add_edges(corner, edges);
+    Pointed alone;
     if (edges.least > here.tilt) {
-      return {.within = std::min(before(edges.least, here.tilt), here.within)};
+      alone.within = std::min(before(edges.least, here.tilt), here.within);
+      // Far from all edges, the corner behind the least one knows nothing more.
+      if (edges.least > 0.5 * edges.second) return alone;
     }
     const FacesAt there = faces_at(edges.to);
     TwoLeast others;
     add_edges(edges.to, others, corner);
-    return {.along = edges.along,
-            .within = std::min({before(edges.second, here.tilt), before(others.least, there.tilt),
-                                here.within, there.within})};
+    const double within = std::min({before(edges.second, here.tilt),
+                                    before(others.least, there.tilt), here.within, there.within});
+    if (within < alone.within) return alone;
+    return {.along = edges.along, .below = tilt_, .within = within};
   }
 
   void add_edges(std::uint32_t from, TwoLeast& edges,
@@ -134,8 +152,10 @@ class PointedLanes {
     n_.set(k, pointed.n);
     along_.set(k, pointed.along);
     within_[k] = pointed.within;
-    const Vec<double>& edge = pointed.along;
-    is_edge_[k] = dot(edge, edge) > 0.0 ? -1 : 0;
+    below_[k] = pointed.below;
+  }
+  [[nodiscard]] Pointed at(int k) const noexcept {
+    return {Vec<double>(n_.at(k)), Vec<double>(along_.at(k)), below_[k], within_[k]};
   }
   /// True in lanes where it still holds for the unit vector n.
   [[nodiscard]] LaneMask holds(const LaneVec& n) const noexcept {
@@ -143,13 +163,16 @@ class PointedLanes {
     const Lanes none{};
     return (within_ > none) & (dot(off, off) < within_ * within_);
   }
-  [[nodiscard]] const LaneMask& is_edge() const noexcept { return is_edge_; }
+  /// As Pointed::has_edge.
+  [[nodiscard]] LaneMask has_edge(const LaneVec& n) const noexcept {
+    return magnitudes(dot(n, along_)) < below_;
+  }
   [[nodiscard]] const LaneVec& along() const noexcept { return along_; }
 
  private:
   LaneVec n_{}, along_{};
   Lanes within_ = all_of(-1.0);
-  LaneMask is_edge_{};
+  Lanes below_{};
 };
 
 }  // namespace repel::detail
