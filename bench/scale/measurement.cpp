@@ -84,6 +84,12 @@ std::span<const std::int32_t> within(const Record& record, std::size_t tick) {
 
 }  // namespace
 
+void Run::add_times(const Run& again) {
+  ns.insert(ns.end(), again.ns.begin(), again.ns.end());
+  lost.insert(lost.end(), again.lost.begin(), again.lost.end());
+  faults.insert(faults.end(), again.faults.begin(), again.faults.end());
+}
+
 double Run::mean() const {
   return std::accumulate(ns.begin(), ns.end(), 0.0) / static_cast<double>(ns.size());
 }

@@ -23,8 +23,8 @@ struct Check {
 /// A method with its measurement on a scene.
 struct Run {
   Way way;
-  std::vector<double> ns{};  ///< of each tick
-  /// For each tick: involuntary context switches of the thread, and page faults.
+  std::vector<double> ns{};  ///< of each tick, of all measurements
+  /// For each of these: involuntary context switches of the thread, and page faults.
   std::vector<int> lost{}, faults{};
   double evaluated = 0.0;  ///< mean per tick
   double setup = 0.0;      ///< [s]
@@ -35,6 +35,8 @@ struct Run {
   Check check{};       ///< against brute force
   Check every_pair{};  ///< against repel evaluating every pair at every tick
 
+  /// Adds the times of another measurement of the same ticks.
+  void add_times(const Run& again);
   [[nodiscard]] double mean() const;
   [[nodiscard]] double percentile(double share) const;
   /// The percentile over ticks without either; 0 if there are none.

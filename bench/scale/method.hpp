@@ -62,6 +62,9 @@ struct Way {
 [[nodiscard]] Way ours(int threads, CoprocessorMode mode = CoprocessorMode::together);
 /// repel, evaluating every pair at every tick.
 [[nodiscard]] Way every_pair();
+/// The queries, patches and forces of the pairs within range, which are told: what is left where
+/// finding them costs nothing.
+[[nodiscard]] Way known_pairs();
 /// The broad phases of the other libraries in this build.
 [[nodiscard]] std::vector<Way>& rivals();
 

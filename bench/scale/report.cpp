@@ -94,6 +94,27 @@ std::string small_json(const SmallRun& run) {
   return object.add("wrong", run.wrong).str();
 }
 
+/// The run of that method without threads; nullptr if it was not measured.
+const Run* find(const Scenario& s, const std::string& method) {
+  const auto run = std::find_if(s.runs.begin(), s.runs.end(), [&](const Run& other) {
+    return other.way.name == method && other.way.threads == 0;
+  });
+  return run == s.runs.end() ? nullptr : &*run;
+}
+
+/// Why the method of another library takes less than 1.5 times as long as repel; empty if not.
+std::string why_near(const Scenario& s, const Run& run, double times) {
+  constexpr double wanted = 1.5;
+  const Run* known = find(s, "pairs known, with forces");
+  const bool is_rival = !run.way.ours && known != nullptr && &run != known;
+  if (!is_rival || times >= wanted) return "";
+  if (run.way.name.find("forces") == std::string::npos) return "it gives no forces";
+  return text(
+      "its queries, patches and forces are repel's; those of the pairs within range alone "
+      "take %.0f %% of its time",
+      100.0 * known->mean() / run.mean());
+}
+
 /// The mean time, or the number of wrong answers if there are any: then no time is shown.
 std::string line(const Scenario& s, const Run& run) {
   const Check& check = run.check;
@@ -107,11 +128,10 @@ std::string line(const Scenario& s, const Run& run) {
                 static_cast<long long>(check.ticks));
   }
   out += text(" %.0f | %zu |", run.bytes / s.setting.pairs, run.ns.size());
-  const auto alone = std::find_if(s.runs.begin(), s.runs.end(), [](const Run& other) {
-    return other.way.ours && !other.way.every_pair && other.way.threads == 0;
-  });
-  const bool is_comparable = check.equal() && alone != s.runs.end() && alone->check.equal();
-  return out + (is_comparable ? text(" %.2f |\n", run.mean() / alone->mean()) : " |\n");
+  const Run* alone = find(s, "repel");
+  if (!check.equal() || alone == nullptr || !alone->check.equal()) return out + " | |\n";
+  const double times = run.mean() / alone->mean();
+  return out + text(" %.2f | %s |\n", times, why_near(s, run, times).c_str());
 }
 
 std::string small_table(const std::vector<SmallRun>& small) {
@@ -151,9 +171,9 @@ std::string to_json(const std::vector<Scenario>& scenarios, const std::vector<Sm
 
 std::string to_markdown(const std::vector<Scenario>& scenarios,
                         const std::vector<SmallRun>& small) {
-  std::string out =
-      bench::heading({"method", "threads", "pairs", "near", "evaluated", "mean [ns]", "p50", "p99",
-                      "p99.9", "bytes per pair", "ticks", "mean, times repel without threads"});
+  std::string out = bench::heading({"method", "threads", "pairs", "near", "evaluated", "mean [ns]",
+                                    "p50", "p99", "p99.9", "bytes per pair", "ticks",
+                                    "mean, times repel without threads", "why a rival is near"});
   for (const Scenario& scenario : scenarios) {
     for (const Run& run : scenario.runs) out += line(scenario, run);
   }

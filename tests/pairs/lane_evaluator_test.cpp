@@ -45,7 +45,7 @@ struct EveryPair {
     for (const int slot : others) singles.push(slot, motion);
     lanes.remove_ended(poses);
     for (const int slot : others) {
-      if (use_lanes) lanes.add(slot, poses);
+      if (use_lanes && lanes.may_add(slot)) lanes.add(slot, poses);
     }
     return singles.forces();
   }
@@ -125,7 +125,7 @@ TEST(LaneEvaluator, PairsMoveIntoLanesAndOutAgain) {
   EXPECT_GT(came, 150);
   EXPECT_GT(left_range, 50);
   EXPECT_GT(overlapped, 20);
-  EXPECT_GT(full, 100);
+  EXPECT_GT(full * lane_count, 200);
 }
 
 void expect_the_answers_without_lanes(Measure measure) {
@@ -275,6 +275,38 @@ TEST(LaneEvaluator, RehearsingChangesNothing) {
   expect_same(known(with_lanes), before);
   EXPECT_EQ(with_lanes.singles.forces().totals.evaluated, totals.evaluated);
   EXPECT_EQ(with_lanes.singles.forces().totals.nearest, totals.nearest);
+}
+
+// A group of one pair among many lanes would cost more than the pair alone.
+TEST(LaneEvaluator, FewPairsAreEvaluatedSingly) {
+  test::NearPairs scene(3, seed);
+  for (int i = 0; i < 60; ++i) scene.add(test::random_shape);
+  EveryPair every(scene.world, true);
+  every.use_lanes = false;
+  (void)every.tick();
+  std::vector<int> fitting;
+  for (int slot = 0; slot < every.count(); ++slot) {
+    if (every.lanes.may_add(slot)) fitting.push_back(slot);
+  }
+  ASSERT_GT(fitting.size(), static_cast<std::size_t>(lane_count) + 1);
+  const int few = lane_count < 8 ? lane_count / 2 : 3;
+  int added = 0;
+  for (int wanted = 0; wanted <= lane_count + 1; ++wanted) {
+    const int more = wanted - added;
+    const int last = wanted % lane_count;
+    EXPECT_EQ(every.lanes.to_add(more), last < few ? more - last : more) << wanted;
+    for (int left = every.lanes.to_add(more); left > 0; --left) {
+      every.lanes.add(fitting[static_cast<std::size_t>(added++)], every.poses);
+    }
+  }
+  EXPECT_EQ(every.lanes.count(), few > 1 ? lane_count : lane_count + 1);
+  // One less than that may stay.
+  every.lanes.remove_last(every.lanes.count() - few + 1, every.poses);
+  EXPECT_EQ(every.lanes.count(), few - 1);
+  EXPECT_EQ(every.lanes.to_add(0), 0);
+  if (few < 3) return;
+  every.lanes.remove_last(1, every.poses);
+  EXPECT_EQ(every.lanes.to_add(0), -1);
 }
 
 }  // namespace lane_evaluator_test

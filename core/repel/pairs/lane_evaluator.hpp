@@ -84,9 +84,20 @@ class LaneEvaluator {
             .is_passable = passable};
   }
 
-  /// Puts the pair into a lane if it was evaluated at this tick and can be evaluated there.
+  /// The pair was evaluated at this tick and can be evaluated in a lane.
+  [[nodiscard]] bool may_add(int slot) const noexcept {
+    return singles_->is_fresh(slot) && fits(slot);
+  }
+  /// How many of `more` pairs to add, or, negative, to remove: a group of few pairs costs more than
+  /// these do singly.
+  [[nodiscard]] int to_add(int more) const noexcept {
+    const int last = (count_ + more) % lane_count;
+    // Once they are there, one less may stay, so that a pair that comes and goes moves no others.
+    const int fewest = more > 0 ? fewest_in_group : fewest_in_group - 1;
+    return last < fewest ? more - last : more;
+  }
+  /// Puts a pair into a lane for which `may_add` is true.
   void add(int slot, const PartPoses& poses) noexcept {
-    if (!singles_->is_fresh(slot) || !fits(slot)) return;
     memory().tracking(slot).lane = count_;
     slots_[count_] = slot;
     // The unused lanes behind it need valid data to compute with, too.
@@ -115,9 +126,11 @@ class LaneEvaluator {
     }
   }
 
-  void remove_all(const PartPoses& poses) noexcept {
-    while (count_ > 0) remove(slots_[count_ - 1], poses);
+  /// Removes the last pairs, as many as that.
+  void remove_last(int pairs, const PartPoses& poses) noexcept {
+    for (int i = 0; i < pairs; ++i) remove(slots_[count_ - 1], poses);
   }
+  void remove_all(const PartPoses& poses) noexcept { remove_last(count_, poses); }
 
   /// Evaluates the pairs of a group; falls back to single evaluation where the nearest feature has
   /// changed. Different groups may be evaluated by different threads at the same time, each with
@@ -202,6 +215,9 @@ class LaneEvaluator {
   }
 
  private:
+  /// Measured: below, a group costs more than its pairs do singly.
+  static constexpr int fewest_in_group = lane_count < 8 ? lane_count / 2 : 3;
+
   [[nodiscard]] PairMemory& memory() noexcept { return singles_->memory(); }
   [[nodiscard]] const PairMemory& memory() const noexcept { return singles_->memory(); }
 

@@ -151,7 +151,13 @@ class PairSet {
     for_each_near_single([&](std::int32_t slot) { singles_.push(slot, motion); });
     lanes_.remove_ended(poses);
     if (plan_.limit().is_counted()) return;
-    for_each_near_single([&](std::int32_t slot) { lanes_.add(slot, poses); });
+    int more = 0;
+    for_each_near_single([&](std::int32_t slot) { more += lanes_.may_add(slot) ? 1 : 0; });
+    int left = lanes_.to_add(more);
+    if (left < 0) lanes_.remove_last(-left, poses);
+    for_each_near_single([&](std::int32_t slot) {
+      if (left > 0 && lanes_.may_add(slot)) lanes_.add(slot, poses), --left;
+    });
   }
 
   /// Ticks have passed without this set: what waited for an evaluation does so no more.
