@@ -248,7 +248,8 @@ TEST(Scene, TenThousandPairsInFiftyMicrosecondsRunByTheClockAndAreReportedHonest
                                " --report " + quoted(folder / "report.json"));
   ASSERT_EQ(ending.status, 0) << ending;
   const auto report = report_of(folder / "report.json");
-  EXPECT_EQ(report.at("ticks"), 400);
+  // A slow machine skips ticks, and says so.
+  EXPECT_EQ(report.at("ticks").get<int>() + report.at("skipped_ticks").get<int>(), 400);
   EXPECT_EQ(report.at("pairs"), 10000);
   EXPECT_GT(report.at("pairs_stale"), 0);
   EXPECT_GT(report.at("oldest_age_ticks"), 0);

@@ -113,8 +113,10 @@ class LaneEvaluator {
     const int lane = lane_of(slot);
     if (lane < 0) return;
     const int last = slots_[count_ - 1];
-    store(slot);
-    store(last);
+    for (const int moved : {slot, last}) {
+      store(moved);
+      memory().history(moved).pointed = group_of(lane_of(moved)).pointed(index_of(lane_of(moved)));
+    }
     memory().tracking(last).lane = lane;
     memory().tracking(slot).lane = -1;
     --count_;
@@ -282,7 +284,6 @@ class LaneEvaluator {
   void store(int slot) noexcept {
     const int lane = lane_of(slot);
     memory().extremes(memory().tracking(slot).pair).add(extremes_in(lane));
-    memory().history(slot).pointed = group_of(lane).pointed(index_of(lane));
     if (!has_answer(lane)) return;
     LaneGroup& group = groups_[lane / lane_count];
     singles_->store(slot, group.answer(index_of(lane)));

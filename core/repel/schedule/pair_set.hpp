@@ -32,6 +32,7 @@ class PairSet {
         candidates_(memory().slots()),
         due_(memory().slots()),
         is_near_(memory().slots()),
+        fitting_(memory().slots()),
         plan_(memory().slots() / lane_count + 1, memory().slots()) {}
   // lanes_ keeps a pointer to singles_.
   PairSet(const PairSet&) = delete;
@@ -151,13 +152,13 @@ class PairSet {
     for_each_near_single([&](std::int32_t slot) { singles_.push(slot, motion); });
     lanes_.remove_ended(poses);
     if (plan_.limit().is_counted()) return;
-    int more = 0;
-    for_each_near_single([&](std::int32_t slot) { more += lanes_.may_add(slot) ? 1 : 0; });
-    int left = lanes_.to_add(more);
-    if (left < 0) lanes_.remove_last(-left, poses);
+    fitting_count_ = 0;
     for_each_near_single([&](std::int32_t slot) {
-      if (left > 0 && lanes_.may_add(slot)) lanes_.add(slot, poses), --left;
+      if (lanes_.may_add(slot)) fitting_[fitting_count_++] = slot;
     });
+    const int more = lanes_.to_add(fitting_count_);
+    if (more < 0) lanes_.remove_last(-more, poses);
+    for (int i = 0; i < more; ++i) lanes_.add(fitting_[i], poses);
   }
 
   /// Ticks have passed without this set: what waited for an evaluation does so no more.
@@ -281,6 +282,8 @@ class PairSet {
   std::vector<std::int32_t> due_;  ///< the candidates in no lane that may be near
   int due_count_ = 0;              ///< number of valid entries in `due_`
   std::vector<char> is_near_;      ///< those of them that are; written by whoever evaluates them
+  std::vector<std::int32_t> fitting_;  ///< slots of near pairs that may be put into lanes
+  int fitting_count_ = 0;              ///< number of valid entries in `fitting_`
   EvaluationPlan plan_;
 };
 
