@@ -86,6 +86,13 @@ TEST(Pointed, FacesAreNot) {
   EXPECT_EQ(bits_of(lanes.holds(LaneVec::all({0.0, 0.0, 1.0}))), 0U);
 }
 
+// The core of a sphere: no edge is looked for in any tick.
+TEST(Pointed, APointIsACornerFromEverywhere) {
+  const Pointed pointed = PointedSearch(Convex::box({0.0, 0.0, 0.0}), {0.6, 0.0, 0.8}, tilt).run();
+  EXPECT_TRUE(pointed.holds({-1.0, 0.0, 0.0}));
+  EXPECT_FALSE(pointed.has_edge({-1.0, 0.0, 0.0}));
+}
+
 // Of a cylinder without radius, too, which is a segment that may be in a lane.
 TEST(Pointed, NothingIsSaidOfCylinders) {
   const Convex segment = Convex::cylinder(0.0, 0.1);

@@ -81,7 +81,8 @@ class PointedSearch {
     if (half.y() > 0.0) edges.add(std::abs(n_.y()), {0.0, 1.0, 0.0}, 0);
     if (half.z() > 0.0) edges.add(std::abs(n_.z()), {0.0, 0.0, 1.0}, 0);
     const double angle = flat_within(tilt_);
-    return {.along = edges.along, .below = angle, .within = edges.second - angle};
+    const bool is_point = dot(half, half) == 0.0;
+    return {.along = edges.along, .below = is_point ? 0.0 : angle, .within = edges.second - angle};
   }
 
   [[nodiscard]] Pointed of_polytope() const noexcept {
