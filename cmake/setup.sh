@@ -47,8 +47,9 @@ apt_as_root() {
 install_packages() {
   command -v dpkg-query >/dev/null || return 0  # not Debian: CMake says what it does not find
   wanted=$(packages_of "$@")
+  # It fails where one of them is not known, which must not end a script that sets pipefail.
   # shellcheck disable=SC2016,SC2086
-  present=" $(dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null |
+  present=" $({ dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null || :; } |
     awk '$2 == "installed" { printf "%s ", $1 }')"
   missing=
   for package in $wanted; do
