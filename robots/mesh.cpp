@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <iterator>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/geometry/facets.hpp>
+#include <repel/robots/read_mesh.hpp>
 
 #include "child_process.hpp"
 
@@ -174,23 +176,35 @@ void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
   }
 }
 
-/// hull_of_mesh() in this process; errors do not name the file.
-std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
-  Assimp::Importer importer;
+/// The scene in a file, as long as `importer` lives.
+const aiScene& read_scene(Assimp::Importer& importer, const std::string& path, unsigned steps) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_JoinIdenticalVertices);
+  const aiScene* scene = importer.ReadFile(path, steps);
   if (!scene || !scene->mRootNode) {
     throw SetupError(std::string("cannot be read: ") + importer.GetErrorString());
   }
-  std::vector<aiVector3D> vertices;
-  gather(*scene, *scene->mRootNode, aiMatrix4x4(), vertices);
-  std::vector<Vec3> points;
-  points.reserve(vertices.size());
+  return *scene;
+}
+
+/// Appends `vertices`, scaled, to `points`.
+void append_scaled(const std::vector<aiVector3D>& vertices, const Vec3& scale,
+                   std::vector<Vec3>& points) {
+  points.reserve(points.size() + vertices.size());
   for (const aiVector3D& v : vertices) {
     points.emplace_back(scale.cwiseProduct(Vec3(v.x, v.y, v.z)));
     if (!is_finite(points.back())) throw SetupError("has a corner that is not finite");
   }
   if (points.empty()) throw SetupError("holds no corner");
+}
+
+/// hull_of_mesh() in this process; errors do not name the file.
+std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
+  Assimp::Importer importer;
+  const aiScene& scene = read_scene(importer, path, aiProcess_JoinIdenticalVertices);
+  std::vector<aiVector3D> vertices;
+  gather(scene, *scene.mRootNode, aiMatrix4x4(), vertices);
+  std::vector<Vec3> points;
+  append_scaled(vertices, scale, points);
   // A planar set has no facets: all of its points stay.
   const std::vector<Facet> facets = hull_facets(points);
   if (!facets.empty()) points = hull_corners(points, facets);
@@ -201,9 +215,54 @@ std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
   return points;
 }
 
-}  // namespace
+/// Collects the triangles of a scene, in the order in which gather() takes the vertices.
+// NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
+void gather_triangles(const aiScene& scene, const aiNode& node, int& vertices,
+                      std::vector<std::array<int, 3>>& out) {
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+      const aiFace& face = mesh.mFaces[k];
+      if (face.mNumIndices != 3) continue;
+      out.push_back({vertices + static_cast<int>(face.mIndices[0]),
+                     vertices + static_cast<int>(face.mIndices[1]),
+                     vertices + static_cast<int>(face.mIndices[2])});
+    }
+    vertices += static_cast<int>(mesh.mNumVertices);
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    gather_triangles(scene, *node.mChildren[i], vertices, out);
+  }
+}
 
-std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
+/// read_mesh() in this process; errors do not name the file.
+TriangleMesh read_triangles(const std::string& path, const Vec3& scale) {
+  Assimp::Importer importer;
+  const aiScene& scene = read_scene(importer, path, aiProcess_Triangulate);
+  std::vector<aiVector3D> vertices;
+  gather(scene, *scene.mRootNode, aiMatrix4x4(), vertices);
+  TriangleMesh mesh;
+  append_scaled(vertices, scale, mesh.vertices);
+  int count = 0;
+  gather_triangles(scene, *scene.mRootNode, count, mesh.triangles);
+  if (mesh.triangles.empty()) throw SetupError("holds no triangle");
+  return mesh;
+}
+
+template <class T>
+void append_bytes(std::string& text, const std::vector<T>& values) {
+  text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+template <class T>
+std::vector<T> values_from(const char* bytes, std::size_t size) {
+  std::vector<T> values(size / sizeof(T));
+  if (!values.empty()) std::memcpy(static_cast<void*>(values.data()), bytes, size);
+  return values;
+}
+
+/// Runs `work` on a mesh file in a child process, within the limits of the file's size.
+std::string result_for_file(const fs::path& path, const std::function<std::string()>& work) {
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error);
   const std::string file = "mesh '" + path.string() + "' ";
@@ -216,27 +275,66 @@ std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
                            .memory = std::min<std::size_t>(input_limits.mesh_memory,
                                                            (std::size_t{256} << 20) + 64 * bytes)};
   try {
-    const std::string numbers = result_of_child(
-        [&] {
-          const std::vector<Vec3> points = read_hull(path.string(), scale);
-          return std::string(reinterpret_cast<const char*>(points.data()),
-                             points.size() * sizeof(Vec3));
-        },
-        limits);
-    std::vector<Vec3> points(numbers.size() / sizeof(Vec3));
-    if (!points.empty()) std::memcpy(points.data()->data(), numbers.data(), numbers.size());
-    return points;
+    return result_of_child(work, limits);
   } catch (const SetupError& wrong) {
     throw SetupError(file + wrong.what());
   }
 }
+
+}  // namespace
+
+std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
+  const std::string numbers = result_for_file(path, [&] {
+    std::string text;
+    append_bytes(text, read_hull(path.string(), scale));
+    return text;
+  });
+  return values_from<Vec3>(numbers.data(), numbers.size());
+}
+
+TriangleMesh triangles_of_mesh(const fs::path& path, const Vec3& scale) {
+  const std::string numbers = result_for_file(path, [&] {
+    const TriangleMesh mesh = read_triangles(path.string(), scale);
+    std::string text;
+    append_bytes(text, std::vector<std::size_t>{mesh.vertices.size()});
+    append_bytes(text, mesh.vertices);
+    append_bytes(text, mesh.triangles);
+    return text;
+  });
+  const char* const begin = numbers.data() + sizeof(std::size_t);
+  const std::size_t vertices =
+      values_from<std::size_t>(numbers.data(), sizeof(std::size_t))[0] * sizeof(Vec3);
+  return {values_from<Vec3>(begin, vertices),
+          values_from<std::array<int, 3>>(begin + vertices,
+                                          numbers.size() - sizeof(std::size_t) - vertices)};
+}
 #else
-std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3&) {
+namespace {
+
+[[noreturn]] void fail_without_reader(const fs::path& path) {
   throw SetupError(
       "mesh '" + path.string() +
       "' cannot be read, repel is built without assimp; to have it: apt-get install "
       "libassimp-dev, and build again; allowed without: box, sphere, cylinder, capsule");
 }
+
+}  // namespace
+
+std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3&) {
+  fail_without_reader(path);
+}
+
+TriangleMesh triangles_of_mesh(const fs::path& path, const Vec3&) {
+  fail_without_reader(path);
+}
 #endif
 
 }  // namespace repel::detail
+
+namespace repel {
+
+TriangleMesh read_mesh(const std::filesystem::path& path, const Vec3& scale) {
+  return detail::triangles_of_mesh(path, scale);
+}
+
+}  // namespace repel

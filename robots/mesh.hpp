@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <repel/base/types.hpp>
+#include <repel/geometry/triangle_mesh.hpp>
 
 namespace repel::detail {
 
@@ -33,6 +34,9 @@ struct MeshFolders {
 /// in a child process.
 /// @throws SetupError also if the reader crashes or exceeds the memory or time of input_limits
 [[nodiscard]] std::vector<Vec3> hull_of_mesh(const std::filesystem::path& path, const Vec3& scale);
+
+/// read_mesh().
+[[nodiscard]] TriangleMesh triangles_of_mesh(const std::filesystem::path& path, const Vec3& scale);
 
 /// Reads the meshes of one description, within the total limits of input_limits.
 class MeshReader {

@@ -77,8 +77,12 @@ class McapLog final : public TickLog {
     }
     writer_.add_metadata(mcap::run_metadata, metadata_of(scene, options));
     writer_.attach(mcap::scene_attachment, "application/yaml", read_file(scene.file), begin_ns_);
-    attach_robot(scene.robot);
-    for (const scene::OtherArm& partner : scene.partners) attach_robot(partner.robot);
+    for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
+      attach(mcap::robot_attachment(i), "application/xml", scene.arm_setup(i).robot.urdf);
+    }
+    for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {
+      attach(mcap::parts_attachment(i), "application/yaml", scene.part_lists[i]);
+    }
     inputs_ = add(mcap::inputs);
     forces_ = add(mcap::forces);
     separations_ = add(mcap::separations);
@@ -143,11 +147,8 @@ class McapLog final : public TickLog {
             {"plant_inertia", to_text(options.plant_inertia)}};
   }
 
-  void attach_robot(const scene::RobotChoice& robot) {
-    std::string name = "robot ";
-    name += std::to_string(robots_++);
-    name += ".urdf";
-    writer_.attach(name, "application/xml", read_file(robot.urdf), begin_ns_);
+  void attach(const std::string& name, const char* type, const std::string& path) {
+    writer_.attach(name, type, read_file(path), begin_ns_);
   }
 
   std::uint16_t add(const mcap::Channel& channel) {
@@ -209,7 +210,6 @@ class McapLog final : public TickLog {
   std::uint64_t now_ns_ = 0;
   std::uint32_t sequence_ = 0;
   std::int64_t every_ = 1;
-  int robots_ = 0;
   std::uint16_t inputs_ = 0, forces_ = 0, separations_ = 0, energy_ = 0, timing_ = 0, poses_ = 0;
 };
 

@@ -2,6 +2,9 @@
 /// Names and message schemas of the channels of a recording.
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 namespace repel::teleop::mcap {
 
 struct Channel {
@@ -14,6 +17,18 @@ inline constexpr const char* profile = "";
 inline constexpr const char* run_metadata = "repel run";
 inline constexpr const char* end_metadata = "repel end";
 inline constexpr const char* scene_attachment = "scene.yaml";
+
+/// The robot of an arm, in the order of Scene::arm_setup().
+inline std::string robot_attachment(std::size_t arm) {
+  std::string name = "robot ";
+  return name.append(std::to_string(arm)).append(".urdf");
+}
+
+/// A file of Scene::part_lists.
+inline std::string parts_attachment(std::size_t list) {
+  std::string name = "parts ";
+  return name.append(std::to_string(list)).append(".yaml");
+}
 
 /// The inputs of the tick: what a replay needs.
 inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({

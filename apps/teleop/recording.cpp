@@ -214,15 +214,14 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
                    recording.file);
 }
 
-void require_same_robot(const McapReader& reader, int index, const std::string& urdf,
-                        const std::string& file) {
-  std::string name = "robot ";
-  name += std::to_string(index);
-  name += ".urdf";
-  if (text_of_file(urdf, "a robot description") != attachment(reader, name, file)) {
-    throw SetupError("the robot is not as it was recorded; allowed: the file that is attached to " +
-                         file + " as '" + name + "'",
-                     urdf);
+/// @param what begins the message: "the robot is"
+void require_same(const McapReader& reader, const std::string& name, const std::string& path,
+                  const char* what, const std::string& recording) {
+  if (text_of_file(path, "the file as it was recorded") != attachment(reader, name, recording)) {
+    throw SetupError(std::string(what) +
+                         " not as it was recorded; allowed: the file that is attached to " +
+                         recording + " as '" + name + "'",
+                     path);
   }
 }
 
@@ -233,10 +232,14 @@ void read_scene(const McapReader& reader, const std::string& recorded,
   const std::string path =
       fs::exists(recorded, error) ? recorded : find(fs::path(recorded).stem().string());
   recording.scene = scene::parse(attachment(reader, mcap::scene_attachment, recording.file), path);
-  int robots = 0;
-  require_same_robot(reader, robots++, recording.scene.robot.urdf, recording.file);
-  for (const scene::OtherArm& partner : recording.scene.partners) {
-    require_same_robot(reader, robots++, partner.robot.urdf, recording.file);
+  const scene::Scene& scene = recording.scene;
+  for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
+    require_same(reader, mcap::robot_attachment(i), scene.arm_setup(i).robot.urdf, "the robot is",
+                 recording.file);
+  }
+  for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {
+    require_same(reader, mcap::parts_attachment(i), scene.part_lists[i], "the parts of a mesh are",
+                 recording.file);
   }
 }
 

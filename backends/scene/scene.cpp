@@ -7,6 +7,7 @@
 #include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/text_file.hpp>
+#include <repel/scene/part_list.hpp>
 
 #include "network_reader.hpp"
 #include "yaml.hpp"
@@ -23,11 +24,12 @@ using Laws = std::map<std::string, ForceLaw>;
 /// Limits the total number of hull points in a scene, since each costs time in the reduction.
 class HullPoints {
  public:
-  void add(const Value& list, std::size_t points) {
+  /// @param where the error is, if there are too many
+  void add(const Value& where, std::size_t points) {
     sum_ += points;
     if (sum_ <= input_limits.hull_points) return;
-    list.fail("the hulls of the scene up to this one have " + std::to_string(sum_) +
-              " points; allowed: up to " + std::to_string(input_limits.hull_points) + " in all");
+    where.fail("the hulls of the scene up to this one have " + std::to_string(sum_) +
+               " points; allowed: up to " + std::to_string(input_limits.hull_points) + " in all");
   }
 
  private:
@@ -62,6 +64,7 @@ std::vector<std::string_view> size_keys(std::string_view kind) {
   if (kind == "box") return {"size"};
   if (kind == "sphere") return {"radius"};
   if (kind == "hull") return {"points"};
+  if (kind == "mesh") return {"file", "parts"};
   return {"radius", "length"};
 }
 
@@ -87,22 +90,75 @@ Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
   return Shape::cylinder(radius, half_length, coarse);
 }
 
-/// Reads the keys common to tool parts and obstacles. `keys`: further keys that are allowed.
-Part part_of(const Value& value, const Map& map, std::span<const std::string_view> keys,
-             HullPoints& counted) {
+/// The path of an existing file, relative to the scene's `file`.
+std::string path_of(const Value& value, const std::string& file) {
+  const auto path = std::filesystem::path(file).parent_path() / value.text();
+  std::error_code unused;
+  if (!std::filesystem::is_regular_file(path, unused)) {
+    value.fail_with_value("a file; there is none at " + path.lexically_normal().string());
+  }
+  return path.lexically_normal().string();
+}
+
+/// Context of the shapes of a file.
+struct ShapeFile {
+  const std::string& file;
+  HullPoints& counted;
+  std::vector<std::string>& part_lists;
+};
+
+/// The convex parts of a mesh, from the list that `parts` names or that lies beside the mesh.
+std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
+  const Value& mesh = map.at("file");
+  const std::string mesh_path = path_of(mesh, shapes.file);
+  const Value* const named = map.find("parts");
+  const bool is_beside = named == nullptr || named->text() == "auto";
+  const std::string path = is_beside ? part_list_beside(mesh_path) : path_of(*named, shapes.file);
+  std::error_code unused;
+  if (!std::filesystem::is_regular_file(path, unused)) {
+    mesh.fail("the mesh '" + mesh_path + "' has no convex parts yet: there is no file '" + path +
+              "'; to have it: cover '" + mesh_path + "'");
+  }
+  const PartList list = read_part_list(path);
+  if (!list.checksum.empty() && list.checksum != checksum_of_file(mesh_path)) {
+    mesh.fail("the parts in '" + path + "' are of another version of the mesh '" + mesh_path +
+              "'; to have its parts: cover '" + mesh_path + "' -o '" + path + "'");
+  }
+  shapes.part_lists.push_back(path);
+  const std::string name = map.at("name").text();
+  std::vector<Part> parts;
+  for (const std::vector<Vec3>& points : list.parts) {
+    shapes.counted.add(mesh, points.size());
+    const std::string number = std::to_string(parts.size() + 1);
+    try {
+      parts.push_back(
+          {name + "/" + number, Shape::hull(points, {.levels = 1}), "hull", pose_of(map)});
+    } catch (const SetupError& error) {
+      mesh.fail("part " + number + " in '" + path + "': " + error.what());
+    }
+  }
+  if (parts.empty()) mesh.fail("the file '" + path + "' has no part; allowed: 1 or more");
+  return parts;
+}
+
+/// Reads the keys common to tool parts and obstacles: one part, or those of a mesh.
+/// @param keys further keys that are allowed
+std::vector<Part> parts_of(const Value& value, const Map& map,
+                           std::span<const std::string_view> keys, const ShapeFile& shapes) {
   std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
   common.insert(common.end(), keys.begin(), keys.end());
   auto any = common;
-  any.insert(any.end(), {"size", "radius", "length", "points"});
+  any.insert(any.end(), {"size", "radius", "length", "points", "file", "parts"});
   map.allow(any);
   const std::string name = map.at("name").text();
   const std::string kind =
-      map.at("shape").word_of({"box", "sphere", "capsule", "cylinder", "cone", "hull"});
+      map.at("shape").word_of({"box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh"});
   const auto sizes = size_keys(kind);
   common.insert(common.end(), sizes.begin(), sizes.end());
   map.allow(common);
+  if (kind == "mesh") return parts_of_mesh(map, shapes);
   try {
-    return {name, shape_of(map, kind, counted), kind, pose_of(map)};
+    return {{name, shape_of(map, kind, shapes.counted), kind, pose_of(map)}};
   } catch (const SetupError& error) {
     if (error.line() > 0) throw;
     value.fail(kind + " '" + name + "': " + error.what());
@@ -115,12 +171,12 @@ void require_new(std::set<std::string>& names, const Map& map) {
   if (!names.insert(name.text()).second) name.fail_with_value("a name no other entry has");
 }
 
-std::vector<Part> tool_of(const Value& value, HullPoints& counted) {
+std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {
   std::vector<Part> parts;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry);
-    parts.push_back(part_of(entry, map, {}, counted));
+    for (Part& part : parts_of(entry, map, {}, shapes)) parts.push_back(std::move(part));
     require_new(names, map);
   }
   if (parts.empty()) value.fail("'tool' has no part; allowed: 1 or more");
@@ -192,28 +248,19 @@ std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
                              map.at("duration").number({unit::time, 1e-3, 86400.0})};
 }
 
-std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, HullPoints& counted) {
+std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const ShapeFile& shapes) {
   constexpr std::string_view keys[] = {"law", "motion"};
   std::vector<Obstacle> obstacles;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry);
-    Part part = part_of(entry, map, keys, counted);
+    for (Part& part : parts_of(entry, map, keys, shapes)) {
+      obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
+                           part.X_BP, law_called(laws, map), motion_of(map)});
+    }
     require_new(names, map);
-    obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
-                         part.X_BP, law_called(laws, map), motion_of(map)});
   }
   return obstacles;
-}
-
-/// The path of an existing file, relative to the scene's `file`.
-std::string path_of(const Value& value, const std::string& file) {
-  const auto path = std::filesystem::path(file).parent_path() / value.text();
-  std::error_code unused;
-  if (!std::filesystem::is_regular_file(path, unused)) {
-    value.fail_with_value("a file; there is none at " + path.lexically_normal().string());
-  }
-  return path.lexically_normal().string();
 }
 
 /// Angles, or a list of angles and, for prismatic joints, lengths.
@@ -355,12 +402,12 @@ struct Shared {
   const Laws& laws;
   const std::string& file;
   const ModuleKinds& kinds;
-  HullPoints& counted;
+  ShapeFile shapes;
 };
 
 void read_station(const Map& map, const Shared& shared, ArmSetup& setup) {
   setup.robot = robot_of(map.at("robot"), shared.laws, shared.file);
-  setup.tool = tool_of(map.at("tool"), shared.counted);
+  setup.tool = tool_of(map.at("tool"), shared.shapes);
   setup.network = detail::network_of(map.find("network"), shared.kinds);
   setup.script = script_of(map);
 }
@@ -432,9 +479,9 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   read_measure(map, scene);
   const Laws laws = laws_of(map);
   HullPoints counted;
-  const Shared shared{laws, file, kinds, counted};
+  const Shared shared{laws, file, kinds, {file, counted, scene.part_lists}};
   read_station(map, shared, scene);
-  scene.obstacles = obstacles_of(map.at("obstacles"), laws, counted);
+  scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes);
   scene.partners = partners_of(map, shared);
   scene.budget = budget_of(map);
   if (const Value* mode = map.find("coprocessor")) {

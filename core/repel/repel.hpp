@@ -21,6 +21,7 @@
 #include <repel/force/law.hpp>
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
+#include <repel/geometry/triangle_mesh.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
 #include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/modules.hpp>

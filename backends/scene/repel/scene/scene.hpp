@@ -109,6 +109,7 @@ struct Scene : ArmSetup {
   int levels = ReductionOptions{}.levels;
   std::vector<Obstacle> obstacles;
   std::vector<OtherArm> partners;
+  std::vector<std::string> part_lists;  ///< paths of the files that the parts of meshes are from
   Budget budget;
   CoprocessorMode coprocessor = CoprocessorMode::together;
 

@@ -1,0 +1,32 @@
+/// @file
+/// Which points of a surface lie in none of the parts: by cutting, not by sampling.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "box_hierarchy.hpp"
+#include "polytope.hpp"
+
+namespace repel::cover {
+
+/// A piece of a triangle that is in no part.
+struct Gap {
+  Polygon polygon;     ///< [m]
+  double depth = 0.0;  ///< [m] no point of it is farther from the nearest part
+  int nearest = -1;    ///< the part that the bound is from; -1: there are no parts
+};
+
+/// Cuts each triangle by the planes of the parts. What is returned, and nothing else, lies outside
+/// of every part by more than `margin` [m], which is there for rounding.
+[[nodiscard]] std::vector<Gap> gaps_in(std::span<const Triangle> surface,
+                                       std::span<const ConvexPart> parts, double margin);
+
+/// Lets parts grow until there are no gaps: each gap, or half of it, joins the part that it is
+/// nearest to. A gap that is farther than `most` [m] from every part stays.
+/// @param thickness as in ConvexPart::of
+[[nodiscard]] std::vector<Gap> fill_gaps(std::span<const Triangle> surface,
+                                         std::vector<ConvexPart>& parts, double margin, double most,
+                                         double thickness);
+
+}  // namespace repel::cover

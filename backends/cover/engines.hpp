@@ -1,0 +1,34 @@
+/// @file
+/// What divides a mesh into convex parts. Set-up only: it allocates.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "polytope.hpp"
+#include "solid.hpp"
+
+namespace repel::cover {
+
+/// Parts from an engine: their hulls approximate the solid, some of its surface may be in none.
+using PointSets = std::vector<std::vector<Vec3>>;
+
+/// Cuts the surface by planes, always where a part reaches out of the solid farthest, until no part
+/// does by more than `error` [m] or there are `most` parts. Of the planes of the mesh and of the
+/// axes, the one is taken after which the hulls have the least volume. Covers the surface exactly.
+[[nodiscard]] PointSets cut_by_planes(const Solid& solid, int most, double error, double thickness,
+                                      const std::function<void(const std::string&)>& progress);
+
+/// The shared library of the PyPI package `coacd`: $REPEL_COACD, or where python3 finds it; empty
+/// if there is none.
+[[nodiscard]] std::string coacd_library();
+
+/// CoACD (X. Wei et al., "Approximate convex decomposition for 3D meshes with collision-aware
+/// concavity and tree search", 2022) through the C functions of that library.
+/// @param threshold of its concavity, 0.01 to 1; smaller: more parts
+/// @throws SetupError if the library cannot be loaded or finds no parts
+[[nodiscard]] PointSets coacd_parts(const Solid& solid, const std::string& library,
+                                    double threshold, int most);
+
+}  // namespace repel::cover

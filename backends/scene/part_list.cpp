@@ -1,0 +1,71 @@
+#include <repel/scene/part_list.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <ostream>
+
+#include <repel/base/input_limits.hpp>
+#include <repel/base/setup_error.hpp>
+#include <repel/base/text_file.hpp>
+#include <repel/reduction/shape.hpp>
+
+#include "yaml.hpp"
+
+namespace repel::scene {
+namespace {
+
+std::string text_of(const Vec3& p) {
+  return to_text(p.x()) + " " + to_text(p.y()) + " " + to_text(p.z());
+}
+
+}  // namespace
+
+void write_part_list(const PartList& list, std::ostream& out) {
+  out << "# Convex parts that cover a mesh, for `shape: mesh` of a scene.\n";
+  if (!list.mesh.empty()) out << "mesh: '" << list.mesh << "'\n";
+  if (!list.checksum.empty()) out << "checksum: '" << list.checksum << "'\n";
+  out << "scale: " << text_of(list.scale) << "\n"
+      << "uncovered: " << to_text(list.uncovered) << " m\n"
+      << "excess: " << to_text(list.excess) << " m\n";
+  if (list.seam) out << "seam: " << to_text(*list.seam) << " m\n";
+  out << "parts:\n";
+  for (const std::vector<Vec3>& part : list.parts) {
+    out << "  - points:\n";
+    for (const Vec3& p : part) out << "      - " << text_of(p) << " m\n";
+  }
+}
+
+PartList read_part_list(const std::string& path) {
+  constexpr Rule coordinate{unit::length, -Shape::largest, Shape::largest};
+  constexpr Rule bound{unit::length, 0.0, Shape::largest};
+  const Value document = Value::document(text_of_file(path, "a list of parts"), path);
+  const Map map(document);
+  map.allow({"mesh", "checksum", "scale", "uncovered", "excess", "seam", "parts"});
+  PartList list;
+  map.read("mesh", list.mesh);
+  map.read("checksum", list.checksum);
+  map.read("scale", {unit::none, -1e6, 1e6}, list.scale);
+  map.read("uncovered", bound, list.uncovered);
+  map.read("excess", bound, list.excess);
+  if (const Value* seam = map.find("seam")) list.seam = seam->number(bound);
+  for (const Value& entry : map.at("parts").list()) {
+    const Map part(entry);
+    part.allow({"points"});
+    std::vector<Vec3>& points = list.parts.emplace_back();
+    for (const Value& point : part.at("points").list()) points.push_back(point.vector(coordinate));
+  }
+  return list;
+}
+
+std::string checksum_of_file(const std::string& path) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text_of_file(path, "a mesh file", input_limits.mesh_bytes)) {
+    hash ^= static_cast<unsigned char>(c);
+    hash *= 0x100000001b3U;
+  }
+  char digits[17];
+  (void)std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
+  return digits;
+}
+
+}  // namespace repel::scene

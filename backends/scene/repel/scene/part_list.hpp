@@ -1,0 +1,42 @@
+/// @file
+/// Files with the convex parts of a mesh: the program `cover` writes them, scenes read them.
+#pragma once
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <repel/base/types.hpp>
+
+namespace repel::scene {
+
+/// The parts of a mesh, and what was proven of them when they were made.
+struct PartList {
+  std::string mesh;            ///< name of the mesh file, without its folder
+  std::string checksum;        ///< of the mesh file, see checksum_of_file(); empty: not known
+  Vec3 scale{1, 1, 1};         ///< factors that the vertices of the mesh were multiplied by
+  double uncovered = 0.0;      ///< [m] no point of the surface is farther from the parts
+  double excess = 0.0;         ///< [m] no point of the parts is farther from the mesh
+  std::optional<double> seam;  ///< [m] depth up to which an intrusion feels one part
+  std::vector<std::vector<Vec3>> parts;  ///< [m] corners of convex hulls
+};
+
+/// Where the parts of a mesh file are unless said otherwise: beside it.
+[[nodiscard]] inline std::string part_list_beside(const std::string& mesh) {
+  return mesh + ".parts.yaml";
+}
+
+/// Writes `list` as YAML that reads back exactly; scenes/README.md describes it.
+void write_part_list(const PartList& list, std::ostream& out);
+
+/// Reads a file that write_part_list() wrote, or one like it.
+/// @throws SetupError naming file, line, value and what is allowed
+[[nodiscard]] PartList read_part_list(const std::string& path);
+
+/// The FNV-1a hash of the bytes of a file, as 16 hexadecimal digits: it tells that a file has
+/// changed, not that someone meant to hide it.
+/// @throws SetupError if the file cannot be read
+[[nodiscard]] std::string checksum_of_file(const std::string& path);
+
+}  // namespace repel::scene

@@ -1,0 +1,153 @@
+// Covers as a whole, checked by means that have no part in making them: GJK of the core, and
+// distances that are known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/cover/cover.hpp>
+#include <repel/reduction/separation.hpp>
+
+#include "meshes.hpp"
+
+namespace repel::cover {
+namespace cover_test {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Points of the surface, as many in each area.
+std::vector<Vec3> points_on(const TriangleMesh& mesh, int count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<double> sums;
+  double sum = 0.0;
+  const auto corner = [&](std::size_t t, int i) { return mesh.vertices[mesh.triangles[t][i]]; };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    sum += Vec3(corner(t, 1) - corner(t, 0)).cross(Vec3(corner(t, 2) - corner(t, 0))).norm();
+    sums.push_back(sum);
+  }
+  std::vector<Vec3> points;
+  for (int k = 0; k < count; ++k) {
+    const auto at = std::lower_bound(sums.begin(), sums.end(), uniform(random) * sum);
+    const auto t = static_cast<std::size_t>(at - sums.begin());
+    const double root = std::sqrt(uniform(random));
+    const double b = uniform(random);
+    points.push_back((1.0 - root) * corner(t, 0) + (root * (1.0 - b)) * corner(t, 1) +
+                     (root * b) * corner(t, 2));
+  }
+  return points;
+}
+
+double distance_from(const std::vector<Shape>& parts, const Vec3& p) {
+  const Shape point = Shape::sphere(0.0);
+  Pose X = Pose::Identity();
+  X.translation() = p;
+  double least = infinity;
+  for (const Shape& part : parts) {
+    least = std::min(least, std::max(0.0, separation(part, Pose::Identity(), point, X).distance));
+  }
+  return least;
+}
+
+void expect_covered(const TriangleMesh& mesh, const Cover& cover) {
+  std::vector<Shape> shapes;
+  for (const auto& part : cover.parts) shapes.push_back(Shape::hull(part));
+  double farthest = 0.0;
+  for (const Vec3& p : points_on(mesh, 20'000, 3)) {
+    farthest = std::max(farthest, distance_from(shapes, p));
+  }
+  EXPECT_LE(farthest, cover.uncovered_m) << "seed 3";
+}
+
+/// Points of a part: means of its corners.
+std::vector<Vec3> points_in(const std::vector<Vec3>& part, int count, std::mt19937_64& random) {
+  std::exponential_distribution<double> weight(1.0);
+  std::vector<Vec3> points(part);
+  for (int k = 0; k < count; ++k) {
+    Vec3 sum = Vec3::Zero();
+    double total = 0.0;
+    for (const Vec3& p : part) {
+      // Large powers make most points lie near corners, edges and facets.
+      const double w = std::pow(weight(random), 4.0);
+      sum += w * p;
+      total += w;
+    }
+    points.push_back(sum / total);
+  }
+  return points;
+}
+
+TEST(Cover, OfABinLeavesItsCavityOpen) {
+  const test::Bin bin;
+  const Cover cover = cover_of(bin.mesh(), {.parts = 16, .error = 1e-3, .overlap = 5e-3});
+  EXPECT_TRUE(cover.uncovered.empty());
+  EXPECT_LE(cover.parts.size(), 8U);
+  EXPECT_GE(cover.parts.size(), 5U);
+  EXPECT_LE(cover.excess_m, 1.1e-3);
+  EXPECT_LE(cover.excess_reached_m, cover.excess_m);
+  ASSERT_TRUE(cover.seam_m);
+  EXPECT_GE(*cover.seam_m, 2e-3);
+  expect_covered(bin.mesh(), cover);
+  std::mt19937_64 random(4);
+  double farthest = 0.0;
+  for (const auto& part : cover.parts) {
+    for (const Vec3& p : points_in(part, 5'000, random)) {
+      farthest = std::max(farthest, bin.distance(p));
+    }
+  }
+  EXPECT_LE(farthest, cover.excess_m) << "seed 4";
+}
+
+TEST(Cover, OfAConvexMeshIsItsHull) {
+  const Cover cover = cover_of(test::box_mesh({0.1, 0.2, 0.3}), {});
+  ASSERT_EQ(cover.parts.size(), 1U);
+  EXPECT_EQ(cover.parts[0].size(), 8U);
+  EXPECT_LT(cover.excess_m, 1e-4);
+  EXPECT_FALSE(cover.seam_m);
+}
+
+TEST(Cover, OfARingKeepsItsHoleOpen) {
+  const TriangleMesh ring = test::ring_mesh(32);
+  const Cover cover = cover_of(ring, {.parts = 24, .error = 2e-3, .overlap = 2e-3});
+  EXPECT_TRUE(cover.uncovered.empty());
+  EXPECT_LE(cover.excess_m, 2.2e-3);
+  expect_covered(ring, cover);
+}
+
+TEST(Cover, WithTooFewPartsSaysHowFarTheyReachOut) {
+  const test::Bin bin;
+  const Cover cover = cover_of(bin.mesh(), {.parts = 1, .error = 1e-3});
+  ASSERT_EQ(cover.parts.size(), 1U);
+  EXPECT_NEAR(cover.excess_m, 0.065, 2e-4);
+}
+
+TEST(Cover, OfAnOpenSheetIsThinAndSaysSo) {
+  TriangleMesh sheet;
+  test::add_quad(sheet, {0, 0, 0}, {0.2, 0, 0}, {0.2, 0.1, 0}, {0, 0.1, 0});
+  const Cover cover = cover_of(sheet, {.error = 1e-3});
+  EXPECT_FALSE(cover.is_closed);
+  ASSERT_EQ(cover.faults.size(), 1U);
+  EXPECT_NE(cover.faults[0].find("open"), std::string::npos);
+  EXPECT_TRUE(cover.uncovered.empty());
+  EXPECT_LE(cover.excess_m, 1e-3);
+}
+
+TEST(Cover, OfGivenPartsListsWhatTheyMiss) {
+  const TriangleMesh mesh = test::box_mesh({1, 1, 1});
+  const std::vector<Vec3> half{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0.5, 1, 0},
+                               {0, 0, 1}, {0.5, 0, 1}, {0, 1, 1}, {0.5, 1, 1}};
+  const Cover cover = checked_cover(mesh, {half}, {});
+  EXPECT_FALSE(cover.uncovered.empty());
+  EXPECT_NEAR(cover.uncovered_m, 0.5, 1e-6);
+}
+
+TEST(Cover, RefusesOptionsOutOfTheirRange) {
+  const TriangleMesh mesh = test::box_mesh({1, 1, 1});
+  EXPECT_THROW((void)cover_of(mesh, {.parts = 0}), SetupError);
+  EXPECT_THROW((void)cover_of(mesh, {.error = 0.0}), SetupError);
+  EXPECT_THROW((void)cover_of(mesh, {.overlap = std::nan("")}), SetupError);
+}
+
+}  // namespace cover_test
+}  // namespace repel::cover

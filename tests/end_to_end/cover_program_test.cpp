@@ -1,0 +1,78 @@
+// The program that covers meshes, as run by a user.
+#include "program.hpp"
+
+#include "cover/meshes.hpp"
+
+namespace repel::test {
+namespace cover_program_test {
+
+using nlohmann::json;
+
+Ending cover(const std::string& arguments) {
+  return run_program(REPEL_COVER, arguments);
+}
+
+/// A mesh as an OBJ file.
+std::string obj_of(const TriangleMesh& mesh) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Vec3& p : mesh.vertices) text << "v " << p.x() << " " << p.y() << " " << p.z() << "\n";
+  for (const auto& t : mesh.triangles) {
+    text << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  }
+  return text.str();
+}
+
+TEST(CoverProgram, WritesPartsThatAScenePutsIntoItsWorld) {
+  const Folder folder;
+  const std::string mesh = folder.with("bin.obj", obj_of(Bin().mesh()));
+  const Ending ending =
+      cover(quoted(mesh) + " --parts 16 --error 1mm --overlap 5mm --json " + quoted(folder / "j"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("uncovered   nothing")) << ending;
+  const json report = json::parse(text_of(folder / "j"));
+  EXPECT_GE(report.at("parts").size(), 5U);
+  EXPECT_EQ(report.at("parts")[0][0].size(), 3U);
+  EXPECT_LE(report.at("uncovered_m"), 1e-6);
+  EXPECT_LE(report.at("excess_m"), 1.1e-3);
+  EXPECT_GE(report.at("seam_m"), 1e-3);
+  EXPECT_TRUE(report.at("uncovered").empty());
+  EXPECT_NE(text_of(mesh + ".parts.yaml").find("mesh: 'bin.obj'"), std::string::npos);
+}
+
+TEST(CoverProgram, AnOpenMeshIsCoveredAndSaidToBeOpen) {
+  const Folder folder;
+  TriangleMesh open = box_mesh({0.1, 0.1, 0.1});
+  open.triangles.pop_back();
+  const std::string mesh = folder.with("open.obj", obj_of(open));
+  const Ending ending = cover(quoted(mesh) + " -o " + quoted(folder / "p.yaml"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("the surface is open, 3 edges have no opposite")) << ending;
+  EXPECT_TRUE(ending.says("excess is more than")) << ending;
+}
+
+TEST(CoverProgram, RefusesWhatIsNoMeshWithItsName) {
+  const Folder folder;
+  const std::string mesh = folder.with("notes.stl", "these are no triangles");
+  const Ending ending = cover(quoted(mesh));
+  EXPECT_EQ(ending.status, 1);
+  EXPECT_TRUE(ending.says("notes.stl")) << ending;
+  EXPECT_EQ(text_of(mesh + ".parts.yaml"), "");
+  EXPECT_EQ(cover(quoted(folder / "none.stl")).status, 1);
+}
+
+TEST(CoverProgram, RefusesLengthsAndFactorsOutOfRange) {
+  const Folder folder;
+  const std::string mesh = quoted(folder.with("box.obj", obj_of(box_mesh({1, 1, 1}))));
+  for (const char* wrong : {"--error 0", "--error 2km", "--overlap -1mm", "--parts 0",
+                            "--engine knife", "--scale nan"}) {
+    EXPECT_EQ(cover(mesh + " " + wrong).status, 2) << wrong;
+  }
+  EXPECT_EQ(cover(mesh + " --scale 0").status, 1);
+  const Ending ending = cover("--help");
+  EXPECT_EQ(ending.status, 0);
+  EXPECT_TRUE(ending.says("--overlap")) << ending;
+}
+
+}  // namespace cover_program_test
+}  // namespace repel::test

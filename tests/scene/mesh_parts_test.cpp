@@ -1,0 +1,128 @@
+// Meshes in a scene, and the files with their convex parts.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include <repel/scene/part_list.hpp>
+#include <repel/scene/scene.hpp>
+
+#include "end_to_end/folder.hpp"
+#include "scene/yaml_text.hpp"
+
+namespace repel::scene {
+namespace mesh_parts_test {
+
+const std::vector<Vec3> wedge{{0, 0, 0}, {0.1, 0, 0}, {0, 0.2, 0}, {0, 0, 1.0 / 3.0}};
+const std::vector<Vec3> other{{1, 0, 0}, {1.1, 0, 0}, {1, 0.2, 0}, {1, 0, 0.3}};
+
+/// A folder with a mesh, a list of its parts and a scene with both.
+class MeshParts : public ::testing::Test {
+ protected:
+  MeshParts() {
+    (void)folder_.with("bin.stl", "the bytes of a mesh");
+    (void)folder_.with("puma.urdf", test::text_of("robots/puma560.urdf"));
+    list_ = {"bin.stl",     checksum_of_file(folder_ / "bin.stl"), {1, 1, 1}, 1e-9, 2e-3, 5e-3,
+             {wedge, other}};
+  }
+
+  void write(const std::string& name) const {
+    std::ofstream file(folder_ / name);
+    write_part_list(list_, file);
+  }
+
+  [[nodiscard]] Scene parsed(const std::string& keys) const {
+    const std::string text =
+        "robot: {urdf: puma.urdf, start: 0 45 180 0 45 0 deg}\n"
+        "tool:\n"
+        "  - {name: rod, shape: sphere, radius: 20 mm}\n"
+        "obstacles:\n"
+        "  - {name: bin, shape: mesh, file: bin.stl, position: 1 2 3 m" +
+        keys + "}\n";
+    return parse(text, folder_ / "scene.yaml");
+  }
+
+  [[nodiscard]] std::string complaint(const std::string& keys = "") const {
+    try {
+      (void)parsed(keys);
+    } catch (const SetupError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  test::Folder folder_;
+  PartList list_;
+};
+
+TEST_F(MeshParts, ReadBackAsTheyWereWritten) {
+  write("list.yaml");
+  const PartList read = read_part_list(folder_ / "list.yaml");
+  EXPECT_EQ(read.mesh, list_.mesh);
+  EXPECT_EQ(read.checksum, list_.checksum);
+  EXPECT_EQ(read.uncovered, list_.uncovered);
+  EXPECT_EQ(read.excess, list_.excess);
+  EXPECT_EQ(read.seam, list_.seam);
+  ASSERT_EQ(read.parts.size(), 2U);
+  EXPECT_EQ(read.parts[0], wedge);  // to the bit, a third too
+  EXPECT_EQ(read.parts[1], other);
+}
+
+TEST_F(MeshParts, BesideTheMeshAreObstaclesWithItsPoseAndLaw) {
+  write("bin.stl.parts.yaml");
+  for (const char* keys : {"", ", parts: auto"}) {
+    const Scene scene = parsed(keys);
+    ASSERT_EQ(scene.obstacles.size(), 2U);
+    EXPECT_EQ(scene.obstacles[0].name, "bin/1");
+    EXPECT_EQ(scene.obstacles[1].name, "bin/2");
+    EXPECT_EQ(scene.obstacles[1].kind, "hull");
+    EXPECT_EQ(scene.obstacles[1].X_WP.translation(), Vec3(1, 2, 3));
+    ASSERT_EQ(scene.part_lists.size(), 1U);
+    EXPECT_EQ(scene.part_lists[0], folder_ / "bin.stl.parts.yaml");
+  }
+}
+
+TEST_F(MeshParts, MayBeNamedAndMayBeATool) {
+  write("few.yaml");
+  EXPECT_EQ(parsed(", parts: few.yaml").obstacles.size(), 2U);
+  const Scene scene = parse(
+      "robot: {urdf: puma.urdf, start: 0 45 180 0 45 0 deg}\n"
+      "tool:\n"
+      "  - {name: hand, shape: mesh, file: bin.stl, parts: few.yaml}\n"
+      "obstacles: []\n",
+      folder_ / "scene.yaml");
+  ASSERT_EQ(scene.tool.size(), 2U);
+  EXPECT_EQ(scene.tool[1].name, "hand/2");
+}
+
+TEST_F(MeshParts, ThatAreMissingAreNamedWithTheLineThatMakesThem) {
+  const std::string text = complaint();
+  EXPECT_NE(text.find("scene.yaml:5"), std::string::npos) << text;
+  EXPECT_NE(text.find("cover '" + folder_ / "bin.stl"), std::string::npos) << text;
+}
+
+TEST_F(MeshParts, OfAnotherVersionOfTheMeshAreRefused) {
+  write("bin.stl.parts.yaml");
+  (void)folder_.with("bin.stl", "other bytes");
+  const std::string text = complaint();
+  EXPECT_NE(text.find("another version"), std::string::npos) << text;
+}
+
+TEST_F(MeshParts, ThatAreNoListAreRefusedWithTheirLine) {
+  const auto with = [&](const std::string& text) {
+    (void)folder_.with("bin.stl.parts.yaml", text);
+    return complaint();
+  };
+  EXPECT_NE(with("parts:\n  - points: [1 2 3 kg]\n").find("parts.yaml:2"), std::string::npos);
+  EXPECT_NE(with("parts: []\n").find("no part"), std::string::npos);
+  EXPECT_NE(with("pieces: []\n").find("parts"), std::string::npos);
+  EXPECT_NE(with("checksum: 00\nparts: []\n").find("another version"), std::string::npos);
+}
+
+TEST_F(MeshParts, TakeNoSizesOfOtherShapes) {
+  write("bin.stl.parts.yaml");
+  EXPECT_NE(complaint(", radius: 1 m").find("radius"), std::string::npos);
+}
+
+}  // namespace mesh_parts_test
+}  // namespace repel::scene
