@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,21 +12,14 @@
 namespace repel::cover {
 namespace {
 
-/// A part of the surface.
+/// A part of the surface, and the convex cell that it was cut out by.
 struct Region {
   std::vector<Polygon> polygons;
+  Polytope cell;
   ConvexPart hull;
   Excess excess;
   bool is_final = false;  ///< no plane divides it
 };
-
-std::vector<Vec3> corners_of(const std::vector<Polygon>& polygons) {
-  std::vector<Vec3> points;
-  for (const Polygon& polygon : polygons) {
-    points.insert(points.end(), polygon.begin(), polygon.end());
-  }
-  return points;
-}
 
 Vec3 area_vector(const Polygon& polygon) {
   Vec3 sum = Vec3::Zero();
@@ -35,6 +29,32 @@ Vec3 area_vector(const Polygon& polygon) {
   return sum;
 }
 
+/// Appends what of a polygon is below a plane, and what is above, as corners. What lies in the
+/// plane, within `flat` [m], belongs to the side that it bounds.
+void divide_corners(const Polygon& polygon, const HalfSpace& plane, double flat,
+                    std::vector<Vec3>& below, std::vector<Vec3>& above) {
+  const HeightRange range = heights(polygon, plane);
+  if (range.high <= flat || range.low >= -flat) {
+    bool is_above = range.high > flat;
+    if (!is_above && range.low >= -flat) is_above = area_vector(polygon).dot(plane.n) < 0.0;
+    std::vector<Vec3>& side = is_above ? above : below;
+    side.insert(side.end(), polygon.begin(), polygon.end());
+    return;
+  }
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& a = polygon[i];
+    const Vec3& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double ha = plane.height(a);
+    const double hb = plane.height(b);
+    if (ha <= 0.0) below.push_back(a);
+    if (ha >= 0.0) above.push_back(a);
+    if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
+      below.push_back(a + (ha / (ha - hb)) * Vec3(b - a));
+      above.push_back(below.back());
+    }
+  }
+}
+
 class Cutting {
  public:
   Cutting(const Solid& solid, double error, double thickness,
@@ -42,10 +62,12 @@ class Cutting {
       : solid_(solid), error_(error), thickness_(thickness), progress_(progress) {}
 
   PointSets run(int most) {
-    std::vector<Polygon> all;
-    all.reserve(solid_.as_given().size());
-    for (const Triangle& t : solid_.as_given()) all.emplace_back(t.begin(), t.end());
-    regions_.push_back(region_of(std::move(all)));
+    Region whole;
+    whole.polygons.reserve(solid_.as_given().size());
+    for (const Triangle& t : solid_.as_given()) whole.polygons.emplace_back(t.begin(), t.end());
+    const Vec3 around = Vec3::Constant(solid_.size());
+    whole.cell = Polytope::box(solid_.bounds().low - around, solid_.bounds().high + around);
+    regions_.push_back(measured(std::move(whole)));
     while (static_cast<int>(regions_.size()) < 2 * most) {
       const std::optional<std::size_t> worst = worst_region();
       if (!worst) break;
@@ -62,14 +84,27 @@ class Cutting {
   }
 
  private:
-  [[nodiscard]] ExcessOptions coarse() const { return {.gap = 0.1 * error_, .most_pieces = 5'000}; }
+  [[nodiscard]] ExcessOptions coarse() const { return {.gap = 0.1 * error_, .most_pieces = 2'000}; }
 
-  Region region_of(std::vector<Polygon> polygons) const {
-    Region region;
-    region.hull = ConvexPart::of(corners_of(polygons), thickness_);
-    region.polygons = std::move(polygons);
+  /// The hull of what of the solid is in the cell: of the surface there, and of the corners of the
+  /// cell that are inside.
+  Region measured(Region region) const {
+    std::vector<Vec3> points = corners_inside(region.cell);
+    for (const Polygon& polygon : region.polygons) {
+      points.insert(points.end(), polygon.begin(), polygon.end());
+    }
+    region.hull = ConvexPart::of(points, thickness_);
     region.excess = excess_of(region.hull, solid_, coarse());
     return region;
+  }
+
+  [[nodiscard]] std::vector<Vec3> corners_inside(const Polytope& cell) const {
+    std::vector<Vec3> inside;
+    for (const Vec3& p : cell.corners()) {
+      const bool is_known = std::find(inside.begin(), inside.end(), p) != inside.end();
+      if (!is_known && solid_.has_inside(p)) inside.push_back(p);
+    }
+    return inside;
   }
 
   [[nodiscard]] double largest() const {
@@ -145,12 +180,30 @@ class Cutting {
     for (std::size_t i = 0; i < std::min(found.size(), most_near); ++i) {
       planes.push_back(found[i].plane);
     }
+    add_across(region.excess.at, planes);
     const Vec3 middle = 0.5 * Vec3(region.hull.low + region.hull.high);
     for (int axis = 0; axis < 3; ++axis) {
       planes.push_back({Vec3::Unit(axis), middle[axis]});
       planes.push_back({Vec3::Unit(axis), region.excess.at[axis]});
     }
     return planes;
+  }
+
+  /// Planes through the point that is farthest out, along the way from there to the surface: what
+  /// is bent around it is cut across.
+  void add_across(const Vec3& at, std::vector<HalfSpace>& planes) const {
+    constexpr int turns = 6;
+    const auto nearest = solid_.surface().nearest(at);
+    const Triangle& t = solid_.surface().triangles()[nearest.triangle];
+    const Vec3 way = nearest_in_triangle(at, t[0], t[1], t[2]) - at;
+    if (way.norm() < 1e-9 * solid_.size()) return;
+    const Vec3 u = way.unitOrthogonal();
+    const Vec3 v = way.normalized().cross(u);
+    for (int i = 0; i < turns; ++i) {
+      const double angle = std::numbers::pi * i / turns;
+      const Vec3 n = std::cos(angle) * u + std::sin(angle) * v;
+      planes.push_back({n, n.dot(at)});
+    }
   }
 
   void add(const Polygon& polygon, std::vector<Candidate>& found) const {
@@ -190,18 +243,27 @@ class Cutting {
       return;
     }
     Halves halves = cut(region.polygons, *plane);
-    regions_[index] = region_of(std::move(halves.below));
-    regions_.push_back(region_of(std::move(halves.above)));
+    Region below{std::move(halves.below), region.cell.clipped(*plane), {}, {}, false};
+    Region above{
+        std::move(halves.above), region.cell.clipped({-plane->n, -plane->offset}), {}, {}, false};
+    regions_[index] = measured(std::move(below));
+    regions_.push_back(measured(std::move(above)));
   }
 
-  /// The volume that is left, as a share; of two that are alike, the one that divides evenly.
+  /// The volume that is left, as a share; of two that are alike, the one that divides evenly. Of a
+  /// finely meshed surface some polygons will do.
   [[nodiscard]] double score_of(const Region& region, const HalfSpace& plane, double volume) const {
     constexpr double for_evenness = 0.01;
-    const Halves halves = cut(region.polygons, plane);
-    if (halves.below.empty() || halves.above.empty()) return 1e300;
-    const double below = ConvexPart::of(corners_of(halves.below), thickness_).volume();
-    const double above = ConvexPart::of(corners_of(halves.above), thickness_).volume();
-    return (below + above + for_evenness * std::abs(below - above)) / std::max(volume, 1e-300);
+    constexpr std::size_t most = 1500;
+    std::vector<Vec3> below = corners_inside(region.cell.clipped(plane));
+    std::vector<Vec3> above = corners_inside(region.cell.clipped({-plane.n, -plane.offset}));
+    const std::size_t step = 1 + region.polygons.size() / most;
+    for (std::size_t i = 0; i < region.polygons.size(); i += step) {
+      divide_corners(region.polygons[i], plane, 1e-9 * solid_.size(), below, above);
+    }
+    const double a = ConvexPart::of(below, thickness_).volume();
+    const double b = ConvexPart::of(above, thickness_).volume();
+    return (a + b + for_evenness * std::abs(a - b)) / std::max(volume, 1e-300);
   }
 
   /// Joins parts whose hull is still within the error; and, while there are more than `most`,
@@ -236,22 +298,33 @@ class Cutting {
       }
     }
     while (static_cast<int>(regions_.size()) > most) {
-      std::size_t a = 0;
-      std::size_t b = 1;
-      double least = 1e300;
+      struct Pair {
+        std::size_t i, j;
+        double more;  ///< [m^3] volume of the hull
+      };
+      std::vector<Pair> pairs;
       for (std::size_t i = 0; i < regions_.size(); ++i) {
         for (std::size_t j = i + 1; j < regions_.size(); ++j) {
-          const double more =
-              join(i, j).volume() - regions_[i].hull.volume() - regions_[j].hull.volume();
-          if (more >= least) continue;
-          least = more;
-          a = i;
-          b = j;
+          pairs.push_back(
+              {i, j, join(i, j).volume() - regions_[i].hull.volume() - regions_[j].hull.volume()});
         }
       }
-      ConvexPart hull = join(a, b);
-      const Excess excess = excess_of(hull, solid_, coarse());
-      replace(a, b, std::move(hull), excess);
+      // The hull that reaches out least, among those that add little.
+      constexpr std::size_t most_tried = 24;
+      std::sort(pairs.begin(), pairs.end(),
+                [](const Pair& a, const Pair& b) { return a.more < b.more; });
+      if (pairs.size() > most_tried) pairs.resize(most_tried);
+      Pair best = pairs[0];
+      Excess least{1e300, 0.0, {0, 0, 0}};
+      for (const Pair& pair : pairs) {
+        ExcessOptions options = coarse();
+        options.enough = least.bound;
+        const Excess excess = excess_of(join(pair.i, pair.j), solid_, options);
+        if (excess.bound >= least.bound) continue;
+        least = excess;
+        best = pair;
+      }
+      replace(best.i, best.j, join(best.i, best.j), least);
     }
   }
 
