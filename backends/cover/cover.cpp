@@ -15,6 +15,8 @@
 namespace repel::cover {
 namespace {
 
+/// Of the error, for the cuts: parts that took all of it could not reach into their neighbours.
+constexpr double for_cuts = 0.7;
 constexpr int samples_of_mean = 20'000;
 constexpr int samples_of_seams = 100'000;
 
@@ -137,7 +139,7 @@ Cover cover_of(const TriangleMesh& mesh, const CoverOptions& options) {
     case Engine::automatic:
     case Engine::planes:
       cover.engine = "planes";
-      sets = cut_by_planes(solid, options.parts, options.error, thickness_of(options),
+      sets = cut_by_planes(solid, options.parts, for_cuts * options.error, thickness_of(options),
                            options.progress);
       break;
     case Engine::coacd:

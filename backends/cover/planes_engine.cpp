@@ -250,10 +250,12 @@ class Cutting {
     regions_.push_back(measured(std::move(above)));
   }
 
-  /// The volume that is left, as a share; of two that are alike, the one that divides evenly. Of a
-  /// finely meshed surface some polygons will do.
+  /// The volume that is left, as a share. Of two cuts that are alike, as all are that first cut a
+  /// ring, the one that leaves compact halves, then the one that divides evenly. Of a finely meshed
+  /// surface some polygons will do.
   [[nodiscard]] double score_of(const Region& region, const HalfSpace& plane, double volume) const {
     constexpr double for_evenness = 0.01;
+    constexpr double for_size = 0.05;
     constexpr std::size_t most = 1500;
     std::vector<Vec3> below = corners_inside(region.cell.clipped(plane));
     std::vector<Vec3> above = corners_inside(region.cell.clipped({-plane.n, -plane.offset}));
@@ -261,9 +263,13 @@ class Cutting {
     for (std::size_t i = 0; i < region.polygons.size(); i += step) {
       divide_corners(region.polygons[i], plane, 1e-9 * solid_.size(), below, above);
     }
-    const double a = ConvexPart::of(below, thickness_).volume();
-    const double b = ConvexPart::of(above, thickness_).volume();
-    return (a + b + for_evenness * std::abs(a - b)) / std::max(volume, 1e-300);
+    const ConvexPart a = ConvexPart::of(below, thickness_);
+    const ConvexPart b = ConvexPart::of(above, thickness_);
+    const double volumes =
+        a.volume() + b.volume() + for_evenness * std::abs(a.volume() - b.volume());
+    const double sizes = (a.high - a.low).norm() + (b.high - b.low).norm();
+    return volumes / std::max(volume, 1e-300) +
+           for_size * sizes / Vec3(region.hull.high - region.hull.low).norm();
   }
 
   /// Joins parts whose hull is still within the error; and, while there are more than `most`,

@@ -12,10 +12,47 @@
 namespace repel::cover {
 namespace {
 
+/// A plane of a part, and how far it is to move outward [m].
+struct Side {
+  HalfSpace plane;
+  double outward = 0.0;
+};
+
+Vec3 normal_of(const Polygon& triangle) {
+  return Vec3(triangle[1] - triangle[0]).cross(Vec3(triangle[2] - triangle[0]));
+}
+
+/// The planes of a part, less what is there by rounding alone: facets that are narrower than `flat`
+/// [m] are left out, and of facets that are in one plane within that, the largest counts. All of
+/// the part stays inside.
+std::vector<Side> sides_of(const ConvexPart& part, double flat) {
+  constexpr double same_direction = 1e-8;
+  std::vector<std::pair<double, Vec3>> by_area;
+  for (const Polygon& f : part.facets) {
+    const Vec3 n = normal_of(f);
+    const double longest =
+        std::sqrt(std::max({Vec3(f[1] - f[0]).squaredNorm(), Vec3(f[2] - f[1]).squaredNorm(),
+                            Vec3(f[0] - f[2]).squaredNorm()}));
+    if (n.norm() > flat * longest) by_area.emplace_back(n.norm(), n.normalized());
+  }
+  std::sort(by_area.begin(), by_area.end(),
+            [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Side> sides;
+  for (const auto& [area, n] : by_area) {
+    const HalfSpace plane{n, heights(part.vertices, {n, 0.0}).high};
+    const bool is_known = std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
+      return side.plane.n.dot(n) > 1.0 - same_direction &&
+             std::abs(side.plane.offset - plane.offset) < flat;
+    });
+    if (!is_known) sides.push_back({plane, 0.0});
+  }
+  return sides;
+}
+
 /// Whether the facets of `part` in this plane are within the solid somewhere: beyond at least one
 /// of their middles there is solid.
 bool is_within(const ConvexPart& part, const HalfSpace& plane, const Solid& solid, double step) {
-  const double flat = 1e-9 * solid.size();
+  const double flat = 1e-6 * solid.size();
   return std::any_of(part.facets.begin(), part.facets.end(), [&](const Polygon& f) {
     if (heights(f, plane).low < -flat) return false;
     const Vec3 middle = (f[0] + f[1] + f[2]) / 3.0;
@@ -44,13 +81,13 @@ std::vector<Vec3> distinct(const std::vector<Vec3>& corners, const std::vector<V
   return points;
 }
 
-/// The part with its planes moved outward.
-ConvexPart moved(const ConvexPart& part, const std::vector<double>& outward, double overlap,
+/// The part with its sides moved outward.
+ConvexPart moved(const ConvexPart& part, const std::vector<Side>& sides, double overlap,
                  double same) {
   const Vec3 reach = Vec3::Constant(overlap);
   Polytope shape = Polytope::box(part.low - reach, part.high + reach);
-  for (std::size_t i = 0; i < part.planes.size(); ++i) {
-    shape = shape.clipped({part.planes[i].n, part.planes[i].offset + outward[i]});
+  for (const Side& side : sides) {
+    shape = shape.clipped({side.plane.n, side.plane.offset + side.outward});
   }
   return ConvexPart::of(distinct(shape.corners(), part.vertices, same), 0.0);
 }
@@ -166,35 +203,50 @@ class SeamSearch {
   std::mt19937_64 random_{1};
 };
 
+/// Halves the way of the side that would keep out most of what reaches too far; of all sides if the
+/// search found no such point. A way shorter than `least` [m] becomes none. Returns whether there
+/// was a side to pull back.
+bool pull_back(const Excess& excess, double allowed, double least, std::vector<Side>& sides) {
+  const auto halve = [&](Side& side) {
+    side.outward = side.outward < least ? 0.0 : 0.5 * side.outward;
+  };
+  Side* first = nullptr;
+  bool has_changed = false;
+  for (Side& side : sides) {
+    if (side.outward == 0.0) continue;
+    if (excess.reached <= allowed) {
+      halve(side);
+      has_changed = true;
+      continue;
+    }
+    const double height = side.plane.height(excess.at);
+    if (height <= 1e-3 * side.outward) continue;
+    if (first == nullptr || height > first->plane.height(excess.at)) first = &side;
+  }
+  if (first == nullptr) return has_changed;
+  halve(*first);
+  return true;
+}
+
 }  // namespace
 
 ConvexPart grown(const ConvexPart& part, const Solid& solid, double overlap, double error) {
   if (!(overlap > 0.0) || part.planes.empty()) return part;
-  std::vector<double> outward(part.planes.size(), 0.0);
+  std::vector<Side> sides = sides_of(part, 1e-6 * solid.size());
   const double step = std::min(0.1 * overlap, 1e-4 * solid.size());
-  for (std::size_t i = 0; i < outward.size(); ++i) {
-    if (is_within(part, part.planes[i], solid, step)) outward[i] = overlap;
+  for (Side& side : sides) {
+    if (is_within(part, side.plane, solid, step)) side.outward = overlap;
   }
   const ExcessOptions coarse{.gap = 0.1 * error, .most_pieces = 20'000};
   const double allowed = std::max(error, excess_of(part, solid, coarse).bound);
-  constexpr int most_tries = 40;
+  constexpr int most_tries = 200;
   for (int i = 0; i < most_tries; ++i) {
-    ConvexPart next = moved(part, outward, overlap, 1e-10 * solid.size());
+    ConvexPart next = moved(part, sides, overlap, 1e-10 * solid.size());
     ExcessOptions options = coarse;
     options.enough = allowed;
     const Excess excess = excess_of(next, solid, options);
     if (excess.bound <= allowed) return next;
-    // The planes that keep out what reaches too far: they move half as far. All of them if the
-    // search found none.
-    bool has_changed = false;
-    for (std::size_t k = 0; k < outward.size(); ++k) {
-      if (outward[k] == 0.0) continue;
-      if (excess.reached > allowed && part.planes[k].height(excess.at) <= 1e-3 * outward[k])
-        continue;
-      outward[k] = outward[k] < 0.05 * overlap ? 0.0 : 0.5 * outward[k];
-      has_changed = true;
-    }
-    if (!has_changed) break;
+    if (!pull_back(excess, allowed, 0.05 * overlap, sides)) break;
   }
   return part;
 }
