@@ -49,7 +49,7 @@ void divide_corners(const Polygon& polygon, const HalfSpace& plane, double flat,
     if (ha <= 0.0) below.push_back(a);
     if (ha >= 0.0) above.push_back(a);
     if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
-      below.push_back(a + (ha / (ha - hb)) * Vec3(b - a));
+      below.push_back(crossing(a, ha, b, hb));
       above.push_back(below.back());
     }
   }
@@ -101,8 +101,7 @@ class Cutting {
   [[nodiscard]] std::vector<Vec3> corners_inside(const Polytope& cell) const {
     std::vector<Vec3> inside;
     for (const Vec3& p : cell.corners()) {
-      const bool is_known = std::find(inside.begin(), inside.end(), p) != inside.end();
-      if (!is_known && solid_.has_inside(p)) inside.push_back(p);
+      if (solid_.has_inside(p)) inside.push_back(p);
     }
     return inside;
   }
@@ -272,6 +271,21 @@ class Cutting {
            for_size * sizes / Vec3(region.hull.high - region.hull.low).norm();
   }
 
+  /// Whether a point between corners of two parts is out of the solid by more than the error: then
+  /// their hull need not be made.
+  [[nodiscard]] bool is_far_between(std::size_t i, std::size_t j) const {
+    constexpr std::size_t most = 8;  // corners of each that are tried
+    const std::vector<Vec3>& a = regions_[i].hull.vertices;
+    const std::vector<Vec3>& b = regions_[j].hull.vertices;
+    for (std::size_t k = 0; k < a.size(); k += 1 + a.size() / most) {
+      for (std::size_t l = 0; l < b.size(); l += 1 + b.size() / most) {
+        const Vec3 p = 0.5 * Vec3(a[k] + b[l]);
+        if (solid_.surface().nearest(p).distance > error_ && !solid_.has_inside(p)) return true;
+      }
+    }
+    return false;
+  }
+
   /// Joins parts whose hull is still within the error; and, while there are more than `most`,
   /// those whose hull reaches out least.
   void merge(int most) {
@@ -293,7 +307,7 @@ class Cutting {
     };
     for (std::size_t i = 0; i < regions_.size(); ++i) {
       for (std::size_t j = i + 1; j < regions_.size(); ++j) {
-        if (!touch(i, j)) continue;
+        if (!touch(i, j) || is_far_between(i, j)) continue;
         ConvexPart hull = join(i, j);
         ExcessOptions options = coarse();
         options.enough = error_;

@@ -66,6 +66,11 @@ bool is_known(const std::vector<HalfSpace>& planes, const HalfSpace& plane, doub
 
 }  // namespace
 
+Vec3 crossing(const Vec3& a, double ha, const Vec3& b, double hb) {
+  if (ha > hb) return crossing(b, hb, a, ha);
+  return a + (ha / (ha - hb)) * Vec3(b - a);
+}
+
 HeightRange heights(std::span<const Vec3> points, const HalfSpace& plane) {
   HeightRange range{infinity, -infinity};
   for (const Vec3& p : points) {
@@ -86,7 +91,7 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& plane) {
     const double hb = plane.height(b);
     if (ha <= 0.0) kept.push_back(a);
     if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
-      kept.push_back(a + (ha / (ha - hb)) * Vec3(b - a));
+      kept.push_back(crossing(a, ha, b, hb));
     }
   }
   return kept;
@@ -120,6 +125,10 @@ Polytope Polytope::hull(std::span<const Vec3> points) {
 std::vector<Vec3> Polytope::corners() const {
   std::vector<Vec3> all;
   for (const Polygon& face : faces_) all.insert(all.end(), face.begin(), face.end());
+  std::sort(all.begin(), all.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
@@ -147,7 +156,7 @@ Polytope Polytope::clipped(const HalfSpace& plane) const {
       const double hb = plane.height(b);
       if (ha == 0.0) cut.push_back(a);
       if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
-        cut.push_back(a + (ha / (ha - hb)) * Vec3(b - a));
+        cut.push_back(crossing(a, ha, b, hb));
       }
     }
     if (kept.size() >= 3) result.faces_.push_back(std::move(kept));

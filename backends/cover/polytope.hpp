@@ -28,6 +28,10 @@ struct HeightRange {
 };
 [[nodiscard]] HeightRange heights(std::span<const Vec3> points, const HalfSpace& plane);
 
+/// Where the line from a to b crosses the plane, above which they are `ha` and `hb` high, one of
+/// them below: the same to the bit if both are exchanged, so that neighbours share corners.
+[[nodiscard]] Vec3 crossing(const Vec3& a, double ha, const Vec3& b, double hb);
+
 /// The part of `polygon` in the half space; fewer than three corners if there is none.
 [[nodiscard]] Polygon clipped(const Polygon& polygon, const HalfSpace& plane);
 
@@ -39,7 +43,7 @@ class Polytope {
   [[nodiscard]] static Polytope hull(std::span<const Vec3> points);
 
   [[nodiscard]] bool empty() const { return faces_.empty(); }
-  /// The corners of all faces: each corner occurs several times.
+  /// The corners, each once.
   [[nodiscard]] std::vector<Vec3> corners() const;
   /// What lies in the half space. Cost: one pass over the corners.
   [[nodiscard]] Polytope clipped(const HalfSpace& plane) const;
