@@ -238,6 +238,21 @@ def words(x, y, content, style=""):
     return f"<text x='{x:.1f}' y='{y:.1f}' {style}>{content}</text>"
 
 
+def with_parts(entries, folder):
+    """The entries of a scene with the convex parts of its meshes in place of these."""
+    for entry in entries:
+        if entry["shape"] != "mesh":
+            yield entry
+            continue
+        named = entry.get("parts", "auto")
+        name = entry["file"] + ".parts.yaml" if named == "auto" else named
+        path = os.path.join(folder, name)
+        with open(path, encoding="utf-8") as file:
+            parts = yaml.safe_load(file)["parts"]
+        for number, part in enumerate(parts, 1):
+            yield {**entry, "name": f"{entry['name']}/{number}", "shape": "hull", **part}
+
+
 def obstacles_of(scene):
     """Each with its shape, its style, and where it goes if it moves."""
     for part in scene["obstacles"]:
@@ -256,7 +271,7 @@ def names_of(panel, scene):
     others leave no room for it."""
     taken = {}
     for part, shape, _ in obstacles_of(scene):
-        name = re.sub(r"_\d+$", "", part["name"]) if part else None
+        name = re.sub(r"[_/]\d+$", "", part["name"]) if part else None
         if name is None or name in taken:
             continue
         seen = outline(*shape, *panel.axes)
@@ -341,6 +356,9 @@ def read_run(scene_path, log_path):
     """Scene, arms and rows of the log."""
     with open(scene_path, encoding="utf-8") as file:
         scene = yaml.safe_load(file)
+    folder = os.path.dirname(scene_path)
+    scene["obstacles"] = list(with_parts(scene["obstacles"], folder))
+    scene["tool"] = list(with_parts(scene["tool"], folder))
     with open(log_path, encoding="utf-8") as file:
         log = list(csv.DictReader(file))
     return scene, list(arms_of(scene, os.path.dirname(scene_path))), log
