@@ -130,7 +130,11 @@ std::vector<Gap> gaps_in(std::span<const Triangle> surface, std::span<const Conv
       for (const Polygon& polygon : left) subtract(polygon, part, margin, next);
       left = std::move(next);
     }
-    for (Polygon& polygon : left) gaps.push_back(gap_of(std::move(polygon), parts));
+    for (Polygon& polygon : left) {
+      // What a part only touches is left by it, and may be all that is left by the next one.
+      Gap gap = gap_of(std::move(polygon), parts);
+      if (gap.depth > margin) gaps.push_back(std::move(gap));
+    }
   }
   return gaps;
 }

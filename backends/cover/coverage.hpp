@@ -17,8 +17,8 @@ struct Gap {
   int nearest = -1;    ///< the part that the bound is from; -1: there are no parts
 };
 
-/// Cuts each triangle by the planes of the parts. What is returned, and nothing else, lies outside
-/// of every part by more than `margin` [m], which is there for rounding.
+/// Cuts each triangle by the planes of the parts. All points of the surface that are not in what is
+/// returned are at most `margin` [m] from a part, which is there for rounding.
 [[nodiscard]] std::vector<Gap> gaps_in(std::span<const Triangle> surface,
                                        std::span<const ConvexPart> parts, double margin);
 

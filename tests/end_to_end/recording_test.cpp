@@ -171,5 +171,31 @@ TEST(Recording, AnotherRobotIsRefused) {
   EXPECT_TRUE(ending.says("arm.urdf")) << ending;
 }
 
+/// A recording has the convex parts of the meshes of its scene: without them it would be gone
+/// through again in another world.
+TEST(Recording, OtherPartsOfAMeshAreRefused) {
+  const Folder folder;
+  (void)folder.with("table.stl", "a mesh that nothing reads here");
+  const std::string parts =
+      "parts:\n  - points:\n"
+      "      - 0.3 -0.4 0 m\n      - -0.3 -0.4 0 m\n      - 0.3 0.4 0 m\n      - -0.3 0.4 0 m\n"
+      "      - 0.3 -0.4 -0.05 m\n      - -0.3 -0.4 -0.05 m\n      - 0.3 0.4 -0.05 m\n"
+      "      - -0.3 0.4 -0.05 m\n";
+  const std::string list = folder.with("table.stl.parts.yaml", parts);
+  const std::string obstacles =
+      "laws:\n  default: {range: 20 mm, surface_force: 40 N, damping: 1 N s/m}\n"
+      "obstacles:\n"
+      "  - {name: table, shape: mesh, file: table.stl, position: 0.6 -0.15 0.45 m}\n";
+  const std::string scene = folder.with("scene.yaml", robot_text() + obstacles + push_text());
+  record(quoted(scene) + " --fast --seconds 1", folder / "run.mcap");
+  const Ending same = teleop("--replay " + quoted(folder / "run.mcap"));
+  EXPECT_EQ(same.status, 0) << same;
+  EXPECT_TRUE(same.says("table/1")) << same;
+  std::ofstream(list, std::ios::app) << "      - 0 0 1 m\n";
+  const Ending other = teleop("--replay " + quoted(folder / "run.mcap"));
+  EXPECT_EQ(other.status, 1) << other;
+  EXPECT_TRUE(other.says("table.stl.parts.yaml")) << other;
+}
+
 }  // namespace recording_test
 }  // namespace repel::test
