@@ -89,13 +89,11 @@ class Giving {
 
   // NOLINTNEXTLINE(misc-no-recursion): each half is shorter, and a short one is not halved
   void give(Gap gap) {
-    if (gap.nearest < 0) {
-      kept_.push_back(std::move(gap));
-    } else if (gap.depth > 0.25 * most_ && extent(gap.polygon) > most_) {
+    if (gap.nearest >= 0 && gap.depth > 0.25 * most_ && extent(gap.polygon) > most_) {
       for (Polygon& half : halves(gap.polygon)) {
         if (half.size() >= 3) give(gap_of(std::move(half), parts_));
       }
-    } else if (gap.depth > most_) {
+    } else if (gap.nearest < 0 || gap.depth > most_) {
       kept_.push_back(std::move(gap));
     } else {
       auto& points = joined_[gap.nearest];

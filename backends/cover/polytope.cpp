@@ -20,7 +20,7 @@ std::pair<Vec3, Vec3> span_of(const Vec3& n) {
 }
 
 /// The polygon of points in a plane with normal n that are the corners of a convex set, in order.
-Polygon in_order(std::vector<Vec3> points, const Vec3& n) {
+Polygon in_order(const std::vector<Vec3>& points, const Vec3& n) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
   const auto [u, v] = span_of(n);
@@ -67,8 +67,11 @@ bool is_known(const std::vector<HalfSpace>& planes, const HalfSpace& plane, doub
 }  // namespace
 
 Vec3 crossing(const Vec3& a, double ha, const Vec3& b, double hb) {
-  if (ha > hb) return crossing(b, hb, a, ha);
-  return a + (ha / (ha - hb)) * Vec3(b - a);
+  const bool is_rising = ha < hb;
+  const Vec3& low = is_rising ? a : b;
+  const Vec3& high = is_rising ? b : a;
+  const double below = std::min(ha, hb);
+  return low + (below / (below - std::max(ha, hb))) * Vec3(high - low);
 }
 
 HeightRange heights(std::span<const Vec3> points, const HalfSpace& plane) {
@@ -161,7 +164,7 @@ Polytope Polytope::clipped(const HalfSpace& plane) const {
     }
     if (kept.size() >= 3) result.faces_.push_back(std::move(kept));
   }
-  Polygon cap = in_order(std::move(cut), plane.n);
+  Polygon cap = in_order(cut, plane.n);
   if (cap.size() >= 3) result.faces_.push_back(std::move(cap));
   return result;
 }

@@ -38,7 +38,8 @@ std::vector<Side> sides_of(const ConvexPart& part, double flat) {
   std::sort(by_area.begin(), by_area.end(),
             [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Side> sides;
-  for (const auto& [area, n] : by_area) {
+  for (const auto& entry : by_area) {
+    const Vec3& n = entry.second;
     const HalfSpace plane{n, heights(part.vertices, {n, 0.0}).high};
     const bool is_known = std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
       return side.plane.n.dot(n) > 1.0 - same_direction &&
@@ -129,6 +130,7 @@ class SeamSearch {
 
   double run(const std::vector<Polygon>& hidden, int samples) {
     std::vector<double> sums;
+    sums.reserve(hidden.size());
     double sum = 0.0;
     for (const Polygon& polygon : hidden) sums.push_back(sum += area_of(polygon));
     for (int i = 0; i < samples; ++i) {

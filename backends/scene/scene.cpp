@@ -125,16 +125,16 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
               "'; to have its parts: cover '" + mesh_path + "' -o '" + path + "'");
   }
   shapes.part_lists.push_back(path);
-  const std::string name = map.at("name").text();
   std::vector<Part> parts;
   for (const std::vector<Vec3>& points : list.parts) {
     shapes.counted.add(mesh, points.size());
-    const std::string number = std::to_string(parts.size() + 1);
+    std::string name = map.at("name").text();
+    name.append(1, '/').append(std::to_string(parts.size() + 1));
     try {
-      parts.push_back(
-          {name + "/" + number, Shape::hull(points, {.levels = 1}), "hull", pose_of(map)});
+      parts.push_back({name, Shape::hull(points, {.levels = 1}), "hull", pose_of(map)});
     } catch (const SetupError& error) {
-      mesh.fail("part " + number + " in '" + path + "': " + error.what());
+      std::string text = name;
+      mesh.fail(text.append(" in '").append(path).append("': ").append(error.what()));
     }
   }
   if (parts.empty()) mesh.fail("the file '" + path + "' has no part; allowed: 1 or more");
