@@ -180,4 +180,6 @@ bool has_coacd() {
   return !coacd_library().empty();
 }
 
+void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}
+
 }  // namespace repel::cover

@@ -4,7 +4,11 @@
 #include <repel/robots/dynamics.hpp>
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
+#include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
+#endif
+#ifdef PART_cover
+#include <repel/cover/cover.hpp>
 #endif
 #ifdef PART_bullet
 #include <repel/bullet/arm.hpp>
@@ -14,6 +18,7 @@
 #endif
 #ifdef PART_scene
 #include <repel/scene/build_network.hpp>
+#include <repel/scene/part_list.hpp>
 #include <repel/scene/scene.hpp>
 #endif
 #ifdef PART_visual

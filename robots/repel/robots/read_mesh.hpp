@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include <repel/geometry/triangle_mesh.hpp>
+#include <repel/robots/built_alike.hpp>
 
 namespace repel {
 

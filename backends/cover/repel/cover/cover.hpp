@@ -8,9 +8,14 @@
 #include <string>
 #include <vector>
 
+#include <repel/base/layout.hpp>
 #include <repel/geometry/triangle_mesh.hpp>
 
 namespace repel::cover {
+
+/// Defined for the compiler flags of this library: a program with incompatible flags does not link.
+void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+[[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// What divides the mesh.
 enum class Engine : std::uint8_t {
