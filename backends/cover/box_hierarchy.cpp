@@ -92,8 +92,8 @@ BoxHierarchy::Nearest BoxHierarchy::nearest(const Vec3& p) const {
   return best;
 }
 
-bool BoxHierarchy::overlapping(const Bounds& box, std::size_t most, std::vector<int>& found) const {
-  found.clear();
+template <class Meets, class See>
+bool BoxHierarchy::visit(const Meets& meets, const See& see) const {
   if (nodes_.empty()) return true;
   std::array<int, 128> waiting;
   int count = 0;
@@ -101,13 +101,9 @@ bool BoxHierarchy::overlapping(const Bounds& box, std::size_t most, std::vector<
   while (count > 0) {
     const int index = waiting[--count];
     const Node& node = nodes_[index];
-    if (!node.box.meets(box)) continue;
+    if (!meets(node.box)) continue;
     for (int i = node.first; i < node.first + node.count; ++i) {
-      Bounds of_triangle;
-      for (const Vec3& p : triangles_[order_[i]]) of_triangle.add(p);
-      if (!of_triangle.meets(box)) continue;
-      if (found.size() == most) return false;
-      found.push_back(order_[i]);
+      if (!see(order_[i])) return false;
     }
     if (node.second == 0) continue;
     waiting[count++] = index + 1;
@@ -116,45 +112,48 @@ bool BoxHierarchy::overlapping(const Bounds& box, std::size_t most, std::vector<
   return true;
 }
 
+bool BoxHierarchy::overlapping(const Bounds& box, std::size_t most, std::vector<int>& found) const {
+  found.clear();
+  return visit([&](const Bounds& node) { return node.meets(box); },
+               [&](int index) {
+                 Bounds of_triangle;
+                 for (const Vec3& p : triangles_[index]) of_triangle.add(p);
+                 if (!of_triangle.meets(box)) return true;
+                 if (found.size() == most) return false;
+                 found.push_back(index);
+                 return true;
+               });
+}
+
 BoxHierarchy::Crossings BoxHierarchy::crossings(const Vec3& p, const Vec3& direction) const {
   constexpr double doubt = 1e-9;  // as a share of the triangle
   const Vec3 inverse = direction.cwiseInverse();
   Crossings result;
-  std::array<int, 128> waiting;
-  int count = 0;
-  waiting[count++] = 0;
-  while (count > 0) {
-    const int index = waiting[--count];
-    const Node& node = nodes_[index];
-    if (!ray_meets(node.box, p, inverse)) continue;
-    for (int i = node.first; i < node.first + node.count; ++i) {
-      const Triangle& t = triangles_[order_[i]];
-      const Vec3 u = t[1] - t[0];
-      const Vec3 v = t[2] - t[0];
-      const Vec3 n = u.cross(v);
-      const double along = n.dot(direction);
-      const Vec3 r = p - t[0];
-      const double above = n.dot(r);
-      if (along != 0.0 && -above / along < 0.0) continue;  // behind
-      const Vec3 q = r.cross(direction);
-      // Shares of the corners, times `along`.
-      const double a = -v.dot(q);
-      const double b = u.dot(q);
-      const double c = along - a - b;
-      const double sign = along > 0.0 ? 1.0 : -1.0;
-      const double least = std::min({sign * a, sign * b, sign * c});
-      const double size = std::abs(along) + std::abs(a) + std::abs(b);
-      if (least > doubt * size) {
-        result.count += along > 0.0 ? 1 : -1;
-      } else if (least > -doubt * size) {
-        result.is_doubtful = true;
-        return result;
-      }
+  const auto see = [&](int index) {
+    const Triangle& t = triangles_[index];
+    const Vec3 u = t[1] - t[0];
+    const Vec3 v = t[2] - t[0];
+    const Vec3 n = u.cross(v);
+    const double along = n.dot(direction);
+    const Vec3 r = p - t[0];
+    const double above = n.dot(r);
+    if (along != 0.0 && -above / along < 0.0) return true;  // behind
+    const Vec3 q = r.cross(direction);
+    // Shares of the corners, times `along`.
+    const double a = -v.dot(q);
+    const double b = u.dot(q);
+    const double c = along - a - b;
+    const double sign = along > 0.0 ? 1.0 : -1.0;
+    const double least = std::min({sign * a, sign * b, sign * c});
+    const double size = std::abs(along) + std::abs(a) + std::abs(b);
+    if (least > doubt * size) {
+      result.count += along > 0.0 ? 1 : -1;
+    } else if (least > -doubt * size) {
+      result.is_doubtful = true;
     }
-    if (node.second == 0) continue;
-    waiting[count++] = index + 1;
-    waiting[count++] = node.second;
-  }
+    return !result.is_doubtful;
+  };
+  (void)visit([&](const Bounds& box) { return ray_meets(box, p, inverse); }, see);
   return result;
 }
 

@@ -62,6 +62,10 @@ class BoxHierarchy {
   static constexpr int leaf_size = 4;
 
   int build(int first, int last, std::vector<Vec3>& middles);
+  /// Calls see(index of a triangle) for all in boxes that `meets` accepts, until it returns false;
+  /// then so does this.
+  template <class Meets, class See>
+  bool visit(const Meets& meets, const See& see) const;
   struct Crossings {
     int count = 0;
     bool is_doubtful = false;  ///< an edge is too near
