@@ -43,4 +43,5 @@
 #include <repel/loop/tap.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/schedule/coprocessor.hpp>
+#include <repel/schedule/world_changes.hpp>
 #endif

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
+
+#include <repel/schedule/world_changes.hpp>
 
 #include "cell/sliders.hpp"
 
@@ -31,6 +34,72 @@ TEST(Cell, BringsAnArmToAWallAndNoFurtherInOneCallATick) {
   EXPECT_GT(arm.q[0], 0.17) << "the ball must come near the wall, which begins at 0.2 m";
   EXPECT_LT(arm.q[0], 0.2);
   EXPECT_GT(peak, 1.0);
+}
+
+/// The cell of the sliders, with a box that can come, and what drives it.
+struct LooseBox {
+  LooseBox() : cell(description()) { arm.friction = 500.0; }
+  static CellDescription description() {
+    CellDescription description = sliders();
+    Pose X_WP = Pose::Identity();
+    X_WP.translation().x() = 0.12;
+    description.loose.push_back({"box", Shape::box({0.02, 0.02, 0.02}), X_WP, {}});
+    return description;
+  }
+  /// Moves the hand at `speed` [m/s] along x. Returns the largest step of the force from tick to
+  /// tick [N].
+  double drive(double speed, double time) {
+    network::Command hands;
+    hands.hand.ball.linear.x() = speed;
+    double largest_step = 0.0;
+    for (int tick = 0; tick < time * 400.0; ++tick) {
+      record = &cell.step({arm.q, arm.v}, hands, now += cell.period());
+      EXPECT_EQ(record->status & status::failsafe, 0U) << to_text(record->status);
+      arm.set_torques(std::span(record->torques).first(3));
+      arm.step(0.0025);
+      largest_step = std::max(largest_step, std::abs(record->virtual_force.force.x() - force));
+      force = record->virtual_force.force.x();
+    }
+    return largest_step;
+  }
+  Cell cell;
+  test::SliderArm arm;
+  const TickRecord* record = nullptr;
+  std::chrono::nanoseconds now{0};
+  double force = 0.0;  // [N] on the tool, along x
+};
+
+TEST(Cell, LetsATookPartWorkLikeTheTool) {
+  LooseBox box;
+  const PartId part = box.cell.loose().front();
+  const BodyId tool = box.cell.layout(0).tool;
+  EXPECT_LT(box.drive(0.0, 0.1), 1e-12) << "nothing is there";
+  // It comes where the ball of the tool is: 0.05 + 0.02 - 0.06 deep.
+  ASSERT_TRUE(box.cell.changes().add(part, Pose(Eigen::Translation3d(0.06, 0, 0)), 0.2));
+  EXPECT_LT(box.drive(0.0, 0.3), 3.0) << "pushed, not kicked";
+  EXPECT_LT(box.force, -1.0);
+  EXPECT_LT(box.arm.q[0], -0.001) << "pushed out of it";
+  ASSERT_TRUE(box.cell.changes().attach(part, tool, 0.2));
+  EXPECT_LT(box.drive(0.0, 0.5), 1.0) << "taken without a kick";
+  EXPECT_EQ(box.force, 0.0);
+  // Held, it meets the wall before the ball does.
+  const double ahead =
+      box.cell.world().motion().bodies.back().X_WB.translation().x() + 0.02 - (box.arm.q[0] + 0.05);
+  EXPECT_GT(ahead, 0.02);
+  EXPECT_LT(box.drive(0.1, 6.0), 3.0);
+  EXPECT_LT(box.force, -1.0);
+  EXPECT_GT(box.arm.q[0] + ahead, 0.17) << "it must come near the wall, which begins at 0.25 m";
+  EXPECT_LT(box.arm.q[0] + ahead, 0.2);
+  // Let go there, it is in the way of the ball.
+  ASSERT_TRUE(box.cell.changes().release(part, 0.1));
+  EXPECT_LT(box.drive(0.0, 0.5), 3.0);
+  const double left_at = box.cell.world().motion().bodies.back().X_WB.translation().x();
+  EXPECT_LT(box.force, -1.0) << "an obstacle again";
+  (void)box.drive(-0.1, 1.0);
+  EXPECT_EQ(box.cell.world().motion().bodies.back().X_WB.translation().x(), left_at);
+  ASSERT_TRUE(box.cell.changes().remove(part, 0.1));
+  (void)box.drive(0.1, 6.0);
+  EXPECT_GT(box.arm.q[0], 0.17) << "nothing but the wall";
 }
 
 /// The levels of the wall of a cell, which has one when it is built.

@@ -28,6 +28,7 @@ struct Lists {
     ++asked;
     return keeps;
   }
+  void drop(std::int32_t list) noexcept { lists.erase(list); }
   [[nodiscard]] bool holds(std::int32_t pair) const {
     return std::any_of(lists.begin(), lists.end(),
                        [&](const auto& list) { return list.second.contains(pair); });

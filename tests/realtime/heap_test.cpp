@@ -3,9 +3,13 @@
 
 #include <cstdlib>
 #include <new>
+#include <vector>
+
+#include <repel/schedule/world_changes.hpp>
 
 #include "loop/slider.hpp"
 #include "pairs/boxes.hpp"
+#include "support/draws.hpp"
 #include "support/heap_counter.hpp"
 
 namespace repel {
@@ -94,6 +98,59 @@ TEST(Heap, CoprocessorTakesNothingFromItWhateverItsBudget) {
       EXPECT_EQ(calls, 0) << threads << " threads";
       EXPECT_GT(evaluated, 0);
     }
+  }
+}
+
+// Shapes are made and freed by whoever asks for them, here between the ticks.
+TEST(Heap, PartsThatComeAndGoTakeNothingFromItInTheTick) {
+  if (REPEL_COUNTS_HEAP == 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const int threads : {0, 2}) {
+    test::Boxes boxes(4, 60, {.range = 0.1}, 3);
+    World& world = boxes.world;
+    const BodyId tool = world.part(world.pair({0}).a).body;
+    const PartId finger = world.pair({0}).a;
+    world.join(tool, tool);
+    world.spare_held(tool);
+    for (int i = 0; i < 16; ++i) {
+      const PartId part = world.reserve("loose", Shape::sphere(0.01), 0.2);
+      (void)world.add_pair(finger, part, {.range = 0.1});
+    }
+    CoprocessorOptions options;
+    options.threads = threads;
+    options.lock_step = true;
+    options.on_thread_start = count_from_here;
+    calls = 0;
+    Coprocessor coprocessor(world, options);
+    WorldChanges changes(world);
+    std::vector<PartId> used;
+    const auto at = [&](int k) {
+      Pose X = world.motion().bodies[static_cast<std::size_t>(tool.index)].X_WB;
+      X.translation() += Vec3(0.05 * (k % 5), 0.05 * (k % 3), 0.1);
+      return X;
+    };
+    std::int64_t evaluated = 0;
+    const int ticks = families::draws(4000);
+    for (int tick = 0; tick < ticks; ++tick) {
+      const PartId added =
+          changes.add(Shape::box({0.02 + 0.001 * (tick % 50), 0.05, 0.05}), at(tick), 0.005);
+      if (added.valid()) used.push_back(added);
+      (void)changes.move(used[static_cast<std::size_t>(tick) % used.size()], at(tick + 1), 1.0);
+      if (tick % 4 == 0) (void)changes.attach(used.back(), tool, 0.005);
+      if (used.size() > 12) {
+        (void)changes.remove(used.front(), 0.005);
+        used.erase(used.begin());
+      }
+      const Watch watch;
+      changes.apply(world, coprocessor);
+      world.advance(0.0025);
+      boxes.move();
+      world.carry();
+      evaluated += coprocessor.exchange().totals.evaluated;
+    }
+    EXPECT_EQ(calls, 0) << threads << " threads";
+    EXPECT_GT(changes.counts().applied, 5 * ticks / 2) << "10 000 without a sanitizer";
+    EXPECT_GT(evaluated, ticks);
+    RecordProperty("applied", static_cast<int>(changes.counts().applied));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
@@ -44,7 +45,11 @@ class Ring {
     return after(writing_) == tail_.load(std::memory_order_acquire);
   }
 
-  /// Reader: the oldest unread value; null when there is none.
+  /// Reader: the oldest unread value; null when there is none. What the reader leaves in it, the
+  /// writer finds in a later draft: so memory goes back to where it may be freed.
+  [[nodiscard]] T* front() noexcept {
+    return const_cast<T*>(std::as_const(*this).front());  // NOLINT(*-const-cast): it is ours
+  }
   [[nodiscard]] const T* front() const noexcept {
     if (reading_ == head_.load(std::memory_order_acquire)) return nullptr;
     return &slots_[reading_];

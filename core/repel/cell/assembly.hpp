@@ -23,6 +23,7 @@
 #include <repel/loop/tick.hpp>
 #include <repel/loop/tick_clock.hpp>
 #include <repel/schedule/coprocessor.hpp>
+#include <repel/schedule/world_changes.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {
@@ -51,10 +52,13 @@ class CellAssembly {
     if (ticks_ > 0) periods_ += clock_.elapsed();
     ++ticks_;
     const double time = 1e-9 * static_cast<double>(period_.count()) * static_cast<double>(periods_);
+    changes_->apply(world_, *coprocessor_);
+    world_.advance(1e-9 * static_cast<double>(period_.count() * clock_.elapsed()));
     for (const MovingBody& moving : moving_) (void)moving.place(world_, time);
     for (std::size_t i = 0; i < controls_.size(); ++i) {
       controls_[i].sense(i < readings.size() ? readings[i] : ArmReadings{}, now);
     }
+    world_.carry();
     forces_ = &coprocessor_->exchange();
     contacts_->collect(*coprocessor_);
   }
@@ -77,6 +81,9 @@ class CellAssembly {
   [[nodiscard]] const CellDescription& description() const noexcept { return description_; }
   [[nodiscard]] std::chrono::nanoseconds period() const noexcept { return period_; }
   [[nodiscard]] const World& world() const noexcept { return world_; }
+  [[nodiscard]] World& world() noexcept { return world_; }
+  [[nodiscard]] WorldChanges& changes() noexcept { return *changes_; }
+  [[nodiscard]] std::span<const PartId> loose() const noexcept { return loose_; }
   [[nodiscard]] const Coprocessor& coprocessor() const noexcept { return *coprocessor_; }
   [[nodiscard]] std::size_t arms() const noexcept { return controls_.size(); }
   [[nodiscard]] const ArmLayout& layout(std::size_t arm) const noexcept { return layouts_[arm]; }
@@ -91,6 +98,8 @@ class CellAssembly {
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
  private:
+  static constexpr std::size_t most_changes = 1024;  // that wait
+
   void lay_out() {
     settle_laws();
     reduce_shapes();
@@ -98,9 +107,14 @@ class CellAssembly {
       start(arm);
       layouts_.push_back(add_arm(world_, arm));
     }
+    std::vector<PartId> obstacles;
     for (const ObstacleDescription& obstacle : description_.obstacles) {
+      obstacles.push_back({static_cast<std::int32_t>(world_.parts().size())});
       const auto moving = add_obstacle(world_, obstacle, layouts_);
       if (moving) moving_.push_back(*moving);
+    }
+    for (const LooseDescription& loose : description_.loose) {
+      loose_.push_back(add_loose(world_, description_, loose, layouts_, obstacles));
     }
     for (std::size_t second = 1; second < layouts_.size(); ++second) {
       for (const PartId b : layouts_[second].parts) {
@@ -137,6 +151,7 @@ class CellAssembly {
       if (arm.self_law) settle(*arm.self_law);
     }
     for (ObstacleDescription& obstacle : description_.obstacles) settle(obstacle.law);
+    for (LooseDescription& loose : description_.loose) settle(loose.law);
   }
 
   /// Raises the damping of a law where it may rise, and where a wall is stable but for the tick by
@@ -167,6 +182,7 @@ class CellAssembly {
       for (ArmPart& part : arm.parts) shapes.push_back(&part.shape);
     }
     for (ObstacleDescription& each : description_.obstacles) shapes.push_back(&each.shape);
+    for (LooseDescription& each : description_.loose) shapes.push_back(&each.shape);
     const bool needed = std::any_of(shapes.begin(), shapes.end(), [this](const Shape* shape) {
       return needs_levels(*shape, description_.measure);
     });
@@ -249,6 +265,7 @@ class CellAssembly {
       moved.push_back(layout.tool);
       for (const LinkBody& link : layout.links) moved.push_back(link.body);
     }
+    changes_.emplace(world_, most_changes, description_.levels.value_or(ReductionOptions{}.levels));
     contacts_.emplace(world_, std::min<std::size_t>(world_.pairs().size(), 4096), moved);
   }
 
@@ -262,6 +279,8 @@ class CellAssembly {
   std::vector<const TickRecord*> records_;
   std::optional<Coprocessor> coprocessor_;
   std::optional<ActiveContacts> contacts_;
+  std::optional<WorldChanges> changes_;
+  std::vector<PartId> loose_;  // in the order of the description
   const PairForces* forces_ = nullptr;
   network::Command silent_{
       .hand = {}, .sound = false, .silent_for = std::numeric_limits<double>::infinity()};

@@ -24,6 +24,7 @@ namespace repel {
 
 class Coprocessor;
 class Teleoperator;
+class WorldChanges;
 struct ArmLayout;
 namespace detail {
 class CellAssembly;
@@ -81,6 +82,12 @@ class Cell {
   [[nodiscard]] const CellDescription& description() const noexcept;
   [[nodiscard]] std::chrono::nanoseconds period() const noexcept;
   [[nodiscard]] const World& world() const noexcept;
+  /// For the thread of the tick, between two ticks: World::add, move, attach, release and remove.
+  [[nodiscard]] World& world() noexcept;
+  /// For one other thread: the queue of such changes. They are applied at the next `sense`.
+  [[nodiscard]] WorldChanges& changes() noexcept;
+  /// The parts that can come and go, in the order of the description.
+  [[nodiscard]] std::span<const PartId> loose() const noexcept;
   /// Forces and answers of the pairs (schedule/coprocessor.hpp).
   [[nodiscard]] const Coprocessor& coprocessor() const noexcept;
   [[nodiscard]] std::size_t arms() const noexcept;
@@ -165,6 +172,15 @@ REPEL_DEFINITION std::chrono::nanoseconds Cell::period() const noexcept {
 }
 REPEL_DEFINITION const World& Cell::world() const noexcept {
   return parts_->world();
+}
+REPEL_DEFINITION World& Cell::world() noexcept {
+  return parts_->world();
+}
+REPEL_DEFINITION WorldChanges& Cell::changes() noexcept {
+  return parts_->changes();
+}
+REPEL_DEFINITION std::span<const PartId> Cell::loose() const noexcept {
+  return parts_->loose();
 }
 REPEL_DEFINITION const Coprocessor& Cell::coprocessor() const noexcept {
   return parts_->coprocessor();

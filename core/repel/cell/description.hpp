@@ -55,6 +55,17 @@ struct ObstacleDescription {
   std::optional<ReciprocatingMotion> motion{};  ///< without one it is fixed
 };
 
+/// A convex part P of the environment that can come and go, be moved and be held by a tool while
+/// the cell runs (Cell::changes, docs/changing_cell.md).
+struct LooseDescription {
+  std::string name;
+  Shape shape;                   ///< that it comes with, unless it gets another one
+  Pose X_WP = Pose::Identity();  ///< [m] where it comes, unless it is said
+  ForceLaw law{};                ///< between it and every part of every arm
+  bool at_start = false;         ///< it is there from the start on
+  double room = 0.0;  ///< [m] largest reach of a shape that it can get; 0: that of `shape`
+};
+
 /// Handling of an arm that starts with a part of it inside an obstacle that is not passable.
 enum class StartInside {
   refuse,    ///< SetupError
@@ -67,6 +78,7 @@ struct CellDescription {
   double rate_hz = 400.0;  ///< [Hz] of the tick, 1 to 1e5
   std::vector<ArmDescription> arms{};
   std::vector<ObstacleDescription> obstacles{};
+  std::vector<LooseDescription> loose{};
   Limits limits{};                                            ///< capacities of the world
   CoprocessorOptions coprocessor{};                           ///< its `period` is overwritten
   network::GainCheck gain_check = network::GainCheck::error;  ///< for walls that are too stiff

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <span>
 #include <string>
@@ -145,6 +146,12 @@ inline ArmLayout add_arm(World& world, const ArmDescription& arm) {
     layout.parts.push_back(world.add_part(body, prefix + part.name, part.shape, part.X_FP));
   }
   layout.levers = ArmLevers(arm);
+  // What the tool holds may touch what the tool may touch.
+  const int last = static_cast<int>(arm.model.links.size()) - 1;
+  world.spare_held(layout.tool);
+  for (const LinkBody& link : layout.links) {
+    if (!arm.self_law || last - link.link < 2) world.spare_held(link.body);
+  }
   return layout;
 }
 
@@ -199,13 +206,38 @@ inline std::optional<MovingBody> add_obstacle(World& world, const ObstacleDescri
   return moving;
 }
 
+/// Adds a part that can come and go, and its pairs: with all arms, and, for when it is held, with
+/// the obstacles and the parts of this kind before it.
+/// @param obstacles their parts, in the order of the cell's description
+inline PartId add_loose(World& world, const CellDescription& cell, const LooseDescription& loose,
+                        const std::vector<ArmLayout>& arms, std::span<const PartId> obstacles) {
+  const double room = loose.room > 0.0 ? loose.room : std::max(loose.shape.reach(), 1e-6);
+  const std::size_t before = world.loose().size();
+  const PartId id = world.reserve(loose.name, loose.shape, room);
+  for (const ArmLayout& arm : arms) {
+    for (const PartId part : arm.parts) add_pair(world, arms, part, id, loose.law);
+  }
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    add_pair(world, arms, id, obstacles[i], cell.obstacles[i].law);
+  }
+  for (std::size_t i = 0; i < before; ++i) {
+    add_pair(world, arms, id, world.loose()[i].part, loose.law);
+  }
+  if (loose.at_start && !world.add(id, loose.X_WP, 0.0)) {
+    throw SetupError(loose.name + ": its pose is not a rigid one");
+  }
+  if (loose.at_start) world.advance(1.0);
+  return id;
+}
+
 /// One message for each non-passable pair whose parts overlap by more than `touch` in the present
 /// motion of the world.
 [[nodiscard]] inline std::vector<std::string> overlaps(const World& world) {
   constexpr double touch = 1e-6;  // [m] tolerance for parts that only touch, up to rounding
   std::vector<std::string> sentences;
   for (const Pair& pair : world.pairs()) {
-    if (pair.law.passable) continue;
+    const PairId id{static_cast<std::int32_t>(&pair - world.pairs().data())};
+    if (pair.law.passable || !acts(world, id, world.motion())) continue;
     const Part& a = world.part(pair.a);
     const Part& b = world.part(pair.b);
     const Separation s =

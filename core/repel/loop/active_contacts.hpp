@@ -54,18 +54,22 @@ class ActiveContacts {
  private:
   void add(const NearPair& near) noexcept {
     const Pair& pair = world_->pair(near.pair);
-    const BodyId a = world_->part(pair.a).body;
-    const BodyId b = world_->part(pair.b).body;
+    const Motion& motion = world_->motion();
+    const BodyId of_a = world_->part(pair.a).body;
+    const BodyId of_b = world_->part(pair.b).body;
+    const BodyId a = carrier_of(motion, of_a);
+    const BodyId b = carrier_of(motion, of_b);
     const int moved = is_moved(a) + is_moved(b);
     if (moved == 0) return;
-    const Motion& motion = world_->motion();
     const Vec3& n = near.separation.extraction_W;
     const auto about = [&](BodyId body, const Vec3& force) {
       const Vec3 arm = near.separation.p_WA - origin(motion.bodies[body.index].X_WB);
       return wrench_of_force(force, arm);
     };
     const double damping =
-        pair.law.passable ? pair.law.damping : pair.law.formula().damper(near.separation.distance);
+        share_between(motion.bodies[of_a.index], motion.bodies[of_b.index]).now *
+        (pair.law.passable ? pair.law.damping
+                           : pair.law.formula().damper(near.separation.distance));
     // Where two arms meet, each is solved by itself: twice the damping covers the motion of the
     // other.
     contacts_[count_++] = {near.pair, a, b, about(a, n), about(b, -n), moved * damping};

@@ -85,19 +85,33 @@ struct PairForces {
   }
 
   /// Adds the equal and opposite forces between A and B, each about the origin of its own body.
+  /// Those on a body that a tool holds are on the tool.
   void push(BodyId a, BodyId b, const Wrench& on_a, const Wrench& on_b,
             const Motion& motion) noexcept {
     const BodyId arm = motion.bodies[a.index].arm;
     if (arm.valid() && arm == motion.bodies[b.index].arm) {
-      from_own[a.index] += on_a;
-      from_own[b.index] += on_b;
+      add_to(from_own, a, on_a, motion);
+      add_to(from_own, b, on_b, motion);
       has_own = true;
       return;
     }
-    on_body[a.index] += on_a;
-    on_body[b.index] += on_b;
-    carried[a.index] -= power(on_b, motion.bodies[b.index].V_WB);
-    carried[b.index] -= power(on_a, motion.bodies[a.index].V_WB);
+    add_to(on_body, a, on_a, motion);
+    add_to(on_body, b, on_b, motion);
+    carried[carrier_of(motion, a).index] -= power(on_b, motion.bodies[b.index].V_WB);
+    carried[carrier_of(motion, b).index] -= power(on_a, motion.bodies[a.index].V_WB);
+  }
+
+  /// Adds the `energy` [J] by which the potential of a pair has grown since the last tick because
+  /// its parts come or go: it is supplied to the arm that can draw it, to each of two a half.
+  void supply(BodyId a, BodyId b, double energy, const Motion& motion) noexcept {
+    if (energy == 0.0 || !(motion.elapsed > 0.0)) return;
+    const double power = energy / motion.elapsed;
+    const BodyId of_a = motion.bodies[a.index].arm;
+    const BodyId of_b = motion.bodies[b.index].arm;
+    if (of_a == of_b) return;  // of one arm, or of none
+    const double each = of_a.valid() && of_b.valid() ? 0.5 * power : power;
+    if (of_a.valid()) carried[carrier_of(motion, a).index] += each;
+    if (of_b.valid()) carried[carrier_of(motion, b).index] += each;
   }
 
   /// Adds the forces of other pairs of the same world at the same tick.
@@ -111,6 +125,19 @@ struct PairForces {
       has_own = true;
     }
     totals.add(other.totals);
+  }
+
+ private:
+  static void add_to(std::vector<Wrench>& wrenches, BodyId body, const Wrench& F,
+                     const Motion& motion) noexcept {
+    const BodyId on = carrier_of(motion, body);
+    if (on == body) {
+      wrenches[body.index] += F;
+      return;
+    }
+    const Vec3 to_carrier =
+        origin(motion.bodies[on.index].X_WB) - origin(motion.bodies[body.index].X_WB);
+    wrenches[on.index] += moved_to(F, to_carrier);
   }
 };
 

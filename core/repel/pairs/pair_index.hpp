@@ -14,8 +14,12 @@
 
 namespace repel::detail {
 
-/// The bounding box of a part in the frame of its body.
+/// The bounding box of a part in the frame of its body, whatever shape it gets while running.
 [[nodiscard]] inline Box box_of(const Part& part) noexcept {
+  if (part.room > 0.0) {
+    const Vec3 room(part.room, part.room, part.room);
+    return {-room, room};
+  }
   const Level& shape = part.shape.level(0);
   Box box(origin(part.X_BP));
   for (int axis = 0; axis < 3; ++axis) {
@@ -49,6 +53,7 @@ struct PairIndex {
     BoxTree tree;            ///< over the parts that have lists, in the frame of a
     Box partners;            ///< [m] around all partners, in the frame of b
     double range = 0.0;      ///< [m] largest range of all its pairs
+    bool is_loose = false;   ///< one of the bodies can come and go
   };
 
   /// Allocates: about 60 bytes for each box of a tree and 4 for each pair.
@@ -131,6 +136,9 @@ struct PairIndex {
       body_pair.range = std::max(body_pair.range, list.range);
     }
     body_pair.end = static_cast<std::int32_t>(lists.size());
+    for (const BodyId body : {body_pair.a, body_pair.b}) {
+      body_pair.is_loose |= world.motion().bodies[static_cast<std::size_t>(body.index)].is_loose;
+    }
     body_pair.tree = BoxTree(boxes);
     body_pairs.push_back(std::move(body_pair));
   }

@@ -27,6 +27,7 @@ struct PairTracking {
   std::int32_t list = -1;  ///< the neighbour list it is on; -1: none
   std::int32_t lane = -1;  ///< of the LaneEvaluator; -1: it is evaluated singly
   bool found = false;      ///< by the running search of its list
+  bool is_loose = false;   ///< one of its parts can come and go
 };
 
 /// State passed from one evaluation to the next while the pair is within range.
@@ -84,6 +85,13 @@ class PairMemory {
     return slot;
   }
 
+  /// Forgets what was known of a pair that is on no list, and may have other shapes by now.
+  void forget(int slot) noexcept {
+    tracking_[slot].due_at = -std::numeric_limits<double>::infinity();
+    answers_[slot] = {};
+    histories_[slot] = {};
+  }
+
   /// Puts the pair of a slot on a list; false if it was already on one.
   bool add_to_list(int slot, std::int32_t list) noexcept {
     const bool is_new = tracking_[slot].list == none;
@@ -134,6 +142,7 @@ class PairMemory {
     tracking.body_b = world_->part(pair.b).body;
     tracking.reach = pair.law.range + lookahead_;
     tracking.pair = id;
+    tracking.is_loose = world_->part(pair.a).room > 0.0 || world_->part(pair.b).room > 0.0;
     answers_[slot] = {};
     histories_[slot] = {};
   }

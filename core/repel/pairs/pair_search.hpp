@@ -57,17 +57,24 @@ class PairSearch {
         lists_(index_->lists.size()),
         active_(index_->lists.size()),
         due_(index_->lists.size()),
-        body_pairs_(index_->body_pairs.size()) {}
+        body_pairs_(index_->body_pairs.size()) {
+    for (std::size_t m = 0; m < body_pairs_.size(); ++m) {
+      if (index_->body_pairs[m].is_loose) loose_.push_back(m);
+    }
+  }
 
   /// Searches the lists that are due. For each list it calls `sink.take(pair, list, distance)` for
   /// every pair found, with a lower bound [m] of the distance, then `sink.end(list)`: the pairs of
   /// that list that were not found are out of reach. `take` returns false for a pair that it could
   /// not accept; its list is then searched again at the next tick. `end` returns how many
-  /// out-of-reach pairs it keeps for now.
+  /// out-of-reach pairs it keeps for now. Before all that it calls `sink.drop(list)` for lists of
+  /// bodies that no longer act on each other, or one of which has gone and come back: their pairs
+  /// are no longer what they were.
   /// Cost: one comparison for each two bodies none of whose lists is due, else one for each of
   /// their active lists; about 50 ns for a list that is due, and 10 ns per node of its tree.
   template <class Sink>
   void run(const Motion& motion, Sink&& sink) noexcept {
+    if (motion.changes != changes_) follow_changes(motion, sink);
     for (std::size_t m = 0; m < body_pairs_.size(); ++m) {
       const PairIndex::BodyPair& body_pair = index_->body_pairs[m];
       BodyPairState& state = body_pairs_[m];
@@ -87,15 +94,18 @@ class PairSearch {
     for (BodyPairState& state : body_pairs_) {
       state.next = state.activate_at = at_once;
       state.last = {};
+      state.is_off = false;
     }
     for (ListState& list : lists_) list.last = {};
     std::fill(due_.begin(), due_.end(), at_once);
+    changes_ = -1;
   }
 
  private:
   /// Share of a margin below which the rest of it is not used up: it would be soon.
   static constexpr double least_rest = 0.25;
   static constexpr double at_once = -std::numeric_limits<double>::infinity();
+  static constexpr double never = std::numeric_limits<double>::infinity();
 
   struct ListState {
     Searched last;           ///< in the frame of the other body
@@ -108,7 +118,34 @@ class PairSearch {
     double activate_at = at_once;  ///< [m] same, for the search for active lists
     Searched last;                 ///< by that search, in the frame of a
     std::int32_t active = 0;  ///< number of active lists, from `BodyPair::first` on in `active_`
+    bool is_off = false;      ///< the bodies do not act on each other: no search
+    std::int32_t generation = 0;  ///< sum of how often either of the bodies has come
   };
+
+  /// Turns the search for the pairs of two bodies on or off, or begins it anew, where bodies have
+  /// come, gone or changed hands. Cost: a look at each two bodies of which one can come and go.
+  template <class Sink>
+  void follow_changes(const Motion& motion, Sink& sink) noexcept {
+    changes_ = motion.changes;
+    for (const std::size_t m : loose_) {
+      const PairIndex::BodyPair& body_pair = index_->body_pairs[m];
+      BodyPairState& state = body_pairs_[m];
+      const BodyState& A = motion.bodies[body_pair.a.index];
+      const BodyState& B = motion.bodies[body_pair.b.index];
+      const bool is_off = !share_between(A, B).acts();
+      const std::int32_t generation = A.presence.generation + B.presence.generation;
+      if (is_off == state.is_off && generation == state.generation) continue;
+      for (std::int32_t i = body_pair.first; i < body_pair.first + state.active; ++i) {
+        sink.drop(active_[i]);
+        lists_[active_[i]] = {};
+        due_[i] = at_once;
+      }
+      state = {};
+      state.is_off = is_off;
+      state.generation = generation;
+      if (is_off) state.next = never;
+    }
+  }
 
   /// Searches for the lists near the other body, unless the margin is not used up.
   /// @param view from b to a
@@ -214,6 +251,8 @@ class PairSearch {
   std::vector<std::int32_t> active_;  ///< lists, by body pair
   std::vector<double> due_;           ///< [m] travel of both bodies at which each of them is due
   std::vector<BodyPairState> body_pairs_;
+  std::vector<std::size_t> loose_;  ///< those of which one body can come and go
+  std::int64_t changes_ = -1;       ///< Motion::changes at the last run
 };
 
 }  // namespace repel::detail

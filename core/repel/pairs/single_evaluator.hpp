@@ -19,15 +19,15 @@ namespace repel::detail {
 class SingleEvaluator {
  public:
   /// @param slots largest number of pairs with a slot, at least 0
-  /// @param max_age [ticks] `Budget::max_age`
-  /// @param lookahead [m] by which a pair may be out of its range and yet be near
+  /// @param max_age [ticks] `Budget::max_age` @param lookahead [m] by which a pair may be out of
+  /// its range and yet be near
   SingleEvaluator(const World& world, int slots, std::int64_t max_age, double lookahead = 0.0)
       : world_(&world),
         max_age_(max_age),
         memory_(world, slots, lookahead),
         forces_(world.body_count()) {}
 
-  /// Begins a tick: clears the forces and marks all answers as not of this tick.
+  /// Begins a tick: clears the forces; no answer is of this tick.
   void begin_tick(std::int64_t tick) noexcept {
     if (forces_.totals.near > 0 || forces_.totals.crowded > 0) forces_.clear();
     forces_.tick = tick;
@@ -57,8 +57,7 @@ class SingleEvaluator {
   [[nodiscard]] double travel(int slot, const Motion& motion) const noexcept {
     return body_a(slot, motion).travel + body_b(slot, motion).travel;
   }
-  /// False while the summed travel of both bodies is below the clearance of the pair: then it
-  /// cannot have come within range. Cost: one comparison.
+  /// False while the pair cannot have come within range by the summed travel of both bodies.
   [[nodiscard]] bool is_due(int slot, const Motion& motion) const noexcept {
     return travel(slot, motion) >= memory_.tracking(slot).due_at;
   }
@@ -70,7 +69,7 @@ class SingleEvaluator {
     due_at = std::max(due_at, travel(slot, motion) + clearance);
   }
 
-  /// Conservative lower bound of the signed distance [m] now, from the last answer.
+  /// Lower bound of the signed distance [m] now, from the last answer.
   [[nodiscard]] double lower_bound(int slot, const Motion& motion) const noexcept {
     const PairAnswer& answer = memory_.answer(slot);
     const double now = answer.lower_bound(body_a(slot, motion), body_b(slot, motion));
@@ -90,8 +89,7 @@ class SingleEvaluator {
     return -overlap_along(memory_.answer(slot).last.extraction_W, A, B) - rounding;
   }
 
-  /// Time to contact [s] at the present velocities: the key of urgency, smallest first. Negative in
-  /// overlap, 1e9 for separating pairs.
+  /// Time to contact [s] at the present velocities, negative in overlap, 1e9 for separating pairs.
   [[nodiscard]] double time_to_touch(int slot, const Motion& motion) const noexcept {
     const double closing = -dot(memory_.answer(slot).last.extraction_W, velocity(slot, motion));
     const double distance = lower_bound(slot, motion);
@@ -104,7 +102,7 @@ class SingleEvaluator {
     memory_.remove_from_list(slot);
   }
 
-  /// Stores `answer`, from which a force was computed at the last tick, as the answer of the pair.
+  /// Stores an answer, from which a force was computed at the last tick.
   void store(int slot, const PairAnswer& answer) noexcept {
     memory_.answer(slot) = answer;
     memory_.answer(slot).pushed_at = now_ - 1;
@@ -116,11 +114,11 @@ class SingleEvaluator {
   }
 
   /// For a pair that comes within range: discards its warm start, so that its forces depend only on
-  /// its motion within range, not on how often it was evaluated before.
+  /// its motion within range.
   void clear_history(int slot) noexcept { memory_.history(slot) = {}; }
 
-  /// Evaluates the pair of a slot. Different pairs may be evaluated by different threads at the
-  /// same time, each with `poses` and `totals` of its own.
+  /// Evaluates the pair of a slot. Different threads may evaluate different pairs at the same time,
+  /// with `poses` and `totals` of their own.
   void evaluate(int slot, const Motion& motion, PartPoses& poses, PairTotals& totals) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     note_assumed(slot, motion);
@@ -144,8 +142,7 @@ class SingleEvaluator {
                      poses.last(p.b), world_->query_options(), warm);
   }
 
-  /// Adds the force of the pair on both bodies: at the distance of its answer if that is fresh,
-  /// else at the conservative lower bound for now.
+  /// Adds the force of the pair on both bodies, at its distance if fresh, else at its lower bound.
   void push(int slot, const Motion& motion) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     answer.is_stale = answer.evaluated_at != now_;
@@ -164,8 +161,7 @@ class SingleEvaluator {
     push_at(lower_bound(slot, motion), share_of_stale(age, max_age_), slot, motion);
   }
 
-  /// The pair for a display; nullopt if at the tick of `motion` it was neither evaluated nor
-  /// `push`ed.
+  /// The pair for a display; none if at the tick of `motion` it was neither evaluated nor pushed.
   [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
     const PairAnswer& answer = memory_.answer(slot);
     const bool stale = answer.tick != motion.tick;
@@ -174,8 +170,7 @@ class SingleEvaluator {
                     stale ? motion.tick - answer.waits_since : 0};
   }
 
-  /// Call before a stale pair is evaluated: notes the bound from which its force would be computed
-  /// at this tick without the evaluation.
+  /// Call before a stale pair is evaluated: notes the bound that its force would come from.
   void note_assumed(int slot, const Motion& motion) noexcept {
     PairAnswer& answer = memory_.answer(slot);
     if (answer.is_stale) answer.assumed = lower_bound(slot, motion);
@@ -262,6 +257,13 @@ class SingleEvaluator {
     const PairAnswer& answer = memory_.answer(slot);
     const BodyState& A = body_a(slot, motion);
     const BodyState& B = body_b(slot, motion);
+    const PairTracking& tracking = memory_.tracking(slot);
+    if (tracking.is_loose) {
+      const Share acts = share_between(A, B);
+      const double gained = law.passable ? 0.0 : share * (acts.now - acts.before);
+      forces_.supply(tracking.body_a, tracking.body_b, gained * law.potential(distance), motion);
+      share *= acts.now;
+    }
     double size = 0.0;
     Wrench on_a;
     if (law.passable) {
@@ -280,7 +282,6 @@ class SingleEvaluator {
       on_a = size * g;
     }
     memory_.answer(slot).force = size;
-    const PairTracking& tracking = memory_.tracking(slot);
     forces_.totals.note_force(size, tracking.pair);
     double& peak = memory_.extremes(tracking.pair).peak_force;
     peak = std::max(peak, size);

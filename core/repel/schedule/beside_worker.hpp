@@ -63,8 +63,7 @@ class BesideWorker {
     pace_.tick();
     Request& draft = inbox_.draft();
     draft.exchange = exchange;
-    draft.motion.tick = motion.tick;
-    std::copy(motion.bodies.begin(), motion.bodies.end(), draft.motion.bodies.begin());
+    draft.motion.take(motion);
     inbox_.post();
   }
   /// Caller: the newest whole answer. It stays as it is until the next call.
@@ -76,6 +75,8 @@ class BesideWorker {
   [[nodiscard]] bool is_team_late() const noexcept { return late_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] std::uint64_t beats() const noexcept { return thread_.beats(); }
+  /// Its leader will not do any more work.
+  [[nodiscard]] bool has_ended() const noexcept { return thread_.has_ended(); }
   /// Not in the tick: see PairTeam::tend.
   void tend(WorkerUsage& usage) {
     team_.tend(usage);
@@ -95,6 +96,7 @@ class BesideWorker {
 
   void answer(const Request& request) noexcept {
     outbox_.draft().fill(team_.pairs(), request.motion, request.exchange);
+    outbox_.draft().is_settled = team_.is_settled();
     outbox_.post();
   }
 

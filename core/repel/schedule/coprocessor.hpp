@@ -36,7 +36,8 @@ class Coprocessor {
   static constexpr std::int64_t greatest_age = 4;
 
   /// Evaluates every pair once and starts the threads. Allocates.
-  /// @throws SetupError for a number of threads below 0 or above `Limits::threads`
+  /// @throws SetupError for a number of threads below 0 or above `Limits::threads`; for
+  /// `every_pair` with parts that can come and go
   Coprocessor(const World& world, const CoprocessorOptions& options)
       : world_(&world),
         options_(checked_options(world, options)),
@@ -86,6 +87,19 @@ class Coprocessor {
   /// the next. Beside: no effect.
   void rehearse() noexcept {
     if (!works_beside()) team_->rehearse(world_->motion());
+  }
+
+  /// Number of exchanges since set-up.
+  [[nodiscard]] std::int64_t exchanges() const noexcept { return exchanges_; }
+  /// No thread uses a motion older than that of the exchange of this number, nor will: a part that
+  /// has been absent since then may get another shape. Call it just before an exchange.
+  [[nodiscard]] bool is_past(std::int64_t exchange) noexcept {
+    if (exchanges_ < exchange || !team_->is_settled()) return false;
+    if (!works_beside()) return true;
+    if (options_.lock_step) (void)wait_for(exchange, Clock::now() + longest_wait);
+    const detail::WholeAnswer& newest = current_->newest();
+    return newest.exchange >= exchange && newest.is_settled &&
+           lost_.load(std::memory_order_acquire) == 0;
   }
 
   /// True when some thread was late at the last exchange, and the caller did its work.
@@ -158,6 +172,10 @@ class Coprocessor {
 
   static CoprocessorOptions checked_options(const World& world, CoprocessorOptions options) {
     checked("threads", options.threads, 0, world.limits().threads, "");
+    if (options.every_pair && !world.loose().empty()) {
+      throw SetupError(
+          "every_pair with parts that can come and go; allowed: one without the other");
+    }
     const std::chrono::nanoseconds none{0};
     options.period = std::clamp(options.period, none, longest_wait);
     options.patience =
@@ -231,6 +249,10 @@ class Coprocessor {
       beside_.back()->tend(usage_);
       if (watch_.is_overdue(beside_.back()->beats())) replace_beside_worker();
     }
+    const auto lost = std::count_if(beside_.begin(), beside_.end(), [this](const auto& worker) {
+      return worker != beside_.back() && !worker->has_ended();
+    });
+    lost_.store(static_cast<int>(lost), std::memory_order_release);
     page_faults_.store(usage_.page_faults, std::memory_order_relaxed);
     switches_.store(usage_.switches, std::memory_order_relaxed);
     restarts_.store(usage_.restarts, std::memory_order_relaxed);
@@ -238,6 +260,7 @@ class Coprocessor {
 
   void replace_beside_worker() {
     beside_.back()->request_stop();
+    lost_.fetch_add(1, std::memory_order_release);
     // The caller moves its world meanwhile: until it posts a motion, the new one has none.
     Motion nowhere;
     nowhere.bodies.resize(static_cast<std::size_t>(world_->body_count()));
@@ -265,6 +288,7 @@ class Coprocessor {
   const PairForces* forces_ = nullptr;
   WorkerReport report_;
   std::int64_t exchanges_ = 0;
+  std::atomic<int> lost_{0};  ///< workers given up that may yet go on
   detail::Watch watch_;
   WorkerUsage usage_;  ///< of the supervisor; the next three are for the caller
   std::atomic<std::int64_t> page_faults_{0}, switches_{0}, restarts_{0};

@@ -38,9 +38,10 @@ class PairSet {
   PairSet(const PairSet&) = delete;
   PairSet& operator=(const PairSet&) = delete;
 
-  /// Evaluates every pair once, so that each has an answer at the first tick; clears the forces.
+  /// Evaluates every pair once that can act, so that it has an answer at the first tick.
   void prime(const Motion& motion, PartPoses& poses) noexcept {
     for (PairId id{0}; id.index < memory().pairs(); ++id.index) {
+      if (!acts(singles_.world(), id, motion)) continue;
       singles_.evaluate(memory().slot_for(id), motion, poses, singles_.forces().totals);
     }
     singles_.forces().clear();
@@ -68,12 +69,13 @@ class PairSet {
   }
 
   /// Makes a pair a candidate. Returns false if there is no slot for it: it is then evaluated at
-  /// once, without a warm start, if it can be near.
-  /// @param list the search list in which it was found
-  /// @param distance [m] lower bound of the true distance
+  /// once, without a warm start, if it can be near. @param list the search list in which it was
+  /// found @param distance [m] lower bound of the true distance
   bool take(PairId id, std::int32_t list, double distance, const Motion& motion,
             PartPoses& poses) noexcept {
     const int slot = memory().slot_for(id);
+    const PairTracking& tracking = memory().tracking(slot);
+    if (tracking.is_loose && tracking.list == PairMemory::none) memory().forget(slot);
     singles_.set_clearance(slot, motion, distance - singles_.reach(slot));
     if (memory().is_temporary(slot)) {
       PairTotals& totals = singles_.forces().totals;
@@ -106,8 +108,15 @@ class PairSet {
     return kept;
   }
 
-  /// Selects the candidates that are due, which may be near, and divides them into batches
-  /// (EvaluationPlan). Returns the number of these.
+  /// Removes all candidates of a list of parts that can come and go, which are in no lanes.
+  void drop(std::int32_t list) noexcept {
+    candidates_.update(list, [&](std::int32_t slot) {
+      singles_.remove_from_list(slot);
+      return true;
+    });
+  }
+
+  /// Divides the candidates that are due, which may be near, into batches. Returns how many.
   int select(const Motion& motion, PartPoses& poses, const EvaluationLimit& limit) noexcept {
     // Pairs in lanes are evaluated several at a time: too coarse for a budget in work units.
     if (limit.is_counted()) lanes_.remove_all(poses);
@@ -154,7 +163,8 @@ class PairSet {
     if (plan_.limit().is_counted()) return;
     fitting_count_ = 0;
     for_each_near_single([&](std::int32_t slot) {
-      if (lanes_.may_add(slot)) fitting_[fitting_count_++] = slot;
+      if (!memory().tracking(slot).is_loose && lanes_.may_add(slot))
+        fitting_[fitting_count_++] = slot;
     });
     const int more = lanes_.to_add(fitting_count_);
     if (more < 0) lanes_.remove_last(-more, poses);
@@ -218,7 +228,7 @@ class PairSet {
   /// The k-th of the due candidates.
   [[nodiscard]] const Candidate& due(int k) const noexcept { return candidates_.all()[due_[k]]; }
 
-  /// Calls f(slot) for those of the due pairs that were found near. After `evaluate`.
+  /// Calls f(slot) for the due pairs that were found near. After `evaluate`.
   template <class F>
   void for_each_near_single(const F& f) const noexcept {
     for (int k = 0; k < due_count_; ++k) {

@@ -117,11 +117,19 @@ class PairTeam {
     return extremes;
   }
 
+  /// No thread is still at work for an earlier tick. Callable between ticks by the leader.
+  [[nodiscard]] bool is_settled() const noexcept {
+    if (helpers_.empty()) return true;
+    return spare_ != nullptr && spare_->is_idle() && current_->is_idle() &&
+           lost_.load(std::memory_order_acquire) == 0;
+  }
+
   /// Looks after the threads: replaces those that do not go on, and the memory they hold; adds up
   /// what the operating system did to them. To be called every now and then by one thread, not in
   /// the tick: it allocates.
   void tend(WorkerUsage& usage) {
     for (std::size_t i = 0; i < helpers_.size(); ++i) tend(i, usage);
+    note_lost();
     SharedTick* const held = held_.load(std::memory_order_acquire);
     const bool is_held = held != nullptr && !held->is_idle();
     if (!is_held) held_watch_ = {};
@@ -168,8 +176,14 @@ class PairTeam {
     if (!helper.watch.is_overdue(helper.thread->beats())) return;
     helper.thread->request_stop();
     given_up_.push_back(std::move(helper.thread));
+    note_lost();
     start_helper(i);
     ++usage.restarts;
+  }
+  void note_lost() noexcept {
+    const auto lost = std::count_if(given_up_.begin(), given_up_.end(),
+                                    [](const auto& thread) { return !thread->has_ended(); });
+    lost_.store(static_cast<int>(lost), std::memory_order_release);
   }
 
   [[nodiscard]] EvaluationLimit limit_from_now() const noexcept {
@@ -185,6 +199,7 @@ class PairTeam {
       return pairs.take(id, list, distance, motion, poses);
     }
     int end(std::int32_t list) noexcept { return pairs.end(list); }
+    void drop(std::int32_t list) noexcept { pairs.drop(list); }
     PairSet& pairs;
     const Motion& motion;
     PartPoses& poses;
@@ -248,6 +263,7 @@ class PairTeam {
   std::atomic<SharedTick*> open_to_all_{nullptr};  ///< what the threads work on
   std::atomic<SharedTick*> held_{nullptr};         ///< a memory that a late thread holds
   std::atomic<SharedTick*> offered_{nullptr};      ///< a new memory in its place
+  std::atomic<int> lost_{0};                       ///< threads given up that may yet go on
   Watch held_watch_;
   int first_index_;
   std::vector<std::unique_ptr<WorkerThread>> given_up_;

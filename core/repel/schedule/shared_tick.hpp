@@ -41,8 +41,7 @@ class SharedTick {
   /// which the caller may change while a late thread still reads it.
   /// @param round larger than any before
   void open(std::int64_t round, const Motion& motion, int batches) noexcept {
-    motion_.tick = motion.tick;
-    std::copy(motion.bodies.begin(), motion.bodies.end(), motion_.bodies.begin());
+    motion_.take(motion);
     round_ = round;
     unfinished_.store(batches, std::memory_order_relaxed);
     left_.store(span(0, static_cast<std::uint32_t>(batches)), std::memory_order_release);

@@ -25,8 +25,7 @@ struct WholeAnswer {
   /// @param pairs as of a tick with `at`
   void fill(const PairSet& pairs, const Motion& at, std::int64_t exchange_of_it) noexcept {
     exchange = exchange_of_it;
-    motion.tick = at.tick;
-    std::copy(at.bodies.begin(), at.bodies.end(), motion.bodies.begin());
+    motion.take(at);
     totals = pairs.forces().totals;
     count = 0;
     pairs.for_each_answer(at, [&](const NearPair& pair, const NearAnswer& answer) {
@@ -38,6 +37,7 @@ struct WholeAnswer {
   [[nodiscard]] std::span<const NearAnswer> all() const noexcept { return {near.data(), count}; }
 
   std::int64_t exchange = 0;  ///< number of the exchange in which the motion was posted
+  bool is_settled = true;     ///< no thread was still at work for an earlier motion
   Motion motion;              ///< that was answered
   PairTotals totals;
   std::vector<NearAnswer> near;
@@ -83,10 +83,14 @@ class WidenedForces {
     const BodyState& B = now.bodies[static_cast<std::size_t>(b.index)];
     const auto relative = relative_motion(A, B);
     const Twist V_BA_W{to_vec3(relative.v_BA_W), to_vec3(relative.w_BA_W)};
+    const Share acts = share_between(A, B);
     Wrench on_a;
     std::size_t i = first;
     for (; i < all.size() && all[i].a == a && all[i].b == b; ++i) {
-      sizes_[i] = size_of(all[i], V_BA_W);
+      sizes_[i] = 0.0;
+      if (!acts.acts()) continue;  // gone since
+      sizes_[i] = size_of(all[i], V_BA_W, acts.now);
+      if (acts.now != acts.before) supply(all[i], acts.now - acts.before, now);
       forces_.totals.note_force(sizes_[i], all[i].pair);
       if (all[i].is_passable) {
         on_a += all[i].gradient;
@@ -99,14 +103,26 @@ class WidenedForces {
     return i;
   }
 
-  [[nodiscard]] double size_of(const NearAnswer& answer, const Twist& V_BA_W) const noexcept {
+  /// @param acts the share of its law that acts now
+  [[nodiscard]] double size_of(const NearAnswer& answer, const Twist& V_BA_W,
+                               double acts) const noexcept {
     // What the spring of a passable body remembers is the workers': its force is theirs.
     if (answer.is_passable) return norm(answer.gradient.force);
     const Pair& pair = world_->pair(answer.pair);
-    double distance = bound_after(answer, since(answer.a), since(answer.b));
+    const double distance = distance_of(answer, pair);
     if (!(distance < pair.law.range)) return 0.0;
-    if (distance < 0.0) distance = std::max(distance, -world_->deepest(pair));
-    return answer.share * pair.law(distance, power(answer.gradient, V_BA_W));
+    return acts * answer.share * pair.law(distance, power(answer.gradient, V_BA_W));
+  }
+  void supply(const NearAnswer& answer, double gained, const Motion& now) noexcept {
+    const Pair& pair = world_->pair(answer.pair);
+    if (answer.is_passable) return;
+    const double potential = pair.law.potential(distance_of(answer, pair));
+    forces_.supply(answer.a, answer.b, gained * answer.share * potential, now);
+  }
+  /// [m] Not larger than the true one.
+  [[nodiscard]] double distance_of(const NearAnswer& answer, const Pair& pair) const noexcept {
+    const double distance = bound_after(answer, since(answer.a), since(answer.b));
+    return distance < 0.0 ? std::max(distance, -world_->deepest(pair)) : distance;
   }
   [[nodiscard]] const MotionSince& since(BodyId body) const noexcept {
     return since_[static_cast<std::size_t>(body.index)];

@@ -61,6 +61,7 @@ class WorkerThread {
       usage_.attach_to_this_thread();
       if (options_.on_thread_start != nullptr) options_.on_thread_start(index_);
       serve(stop, work);
+      has_ended_.store(true, std::memory_order_release);
     });
   }
   /// Asks the thread to end; it does so when `work` returns.
@@ -71,6 +72,10 @@ class WorkerThread {
   /// Grows while the thread is alive and not within `work`.
   [[nodiscard]] std::uint64_t beats() const noexcept {
     return beats_.load(std::memory_order_relaxed);
+  }
+  /// The thread will not do any more work.
+  [[nodiscard]] bool has_ended() const noexcept {
+    return has_ended_.load(std::memory_order_acquire);
   }
   /// Page faults and switches since the start. Not for the tick.
   [[nodiscard]] const ThreadUsage::Counts& look_at_usage() noexcept { return usage_.look(); }
@@ -132,6 +137,7 @@ class WorkerThread {
   nanoseconds nap_ = shortest_nap;
   ThreadUsage usage_;
   std::atomic<std::uint64_t> beats_{0};
+  std::atomic<bool> has_ended_{false};
   std::jthread thread_;  // last member: joined before the data it uses is destroyed
 };
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <repel/base/ids.hpp>
@@ -14,23 +16,10 @@
 #include <repel/distance/query.hpp>
 #include <repel/force/law.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/world/body_state.hpp>
+#include <repel/world/loose_parts.hpp>
 
 namespace repel {
-
-/// Pose, twist and accumulated travel of a body.
-struct BodyState {
-  Pose X_WB = Pose::Identity();  ///< [m]
-  Twist V_WB;                    ///< [m/s, rad/s] of the body's origin, world axes
-  double travel = 0.0;  ///< [m] upper bound on the path of any point of the body since set-up
-  double turn = 0.0;    ///< [m] the part of `travel` due to rotation
-  BodyId arm{};         ///< tool of the arm that the body belongs to; invalid: of none
-};
-
-/// All bodies at one instant: the input of the coprocessor.
-struct Motion {
-  std::int64_t tick = -1;         ///< -1: before the first one
-  std::vector<BodyState> bodies;  ///< by BodyId
-};
 
 /// A convex part of a body.
 struct Part {
@@ -38,6 +27,7 @@ struct Part {
   BodyId body;
   Shape shape;
   Pose X_BP = Pose::Identity();  ///< [m] in its body
+  double room = 0.0;  ///< [m] largest reach that its shape can get while running; 0: it stays
 };
 
 /// Two parts to be kept apart, and how.
@@ -73,7 +63,6 @@ class World {
     if (static_cast<int>(motion_.bodies.size()) >= limits_.bodies) over("bodies", limits_.bodies);
     check_rigid(name, X_WB);
     body_names_.push_back(name);
-    reach_.push_back(0.0);
     motion_.bodies.push_back({X_WB, {}, 0.0, 0.0});
     return {static_cast<std::int32_t>(motion_.bodies.size()) - 1};
   }
@@ -84,10 +73,25 @@ class World {
     if (body.index < 0 || body.index >= body_count())
       throw SetupError("part " + name + ": no such body");
     check_rigid(name, X_BP);
-    double& reach = reach_[body.index];
+    double& reach = motion_.bodies[body.index].reach;
     reach = std::max(reach, norm(origin(X_BP)) + shape.reach());
     parts_.push_back({name, body, shape, X_BP});
     return {static_cast<std::int32_t>(parts_.size()) - 1};
+  }
+
+  /// Reserves a part, on a body of its own, that can come and go while the world runs. It is absent
+  /// at first. Its pairs are added as those of any part: with parts of arms, whose way it is in
+  /// while it lies free, and with obstacles and other such parts, which it meets while it is held.
+  /// @param room [m] largest reach of any shape that it will have, 1e-6 to 1e6; at least that of
+  /// `shape`
+  PartId reserve(const std::string& name, const Shape& shape, double room) {
+    checked("room of " + name, room, std::max(1e-6, shape.reach()), Shape::largest, "m");
+    const BodyId body = add_body(name);
+    const PartId id = add_part(body, name, shape);
+    parts_.back().room = motion_.bodies.back().reach = room;
+    motion_.bodies.back().is_loose = true;
+    loose_.reserve(id, body, room);
+    return id;
   }
 
   PairId add_pair(PartId a, PartId b, const ForceLaw& law) {
@@ -101,7 +105,14 @@ class World {
       throw SetupError("parts " + part(a).name + " and " + part(b).name + " are of one body");
     }
     pairs_.push_back({a, b, fitted(checked(law), part(a).shape, part(b).shape)});
-    return {static_cast<std::int32_t>(pairs_.size()) - 1};
+    const PairId id{static_cast<std::int32_t>(pairs_.size()) - 1};
+    for (const PartId each : {a, b}) {
+      if (detail::LoosePart* loose = loose_.find(each)) {
+        loose->pairs.push_back(id);
+        loose->laws.push_back(law);
+      }
+    }
+    return id;
   }
 
   /// The law that a pair of two shapes gets: `depth` and `tilt` lowered to what their size allows.
@@ -118,25 +129,70 @@ class World {
 
   /// Makes a body part of the arm with this `tool`, which is part of it itself. Set-up only.
   void join(BodyId body, BodyId tool) { motion_.bodies[body.index].arm = tool; }
+  /// Lets what the tool of its arm holds touch a body, as it may touch the tool. Set-up only.
+  void spare_held(BodyId body) { motion_.bodies[body.index].spares_held = true; }
+
+  /// The parts that can come and go. The functions below change one of them, between two exchanges
+  /// of the coprocessor; each returns false, with nothing changed, if `id` is none of these parts,
+  /// a number is not finite, or the state of the part does not allow it. Cost: below 1 us; of
+  /// `refit`, 20 ns more for each pair. `schedule/world_changes.hpp` takes changes from other
+  /// threads.
+  [[nodiscard]] std::span<const detail::LoosePart> loose() const noexcept { return loose_.all(); }
+  /// The part is there, if only in part: some force on it may act. Always true of other parts.
+  [[nodiscard]] bool is_there(PartId id) const noexcept {
+    const BodyState& body = motion_.bodies[part(id).body.index];
+    return !body.is_loose || body.presence.is_there();
+  }
+
+  /// The part is about to be absent: World::remove.
+  [[nodiscard]] bool is_leaving(PartId id) const noexcept {
+    const Presence& presence = motion_.bodies[part(id).body.index].presence;
+    return presence.is_there() && (presence.there.rate < 0.0 || !(presence.there.now > 0.0));
+  }
+
+  /// Exchanges the shape of an absent part for a new one of at most its room; `shape` is the old
+  /// one then. No thread may be using the part: Coprocessor::is_past.
+  bool refit(PartId id, Shape& shape) noexcept {
+    const detail::LoosePart* const loose = loose_.find(id);
+    if (loose == nullptr || is_there(id) || !(shape.reach() <= loose->room)) return false;
+    std::swap(parts_[id.index].shape, shape);
+    for (std::size_t i = 0; i < loose->pairs.size(); ++i) {
+      Pair& pair = pairs_[loose->pairs[i].index];
+      pair.law = fitted(loose->laws[i], part(pair.a).shape, part(pair.b).shape);
+    }
+    return true;
+  }
+  /// Lets an absent part come. @param X_WB [m] @param over [s] the time in which its forces grow
+  /// from nothing to those of their laws, in even steps, from the next `advance` on; 0: at once
+  /// then
+  bool add(PartId id, const Pose& X_WB, double over) noexcept {
+    return loose_.add(motion_, id, X_WB, over);
+  }
+  /// Moves a part that lies free, on a straight line and with an even turn, from the next
+  /// `advance` on. @param X_WB [m] where to @param speed [m/s] of its fastest point
+  bool move(PartId id, const Pose& X_WB, double speed) noexcept {
+    return loose_.move(motion_, id, X_WB, speed);
+  }
+  /// Lets a tool take a part where it is: in the time `over` [s] it stops being an obstacle to this
+  /// tool, in as long again it becomes part of it.
+  bool attach(PartId id, BodyId tool, double over) noexcept {
+    return loose_.attach(motion_, id, tool, over);
+  }
+  /// Lets a tool put down a part that it holds: in the time `over` [s] it stops being part of the
+  /// tool and stays where it is then, in as long again it becomes an obstacle to it.
+  bool release(PartId id, double over) noexcept { return loose_.release(motion_, id, over); }
+  /// Lets a part go, held or not. @param over [s] the time in which its forces fade; 0: at once
+  bool remove(PartId id, double over) noexcept { return loose_.remove(motion_, id, over); }
+
+  /// Advances what these functions have begun, before the bodies are placed for a tick.
+  /// @param dt [s] since the last one
+  void advance(double dt) noexcept { loose_.advance(motion_, dt); }
+  /// Places what tools hold, when all tools have been placed for a tick.
+  void carry() noexcept { loose_.carry(motion_); }
 
   /// Moves a body. False, with nothing changed, when the pose or twist is not finite or not rigid.
   bool place(BodyId body, const Pose& X_WB, const Twist& V_WB) noexcept {
-    if (!is_finite(X_WB) || !is_finite(V_WB) || !is_rigid(X_WB, 1e-6)) return false;
-    BodyState& state = motion_.bodies[body.index];
-    const auto moved = [&](int k) {
-      const Vec<double> d = column<double>(X_WB, k) - column<double>(state.X_WB, k);
-      return dot(d, d);
-    };
-    // |R - R'| (Frobenius) is 2 sqrt(2) sin(angle / 2), without the cancellation of an arc cosine.
-    const double chord = std::sqrt(0.5 * (moved(0) + moved(1) + moved(2)));
-    const double reach = reach_[body.index];
-    const double turned = reach * chord;
-    const double rounding = 1e-14 * (norm(origin(X_WB)) + reach);
-    state.travel += std::sqrt(moved(3)) + turned + rounding;
-    state.turn += turned + rounding;
-    state.X_WB = X_WB;
-    state.V_WB = V_WB;
-    return true;
+    return repel::place(motion_.bodies[body.index], X_WB, V_WB);
   }
 
   /// The present state of all bodies; the caller counts the tick number.
@@ -174,10 +230,19 @@ class World {
   Limits limits_;
   Measure measure_;
   std::vector<std::string> body_names_;
-  std::vector<double> reach_;  ///< [m] farthest point of each body from its origin
   Motion motion_;
   std::vector<Part> parts_;
   std::vector<Pair> pairs_;
+  detail::LooseParts loose_;
 };
+
+/// A force of the pair can act at all: its bodies are there, and not in one hand.
+[[nodiscard]] inline bool acts(const World& world, PairId id, const Motion& motion) noexcept {
+  const auto state_of = [&](PartId part) -> const BodyState& {
+    return motion.bodies[static_cast<std::size_t>(world.part(part).body.index)];
+  };
+  const Pair& pair = world.pair(id);
+  return share_between(state_of(pair.a), state_of(pair.b)).acts();
+}
 
 }  // namespace repel
