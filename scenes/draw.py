@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """draw.py SCENE.yaml LOG.csv PICTURE.svg: a scene from the side and from above: its obstacles, the
 way of each tool with a number where a phase of the script ends, and the arms at the start (pale)
-and where they were pushed hardest."""
+and where they were pushed hardest. What can come and go is yellow, dashed if it comes later."""
 
 import csv
 import math
@@ -255,6 +255,10 @@ def with_parts(entries, folder):
 
 def obstacles_of(scene):
     """Each with its shape, its style, and where it goes if it moves."""
+    for part in scene.get("loose", []):
+        style = "fill='#e9c46a' fill-opacity='0.4' stroke='#9c6644' stroke-width='0.8'"
+        dashes = "" if part.get("at_start", True) else " stroke-dasharray='2 2'"
+        yield part, (*shape_of(part), pose_in(part)), style + dashes
     for part in scene["obstacles"]:
         law = scene.get("laws", {}).get(part.get("law", "default"), {})
         colour = "#2a9d8f" if law.get("passable") else "#457b9d"

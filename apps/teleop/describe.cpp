@@ -149,6 +149,9 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     cell.obstacles.push_back(
         {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
   }
+  for (const scene::LoosePart& part : scene.loose) {
+    cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start});
+  }
   return described;
 }
 

@@ -11,6 +11,7 @@
 #include <repel/cell/cell.hpp>
 
 #include "operator_input.hpp"
+#include "part_steps.hpp"
 #include "recording.hpp"
 
 namespace repel::teleop {
@@ -21,9 +22,12 @@ class DrivenCell {
   /// @param cell must outlive this object
   /// @param arms one for each arm of the cell, in the same order
   /// @param operators likewise
-  DrivenCell(Cell& cell, std::vector<std::unique_ptr<TorqueDrivenArm>> arms,
+  /// @param scene of the cell
+  DrivenCell(Cell& cell, const scene::Scene& scene,
+             std::vector<std::unique_ptr<TorqueDrivenArm>> arms,
              std::vector<OperatorInput> operators)
       : cell_(cell),
+        steps_(scene, cell),
         arms_(std::move(arms)),
         operators_(std::move(operators)),
         readings_(arms_.size()),
@@ -41,6 +45,7 @@ class DrivenCell {
       commands_[i] = operators_[i].step(cell_.X_WT(i).linear(), cell_.elapsed());
     }
     const auto records = cell_.act(commands_);
+    for (std::size_t i = 0; i < commands_.size(); ++i) steps_.follow(i, commands_[i].phase);
     for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].apply(*records[i]);
     return records;
   }
@@ -73,10 +78,12 @@ class DrivenCell {
   void rehearse() noexcept { cell_.rehearse(); }
 
   [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
+  [[nodiscard]] const PartSteps& steps() const noexcept { return steps_; }
   [[nodiscard]] const TorqueDrivenArm& arm(std::size_t i) const noexcept { return *arms_[i]; }
 
  private:
   Cell& cell_;
+  PartSteps steps_;
   std::vector<std::unique_ptr<TorqueDrivenArm>> arms_;
   std::vector<ArmPort> ports_;
   std::vector<OperatorInput> operators_;

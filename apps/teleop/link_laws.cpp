@@ -79,10 +79,10 @@ struct Outweighed {
 void note_link_laws(const Cell& cell, RunResult& result) {
   const World& world = cell.world();
   Outweighed outweighed;
-  std::size_t index = 0;  // of the obstacle, whose pairs follow each other
+  const std::vector<std::size_t> places = obstacles_of_pairs(world);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
     const Pair& pair = world.pair({i});
-    if (i > 0 && pair.b != world.pair({i - 1}).b) ++index;
+    const std::size_t index = places[static_cast<std::size_t>(i)];
     const double peak = cell.coprocessor().extremes_of({i}).peak_force;
     if (!(peak > 0.0)) continue;
     const double leverage = cell.leverage({i});

@@ -246,6 +246,35 @@ void print_work(const RunResult& r, std::FILE* out) {
                here, 1e3 / r.options.rate_hz, here / static_cast<double>(units));
 }
 
+/// Parts that come and go: null if the scene has none.
+ordered_json steps_to_json(const RunResult& r) {
+  if (r.scene.loose.empty()) return nullptr;
+  ordered_json list = ordered_json::array();
+  for (const PartStepResult& each : r.steps) {
+    const bool is_grip = each.step.what == scene::PartStep::What::grip;
+    list.push_back(
+        {{"phase", r.scene.arm_setup(each.arm).script[each.step.phase].name},
+         {"step", std::string(word_for(each.step.what))},
+         {"part", r.scene.loose[each.step.part].name},
+         {"made", each.was_made},
+         {"refused", each.was_refused},
+         {"distance_m", is_grip && std::isfinite(each.distance) ? ordered_json(each.distance)
+                                                                : ordered_json(nullptr)}});
+  }
+  return list;
+}
+
+void print_steps(const RunResult& r, std::FILE* out) {
+  if (r.scene.loose.empty()) return;
+  const auto made = std::count_if(r.steps.begin(), r.steps.end(),
+                                  [](const PartStepResult& each) { return each.was_made; });
+  const auto refused = std::count_if(r.steps.begin(), r.steps.end(),
+                                     [](const PartStepResult& each) { return each.was_refused; });
+  std::fprintf(out, "  parts that come and go %zu; %d of %zu steps made, %d refused\n",
+               r.scene.loose.size(), static_cast<int>(made), r.steps.size(),
+               static_cast<int>(refused));
+}
+
 /// What the run did not evaluate or use, in one paragraph.
 void print_skipped(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  skipped                %.2f of %d pairs per tick",
@@ -343,6 +372,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                  r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
   }
   print_work(r, out);
+  print_steps(r, out);
   print_skipped(r, out);
   if (r.nearest_pair.empty()) {
     print_line("nearest", "none", out);
@@ -443,6 +473,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["nearest_passable_m"] = r.passables.nearest;
   report["deepest_passable_m"] = r.passables.deepest;
   report["obstacles"] = obstacle_list(r);
+  report["steps"] = steps_to_json(r);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
   report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);

@@ -9,6 +9,7 @@
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/relief.hpp>
 
+#include "figure.hpp"
 #include "heading.hpp"
 
 namespace repel::teleop {
@@ -19,14 +20,47 @@ double support_pairs_per_period(const RunResult& result) {
   return static_cast<double>(result.totals().iterations) / (seconds * result.options.rate_hz);
 }
 
-// Pairs are ordered by obstacle, and within it by part of the tools and arms.
+// Pairs are ordered by obstacle, and within it by part of the tools and arms; but those of a part
+// that can come and go with obstacles follow those of arms with it.
+std::vector<std::size_t> obstacles_of_pairs(const World& world) {
+  std::vector<std::size_t> places;
+  std::vector<PartId> obstacles;
+  for (const Pair& pair : world.pairs()) {
+    auto at = obstacles.end();
+    if (world.part(pair.a).room > 0.0) at = std::find(obstacles.begin(), at, pair.b);
+    if (at == obstacles.end() && !obstacles.empty() && obstacles.back() == pair.b) --at;
+    places.push_back(static_cast<std::size_t>(at - obstacles.begin()));
+    if (at == obstacles.end()) obstacles.push_back(pair.b);
+  }
+  return places;
+}
+
+void note_steps(const PartSteps& steps, RunResult& result) {
+  result.steps = steps.results();
+  for (const PartStepResult& each : result.steps) {
+    if (!each.was_refused) continue;
+    const scene::ArmSetup& setup = result.scene.arm_setup(each.arm);
+    std::string text = setup.script[each.step.phase].name;
+    text.append(": ").append(word_for(each.step.what)).append(" of '");
+    text.append(result.scene.loose[each.step.part].name).append("' was not possible");
+    if (each.step.what == scene::PartStep::What::grip && std::isfinite(each.distance)) {
+      text.append(", the tool was ")
+          .append(host::figure(1e3 * each.distance, 1))
+          .append(" mm away");
+    }
+    result.warnings.push_back(text);
+  }
+}
+
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result) {
   RunTotals& totals = result.arms.front().totals;
-  PartId last;
+  const std::vector<std::size_t> places = obstacles_of_pairs(world);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
     const Pair& pair = world.pair({i});
-    if (pair.b != last) result.obstacles.push_back({.name = world.part(pair.b).name});
-    last = pair.b;
+    const std::size_t place = places[static_cast<std::size_t>(i)];
+    if (place == result.obstacles.size()) {
+      result.obstacles.push_back({.name = world.part(pair.b).name});
+    }
     if (result.options.keep_records) result.pair_names.push_back(name_of(world, {i}));
     const PairExtremes extremes = coprocessor.extremes_of({i});
     totals.deepest = std::max(totals.deepest, extremes.deepest);
@@ -36,7 +70,7 @@ void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& r
       totals.nearest = extremes.nearest;
       result.nearest_pair = name_of(world, {i});
     }
-    ObstacleResult& obstacle = result.obstacles.back();
+    ObstacleResult& obstacle = result.obstacles[place];
     const bool hardest = extremes.peak_force > obstacle.extremes.peak_force;
     obstacle.extremes.add(extremes);
     if (!hardest) continue;

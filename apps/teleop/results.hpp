@@ -21,6 +21,7 @@
 
 #include "chatter.hpp"
 #include "machine.hpp"
+#include "part_steps.hpp"
 #include "replay.hpp"
 #include "run_options.hpp"
 
@@ -110,8 +111,9 @@ struct RunResult {
   std::int64_t log_dropped = 0;         ///< ticks missing in the log
   std::string log_trouble;              ///< other reason why the log is incomplete; empty: none
   bool interrupted = false;
-  bool begins_anew = false;  ///< the user requested another run
-  ReplayReport replay;       ///< of a replay
+  bool begins_anew = false;           ///< the user requested another run
+  std::vector<PartStepResult> steps;  ///< of the parts that come and go
+  ReplayReport replay;                ///< of a replay
   host::Machine machine;
   /// Since set-up, of all pairs whose law is not passable, and of those whose law is.
   PairExtremes walls, passables;
@@ -130,6 +132,13 @@ struct RunResult {
 /// Collects the extremes of every obstacle, of the walls and of the passable bodies, and the
 /// nearest pair of all. Call once `coprocessor` has stopped.
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result);
+
+/// For each pair the place of its obstacle in `RunResult::obstacles`. What a tool holds meets
+/// obstacles that are there already.
+[[nodiscard]] std::vector<std::size_t> obstacles_of_pairs(const World& world);
+
+/// Collects the steps that have been made, and warns of those that were refused.
+void note_steps(const PartSteps& steps, RunResult& result);
 
 /// The results of every module, in the order of the network.
 [[nodiscard]] std::vector<ModuleResult> module_results(const network::Network& network);

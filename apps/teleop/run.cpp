@@ -300,7 +300,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   RunResult result = result_of(prepared);
   const RunOptions& options = result.options;
   Cell& cell = prepared.cell;
-  DrivenCell driven(cell, make_arms(prepared, attached.recording),
+  DrivenCell driven(cell, prepared.scene, make_arms(prepared, attached.recording),
                     make_operators(prepared, attached));
   const std::int64_t ticks = ticks_of(options, attached.recording);
   Observers observers = observers_for(options, cell, ticks);
@@ -324,6 +324,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
     result.arms[i].contact = driven.arm(i).contact();
   }
   note_pairs(cell.world(), cell.coprocessor(), result);
+  note_steps(driven.steps(), result);
   note_link_laws(cell, result);
   result.interrupted = stop;
   result.allocations_in_tick = host::HeapGuard::allocations();

@@ -1,5 +1,7 @@
 #include <repel/scene/scene.hpp>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -20,6 +22,9 @@ constexpr Rule extent{unit::length, 0.0, Shape::largest};
 constexpr Rule angles{unit::angle, -1e3, 1e3};
 
 using Laws = std::map<std::string, ForceLaw>;
+
+/// Each has a pair with every other one.
+constexpr std::size_t most_loose = 200;
 
 /// Limits the total number of hull points in a scene, since each costs time in the reduction.
 class HullPoints {
@@ -263,6 +268,33 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
   return obstacles;
 }
 
+std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeFile& shapes) {
+  std::vector<LoosePart> loose;
+  const Value* value = scene.find("loose");
+  if (!value) return loose;
+  constexpr std::string_view keys[] = {"law", "at_start"};
+  std::set<std::string> names;
+  for (const Value& entry : value->list(most_loose)) {
+    const Map map(entry);
+    std::vector<Part> parts = parts_of(entry, map, keys, shapes);
+    require_new(names, map);
+    if (parts.size() > 1) {
+      map.at("file").fail("a mesh of " + std::to_string(parts.size()) +
+                          " convex parts; allowed: one of 1, for what can come and go");
+    }
+    LoosePart& part = loose.emplace_back();
+    part.name = map.at("name").text();
+    part.shape = std::move(parts.front().shape);
+    part.kind = std::move(parts.front().kind);
+    part.X_WP = parts.front().X_BP;
+    part.law = law_called(laws, map);
+    if (const Value* there = map.find("at_start")) {
+      part.at_start = there->word_of({"yes", "no"}) == "yes";
+    }
+  }
+  return loose;
+}
+
 /// Angles, or a list of angles and, for prismatic joints, lengths.
 void read_start(const Value& value, RobotChoice& robot) {
   const auto add = [&](const Value& entry, const Rule& rule, JointType type) {
@@ -358,10 +390,20 @@ Vec3 direction_of(const Value& value) {
   return direction.normalized();
 }
 
+constexpr std::array all_steps{PartStep::What::spawn, PartStep::What::grip, PartStep::What::release,
+                               PartStep::What::remove};
+
+/// Keys of a phase of any device.
+std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
+  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent", "over"};
+  for (const PartStep::What what : all_steps) keys.push_back(word_for(what));
+  keys.insert(keys.end(), more);
+  return keys;
+}
+
 network::Phase phase_of(const Value& value) {
   const Map map(value);
-  map.allow(
-      {"name", "device", "frame", "duration", "linear", "angular", "direction", "lever", "silent"});
+  map.allow(phase_keys({"linear", "angular", "direction", "lever"}));
   network::Phase phase;
   phase.name = map.at("name").text();
   phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
@@ -373,11 +415,11 @@ network::Phase phase_of(const Value& value) {
     phase.silent = silent->word_of({"yes", "no"}) == "yes";
   }
   if (map.at("device").word_of({"spaceball", "torque_arm"}) == "spaceball") {
-    map.allow({"name", "device", "frame", "duration", "linear", "angular", "silent"});
+    map.allow(phase_keys({"linear", "angular"}));
     map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
     map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
   } else {
-    map.allow({"name", "device", "frame", "duration", "direction", "lever", "silent"});
+    map.allow(phase_keys({"direction", "lever"}));
     phase.master = network::Master::torque_arm;
     phase.direction = direction_of(map.at("direction"));
     phase.lever_rate = map.at("lever").number({unit::angular_speed, -100.0, 100.0, true});
@@ -385,16 +427,44 @@ network::Phase phase_of(const Value& value) {
   return phase;
 }
 
-network::Script script_of(const Map& scene) {
-  network::Script script;
+/// The place of a part in the list of those that can come and go.
+std::size_t part_called(const Value& name, const std::vector<LoosePart>& loose) {
+  const std::string wanted = name.text();
+  const auto found = std::find_if(loose.begin(), loose.end(),
+                                  [&](const LoosePart& part) { return part.name == wanted; });
+  if (found == loose.end()) name.fail_with_value("the name of a part under 'loose'");
+  return static_cast<std::size_t>(found - loose.begin());
+}
+
+/// What happens to parts at the beginning of a phase.
+void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart>& loose,
+                std::vector<PartStep>& steps) {
+  double over = PartStep{}.over;
+  phase.read("over", {unit::time, 0.0, 60.0}, over);
+  for (const PartStep::What what : all_steps) {
+    const Value* names = phase.find(word_for(what));
+    if (!names) continue;
+    const auto add = [&](const Value& name) {
+      steps.push_back({what, index, part_called(name, loose), over});
+    };
+    if (!names->is_list()) {
+      add(*names);
+      continue;
+    }
+    for (const Value& name : names->list()) add(name);
+  }
+}
+
+void read_script(const Map& scene, const std::vector<LoosePart>& loose, ArmSetup& setup) {
   const Value* value = scene.find("script");
-  if (!value) return script;
+  if (!value) return;
   std::set<std::string> names;
   for (const Value& entry : value->list()) {
-    script.push_back(phase_of(entry));
-    require_new(names, Map(entry));
+    const Map map(entry);
+    read_steps(map, setup.script.size(), loose, setup.steps);
+    setup.script.push_back(phase_of(entry));
+    require_new(names, map);
   }
-  return script;
 }
 
 /// Context shared by all arm setups of a file.
@@ -403,13 +473,14 @@ struct Shared {
   const std::string& file;
   const ModuleKinds& kinds;
   ShapeFile shapes;
+  const std::vector<LoosePart>& loose;
 };
 
 void read_station(const Map& map, const Shared& shared, ArmSetup& setup) {
   setup.robot = robot_of(map.at("robot"), shared.laws, shared.file);
   setup.tool = tool_of(map.at("tool"), shared.shapes);
   setup.network = detail::network_of(map.find("network"), shared.kinds);
-  setup.script = script_of(map);
+  read_script(map, shared.loose, setup);
 }
 
 std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
@@ -461,11 +532,26 @@ Budget budget_of(const Map& scene) {
 
 }  // namespace
 
+std::string_view word_for(PartStep::What what) noexcept {
+  switch (what) {
+    case PartStep::What::spawn:
+      return "spawn";
+    case PartStep::What::grip:
+      return "grip";
+    case PartStep::What::release:
+      return "release";
+    case PartStep::What::remove:
+      break;
+  }
+  return "remove";
+}
+
 Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "network", "script", "partners",
-             "budget", "coprocessor", "start_inside", "tool_speed", "measure", "levels"});
+  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "loose", "network", "script",
+             "partners", "budget", "coprocessor", "start_inside", "tool_speed", "measure",
+             "levels"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -479,7 +565,9 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   read_measure(map, scene);
   const Laws laws = laws_of(map);
   HullPoints counted;
-  const Shared shared{laws, file, kinds, {file, counted, scene.part_lists}};
+  const ShapeFile shapes{file, counted, scene.part_lists};
+  scene.loose = loose_of(map, laws, shapes);
+  const Shared shared{laws, file, kinds, shapes, scene.loose};
   read_station(map, shared, scene);
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes);
   scene.partners = partners_of(map, shared);

@@ -106,6 +106,16 @@ void write(Status status, JsonText& out) {
   out.close(']');
 }
 
+/// The bodies that are not there, if there are any.
+void write_absent(const Snapshot& shot, JsonText& out) {
+  if (std::count(shot.is_there.begin(), shot.is_there.end(), 0) == 0) return;
+  out.name("absent").open('[');
+  for (std::size_t i = 0; i < shot.is_there.size(); ++i) {
+    if (shot.is_there[i] == 0) out.integer(static_cast<std::int64_t>(i));
+  }
+  out.close(']');
+}
+
 /// Writes an array of f(sample).
 template <class F>
 void write(const char* name, std::span<const TickSample> samples, const F& f, JsonText& out) {
@@ -187,7 +197,9 @@ std::string frame_message(const SceneInfo& info, const World& world, const Snaps
   write(status, out.name("status"));
   out.name("bodies").open('[');
   for (const Pose& X : shot.X_WB) out.pose(X);
-  out.close(']').name("pairs").open('[');
+  out.close(']');
+  write_absent(shot, out);
+  out.name("pairs").open('[');
   for (const NearPair& near : shot.near()) write(near, out);
   out.close(']').name("pairs_omitted").integer(shot.pairs_omitted);
   out.name("near").integer(first.pairs.near).name("evaluated").integer(first.pairs.evaluated);

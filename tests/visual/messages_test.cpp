@@ -168,6 +168,17 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
 }
 
 // A page that cannot parse a message would fail when it is needed most.
+TEST(Messages, AFrameNamesTheBodiesThatAreNotThere) {
+  Stage stage;
+  const auto frame = [&] {
+    return Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
+  };
+  stage.shot.is_there = {1, 1, 1};
+  EXPECT_FALSE(frame().contains("absent"));
+  stage.shot.is_there = {1, 0, 0};
+  EXPECT_EQ(frame().at("absent"), (Json{1, 2}));
+}
+
 TEST(Messages, WhatIsNoNumberIsNull) {
   Stage stage;
   TickRecord& record = stage.shot.arms.front();

@@ -130,7 +130,7 @@ connection.on("refused", (refused) => controls.refused(refused));
 
 // Where the bodies are now; the first frame of a scene also sets up floor and camera.
 function move(frame) {
-  parts.move(frame.bodies);
+  parts.move(frame.bodies, frame.absent);
   const pose = toolPose(frame);
   if (pose) {
     toolAt.fromArray(pose);

@@ -84,8 +84,12 @@ export class Parts {
     return { holder, solid, material, frames, groups, zone, group: part.group, body: part.body };
   }
 
-  move(poses) {
-    this.bodies.forEach((body, k) => place(body, poses[k]));
+  // `absent`: the bodies that have not come yet, or have gone.
+  move(poses, absent = []) {
+    this.bodies.forEach((body, k) => {
+      place(body, poses[k]);
+      body.visible = !absent.includes(k);
+    });
   }
 
   // Which zones are seen. `near`: parts of pairs near enough to be asked.

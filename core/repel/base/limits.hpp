@@ -7,7 +7,8 @@ namespace repel {
 /// Capacities of a world. Set-up that needs more throws SetupError naming the field to raise; no
 /// container grows after set-up.
 struct Limits {
-  int bodies = 1024;         ///< rigid bodies, including the fixed one
+  int bodies = 64;           ///< rigid bodies, including the fixed one, without those below
+  int loose = 256;           ///< parts that can come and go, each with a body of its own
   int parts = 20000;         ///< convex parts of all bodies
   int pairs = 1 << 20;       ///< pairs of parts
   int candidates = 1 << 14;  ///< pairs that can soon come within range, at one time; about 1.2 kB

@@ -24,9 +24,10 @@ struct TickTimes {
 
 /// All data of one tick. Its vectors have their size from set-up on.
 struct Snapshot {
-  std::vector<TickRecord> arms;  ///< of each arm that shares the world, in their order
-  std::vector<Pose> X_WB;        ///< [m] by BodyId
-  std::vector<NearPair> pairs;   ///< fixed size; the first `pair_count` are valid, nearest first
+  std::vector<TickRecord> arms;        ///< of each arm that shares the world, in their order
+  std::vector<Pose> X_WB;              ///< [m] by BodyId
+  std::vector<std::uint8_t> is_there;  ///< by BodyId: 0 while it is absent
+  std::vector<NearPair> pairs;  ///< fixed size; the first `pair_count` are valid, nearest first
   int pair_count = 0;
   int pairs_omitted = 0;  ///< further near pairs, farther than all of these
   TickTimes times;
@@ -105,6 +106,7 @@ class Tap {
     room.arms.resize(static_cast<std::size_t>(checked("arms", options.arms, 1, 64, "")));
     room.pairs.resize(static_cast<std::size_t>(checked("pairs", options.pairs, 1, 100000, "")));
     room.X_WB.resize(static_cast<std::size_t>(world.body_count()), Pose::Identity());
+    room.is_there.resize(room.X_WB.size(), 1);
     return room;
   }
 
@@ -116,7 +118,11 @@ class Tap {
             const TickTimes& times) const noexcept {
     for (std::size_t i = 0; i < s.arms.size() && i < arms.size(); ++i) s.arms[i] = *arms[i];
     const Motion& motion = world_->motion();
-    for (std::size_t i = 0; i < s.X_WB.size(); ++i) s.X_WB[i] = motion.bodies[i].X_WB;
+    for (std::size_t i = 0; i < s.X_WB.size(); ++i) {
+      const BodyState& body = motion.bodies[i];
+      s.X_WB[i] = body.X_WB;
+      s.is_there[i] = !body.is_loose || body.presence.is_there() ? 1 : 0;
+    }
     s.times = times;
     s.made = std::chrono::steady_clock::now();
     s.pair_count = s.pairs_omitted = 0;

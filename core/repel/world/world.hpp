@@ -60,11 +60,10 @@ class World {
   static constexpr BodyId fixed{0};
 
   BodyId add_body(const std::string& name, const Pose& X_WB = Pose::Identity()) {
-    if (static_cast<int>(motion_.bodies.size()) >= limits_.bodies) over("bodies", limits_.bodies);
+    const std::size_t lasting = motion_.bodies.size() - loose_.all().size();
+    if (static_cast<int>(lasting) >= limits_.bodies) over("bodies", limits_.bodies);
     check_rigid(name, X_WB);
-    body_names_.push_back(name);
-    motion_.bodies.push_back({X_WB, {}, 0.0, 0.0});
-    return {static_cast<std::int32_t>(motion_.bodies.size()) - 1};
+    return push_body(name, X_WB);
   }
 
   PartId add_part(BodyId body, const std::string& name, const Shape& shape,
@@ -86,7 +85,8 @@ class World {
   /// `shape`
   PartId reserve(const std::string& name, const Shape& shape, double room) {
     checked("room of " + name, room, std::max(1e-6, shape.reach()), Shape::largest, "m");
-    const BodyId body = add_body(name);
+    if (static_cast<int>(loose_.all().size()) >= limits_.loose) over("loose", limits_.loose);
+    const BodyId body = push_body(name, Pose::Identity());
     const PartId id = add_part(body, name, shape);
     parts_.back().room = motion_.bodies.back().reach = room;
     motion_.bodies.back().is_loose = true;
@@ -216,6 +216,12 @@ class World {
   [[nodiscard]] const Pair& pair(PairId id) const noexcept { return pairs_[id.index]; }
 
  private:
+  BodyId push_body(const std::string& name, const Pose& X_WB) {
+    body_names_.push_back(name);
+    motion_.bodies.push_back({X_WB, {}, 0.0, 0.0});
+    return {static_cast<std::int32_t>(motion_.bodies.size()) - 1};
+  }
+
   [[nodiscard]] static double deepest_point(const Shape& a, const Shape& b) noexcept {
     return a.inscribed_radius() + b.inscribed_radius();
   }

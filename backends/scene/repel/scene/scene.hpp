@@ -3,6 +3,7 @@
 /// describes the format.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -47,6 +48,29 @@ struct Obstacle {
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
 };
 
+/// One convex part P of the world that can come, be held by a tool, and go while the scene runs.
+struct LoosePart {
+  std::string name;
+  Shape shape = Shape::sphere(0.0);
+  std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
+  Pose X_WP = Pose::Identity();  ///< [m] where it is at the start, and where it comes
+  ForceLaw law;
+  bool at_start = true;  ///< it is there at the start
+};
+
+/// What happens to a part of `Scene::loose` when a phase of a script begins.
+struct PartStep {
+  enum class What : std::uint8_t { spawn, grip, release, remove };
+
+  What what = What::spawn;
+  std::size_t phase = 0;  ///< index in the script
+  std::size_t part = 0;   ///< index in `Scene::loose`
+  double over = 0.2;      ///< [s] see World::add, attach, release and remove
+};
+
+/// The word of a scene file for a step: `spawn`, `grip`, `release` or `remove`.
+[[nodiscard]] std::string_view word_for(PartStep::What what) noexcept;
+
 /// A joint that does not move.
 struct JointHold {
   std::string joint;
@@ -90,6 +114,7 @@ struct ArmSetup {
   std::vector<Part> tool;
   Network network;
   network::Script script;
+  std::vector<PartStep> steps;  ///< in the order of the script
 };
 
 /// A further arm in the cell. Its forces from obstacles follow the obstacles' laws.
@@ -108,6 +133,7 @@ struct Scene : ArmSetup {
   /// Of every shape, where the measure needs them: see CellDescription. The shapes read have one.
   int levels = ReductionOptions{}.levels;
   std::vector<Obstacle> obstacles;
+  std::vector<LoosePart> loose;
   std::vector<OtherArm> partners;
   std::vector<std::string> part_lists;  ///< paths of the files that the parts of meshes are from
   Budget budget;
