@@ -198,9 +198,11 @@ def phases_of(entry, log):
 
 
 def is_of_link(pair, arms):
-    """Whether what stands first in a pair is a link, and no part of a tool."""
+    """Whether what stands first in a pair is a link, and no part of a tool nor held by one."""
     first = pair.split(" - ")[0]
-    return first not in {arm.prefix + part["name"] for arm in arms for part in arm.entry["tool"]}
+    held = {part["name"] for part in arms[0].entry.get("loose", [])}
+    tools = {arm.prefix + part["name"] for arm in arms for part in arm.entry["tool"]}
+    return first not in tools | held
 
 
 def hardest_tick(log, arms):

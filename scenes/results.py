@@ -57,9 +57,11 @@ def obstacle_table(result):
     yield "|---|---|---|---|---|"
     for o in sorted(felt, key=lambda o: -o["peak_force_n"]):
         deepest = mm(o["deepest_m"]) if o["deepest_m"] else 0
-        of_link = o["body"].split("/")[-1] != "tool"
+        whose = "" if o["body"].split("/")[-1] == "tool" else ", a link"
+        if o["body"] == o["part"]:
+            whose = ", held"
         yield (f"| `{o['name']}` | {o['peak_force_n']:.0f} | {mm(o['nearest_m'])} | {deepest} | "
-               f"`{o['part']}`{', a link' if of_link else ''} |")
+               f"`{o['part']}`{whose} |")
     unfelt = len(result["obstacles"]) - len(felt)
     if unfelt:
         yield f"\nThe other {unfelt} push less than {FELT:g} N."

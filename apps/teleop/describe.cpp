@@ -150,7 +150,8 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
         {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
   }
   for (const scene::LoosePart& part : scene.loose) {
-    cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start});
+    cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start, 0.0, part.mass,
+                          part.is_mass_known});
   }
   return described;
 }

@@ -21,6 +21,7 @@
 #include "fade_out.hpp"
 #include "heap_guard.hpp"
 #include "link_laws.hpp"
+#include "loaded_arm.hpp"
 #include "machine.hpp"
 #include "pace.hpp"
 #include "replay.hpp"
@@ -248,9 +249,13 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
     if (prepared.options.contact) {
       parts = contact_parts(prepared.scene, prepared.scene.arm_setup(i), prepared.robots[i]);
     }
-    arms.push_back(std::make_unique<DelayedArm>(
-        backend.make(simulated_model(prepared, i), arm.start, watchdog_of(prepared.options), parts),
-        arm.model.links.size(), prepared.scene.arm_setup(i).robot.drive_delay));
+    auto simulated =
+        backend.make(simulated_model(prepared, i), arm.start, watchdog_of(prepared.options), parts);
+    if (!prepared.scene.loose.empty()) {
+      simulated = std::make_unique<LoadedArm>(std::move(simulated), prepared.cell, i);
+    }
+    arms.push_back(std::make_unique<DelayedArm>(std::move(simulated), arm.model.links.size(),
+                                                prepared.scene.arm_setup(i).robot.drive_delay));
   }
   return arms;
 }

@@ -272,7 +272,7 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
   std::vector<LoosePart> loose;
   const Value* value = scene.find("loose");
   if (!value) return loose;
-  constexpr std::string_view keys[] = {"law", "at_start"};
+  constexpr std::string_view keys[] = {"law", "at_start", "mass", "known"};
   std::set<std::string> names;
   for (const Value& entry : value->list(most_loose)) {
     const Map map(entry);
@@ -290,6 +290,10 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
     part.law = law_called(laws, map);
     if (const Value* there = map.find("at_start")) {
       part.at_start = there->word_of({"yes", "no"}) == "yes";
+    }
+    map.read("mass", {unit::mass, 0.0, Payload::heaviest}, part.mass);
+    if (const Value* known = map.find("known")) {
+      part.is_mass_known = known->word_of({"yes", "no"}) == "yes";
     }
   }
   return loose;

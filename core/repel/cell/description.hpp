@@ -63,7 +63,9 @@ struct LooseDescription {
   Pose X_WP = Pose::Identity();  ///< [m] where it comes, unless it is said
   ForceLaw law{};                ///< between it and every part of every arm
   bool at_start = false;         ///< it is there from the start on
-  double room = 0.0;  ///< [m] largest reach of a shape that it can get; 0: that of `shape`
+  double room = 0.0;          ///< [m] largest reach of a shape that it can get; 0: that of `shape`
+  double mass = 0.0;          ///< [kg] at the origin of its shape: the weight that a tool carries
+  bool is_mass_known = true;  ///< to the controller, not only to a simulated arm
 };
 
 /// Handling of an arm that starts with a part of it inside an obstacle that is not passable.

@@ -214,6 +214,7 @@ inline PartId add_loose(World& world, const CellDescription& cell, const LooseDe
   const double room = loose.room > 0.0 ? loose.room : std::max(loose.shape.reach(), 1e-6);
   const std::size_t before = world.loose().size();
   const PartId id = world.reserve(loose.name, loose.shape, room);
+  world.weigh(id, loose.mass, loose.is_mass_known);
   for (const ArmLayout& arm : arms) {
     for (const PartId part : arm.parts) add_pair(world, arms, part, id, loose.law);
   }

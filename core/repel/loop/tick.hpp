@@ -14,6 +14,7 @@
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/held_weight.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/loop/speed_share.hpp>
@@ -31,16 +32,14 @@
 
 namespace repel {
 
-/// The control of one arm: from joint readings, forces of the world model and the input of an
-/// operator, through a network, to joint torques. Allocates at construction only. A cell
-/// (cell/cell.hpp) has one for each arm.
+/// The control of one arm: from joint readings, the forces of the world and the operator's input,
+/// through a network, to joint torques. Allocates at construction only. A cell has one per arm.
 class Teleoperator {
  public:
   /// Timeout of an operator's device [s].
   static constexpr double patience = 0.02;
 
-  /// @throws SetupError for a network that does not fit arm and world (`require_complete`), or an
-  /// option out of range
+  /// @throws SetupError for a network that does not fit (`require_complete`), or an option
   Teleoperator(TeleoperatorParts parts, std::chrono::nanoseconds period,
                const TeleoperatorOptions& options = {})
       : options_((require_complete(parts), checked(options))),
@@ -51,6 +50,7 @@ class Teleoperator {
         network_(std::move(parts.network)),
         clock_(period, in_nanoseconds(options.longest_gap)),
         period_(std::chrono::duration<double>(period).count()),
+        gravity_W_(parts.model.gravity_W),
         watch_(parts.model, period_, options.joints),
         inertia_(parts.model),
         command_(parts.model, period_, options),
@@ -71,8 +71,8 @@ class Teleoperator {
     inertia_.update(kinematics_);
   }
 
-  /// The first half of a tick: places the arm in the world. After all arms that share a world have
-  /// done this, one exchange of the coprocessor computes the forces for the second half.
+  /// The first half of a tick: places the arm in the world. When all arms of a world have done
+  /// this, one exchange of the coprocessor computes the forces for the second half.
   /// @param readings of the arm for this tick @param now the time the tick is due [ns]; it must
   /// grow from tick to tick
   void sense(const ArmReadings& readings, std::chrono::nanoseconds now) noexcept {
@@ -82,8 +82,8 @@ class Teleoperator {
     place_bodies();         // q, v -> poses and twists of tool and links in the world
   }
 
-  /// The second half: writes the command of the arm to the record.
-  /// @param forces of the world in which all arms have been placed, and the `contacts` they are of
+  /// The second half: writes the command of the arm to the record. @param forces of the world in
+  /// which all arms have been placed, and the `contacts` they are of
   const TickRecord& act(const PairForces& forces, const WorkerReport& workers,
                         std::span<const ActiveContact> contacts,
                         const network::Command& command) noexcept {
@@ -103,8 +103,7 @@ class Teleoperator {
   /// Time since the last tick, as of the last `sense` [s].
   [[nodiscard]] double elapsed() const noexcept { return signals_.elapsed; }
 
-  /// Warms the caches with code and data of the next tick and has no other effect. Call it just
-  /// before the tick is due: a tick with cold caches takes several times as long.
+  /// Warms the caches for the next tick, without other effects. Call it just before it is due.
   void rehearse() noexcept {
     kinematics_.update(q_);
     kinematics_.tool_jacobian(new_jacobian_);
@@ -122,7 +121,7 @@ class Teleoperator {
     record_.status = clock_.step(now);
     record_.elapsed = clock_.elapsed();
     signals_.elapsed = period_ * static_cast<double>(clock_.elapsed());
-    // The arm moved on without the loop: its readings need not follow from the last ones.
+    // The arm moved on without the loop: readings need not follow from the last ones.
     if ((record_.status & status::clock_gap) != 0U || next_tick_ == 0) watch_.begin_anew();
   }
 
@@ -170,7 +169,7 @@ class Teleoperator {
     if (pushing_out_) push_out(forces.totals);
   }
 
-  // Credits the walls with the power of an arm that leaves at exit_speed, without an operator.
+  // Credits the walls with the power of an arm that leaves at exit_speed.
   void push_out(const PairTotals& totals) noexcept {
     constexpr double lever = 0.5;  // [m] lever arm of a wall force about a joint
     const bool is_felt = totals.peak_force > 0.0;
@@ -203,7 +202,7 @@ class Teleoperator {
 
   [[gnu::noinline]] void run_network() noexcept {
     const auto begin = std::chrono::steady_clock::now();
-    // Without the operator's force, springs and accounts on that side restart at the present pose.
+    // Without the operator's force, springs and accounts of that side restart at this pose.
     signals_.released = record_.stop == Stop::released || command_.is_poisoned();
     signals_.at_rest = command_.has_let_go() || signals_.released;
     signals_.joints = joints_vec(q_);
@@ -234,6 +233,7 @@ class Teleoperator {
 
   [[gnu::noinline]] void drive() noexcept {
     kinematics_.gravity_torques(command_.gravity());
+    add_held_weight(world_, tool_, jacobian_, gravity_W_, Masses::known, command_.gravity());
     command_.drive({network_, signals_.jacobian, v_, V_WT_.linear.norm()}, inertia_, watch_,
                    record_);
   }
@@ -277,7 +277,8 @@ class Teleoperator {
   ArmBodies links_;
   network::Network network_;
   TickClock clock_;
-  double period_;  ///< [s]
+  double period_;   ///< [s]
+  Vec3 gravity_W_;  ///< [m/s^2]
   JointWatch watch_;
   ArmInertia inertia_;
   ArmCommand command_;

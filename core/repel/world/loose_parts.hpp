@@ -58,6 +58,8 @@ struct LoosePart {
   PartId part;
   BodyId body;
   double room = 0.0;             ///< [m] largest reach of a shape that it can have
+  double mass = 0.0;             ///< [kg] at the origin of its body
+  bool is_mass_known = true;     ///< to the controllers of arms, not only to simulated ones
   PoseMove move{};               ///< while it lies free
   Pose X_TB = Pose::Identity();  ///< [m] in the tool that holds it
   std::vector<PairId> pairs{};   ///< of this part

@@ -94,6 +94,17 @@ class World {
     return id;
   }
 
+  /// Gives a reserved part a mass [kg], at the origin of its body, whose weight a tool that holds
+  /// it carries. @param is_known to the controllers of arms, not only to simulated ones. Set-up
+  /// only.
+  void weigh(PartId id, double mass, bool is_known = true) {
+    checked("mass of " + part(id).name, mass, 0.0, 1e3, "kg");
+    if (detail::LoosePart* const loose = loose_.find(id)) {
+      loose->mass = mass;
+      loose->is_mass_known = is_known;
+    }
+  }
+
   PairId add_pair(PartId a, PartId b, const ForceLaw& law) {
     if (static_cast<int>(pairs_.size()) >= limits_.pairs) over("pairs", limits_.pairs);
     for (const PartId id : {a, b}) {

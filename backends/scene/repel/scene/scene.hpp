@@ -55,7 +55,9 @@ struct LoosePart {
   std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
   Pose X_WP = Pose::Identity();  ///< [m] where it is at the start, and where it comes
   ForceLaw law;
-  bool at_start = true;  ///< it is there at the start
+  bool at_start = true;       ///< it is there at the start
+  double mass = 0.0;          ///< [kg]
+  bool is_mass_known = true;  ///< to the controller, not only to the simulated arm
 };
 
 /// What happens to a part of `Scene::loose` when a phase of a script begins.
