@@ -4,7 +4,7 @@ include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/.
-set(REPEL_COMPONENTS core compiled ideal devices record robots cover bullet ode scene
+set(REPEL_COMPONENTS core compiled ideal devices record robots cover percepts bullet ode scene
     visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.

@@ -7,6 +7,10 @@
 #include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
 #endif
+#ifdef PART_percepts
+#include <repel/percepts/perceived_parts.hpp>
+#include <repel/percepts/own_body.hpp>
+#endif
 #ifdef PART_cover
 #include <repel/cover/cover.hpp>
 #endif
