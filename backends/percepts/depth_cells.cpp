@@ -63,10 +63,11 @@ DepthCells::DepthCells(const DepthCamera& camera, const CellOptions& options)
       options_(checked_options(camera_, options)),
       inverse_(camera_.pixels()),
       cells_(static_cast<std::size_t>(options_.most)),
-      sorted_(static_cast<std::size_t>(options_.largest * options_.largest)) {
+      sorted_(static_cast<std::size_t>(options_.largest) *
+              static_cast<std::size_t>(options_.largest)) {
   const int columns = (camera_.width - 1) / options_.largest + 1;
   const int rows = (camera_.height - 1) / options_.largest + 1;
-  open_.reserve(static_cast<std::size_t>(columns * rows) + 64);
+  open_.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) + 64);
 }
 
 std::span<const Cell> DepthCells::divide(std::span<const float> depth) noexcept {
@@ -88,7 +89,7 @@ std::span<const Cell> DepthCells::divide(std::span<const float> depth) noexcept 
 
 bool DepthCells::measures_in(const Cell& cell) const noexcept {
   for (int v = cell.v; v < cell.v + cell.height; ++v) {
-    const float* const row = &inverse_[static_cast<std::size_t>(v * camera_.width)];
+    const float* const row = &inverse_[camera_.at(0, v)];
     if (std::any_of(row + cell.u, row + cell.u + cell.width, [](float w) { return w > 0.0F; })) {
       return true;
     }
@@ -180,7 +181,7 @@ bool DepthCells::add_layers(const Block& block) noexcept {
   std::size_t n = 0;
   for (int v = cell.v; v < cell.v + cell.height; ++v) {
     for (int u = cell.u; u < cell.u + cell.width; ++u) {
-      const float w = inverse_[static_cast<std::size_t>(v * camera_.width + u)];
+      const float w = inverse_[camera_.at(u, v)];
       if (w > 0.0F) sorted_[n++] = w;
     }
   }
@@ -230,7 +231,7 @@ DepthCells::Fit DepthCells::fit(const Block& block) const noexcept {
   double uu = 0, uv = 0, vv = 0, su = 0, sv = 0, sw = 0, uw = 0, vw = 0;
   const auto for_each = [&](const auto& see) {
     for (int v = cell.v; v < cell.v + cell.height; ++v) {
-      const float* const row = &inverse_[static_cast<std::size_t>(v * camera_.width)];
+      const float* const row = &inverse_[camera_.at(0, v)];
       for (int u = cell.u; u < cell.u + cell.width; ++u) {
         if (row[u] > 0.0F) see(u - u0, v - v0, static_cast<double>(row[u]));
       }

@@ -57,7 +57,7 @@ int OwnBody::remove(const Shape& shape, const Pose& X_CP, std::span<float> depth
       Stretch::of_ball(p.y(), p.z(), radius, camera_.fy, camera_.cy, camera_.height);
   int removed = 0;
   for (int v = rows.first; v < rows.end; ++v) {
-    float* const row = &depth[static_cast<std::size_t>(v * camera_.width)];
+    float* const row = &depth[camera_.at(0, v)];
     for (int u = columns.first; u < columns.end; ++u) {
       if (!camera_.measures(row[u]) || std::abs(row[u] - p.z()) > radius) continue;
       const Vec3 from_part = static_cast<double>(row[u]) * camera_.ray(u, v) - p;

@@ -55,7 +55,7 @@ double worst_outside(const std::vector<float>& image, std::span<const Cell> cell
   double worst = 0.0;
   for (int v = 0; v < camera.height; v += 5) {
     for (int u = 0; u < camera.width; u += 5) {
-      const float z = image[static_cast<std::size_t>(v * camera.width + u)];
+      const float z = image[camera.at(u, v)];
       if (!camera.measures(z)) continue;
       double least = std::numeric_limits<double>::infinity();
       Pose X = Pose::Identity();

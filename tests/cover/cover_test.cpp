@@ -7,6 +7,7 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/cover/cover.hpp>
+#include <repel/force/law.hpp>
 #include <repel/reduction/separation.hpp>
 
 #include "meshes.hpp"
@@ -147,6 +148,58 @@ TEST(Cover, RefusesOptionsOutOfTheirRange) {
   EXPECT_THROW((void)cover_of(mesh, {.parts = 0}), SetupError);
   EXPECT_THROW((void)cover_of(mesh, {.error = 0.0}), SetupError);
   EXPECT_THROW((void)cover_of(mesh, {.overlap = std::nan("")}), SetupError);
+}
+
+/// The force [N] on a ball by the law of a wall between it and each part.
+Vec3 force_on(const Shape& ball, const Vec3& centre, const std::vector<Shape>& parts,
+              const ForceLaw& law) {
+  Vec3 sum = Vec3::Zero();
+  for (const Shape& part : parts) {
+    const Separation s = separation(ball, Pose(Eigen::Translation3d(centre)), part,
+                                    Pose::Identity(), {.measure = Measure::exact});
+    sum += law.spring(s.distance) * s.extraction_W;
+  }
+  return sum;
+}
+
+// What the parts of a mesh do together changes along a way no faster than each of them does alone,
+// times how many are in reach: at a seam no force appears at once.
+TEST(Cover, IsFeltWithoutJumpsWhereItsPartsMeet) {
+  const ForceLaw law{.range = 0.02, .surface_force = 50.0};
+  const test::Bin bin;
+  const Cover cover = cover_of(bin.mesh(), {.parts = 8, .error = 2e-3, .overlap = 5e-3});
+  ASSERT_GT(cover.parts.size(), 3U) << "seams to sweep over";
+  std::vector<Shape> parts;
+  for (const auto& part : cover.parts) parts.push_back(Shape::hull(part, {.levels = 1}));
+  const Shape ball = Shape::sphere(5e-3, {.levels = 1});
+  constexpr double step = 1e-4;  // [m]
+  double largest_step = 0.0;
+  double largest = 0.0;
+  const auto sweep = [&](const Vec3& from, const Vec3& to) {
+    const int steps = static_cast<int>((to - from).norm() / step);
+    Vec3 last = force_on(ball, from, parts, law);
+    for (int i = 1; i <= steps; ++i) {
+      const Vec3 now =
+          force_on(ball, from + static_cast<double>(i) / steps * (to - from), parts, law);
+      largest_step = std::max(largest_step, (now - last).norm());
+      largest = std::max(largest, now.norm());
+      last = now;
+    }
+  };
+  // Over the bottom from wall to wall, up a corner, around the rim, and along the outside.
+  for (const double height : {0.005, 0.001}) {
+    const double z = 0.01 + 5e-3 + height;
+    sweep({0.02, 0.075, z}, {0.18, 0.075, z});
+    sweep({0.1, 0.02, z}, {0.1, 0.13, z});
+    sweep({0.02, 0.02, z}, {0.02, 0.02, 0.12});
+    sweep({-0.005 - height, 0.01, 0.05}, {-0.005 - height, 0.14, 0.05});
+    sweep({-0.01, 0.005, 0.105 + height}, {0.21, 0.005, 0.105 + height});
+  }
+  EXPECT_GT(largest, 40.0);
+  const double most = law.stiffness() * step * static_cast<double>(parts.size());
+  EXPECT_LT(largest_step, most);
+  // Of all that are there, three at most meet in one place.
+  EXPECT_LT(largest_step, 3.0 * law.stiffness() * step + 1e-9);
 }
 
 }  // namespace cover_test

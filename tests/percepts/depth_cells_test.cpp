@@ -29,7 +29,7 @@ int expect_contained(const std::vector<float>& image, std::span<const Cell> cell
   int points = 0;
   for (int v = 0; v < camera.height; v += 3) {
     for (int u = 0; u < camera.width; u += 3) {
-      const float z = image[static_cast<std::size_t>(v * camera.width + u)];
+      const float z = image[camera.at(u, v)];
       if (!camera.measures(z)) continue;
       ++points;
       double least = std::numeric_limits<double>::infinity();

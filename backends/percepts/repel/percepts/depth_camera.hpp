@@ -31,6 +31,11 @@ struct DepthCamera {
   [[nodiscard]] std::size_t pixels() const noexcept {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
+  /// The place of a pixel in an image.
+  [[nodiscard]] std::size_t at(int u, int v) const noexcept {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(u);
+  }
   /// The ray through an image point, with z = 1.
   [[nodiscard]] Vec3 ray(double u, double v) const noexcept {
     return {(u - cx) / fx, (v - cy) / fy, 1.0};
