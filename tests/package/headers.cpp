@@ -8,8 +8,8 @@
 #include <repel/robots/urdf.hpp>
 #endif
 #ifdef PART_percepts
-#include <repel/percepts/perceived_parts.hpp>
 #include <repel/percepts/own_body.hpp>
+#include <repel/percepts/perceived_parts.hpp>
 #endif
 #ifdef PART_cover
 #include <repel/cover/cover.hpp>
