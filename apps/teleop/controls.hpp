@@ -4,9 +4,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 
 #include <repel/base/mailbox.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/schedule/world_changes.hpp>
 
 namespace repel::teleop {
 
@@ -22,6 +24,26 @@ struct DriverInput {
   Vec3 direction_W = Vec3::UnitX();  ///< unit: direction in which the lever drives the tool
 };
 
+/// Where parts can be asked for while a run lasts. A lock keeps the cell in place, not the tick.
+class ChangesPort {
+ public:
+  /// Of the cell that runs now; null: none.
+  void open(WorldChanges* changes) {
+    const std::lock_guard lock(mutex_);
+    changes_ = changes;
+  }
+  /// Calls ask(changes) if there is a cell. Returns what it returns, false otherwise.
+  template <class Ask>
+  bool with(const Ask& ask) {
+    const std::lock_guard lock(mutex_);
+    return changes_ != nullptr && ask(*changes_);
+  }
+
+ private:
+  std::mutex mutex_;
+  WorldChanges* changes_ = nullptr;
+};
+
 /// Lock-free interface between the loop, which reads, and one other thread, which writes.
 struct Controls {
   Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
@@ -30,6 +52,8 @@ struct Controls {
   std::atomic<bool> restart{false};    ///< end this run and start another
   bool may_restart = true;             ///< false while a log is written; constant after set-up
   bool over_device = false;            ///< a page may override a device; constant after set-up
+  bool may_change = true;              ///< false while a recording is written; likewise
+  ChangesPort changes;                 ///< not for the loop
   std::atomic<double> seek{-1.0};      ///< [s] replay: time to jump to; negative: none
   std::atomic<double> speed{1.0};      ///< replay: factor on real time
 };

@@ -153,6 +153,11 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start, 0.0, part.mass,
                           part.is_mass_known});
   }
+  for (int i = 1; i <= scene.spare.count; ++i) {
+    const Shape nothing = Shape::sphere(0.01 * scene.spare.room, {.levels = 1});
+    cell.loose.push_back({"spare_" + std::to_string(i), nothing, Pose::Identity(), scene.spare.law,
+                          false, scene.spare.room});
+  }
   return described;
 }
 

@@ -80,6 +80,7 @@ LiveView::LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, 
 void LiveView::opened(int page, visual::Role role, visual::Pages& pages) {
   open_pages_[page] = role;
   pages.send(page, greeting_);
+  for (const auto& [part, box] : boxes_) pages.send(page, box);
   say_who_drives(pages);
   pages.send(page, visual::timing_message(timing_));
   if (!has_picture_) return;
@@ -101,7 +102,7 @@ void LiveView::heard(int page, std::string_view said, visual::Pages& pages) {
   const std::string type = text(message, "type");
   const Driver driver = driver_;
   const int driving = page_;
-  const std::string why = obey(page, type, message);
+  const std::string why = obey(page, type, message, pages);
   if (!why.empty()) {
     // The page may have sent invalid UTF-8.
     pages.send(page, Json{{"type", "refused"}, {"what", type}, {"why", why}}.dump(
@@ -110,12 +111,15 @@ void LiveView::heard(int page, std::string_view said, visual::Pages& pages) {
   if (driver != driver_ || driving != page_) say_who_drives(pages);
 }
 
-std::string LiveView::obey(int page, const std::string& type, const Json& message) {
+std::string LiveView::obey(int page, const std::string& type, const Json& message,
+                           visual::Pages& pages) {
   std::string bar = bar_of(page);
   if (!bar.empty()) return bar;
   if (page_ != nobody && page_ != page) return "another page has the controls";
   if (type == "take" || type == "release" || type == "servo_cv" || type == "servo_lever")
     return drive(page, type, message);
+  if (type == "add_box" || type == "move_part" || type == "remove_part")
+    return change(type, message, pages);
   return conduct(type, message);
 }
 
@@ -164,6 +168,43 @@ std::string LiveView::drive(int page, const std::string& type, const Json& messa
   return {};
 }
 
+/// A box in one of the spare parts of the scene: it comes, moves or goes.
+std::string LiveView::change(const std::string& type, const Json& message, visual::Pages& pages) {
+  if (info_.replay) return "this is a recording";
+  if (!controls_.may_change) return "a recording is being written, which has no room for this";
+  if (info_.spare.empty()) return "the scene has no spare parts";
+  const auto position = vector(message, "position", 1e3);
+  if (type == "add_box") {
+    const auto size = vector(message, "size", 1e3);
+    if (!position || !size || size->minCoeff() < 1e-3) return out_of_range;
+    const Shape box = Shape::box(0.5 * *size, {.levels = 1});
+    PartId id;
+    const bool comes = controls_.changes.with([&](WorldChanges& changes) {
+      id = changes.add(box, Pose(Eigen::Translation3d(*position)));
+      return id.valid();
+    });
+    if (!comes) return "no spare part is free, or has room for it";
+    boxes_[id.index] = visual::part_message(id, box);
+    pages.send_all(boxes_[id.index]);
+    return {};
+  }
+  const auto named = number(message, "part", 1e6);
+  const PartId id{named ? static_cast<std::int32_t>(*named) : -1};
+  if (boxes_.count(id.index) == 0) return "no such box";
+  if (type == "move_part") {
+    if (!position) return out_of_range;
+    const bool moves = controls_.changes.with([&](WorldChanges& changes) {
+      return changes.move(id, Pose(Eigen::Translation3d(*position)));
+    });
+    return moves ? std::string() : "too many changes at once";
+  }
+  const bool goes =
+      controls_.changes.with([&](WorldChanges& changes) { return changes.remove(id); });
+  if (!goes) return "too many changes at once";
+  boxes_.erase(id.index);
+  return {};
+}
+
 std::string LiveView::conduct(const std::string& type, const Json& message) {
   if (type == "pause" || type == "resume") {
     controls_.steps = 0;
@@ -182,6 +223,7 @@ std::string LiveView::conduct(const std::string& type, const Json& message) {
     controls_.paused = false;
     controls_.restart = true;
     timing_ = {};
+    boxes_.clear();
   } else if (type == "seek" && info_.replay) {
     const auto time = number(message, "time_s", 1e9);
     if (!time || *time < 0.0) return out_of_range;

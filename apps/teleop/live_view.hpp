@@ -42,8 +42,11 @@ class LiveView final : public visual::PageHandler {
   static constexpr int nobody = 0;
 
   /// Each executes the message; empty, or why it is refused.
-  [[nodiscard]] std::string obey(int page, const std::string& type, const nlohmann::json& message);
+  [[nodiscard]] std::string obey(int page, const std::string& type, const nlohmann::json& message,
+                                 visual::Pages& pages);
   [[nodiscard]] std::string drive(int page, const std::string& type, const nlohmann::json& message);
+  [[nodiscard]] std::string change(const std::string& type, const nlohmann::json& message,
+                                   visual::Pages& pages);
   [[nodiscard]] std::string conduct(const std::string& type, const nlohmann::json& message);
   /// Why the page may not drive, pause, step or restart; empty: it may.
   [[nodiscard]] std::string bar_of(int page) const;
@@ -63,6 +66,7 @@ class LiveView final : public visual::PageHandler {
   visual::Timing timing_;
   std::vector<TickSample> recent_;  ///< since the last picture was sent
   std::map<int, visual::Role> open_pages_;
+  std::map<std::int32_t, std::string> boxes_;  ///< `part` of each spare part that is in use
   Driver driver_;
   int page_ = nobody;  ///< the page that drives
   bool silent_ = false;

@@ -64,13 +64,16 @@ class RunLog {
 };
 
 #ifdef REPEL_TELEOP_VISUAL
-visual::SceneInfo scene_info_of(const scene::Scene& scene, const RunOptions& options,
-                                const Heading& heading, const Recording* recording) {
+visual::SceneInfo scene_info_of(const scene::Scene& scene, const Cell& cell,
+                                const RunOptions& options, const Heading& heading,
+                                const Recording* recording) {
   visual::SceneInfo info;
   info.scene = scene.name;
   info.rate_hz = options.rate_hz;
   info.replay = recording != nullptr;
   info.duration = info.replay ? options.seconds : 0.0;
+  const auto spare = cell.loose().subspan(scene.loose.size());
+  info.spare.assign(spare.begin(), spare.end());
   for (std::size_t i = 0; i < heading.arms.size(); ++i) {
     const ArmHeading& arm = heading.arms[i];
     visual::ArmInfo& added = info.arms.emplace_back();
@@ -141,13 +144,14 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   Controls controls;
   controls.may_restart = options.log.empty();
   controls.over_device = session.page_drives;
+  controls.may_change = !options.log.ends_with(".mcap");
   std::optional<RunLog> log;
   if (!options.log.empty()) log.emplace(tap, heading, scene, options);
 #ifdef REPEL_TELEOP_VISUAL
   std::optional<View> view;
   if (session.view) {
     attached.controls = &controls;
-    view.emplace(scene_info_of(prepared->scene, options, heading, recording),
+    view.emplace(scene_info_of(prepared->scene, prepared->cell, options, heading, recording),
                  prepared->cell.world(), tap, controls, session, device.name);
   }
 #else
@@ -155,11 +159,17 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
     throw SetupError("the live view is not built in; to have it: apt-get install libboost-dev");
   }
 #endif
-  RunResult result = run(*prepared, attached, stop, show);
+  const auto run_once = [&] {
+    controls.changes.open(&prepared->cell.changes());
+    RunResult result = run(*prepared, attached, stop, show);
+    controls.changes.open(nullptr);
+    return result;
+  };
+  RunResult result = run_once();
   while (result.begins_anew) {
     controls.restart = false;
     prepared = prepare(scene, options, recording);
-    result = run(*prepared, attached, stop, show);
+    result = run_once();
   }
   if (log) log->close(result);
   return result;

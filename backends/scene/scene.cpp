@@ -299,6 +299,18 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
   return loose;
 }
 
+SpareParts spare_of(const Map& scene, const Laws& laws) {
+  SpareParts spare;
+  const Value* value = scene.find("spare");
+  if (!value) return spare;
+  const Map map(*value);
+  map.allow({"count", "room", "law"});
+  spare.count = static_cast<int>(map.at("count").integer(0, 50));
+  map.read("room", {unit::length, 1e-3, 100.0}, spare.room);
+  spare.law = law_called(laws, map);
+  return spare;
+}
+
 /// Angles, or a list of angles and, for prismatic joints, lengths.
 void read_start(const Value& value, RobotChoice& robot) {
   const auto add = [&](const Value& entry, const Rule& rule, JointType type) {
@@ -553,8 +565,8 @@ std::string_view word_for(PartStep::What what) noexcept {
 Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "loose", "network", "script",
-             "partners", "budget", "coprocessor", "start_inside", "tool_speed", "measure",
+  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "loose", "spare", "network",
+             "script", "partners", "budget", "coprocessor", "start_inside", "tool_speed", "measure",
              "levels"});
   Scene scene;
   scene.file = file;
@@ -571,6 +583,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   HullPoints counted;
   const ShapeFile shapes{file, counted, scene.part_lists};
   scene.loose = loose_of(map, laws, shapes);
+  scene.spare = spare_of(map, laws);
   const Shared shared{laws, file, kinds, shapes, scene.loose};
   read_station(map, shared, scene);
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes);

@@ -168,18 +168,23 @@ std::string scene_message(const SceneInfo& info, const World& world) {
                     {"max_turn_rad_s", arm.max_turn},
                     {"max_lever_rad_s", arm.max_lever_rate}});
   }
-  return Json{{"type", "scene"},
-              {"version", 1},
-              {"name", info.scene},
-              {"rate_hz", info.rate_hz},
-              {"period_us", 1e6 / info.rate_hz},
-              {"mode", info.replay ? "replay" : "live"},
-              {"duration_s", info.duration},
-              {"bodies", std::move(bodies)},
-              {"parts", std::move(parts)},
-              {"pairs", std::move(pairs)},
-              {"arms", std::move(arms)}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json scene{{"type", "scene"},
+             {"version", 1},
+             {"name", info.scene},
+             {"rate_hz", info.rate_hz},
+             {"period_us", 1e6 / info.rate_hz},
+             {"mode", info.replay ? "replay" : "live"},
+             {"duration_s", info.duration},
+             {"bodies", std::move(bodies)},
+             {"parts", std::move(parts)},
+             {"pairs", std::move(pairs)},
+             {"arms", std::move(arms)}};
+  for (const PartId id : info.spare) scene["spare"].push_back(id.index);
+  return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string part_message(PartId id, const Shape& shape) {
+  return Json{{"type", "part"}, {"part", id.index}, {"levels", levels_of(shape)}}.dump();
 }
 
 std::string frame_message(const SceneInfo& info, const World& world, const Snapshot& shot,

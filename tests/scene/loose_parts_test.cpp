@@ -76,5 +76,15 @@ TEST(LooseOfAScene, AreRefusedWithWhatIsAllowed) {
       << "no key of such parts";
 }
 
+TEST(SpareOfAScene, IsReadAndRefused) {
+  const std::string text = testing::base_scene;
+  const Scene scene = testing::parsed(text + "spare: {count: 3, room: 20 cm}\n");
+  EXPECT_EQ(scene.spare.count, 3);
+  EXPECT_EQ(scene.spare.room, 0.2);
+  EXPECT_EQ(testing::parsed(text).spare.count, 0);
+  EXPECT_THROW((void)testing::parsed(text + "spare: {count: 51}\n"), SetupError);
+  EXPECT_THROW((void)testing::parsed(text + "spare: {room: 1 m}\n"), SetupError);
+}
+
 }  // namespace loose_parts_test
 }  // namespace repel::scene

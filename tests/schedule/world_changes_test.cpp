@@ -330,6 +330,19 @@ TEST(WorldChanges, WaitUntilAPartIsFreeBeforeItGetsANewShape) {
   EXPECT_EQ(changes.counts().refused, 0);
 }
 
+// A box from a page once took the place of a crate that a script was to bring later.
+TEST(WorldChanges, GiveNoNewShapeToAPartThatIsToKeepItsOwn) {
+  World world;
+  const Shape crate = Shape::sphere(0.2, {.levels = 1});
+  const PartId kept = world.reserve("crate", crate, crate.reach());
+  const PartId spare = world.reserve("spare", Shape::sphere(0.01, {.levels = 1}), 0.2);
+  WorldChanges changes(world);
+  const Shape box = Shape::box({0.1, 0.1, 0.1}, {.levels = 1});
+  EXPECT_EQ(changes.add(box, Pose::Identity()), spare);
+  EXPECT_FALSE(changes.add(box, Pose::Identity()).valid());
+  EXPECT_TRUE(changes.add(kept, Pose::Identity())) << "as it is";
+}
+
 TEST(WorldChanges, ComeFromAnotherThread) {
   Scene scene(3);
   Coprocessor coprocessor(scene.world, {});

@@ -53,10 +53,11 @@ inline const Json* last_of(const std::vector<Json>& messages, const char* type) 
   return last;
 }
 
-inline visual::SceneInfo scene_info_of(BodyId tool, bool replay) {
+inline visual::SceneInfo scene_info_of(BodyId tool, bool replay, std::vector<PartId> spare = {}) {
   visual::SceneInfo info;
   info.scene = "stage";
   info.replay = replay;
+  info.spare = std::move(spare);
   info.duration = replay ? 10.0 : 0.0;
   visual::ArmInfo& arm = info.arms.emplace_back();
   arm.tool = tool;
@@ -68,10 +69,12 @@ inline visual::SceneInfo scene_info_of(BodyId tool, bool replay) {
 struct LiveStage {
   explicit LiveStage(bool replay = false, const std::string& device = "")
       : LiveStage(replay, device, device.empty()) {}
-  LiveStage(bool replay, const std::string& device, bool pages_drive)
+  LiveStage(bool replay, const std::string& device, bool pages_drive,
+            std::vector<PartId> spare = {})
       : boxes(2, 3, {.range = 0.02}, 7),
         tap(boxes.world),
-        show(scene_info_of(boxes.tool, replay), boxes.world, tap, controls, device, pages_drive) {
+        show(scene_info_of(boxes.tool, replay, std::move(spare)), boxes.world, tap, controls,
+             device, pages_drive) {
     for (int page = 1; page <= 3; ++page) {
       ++pages.open;
       show.opened(page, visual::Role::drives, pages);

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <repel/schedule/world_changes.hpp>
+
 #include "teleop/live_stage.hpp"
 
 namespace repel::teleop {
@@ -316,6 +318,43 @@ TEST(LiveView, APictureIsShownWhenThereIsOne) {
   ASSERT_NE(last_of(heard, "frame"), nullptr);
   EXPECT_EQ(last_of(heard, "frame")->at("tick"), 3);
   EXPECT_EQ(last_of(heard, "frame")->at("recent").at("tick"), (Json{1, 2, 3}));
+}
+
+Json box_at(double x, double size = 0.1) {
+  return {{"type", "add_box"}, {"size", {size, size, size}}, {"position", {x, 0, 0}}};
+}
+
+TEST(LiveView, BoxesComeMoveAndGoInTheSpareParts) {
+  World world;
+  const PartId spare = world.reserve("spare", Shape::sphere(0.01), 0.2);
+  WorldChanges changes(world);
+  LiveStage stage(false, "", true, {spare});
+  EXPECT_NE(stage.say(1, box_at(0.5)), "") << "no cell runs";
+  stage.controls.changes.open(&changes);
+  EXPECT_NE(stage.say(1, box_at(0.5, 1.0)), "") << "no room for it";
+  EXPECT_NE(stage.say(1, box_at(0.5, -1.0)), "");
+  EXPECT_NE(stage.say(1, box_at(1e9)), "");
+  EXPECT_EQ(stage.say(2, box_at(0.5)), "");
+  EXPECT_NE(stage.say(1, box_at(0.6)), "") << "the only one is used";
+  const Json move{{"type", "move_part"}, {"part", spare.index}, {"position", {0.7, 0, 0}}};
+  EXPECT_EQ(stage.say(1, move), "");
+  for (const Json& part : {Json(99), Json("x"), Json(-1), Json(1e300)}) {
+    EXPECT_EQ(stage.say(1, Json{{"type", "remove_part"}, {"part", part}}), "no such box");
+  }
+  Coprocessor coprocessor(world, {});
+  changes.apply(world, coprocessor);
+  EXPECT_EQ(changes.counts().applied, 2);
+  EXPECT_TRUE(world.is_there(spare));
+  // Who comes later is told of its shape.
+  stage.show.opened(4, visual::Role::drives, stage.pages);
+  const std::vector<Json> heard = stage.pages.heard_by(4);
+  ASSERT_NE(last_of(heard, "part"), nullptr);
+  EXPECT_EQ(last_of(heard, "part")->at("part"), spare.index);
+  EXPECT_EQ(stage.say(1, Json{{"type", "remove_part"}, {"part", spare.index}}), "");
+  EXPECT_EQ(stage.say(1, move), "no such box");
+  stage.controls.may_change = false;
+  EXPECT_NE(stage.say(1, box_at(0.5)).find("recording"), std::string::npos);
+  stage.controls.changes.open(nullptr);
 }
 
 }  // namespace live_view_test

@@ -25,6 +25,8 @@ const GROUPS = [
     ["wheel", "closer, farther"],
     ["drag the ring", "lead the tool, once you drive"],
     ["Shift drag", "the same, from anywhere"],
+    ["drag a box", "move it; with Alt up and down"],
+    ["Delete", "take a box away"],
   ]],
   ["Camera and page", [
     ["1 2 3 4", "home, front, side, top"],

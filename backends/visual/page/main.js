@@ -1,6 +1,7 @@
 // Joins everything: messages come in, become state, and are drawn when the browser draws.
 
 import { Sphere, Vector3 } from "./vendor/three.min.js";
+import { Boxes } from "./boxes.js";
 import { Cameras } from "./cameras.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
@@ -63,6 +64,7 @@ const keyboard = new Keyboard();
 const gamepad = new Gamepad();
 const heading = () => cameras.heading();
 const lever = new Lever(keyboard, heading);
+const boxes = new Boxes(connection, stage, parts);
 const drag = new Drag(stage, parts,
                       { mayDrive: () => controls.ours, take: () => controls.take() });
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag], lever,
@@ -106,6 +108,7 @@ connection.on("scene", (scene) => {
   transport.scene(scene);
   controls.scene(scene);
   drag.scene(scene.arms[0]?.tool_body);
+  boxes.scene(scene);
   trail.clear();
 });
 
@@ -119,6 +122,7 @@ connection.on("frame", (frame) => {
   fresh = true;
 });
 
+connection.on("part", ({ part, levels }) => parts.reshape(part, levels));
 connection.on("timing", (timing) => (state.timing = timing));
 connection.on("operator", (operator) => {
   state.operator = operator;
@@ -211,6 +215,7 @@ function handle(event) {
   else if (event.key === "?") toggleHelp();
   else if (event.code === "KeyC") at("take").click();
   else if (event.code === "KeyT") at("theme").click();
+  else if (event.key === "Delete") boxes.remove();
   else return transport.key(event) || cameras.key(event);
   return true;
 }

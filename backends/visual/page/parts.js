@@ -44,11 +44,25 @@ export class Parts {
 
   // Everything of a scene, in place of what was there before.
   build(scene) {
+    this.scene = scene;
     for (const body of this.bodies) this.#drop(body);
     this.bodies = scene.bodies.map(() => new Group());
     for (const body of this.bodies) this.stage.scene.add(body);
     this.parts = scene.parts.map((part) => this.#part(part));
     this.mostLevels = Math.max(1, ...this.parts.map((part) => part.groups.length));
+    this.showLevels();
+    this.showZones();
+  }
+
+  // Gives a part another shape.
+  reshape(k, levels) {
+    const { holder, body, group } = this.parts[k] ?? {};
+    if (!holder) return;
+    holder.traverse((object) => object.geometry?.dispose());
+    holder.removeFromParent();
+    const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
+    const { passable, range_m } = this.scene.parts[k];
+    this.parts[k] = this.#part({ levels, group, body, pose, passable, range_m });
     this.showLevels();
     this.showZones();
   }
@@ -85,7 +99,7 @@ export class Parts {
   }
 
   // `absent`: the bodies that have not come yet, or have gone.
-  move(poses, absent = []) {
+  move(poses, absent) {
     this.bodies.forEach((body, k) => {
       place(body, poses[k]);
       body.visible = !absent.includes(k);

@@ -22,6 +22,10 @@ export function startProbe({ connection, stage, parts, marks, cameras }) {
         pairs: frame?.pairs?.length ?? 0,
         partsInScene: scene?.parts?.length ?? 0,
         drawn: { ...parts.counts(), ...marks.counts },
+        // By body: where each box from the page is, if it is there.
+        boxes: (scene?.spare ?? []).map((part) => scene.parts[part].body)
+          .filter((each) => !frame?.absent?.includes(each))
+          .map((each) => frame?.bodies?.[each]?.slice(0, 3)),
         toolPosition: frame?.bodies?.[body]?.slice(0, 3) ?? null,
         force: frame?.arms?.[0]?.force ?? null,
         camera: { mode: cameras.mode, following: cameras.following,

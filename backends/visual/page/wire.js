@@ -46,7 +46,13 @@ export function scene(x) {
     parts: list(x.parts).map(part),
     pairs: list(x.pairs).map((pair) => vector(pair) ?? vector(pair, 2)),
     arms: list(x.arms).map(arm),
+    spare: list(x.spare).filter(Number.isInteger),
   };
+}
+
+// Another shape of one of the parts of the scene.
+export function shape(x) {
+  return { part: number(x.part), levels: list(x.levels).map(level) };
 }
 
 function pair(x) {
@@ -70,6 +76,7 @@ export function frame(x) {
     phase: text(x.phase),
     status: list(x.status).map(text).filter(Boolean),
     bodies: list(x.bodies).map(pose),
+    absent: list(x.absent).filter(Number.isInteger),
     pairs: list(x.pairs).map(pair),
     pairs_omitted: number(x.pairs_omitted) ?? 0,
     evaluated: number(x.evaluated),

@@ -37,7 +37,8 @@ class WorldChanges {
                         int levels = ReductionOptions{}.levels)
       : world_(&world), levels_(levels), ring_(capacity, Change{}) {
     for (const detail::LoosePart& loose : world.loose()) {
-      parts_.push_back({loose.part, loose.room, world.is_there(loose.part)});
+      const bool keeps_shape = loose.room <= world.part(loose.part).shape.reach();
+      parts_.push_back({loose.part, loose.room, keeps_shape, world.is_there(loose.part)});
       since_.push_back(0);
     }
   }
@@ -47,12 +48,13 @@ class WorldChanges {
   // does not allow it is counted as refused.
 
   /// Lets a new part come, in the reserved part that has been free the longest of those with room
-  /// for it. Invalid if there is none, too. @param shape without levels or with; they are made here
-  /// if the measure of the world needs them @param X_WP [m] @param over [s] see World::add
+  /// for it and for more than the shape they were reserved with. Invalid if there is none, too.
+  /// @param shape without levels or with; they are made here if the measure of the world needs them
+  /// @param X_WP [m] @param over [s] see World::add
   PartId add(const Shape& shape, const Pose& X_WP, double over = usual_time) {
     Reserved* chosen = nullptr;
     for (Reserved& part : parts_) {
-      if (part.is_used || !(shape.reach() <= part.room)) continue;
+      if (part.keeps_shape || part.is_used || !(shape.reach() <= part.room)) continue;
       if (chosen == nullptr || part.freed_at < chosen->freed_at) chosen = &part;
     }
     if (chosen == nullptr) return {};
@@ -135,7 +137,8 @@ class WorldChanges {
   /// What the asking thread knows of a reserved part.
   struct Reserved {
     PartId id;
-    double room = 0.0;  ///< [m]
+    double room = 0.0;         ///< [m]
+    bool keeps_shape = false;  ///< it was reserved with no more room than its shape needs
     bool is_used = false;
     std::int64_t freed_at = 0;
   };

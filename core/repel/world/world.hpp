@@ -82,7 +82,7 @@ class World {
   /// at first. Its pairs are added as those of any part: with parts of arms, whose way it is in
   /// while it lies free, and with obstacles and other such parts, which it meets while it is held.
   /// @param room [m] largest reach of any shape that it will have, 1e-6 to 1e6; at least that of
-  /// `shape`
+  /// `shape`, and no more than that for a part that is to keep it
   PartId reserve(const std::string& name, const Shape& shape, double room) {
     checked("room of " + name, room, std::max(1e-6, shape.reach()), Shape::largest, "m");
     if (static_cast<int>(loose_.all().size()) >= limits_.loose) over("loose", limits_.loose);

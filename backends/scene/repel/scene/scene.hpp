@@ -60,6 +60,13 @@ struct LoosePart {
   bool is_mass_known = true;  ///< to the controller, not only to the simulated arm
 };
 
+/// Parts reserved for what is not known before: boxes from the page of the live view.
+struct SpareParts {
+  int count = 0;
+  double room = 0.3;  ///< [m] largest reach from their centres
+  ForceLaw law;
+};
+
 /// What happens to a part of `Scene::loose` when a phase of a script begins.
 struct PartStep {
   enum class What : std::uint8_t { spawn, grip, release, remove };
@@ -136,6 +143,7 @@ struct Scene : ArmSetup {
   int levels = ReductionOptions{}.levels;
   std::vector<Obstacle> obstacles;
   std::vector<LoosePart> loose;
+  SpareParts spare;
   std::vector<OtherArm> partners;
   std::vector<std::string> part_lists;  ///< paths of the files that the parts of meshes are from
   Budget budget;

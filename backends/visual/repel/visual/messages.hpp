@@ -36,10 +36,14 @@ struct SceneInfo {
   bool replay = false;     ///< replay of a recording
   double duration = 0.0;   ///< [s] 0: until it is stopped
   std::vector<ArmInfo> arms;
+  std::vector<PartId> spare;  ///< reserved for boxes from a page
 };
 
 /// `scene`: bodies, parts with their levels as meshes, pairs, arms. Takes milliseconds.
 [[nodiscard]] std::string scene_message(const SceneInfo& info, const World& world);
+
+/// `part`: a part that has got another shape.
+[[nodiscard]] std::string part_message(PartId id, const Shape& shape);
 
 /// `frame`: one picture, and a few values of every tick since the last.
 [[nodiscard]] std::string frame_message(const SceneInfo& info, const World& world,
