@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """draw.py SCENE.yaml LOG.csv PICTURE.svg: a scene from the side and from above: its obstacles, the
 way of each tool with a number where a phase of the script ends, and the arms at the start (pale)
-and where they were pushed hardest. What can come and go is yellow, dashed if it comes later."""
+and where they were pushed hardest. What can come and go is yellow, dashed if it comes later; what
+only a camera sees is violet."""
 
 import csv
 import math
@@ -261,15 +262,26 @@ def obstacles_of(scene):
         style = "fill='#e9c46a' fill-opacity='0.4' stroke='#9c6644' stroke-width='0.8'"
         dashes = "" if part.get("at_start", True) else " stroke-dasharray='2 2'"
         yield part, (*shape_of(part), pose_in(part)), style + dashes
+    for part in scene.get("hidden", []):
+        yield from with_way(part, "fill='#9d4edd' fill-opacity='0.18' stroke='#7b2cbf' "
+                                  "stroke-width='0.8'")
+    if "camera" in scene:
+        camera = {"name": "camera", "position": scene["camera"]["position"]}
+        yield camera, (box([0.05, 0.05, 0.05]), 0.0, pose_in(camera)), "fill='#333'"
     for part in scene["obstacles"]:
         law = scene.get("laws", {}).get(part.get("law", "default"), {})
         colour = "#2a9d8f" if law.get("passable") else "#457b9d"
         style = f"fill='{colour}' fill-opacity='0.13' stroke='{colour}' stroke-width='0.8'"
-        pose = pose_in(part)
-        yield part, (*shape_of(part), pose), style
-        if "motion" in part:
-            there = [a + b for a, b in zip(pose[1], value(part["motion"]["along"]))]
-            yield None, (*shape_of(part), (pose[0], there)), style + " stroke-dasharray='4 3'"
+        yield from with_way(part, style)
+
+
+def with_way(part, style):
+    """A part where it starts and, if it moves, where it goes."""
+    pose = pose_in(part)
+    yield part, (*shape_of(part), pose), style
+    if "motion" in part:
+        there = [a + b for a, b in zip(pose[1], value(part["motion"]["along"]))]
+        yield None, (*shape_of(part), (pose[0], there)), style + " stroke-dasharray='4 3'"
 
 
 def names_of(panel, scene):
@@ -365,6 +377,7 @@ def read_run(scene_path, log_path):
     folder = os.path.dirname(scene_path)
     scene["obstacles"] = list(with_parts(scene["obstacles"], folder))
     scene["tool"] = list(with_parts(scene["tool"], folder))
+    scene["hidden"] = list(with_parts(scene.get("hidden", []), folder))
     with open(log_path, encoding="utf-8") as file:
         log = list(csv.DictReader(file))
     return scene, list(arms_of(scene, os.path.dirname(scene_path))), log

@@ -11,6 +11,8 @@ from draw import phases_of, read_run
 
 KEPT = ("scene", "backend", "rate_hz", "ticks", "pairs", "nearest_m", "nearest_pair", "deepest_m",
         "peak_force_n", "status_ticks", "chatter")
+SEEN = ("images", "most_cells", "cells_left_out", "silent_s", "least_clearance_m",
+        "least_clearance_pair")
 MARKS = "<!-- Written by scenes/publish, from here -->\n", "<!-- to here -->\n"
 FELT = 1.0  # [N]
 
@@ -22,6 +24,8 @@ def deficits(modules):
 def result_of(report):
     result = {key: report[key] for key in KEPT}
     result["obstacles"] = report["obstacles"]
+    if report["camera"]:
+        result["camera"] = {key: report["camera"][key] for key in SEEN}
     result["modules"] = deficits(report["modules"])
     result["partners"] = [{**partner, "modules": deficits(partner["modules"])}
                           for partner in report["partners"]]
@@ -47,6 +51,16 @@ def summary(result):
             f"{mm(deepest) if deepest else 0} mm. Peak virtual force on a tool {peak:.0f} N. "
             f"Status bits: {', '.join(f'`{bit}`' for bit in said) or 'none'}.")
     yield textwrap.fill(text, 100, break_on_hyphens=False)
+    if "camera" in result:
+        yield ""
+        yield textwrap.fill(camera_sentences(result["camera"]), 100, break_on_hyphens=False)
+
+
+def camera_sentences(camera):
+    pair = camera["least_clearance_pair"].replace(" - ", "` from `")
+    return (f"{camera['images']} images, of up to {camera['most_cells']} cells. Least distance of "
+            f"`{pair}` itself, which is not in the model: {mm(camera['least_clearance_m'])} mm. "
+            f"The camera was silent for {camera['silent_s']:.1f} s.")
 
 
 def obstacle_table(result):

@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <mutex>
+#include <utility>
 
 #include <repel/base/mailbox.hpp>
 #include <repel/base/spatial.hpp>
@@ -44,6 +46,24 @@ class ChangesPort {
   WorldChanges* changes_ = nullptr;
 };
 
+/// The shapes that parts have got while a run lasts, for displays. Not for the loop.
+class NewShapes {
+ public:
+  void note(PartId part, const Shape& shape) {
+    const std::lock_guard lock(mutex_);
+    shapes_.insert_or_assign(part.index, shape);
+  }
+  /// Those noted since the last call, by the index of the part.
+  [[nodiscard]] std::map<std::int32_t, Shape> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(shapes_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::int32_t, Shape> shapes_;
+};
+
 /// Lock-free interface between the loop, which reads, and one other thread, which writes.
 struct Controls {
   Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
@@ -54,6 +74,7 @@ struct Controls {
   bool over_device = false;            ///< a page may override a device; constant after set-up
   bool may_change = true;              ///< false while a recording is written; likewise
   ChangesPort changes;                 ///< not for the loop
+  NewShapes shapes;                    ///< likewise
   std::atomic<double> seek{-1.0};      ///< [s] replay: time to jump to; negative: none
   std::atomic<double> speed{1.0};      ///< replay: factor on real time
 };

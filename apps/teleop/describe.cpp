@@ -10,6 +10,8 @@
 #include <repel/scene/build_network.hpp>
 #include <repel/world/changed_arm.hpp>
 
+#include "camera_feed.hpp"
+
 namespace repel::teleop {
 namespace {
 
@@ -157,6 +159,18 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     const Shape nothing = Shape::sphere(0.01 * scene.spare.room, {.levels = 1});
     cell.loose.push_back({"spare_" + std::to_string(i), nothing, Pose::Identity(), scene.spare.law,
                           false, scene.spare.room});
+  }
+  if (scene.camera) {
+    const scene::CameraChoice& camera = *scene.camera;
+    const Shape nothing = Shape::sphere(0.01, {.levels = 1});
+    for (int i = 0; i < camera.parts; ++i) {
+      cell.loose.push_back({.name = "seen",
+                            .shape = nothing,
+                            .law = camera.law,
+                            .room = room_of_seen,
+                            .can_be_held = false});
+    }
+    cell.limits.loose = std::max(cell.limits.loose, static_cast<int>(cell.loose.size()));
   }
   return described;
 }

@@ -2,6 +2,7 @@
 /// A cell together with the arms and operators of a run.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <span>
@@ -43,6 +44,7 @@ class DrivenCell {
     cell_.sense(readings_, now);
     for (std::size_t i = 0; i < operators_.size(); ++i) {
       commands_[i] = operators_[i].step(cell_.X_WT(i).linear(), cell_.elapsed());
+      commands_[i].silent_for = std::max(commands_[i].silent_for, blind_for_);
     }
     const auto records = cell_.act(commands_);
     for (std::size_t i = 0; i < commands_.size(); ++i) steps_.follow(i, commands_[i].phase);
@@ -74,6 +76,9 @@ class DrivenCell {
     for (OperatorInput& each : operators_) each.let_go();
   }
 
+  /// In the next ticks, what operators see has been silent for so long [s]: as if they were.
+  void set_blind_for(double blind_for) noexcept { blind_for_ = blind_for; }
+
   /// See Cell::rehearse.
   void rehearse() noexcept { cell_.rehearse(); }
 
@@ -89,6 +94,7 @@ class DrivenCell {
   std::vector<OperatorInput> operators_;
   std::vector<ArmReadings> readings_;
   std::vector<network::Command> commands_;
+  double blind_for_ = 0.0;  // [s]
 };
 
 }  // namespace repel::teleop

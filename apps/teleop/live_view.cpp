@@ -293,6 +293,10 @@ void LiveView::watch_driver(visual::Pages& pages) {
 void LiveView::refresh(visual::Pages& pages) {
   read_samples();
   watch_driver(pages);
+  for (const auto& [part, shape] : controls_.shapes.take()) {
+    boxes_[part] = visual::part_message({part}, shape);
+    pages.send_all(boxes_[part]);
+  }
   const bool running = !controls_.paused;
   const bool is_new = tap_.pictures().take();
   const auto now = Clock::now();

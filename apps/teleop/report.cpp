@@ -275,6 +275,36 @@ void print_steps(const RunResult& r, std::FILE* out) {
                static_cast<int>(refused));
 }
 
+/// The camera and what it saw: null if the scene has none.
+ordered_json camera_to_json(const RunResult& r) {
+  if (!r.camera) return nullptr;
+  const CameraResult& c = *r.camera;
+  const bool has_nearest = std::isfinite(c.least_clearance);
+  return {{"images", c.images},
+          {"images_lost", c.lost},
+          {"most_cells", c.most_cells},
+          {"parts_made", c.made},
+          {"cells_left_out", c.left_out},
+          {"silent_s", c.silent},
+          {"compute_p50_us", c.compute.percentile_us(0.5)},
+          {"compute_p99_us", c.compute.percentile_us(0.99)},
+          {"least_clearance_m", has_nearest ? ordered_json(c.least_clearance) : ordered_json()},
+          {"least_clearance_pair", c.nearest_pair}};
+}
+
+void print_camera(const RunResult& r, std::FILE* out) {
+  if (!r.camera) return;
+  const CameraResult& c = *r.camera;
+  std::fprintf(out,
+               "  camera                 %lld images, up to %d cells; p99 %.1f ms an image; silent "
+               "for %.1f s%s\n",
+               static_cast<long long>(c.images), c.most_cells, 1e-3 * c.compute.percentile_us(0.99),
+               c.silent, c.left_out > 0 ? "; NOT ALL of it found a part" : "");
+  if (c.nearest_pair.empty()) return;
+  std::fprintf(out, "  clearance to what it saw %.1f mm at least (%s)\n", 1e3 * c.least_clearance,
+               c.nearest_pair.c_str());
+}
+
 /// What the run did not evaluate or use, in one paragraph.
 void print_skipped(const RunResult& r, std::FILE* out) {
   std::fprintf(out, "  skipped                %.2f of %d pairs per tick",
@@ -373,6 +403,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   }
   print_work(r, out);
   print_steps(r, out);
+  print_camera(r, out);
   print_skipped(r, out);
   if (r.nearest_pair.empty()) {
     print_line("nearest", "none", out);
@@ -474,6 +505,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["deepest_passable_m"] = r.passables.deepest;
   report["obstacles"] = obstacle_list(r);
   report["steps"] = steps_to_json(r);
+  report["camera"] = camera_to_json(r);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
   report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);

@@ -21,14 +21,20 @@ double support_pairs_per_period(const RunResult& result) {
 }
 
 // Pairs are ordered by obstacle, and within it by part of the tools and arms; but those of a part
-// that can come and go with obstacles follow those of arms with it.
+// that can come and go with obstacles follow those of arms with it. All that a camera sees is one
+// obstacle.
 std::vector<std::size_t> obstacles_of_pairs(const World& world) {
   std::vector<std::size_t> places;
   std::vector<PartId> obstacles;
   for (const Pair& pair : world.pairs()) {
     auto at = obstacles.end();
     if (world.part(pair.a).room > 0.0) at = std::find(obstacles.begin(), at, pair.b);
-    if (at == obstacles.end() && !obstacles.empty() && obstacles.back() == pair.b) --at;
+    if (at == obstacles.end() && !obstacles.empty()) {
+      const Part& last = world.part(obstacles.back());
+      const Part& part = world.part(pair.b);
+      const bool is_seen = last.room > 0.0 && part.room > 0.0 && last.name == part.name;
+      if (obstacles.back() == pair.b || is_seen) --at;
+    }
     places.push_back(static_cast<std::size_t>(at - obstacles.begin()));
     if (at == obstacles.end()) obstacles.push_back(pair.b);
   }

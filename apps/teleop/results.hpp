@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include <repel/world/contact.hpp>
 #include <repel/world/world.hpp>
 
+#include "camera_feed.hpp"
 #include "chatter.hpp"
 #include "machine.hpp"
 #include "part_steps.hpp"
@@ -111,9 +113,10 @@ struct RunResult {
   std::int64_t log_dropped = 0;         ///< ticks missing in the log
   std::string log_trouble;              ///< other reason why the log is incomplete; empty: none
   bool interrupted = false;
-  bool begins_anew = false;           ///< the user requested another run
-  std::vector<PartStepResult> steps;  ///< of the parts that come and go
-  ReplayReport replay;                ///< of a replay
+  bool begins_anew = false;            ///< the user requested another run
+  std::vector<PartStepResult> steps;   ///< of the parts that come and go
+  std::optional<CameraResult> camera;  ///< if the scene has one
+  ReplayReport replay;                 ///< of a replay
   host::Machine machine;
   /// Since set-up, of all pairs whose law is not passable, and of those whose law is.
   PairExtremes walls, passables;

@@ -15,6 +15,7 @@
 #include <repel/world/delayed_arm.hpp>
 
 #include "arm_backend.hpp"
+#include "camera_feed.hpp"
 #include "chatter.hpp"
 #include "contact.hpp"
 #include "driven_cell.hpp"
@@ -153,10 +154,33 @@ nanoseconds due_before(nanoseconds late) noexcept {
   return std::chrono::duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()) - late;
 }
 
+/// Whether a phase of a script that is being played makes the camera silent.
+bool is_blind(const scene::Scene& scene, std::span<const TickRecord* const> records) noexcept {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const std::vector<bool>& blind = scene.arm_setup(i).blind;
+    const auto phase = static_cast<std::size_t>(records[i]->phase);
+    if (phase < blind.size() && blind[phase]) return true;
+  }
+  return false;
+}
+
+/// The camera of a scene; none without.
+std::unique_ptr<CameraFeed> make_camera(PreparedRun& prepared, const Attachments& attached) {
+  if (!prepared.scene.camera) return nullptr;
+  std::function<void(PartId, const Shape&)> on_add;
+  if (Controls* const controls = attached.controls) {
+    on_add = [controls](PartId part, const Shape& shape) { controls->shapes.note(part, shape); };
+  }
+  const bool in_step = prepared.options.fast || attached.recording != nullptr;
+  return std::make_unique<CameraFeed>(prepared.scene, prepared.robots, prepared.cell, in_step,
+                                      std::move(on_add));
+}
+
 /// Runs the ticks.
-void make_ticks(DrivenCell& driven, const Attachments& attached, const std::atomic<bool>& stop,
-                RunResult& result, Observers& observers, Mailbox<Progress>& progress,
-                TickUsage& usage) {
+/// @param camera null: none
+void make_ticks(DrivenCell& driven, CameraFeed* camera, const Attachments& attached,
+                const std::atomic<bool>& stop, RunResult& result, Observers& observers,
+                Mailbox<Progress>& progress, TickUsage& usage) {
   const RunOptions& options = result.options;
   const Coprocessor& coprocessor = driven.cell().coprocessor();
   const Recording* recording = attached.recording;
@@ -189,6 +213,7 @@ void make_ticks(DrivenCell& driven, const Attachments& attached, const std::atom
     driven.move_arms(period_s, lost);
     k += lost;
     if (recording != nullptr) driven.replay(*recording, tick);
+    if (camera != nullptr) driven.set_blind_for(camera->silent_for());
     usage.begin();
     const auto begin = steady_clock::now();
     {
@@ -203,6 +228,7 @@ void make_ticks(DrivenCell& driven, const Attachments& attached, const std::atom
     driven.move_arms(period_s, 1);
     result.arm_step.record(steady_clock::now() - arm_begin);
     note_tick(records, times, result, observers);
+    if (camera != nullptr) camera->follow(records, is_blind(result.scene, records));
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
     show_force(attached.device, *records.front());
     show_tick(attached, coprocessor, options.fast, records,
@@ -312,6 +338,8 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   result.times.reserve(static_cast<std::size_t>(kept_ticks(options, ticks)));
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
+  // Like that one, its thread must not inherit the real-time priority.
+  const std::unique_ptr<CameraFeed> camera = make_camera(prepared, attached);
 
   const host::Grant grant = options.fast ? host::Grant{} : host::request_real_time();
   result.machine = host::describe_machine(options.fast ? "not by the clock" : host::to_text(grant));
@@ -319,9 +347,13 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
   TickUsage usage;
-  make_ticks(driven, attached, stop, result, observers, progress, usage);
+  make_ticks(driven, camera.get(), attached, stop, result, observers, progress, usage);
   result.worker_usage = cell.coprocessor().usage();
   cell.stop();
+  if (camera) {
+    camera->stop();
+    result.camera = camera->result();
+  }
   for (std::size_t i = 0; i < cell.arms(); ++i) {
     result.arms[i].modules = module_results(cell.network(i));
     result.arms[i].records = observers.recorders[i].records();

@@ -67,7 +67,7 @@ int OwnBody::remove(const Shape& shape, const Pose& X_CP, std::span<float> depth
           shape.planes().nearest(rotate_transposed(X_CP, Vec<double>(from_part))).depth < -grown) {
         continue;
       }
-      row[u] = 0.0F;
+      row[u] = -row[u];
       ++removed;
     }
   }

@@ -99,8 +99,10 @@ bool PerceivedParts::add(const Cell& cell, const DepthCamera& camera, double tim
   for (const Vec3& p : corners) middle += p / 8.0;
   for (Vec3& p : corners) p -= middle;
   const Pose X_WP = X_WC_ * Pose(Eigen::Translation3d(middle.x(), middle.y(), middle.z()));
-  const PartId part = changes_->add(Shape::hull(corners, {.levels = 1}), X_WP, options_.over);
+  const Shape shape = Shape::hull(corners, {.levels = 1});
+  const PartId part = changes_->add(shape, X_WP, options_.over);
   if (!part.valid()) return false;
+  if (options_.on_add) options_.on_add(part, shape);
   parts_.push_back({wider, part, time, true});
   return true;
 }

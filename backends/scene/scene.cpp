@@ -311,6 +311,84 @@ SpareParts spare_of(const Map& scene, const Laws& laws) {
   return spare;
 }
 
+/// A camera at `position` that looks at a point, its image upright.
+Pose pose_of_camera(const Map& map) {
+  const Value& at = map.at("look_at");
+  const Vec3 p = map.at("position").vector(position);
+  const Vec3 axis = at.vector(position) - p;
+  if (axis.norm() < 1e-3) at.fail_with_value("a point 1 mm or more from the camera");
+  const Vec3 z = axis.normalized();
+  // Looking straight up or down, the top of the image is towards x.
+  const Vec3 up = std::abs(z.z()) > 0.999 ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
+  const Vec3 x = z.cross(up).normalized();
+  Pose X = Pose::Identity();
+  X.translation() = p;
+  X.linear() << x, z.cross(x), z;
+  return X;
+}
+
+std::optional<CameraChoice> camera_of(const Map& scene, const Laws& laws) {
+  const Value* value = scene.find("camera");
+  if (!value) return {};
+  const Map map(*value);
+  map.allow({"position", "look_at", "width", "height", "view", "nearest", "farthest", "rate",
+             "latency", "noise", "lost", "seed", "unseen", "margin", "parts", "silent_after",
+             "law"});
+  CameraChoice camera;
+  camera.X_WC = pose_of_camera(map);
+  if (const Value* width = map.find("width")) {
+    camera.width = static_cast<int>(width->integer(16, 1920));
+  }
+  if (const Value* height = map.find("height")) {
+    camera.height = static_cast<int>(height->integer(16, 1080));
+  }
+  map.read("view", {unit::angle, 0.1, 2.6}, camera.view);
+  map.read("nearest", {unit::length, 1e-3, 100.0}, camera.nearest);
+  map.read("farthest", {unit::length, camera.nearest, 1000.0}, camera.farthest);
+  map.read("rate", {unit::frequency, 0.1, 1000.0}, camera.rate_hz);
+  map.read("latency", {unit::time, 0.0, 10.0}, camera.latency);
+  map.read("noise", {unit::length, 0.0, 0.1}, camera.noise);
+  map.read("lost", {unit::none, 0.0, 1.0}, camera.lost);
+  if (const Value* seed = map.find("seed")) {
+    camera.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
+  }
+  if (const Value* unseen = map.find("unseen")) {
+    camera.is_unseen_solid = unseen->word_of({"free", "solid"}) == "solid";
+  }
+  map.read("margin", {unit::length, 0.0, 1.0}, camera.margin);
+  if (const Value* parts = map.find("parts")) {
+    camera.parts = static_cast<int>(parts->integer(80, 2000));
+  }
+  map.read("silent_after", {unit::time, 1e-3, 1e3}, camera.silent_after);
+  if (!(camera.silent_after > camera.latency + 1.0 / camera.rate_hz)) {
+    value->fail(
+        "the camera would be silent between two images; allowed: silent_after above "
+        "latency and 1 / rate together");
+  }
+  camera.law = law_called(laws, map);
+  return camera;
+}
+
+/// What only the camera sees.
+std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes) {
+  std::vector<HiddenPart> hidden;
+  const Value* value = scene.find("hidden");
+  if (!value) return hidden;
+  if (scene.find("camera") == nullptr) {
+    value->fail("'hidden' without 'camera'; allowed: a scene with a camera, which sees it");
+  }
+  constexpr std::string_view keys[] = {"motion"};
+  std::set<std::string> names;
+  for (const Value& entry : value->list()) {
+    const Map map(entry);
+    for (Part& part : parts_of(entry, map, keys, shapes)) {
+      hidden.push_back({std::move(part.name), std::move(part.shape), part.X_BP, motion_of(map)});
+    }
+    require_new(names, map);
+  }
+  return hidden;
+}
+
 /// Angles, or a list of angles and, for prismatic joints, lengths.
 void read_start(const Value& value, RobotChoice& robot) {
   const auto add = [&](const Value& entry, const Rule& rule, JointType type) {
@@ -411,7 +489,8 @@ constexpr std::array all_steps{PartStep::What::spawn, PartStep::What::grip, Part
 
 /// Keys of a phase of any device.
 std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
-  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent", "over"};
+  std::vector<std::string_view> keys{"name",   "device", "frame", "duration",
+                                     "silent", "over",   "blind"};
   for (const PartStep::What what : all_steps) keys.push_back(word_for(what));
   keys.insert(keys.end(), more);
   return keys;
@@ -478,6 +557,8 @@ void read_script(const Map& scene, const std::vector<LoosePart>& loose, ArmSetup
   for (const Value& entry : value->list()) {
     const Map map(entry);
     read_steps(map, setup.script.size(), loose, setup.steps);
+    const Value* blind = map.find("blind");
+    setup.blind.push_back(blind != nullptr && blind->word_of({"yes", "no"}) == "yes");
     setup.script.push_back(phase_of(entry));
     require_new(names, map);
   }
@@ -565,9 +646,9 @@ std::string_view word_for(PartStep::What what) noexcept {
 Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "loose", "spare", "network",
-             "script", "partners", "budget", "coprocessor", "start_inside", "tool_speed", "measure",
-             "levels"});
+  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "loose", "spare", "camera",
+             "hidden", "network", "script", "partners", "budget", "coprocessor", "start_inside",
+             "tool_speed", "measure", "levels"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -584,6 +665,11 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   const ShapeFile shapes{file, counted, scene.part_lists};
   scene.loose = loose_of(map, laws, shapes);
   scene.spare = spare_of(map, laws);
+  scene.camera = camera_of(map, laws);
+  scene.hidden = hidden_of(map, shapes);
+  if (scene.camera && scene.spare.count > 0) {
+    map.at("spare").fail("'spare' beside 'camera'; allowed: one of the two");
+  }
   const Shared shared{laws, file, kinds, shapes, scene.loose};
   read_station(map, shared, scene);
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes);

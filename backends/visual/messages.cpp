@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/reduction/shape_mesh.hpp>
 #include <repel/visual/messages.hpp>
 
 #include "json_text.hpp"
-#include "mesh.hpp"
 
 namespace repel::visual {
 namespace {
@@ -28,7 +28,7 @@ Json to_json(const Pose& X) {
 Json levels_of(const Shape& shape) {
   Json levels = Json::array();
   for (int i = 0; i < shape.levels(); ++i) {
-    const Mesh mesh = mesh_of(shape, i);
+    const TriangleMesh mesh = mesh_of(shape, i);
     Json vertices = Json::array();
     Json triangles = Json::array();
     for (const Vec3& p : mesh.vertices) {

@@ -50,8 +50,7 @@ std::string_view view(beast::string_view text) {
 
 /// The secret in a message {"type": "secret", "secret": TEXT}.
 std::optional<std::string> secret_in(std::string_view text) {
-  using Json = nlohmann::json;
-  const Json message = Json::parse(text, nullptr, false);
+  const auto message = nlohmann::json::parse(text, nullptr, false);
   if (!message.is_object()) return std::nullopt;
   const auto type = message.find("type");
   const auto secret = message.find("secret");

@@ -29,6 +29,7 @@
 #include <repel/network/plan.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/reduction/shape_mesh.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>

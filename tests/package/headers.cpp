@@ -8,8 +8,10 @@
 #include <repel/robots/urdf.hpp>
 #endif
 #ifdef PART_percepts
+#include <repel/percepts/depth_memory.hpp>
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/perceived_parts.hpp>
+#include <repel/percepts/simulated_camera.hpp>
 #endif
 #ifdef PART_cover
 #include <repel/cover/cover.hpp>

@@ -52,7 +52,7 @@ class CellAssembly {
     if (ticks_ > 0) periods_ += clock_.elapsed();
     ++ticks_;
     const double time = 1e-9 * static_cast<double>(period_.count()) * static_cast<double>(periods_);
-    changes_->apply(world_, *coprocessor_);
+    changes_->apply(world_, *coprocessor_, changes_per_tick());
     world_.advance(1e-9 * static_cast<double>(period_.count() * clock_.elapsed()));
     for (const MovingBody& moving : moving_) (void)moving.place(world_, time);
     for (std::size_t i = 0; i < controls_.size(); ++i) {
@@ -99,6 +99,13 @@ class CellAssembly {
 
  private:
   static constexpr std::size_t most_changes = 1024;  // that wait
+
+  /// One for each 400 us of the period: a change costs some 50 us of the tick, with the first
+  /// evaluations of its pairs, so all of them an eighth.
+  [[nodiscard]] int changes_per_tick() const noexcept {
+    constexpr std::chrono::microseconds for_each(400);
+    return static_cast<int>(std::clamp<std::int64_t>(period_ / for_each, 1, 64));
+  }
 
   void lay_out() {
     settle_laws();

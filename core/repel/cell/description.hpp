@@ -66,6 +66,9 @@ struct LooseDescription {
   double room = 0.0;          ///< [m] largest reach of a shape that it can get; 0: that of `shape`
   double mass = 0.0;          ///< [kg] at the origin of its shape: the weight that a tool carries
   bool is_mass_known = true;  ///< to the controller, not only to a simulated arm
+  /// A tool can take it: it then keeps off obstacles and other such parts. Without, it has pairs
+  /// with arms only, which is what hundreds of parts can afford.
+  bool can_be_held = true;
 };
 
 /// Handling of an arm that starts with a part of it inside an obstacle that is not passable.

@@ -218,10 +218,13 @@ inline PartId add_loose(World& world, const CellDescription& cell, const LooseDe
   for (const ArmLayout& arm : arms) {
     for (const PartId part : arm.parts) add_pair(world, arms, part, id, loose.law);
   }
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    add_pair(world, arms, id, obstacles[i], cell.obstacles[i].law);
+  if (loose.can_be_held) {
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      add_pair(world, arms, id, obstacles[i], cell.obstacles[i].law);
+    }
   }
   for (std::size_t i = 0; i < before; ++i) {
+    if (!loose.can_be_held && !cell.loose[i].can_be_held) continue;
     add_pair(world, arms, id, world.loose()[i].part, loose.law);
   }
   if (loose.at_start && !world.add(id, loose.X_WP, 0.0)) {

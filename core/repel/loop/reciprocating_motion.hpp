@@ -17,6 +17,10 @@ struct ReciprocatingMotion {
   Vec3 along_W{0, 0, 0};  ///< [m] from where the body starts to the far end
   double duration = 1.0;  ///< [s] there and back, above 0
 
+  /// [m] From where the body starts to where it is `time` [s] after that.
+  [[nodiscard]] Vec3 offset(double time) const noexcept {
+    return 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi / duration * time)) * along_W;
+  }
   /// Greatest speed [m/s].
   [[nodiscard]] double top_speed() const noexcept {
     return std::numbers::pi / duration * along_W.norm();
@@ -34,8 +38,7 @@ struct MovingBody {
   [[nodiscard]] bool place(World& world, double time) const noexcept {
     const double turn = 2.0 * std::numbers::pi / motion.duration;
     Pose X = X_WB;
-    set_column(X, 3,
-               Vec<double>(origin(X_WB) + 0.5 * (1.0 - std::cos(turn * time)) * motion.along_W));
+    set_column(X, 3, Vec<double>(origin(X_WB) + motion.offset(time)));
     return world.place(body, X, {0.5 * turn * std::sin(turn * time) * motion.along_W, {0, 0, 0}});
   }
 };

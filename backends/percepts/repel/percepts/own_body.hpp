@@ -20,9 +20,9 @@ class OwnBody {
   /// @throws SetupError for a margin out of range
   OwnBody(const DepthCamera& camera, std::vector<Shape> shapes, double margin = 0.03);
 
-  /// Sets the depth of such pixels to zero: not measured. @param X_CP [m] the parts in the frame of
-  /// the camera when the image was taken, in their order @return the number of pixels. Cost: about
-  /// 30 ns for each pixel in the rectangle around a part and each of its planes
+  /// Negates the depth of such pixels: not measured, and see DepthMemory. @param X_CP [m] the parts
+  /// in the frame of the camera when the image was taken, in their order @return the number of
+  /// pixels. Cost: about 30 ns for each pixel in the rectangle around a part and each of its planes
   int remove(std::span<const Pose> X_CP, std::span<float> depth) const noexcept;
 
  private:

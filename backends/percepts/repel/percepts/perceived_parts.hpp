@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct PerceivedOptions {
                         ///< the camera changes none
   double over = 0.05;   ///< [s] in which parts come and go
   double keeps = 2.0;   ///< [s] how long what is hidden stays after it was last seen
+  /// Is told of every new part with its shape, for displays; may be empty.
+  std::function<void(PartId, const Shape&)> on_add{};
 };
 
 /// What an image has changed.

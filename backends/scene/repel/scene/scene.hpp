@@ -67,6 +67,33 @@ struct SpareParts {
   ForceLaw law;
 };
 
+/// A depth camera that looks at the scene, simulated, and the parts that are made of its images.
+struct CameraChoice {
+  Pose X_WC = Pose::Identity();   ///< [m] x to the right of the image, y down, z along the axis
+  int width = 320, height = 240;  ///< [px]
+  double view = 1.05;             ///< [rad] across the image
+  double nearest = 0.2;           ///< [m] nearer depths are not measured
+  double farthest = 4.0;          ///< [m] nor are farther ones
+  double rate_hz = 30.0;          ///< [Hz]
+  double latency = 0.033;         ///< [s] from an image to the parts made of it
+  double noise = 0.0;             ///< [m] standard deviation at 1 m
+  double lost = 0.0;              ///< share of pixels without a depth
+  std::uint64_t seed = 1;         ///< of both
+  bool is_unseen_solid = false;   ///< what is behind something that is seen
+  double margin = 0.03;           ///< [m] around what is in the model: is taken out of images
+  int parts = 400;                ///< reserved
+  double silent_after = 0.2;      ///< [s] without an image the operator's commands no longer count
+  ForceLaw law;                   ///< of the parts
+};
+
+/// One convex part P that a camera sees and the world model does not know.
+struct HiddenPart {
+  std::string name;
+  Shape shape = Shape::sphere(0.0);
+  Pose X_WP = Pose::Identity();               ///< [m] where it starts
+  std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
+};
+
 /// What happens to a part of `Scene::loose` when a phase of a script begins.
 struct PartStep {
   enum class What : std::uint8_t { spawn, grip, release, remove };
@@ -124,6 +151,7 @@ struct ArmSetup {
   Network network;
   network::Script script;
   std::vector<PartStep> steps;  ///< in the order of the script
+  std::vector<bool> blind;      ///< by phase: the camera is silent
 };
 
 /// A further arm in the cell. Its forces from obstacles follow the obstacles' laws.
@@ -144,6 +172,8 @@ struct Scene : ArmSetup {
   std::vector<Obstacle> obstacles;
   std::vector<LoosePart> loose;
   SpareParts spare;
+  std::optional<CameraChoice> camera;
+  std::vector<HiddenPart> hidden;  ///< for the camera to see
   std::vector<OtherArm> partners;
   std::vector<std::string> part_lists;  ///< paths of the files that the parts of meshes are from
   Budget budget;

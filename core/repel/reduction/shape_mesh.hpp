@@ -1,19 +1,25 @@
-#include "mesh.hpp"
+/// @file
+/// Triangle meshes of shapes, for displays and simulated cameras. Set-up only: they allocate.
+#pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include <repel/geometry/facets.hpp>
+#include <repel/geometry/triangle_mesh.hpp>
+#include <repel/reduction/shape.hpp>
 
-namespace repel::visual {
-namespace {
+namespace repel {
+namespace detail {
 
 /// Directions over the sphere such that the support map finds every corner of a box, and rims at
 /// regular angles.
 /// @param turns directions around the axis; a quarter as many from pole to pole
-std::vector<Vec3> directions(int turns) {
+inline std::vector<Vec3> mesh_directions(int turns) {
   std::vector<Vec3> all{{0, 0, 1}, {0, 0, -1}};
   const int rows = turns / 4;
   for (int row = 1; row < rows; ++row) {
@@ -28,14 +34,14 @@ std::vector<Vec3> directions(int turns) {
   return all;
 }
 
-void add_once(std::vector<Vec3>& points, const Vec3& p) {
+inline void add_once(std::vector<Vec3>& points, const Vec3& p) {
   const auto is_same = [&](const Vec3& q) { return (p - q).norm() < 1e-9; };
   if (std::none_of(points.begin(), points.end(), is_same)) points.push_back(p);
 }
 
 /// The vertices of a polytope, else the support points in all directions, each moved outward by
 /// `radius`.
-std::vector<Vec3> outline(const Convex& set, double radius, int turns) {
+inline std::vector<Vec3> mesh_outline(const Convex& set, double radius, int turns) {
   std::vector<Vec3> points;
   if (set.is_polytope() && set.kind() == Convex::Kind::polytope && radius == 0.0) {
     for (int i = 0; i < set.vertex_count(); ++i) {
@@ -43,7 +49,7 @@ std::vector<Vec3> outline(const Convex& set, double radius, int turns) {
     }
     return points;
   }
-  for (const Vec3& d : directions(turns)) {
+  for (const Vec3& d : mesh_directions(turns)) {
     add_once(points, to_vec3(set.support(Vec<double>(d)).p) + radius * d);
   }
   return points;
@@ -51,7 +57,8 @@ std::vector<Vec3> outline(const Convex& set, double radius, int turns) {
 
 /// The corners of the convex hull of points in a plane, counter-clockwise in the axes of the plane:
 /// the lower chain from left to right, then the upper chain back.
-std::vector<int> corners_of(const std::vector<Vec3>& points, const Vec3& x, const Vec3& y) {
+inline std::vector<int> corners_in_plane(const std::vector<Vec3>& points, const Vec3& x,
+                                         const Vec3& y) {
   const auto at = [&](int i) {
     const Vec3& p = points[static_cast<std::size_t>(i)];
     return std::pair(x.dot(p), y.dot(p));
@@ -81,7 +88,7 @@ std::vector<int> corners_of(const std::vector<Vec3>& points, const Vec3& x, cons
 }
 
 /// Both sides of a planar set, as triangle fans; empty for a line.
-std::vector<std::array<int, 3>> fan(const std::vector<Vec3>& points) {
+inline std::vector<std::array<int, 3>> mesh_fan(const std::vector<Vec3>& points) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
   Vec3 normal = Vec3::Zero();
@@ -96,7 +103,7 @@ std::vector<std::array<int, 3>> fan(const std::vector<Vec3>& points) {
   }
   const double size = std::sqrt(normal.norm());
   if (points.size() < 3 || size < 1e-6) return {};
-  const std::vector<int> corners = corners_of(points, x, normal.normalized().cross(x));
+  const std::vector<int> corners = corners_in_plane(points, x, normal.normalized().cross(x));
   std::vector<std::array<int, 3>> triangles;
   for (std::size_t i = 2; i < corners.size(); ++i) {
     triangles.push_back({corners[0], corners[i - 1], corners[i]});
@@ -105,17 +112,21 @@ std::vector<std::array<int, 3>> fan(const std::vector<Vec3>& points) {
   return triangles;
 }
 
-}  // namespace
+}  // namespace detail
 
-Mesh mesh_of(const Shape& shape, int level) {
+/// The mesh of one reduction level [m] in the frame of the shape: for level 0 the shape itself, for
+/// others the set eroded by their depth. Polytopes exactly, curved sets by chords: 48 corners per
+/// rim on the first level, 24 on the others. A closed convex surface; for a set without volume its
+/// points, and triangles if it is planar. Cost: up to a millisecond.
+[[nodiscard]] inline TriangleMesh mesh_of(const Shape& shape, int level = 0) {
   const Level& chosen = shape.level(level);
   // The core of the first level is dilated by its depth: a sphere is a point with a radius.
   const bool is_first = level == 0;
   const std::vector<Vec3> points =
-      outline(chosen.core, is_first ? chosen.depth : 0.0, is_first ? 48 : 24);
-  Mesh mesh;
+      detail::mesh_outline(chosen.core, is_first ? chosen.depth : 0.0, is_first ? 48 : 24);
+  TriangleMesh mesh;
   const std::vector<Facet> facets = hull_facets(points);
-  if (facets.empty()) return {points, fan(points)};
+  if (facets.empty()) return {points, detail::mesh_fan(points)};
   std::vector<int> index(points.size(), -1);
   for (const Facet& facet : facets) {
     std::array<int, 3> triangle{};
@@ -132,4 +143,4 @@ Mesh mesh_of(const Shape& shape, int level) {
   return mesh;
 }
 
-}  // namespace repel::visual
+}  // namespace repel

@@ -1,4 +1,4 @@
-#include "mesh.hpp"
+#include <repel/reduction/shape_mesh.hpp>
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "support/draws.hpp"
 #include "support/families.hpp"
 
-namespace repel::visual {
+namespace repel {
 namespace mesh_test {
 
 constexpr std::uint64_t seed = 1993;
@@ -64,14 +64,14 @@ double support_value(const Shape& shape, int level, const Vec3& d) {
   return chosen.core.support_value(Vec<double>(d)) + (level == 0 ? chosen.depth : 0.0);
 }
 
-double support_value(const Mesh& mesh, const Vec3& d) {
+double support_value(const TriangleMesh& mesh, const Vec3& d) {
   double most = -1e9;
   for (const Vec3& p : mesh.vertices) most = std::max(most, d.dot(p));
   return most;
 }
 
 /// Each edge belongs to two triangles, with opposite directions.
-void expect_closed(const Mesh& mesh) {
+void expect_closed(const TriangleMesh& mesh) {
   std::map<std::pair<int, int>, int> edges;
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -87,13 +87,13 @@ void expect_closed(const Mesh& mesh) {
   }
 }
 
-Vec3 twice_area(const Mesh& mesh, const std::array<int, 3>& t) {
+Vec3 twice_area(const TriangleMesh& mesh, const std::array<int, 3>& t) {
   const auto at = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
   return (at(1) - at(0)).cross(at(2) - at(0));
 }
 
 /// [m^3] Enclosed volume; each triangle must face outward.
-double volume_inside(const Mesh& mesh) {
+double volume_inside(const TriangleMesh& mesh) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : mesh.vertices) middle += p / static_cast<double>(mesh.vertices.size());
   double volume = 0.0;
@@ -111,7 +111,7 @@ bool is_polytope(const Shape& shape, int level) {
 }
 
 /// In every direction the extent equals that of the set, or slightly less where the set is curved.
-void expect_outline(const Mesh& mesh, const Shape& shape, int level) {
+void expect_outline(const TriangleMesh& mesh, const Shape& shape, int level) {
   families::Rng rng(seed);
   // The half diagonal of a patch of a sphere: 7.5 by 15 degrees, of 15 by 30 at other levels.
   const double chord = is_polytope(shape, level) ? 0.0 : (level == 0 ? 0.012 : 0.048);
@@ -124,11 +124,11 @@ void expect_outline(const Mesh& mesh, const Shape& shape, int level) {
   }
 }
 
-TEST(Mesh, EveryLevelIsAClosedSurfaceWithTheOutlineOfItsSet) {
+TEST(ShapeMesh, EveryLevelIsAClosedSurfaceWithTheOutlineOfItsSet) {
   for (const Specimen& s : specimens()) {
     for (int level = 0; level < s.shape.levels(); ++level) {
       SCOPED_TRACE(std::string(s.name) + ", level " + std::to_string(level));
-      const Mesh mesh = mesh_of(s.shape, level);
+      const TriangleMesh mesh = mesh_of(s.shape, level);
       ASSERT_FALSE(mesh.vertices.empty());
       expect_closed(mesh);
       expect_outline(mesh, s.shape, level);
@@ -138,7 +138,7 @@ TEST(Mesh, EveryLevelIsAClosedSurfaceWithTheOutlineOfItsSet) {
   }
 }
 
-TEST(Mesh, DeeperLevelsHoldLess) {
+TEST(ShapeMesh, DeeperLevelsHoldLess) {
   for (const Specimen& s : specimens()) {
     SCOPED_TRACE(s.name);
     double outer = volume_inside(mesh_of(s.shape, 0));
@@ -150,9 +150,9 @@ TEST(Mesh, DeeperLevelsHoldLess) {
   }
 }
 
-TEST(Mesh, ABoxHasItsCornersAndTwoTrianglesOnEachFace) {
+TEST(ShapeMesh, ABoxHasItsCornersAndTwoTrianglesOnEachFace) {
   const Vec3 h(0.1, 0.2, 0.3);
-  const Mesh mesh = mesh_of(Shape::box(h), 0);
+  const TriangleMesh mesh = mesh_of(Shape::box(h), 0);
   EXPECT_EQ(mesh.vertices.size(), 8U);
   EXPECT_EQ(mesh.triangles.size(), 12U);
   std::set<int> corners;
@@ -164,7 +164,7 @@ TEST(Mesh, ABoxHasItsCornersAndTwoTrianglesOnEachFace) {
   EXPECT_NEAR(volume_inside(mesh), 8.0 * h.prod(), 1e-12);
 }
 
-TEST(Mesh, RoundOnesHaveNearlyTheirVolume) {
+TEST(ShapeMesh, RoundOnesHaveNearlyTheirVolume) {
   const double pi = 3.14159265358979;
   const auto share = [](const Shape& shape, double volume) {
     return volume_inside(mesh_of(shape, 0)) / volume;
@@ -179,7 +179,7 @@ TEST(Mesh, RoundOnesHaveNearlyTheirVolume) {
 }
 
 // Both sides, each of which covers the whole area once.
-TEST(Mesh, FlatSetsHaveTwoSidesAndThinnerOnesNone) {
+TEST(ShapeMesh, FlatSetsHaveTwoSidesAndThinnerOnesNone) {
   const std::map<std::string, double> areas{{"rectangle", 0.08},
                                             {"disc", 0.04 * 24 * std::sin(M_PI / 24)},
                                             {"cone of no height", 0.04 * 24 * std::sin(M_PI / 24)},
@@ -187,7 +187,7 @@ TEST(Mesh, FlatSetsHaveTwoSidesAndThinnerOnesNone) {
   for (const Specimen& s : flat_specimens()) {
     for (int level = 0; level < s.shape.levels(); ++level) {
       SCOPED_TRACE(std::string(s.name) + ", level " + std::to_string(level));
-      const Mesh mesh = mesh_of(s.shape, level);
+      const TriangleMesh mesh = mesh_of(s.shape, level);
       ASSERT_FALSE(mesh.vertices.empty());
       for (const Vec3& p : mesh.vertices) EXPECT_TRUE(p.allFinite());
       expect_closed(mesh);
@@ -203,13 +203,13 @@ TEST(Mesh, FlatSetsHaveTwoSidesAndThinnerOnesNone) {
 }
 
 // A cylinder that is wider than long is finally reduced to a disc, and then to a point.
-TEST(Mesh, ADiscThatIsLeftIsRoundAllAround) {
+TEST(ShapeMesh, ADiscThatIsLeftIsRoundAllAround) {
   const Shape shape = Shape::cylinder(0.3, 0.1);
-  const Mesh mesh = mesh_of(shape, shape.levels() - 2);
+  const TriangleMesh mesh = mesh_of(shape, shape.levels() - 2);
   double area = 0.0;
   for (const auto& t : mesh.triangles) area += 0.5 * twice_area(mesh, t).norm();
   EXPECT_NEAR(area, 2.0 * 0.04 * 12 * std::sin(M_PI / 12), 1e-9);
 }
 
 }  // namespace mesh_test
-}  // namespace repel::visual
+}  // namespace repel
