@@ -267,7 +267,7 @@ def obstacles_of(scene):
                                   "stroke-width='0.8'")
     if "camera" in scene:
         camera = {"name": "camera", "position": scene["camera"]["position"]}
-        yield camera, (box([0.05, 0.05, 0.05]), 0.0, pose_in(camera)), "fill='#333'"
+        yield camera, (box([0.05, 0.05, 0.05]), 0.0, pose_in(camera)), "fill='#333' fill-opacity='0.3'"
     for part in scene["obstacles"]:
         law = scene.get("laws", {}).get(part.get("law", "default"), {})
         colour = "#2a9d8f" if law.get("passable") else "#457b9d"
