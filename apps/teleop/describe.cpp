@@ -162,7 +162,7 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
   }
   if (scene.camera) {
     const scene::CameraChoice& camera = *scene.camera;
-    const Shape nothing = Shape::sphere(0.01, {.levels = 1});
+    const Shape nothing = Shape::box({5e-3, 5e-3, 5e-3}, {.levels = 1});  // few corners to send
     for (int i = 0; i < camera.parts; ++i) {
       cell.loose.push_back({.name = "seen",
                             .shape = nothing,

@@ -80,7 +80,7 @@ LiveView::LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, 
 void LiveView::opened(int page, visual::Role role, visual::Pages& pages) {
   open_pages_[page] = role;
   pages.send(page, greeting_);
-  for (const auto& [part, box] : boxes_) pages.send(page, box);
+  if (!reshaped_.empty()) pages.send(page, visual::parts_message(reshaped_));
   say_who_drives(pages);
   pages.send(page, visual::timing_message(timing_));
   if (!has_picture_) return;
@@ -184,13 +184,13 @@ std::string LiveView::change(const std::string& type, const Json& message, visua
       return id.valid();
     });
     if (!comes) return "no spare part is free, or has room for it";
-    boxes_[id.index] = visual::part_message(id, box);
-    pages.send_all(boxes_[id.index]);
+    reshaped_.insert_or_assign(id.index, box);
+    pages.send_all(visual::part_message(id, box));
     return {};
   }
   const auto named = number(message, "part", 1e6);
   const PartId id{named ? static_cast<std::int32_t>(*named) : -1};
-  if (boxes_.count(id.index) == 0) return "no such box";
+  if (reshaped_.count(id.index) == 0) return "no such box";
   if (type == "move_part") {
     if (!position) return out_of_range;
     const bool moves = controls_.changes.with([&](WorldChanges& changes) {
@@ -201,7 +201,7 @@ std::string LiveView::change(const std::string& type, const Json& message, visua
   const bool goes =
       controls_.changes.with([&](WorldChanges& changes) { return changes.remove(id); });
   if (!goes) return "too many changes at once";
-  boxes_.erase(id.index);
+  reshaped_.erase(id.index);
   return {};
 }
 
@@ -223,7 +223,7 @@ std::string LiveView::conduct(const std::string& type, const Json& message) {
     controls_.paused = false;
     controls_.restart = true;
     timing_ = {};
-    boxes_.clear();
+    reshaped_.clear();
   } else if (type == "seek" && info_.replay) {
     const auto time = number(message, "time_s", 1e9);
     if (!time || *time < 0.0) return out_of_range;
@@ -293,10 +293,9 @@ void LiveView::watch_driver(visual::Pages& pages) {
 void LiveView::refresh(visual::Pages& pages) {
   read_samples();
   watch_driver(pages);
-  for (const auto& [part, shape] : controls_.shapes.take()) {
-    boxes_[part] = visual::part_message({part}, shape);
-    pages.send_all(boxes_[part]);
-  }
+  const std::map<std::int32_t, Shape> seen = controls_.shapes.take();
+  for (const auto& [part, shape] : seen) reshaped_.insert_or_assign(part, shape);
+  if (!seen.empty() && pages.count() > 0) pages.send_all(visual::parts_message(seen));
   const bool running = !controls_.paused;
   const bool is_new = tap_.pictures().take();
   const auto now = Clock::now();

@@ -66,7 +66,8 @@ class LiveView final : public visual::PageHandler {
   visual::Timing timing_;
   std::vector<TickSample> recent_;  ///< since the last picture was sent
   std::map<int, visual::Role> open_pages_;
-  std::map<std::int32_t, std::string> boxes_;  ///< `part` of each spare part that is in use
+  /// Of the parts that have got another shape: boxes from pages, and what a camera sees.
+  std::map<std::int32_t, Shape> reshaped_;
   Driver driver_;
   int page_ = nobody;  ///< the page that drives
   bool silent_ = false;

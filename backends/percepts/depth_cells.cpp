@@ -77,13 +77,15 @@ std::span<const Cell> DepthCells::divide(std::span<const float> depth) noexcept 
     inverse_[i] = is_measured ? 1.0F / depth[i] : 0.0F;
     report_.measured += is_measured ? 1 : 0;
   }
-  report_.tolerance = options_.tolerance;
-  report_.smallest = options_.smallest;
   // Once no block is divided and the tolerance is beyond all depths, each is one cell: it ends.
-  while (!divide_with(report_.tolerance, report_.smallest)) {
-    report_.tolerance *= 2.0;
-    report_.smallest = std::min(2 * report_.smallest, options_.largest);
+  for (;; ++coarser_) {
+    report_.tolerance = std::ldexp(options_.tolerance, coarser_);
+    report_.smallest =
+        static_cast<int>(std::min(std::ldexp(options_.smallest, coarser_), 1.0 * options_.largest));
+    if (divide_with(report_.tolerance, report_.smallest)) break;
   }
+  // Half the blocks can be four times as many cells.
+  if (coarser_ > 0 && 4 * count_ < cells_.size()) --coarser_;
   return {cells_.data(), count_};
 }
 

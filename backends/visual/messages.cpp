@@ -187,6 +187,14 @@ std::string part_message(PartId id, const Shape& shape) {
   return Json{{"type", "part"}, {"part", id.index}, {"levels", levels_of(shape)}}.dump();
 }
 
+std::string parts_message(const std::map<std::int32_t, Shape>& shapes) {
+  Json parts = Json::array();
+  for (const auto& [part, shape] : shapes) {
+    parts.push_back({{"part", part}, {"levels", levels_of(shape)}});
+  }
+  return Json{{"type", "parts"}, {"parts", parts}}.dump();
+}
+
 std::string frame_message(const SceneInfo& info, const World& world, const Snapshot& shot,
                           std::span<const TickSample> recent, bool running) {
   const TickRecord& first = shot.arms.front();

@@ -8,6 +8,7 @@ namespace repel::percepts {
 namespace depth_memory_test {
 
 constexpr DepthCamera small{.width = 3, .height = 1};
+constexpr DepthCamera row{.width = 5, .height = 1};
 
 TEST(DepthMemory, RemembersForAWhileWhatIsNotMeasuredAndWhatTheRobotHidesUntilItIsSeenAgain) {
   DepthMemory memory(small, 2.0);
@@ -24,6 +25,16 @@ TEST(DepthMemory, RemembersForAWhileWhatIsNotMeasuredAndWhatTheRobotHidesUntilIt
   image = {0.0F, 2.0F, 0.0F};
   EXPECT_EQ(memory.fill(image, 101.1), 0);
   EXPECT_EQ(image[1], 2.0F);
+}
+
+// The pixels that a moving thing leaves and that are lost just then showed it where it was.
+TEST(DepthMemory, DoesNotKeepWhatHasMovedOn) {
+  DepthMemory memory(row);
+  std::vector<float> image{1.0F, 1.0F, 1.0F, 2.0F, 2.0F};
+  memory.fill(image, 0.0);
+  image = {2.0F, 0.0F, 2.0F, 0.0F, 2.0F};
+  EXPECT_EQ(memory.fill(image, 0.1), 1);
+  EXPECT_EQ(image, (std::vector<float>{2.0F, 0.0F, 2.0F, 2.0F, 2.0F}));
 }
 
 TEST(DepthMemory, ForgetsWhenTold) {

@@ -122,7 +122,8 @@ connection.on("frame", (frame) => {
   fresh = true;
 });
 
-connection.on("part", ({ part, levels }) => parts.reshape(part, levels));
+connection.on("part", (shape) => parts.reshape([shape]));
+connection.on("parts", (shapes) => parts.reshape(shapes));
 connection.on("timing", (timing) => (state.timing = timing));
 connection.on("operator", (operator) => {
   state.operator = operator;

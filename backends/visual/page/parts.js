@@ -54,15 +54,17 @@ export class Parts {
     this.showZones();
   }
 
-  // Gives a part another shape.
-  reshape(k, levels) {
-    const { holder, body, group } = this.parts[k] ?? {};
-    if (!holder) return;
-    holder.traverse((object) => object.geometry?.dispose());
-    holder.removeFromParent();
-    const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
-    const { passable, range_m } = this.scene.parts[k];
-    this.parts[k] = this.#part({ levels, group, body, pose, passable, range_m });
+  // Gives parts other shapes.
+  reshape(shapes) {
+    for (const { part: k, levels } of shapes) {
+      const { holder, body, group } = this.parts[k] ?? {};
+      if (!holder) continue;
+      holder.traverse((object) => object.geometry?.dispose());
+      holder.removeFromParent();
+      const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
+      const { passable, range_m } = this.scene.parts[k];
+      this.parts[k] = this.#part({ levels, group, body, pose, passable, range_m });
+    }
     this.showLevels();
     this.showZones();
   }

@@ -55,6 +55,11 @@ export function shape(x) {
   return { part: number(x.part), levels: list(x.levels).map(level) };
 }
 
+// Those of several.
+export function shapes(x) {
+  return list(x.parts).map(shape);
+}
+
 function pair(x) {
   const { i, d, a, b, n, level: deep, f, stale, age } = object(x);
   return { i, d: number(d), a: vector(a), b: vector(b), n: vector(n), level: number(deep),

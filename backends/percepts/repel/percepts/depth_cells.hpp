@@ -45,7 +45,8 @@ struct DivisionReport {
 /// Divides images, block by block: the inverse depth of a plane is linear in the image, so a block
 /// that shows one is fitted by one cell, however it is inclined; other blocks are divided into
 /// four, the smallest into what is before and what is behind the largest gap. If there are too many
-/// cells, again with twice the tolerance and the smallest blocks twice as large. So every point
+/// cells, again with twice the tolerance and the smallest blocks twice as large; the next images
+/// begin so too, until there are few. So every point
 /// that was measured lies in a cell. Every cell begins at most that tolerance before what is seen
 /// in it, but for the smallest blocks and those of which only a part was measured. All memory is
 /// allocated at construction.
@@ -88,6 +89,7 @@ class DepthCells {
   std::vector<Block> open_;
   std::vector<float> sorted_;  ///< of a block
   std::size_t count_ = 0;
+  int coarser_ = 0;  ///< how often tolerance and smallest blocks were doubled
   DivisionReport report_;
 };
 

@@ -9,9 +9,10 @@
 
 namespace repel::percepts {
 
-/// Fills in pixels without a depth with what was last seen there: for a while where nothing was
-/// measured, and until something is where `OwnBody` has taken the robot out, since a thing does not
-/// go away while the robot stands before it. Allocates at construction only.
+/// Fills in pixels without a depth with what was last seen there. Where `OwnBody` has taken the
+/// robot out, until something is measured, since a thing does not go away while the robot stands
+/// before it. Elsewhere for a while, unless all that is measured around the pixel is at another
+/// depth: then what was there has moved on. Allocates at construction only.
 class DepthMemory {
  public:
   /// @param keeps [s] how long a depth is remembered where nothing is measured; 0 to 1e6
@@ -19,12 +20,16 @@ class DepthMemory {
   explicit DepthMemory(const DepthCamera& camera, double keeps = 2.0);
 
   /// Takes over an image at `time` [s], and fills it in. @param depth [m] width x height of the
-  /// camera; a shorter one stays as it is @return pixels filled in. Cost: about 2 ns a pixel
+  /// camera; a shorter one stays as it is @return pixels filled in. Cost: about 2 ns a pixel, 20 ns
+  /// one that is lost
   int fill(std::span<float> depth, double time) noexcept;
   /// Forgets everything, as when the camera has moved.
   void forget() noexcept;
 
  private:
+  [[nodiscard]] bool is_likely(std::span<const float> depth, std::size_t at,
+                               float z) const noexcept;
+
   DepthCamera camera_;
   double keeps_;               ///< [s]
   std::vector<float> depths_;  ///< [m] last seen; 0: never

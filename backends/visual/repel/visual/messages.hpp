@@ -2,6 +2,8 @@
 /// The messages to the page, as JSON text; docs/live_view.md describes the format.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +46,9 @@ struct SceneInfo {
 
 /// `part`: a part that has got another shape.
 [[nodiscard]] std::string part_message(PartId id, const Shape& shape);
+
+/// `parts`: the same of several, by their indices.
+[[nodiscard]] std::string parts_message(const std::map<std::int32_t, Shape>& shapes);
 
 /// `frame`: one picture, and a few values of every tick since the last.
 [[nodiscard]] std::string frame_message(const SceneInfo& info, const World& world,
