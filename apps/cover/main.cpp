@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -17,6 +18,7 @@
 #include <repel/scene/part_list.hpp>
 
 #include "command_line.hpp"
+#include "octree.hpp"
 #include "report.hpp"
 
 namespace {
@@ -28,6 +30,8 @@ struct Arguments {
   std::string mesh, parts_file, json;
   std::vector<double> scale;
   CoverOptions options;
+  double cube = 0.0;  // [m] 0: that of the map
+  bool is_unseen_solid = false;
   bool allow_gaps = false;
   bool is_quiet = false;
 };
@@ -49,7 +53,8 @@ CLI::Option* length(CLI::Option* option, double low, double high) {
 }
 
 void describe(CLI::App& app, Arguments& a) {
-  app.add_option("mesh", a.mesh, "STL, OBJ, glTF, DAE or another mesh file, in m")
+  app.add_option("mesh", a.mesh,
+                 "STL, OBJ, glTF, DAE or another mesh file, in m; or a map of OctoMap, .bt or .ot")
       ->required()
       ->type_name("MESH");
   app.add_option("-o,--output", a.parts_file,
@@ -78,6 +83,15 @@ void describe(CLI::App& app, Arguments& a) {
       ->type_name("X [Y Z]")
       ->expected(1, 3)
       ->check(host::between(-1e6, 1e6));
+  const std::map<std::string, bool> solid{{"free", false}, {"solid", true}};
+  app.add_option("--unseen", a.is_unseen_solid,
+                 "Of a map: what nobody has seen of the space around it, free (default) or solid")
+      ->type_name("WHAT")
+      ->transform(CLI::CheckedTransformer(solid));
+  length(app.add_option("--cube", a.cube,
+                        "Of a map: join its cubes to larger ones of about this edge, 0 to 10m; "
+                        "solid if any of them is"),
+         0.0, 10.0);
   app.add_option("--json", a.json, "Write parts [m], what is uncovered and all bounds to FILE")
       ->type_name("FILE");
   app.add_flag("--allow-gaps", a.allow_gaps, "Succeed although some of the surface is in no part");
@@ -153,6 +167,35 @@ void print_gaps(const Cover& cover) {
   }
 }
 
+/// The boxes of a map. They contain its cubes, and nothing else unless those were joined.
+Cover cover_of_map(const Arguments& a) {
+  OccupancyGrid grid = read_octree(a.mesh, a.is_unseen_solid);
+  const double edge = grid.edge;
+  const int factor = std::max(1, static_cast<int>(std::lround(a.cube / edge)));
+  if (factor > 1) grid = coarser(grid, factor);
+  Cover cover;
+  cover.engine = "boxes";
+  cover.parts = boxes_of(grid, a.options.parts);
+  cover.uncovered_m = 1e-9 * grid.edge;
+  cover.excess_m = std::sqrt(3.0) * (factor - 1) * edge + cover.uncovered_m;
+  return cover;
+}
+
+Cover cover_of_mesh(const Arguments& a, const Vec3& scale) {
+  TriangleMesh mesh = read_mesh(a.mesh, scale);
+  if (scale.prod() < 0.0) {  // mirrored: outside would be inside
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  }
+  Progress progress(a.is_quiet);
+  CoverOptions options = a.options;
+  options.progress = [&](const std::string& text) { progress.say(text); };
+  try {
+    return cover_of(mesh, options);
+  } catch (const SetupError& error) {
+    throw SetupError("mesh '" + a.mesh + "' " + error.what());
+  }
+}
+
 int run(const Arguments& a) {
   const std::string parts_file =
       a.parts_file.empty() ? scene::part_list_beside(a.mesh) : a.parts_file;
@@ -163,23 +206,11 @@ int run(const Arguments& a) {
   if (a.scale.size() == 3) scale = {a.scale[0], a.scale[1], a.scale[2]};
   if (scale.cwiseAbs().minCoeff() == 0.0) throw SetupError("--scale has a 0; allowed: not 0");
   const auto start = std::chrono::steady_clock::now();
-  TriangleMesh mesh = read_mesh(a.mesh, scale);
-  if (scale.prod() < 0.0) {  // mirrored: outside would be inside
-    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  }
+  const bool is_map = is_octree(a.mesh);
+  if (is_map && !a.scale.empty()) throw SetupError("--scale of a map; allowed: of a mesh");
   host::Output parts(parts_file);
   host::Output json(a.json);
-  Cover cover;
-  {
-    Progress progress(a.is_quiet);
-    CoverOptions options = a.options;
-    options.progress = [&](const std::string& text) { progress.say(text); };
-    try {
-      cover = cover_of(mesh, options);
-    } catch (const SetupError& error) {
-      throw SetupError("mesh '" + a.mesh + "' " + error.what());
-    }
-  }
+  const Cover cover = is_map ? cover_of_map(a) : cover_of_mesh(a, scale);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   scene::write_part_list(

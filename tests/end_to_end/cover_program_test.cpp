@@ -3,6 +3,10 @@
 
 #include "cover/meshes.hpp"
 
+#ifdef REPEL_COVER_OCTOMAP
+#include <octomap/OcTree.h>
+#endif
+
 namespace repel::test {
 namespace cover_program_test {
 
@@ -73,6 +77,48 @@ TEST(CoverProgram, RefusesLengthsAndFactorsOutOfRange) {
   EXPECT_EQ(ending.status, 0);
   EXPECT_TRUE(ending.says("--overlap")) << ending;
 }
+
+#ifdef REPEL_COVER_OCTOMAP
+TEST(CoverProgram, MakesBoxesOfAMap) {
+  // A room of 1 m with a shelf in it, of which one corner has not been seen.
+  octomap::OcTree tree(0.05);
+  const auto middle = [](int cube) { return 0.05 * cube + 0.025; };
+  for (int z = 0; z < 20; ++z) {
+    for (int y = 0; y < 20; ++y) {
+      for (int x = 0; x < 20; ++x) {
+        if (x >= 16 && y >= 16) continue;
+        const bool is_solid = z == 0 || (z == 8 && y < 6) || x == 0;
+        (void)tree.updateNode(
+            octomap::point3d(static_cast<float>(middle(x)), static_cast<float>(middle(y)),
+                             static_cast<float>(middle(z))),
+            is_solid);
+      }
+    }
+  }
+  tree.prune();
+  const Folder folder;
+  const std::string map = folder / "room.bt";
+  ASSERT_TRUE(tree.writeBinary(map));
+  const auto boxes = [&](const std::string& options, double cube) {
+    const Ending ending = cover(quoted(map) + " " + options + " --json " + quoted(folder / "j"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    const json report = json::parse(text_of(folder / "j"));
+    EXPECT_NEAR(report.at("excess_m"), std::sqrt(3.0) * (cube - 0.05), 1e-9);
+    return report.at("parts").size();
+  };
+  EXPECT_EQ(boxes("", 0.05), 4U) << "the floor on two sides of the corner, a wall, the shelf";
+  EXPECT_EQ(boxes("--unseen solid", 0.05), 4U) << "the corner is solid to the ceiling";
+  EXPECT_GE(boxes("--cube 10cm", 0.1), 3U);
+  EXPECT_NE(text_of(map + ".parts.yaml").find("mesh: 'room.bt'"), std::string::npos);
+  EXPECT_EQ(cover(quoted(map) + " --scale 2").status, 1);
+  const Ending refused = cover(quoted(map) + " --parts 1");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_TRUE(refused.says("needs 4 boxes")) << refused;
+  const Ending no_map = cover(quoted(folder.with("no.bt", "this is no map")));
+  EXPECT_EQ(no_map.status, 1);
+  EXPECT_TRUE(no_map.says("no.bt")) << no_map;
+}
+#endif
 
 }  // namespace cover_program_test
 }  // namespace repel::test

@@ -15,6 +15,7 @@
 #endif
 #ifdef PART_cover
 #include <repel/cover/cover.hpp>
+#include <repel/cover/occupancy.hpp>
 #endif
 #ifdef PART_bullet
 #include <repel/bullet/arm.hpp>

@@ -1,0 +1,40 @@
+/// @file
+/// Boxes of a map whose cubes are solid or not.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <repel/base/types.hpp>
+
+namespace repel::cover {
+
+/// Space divided into cubes, each of them solid or not.
+struct OccupancyGrid {
+  static constexpr std::size_t most = 200'000'000;  ///< cubes
+
+  Vec3 low = Vec3::Zero();           ///< [m] lowest corner
+  double edge = 0.1;                 ///< [m] of a cube
+  std::array<int, 3> size{0, 0, 0};  ///< cubes along x, y, z
+  std::vector<std::uint8_t> solid;   ///< 1 or 0 for each, x fastest, then y
+
+  [[nodiscard]] std::size_t place(int x, int y, int z) const noexcept {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(size[0]) +
+           static_cast<std::size_t>(x);
+  }
+};
+
+/// The same with cubes `factor` times as large, 1 or more; one is solid if any within it is.
+[[nodiscard]] OccupancyGrid coarser(const OccupancyGrid& grid, int factor);
+
+/// Boxes that contain every solid cube and nothing else, as their 8 corners [m]. From a cube that
+/// is in none yet, each grows in all directions as long as all is solid, through others too: so
+/// there are few, and they reach far into each other. Cost: about a second for a million cubes.
+/// @throws SetupError if there are more than `most`, with their number
+[[nodiscard]] std::vector<std::vector<Vec3>> boxes_of(const OccupancyGrid& grid, int most);
+
+}  // namespace repel::cover
