@@ -76,7 +76,7 @@ class ArmBuilder {
       : document_(document),
         chain_(document, model, options),
         joints_(document, model, chain_),
-        meshes_({file, options.package_paths}) {
+        meshes_({file, options.package_paths}, options.convex_parts) {
     robot_.arm.name = model.getName();
     robot_.end = chain_.end().link;
     robot_.end_reason = chain_.end().reason;
@@ -156,23 +156,34 @@ class ArmBuilder {
   void add_parts(const urdf::Link& node, int link, const Pose& X_LN) {
     for (std::size_t i = 0; i < node.collision_array.size(); ++i) {
       const urdf::Collision& collision = *node.collision_array[i];
-      RobotPart part = part_of(node.name, i, *collision.geometry);
-      part.name = collision.name.empty() ? node.name + "_" + std::to_string(i) : collision.name;
-      part.in_link = node.name;
-      part.link = link;
-      part.X_LP = X_LN * from_urdf(collision.origin);
-      robot_.parts.push_back(std::move(part));
+      for (RobotPart& part : parts_of(node.name, i, *collision.geometry)) {
+        std::string name =
+            collision.name.empty() ? node.name + "_" + std::to_string(i) : collision.name;
+        part.name = name.append(part.name);
+        part.in_link = node.name;
+        part.link = link;
+        part.X_LP = X_LN * from_urdf(collision.origin);
+        robot_.parts.push_back(std::move(part));
+      }
     }
   }
 
-  RobotPart part_of(const std::string& link, std::size_t index, const urdf::Geometry& shape) {
+  /// The parts of collision `index` of `link`, with the ends of their names.
+  std::vector<RobotPart> parts_of(const std::string& link, std::size_t index,
+                                  const urdf::Geometry& shape) {
     const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
-    if (!mesh) return simple_part(shape, document_.is_capsule(link, index));
+    if (!mesh) return {simple_part(shape, document_.is_capsule(link, index))};
     try {
-      RobotPart part;
-      part.kind = PartKind::hull;
-      part.points = meshes_.hull(mesh->filename, from_urdf(mesh->scale));
-      return part;
+      const detail::MeshParts& read = meshes_.parts(mesh->filename, from_urdf(mesh->scale));
+      std::vector<RobotPart> parts;
+      for (const std::vector<Vec3>& hull : read.hulls) {
+        RobotPart& part = parts.emplace_back();
+        if (read.is_cover) part.name = "/" + std::to_string(parts.size());
+        part.kind = PartKind::hull;
+        part.points = hull;
+        part.is_of_cover = read.is_cover;
+      }
+      return parts;
     } catch (const SetupError& error) {
       document_.fail_at_collision(link, index, error.what());
     }

@@ -14,6 +14,7 @@ namespace repel::teleop {
 struct DescribedScene {
   CellDescription cell;
   std::vector<Robot> robots;
+  std::vector<std::string> part_lists;  ///< paths of the files with parts of the robots' meshes
 };
 
 /// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.

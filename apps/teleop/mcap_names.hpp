@@ -24,7 +24,7 @@ inline std::string robot_attachment(std::size_t arm) {
   return name.append(std::to_string(arm)).append(".urdf");
 }
 
-/// A file of Scene::part_lists.
+/// A file of Scene::part_lists; those that the robots use come after those of the scene.
 inline std::string parts_attachment(std::size_t list) {
   std::string name = "parts ";
   return name.append(std::to_string(list)).append(".yaml");

@@ -20,6 +20,7 @@ namespace repel::teleop {
 struct Recording {
   std::string file;
   scene::Scene scene;                         ///< the one that was recorded
+  std::vector<std::string> robot_parts;       ///< the lists of parts that its robots used
   RunOptions options;                         ///< of the recorded run
   std::vector<std::vector<TickRecord>> arms;  ///< the ticks of each arm
   std::vector<TickTimes> times;               ///< of each tick
@@ -34,6 +35,10 @@ struct Recording {
 /// @throws SetupError if the file is no such recording, or a robot file has changed since
 [[nodiscard]] Recording load_recording(const std::string& path,
                                        const std::function<std::string(const std::string&)>& find);
+
+/// @param lists paths of the lists of parts that the robots use now
+/// @throws SetupError unless they are those that were recorded
+void require_recorded_lists(const Recording& recording, const std::vector<std::string>& lists);
 
 /// An arm that reports the recorded state and ignores torques.
 class RecordedArm final : public TorqueDrivenArm {

@@ -112,6 +112,16 @@ struct ShapeFile {
   std::vector<std::string>& part_lists;
 };
 
+/// part_list_of(), with the line of `mesh` for what is wrong of the list as a whole.
+PartList checked_list(const Value& mesh, const std::string& mesh_path, const std::string& path) {
+  try {
+    return part_list_of(mesh_path, path);
+  } catch (const SetupError& error) {
+    if (error.line() > 0) throw;
+    mesh.fail(error.what());
+  }
+}
+
 /// The convex parts of a mesh, from the list that `parts` names or that lies beside the mesh.
 std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
   const Value& mesh = map.at("file");
@@ -124,11 +134,7 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
     mesh.fail("the mesh '" + mesh_path + "' has no convex parts yet: there is no file '" + path +
               "'; to have it: cover '" + mesh_path + "'");
   }
-  const PartList list = read_part_list(path);
-  if (!list.checksum.empty() && list.checksum != checksum_of_file(mesh_path)) {
-    mesh.fail("the parts in '" + path + "' are of another version of the mesh '" + mesh_path +
-              "'; to have its parts: cover '" + mesh_path + "' -o '" + path + "'");
-  }
+  const PartList list = checked_list(mesh, mesh_path, path);
   shapes.part_lists.push_back(path);
   std::vector<Part> parts;
   for (const std::vector<Vec3>& points : list.parts) {
@@ -142,7 +148,6 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
       mesh.fail(text.append(" in '").append(path).append("': ").append(error.what()));
     }
   }
-  if (parts.empty()) mesh.fail("the file '" + path + "' has no part; allowed: 1 or more");
   return parts;
 }
 
@@ -378,7 +383,7 @@ std::vector<JointHold> holds_of(const Value& value) {
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
   map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
-             "payload", "hold", "packages", "drive_delay"});
+             "payload", "hold", "packages", "drive_delay", "covers"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
@@ -386,6 +391,9 @@ RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& fi
   map.read("tip_link", robot.tip_link);
   if (const Value* hold = map.find("hold")) robot.hold = holds_of(*hold);
   if (const Value* packages = map.find("packages")) robot.packages = packages_of(*packages, file);
+  if (const Value* covers = map.find("covers")) {
+    robot.covers = covers->word_of({"yes", "no"}) == "yes";
+  }
   read_start(map.at("start"), robot);
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");

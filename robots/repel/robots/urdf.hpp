@@ -14,7 +14,7 @@ namespace repel {
 
 /// Reads the URDF file at `path`. Joints beside the chain are held. What fixed and held joints
 /// carry is merged into their parents, with mass and inertia; a collision mesh becomes its convex
-/// hull. A robot without a name has that of its file.
+/// parts if `options` find some, else its convex hull. A robot without a name has that of its file.
 /// @throws SetupError naming file, line, link or joint, value and what is allowed, if the file
 ///   cannot be read as a serial arm or anything in it would be lost
 [[nodiscard]] Robot load_arm(const std::string& path, const UrdfOptions& options = {});

@@ -93,6 +93,7 @@ struct RobotChoice {
   std::string tip_link;                ///< empty: the end of the longest chain
   std::vector<JointHold> hold;         ///< joints to hold; those beside the chain are held anyway
   std::vector<std::string> packages;   ///< folders where package:// leads; paths as that of urdf
+  bool covers = true;                  ///< meshes become the parts in the lists beside them
   std::vector<double> start;           ///< [rad] or [m] one for each moving joint, base outward
   std::vector<JointType> start_types;  ///< which of the two units the file gives
   Pose X_WB = Pose::Identity();        ///< [m] pose of the base in the world
@@ -145,7 +146,8 @@ struct Scene : ArmSetup {
   std::vector<LoosePart> loose;
   SpareParts spare;
   std::vector<OtherArm> partners;
-  std::vector<std::string> part_lists;  ///< paths of the files that the parts of meshes are from
+  /// Paths of the files that the parts of meshes are from, those of the robots excepted.
+  std::vector<std::string> part_lists;
   Budget budget;
   CoprocessorMode coprocessor = CoprocessorMode::together;
 
