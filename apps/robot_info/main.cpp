@@ -82,22 +82,6 @@ void describe(CLI::App& app, Arguments& a) {
              ".\nExit status: 0 the file was taken whole, 1 it was refused, 2 bad usage.");
 }
 
-const char* kind_of(const RobotPart& part) {
-  switch (part.kind) {
-    case PartKind::box:
-      return "box";
-    case PartKind::sphere:
-      return "sphere";
-    case PartKind::capsule:
-      return "capsule";
-    case PartKind::cylinder:
-      return "cylinder";
-    case PartKind::hull:
-      return "hull";
-  }
-  return "";
-}
-
 /// Number of corners; 0 for round parts.
 std::size_t vertices_of(const RobotPart& part) {
   return part.kind == PartKind::box ? 8 : part.points.size();
@@ -114,7 +98,7 @@ void print_parts(const Robot& robot, const std::string& link) {
       corners += part.points.size();
       continue;
     }
-    std::printf(" %s", kind_of(part));
+    std::printf(" %s", to_text(part.kind));
     if (const auto count = vertices_of(part)) std::printf(" (%zu)", count);
   }
   if (hulls > 0) std::printf(" %zu hulls of covers (%zu)", hulls, corners);
@@ -224,7 +208,7 @@ Json report_of(const Robot& robot, const std::vector<Tip>& tips,
     for (const RobotPart& part : robot.parts) {
       if (part.in_link != link.name) continue;
       parts.push_back({{"name", part.name},
-                       {"kind", kind_of(part)},
+                       {"kind", to_text(part.kind)},
                        {"vertices", vertices_of(part)},
                        {"of_cover", part.is_of_cover}});
     }

@@ -11,6 +11,8 @@
 #include <repel/scene/part_list.hpp>
 #include <repel/world/changed_arm.hpp>
 
+#include "static_model.hpp"
+
 namespace repel::teleop {
 namespace {
 
@@ -153,9 +155,16 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     arm.name = scene.partners[i - 1].name;
     arm.law = scene.partners[i - 1].law;
   }
-  for (const scene::Obstacle& obstacle : scene.obstacles) {
-    cell.obstacles.push_back(
-        {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
+  for (const scene::StaticModel& model : scene.models) {
+    for (scene::Obstacle& obstacle : obstacles_of(model, described.part_lists)) {
+      described.model_obstacles.push_back(std::move(obstacle));
+    }
+  }
+  for (const auto* obstacles : {&scene.obstacles, &std::as_const(described.model_obstacles)}) {
+    for (const scene::Obstacle& obstacle : *obstacles) {
+      cell.obstacles.push_back(
+          {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
+    }
   }
   for (const scene::LoosePart& part : scene.loose) {
     cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start, 0.0, part.mass,

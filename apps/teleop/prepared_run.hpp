@@ -24,7 +24,7 @@ struct PreparedRun {
         robots(std::move(read)),
         cell(std::move(described)) {}
 
-  /// With the changes made by the options, and the lists of parts that its robots use.
+  /// With the changes made by the options, the obstacles of its models, and all lists of parts.
   scene::Scene scene;
   RunOptions options;
   std::vector<Robot> robots;  ///< of the arms, in their order

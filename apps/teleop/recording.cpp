@@ -249,6 +249,10 @@ void read_scene(const McapReader& reader, const std::string& recorded,
     require_same(reader, mcap::robot_attachment(i), scene.arm_setup(i).robot.urdf, "the robot is",
                  recording.file);
   }
+  for (std::size_t i = 0; i < scene.models.size(); ++i) {
+    require_same(reader, mcap::model_attachment(i), scene.models[i].urdf, "the model is",
+                 recording.file);
+  }
   for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {
     require_same(reader, mcap::parts_attachment(i), scene.part_lists[i], "the parts of a mesh are",
                  recording.file);
@@ -256,7 +260,7 @@ void read_scene(const McapReader& reader, const std::string& recorded,
   for (std::size_t i = scene.part_lists.size();; ++i) {
     const std::string* list = find_attachment(reader, mcap::parts_attachment(i));
     if (list == nullptr) break;
-    recording.robot_parts.push_back(*list);
+    recording.urdf_parts.push_back(*list);
   }
 }
 
@@ -266,19 +270,19 @@ void require_recorded_lists(const Recording& recording, const std::vector<std::s
   const auto name_of = [&](std::size_t i) {
     return mcap::parts_attachment(recording.scene.part_lists.size() + i);
   };
-  const std::size_t recorded = recording.robot_parts.size();
+  const std::size_t recorded = recording.urdf_parts.size();
   for (std::size_t i = 0; i < std::min(recorded, lists.size()); ++i) {
-    require_same(recording.robot_parts[i], name_of(i), lists[i],
-                 "the parts of a mesh of the robot are", recording.file);
+    require_same(recording.urdf_parts[i], name_of(i), lists[i],
+                 "the parts of a mesh of a URDF file are", recording.file);
   }
   if (lists.size() > recorded) {
-    throw SetupError("this list of parts of a mesh of the robot was not there when " +
+    throw SetupError("this list of parts of a mesh of a URDF file was not there when " +
                          recording.file + " was recorded; allowed: none",
                      lists[recorded]);
   }
   if (lists.size() < recorded) {
     throw SetupError(
-        "a mesh of the robot has no list of parts any more; allowed: the file that is "
+        "a mesh of a URDF file has no list of parts any more; allowed: the file that is "
         "attached as '" +
             name_of(lists.size()) + "'",
         recording.file);

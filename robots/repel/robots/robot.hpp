@@ -15,6 +15,23 @@ namespace repel {
 
 enum class PartKind { box, sphere, capsule, cylinder, hull };
 
+/// The name of `kind`.
+[[nodiscard]] constexpr const char* to_text(PartKind kind) noexcept {
+  switch (kind) {
+    case PartKind::box:
+      return "box";
+    case PartKind::sphere:
+      return "sphere";
+    case PartKind::capsule:
+      return "capsule";
+    case PartKind::cylinder:
+      return "cylinder";
+    case PartKind::hull:
+      break;
+  }
+  return "hull";
+}
+
 /// One convex part of a link.
 struct RobotPart {
   std::string name;     ///< of the collision element; if it has none, made from link and index

@@ -24,6 +24,13 @@ namespace repel {
 [[nodiscard]] Robot parse_arm(std::string_view urdf, const UrdfOptions& options = {},
                               const std::string& file = "urdf");
 
+/// The collision elements of the URDF file at `path` as parts of one body that stands still: their
+/// poses are in the root link, with every joint at zero. It need not be an arm.
+/// @param options of which only those about meshes count
+/// @throws SetupError as load_arm(), but for what only an arm must have
+[[nodiscard]] std::vector<RobotPart> load_parts(const std::string& path,
+                                                const UrdfOptions& options = {});
+
 /// Two links of a robot between which collisions are ignored.
 struct DisabledCollision {
   std::string first, second;  ///< links of the file

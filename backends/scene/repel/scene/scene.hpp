@@ -48,6 +48,16 @@ struct Obstacle {
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
 };
 
+/// A robot description M of which every collision part is an obstacle, with all joints at zero.
+struct StaticModel {
+  std::string name;                   ///< its parts are called NAME/LINK/PART
+  std::string urdf;                   ///< path
+  std::vector<std::string> packages;  ///< folders where package:// leads
+  bool covers = true;                 ///< meshes become the parts in the lists beside them
+  Pose X_WM = Pose::Identity();       ///< [m] pose of its root link
+  ForceLaw law;
+};
+
 /// One convex part P of the world that can come, be held by a tool, and go while the scene runs.
 struct LoosePart {
   std::string name;
@@ -143,10 +153,11 @@ struct Scene : ArmSetup {
   /// Of every shape, where the measure needs them: see CellDescription. The shapes read have one.
   int levels = ReductionOptions{}.levels;
   std::vector<Obstacle> obstacles;
+  std::vector<StaticModel> models;  ///< further obstacles, for whoever can read robot descriptions
   std::vector<LoosePart> loose;
   SpareParts spare;
   std::vector<OtherArm> partners;
-  /// Paths of the files that the parts of meshes are from, those of the robots excepted.
+  /// Paths of the files that the parts of meshes are from, those in URDF files excepted.
   std::vector<std::string> part_lists;
   Budget budget;
   CoprocessorMode coprocessor = CoprocessorMode::together;
