@@ -65,7 +65,7 @@ PartList part_list_of(const std::string& mesh, const std::string& path) {
   if (!list.checksum.empty() && list.checksum != checksum_of_file(mesh)) {
     std::string text = "the parts in '" + path + "' are of another version of the mesh '" + mesh +
                        "'; to have its parts: cover '" + mesh + "' -o '" + path + "'";
-    if (list.scale != Vec3::Ones()) text += " --scale " + text_of(list.scale);
+    if (list.scale != Vec3::Ones()) text.append(" --scale ").append(text_of(list.scale));
     throw SetupError(text);
   }
   if (list.parts.empty()) {
@@ -80,8 +80,7 @@ std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh, const Vec3&
   std::error_code unused;
   if (!std::filesystem::is_regular_file(path, unused)) return {};
   PartList list = part_list_of(mesh, path);
-  for (const Vec3& factors : {list.scale, scale}) {
-    if (factors.cwiseAbs().minCoeff() > 0.0) continue;
+  if (list.scale.cwiseAbs().cwiseMin(scale.cwiseAbs()).minCoeff() == 0.0) {
     throw SetupError("the parts in '" + path + "' have the scale " + text_of(list.scale) +
                      " and the mesh '" + mesh + "' " + text_of(scale) + "; allowed: not 0");
   }
