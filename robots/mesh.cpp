@@ -28,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int deepest_package = 4;  // levels of folders below a package path that are searched
+constexpr std::size_t most_points = 10000;  // maximum of a hull
 
 /// Whether the folder has the name `package`, or its package.xml gives that name.
 bool is_package(const fs::path& folder, const std::string& package) {
@@ -89,6 +90,18 @@ std::optional<fs::path> above(const fs::path& file, const std::string& package,
                    "where packages are)");
 }
 
+/// @throws SetupError unless `hull`, of the mesh file at `path`, can be a part of a robot
+void require_fit_hull(const std::vector<Vec3>& hull, const std::string& path) {
+  const std::string file = "mesh '" + path + "' ";
+  if (hull.empty() || hull.size() > most_points) {
+    throw SetupError(file + "has a hull of " + std::to_string(hull.size()) +
+                     " corners; allowed: 1 to " + std::to_string(most_points));
+  }
+  if (!std::all_of(hull.begin(), hull.end(), [](const Vec3& p) { return is_finite(p); })) {
+    throw SetupError(file + "has a corner that is not finite");
+  }
+}
+
 }  // namespace
 
 bool has_mesh_reader() noexcept {
@@ -130,12 +143,21 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
   fail_to_find(uri, folders);
 }
 
-const std::vector<Vec3>& MeshReader::hull(const std::string& uri, const Vec3& scale) {
+MeshParts MeshReader::read(const std::string& path, const Vec3& scale) const {
+  MeshParts parts;
+  if (convex_parts_) parts.hulls = convex_parts_(path, scale);
+  parts.is_cover = !parts.hulls.empty();
+  if (!parts.is_cover) parts.hulls.push_back(hull_of_mesh(path, scale));
+  for (const std::vector<Vec3>& hull : parts.hulls) require_fit_hull(hull, path);
+  return parts;
+}
+
+const MeshParts& MeshReader::parts(const std::string& uri, const Vec3& scale) {
   const std::string path = find_mesh(uri, folders_).string();
   const Key key(path, scale.x(), scale.y(), scale.z());
-  const auto known = hulls_.find(key);
+  const auto known = meshes_.find(key);
   std::error_code error;
-  if (known == hulls_.end()) bytes_ += fs::file_size(path, error);
+  if (known == meshes_.end()) bytes_ += fs::file_size(path, error);
   const auto require_at_most = [&](std::uintmax_t count, std::uintmax_t most, const char* what) {
     if (count <= most) return;
     throw SetupError("mesh '" + uri + "': the robot's meshes up to this one have " +
@@ -143,19 +165,17 @@ const std::vector<Vec3>& MeshReader::hull(const std::string& uri, const Vec3& sc
                      std::to_string(most) + " in all");
   };
   require_at_most(bytes_, input_limits.mesh_bytes, "bytes");
-  require_at_most(hulls_.size() + (known == hulls_.end() ? 1 : 0), input_limits.meshes, "files");
-  const std::vector<Vec3>& points =
-      known != hulls_.end() ? known->second
-                            : hulls_.emplace(key, hull_of_mesh(path, scale)).first->second;
-  corners_ += points.size();
+  require_at_most(meshes_.size() + (known == meshes_.end() ? 1 : 0), input_limits.meshes, "files");
+  const MeshParts& parts = known != meshes_.end()
+                               ? known->second
+                               : meshes_.emplace(key, read(path, scale)).first->second;
+  for (const std::vector<Vec3>& hull : parts.hulls) corners_ += hull.size();
   require_at_most(corners_, input_limits.hull_points, "corners");
-  return points;
+  return parts;
 }
 
 #ifdef REPEL_HAS_ASSIMP
 namespace {
-
-constexpr std::size_t most_points = 10000;  // maximum of a hull
 
 /// Collects every vertex of a scene, transformed by its nodes.
 // NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
@@ -208,10 +228,6 @@ std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
   // A planar set has no facets: all of its points stay.
   const std::vector<Facet> facets = hull_facets(points);
   if (!facets.empty()) points = hull_corners(points, facets);
-  if (points.size() > most_points) {
-    throw SetupError("has a hull of " + std::to_string(points.size()) + " corners; allowed: 1 to " +
-                     std::to_string(most_points));
-  }
   return points;
 }
 

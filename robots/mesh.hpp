@@ -12,6 +12,7 @@
 
 #include <repel/base/types.hpp>
 #include <repel/geometry/triangle_mesh.hpp>
+#include <repel/robots/robot.hpp>
 
 namespace repel::detail {
 
@@ -38,20 +39,31 @@ struct MeshFolders {
 /// read_mesh().
 [[nodiscard]] TriangleMesh triangles_of_mesh(const std::filesystem::path& path, const Vec3& scale);
 
+/// What a mesh becomes.
+struct MeshParts {
+  std::vector<std::vector<Vec3>> hulls;  ///< [m] corners of each
+  bool is_cover = false;  ///< its convex parts; otherwise it has one hull, that of the mesh
+};
+
 /// Reads the meshes of one description, within the total limits of input_limits.
 class MeshReader {
  public:
-  explicit MeshReader(MeshFolders folders) : folders_(std::move(folders)) {}
+  MeshReader(MeshFolders folders, ConvexParts convex_parts)
+      : folders_(std::move(folders)), convex_parts_(std::move(convex_parts)) {}
 
-  /// hull_of_mesh() of the file behind `uri`; each combination of file and scale is read once.
+  /// The convex parts of the file behind `uri`, or hull_of_mesh() if it has none; each combination
+  /// of file and scale is read once.
   /// @throws SetupError
-  [[nodiscard]] const std::vector<Vec3>& hull(const std::string& uri, const Vec3& scale);
+  [[nodiscard]] const MeshParts& parts(const std::string& uri, const Vec3& scale);
 
  private:
   using Key = std::tuple<std::string, double, double, double>;  // path and scale
 
+  [[nodiscard]] MeshParts read(const std::string& path, const Vec3& scale) const;
+
   MeshFolders folders_;
-  std::map<Key, std::vector<Vec3>> hulls_;
+  ConvexParts convex_parts_;
+  std::map<Key, MeshParts> meshes_;
   std::uintmax_t bytes_ = 0;
   std::size_t corners_ = 0;
 };

@@ -68,6 +68,67 @@ RobotPart simple_part(const urdf::Geometry& geometry, bool is_capsule) {
   return part;
 }
 
+/// Converts the collision elements of links.
+class PartReader {
+ public:
+  PartReader(const detail::UrdfDocument& document, const UrdfOptions& options,
+             const std::string& file)
+      : document_(document), meshes_({file, options.package_paths}, options.convex_parts) {}
+
+  /// Appends the parts of `node` to `parts`.
+  /// @param link index in ArmModel::links, -1 for the base
+  void add(const urdf::Link& node, int link, const Pose& X_LN, std::vector<RobotPart>& parts) {
+    for (std::size_t i = 0; i < node.collision_array.size(); ++i) {
+      const urdf::Collision& collision = *node.collision_array[i];
+      for (RobotPart& part : parts_of(node.name, i, *collision.geometry)) {
+        std::string name =
+            collision.name.empty() ? node.name + "_" + std::to_string(i) : collision.name;
+        part.name = name.append(part.name);
+        part.in_link = node.name;
+        part.link = link;
+        part.X_LP = X_LN * from_urdf(collision.origin);
+        parts.push_back(std::move(part));
+      }
+    }
+  }
+
+ private:
+  /// The parts of collision `index` of `link`, with the ends of their names.
+  std::vector<RobotPart> parts_of(const std::string& link, std::size_t index,
+                                  const urdf::Geometry& shape) {
+    const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
+    if (!mesh) return {simple_part(shape, document_.is_capsule(link, index))};
+    try {
+      const detail::MeshParts& read = meshes_.parts(mesh->filename, from_urdf(mesh->scale));
+      std::vector<RobotPart> parts;
+      for (const std::vector<Vec3>& hull : read.hulls) {
+        RobotPart& part = parts.emplace_back();
+        if (read.is_cover) part.name = "/" + std::to_string(parts.size());
+        part.kind = PartKind::hull;
+        part.points = hull;
+        part.is_of_cover = read.is_cover;
+      }
+      return parts;
+    } catch (const SetupError& error) {
+      document_.fail_at_collision(link, index, error.what());
+    }
+  }
+
+  const detail::UrdfDocument& document_;
+  detail::MeshReader meshes_;
+};
+
+/// Appends the parts of `node` and of its subtree, with every joint at zero.
+// NOLINTNEXTLINE(misc-no-recursion): the tree is no deeper than UrdfDocument allows
+void add_at_zero(const urdf::Link& node, const Pose& X_RN, PartReader& reader,
+                 std::vector<RobotPart>& parts) {
+  reader.add(node, -1, X_RN, parts);
+  for (const auto& child : node.child_links) {
+    const urdf::Pose& X_NC = child->parent_joint->parent_to_joint_origin_transform;
+    add_at_zero(*child, X_RN * from_urdf(X_NC), reader, parts);
+  }
+}
+
 /// Traverses a parsed model from its root outward and collects links and parts.
 class ArmBuilder {
  public:
@@ -76,7 +137,7 @@ class ArmBuilder {
       : document_(document),
         chain_(document, model, options),
         joints_(document, model, chain_),
-        meshes_({file, options.package_paths}) {
+        reader_(document, options, file) {
     robot_.arm.name = model.getName();
     robot_.end = chain_.end().link;
     robot_.end_reason = chain_.end().reason;
@@ -97,7 +158,7 @@ class ArmBuilder {
     if (link >= 0 && node.inertial) add_body(*node.inertial, X_LN, robot_.arm.links.back());
     robot_.links.push_back({node.name, node.inertial ? node.inertial->mass : 0.0, link, X_LN});
     if (link >= 0 && node.child_links.empty()) robot_.tips.push_back(node.name);
-    add_parts(node, link, X_LN);
+    reader_.add(node, link, X_LN, robot_.parts);
     // The rest of the chain comes last, so that `links.back()` is still this link for its side
     // branches.
     for (const bool in_chain : {false, true}) {
@@ -153,31 +214,6 @@ class ArmBuilder {
     return link;
   }
 
-  void add_parts(const urdf::Link& node, int link, const Pose& X_LN) {
-    for (std::size_t i = 0; i < node.collision_array.size(); ++i) {
-      const urdf::Collision& collision = *node.collision_array[i];
-      RobotPart part = part_of(node.name, i, *collision.geometry);
-      part.name = collision.name.empty() ? node.name + "_" + std::to_string(i) : collision.name;
-      part.in_link = node.name;
-      part.link = link;
-      part.X_LP = X_LN * from_urdf(collision.origin);
-      robot_.parts.push_back(std::move(part));
-    }
-  }
-
-  RobotPart part_of(const std::string& link, std::size_t index, const urdf::Geometry& shape) {
-    const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
-    if (!mesh) return simple_part(shape, document_.is_capsule(link, index));
-    try {
-      RobotPart part;
-      part.kind = PartKind::hull;
-      part.points = meshes_.hull(mesh->filename, from_urdf(mesh->scale));
-      return part;
-    } catch (const SetupError& error) {
-      document_.fail_at_collision(link, index, error.what());
-    }
-  }
-
   void require_possible_inertias() const {
     for (const ArmLink& link : robot_.arm.links) {
       const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(link.I_C_L).eigenvalues();
@@ -206,22 +242,37 @@ class ArmBuilder {
   const detail::UrdfDocument& document_;
   detail::ChainChoice chain_;
   detail::HeldJoints joints_;
-  detail::MeshReader meshes_;
+  PartReader reader_;
   Robot robot_;
 };
+
+urdf::ModelInterfaceSharedPtr model_of(const detail::UrdfDocument& document,
+                                       const std::string& file) {
+  auto model = urdf::parseURDF(document.text_for_urdfdom());
+  if (!model) throw SetupError("urdfdom cannot read this file; it has said why on stderr", file);
+  document.require_all_collisions(*model);
+  return model;
+}
 
 }  // namespace
 
 Robot parse_arm(std::string_view urdf, const UrdfOptions& options, const std::string& file) {
-  detail::UrdfDocument document(urdf, file);
-  const auto model = urdf::parseURDF(document.text_for_urdfdom());
-  if (!model) throw SetupError("urdfdom cannot read this file; it has said why on stderr", file);
-  document.require_all_collisions(*model);
+  const detail::UrdfDocument document(urdf, file);
+  const auto model = model_of(document, file);
   return ArmBuilder(document, *model, options, file).take();
 }
 
 Robot load_arm(const std::string& path, const UrdfOptions& options) {
   return parse_arm(detail::text_of_description(path), options, path);
+}
+
+std::vector<RobotPart> load_parts(const std::string& path, const UrdfOptions& options) {
+  const detail::UrdfDocument document(detail::text_of_description(path), path);
+  const auto model = model_of(document, path);
+  PartReader reader(document, options, path);
+  std::vector<RobotPart> parts;
+  add_at_zero(*model->getRoot(), Pose::Identity(), reader, parts);
+  return parts;
 }
 
 bool reads_meshes() noexcept {

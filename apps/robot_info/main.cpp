@@ -18,6 +18,10 @@
 #include "command_line.hpp"
 #include "times.hpp"
 
+#ifdef REPEL_ROBOT_INFO_COVERS
+#include <repel/scene/part_list.hpp>
+#endif
+
 namespace {
 
 using namespace repel;
@@ -72,30 +76,32 @@ void describe(CLI::App& app, Arguments& a) {
       });
   app.add_option("--json", a.json, "Write what is shown, and more, as JSON to FILE")
       ->type_name("FILE");
-  app.footer(std::string("Collision meshes become their convex hulls") +
-             (reads_meshes() ? "" : "; not here: built without assimp (libassimp-dev)") +
+  app.footer(std::string("Collision meshes become the convex parts in MESH.parts.yaml beside them, "
+                         "which the program cover\nwrites, or else their convex hulls") +
+             (reads_meshes() ? "" : "; no hulls here: built without assimp (libassimp-dev)") +
              ".\nExit status: 0 the file was taken whole, 1 it was refused, 2 bad usage.");
-}
-
-const char* kind_of(const RobotPart& part) {
-  switch (part.kind) {
-    case PartKind::box:
-      return "box";
-    case PartKind::sphere:
-      return "sphere";
-    case PartKind::capsule:
-      return "capsule";
-    case PartKind::cylinder:
-      return "cylinder";
-    case PartKind::hull:
-      return "hull";
-  }
-  return "";
 }
 
 /// Number of corners; 0 for round parts.
 std::size_t vertices_of(const RobotPart& part) {
   return part.kind == PartKind::box ? 8 : part.points.size();
+}
+
+/// The kinds of the parts of `link`, with their corners; the parts of a cover are counted together.
+void print_parts(const Robot& robot, const std::string& link) {
+  std::size_t hulls = 0;
+  std::size_t corners = 0;
+  for (const RobotPart& part : robot.parts) {
+    if (part.in_link != link) continue;
+    if (part.is_of_cover) {
+      ++hulls;
+      corners += part.points.size();
+      continue;
+    }
+    std::printf(" %s", to_text(part.kind));
+    if (const auto count = vertices_of(part)) std::printf(" (%zu)", count);
+  }
+  if (hulls > 0) std::printf(" %zu hulls of covers (%zu)", hulls, corners);
 }
 
 const char* type_of(const ArmLink& joint) {
@@ -152,11 +158,7 @@ void print(const Robot& robot, const std::vector<Tip>& tips) {
   std::printf("\n%-32s %10s  %s\n", "link", "mass [kg]", "collision parts (corners)");
   for (const RobotLink& link : robot.links) {
     std::printf("%-32s %10.4g ", link.name.c_str(), link.mass);
-    for (const RobotPart& part : robot.parts) {
-      if (part.in_link != link.name) continue;
-      std::printf(" %s", kind_of(part));
-      if (const auto corners = vertices_of(part)) std::printf(" (%zu)", corners);
-    }
+    print_parts(robot, link.name);
     std::puts("");
   }
   std::printf("\n%-32s %10s %10s %10s   with every joint at zero\n", "tip", "x [mm]", "y [mm]",
@@ -205,8 +207,10 @@ Json report_of(const Robot& robot, const std::vector<Tip>& tips,
     Json parts = Json::array();
     for (const RobotPart& part : robot.parts) {
       if (part.in_link != link.name) continue;
-      parts.push_back(
-          {{"name", part.name}, {"kind", kind_of(part)}, {"vertices", vertices_of(part)}});
+      parts.push_back({{"name", part.name},
+                       {"kind", to_text(part.kind)},
+                       {"vertices", vertices_of(part)},
+                       {"of_cover", part.is_of_cover}});
     }
     report["links"].push_back({{"name", link.name}, {"mass", link.mass}, {"parts", parts}});
   }
@@ -226,12 +230,20 @@ int run(const Arguments& arguments) {
   host::Output json(arguments.json);
   UrdfOptions options = arguments.options;
   for (const std::string& text : arguments.hold) options.hold.push_back(hold_of(text).value());
+  std::vector<std::string> part_lists;
+#ifdef REPEL_ROBOT_INFO_COVERS
+  options.convex_parts = [&part_lists](const std::string& mesh, const Vec3& scale) {
+    return scene::parts_beside(mesh, scale, part_lists);
+  };
+#endif
   const Robot robot = load_arm(arguments.urdf, options);
   const std::vector<DisabledCollision> disabled =
       arguments.srdf.empty() ? std::vector<DisabledCollision>{}
                              : load_disabled_collisions(arguments.srdf, robot);
   const std::vector<Tip> tips = tips_at_zero(robot);
   print(robot, tips);
+  for (const std::string& list : part_lists) std::printf("\nconvex parts from %s", list.c_str());
+  if (!part_lists.empty()) std::puts("");
   if (!arguments.srdf.empty()) std::printf("\n%zu link pairs may touch\n", disabled.size());
   if (json.wanted()) {
     host::write(report_of(robot, tips, disabled), json.stream());

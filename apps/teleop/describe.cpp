@@ -8,9 +8,11 @@
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
+#include <repel/scene/part_list.hpp>
 #include <repel/world/changed_arm.hpp>
 
 #include "camera_feed.hpp"
+#include "static_model.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -28,8 +30,15 @@ void make_ideal(ArmModel& model) {
   }
 }
 
-Robot load_robot(const scene::RobotChoice& choice, bool with_gravity) {
+/// @param part_lists to which the paths of the lists of its parts are added
+Robot load_robot(const scene::RobotChoice& choice, bool with_gravity,
+                 std::vector<std::string>& part_lists) {
   UrdfOptions options;
+  if (choice.covers) {
+    options.convex_parts = [&part_lists](const std::string& mesh, const Vec3& scale) {
+      return scene::parts_beside(mesh, scale, part_lists);
+    };
+  }
   options.tip = choice.tip_link;
   options.package_paths = choice.packages;
   for (const scene::JointHold& hold : choice.hold) {
@@ -140,16 +149,23 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
   cell.levels = scene.levels;
   for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
     const scene::ArmSetup& setup = scene.arm_setup(i);
-    described.robots.push_back(load_robot(setup.robot, with_gravity));
+    described.robots.push_back(load_robot(setup.robot, with_gravity, described.part_lists));
     ArmDescription& arm =
         cell.arms.emplace_back(describe_arm(scene, setup, described.robots.back()));
     if (i == 0) continue;
     arm.name = scene.partners[i - 1].name;
     arm.law = scene.partners[i - 1].law;
   }
-  for (const scene::Obstacle& obstacle : scene.obstacles) {
-    cell.obstacles.push_back(
-        {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
+  for (const scene::StaticModel& model : scene.models) {
+    for (scene::Obstacle& obstacle : obstacles_of(model, described.part_lists)) {
+      described.model_obstacles.push_back(std::move(obstacle));
+    }
+  }
+  for (const auto* obstacles : {&scene.obstacles, &std::as_const(described.model_obstacles)}) {
+    for (const scene::Obstacle& obstacle : *obstacles) {
+      cell.obstacles.push_back(
+          {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
+    }
   }
   for (const scene::LoosePart& part : scene.loose) {
     cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start, 0.0, part.mass,

@@ -14,6 +14,9 @@ namespace repel::teleop {
 struct DescribedScene {
   CellDescription cell;
   std::vector<Robot> robots;
+  std::vector<scene::Obstacle> model_obstacles;  ///< of Scene::models, the last ones of the cell
+  /// Paths of the files that the parts of meshes in URDF files are from.
+  std::vector<std::string> part_lists;
 };
 
 /// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.

@@ -24,7 +24,13 @@ inline std::string robot_attachment(std::size_t arm) {
   return name.append(std::to_string(arm)).append(".urdf");
 }
 
-/// A file of Scene::part_lists.
+/// The file of one of Scene::models.
+inline std::string model_attachment(std::size_t model) {
+  std::string name = "model ";
+  return name.append(std::to_string(model)).append(".urdf");
+}
+
+/// A file of Scene::part_lists; those of meshes in URDF files come after those of the scene.
 inline std::string parts_attachment(std::size_t list) {
   std::string name = "parts ";
   return name.append(std::to_string(list)).append(".yaml");

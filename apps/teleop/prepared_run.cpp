@@ -79,6 +79,11 @@ std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions
   scene::Scene changed = as_run(scene, options);
   DescribedScene described =
       describe(changed, options.rate_hz, arm_backend(options.backend).has_gravity);
+  if (recording != nullptr) require_recorded_lists(*recording, described.part_lists);
+  changed.part_lists.insert(changed.part_lists.end(), described.part_lists.begin(),
+                            described.part_lists.end());
+  changed.obstacles.insert(changed.obstacles.end(), described.model_obstacles.begin(),
+                           described.model_obstacles.end());
   described.cell.coprocessor = coprocessor_options(changed.budget, options);
   for (ArmDescription& arm : described.cell.arms) {
     arm.options.joints.touches = options.contact;

@@ -24,7 +24,8 @@ struct PreparedRun {
         robots(std::move(read)),
         cell(std::move(described)) {}
 
-  scene::Scene scene;  ///< with the changes made by the options
+  /// With the changes made by the options, the obstacles of its models, and all lists of parts.
+  scene::Scene scene;
   RunOptions options;
   std::vector<Robot> robots;  ///< of the arms, in their order
   Cell cell;

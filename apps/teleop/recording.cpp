@@ -149,11 +149,17 @@ class Ticks {
   bool has_forces_ = false;
 };
 
+/// Null if there is none.
+const std::string* find_attachment(const McapReader& reader, const std::string& name) {
+  for (const record::McapAttachment& each : reader.attachments()) {
+    if (each.name == name) return &each.data;
+  }
+  return nullptr;
+}
+
 const std::string& attachment(const McapReader& reader, const std::string& name,
                               const std::string& file) {
-  for (const record::McapAttachment& each : reader.attachments()) {
-    if (each.name == name) return each.data;
-  }
+  if (const std::string* data = find_attachment(reader, name)) return *data;
   std::string text = "not a recording of this program: it has no attachment ";
   text += name;
   throw SetupError(text, file);
@@ -214,15 +220,21 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
                    recording.file);
 }
 
+/// @param recorded content of the attachment called `name`
 /// @param what begins the message: "the robot is"
-void require_same(const McapReader& reader, const std::string& name, const std::string& path,
+void require_same(const std::string& recorded, const std::string& name, const std::string& path,
                   const char* what, const std::string& recording) {
-  if (text_of_file(path, "the file as it was recorded") != attachment(reader, name, recording)) {
+  if (text_of_file(path, "the file as it was recorded") != recorded) {
     throw SetupError(std::string(what) +
                          " not as it was recorded; allowed: the file that is attached to " +
                          recording + " as '" + name + "'",
                      path);
   }
+}
+
+void require_same(const McapReader& reader, const std::string& name, const std::string& path,
+                  const char* what, const std::string& recording) {
+  require_same(attachment(reader, name, recording), name, path, what, recording);
 }
 
 void read_scene(const McapReader& reader, const std::string& recorded,
@@ -237,13 +249,45 @@ void read_scene(const McapReader& reader, const std::string& recorded,
     require_same(reader, mcap::robot_attachment(i), scene.arm_setup(i).robot.urdf, "the robot is",
                  recording.file);
   }
+  for (std::size_t i = 0; i < scene.models.size(); ++i) {
+    require_same(reader, mcap::model_attachment(i), scene.models[i].urdf, "the model is",
+                 recording.file);
+  }
   for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {
     require_same(reader, mcap::parts_attachment(i), scene.part_lists[i], "the parts of a mesh are",
                  recording.file);
   }
+  for (std::size_t i = scene.part_lists.size();; ++i) {
+    const std::string* list = find_attachment(reader, mcap::parts_attachment(i));
+    if (list == nullptr) break;
+    recording.urdf_parts.push_back(*list);
+  }
 }
 
 }  // namespace
+
+void require_recorded_lists(const Recording& recording, const std::vector<std::string>& lists) {
+  const auto name_of = [&](std::size_t i) {
+    return mcap::parts_attachment(recording.scene.part_lists.size() + i);
+  };
+  const std::size_t recorded = recording.urdf_parts.size();
+  for (std::size_t i = 0; i < std::min(recorded, lists.size()); ++i) {
+    require_same(recording.urdf_parts[i], name_of(i), lists[i],
+                 "the parts of a mesh of a URDF file are", recording.file);
+  }
+  if (lists.size() > recorded) {
+    throw SetupError("this list of parts of a mesh of a URDF file was not there when " +
+                         recording.file + " was recorded; allowed: none",
+                     lists[recorded]);
+  }
+  if (lists.size() < recorded) {
+    throw SetupError(
+        "a mesh of a URDF file has no list of parts any more; allowed: the file that is "
+        "attached as '" +
+            name_of(lists.size()) + "'",
+        recording.file);
+  }
+}
 
 Recording load_recording(const std::string& path,
                          const std::function<std::string(const std::string&)>& find) {

@@ -152,7 +152,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   controls.over_device = session.page_drives;
   controls.may_change = !options.log.ends_with(".mcap");
   std::optional<RunLog> log;
-  if (!options.log.empty()) log.emplace(tap, heading, scene, options);
+  if (!options.log.empty()) log.emplace(tap, heading, prepared->scene, options);
 #ifdef REPEL_TELEOP_VISUAL
   std::optional<View> view;
   if (session.view) {

@@ -1,8 +1,11 @@
 #include <repel/scene/part_list.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <ostream>
+#include <system_error>
 
 #include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
@@ -55,6 +58,38 @@ PartList read_part_list(const std::string& path) {
     for (const Value& point : part.at("points").list()) points.push_back(point.vector(coordinate));
   }
   return list;
+}
+
+PartList part_list_of(const std::string& mesh, const std::string& path) {
+  PartList list = read_part_list(path);
+  if (!list.checksum.empty() && list.checksum != checksum_of_file(mesh)) {
+    std::string text = "the parts in '" + path + "' are of another version of the mesh '" + mesh +
+                       "'; to have its parts: cover '" + mesh + "' -o '" + path + "'";
+    if (list.scale != Vec3::Ones()) text.append(" --scale ").append(text_of(list.scale));
+    throw SetupError(text);
+  }
+  if (list.parts.empty()) {
+    throw SetupError("the file '" + path + "' has no part; allowed: 1 or more");
+  }
+  return list;
+}
+
+std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh, const Vec3& scale,
+                                            std::vector<std::string>& lists) {
+  const std::string path = part_list_beside(mesh);
+  std::error_code unused;
+  if (!std::filesystem::is_regular_file(path, unused)) return {};
+  PartList list = part_list_of(mesh, path);
+  if (list.scale.cwiseAbs().cwiseMin(scale.cwiseAbs()).minCoeff() == 0.0) {
+    throw SetupError("the parts in '" + path + "' have the scale " + text_of(list.scale) +
+                     " and the mesh '" + mesh + "' " + text_of(scale) + "; allowed: not 0");
+  }
+  const Vec3 ratio = scale.cwiseQuotient(list.scale);
+  for (std::vector<Vec3>& part : list.parts) {
+    for (Vec3& p : part) p = ratio.cwiseProduct(p);
+  }
+  if (std::find(lists.begin(), lists.end(), path) == lists.end()) lists.push_back(path);
+  return std::move(list.parts);
 }
 
 std::string checksum_of_file(const std::string& path) {

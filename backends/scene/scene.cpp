@@ -21,10 +21,16 @@ constexpr Rule position{unit::length, -Shape::largest, Shape::largest};
 constexpr Rule extent{unit::length, 0.0, Shape::largest};
 constexpr Rule angles{unit::angle, -1e3, 1e3};
 
+constexpr std::array<std::string_view, 8> obstacle_shapes{"box",  "sphere", "capsule", "cylinder",
+                                                          "cone", "hull",   "mesh",    "urdf"};
+constexpr std::size_t part_shapes = 7;  // so many of them are shapes of tools too
+
 using Laws = std::map<std::string, ForceLaw>;
 
 /// Each has a pair with every other one.
 constexpr std::size_t most_loose = 200;
+/// Each may have as many parts and meshes as a robot.
+constexpr std::size_t most_models = 64;
 
 /// Limits the total number of hull points in a scene, since each costs time in the reduction.
 class HullPoints {
@@ -112,6 +118,16 @@ struct ShapeFile {
   std::vector<std::string>& part_lists;
 };
 
+/// part_list_of(), with the line of `mesh` for what is wrong of the list as a whole.
+PartList checked_list(const Value& mesh, const std::string& mesh_path, const std::string& path) {
+  try {
+    return part_list_of(mesh_path, path);
+  } catch (const SetupError& error) {
+    if (error.line() > 0) throw;
+    mesh.fail(error.what());
+  }
+}
+
 /// The convex parts of a mesh, from the list that `parts` names or that lies beside the mesh.
 std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
   const Value& mesh = map.at("file");
@@ -124,11 +140,7 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
     mesh.fail("the mesh '" + mesh_path + "' has no convex parts yet: there is no file '" + path +
               "'; to have it: cover '" + mesh_path + "'");
   }
-  const PartList list = read_part_list(path);
-  if (!list.checksum.empty() && list.checksum != checksum_of_file(mesh_path)) {
-    mesh.fail("the parts in '" + path + "' are of another version of the mesh '" + mesh_path +
-              "'; to have its parts: cover '" + mesh_path + "' -o '" + path + "'");
-  }
+  const PartList list = checked_list(mesh, mesh_path, path);
   shapes.part_lists.push_back(path);
   std::vector<Part> parts;
   for (const std::vector<Vec3>& points : list.parts) {
@@ -142,7 +154,6 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
       mesh.fail(text.append(" in '").append(path).append("': ").append(error.what()));
     }
   }
-  if (parts.empty()) mesh.fail("the file '" + path + "' has no part; allowed: 1 or more");
   return parts;
 }
 
@@ -156,8 +167,7 @@ std::vector<Part> parts_of(const Value& value, const Map& map,
   any.insert(any.end(), {"size", "radius", "length", "points", "file", "parts"});
   map.allow(any);
   const std::string name = map.at("name").text();
-  const std::string kind =
-      map.at("shape").word_of({"box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh"});
+  const std::string kind = map.at("shape").word_of(std::span(obstacle_shapes).first<part_shapes>());
   const auto sizes = size_keys(kind);
   common.insert(common.end(), sizes.begin(), sizes.end());
   map.allow(common);
@@ -253,12 +263,58 @@ std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
                              map.at("duration").number({unit::time, 1e-3, 86400.0})};
 }
 
-std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const ShapeFile& shapes) {
+/// The path of an existing folder, relative to the scene's `file`.
+std::string folder_of(const Value& value, const std::string& file) {
+  const auto path = std::filesystem::path(file).parent_path() / value.text();
+  std::error_code unused;
+  if (!std::filesystem::is_directory(path, unused)) {
+    value.fail_with_value("a folder; there is none at " + path.lexically_normal().string());
+  }
+  return path.lexically_normal().string();
+}
+
+std::vector<std::string> packages_of(const Value& value, const std::string& file) {
+  std::vector<std::string> folders;
+  if (!value.is_list()) return {folder_of(value, file)};
+  for (const Value& entry : value.list()) folders.push_back(folder_of(entry, file));
+  return folders;
+}
+
+/// Whether meshes are to become the parts in the lists beside them.
+bool takes_covers(const Map& map) {
+  const Value* covers = map.find("covers");
+  return covers == nullptr || covers->word_of({"yes", "no"}) == "yes";
+}
+
+StaticModel model_of(const Map& map, const Laws& laws, const std::string& file) {
+  map.allow({"name", "shape", "position", "rpy", "law", "file", "packages", "covers"});
+  StaticModel model;
+  model.name = map.at("name").text();
+  model.urdf = path_of(map.at("file"), file);
+  if (const Value* packages = map.find("packages")) model.packages = packages_of(*packages, file);
+  model.covers = takes_covers(map);
+  model.X_WM = pose_of(map);
+  model.law = law_called(laws, map);
+  return model;
+}
+
+/// @param models to which those among the obstacles are added
+std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const ShapeFile& shapes,
+                                   std::vector<StaticModel>& models) {
   constexpr std::string_view keys[] = {"law", "motion"};
   std::vector<Obstacle> obstacles;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry);
+    if (const Value* shape = map.find("shape");
+        shape && shape->word_of(obstacle_shapes) == "urdf") {
+      if (models.size() == most_models) {
+        entry.fail("more than " + std::to_string(most_models) + " obstacles of shape urdf");
+      }
+      models.push_back(model_of(map, laws, shapes.file));
+      require_new(names, map);
+      continue;
+    }
     for (Part& part : parts_of(entry, map, keys, shapes)) {
       obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
                            part.X_BP, law_called(laws, map), motion_of(map)});
@@ -418,23 +474,6 @@ void read_payload(const Value& value, RobotChoice& robot) {
   }
 }
 
-/// The path of an existing folder, relative to the scene's `file`.
-std::string folder_of(const Value& value, const std::string& file) {
-  const auto path = std::filesystem::path(file).parent_path() / value.text();
-  std::error_code unused;
-  if (!std::filesystem::is_directory(path, unused)) {
-    value.fail_with_value("a folder; there is none at " + path.lexically_normal().string());
-  }
-  return path.lexically_normal().string();
-}
-
-std::vector<std::string> packages_of(const Value& value, const std::string& file) {
-  std::vector<std::string> folders;
-  if (!value.is_list()) return {folder_of(value, file)};
-  for (const Value& entry : value.list()) folders.push_back(folder_of(entry, file));
-  return folders;
-}
-
 /// A list of joints, or a map from joints to angles and lengths.
 std::vector<JointHold> holds_of(const Value& value) {
   std::vector<JointHold> holds;
@@ -456,7 +495,7 @@ std::vector<JointHold> holds_of(const Value& value) {
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
   map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
-             "payload", "hold", "packages", "drive_delay"});
+             "payload", "hold", "packages", "drive_delay", "covers"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
@@ -464,6 +503,7 @@ RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& fi
   map.read("tip_link", robot.tip_link);
   if (const Value* hold = map.find("hold")) robot.hold = holds_of(*hold);
   if (const Value* packages = map.find("packages")) robot.packages = packages_of(*packages, file);
+  robot.covers = takes_covers(map);
   read_start(map.at("start"), robot);
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");
@@ -672,7 +712,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   }
   const Shared shared{laws, file, kinds, shapes, scene.loose};
   read_station(map, shared, scene);
-  scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes);
+  scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes, scene.models);
   scene.partners = partners_of(map, shared);
   scene.budget = budget_of(map);
   if (const Value* mode = map.find("coprocessor")) {

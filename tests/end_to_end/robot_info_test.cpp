@@ -1,4 +1,5 @@
 // The program that prints the contents of a robot description, as run by a user.
+#include "hook.hpp"
 #include "program.hpp"
 
 namespace repel::test {
@@ -103,6 +104,23 @@ TEST(RobotInfo, HoldsJointsWhereItIsTold) {
   EXPECT_EQ(robot_info(file + " --hold finger_1=2kg").status, 2);
   EXPECT_EQ(robot_info(file + " --hold finger_1=").status, 2);
 }
+
+#ifdef REPEL_ROBOT_INFO_COVERS
+TEST(RobotInfo, CountsThePartsOfACover) {
+  const Folder folder;
+  (void)folder.with("hook.stl.parts.yaml", hook_list());
+  const Ending ending = robot_info(quoted(with_hook(folder)) + " --json " + quoted(folder / "i"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("2 hulls of covers (16)")) << ending;
+  EXPECT_TRUE(ending.says("convex parts from " + folder / "hook.stl.parts.yaml")) << ending;
+  for (const json& link : json::parse(text_of(folder / "i")).at("links")) {
+    if (link.at("name") != "link_6") continue;
+    EXPECT_EQ(link.at("parts")[0].at("name"), "hook/1");
+    EXPECT_EQ(link.at("parts")[1].at("of_cover"), true);
+    EXPECT_EQ(link.at("parts")[2].at("of_cover"), false);
+  }
+}
+#endif
 
 TEST(RobotInfo, UsageErrorsEndWithTwo) {
   EXPECT_EQ(robot_info("").status, 2);

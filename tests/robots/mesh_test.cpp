@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <repel/base/setup_error.hpp>
@@ -64,6 +65,53 @@ TEST(Mesh, BecomesTheCornersOfItsScaledHull) {
   for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, -3, 0), Vec3(0, 0, 1)}) {
     EXPECT_EQ(std::count(part.points.begin(), part.points.end(), corner), 1) << corner;
   }
+}
+
+TEST(Mesh, BecomesTheConvexPartsThatAreFoundForIt) {
+  const Folder folder;
+  put(folder, "robot/urdf/a.obj", obj);
+  const std::vector<Vec3> wedge{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::vector<Vec3> other{{1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 1}};
+  int asked = 0;
+  UrdfOptions options;
+  options.convex_parts = [&](const std::string& path, const Vec3& scale) {
+    ++asked;
+    EXPECT_EQ(fs::path(path).filename(), "a.obj");
+    EXPECT_EQ(scale, Vec3(0.5, -1, 0.25));
+    return std::vector{wedge, other};
+  };
+  const std::string mesh = "<mesh filename='a.obj' scale='0.5 -1 0.25'/>";
+  const std::string twice =
+      mesh + "</geometry></collision><collision name='claw'><geometry>" + mesh;
+  const Robot robot = load(folder, twice, options);
+  EXPECT_EQ(asked, 1) << "each mesh once per scale";
+  ASSERT_EQ(robot.parts.size(), 4U);
+  const char* const names[] = {"arm_0/1", "arm_0/2", "claw/1", "claw/2"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const RobotPart& part = robot.parts[i];
+    EXPECT_EQ(part.name, names[i]);
+    EXPECT_EQ(part.in_link, "arm");
+    EXPECT_EQ(part.kind, PartKind::hull);
+    EXPECT_EQ(part.points, i % 2 == 0 ? wedge : other);
+    EXPECT_TRUE(part.is_of_cover);
+  }
+  EXPECT_EQ(robot.parts[1].X_LP.translation(), Vec3(0, 0, 7));
+}
+
+TEST(Mesh, WhoseConvexPartsAreNoHullsIsRefused) {
+  const Folder folder;
+  put(folder, "robot/urdf/a.obj", obj);
+  const auto with = [&](const std::vector<Vec3>& part) {
+    UrdfOptions options;
+    options.convex_parts = [&](const std::string&, const Vec3&) {
+      return std::vector<std::vector<Vec3>>{part};
+    };
+    return complaint(folder, "<mesh filename='a.obj'/>", options);
+  };
+  EXPECT_NE(with({}).find("hull of 0 corners"), std::string::npos);
+  EXPECT_NE(with({{0, 0, std::nan("")}}).find("not finite"), std::string::npos);
+  EXPECT_NE(with(std::vector<Vec3>(10'001, Vec3::Zero())).find("allowed: 1 to 10000"),
+            std::string::npos);
 }
 
 /// A COLLADA triangle in centimetres with Y up.

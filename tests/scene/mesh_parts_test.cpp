@@ -108,6 +108,32 @@ TEST_F(MeshParts, OfAnotherVersionOfTheMeshAreRefused) {
   EXPECT_NE(text.find("another version"), std::string::npos) << text;
 }
 
+TEST_F(MeshParts, AreConvertedToTheScaleThatIsAskedFor) {
+  std::vector<std::string> lists;
+  EXPECT_TRUE(parts_beside(folder_ / "bin.stl", Vec3::Ones(), lists).empty());
+  EXPECT_TRUE(lists.empty()) << "there is none yet";
+  list_.scale = {0.001, 0.001, 0.001};
+  write("bin.stl.parts.yaml");
+  EXPECT_EQ(parts_beside(folder_ / "bin.stl", list_.scale, lists)[0], wedge) << "to the bit";
+  const auto parts = parts_beside(folder_ / "bin.stl", {0.002, -0.001, 0.001}, lists);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_NEAR(parts[1][0].x(), 2.0 * other[0].x(), 1e-12);
+  EXPECT_NEAR(parts[1][2].y(), -other[2].y(), 1e-12);
+  EXPECT_EQ(lists, std::vector<std::string>{folder_ / "bin.stl.parts.yaml"});
+  EXPECT_THROW((void)parts_beside(folder_ / "bin.stl", {1, 0, 1}, lists), SetupError);
+  list_.scale.x() = 0.0;
+  write("bin.stl.parts.yaml");
+  EXPECT_THROW((void)parts_beside(folder_ / "bin.stl", Vec3::Ones(), lists), SetupError);
+}
+
+TEST_F(MeshParts, OfAnotherVersionAndScaleAreMadeAnewWithThatScale) {
+  list_.scale = {0.001, 0.001, 0.001};
+  write("bin.stl.parts.yaml");
+  (void)folder_.with("bin.stl", "other bytes");
+  const std::string text = complaint();
+  EXPECT_NE(text.find("--scale 0.001 0.001 0.001"), std::string::npos) << text;
+}
+
 TEST_F(MeshParts, ThatAreNoListAreRefusedWithTheirLine) {
   const auto with = [&](const std::string& text) {
     (void)folder_.with("bin.stl.parts.yaml", text);

@@ -2,6 +2,7 @@
 /// A robot description as plain numbers and convex parts.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,23 @@ namespace repel {
 
 enum class PartKind { box, sphere, capsule, cylinder, hull };
 
+/// The name of `kind`.
+[[nodiscard]] constexpr const char* to_text(PartKind kind) noexcept {
+  switch (kind) {
+    case PartKind::box:
+      return "box";
+    case PartKind::sphere:
+      return "sphere";
+    case PartKind::capsule:
+      return "capsule";
+    case PartKind::cylinder:
+      return "cylinder";
+    case PartKind::hull:
+      break;
+  }
+  return "hull";
+}
+
 /// One convex part of a link.
 struct RobotPart {
   std::string name;     ///< of the collision element; if it has none, made from link and index
@@ -23,8 +41,11 @@ struct RobotPart {
   /// [m] box: half extents; sphere: radius, 0, 0; capsule and cylinder, along z: radius, half
   /// length (of a capsule without its caps), 0; hull: unused.
   Vec3 size = Vec3::Zero();
-  /// [m] hull only, in the frame of the part: the vertices of the convex hull of the mesh.
+  /// [m] hull only, in the frame of the part: the vertices of the convex hull of the mesh, or of
+  /// one of its convex parts.
   std::vector<Vec3> points;
+  bool is_of_cover =
+      false;  ///< a hull from UrdfOptions::convex_parts; its name ends in /1, /2, ...
   Pose X_LP = Pose::Identity();  ///< [m] pose of the part in its link
 };
 
@@ -49,7 +70,7 @@ struct Robot {
   ArmModel arm;
   std::vector<RobotLink> links;   ///< every link of the file, parents first
   std::vector<std::string> tips;  ///< moving links without children, in the same order
-  std::vector<RobotPart> parts;   ///< one for each collision element
+  std::vector<RobotPart> parts;   ///< one or more for each collision element
   std::vector<HeldJoint> held;    ///< parents first
   std::string end;                ///< the last link of the chosen chain
   std::string end_reason;         ///< why that chain
@@ -72,6 +93,11 @@ struct Hold {
   std::optional<JointType> type;  ///< which of the two units it is; without, that of the joint
 };
 
+/// Finds the convex parts of the mesh file at `path`, with each vertex multiplied by `scale`: the
+/// corners of each [m]. None: the mesh becomes its convex hull.
+using ConvexParts =
+    std::function<std::vector<std::vector<Vec3>>(const std::string& path, const Vec3& scale)>;
+
 /// Choices that the file does not make.
 struct UrdfOptions {
   /// Link whose frame is the tool frame; the joints between the root and this link are those of the
@@ -82,6 +108,9 @@ struct UrdfOptions {
   /// Folders in which package://NAME/ is searched. Each is the package itself, under any name, or
   /// contains it up to four levels down. The folders above the file are always searched.
   std::vector<std::string> package_paths{};
+  /// Where collision meshes have their convex parts from; without, each becomes its convex hull.
+  /// What it throws is reported with the line of the mesh.
+  ConvexParts convex_parts{};
 };
 
 }  // namespace repel

@@ -14,7 +14,7 @@ namespace repel {
 
 /// Reads the URDF file at `path`. Joints beside the chain are held. What fixed and held joints
 /// carry is merged into their parents, with mass and inertia; a collision mesh becomes its convex
-/// hull. A robot without a name has that of its file.
+/// parts if `options` find some, else its convex hull. A robot without a name has that of its file.
 /// @throws SetupError naming file, line, link or joint, value and what is allowed, if the file
 ///   cannot be read as a serial arm or anything in it would be lost
 [[nodiscard]] Robot load_arm(const std::string& path, const UrdfOptions& options = {});
@@ -23,6 +23,13 @@ namespace repel {
 /// its folder.
 [[nodiscard]] Robot parse_arm(std::string_view urdf, const UrdfOptions& options = {},
                               const std::string& file = "urdf");
+
+/// The collision elements of the URDF file at `path` as parts of one body that stands still: their
+/// poses are in the root link, with every joint at zero. It need not be an arm.
+/// @param options of which only those about meshes count
+/// @throws SetupError as load_arm(), but for what only an arm must have
+[[nodiscard]] std::vector<RobotPart> load_parts(const std::string& path,
+                                                const UrdfOptions& options = {});
 
 /// Two links of a robot between which collisions are ignored.
 struct DisabledCollision {

@@ -34,6 +34,19 @@ void write_part_list(const PartList& list, std::ostream& out);
 /// @throws SetupError naming file, line, value and what is allowed
 [[nodiscard]] PartList read_part_list(const std::string& path);
 
+/// The list at `path` of the convex parts of the file `mesh`.
+/// @throws SetupError as read_part_list(), and without line if it has no part or is of another
+///   version of the mesh, with the command that makes it anew
+[[nodiscard]] PartList part_list_of(const std::string& mesh, const std::string& path);
+
+/// The parts of the file `mesh` for its vertices multiplied by `scale`, from the list beside it
+/// [m]; none if there is no list.
+/// @param lists to which the path of the list is added, unless it is there
+/// @throws SetupError as part_list_of(), or if the list or `scale` has a factor of 0
+[[nodiscard]] std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh,
+                                                          const Vec3& scale,
+                                                          std::vector<std::string>& lists);
+
 /// The FNV-1a hash of the bytes of a file, as 16 hexadecimal digits: it tells that a file has
 /// changed, not that someone meant to hide it.
 /// @throws SetupError if the file cannot be read

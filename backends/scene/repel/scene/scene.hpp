@@ -48,6 +48,16 @@ struct Obstacle {
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
 };
 
+/// A robot description M of which every collision part is an obstacle, with all joints at zero.
+struct StaticModel {
+  std::string name;                   ///< its parts are called NAME/LINK/PART
+  std::string urdf;                   ///< path
+  std::vector<std::string> packages;  ///< folders where package:// leads
+  bool covers = true;                 ///< meshes become the parts in the lists beside them
+  Pose X_WM = Pose::Identity();       ///< [m] pose of its root link
+  ForceLaw law;
+};
+
 /// One convex part P of the world that can come, be held by a tool, and go while the scene runs.
 struct LoosePart {
   std::string name;
@@ -120,6 +130,7 @@ struct RobotChoice {
   std::string tip_link;                ///< empty: the end of the longest chain
   std::vector<JointHold> hold;         ///< joints to hold; those beside the chain are held anyway
   std::vector<std::string> packages;   ///< folders where package:// leads; paths as that of urdf
+  bool covers = true;                  ///< meshes become the parts in the lists beside them
   std::vector<double> start;           ///< [rad] or [m] one for each moving joint, base outward
   std::vector<JointType> start_types;  ///< which of the two units the file gives
   Pose X_WB = Pose::Identity();        ///< [m] pose of the base in the world
@@ -170,12 +181,14 @@ struct Scene : ArmSetup {
   /// Of every shape, where the measure needs them: see CellDescription. The shapes read have one.
   int levels = ReductionOptions{}.levels;
   std::vector<Obstacle> obstacles;
+  std::vector<StaticModel> models;  ///< further obstacles, for whoever can read robot descriptions
   std::vector<LoosePart> loose;
   SpareParts spare;
   std::optional<CameraChoice> camera;
   std::vector<HiddenPart> hidden;  ///< for the camera to see
   std::vector<OtherArm> partners;
-  std::vector<std::string> part_lists;  ///< paths of the files that the parts of meshes are from
+  /// Paths of the files that the parts of meshes are from, those in URDF files excepted.
+  std::vector<std::string> part_lists;
   Budget budget;
   CoprocessorMode coprocessor = CoprocessorMode::together;
 

@@ -1,0 +1,36 @@
+#include "static_model.hpp"
+
+#include <utility>
+
+#include <repel/robots/parts.hpp>
+#include <repel/scene/part_list.hpp>
+
+namespace repel::teleop {
+
+std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model,
+                                          std::vector<std::string>& part_lists) {
+  UrdfOptions options;
+  options.package_paths = model.packages;
+  if (model.covers) {
+    options.convex_parts = [&part_lists](const std::string& mesh, const Vec3& scale) {
+      return scene::parts_beside(mesh, scale, part_lists);
+    };
+  }
+  std::vector<scene::Obstacle> obstacles;
+  for (const RobotPart& part : load_parts(model.urdf, options)) {
+    std::string name = model.name;
+    name.append(1, '/').append(part.in_link).append(1, '/').append(part.name);
+    obstacles.push_back({std::move(name),
+                         shape_of(part, {.levels = 1}),
+                         to_text(part.kind),
+                         model.X_WM * part.X_LP,
+                         model.law,
+                         {}});
+  }
+  if (obstacles.empty()) {
+    throw SetupError("'" + model.name + "' has no collision part; allowed: 1 or more", model.urdf);
+  }
+  return obstacles;
+}
+
+}  // namespace repel::teleop

@@ -1,0 +1,94 @@
+// A robot description whose collision parts are obstacles.
+#include <algorithm>
+#include <fstream>
+
+#include <repel/scene/scene.hpp>
+
+#include "contact.hpp"
+#include "describe.hpp"
+#include "end_to_end/hook.hpp"
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace static_model_test {
+
+/// A table under the tool, with a hook on a fixed joint beside it, as one description.
+std::string scene_of(const Folder& folder) {
+  (void)folder.with("hook.stl", hook_stl());
+  (void)folder.with("hook.stl.parts.yaml", hook_list());
+  (void)folder.with("cell.urdf",
+                    "<robot name='cell'><link name='table'><collision name='plate'><geometry>"
+                    "<box size='0.6 0.8 0.05'/></geometry></collision></link><link name='side'>"
+                    "<collision><geometry><mesh filename='hook.stl'/></geometry></collision></link>"
+                    "<joint name='j' type='fixed'><parent link='table'/><child link='side'/>"
+                    "<origin xyz='0 0.3 0.02'/></joint></robot>");
+  return folder.with(
+      "scene.yaml",
+      robot_text() +
+          "laws:\n  default: {range: 20 mm, surface_force: 40 N, damping: 1 N s/m}\n"
+          "obstacles:\n"
+          "  - {name: cell, shape: urdf, file: cell.urdf, position: 0.6 -0.15 0.425 m}\n" +
+          push_text());
+}
+
+TEST(StaticModel, BecomesObstaclesOfItsLinksAndCovers) {
+  const Folder folder;
+  const scene::Scene scene = scene::load(scene_of(folder));
+  const auto cell = teleop::describe(scene, 400.0).cell;
+  ASSERT_EQ(cell.obstacles.size(), 3U);
+  EXPECT_EQ(cell.obstacles[0].name, "cell/table/plate");
+  EXPECT_EQ(cell.obstacles[1].name, "cell/side/side_0/1");
+  EXPECT_EQ(cell.obstacles[2].name, "cell/side/side_0/2");
+  EXPECT_EQ(cell.obstacles[0].law.range, 0.02);
+  EXPECT_LT((cell.obstacles[2].X_WP.translation() - Vec3(0.6, 0.15, 0.445)).norm(), 1e-12);
+}
+
+TEST(StaticModel, PushesAsTheSamePartsInTheSceneWouldAlsoInContact) {
+  const Folder folder;
+  const std::string plain = folder.with("plain.yaml", robot_text() + table_text() + push_text());
+  const auto run = [&](const std::string& scene, const std::string& more) {
+    const Ending ending =
+        teleop(quoted(scene) + " --fast --seconds 2 --report " + quoted(folder / "r.json") + more);
+    EXPECT_EQ(ending.status, 0) << ending;
+    return report_of(folder / "r.json").at("obstacles")[0];
+  };
+  const auto table = run(plain, "");
+  const auto model = run(scene_of(folder), "");
+  EXPECT_EQ(model.at("name"), "cell/table/plate");
+  EXPECT_GT(model.at("peak_force_n"), 10.0);
+  EXPECT_EQ(model.at("peak_force_n"), table.at("peak_force_n"));
+  EXPECT_EQ(run(folder / "scene.yaml", " --contact").at("name"), "cell/table/plate");
+}
+
+TEST(StaticModel, IsRecordedAndAnotherOneIsRefused) {
+  const Folder folder;
+  const std::string recording = folder / "run.mcap";
+  const Ending ending =
+      teleop(quoted(scene_of(folder)) + " --fast --seconds 1 --log " + quoted(recording));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const auto replay = [&] { return teleop("--replay " + quoted(recording)); };
+  const Ending same = replay();
+  EXPECT_EQ(same.status, 0) << same;
+  EXPECT_TRUE(same.says("cell/table/plate")) << same;
+  std::ofstream(folder / "hook.stl.parts.yaml", std::ios::app) << "      - 0 0 0.1 m\n";
+  const Ending parts = replay();
+  EXPECT_EQ(parts.status, 1) << parts;
+  EXPECT_TRUE(parts.says("hook.stl.parts.yaml")) << parts;
+  (void)folder.with("hook.stl.parts.yaml", hook_list());
+  std::ofstream(folder / "cell.urdf", std::ios::app) << "<!-- changed -->\n";
+  const Ending other = replay();
+  EXPECT_EQ(other.status, 1) << other;
+  EXPECT_TRUE(other.says("cell.urdf")) << other;
+}
+
+TEST(StaticModel, WithoutACollisionPartIsRefused) {
+  const Folder folder;
+  const std::string scene = scene_of(folder);
+  (void)folder.with("cell.urdf", "<robot name='cell'><link name='table'/></robot>");
+  const Ending ending = teleop(quoted(scene) + " --fast --seconds 1");
+  EXPECT_EQ(ending.status, 1) << ending;
+  EXPECT_TRUE(ending.says("'cell' has no collision part")) << ending;
+}
+
+}  // namespace static_model_test
+}  // namespace repel::test
