@@ -13,7 +13,9 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <string>
 #include <tuple>
+#include <utility>
 
 #include <HACD/hacdHACD.h>
 #endif
@@ -123,7 +125,7 @@ PointSets hacd_parts(const Solid& solid, double concavity) {
   }
   SharedMesh mesh = shared(surface);
   const std::unique_ptr<std::FILE, CloseFile> file(std::tmpfile());
-  if (!file) throw SetupError("needs a temporary file for hacd; allowed: a TMPDIR with space");
+  if (!file) throw SetupError("needs a temporary file for hacd; allowed: space in /tmp");
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) throw SetupError("needs a process for hacd; allowed: one more process");
