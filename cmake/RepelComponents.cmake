@@ -35,7 +35,7 @@ if(NOT REPEL_HAS_CORE)
   message(FATAL_ERROR "repel needs Eigen 3.4 or newer: apt-get install ${packages}")
 endif()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
-foreach(part ${REPEL_COMPONENTS} meshes)
+foreach(part ${REPEL_COMPONENTS} meshes hacd)
   repel_say_if_left_out(${part})
 endforeach()
 

@@ -41,6 +41,25 @@ macro(repel_find_robots)
   repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_for_meshes})
 endmacro()
 
+macro(repel_find_cover)
+  # Only for the engine hacd; where it was built in, it is needed. Bullet's extras have no CMake
+  # file for it.
+  find_path(REPEL_HACD_INCLUDE_DIR HACD/hacdHACD.h PATH_SUFFIXES bullet)
+  find_library(REPEL_HACD_LIBRARY NAMES HACD-float64 HACD)
+  mark_as_advanced(REPEL_HACD_INCLUDE_DIR REPEL_HACD_LIBRARY)
+  repel_all_found(HACD REPEL_HACD_INCLUDE_DIR REPEL_HACD_LIBRARY)
+  if(REPEL_HAS_HACD AND NOT TARGET repel_hacd::hacd)
+    add_library(repel_hacd::hacd UNKNOWN IMPORTED)
+    set_target_properties(repel_hacd::hacd PROPERTIES
+      IMPORTED_LOCATION ${REPEL_HACD_LIBRARY}
+      INTERFACE_INCLUDE_DIRECTORIES ${REPEL_HACD_INCLUDE_DIR})
+  endif()
+  if(REPEL_COVER_USES_HACD)
+    set(repel_for_hacd REPEL_HAS_HACD)
+  endif()
+  repel_all_found(COVER ${repel_for_hacd})
+endmacro()
+
 macro(repel_find_bullet)
   repel_pkg_config(BULLET bullet-float64)  # plain `bullet` is single precision
   repel_all_found(BULLET BULLET_FOUND)

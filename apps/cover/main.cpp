@@ -40,6 +40,7 @@ const std::map<std::string, Engine>& engines() {
   static const std::map<std::string, Engine> all{{"auto", Engine::automatic},
                                                  {"planes", Engine::planes},
                                                  {"coacd", Engine::coacd},
+                                                 {"hacd", Engine::hacd},
                                                  {"hull", Engine::hull}};
   return all;
 }
@@ -75,8 +76,11 @@ void describe(CLI::App& app, Arguments& a) {
                         "Close holes whose points are at most this far from their rim, 0 to 10m; "
                         "by default as --error"),
          0.0, 10.0);
-  app.add_option("--engine", a.options.engine,
-                 "What divides the mesh: auto, planes (built in), coacd (the PyPI package), hull")
+  app.add_option(
+         "--engine", a.options.engine,
+         "What divides the mesh: auto, planes (built in), coacd (the PyPI package), hacd" +
+             std::string(has_hacd() ? "" : " (not here: built without libbullet-extras-dev)") +
+             ", hull")
       ->type_name("NAME")
       ->transform(CLI::CheckedTransformer(engines()));
   app.add_option("--scale", a.scale, "Factors of x, y and z, such as 0.001 for a mesh in mm")

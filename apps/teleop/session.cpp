@@ -72,8 +72,8 @@ visual::SceneInfo scene_info_of(const scene::Scene& scene, const Cell& cell,
   info.rate_hz = options.rate_hz;
   info.replay = recording != nullptr;
   info.duration = info.replay ? options.seconds : 0.0;
-  const auto spare = cell.loose().subspan(scene.loose.size(),
-                                          static_cast<std::size_t>(scene.spare.count));
+  const auto spare =
+      cell.loose().subspan(scene.loose.size(), static_cast<std::size_t>(scene.spare.count));
   info.spare.assign(spare.begin(), spare.end());
   for (std::size_t i = 0; i < heading.arms.size(); ++i) {
     const ArmHeading& arm = heading.arms[i];

@@ -85,6 +85,27 @@ PointSets by_coacd(const Solid& solid, const CoverOptions& options) {
   return best;
 }
 
+/// With a smaller concavity each time, until the parts are within the error or too many.
+PointSets by_hacd(const Solid& solid, const CoverOptions& options) {
+  PointSets best;
+  for (const double of_error : {64.0, 16.0, 4.0, 2.0, 1.0, 0.5, 0.25}) {
+    const double concavity = of_error * options.error;
+    say(options, "HACD, concavity " + to_text(1e3 * concavity) + " mm");
+    PointSets sets = hacd_parts(solid, concavity);
+    if (static_cast<int>(sets.size()) > options.parts) {
+      if (!best.empty()) break;
+      throw SetupError("is divided into " + std::to_string(sets.size()) +
+                       " parts by hacd at least; allowed: " + std::to_string(options.parts) +
+                       ", see --parts");
+    }
+    best = std::move(sets);
+    const double excess =
+        largest_excess(parts_of(best, thickness_of(options)), solid, options.error);
+    if (excess <= options.error) break;
+  }
+  return best;
+}
+
 PointSets one_hull(const Solid& solid) {
   std::vector<Vec3> points;
   for (const Triangle& t : solid.as_given()) points.insert(points.end(), t.begin(), t.end());
@@ -145,6 +166,10 @@ Cover cover_of(const TriangleMesh& mesh, const CoverOptions& options) {
     case Engine::coacd:
       cover.engine = "coacd";
       sets = by_coacd(solid, options);
+      break;
+    case Engine::hacd:
+      cover.engine = "hacd";
+      sets = by_hacd(solid, options);
       break;
     case Engine::hull:
       cover.engine = "hull";

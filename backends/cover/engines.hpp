@@ -31,4 +31,10 @@ using PointSets = std::vector<std::vector<Vec3>>;
 [[nodiscard]] PointSets coacd_parts(const Solid& solid, const std::string& library,
                                     double threshold, int most);
 
+/// HACD (K. Mamou and F. Ghorbel, "A simple and efficient approach for 3D mesh approximate convex
+/// decomposition", 2009): joins triangles to clusters while these are less concave than asked for.
+/// @param concavity [m] of a part at most, as HACD measures it
+/// @throws SetupError if it is not built in, for too many triangles, or if it finds no parts
+[[nodiscard]] PointSets hacd_parts(const Solid& solid, double concavity);
+
 }  // namespace repel::cover

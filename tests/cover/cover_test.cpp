@@ -116,6 +116,35 @@ TEST(Cover, OfARingKeepsItsHoleOpen) {
   expect_covered(ring, cover);
 }
 
+TEST(Cover, ByHacdMissesNothingOfABinAndAnAngle) {
+  if (!has_hacd()) GTEST_SKIP() << "built without HACD (libbullet-extras-dev)";
+  const test::Bin bin;
+  const TriangleMesh angle = test::angle_mesh(0.02, 0.05);
+  for (const TriangleMesh& mesh : {bin.mesh(), angle}) {
+    const CoverOptions options{.parts = 16, .error = 2e-3, .engine = Engine::hacd};
+    const Cover cover = cover_of(mesh, options);
+    EXPECT_EQ(cover.engine, "hacd");
+    EXPECT_TRUE(cover.uncovered.empty());
+    EXPECT_LE(cover.parts.size(), 16U);
+    EXPECT_LE(cover.excess_reached_m, cover.excess_m);
+    expect_covered(mesh, cover);
+    const Cover again = checked_cover(mesh, cover.parts, options);
+    EXPECT_TRUE(again.uncovered.empty());
+    EXPECT_NEAR(again.excess_m, cover.excess_m, 0.1 * options.error);
+  }
+}
+
+TEST(Cover, ByHacdWithoutItNamesItsPackage) {
+  if (has_hacd()) GTEST_SKIP() << "built with HACD";
+  try {
+    (void)cover_of(test::box_mesh({1, 1, 1}), {.engine = Engine::hacd});
+    FAIL() << "not refused";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string(error.what()).find("apt-get install libbullet-extras-dev"),
+              std::string::npos);
+  }
+}
+
 TEST(Cover, WithTooFewPartsSaysHowFarTheyReachOut) {
   const test::Bin bin;
   const Cover cover = cover_of(bin.mesh(), {.parts = 1, .error = 1e-3});

@@ -146,8 +146,7 @@ TEST(Intrusion, IsNeverDeeperThanTheReportSaysInAnyScene) {
   for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path().stem().string() + ", seed " + std::to_string(seed));
-    // What a tool holds is where it was gripped, and what a camera sees where it was seen: no row of
-    // the log says that.
+    // No row of the log says where a tool gripped what it holds, or a camera saw what it sees.
     const scene::Scene as_written = scene::load(entry.path().string());
     if (!as_written.loose.empty() || as_written.camera) continue;
     const Folder folder;

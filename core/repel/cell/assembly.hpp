@@ -103,8 +103,7 @@ class CellAssembly {
   /// One for each 400 us of the period: a change costs some 50 us of the tick, with the first
   /// evaluations of its pairs, so all of them an eighth.
   [[nodiscard]] int changes_per_tick() const noexcept {
-    constexpr std::chrono::microseconds for_each(400);
-    return static_cast<int>(std::clamp<std::int64_t>(period_ / for_each, 1, 64));
+    return static_cast<int>(std::clamp<std::int64_t>(period_.count() / 400'000, 1, 64));
   }
 
   void lay_out() {

@@ -22,6 +22,7 @@ enum class Engine : std::uint8_t {
   automatic,  ///< one hull if that is within the error, otherwise planes
   planes,     ///< cuts by planes of the mesh: built in
   coacd,      ///< the library of the PyPI package coacd
+  hacd,       ///< HACD of Bullet's extras, if it is built in
   hull        ///< one convex hull
 };
 
@@ -74,5 +75,8 @@ struct Cover {
 
 /// Whether the library of CoACD is found here.
 [[nodiscard]] bool has_coacd();
+
+/// Whether HACD is built in.
+[[nodiscard]] bool has_hacd();
 
 }  // namespace repel::cover
