@@ -31,7 +31,8 @@ struct Arguments {
   std::vector<double> scale;
   CoverOptions options;
   double cube = 0.0;  // [m] 0: that of the map
-  bool is_unseen_solid = false;
+  std::string engine = "auto";
+  std::string unseen = "free";
   bool allow_gaps = false;
   bool is_quiet = false;
 };
@@ -77,21 +78,22 @@ void describe(CLI::App& app, Arguments& a) {
                         "by default as --error"),
          0.0, 10.0);
   app.add_option(
-         "--engine", a.options.engine,
+         "--engine", a.engine,
          "What divides the mesh: auto, planes (built in), coacd (the PyPI package), hacd" +
              std::string(has_hacd() ? "" : " (not here: built without libbullet-extras-dev)") +
              ", hull")
       ->type_name("NAME")
-      ->transform(CLI::CheckedTransformer(engines()));
+      ->check(CLI::IsMember(&engines()))
+      ->capture_default_str();
   app.add_option("--scale", a.scale, "Factors of x, y and z, such as 0.001 for a mesh in mm")
       ->type_name("X [Y Z]")
       ->expected(1, 3)
       ->check(host::between(-1e6, 1e6));
-  const std::map<std::string, bool> solid{{"free", false}, {"solid", true}};
-  app.add_option("--unseen", a.is_unseen_solid,
-                 "Of a map: what nobody has seen of the space around it, free (default) or solid")
+  app.add_option("--unseen", a.unseen,
+                 "Of a map: what nobody has seen of the space around it, free or solid")
       ->type_name("WHAT")
-      ->transform(CLI::CheckedTransformer(solid));
+      ->check(CLI::IsMember({"free", "solid"}))
+      ->capture_default_str();
   length(app.add_option("--cube", a.cube,
                         "Of a map: join its cubes to larger ones of about this edge, 0 to 10m; "
                         "solid if any of them is"),
@@ -173,7 +175,7 @@ void print_gaps(const Cover& cover) {
 
 /// The boxes of a map. They contain its cubes, and nothing else unless those were joined.
 Cover cover_of_map(const Arguments& a) {
-  OccupancyGrid grid = read_octree(a.mesh, a.is_unseen_solid);
+  OccupancyGrid grid = read_octree(a.mesh, a.unseen == "solid");
   const double edge = grid.edge;
   const int factor = std::max(1, static_cast<int>(std::lround(a.cube / edge)));
   if (factor > 1) grid = coarser(grid, factor);
@@ -192,6 +194,7 @@ Cover cover_of_mesh(const Arguments& a, const Vec3& scale) {
   }
   Progress progress(a.is_quiet);
   CoverOptions options = a.options;
+  options.engine = engines().at(a.engine);
   options.progress = [&](const std::string& text) { progress.say(text); };
   try {
     return cover_of(mesh, options);
