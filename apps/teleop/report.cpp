@@ -346,6 +346,18 @@ void print_verdict(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.deadline.ticks()), 1e2 * response_us / period_us);
 }
 
+ordered_json workers_to_json(const RunResult& r) {
+  return {{"mode", to_text(r.options.coprocessor)},
+          {"ticks_with_work", r.totals().workers.shared},
+          {"oldest_answer_ticks", r.totals().workers.oldest_age},
+          {"ticks_stood_in_for", r.totals().workers.ticks},
+          {"longest_silence_ticks", r.totals().workers.longest_silence},
+          {"silent_at_end", r.totals().workers.stood_in},
+          {"restarts", r.worker_usage.restarts},
+          {"page_faults", r.worker_usage.page_faults},
+          {"switches", r.worker_usage.switches}};
+}
+
 void print_workers(const RunResult& r, std::FILE* out) {
   const WorkerReport& w = r.totals().workers;
   const WorkerUsage& usage = r.worker_usage;
@@ -482,15 +494,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["support_pairs_most"] = r.most_support_pairs;
   report["pairs_skipped_per_tick"] = r.pairs - host::per_tick(r.totals(), r.totals().near);
   report["skipped"] = unused_parts(r);
-  report["workers"] = {{"mode", to_text(r.options.coprocessor)},
-                       {"ticks_with_work", r.totals().workers.shared},
-                       {"oldest_answer_ticks", r.totals().workers.oldest_age},
-                       {"ticks_stood_in_for", r.totals().workers.ticks},
-                       {"longest_silence_ticks", r.totals().workers.longest_silence},
-                       {"silent_at_end", r.totals().workers.stood_in},
-                       {"restarts", r.worker_usage.restarts},
-                       {"page_faults", r.worker_usage.page_faults},
-                       {"switches", r.worker_usage.switches}};
+  report["workers"] = workers_to_json(r);
   report["network_us"] = host::percentiles(r.network_time);
   report["device_damping_n_s_per_m"] = r.device_damping;
   report["stop"] = stop_ticks(r.totals());
