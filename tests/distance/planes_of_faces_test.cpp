@@ -11,10 +11,15 @@ namespace planes_of_faces_test {
 
 using Planes = PlanesOfFaces<16>;
 constexpr unsigned seed = 6211;
+constexpr double margin = 0x1p-48;  ///< [m] of triangles within 4 m of the origin
 
 struct Triangle {
   Vec<double> p, q, r;
 };
+
+FacePlane plane_of(const Triangle& t) {
+  return plane_through(t.p, t.q, t.r, margin);
+}
 
 std::vector<Triangle> draw(families::Rng& rng, std::size_t count) {
   std::vector<Triangle> triangles;
@@ -36,7 +41,7 @@ TEST(PlanesOfFaces, AreThoseOfEachFace) {
     const std::vector<Triangle> triangles = draw(rng, count);
     Planes planes;
     for (std::size_t f = 0; f < count; ++f) {
-      planes.set(f, triangles[f].p, triangles[f].q, triangles[f].r);
+      planes.set(f, plane_of(triangles[f]));
     }
     ASSERT_TRUE(planes.find(count, 0.0));
     double least = 10.0;
@@ -53,7 +58,7 @@ TEST(PlanesOfFaces, AreThoseOfEachFace) {
     }
     // Wherever the nearest face is, its offset decides.
     for (std::size_t f = 0; f < count; ++f) {
-      planes.set(f, triangles[f].p, triangles[f].q, triangles[f].r);
+      planes.set(f, plane_of(triangles[f]));
     }
     EXPECT_FALSE(planes.find(count, least + 1e-12));
   }
@@ -66,10 +71,37 @@ TEST(PlanesOfFaces, RefuseAFaceWithoutArea) {
     Planes planes;
     for (std::size_t f = 0; f < 11; ++f) {
       const auto& [p, q, r] = triangles[f];
-      planes.set(f, p, q, f == flat ? q : r);
+      planes.set(f, plane_of({p, q, f == flat ? q : r}));
     }
     EXPECT_FALSE(planes.find(11, -1.0));
   }
+}
+
+TEST(PlaneThrough, ASliverHoldsForEveryCorner) {
+  // Two corners next to each other and one up to 1e9 m away: the normal in double precision misses
+  // a corner by more than 1 mm.
+  families::Rng rng(seed);
+  int missed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "sliver", i));
+    const Vec3 base = families::direction(rng);
+    const double length = std::pow(10.0, families::uniform(rng, 3.0, 9.0));
+    const Vec<double> p(base);
+    const Vec<double> q(base + length * families::direction(rng));
+    const Vec<double> r(to_vec3(q) + 1e-3 * families::direction(rng));
+    const Vec<double> rough = cross(q - p, r - p);
+    const double rough_length = std::sqrt(dot(rough, rough));
+    const double size = 0x1p-49 * length;
+    missed += std::abs(dot(rough, q - p)) > 2.0 * size * rough_length ? 1 : 0;
+    const auto [n, offset] = plane_through(p, q, r, size);
+    const double unit = std::sqrt(dot(n, n));
+    ASSERT_GT(unit, 0.0);
+    for (const Vec<double>& corner : {p, q, r}) {
+      EXPECT_LE(dot(n, corner), offset);
+      EXPECT_GE(dot(n, corner), offset - size * unit);
+    }
+  }
+  EXPECT_GT(missed, 500);
 }
 
 }  // namespace planes_of_faces_test

@@ -432,5 +432,62 @@ TEST(DeepestPoint, InTheTipOfASliverIsNoDeeperThanTheWayOut) {
   EXPECT_GE(s.upper, -depth);
 }
 
+// Regression: rounding relative to a spike of 1000 km let the point be 1e-9 m above the planes of a
+// sheet, at whose edge that is 10 m outside: the depth was 4 m, of 0.46 m.
+TEST(DeepestPoint, OfASheetBesideASpikeIsInTheSheet) {
+  const Shape sheet = Shape::hull(std::vector<Vec3>{{-2.6796875, 0.0, 2.2587890625},
+                                                    {2.2587890625, 1e-9, 1e-9},
+                                                    {1e-9, 1e-9, 0.009765625},
+                                                    {0.0, 1e-9, 1e-9}});
+  const Shape spike = Shape::hull(std::vector<Vec3>{{1e-9, 1e-9, 1e-9},
+                                                    {2.2587890625, 1e6, 1e-9},
+                                                    {13.7587890625, 13.8037109375, 13.8037109375},
+                                                    {13.8037109375, 13.8037109375, 13.8037109375},
+                                                    {13.8037109375, 2.3037109375, 1e-9},
+                                                    {-1.0, 1e-9, 1e-9}});
+  Pose X_WA = Pose::Identity(), X_WB = Pose::Identity();
+  X_WA.linear() << 0.86187937104303081, -0.28280990001738265, 0.42093052897435185,
+      0.42093052897435185, 0.86187937104303081, -0.28280990001738265, -0.28280990001738265,
+      0.42093052897435185, 0.86187937104303081;
+  X_WB.linear() << -0.84427868873979062, -0.29299573999326867, 0.44871705125347794,
+      0.44871705125347794, -0.84427868873979062, 0.29299573999326867, 0.29299573999326867,
+      0.44871705125347794, 0.84427868873979084;
+  X_WB.translation() = Vec3(0.0, 2.2587890625, 0.0);
+  const double depth = 0.4564575;
+  for (const Separation& s : {separation(sheet, X_WA, spike, X_WB, by_deepest_point),
+                              separation(spike, X_WB, sheet, X_WA, by_deepest_point)}) {
+    EXPECT_GE(s.distance, -depth - 1e-6);
+    EXPECT_LE(s.distance, -0.5 * depth);
+    EXPECT_LE(s.lower, -depth);
+    EXPECT_GE(s.upper, -depth);
+  }
+}
+
+TEST(DeepestPoint, OfSheetsIsBracketedEitherWayRound) {
+  Rng rng(seed);
+  int overlapping = 0, thin = 0;
+  const auto sheet = [&] {
+    families::Solid solid = families::cloud(rng, families::count_between(rng, 4, 8), 2.0);
+    const double thickness = families::log_uniform(rng, 1e-12, 1.0);
+    for (Vec3& v : solid.vertices) v.y() *= thickness;
+    thin += thickness < 1e-6 ? 1 : 0;
+    return Shape::hull(solid.vertices);
+  };
+  for (int i = 0; i < draws(20000); ++i) {
+    SCOPED_TRACE(of_seed(seed, "pair", i));
+    const Shape A = sheet();
+    const Shape B = sheet();
+    const Pose X_WA = families::random_pose(rng, 0.0, 2.0);
+    const Pose X_WB = families::random_pose(rng, 0.0, 2.0);
+    const Separation one = separation(A, X_WA, B, X_WB, by_deepest_point);
+    const Separation other = separation(B, X_WB, A, X_WA, by_deepest_point);
+    EXPECT_LE(one.lower, other.upper);
+    EXPECT_LE(other.lower, one.upper);
+    overlapping += one.distance < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(overlapping, draws(5000));
+  EXPECT_GT(thin, draws(10000));
+}
+
 }  // namespace deepest_point_test
 }  // namespace repel

@@ -135,7 +135,7 @@ class ExpandingPolytope {
       to[at[1]] |= 1U << at[2];
       to[at[2]] |= 1U << at[0];
       faces_[f].corners = at;
-      planes.set(f, corners_[at[0]].w, corners_[at[1]].w, corners_[at[2]].w);
+      planes.set(f, plane(at, margin));
     }
     if (!planes.find(face_count_, margin)) return false;
     for (std::size_t f = 0; f < face_count_; ++f) {
@@ -194,23 +194,23 @@ class ExpandingPolytope {
         dot(cross(e, corners_[2].w - corners_[0].w), corners_[3].w - corners_[0].w);
     static constexpr std::uint8_t outward[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     for (const auto& [i, j, k] : outward) {
-      const bool made = volume > 0.0 ? add_face(i, j, k) : add_face(j, i, k);
+      const bool made = volume > 0.0 ? add_face({i, j, k}, margin) : add_face({j, i, k}, margin);
       if (!made || faces_[face_count_ - 1].offset < -margin) return false;
     }
     return true;
   }
 
-  bool add_face(std::uint8_t i, std::uint8_t j, std::uint8_t k) noexcept {
+  using Triangle = std::array<std::uint8_t, 3>;
+  [[nodiscard]] FacePlane plane(const Triangle& at, double margin) const noexcept {
+    return plane_through(corners_[at[0]].w, corners_[at[1]].w, corners_[at[2]].w, margin);
+  }
+
+  bool add_face(const Triangle& corners, double margin) noexcept {
     if (face_count_ == most_faces) return false;
-    const Vec<double>& p = corners_[i].w;
-    const Vec<double> n = cross(corners_[j].w - p, corners_[k].w - p);
-    const double length = std::sqrt(dot(n, n));
-    if (!(length > 0.0)) return false;
-    Face& face = faces_[face_count_++];
-    face.n = (1.0 / length) * n;
-    face.offset =
-        std::max({dot(face.n, p), dot(face.n, corners_[j].w), dot(face.n, corners_[k].w)});
-    face.corners = {i, j, k};
+    const auto [n, offset] = plane(corners, margin);
+    if (!(dot(n, n) > 0.0)) return false;
+    const double per_length = 1.0 / std::sqrt(dot(n, n));
+    faces_[face_count_++] = {per_length * n, per_length * offset, corners};
     return true;
   }
 
@@ -241,7 +241,7 @@ class ExpandingPolytope {
     corners_[corner_count_++] = w;
     if (!rim_is_a_cycle()) return false;
     for (std::size_t i = 0; i < rim_count_; ++i) {
-      const bool made = add_face(rim_[i].from, rim_[i].to, tip);
+      const bool made = add_face({rim_[i].from, rim_[i].to, tip}, margin);
       if (!made || faces_[face_count_ - 1].offset < -margin) return false;
     }
     return true;

@@ -12,19 +12,39 @@
 
 namespace repel::detail {
 
+/// The plane of a triangle.
+struct FacePlane {
+  Vec<double> n{};      ///< [m^2] counter-clockwise seen from its tip; zero when there is none
+  double offset = 0.0;  ///< [m^3] the largest product of n and a corner
+};
+
+/// The plane through three points, in which they lie within `margin` [m]: a bound of the distance
+/// that it gives holds for all points of the triangle. In double precision the normal of a sliver
+/// turns by rounding; it is then found in extended precision.
+[[nodiscard]] inline FacePlane plane_through(const Vec<double>& p, const Vec<double>& q,
+                                             const Vec<double>& r, double margin) noexcept {
+  Vec<double> n = cross(q - p, r - p);
+  for (const bool last : {false, true}) {
+    const Vec<double> products = dots(p, q, r, n);
+    const auto [least, most] = std::minmax({products.x(), products.y(), products.z()});
+    if ((most - least) * (most - least) <= margin * margin * dot(n, n)) return {n, most};
+    if (last) break;
+    const Vec<DoubleDouble> from(p);
+    n = Vec<double>(cross(Vec<DoubleDouble>(q) - from, Vec<DoubleDouble>(r) - from));
+  }
+  return {};
+}
+
 /// The planes of the faces of a closed polytope of triangles with at most that many corners, found
 /// together.
 template <std::size_t most_corners>
 class PlanesOfFaces {
  public:
-  /// The face with these corners, counter-clockwise seen from outside.
-  void set(std::size_t f, const Vec<double>& p, const Vec<double>& q,
-           const Vec<double>& r) noexcept {
-    const Vec<double> n = cross(q - p, r - p);
-    x_[f] = n.x();
-    y_[f] = n.y();
-    z_[f] = n.z();
-    offset_[f] = std::max({dot(n, p), dot(n, q), dot(n, r)});
+  void set(std::size_t f, const FacePlane& plane) noexcept {
+    x_[f] = plane.n.x();
+    y_[f] = plane.n.y();
+    z_[f] = plane.n.z();
+    offset_[f] = plane.offset;
   }
   /// Call when `count` faces are set. False where a face has no area, or an offset of at most
   /// `least` [m].

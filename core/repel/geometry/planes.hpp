@@ -23,11 +23,13 @@ namespace repel {
 class Planes {
  public:
   Planes() = default;
-  /// @param margin [m] largest distance from the set of a point below all planes: by rounding, and
-  /// by the sagitta of a curved side
-  explicit Planes(const std::vector<Facet>& facets, double margin = 0.0, Tangents side = {})
+  /// @param margin see margin()
+  /// @param sharpness see sharpness()
+  explicit Planes(const std::vector<Facet>& facets, double margin = 0.0, double sharpness = 2.0,
+                  Tangents side = {})
       : side_(side),
         margin_(margin),
+        sharpness_(sharpness),
         size_(facets.size()),
         stride_(stride_of(facets.size())),
         numbers_(4 * stride_) {
@@ -54,7 +56,7 @@ class Planes {
   static Planes cylinder(double radius, double half_length) {
     if (!(radius > 0.0)) return box({0.0, 0.0, half_length});
     return Planes({{{}, unit(2), half_length}, {{}, -unit(2), half_length}},
-                  Tangents::sagitta(radius), {1.0, 0.0, radius});
+                  Tangents::sagitta(radius), 2.0, {1.0, 0.0, radius});
   }
   /// A cone around the z axis, the base of `radius` [m] at -`half_length` [m], the apex at
   /// +`half_length`.
@@ -65,12 +67,17 @@ class Planes {
     // At a sharp apex or rim, rounding of the planes enlarges the intersection most.
     const double sharp = std::min(radius, length) / side;
     const double margin = Tangents::sagitta(radius) + 4e-15 * side / sharp;
-    return Planes({{{}, -unit(2), half_length}}, margin,
+    return Planes({{{}, -unit(2), half_length}}, margin, 2.0 / sharp,
                   {length / side, radius / side, half_length * radius / side});
   }
 
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  /// [m] Largest distance from the set of a point below all planes: by rounding, and by the sagitta
+  /// of a curved side.
   [[nodiscard]] double margin() const noexcept { return margin_; }
+  /// [-] A point at most d above each plane is at most margin() + d sharpness() outside the set: at
+  /// the tip of a sliver, far.
+  [[nodiscard]] double sharpness() const noexcept { return sharpness_; }
   [[nodiscard]] std::uint32_t size() const noexcept { return listed() + side_.size(); }
   /// [byte] Heap memory held, and the heap memory of so many planes.
   [[nodiscard]] std::size_t bytes() const noexcept { return numbers_.capacity() * sizeof(double); }
@@ -132,6 +139,7 @@ class Planes {
   Tangents side_;
   bool is_box_ = false;
   double margin_ = 0.0;
+  double sharpness_ = 2.0;
   std::size_t size_ = 0;
   std::size_t stride_ = 0;
   std::vector<double> numbers_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include <repel/distance/query.hpp>
@@ -55,6 +56,9 @@ class DeepestPoint {
   /// The gradient of the sum of the depths with respect to a translation of A, in world axes;
   /// length at most 1.
   [[nodiscard]] const Vec<double>& gradient() const noexcept { return gradient_; }
+  /// [m] How far the point may be outside the polytopes, by rounding, apart from the margins of the
+  /// planes; the sum for both.
+  [[nodiscard]] double outside() const noexcept { return outside_; }
   [[nodiscard]] int pivots() const noexcept { return pivots_; }
 
  private:
@@ -69,6 +73,9 @@ class DeepestPoint {
     static constexpr int warm_pivots = is_double ? 24 : 40;
     static constexpr int cold_pivots = is_double ? 72 : 80;
     static constexpr double of_depth = is_double ? 0x1p-49 : 0x1p-86;  ///< relative to the size
+    /// Relative to the size, how far outside a sliver the point may be: what is left is subtracted.
+    static constexpr double of_place =
+        is_double ? 0x1p-43 : std::numeric_limits<double>::infinity();
     /// Above the rounding of a multiplier, and far below the tilt, which it would hide.
     static constexpr double of_multiplier = is_double ? 1e-15 : 1e-24;
     static constexpr double least_share = is_double ? 1e-9 : 1e-18;
@@ -135,6 +142,12 @@ class DeepestPoint {
         basis.bound() - found > T(4.0) * tolerance) {
       return End::unclear;
     }
+    outside_ = 0.0;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const double above = std::max(0.0, -static_cast<double>(basis.depth(s)));
+      outside_ += above * (s == 0 ? A_ : B_).planes.sharpness();
+    }
+    if (outside_ > Precision<T>::of_place * size_) return End::unclear;
     point_ = Vec<double>(basis.point());
     gradient_ = Vec<double>(basis.gradient());
     for (std::size_t s = 0; s < 2; ++s) depth_[s] = static_cast<double>(basis.depth(s));
@@ -219,6 +232,7 @@ class DeepestPoint {
   int pivots_ = 0;
   bool doubted_ = false;
   std::array<double, 2> depth_{};
+  double outside_ = 0.0;  ///< [m]
   Vec<double> point_{};
   Vec<double> gradient_{};
 };

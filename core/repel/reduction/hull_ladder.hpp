@@ -218,7 +218,8 @@ inline Planes hull_planes(std::span<const Vec3> points, const std::vector<Facet>
   double reach = 0.0;
   for (const Vec3& p : points) reach = std::max(reach, norm(p));
   const double off = 4e-15 * reach;
-  return Planes(facets, radius > off ? off * (1.0 + 2.0 * reach / radius) : 2.0 * reach);
+  const double sharpness = 1.0 + 2.0 * reach / std::max(radius, off);
+  return Planes(facets, off * sharpness, sharpness);
 }
 
 inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options) {
