@@ -16,3 +16,4 @@
 #include <repel/network/modules/spaceball.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/modules/visual.hpp>
+#include <repel/network/remote/remote_line.hpp>

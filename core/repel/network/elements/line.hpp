@@ -9,6 +9,7 @@
 #include <repel/network/elements/channel.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/signals.hpp>
+#include <repel/network/elements/wave_account.hpp>
 
 namespace repel::network {
 
@@ -56,22 +57,13 @@ class Line {
 
   /// Sets the size of its port, and the impedance for that space.
   void fit(Space space, int size) {
-    impedance_.setConstant(size, options_.impedance);
-    for (int i = space == Space::tool ? size - 3 : size; i < size; ++i) {
-      impedance_.coeffRef(i) = options_.angular_impedance;
-    }
-    root_.resize(size);
-    to_wave_.resize(size);
-    for (int i = 0; i < size; ++i) {
-      root_.coeffRef(i) = std::sqrt(impedance_.coeff(i));
-      to_wave_.coeffRef(i) = 0.5 * (1.0 / root_.coeff(i));
-    }
+    impedance_ = LineImpedance(space, size, options_.impedance, options_.angular_impedance);
   }
   void prepare(double period) {
     period_ = detail::checked_period(period);
     Packet nothing;
-    nothing.sum.setZero(impedance_.size());
-    nothing.effort = nothing.flow = nothing.sum;
+    nothing.waves.clear(impedance_.size());
+    nothing.effort = nothing.flow = nothing.waves.sum;
     const ChannelOptions& channel = options_.channel;
     const double bridged =
         channel.loss > 0.0 ? std::clamp(std::log(1e-6) / std::log(channel.loss), 2.0, 50.0) : 2.0;
@@ -81,8 +73,8 @@ class Line {
     for (End& end : ends_) {
       end.outgoing.prepare(period, nothing, buffer_);
       end.sent = nothing;
-      end.played = nothing;
-      end.wave = nothing.sum;
+      end.played = nothing.waves;
+      end.wave = nothing.waves.sum;
     }
   }
 
@@ -102,9 +94,8 @@ class Line {
     const End& end = ends_[index(side)];
     if (options_.kind == LineKind::waves) {
       shown.form = Form::impedance;
-      shown.matrix = impedance_.asDiagonal();
-      // b = -(2 sqrt(Z) u): the wave of the other end, with opposite sign.
-      shown.offset = -2.0 * product(root_, end.wave);
+      shown.matrix = impedance_.diagonal().asDiagonal();
+      shown.offset = impedance_.offset_of(end.wave);
       return;
     }
     const Packet& arrived = ends_[1 - index(side)].outgoing.newest();
@@ -116,9 +107,7 @@ class Line {
   /// Sends the state of the end at `side`, effort into the line.
   void incident(Side side, const PortState<any_size>& state) noexcept {
     End& end = ends_[index(side)];
-    const Vec<any_size> wave = product(to_wave_, state.effort + product(impedance_, state.flow));
-    end.sent.sum += period_ * wave;
-    end.sent.energy += period_ * wave.squaredNorm();
+    end.sent.waves.add(impedance_.wave_of(state), period_);
     end.sent.effort = state.effort;
     end.sent.flow = state.flow;
     end.outgoing.send(end.sent);
@@ -130,22 +119,20 @@ class Line {
   }
   /// Energy in transit, or withheld for good [J].
   [[nodiscard]] double stored() const noexcept {
-    return ends_[0].sent.energy - ends_[1].played.energy + ends_[1].sent.energy -
+    return ends_[0].sent.waves.energy - ends_[1].played.energy + ends_[1].sent.waves.energy -
            ends_[0].played.energy;
   }
 
  private:
-  // Waves are a / (2 sqrt(Z)), so that their square is a power. All vectors are of size 6 or less
-  // in use; `sum` and `energy` serve one kind of line, `effort` and `flow` the other.
+  // `waves` serve one kind of line, `effort` and `flow` the other.
   struct Packet {
-    Vec<any_size> sum;           // of all waves, times T [sqrt(J s)]
-    double energy = 0.0;         // of all waves [J]
-    Vec<any_size> effort, flow;  // for LineKind::force_velocity
+    WaveAccount waves;
+    Vec<any_size> effort, flow;
   };
   struct End {
     Channel<Packet> outgoing;
     Packet sent;         // the last packet sent
-    Packet played;       // sum and energy output at this end so far
+    WaveAccount played;  // output at this end so far
     Vec<any_size> wave;  // output at this end in this tick
   };
 
@@ -154,7 +141,7 @@ class Line {
   void receive(End& end, const Channel<Packet>& incoming, bool at_rest) const noexcept {
     end.wave.setZero();
     if (at_rest) {
-      end.played = incoming.newest();
+      end.played = incoming.newest().waves;
       return;
     }
     // The packet due for output, or the first after it that has arrived.
@@ -169,21 +156,18 @@ class Line {
   }
   // Outputs one of `count` equal waves that together make up the missing sum.
   void play(End& end, const Packet& packet, double count) const noexcept {
-    end.wave = (packet.sum - end.played.sum) / (count * period_);
-    const double wanted = period_ * end.wave.squaredNorm();
     // Each wave may use only its share of the energy: with part of the sum still missing from an
     // earlier loss, the first would otherwise leave nothing for the others.
-    const double allowed = std::max(0.0, packet.energy - end.played.energy) / count;
-    if (wanted > allowed) end.wave *= std::sqrt(allowed / wanted);
-    end.played.sum += period_ * end.wave;
-    end.played.energy += std::min(wanted, allowed);
+    const Vec<any_size> missing = (packet.waves.sum - end.played.sum) / count;
+    const double allowed = std::max(0.0, packet.waves.energy - end.played.energy) / count;
+    end.wave = end.played.draw(missing, allowed, period_);
   }
 
   LineOptions options_;
-  double period_ = 1.0;                       // [s]
-  std::int64_t buffer_ = 0;                   // [ticks]
-  Vec<any_size> impedance_, root_, to_wave_;  // diagonals: Z, sqrt(Z), 1 / (2 sqrt(Z))
-  std::array<End, 2> ends_;                   // left, right
+  double period_ = 1.0;      // [s]
+  std::int64_t buffer_ = 0;  // [ticks]
+  LineImpedance impedance_;
+  std::array<End, 2> ends_;  // left, right
 };
 
 }  // namespace repel::network

@@ -1,0 +1,197 @@
+/// @file
+/// One side of a link between two machines, as a tick sees it.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include <repel/base/ring.hpp>
+#include <repel/network/remote/packet.hpp>
+#include <repel/network/remote/wave_player.hpp>
+#include <repel/schedule/deadline.hpp>
+
+namespace repel::network {
+
+struct RemoteOptions {
+  std::uint64_t session = 1;  ///< of this run, drawn at random, not 0
+  /// What both sides must share, such as a hash of the scene and the impedance of the line: packets
+  /// with another one are not listened to
+  std::uint64_t agreement = 0;
+  PlayoutOptions playout{};
+};
+
+/// What has passed over a link since the run began.
+struct RemoteCounts {
+  std::int64_t sent = 0;
+  std::int64_t received = 0;
+  std::int64_t overtaken = 0;    ///< of those received: arrived after a newer one
+  std::int64_t lost = 0;         ///< of the sessions heard: never arrived, or not yet
+  std::int64_t doubled = 0;      ///< copies of others, or too late to be told from one
+  std::int64_t refused = 0;      ///< not sound, or of a side that contradicts itself
+  std::int64_t strangers = 0;    ///< of another agreement, or of a second partner
+  std::int64_t sessions = 0;     ///< of the other side: 1, and one more for each restart
+  double longest_silence = 0.0;  ///< [s] between two packets of one session
+};
+
+/// One side of a link: what passes between the tick and the thread that sends and receives. The
+/// tick never waits for that thread, nor for the other side. In each tick: `receive`, then the
+/// network with a RemoteLine, which sends. The memory is allocated at construction.
+class RemoteLink {
+ public:
+  static constexpr std::size_t room = 64;  ///< packets between two visits of the thread
+
+  /// @throws SetupError for a number out of range
+  explicit RemoteLink(const RemoteOptions& options)
+      : options_(options), incoming_(room, {}), outgoing_(room, {}) {
+    checked("session", static_cast<double>(options.session), 1.0, 0x1p64, "");
+  }
+
+  /// For the thread of input and output: the producer of one, the consumer of the other.
+  [[nodiscard]] Ring<RemotePacket>& incoming() noexcept { return incoming_; }
+  [[nodiscard]] Ring<RemotePacket>& outgoing() noexcept { return outgoing_; }
+
+  /// Set-up: by RemoteLine, for its port. @param period [s]
+  void prepare(int size, double period) {
+    player_ = WavePlayer(size, period, options_.playout);
+    sent_.clear(size);
+    size_ = size;
+  }
+
+  /// First in a tick: takes all that has arrived. @param now [ns] must grow
+  void receive(std::chrono::nanoseconds now) noexcept {
+    now_ = now;
+    if (began_ < 0) began_ = now.count();
+    for (std::size_t i = 0; i < room; ++i) {
+      const RemotePacket* packet = incoming_.front();
+      if (packet == nullptr) return;
+      take(*packet);
+      incoming_.pop();
+    }
+  }
+  /// The wave that comes out in this tick [sqrt(W)].
+  const Vec<any_size>& play(bool at_rest) noexcept { return player_.step(seconds(now_), at_rest); }
+  /// Sends the wave of this tick, and the values set before; nothing before the first `receive`.
+  /// @param wave [sqrt(W)] @param period [s]
+  void send(const Vec<any_size>& wave, double period) noexcept {
+    if (began_ < 0) return;
+    sent_.add(wave, period);
+    RemotePacket& packet = outgoing_.draft();
+    packet.session = options_.session;
+    packet.agreement = options_.agreement;
+    packet.sequence = ++counts_.sent;
+    packet.sent = now_.count();
+    packet.heard = partner_;
+    packet.heard_sent = heard_sent_;
+    packet.heard_for = partner_ == 0 ? 0 : now_.count() - heard_at_;
+    packet.energy_sent = sent_.energy;
+    packet.energy_played = player_.output();
+    std::copy_n(sent_.sum.data(), size_, packet.sum.begin());
+    packet.values = values_;
+    // Without room it is lost, as it may be on the way.
+    (void)outgoing_.post();
+  }
+
+  /// Of the program, sent with the packets from now on. All must be finite.
+  [[nodiscard]] std::span<double, RemotePacket::most_values> values() noexcept { return values_; }
+  /// Of the other side, as of the newest packet.
+  [[nodiscard]] std::span<const double, RemotePacket::most_values> heard() const noexcept {
+    return heard_values_;
+  }
+  /// True once the other side has been heard.
+  [[nodiscard]] bool is_linked() const noexcept { return partner_ != 0; }
+  /// [s] since the newest packet came; since the first `receive` when there was none.
+  [[nodiscard]] double silent_for() const noexcept {
+    return seconds(now_ - std::chrono::nanoseconds(partner_ == 0 ? began_ : heard_at_));
+  }
+
+  [[nodiscard]] const RemoteCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] const WavePlayer& player() const noexcept { return player_; }
+  /// [J] Of all waves sent.
+  [[nodiscard]] double energy_sent() const noexcept { return sent_.energy; }
+  /// [J] What the other side says of itself and of this session; 0 before it has heard of it.
+  [[nodiscard]] double partner_sent() const noexcept { return partner_sent_; }
+  [[nodiscard]] double partner_played() const noexcept { return partner_played_; }
+  /// From this tick to the other side and back, without the time in between there.
+  [[nodiscard]] const DurationHistogram& round_trips() const noexcept { return round_trips_; }
+
+ private:
+  [[nodiscard]] static double seconds(std::chrono::nanoseconds t) noexcept {
+    return 1e-9 * static_cast<double>(t.count());
+  }
+
+  void take(const RemotePacket& packet) noexcept {
+    if (packet.agreement != options_.agreement) {
+      ++counts_.strangers;
+      return;
+    }
+    if (!is_sound(packet) || packet.session == options_.session) {
+      ++counts_.refused;
+      return;
+    }
+    if (packet.session != partner_ && !meet(packet)) {
+      ++counts_.strangers;
+      return;
+    }
+    const std::int64_t newest = player_.newest();
+    const bool is_newer = packet.sequence > newest;
+    if (!player_.arrive(packet, seconds(now_))) {
+      ++(is_newer ? counts_.refused : counts_.doubled);
+      return;
+    }
+    ++counts_.received;
+    if (!is_newer) {
+      ++counts_.overtaken;
+      --counts_.lost;
+      return;
+    }
+    if (newest > 0) {
+      counts_.lost += packet.sequence - newest - 1;
+      counts_.longest_silence =
+          std::max(counts_.longest_silence, 1e-9 * static_cast<double>(now_.count() - heard_at_));
+    }
+    hear(packet);
+  }
+
+  /// A partner is another program only once the one before has been silent.
+  bool meet(const RemotePacket& packet) noexcept {
+    const bool is_free = partner_ == 0 || silent_for() > WavePlayer::silence;
+    if (!is_free || packet.session == former_) return false;
+    former_ = partner_;
+    partner_ = packet.session;
+    partner_sent_ = partner_played_ = 0.0;
+    ++counts_.sessions;
+    player_.begin();
+    return true;
+  }
+
+  void hear(const RemotePacket& packet) noexcept {
+    heard_at_ = now_.count();
+    heard_sent_ = packet.sent;
+    heard_values_ = packet.values;
+    partner_sent_ = packet.energy_sent;
+    if (packet.heard != options_.session) return;
+    partner_played_ = packet.energy_played;
+    const std::int64_t round = now_.count() - packet.heard_sent - packet.heard_for;
+    if (round >= 0) round_trips_.record(std::chrono::nanoseconds(round));
+  }
+
+  RemoteOptions options_;
+  Ring<RemotePacket> incoming_, outgoing_;
+  WavePlayer player_;
+  WaveAccount sent_;
+  int size_ = 0;
+  std::array<double, RemotePacket::most_values> values_{}, heard_values_{};
+  std::chrono::nanoseconds now_{0};
+  std::int64_t began_ = -1;                           // [ns]
+  std::uint64_t partner_ = 0, former_ = 0;            // sessions
+  std::int64_t heard_at_ = 0;                         // [ns]
+  std::int64_t heard_sent_ = 0;                       // [ns] by the clock of the other side
+  double partner_sent_ = 0.0, partner_played_ = 0.0;  // [J]
+  RemoteCounts counts_;
+  DurationHistogram round_trips_;
+};
+
+}  // namespace repel::network
