@@ -4,8 +4,8 @@ include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/.
-set(REPEL_COMPONENTS core compiled ideal devices record robots cover percepts bullet ode scene
-    visual)
+set(REPEL_COMPONENTS core compiled ideal devices link dds record robots cover percepts bullet ode
+    scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)
@@ -33,6 +33,9 @@ endforeach()
 if(NOT REPEL_HAS_CORE)
   repel_debian_packages(core packages)
   message(FATAL_ERROR "repel needs Eigen 3.4 or newer: apt-get install ${packages}")
+endif()
+if(REPEL_HAS_DDS)
+  enable_language(C)  # of what idlc writes
 endif()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
 foreach(part ${REPEL_COMPONENTS} meshes hacd)

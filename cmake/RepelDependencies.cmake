@@ -27,6 +27,14 @@ macro(repel_find_devices)
   repel_all_found(DEVICES REPEL_FOUND_LINUX_INPUT)
 endmacro()
 
+macro(repel_find_dds)
+  find_package(CycloneDDS QUIET)
+  # The compiler of its types is a package of its own.
+  find_program(REPEL_IDLC idlc)
+  mark_as_advanced(REPEL_IDLC)
+  repel_all_found(DDS CycloneDDS_FOUND REPEL_IDLC)
+endmacro()
+
 macro(repel_find_robots)
   repel_pkg_config(TINYXML2 tinyxml2)
   find_package(orocos_kdl QUIET)

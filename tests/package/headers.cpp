@@ -7,6 +7,14 @@
 #include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
 #endif
+#ifdef PART_link
+#include <repel/link/link_thread.hpp>
+#include <repel/link/udp.hpp>
+#include <repel/link/wire.hpp>
+#endif
+#ifdef PART_dds
+#include <repel/dds/dds.hpp>
+#endif
 #ifdef PART_percepts
 #include <repel/percepts/depth_memory.hpp>
 #include <repel/percepts/own_body.hpp>

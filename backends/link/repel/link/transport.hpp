@@ -1,0 +1,47 @@
+/// @file
+/// What carries the packets of a link between two programs.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include <repel/network/remote/packet.hpp>
+
+namespace repel::link {
+
+/// The side of a link.
+enum class Side {
+  site,     ///< with the robot
+  station,  ///< with the operator
+};
+
+/// Carries packets to the other side and back; any may be lost, doubled or overtaken. For one
+/// thread, which is not the tick: these functions make system calls and may allocate.
+class Transport {
+ public:
+  Transport() = default;
+  Transport(const Transport&) = delete;
+  Transport& operator=(const Transport&) = delete;
+  virtual ~Transport() = default;
+
+  /// Sends without waiting. False when it could not be sent: the packet is lost.
+  virtual bool send(const network::RemotePacket& packet) noexcept = 0;
+  /// Takes a packet that has arrived; false when there is none. What is not a packet of this
+  /// version is dropped and counted.
+  [[nodiscard]] virtual bool receive(network::RemotePacket& packet) noexcept = 0;
+  /// Waits until something may have arrived, at most for `longest`.
+  virtual void wait(std::chrono::microseconds longest) noexcept = 0;
+  /// What it joins, for people: "UDP 127.0.0.1:7411".
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Messages that were no packets of this version.
+  [[nodiscard]] std::int64_t foreign() const noexcept { return foreign_; }
+
+ protected:
+  void count_foreign() noexcept { ++foreign_; }
+
+ private:
+  std::int64_t foreign_ = 0;
+};
+
+}  // namespace repel::link

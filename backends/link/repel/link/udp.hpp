@@ -1,0 +1,26 @@
+/// @file
+/// A link over plain UDP.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <repel/link/transport.hpp>
+
+namespace repel::link {
+
+struct UdpOptions {
+  Side side = Side::site;
+  /// Of the site, as numbers: the site listens there, the station sends there and is answered where
+  /// it sent from. Who can reach it can drive the robot: see docs/two_machines.md
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 7411;
+};
+
+/// The site answers the station it heard last; a second one it answers only when the first has been
+/// silent for 0.1 s. IPv4 and IPv6.
+/// @throws SetupError for an address that is none, or that cannot be listened on
+[[nodiscard]] std::unique_ptr<Transport> open_udp(const UdpOptions& options);
+
+}  // namespace repel::link
