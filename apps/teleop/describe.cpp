@@ -108,7 +108,7 @@ std::vector<std::pair<int, int>> disabled_pairs(const scene::RobotChoice& choice
 }
 
 ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& setup,
-                            const Robot& robot) {
+                            const Robot& robot, network::RemoteLink* remote) {
   ArmDescription arm;
   arm.model = robot.arm;
   arm.kinematics = std::make_unique<Kinematics>(robot.arm);
@@ -130,7 +130,8 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   }
   arm.self_law = setup.robot.self_law;
   arm.may_touch = disabled_pairs(setup.robot, robot, links);
-  arm.network = scene::plan_network(scene, setup, robot.arm);
+  arm.network = remote == nullptr ? scene::plan_network(scene, setup, robot.arm)
+                                  : scene::plan_half(scene, setup, robot.arm, {false, remote});
   arm.options.tool_speed = scene.tool_speed;
   arm.options.has_brakes = true;
   arm.options.drive_delay = setup.robot.drive_delay;
@@ -139,7 +140,8 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
 
 }  // namespace
 
-DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gravity) {
+DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gravity,
+                        network::RemoteLink* remote) {
   DescribedScene described;
   CellDescription& cell = described.cell;
   cell.rate_hz = rate_hz;
@@ -151,7 +153,7 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     const scene::ArmSetup& setup = scene.arm_setup(i);
     described.robots.push_back(load_robot(setup.robot, with_gravity, described.part_lists));
     ArmDescription& arm =
-        cell.arms.emplace_back(describe_arm(scene, setup, described.robots.back()));
+        cell.arms.emplace_back(describe_arm(scene, setup, described.robots.back(), remote));
     if (i == 0) continue;
     arm.name = scene.partners[i - 1].name;
     arm.law = scene.partners[i - 1].law;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <repel/cell/description.hpp>
+#include <repel/network/remote/link.hpp>
 #include <repel/robots/urdf.hpp>
 #include <repel/scene/scene.hpp>
 
@@ -21,8 +22,11 @@ struct DescribedScene {
 
 /// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.
 /// @param with_gravity false for arms without weight, as those of the back end "ideal"
+/// @param remote over which the operator is: the network of the cell is the half of the robot;
+/// null: it is whole
 /// @throws SetupError naming file, value and what is allowed
 [[nodiscard]] DescribedScene describe(const scene::Scene& scene, double rate_hz,
-                                      bool with_gravity = true);
+                                      bool with_gravity = true,
+                                      network::RemoteLink* remote = nullptr);
 
 }  // namespace repel::teleop

@@ -14,6 +14,7 @@
 #include "operator_input.hpp"
 #include "part_steps.hpp"
 #include "recording.hpp"
+#include "remote_values.hpp"
 
 namespace repel::teleop {
 
@@ -24,10 +25,12 @@ class DrivenCell {
   /// @param arms one for each arm of the cell, in the same order
   /// @param operators likewise
   /// @param scene of the cell
+  /// @param remote over which the first operator is; null: that operator is here
   DrivenCell(Cell& cell, const scene::Scene& scene,
              std::vector<std::unique_ptr<TorqueDrivenArm>> arms,
-             std::vector<OperatorInput> operators)
+             std::vector<OperatorInput> operators, network::RemoteLink* remote = nullptr)
       : cell_(cell),
+        remote_(remote),
         steps_(scene, cell),
         arms_(std::move(arms)),
         operators_(std::move(operators)),
@@ -40,13 +43,16 @@ class DrivenCell {
 
   /// Runs one tick, due at `now` [ns]. Returns the record of each arm, in their order.
   std::span<const TickRecord* const> tick(std::chrono::nanoseconds now) noexcept {
+    if (remote_ != nullptr) remote_->receive(now);
     for (std::size_t i = 0; i < ports_.size(); ++i) readings_[i] = ports_[i].read();
     cell_.sense(readings_, now);
     for (std::size_t i = 0; i < operators_.size(); ++i) {
       commands_[i] = operators_[i].step(cell_.X_WT(i).linear(), cell_.elapsed());
+      if (i == 0 && remote_ != nullptr && !has_let_go_) commands_[i] = heard_command(*remote_);
       commands_[i].silent_for = std::max(commands_[i].silent_for, blind_for_);
     }
     const auto records = cell_.act(commands_);
+    if (remote_ != nullptr) tell(*records.front(), cell_.X_WT(0), *remote_);
     for (std::size_t i = 0; i < commands_.size(); ++i) steps_.follow(i, commands_[i].phase);
     for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].apply(*records[i]);
     return records;
@@ -73,6 +79,7 @@ class DrivenCell {
 
   /// From the next tick on all operators are at rest: see OperatorInput::let_go.
   void let_go() noexcept {
+    has_let_go_ = true;
     for (OperatorInput& each : operators_) each.let_go();
   }
 
@@ -88,6 +95,8 @@ class DrivenCell {
 
  private:
   Cell& cell_;
+  network::RemoteLink* remote_;
+  bool has_let_go_ = false;
   PartSteps steps_;
   std::vector<std::unique_ptr<TorqueDrivenArm>> arms_;
   std::vector<ArmPort> ports_;

@@ -16,6 +16,7 @@
 #include "device.hpp"
 #include "figure.hpp"
 #include "html_report.hpp"
+#include "link_choice.hpp"
 #include "listening.hpp"
 #include "recording.hpp"
 #include "report.hpp"
@@ -23,6 +24,7 @@
 #include "run_options.hpp"
 #include "session.hpp"
 #include "session_options.hpp"
+#include "station.hpp"
 
 namespace {
 
@@ -111,6 +113,30 @@ void describe_pages(CLI::App& app, Arguments& a, CLI::Option* view) {
                "With --device, while which pages look on: they may take the controls from it")
       ->needs(view)
       ->excludes(only);
+}
+
+/// The options of a scene that is divided between two programs.
+void describe_sides(CLI::App& app, Arguments& a) {
+  CLI::Option* station =
+      app.add_flag_callback(
+             "--station", [&a] { a.session.link.side = link::Side::station; },
+             "Only the operator's side of the network, up to its line; the robot is at a site")
+          ->excludes("--fast", "--view", "--log", "--html", "--backend", "--contact",
+                     "--plant-inertia", "--no-prediction", "--threads", "--coprocessor", "--budget",
+                     "--measure", "--levels", "--every-pair", "--tool-alone");
+  app.add_flag_callback(
+         "--site", [&a] { a.session.link.side = link::Side::site; },
+         "Only the robot's side; the operator is at a station, with the same "
+         "scene file. Until it is stopped, unless --seconds is given")
+      ->excludes("--fast", "--device")
+      ->excludes(station);
+  app.add_option("--link", a.session.link.where,
+                 "What joins them: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), udp or "
+                 "udp:ADDRESS:PORT (where the site listens). Without more it is on this machine. "
+                 "Who reaches it can drive the robot: docs/two_machines.md")
+      ->default_str(teleop::default_link())
+      ->type_name("LINK")
+      ->check(CLI::Validator(teleop::link_complaint, "LINK"));
 }
 
 /// Text below the options of --help.
@@ -208,7 +234,10 @@ void describe(CLI::App& app, Arguments& a) {
       "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
       "scene do not apply, counted ones do");
   describe_arm(app, a);
-  app.final_callback([&a] {
+  app.final_callback([&a, &app] {
+    if (app.count("--link") > 0 && !a.session.link.side) {
+      throw CLI::RequiresError("--link", "--site or --station");
+    }
     const std::string insecure = teleop::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);
     require_able(a);
@@ -248,11 +277,13 @@ void describe(CLI::App& app, Arguments& a) {
          "--seconds is given")
       ->check(CLI::Validator(teleop::device_complaint, "spacenav or evdev:PATH"));
   app.get_option("--page-drives")->needs("--device");
+  describe_sides(app, a);
   app.add_option("--replay", a.replay,
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
                  "--coprocessor", "--budget", "--measure", "--levels", "--every-pair",
-                 "--tool-alone", "--plant-inertia", "--no-prediction", "--device");
+                 "--tool-alone", "--plant-inertia", "--no-prediction", "--device", "--site",
+                 "--station");
   app.footer(footer());
 }
 
@@ -294,7 +325,8 @@ Work work_of(const Arguments& arguments) {
     work.options.coprocessor = mode.value_or(work.scene.coprocessor);
     const int threads = std::max(work.scene.budget.threads, mode ? 1 : 0);
     work.options.threads = arguments.threads >= 0 ? arguments.threads : threads;
-    const bool is_driven = arguments.session.view || !arguments.session.device.empty();
+    const bool is_driven = arguments.session.view || !arguments.session.device.empty() ||
+                           arguments.session.link.side == link::Side::site;
     if (is_driven && !arguments.has_seconds) work.options.seconds = 1e6;
   }
   work.options.keep_records = !arguments.html.empty();
@@ -318,8 +350,8 @@ void require_files_apart(const Arguments& arguments, const Work& work) {
 }
 
 /// Writes a report file after the run. On failure prints it on stderr and returns false.
-template <class Write>
-bool wrote(host::Output& file, const teleop::RunResult& result, Write&& write) {
+template <class Result, class Write>
+bool wrote(host::Output& file, const Result& result, Write&& write) {
   if (!file.wanted()) return true;
   try {
     std::ostringstream text;
@@ -333,9 +365,26 @@ bool wrote(host::Output& file, const teleop::RunResult& result, Write&& write) {
   }
 }
 
+/// The operator's side alone.
+int run_station(const Arguments& arguments, const Work& work) {
+  host::Output report(arguments.report);
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const char* after = arguments.session.device.empty() ? "script over" : "by hand";
+  const teleop::StationResult result = teleop::run_station(
+      work.scene, work.options, arguments.session.link, arguments.session.device,
+      host::interruption(),
+      [&](const teleop::Progress& p) { show(work.scene, p, after, false, terminal); });
+  if (terminal) std::fputs("\r\033[K", stderr);
+  teleop::print_station(result, stdout);
+  const bool is_printed = host::has_printed();
+  if (!is_printed) std::fputs("teleop: the report could not be printed whole\n", stderr);
+  return wrote(report, result, teleop::write_station_json) && is_printed ? 0 : 4;
+}
+
 int run(const Arguments& arguments) {
   const Work work = work_of(arguments);
   require_files_apart(arguments, work);
+  if (arguments.session.link.side == link::Side::station) return run_station(arguments, work);
   const teleop::Recording* recording = work.recording ? &*work.recording : nullptr;
   teleop::SessionOptions session = arguments.session;
   session.page = page_folder();

@@ -75,10 +75,10 @@ scene::Scene as_run(const scene::Scene& scene, const RunOptions& options) {
 }  // namespace
 
 std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions& options,
-                                     const Recording* recording) {
+                                     const Recording* recording, network::RemoteLink* remote) {
   scene::Scene changed = as_run(scene, options);
   DescribedScene described =
-      describe(changed, options.rate_hz, arm_backend(options.backend).has_gravity);
+      describe(changed, options.rate_hz, arm_backend(options.backend).has_gravity, remote);
   if (recording != nullptr) require_recorded_lists(*recording, described.part_lists);
   changed.part_lists.insert(changed.part_lists.end(), described.part_lists.begin(),
                             described.part_lists.end());

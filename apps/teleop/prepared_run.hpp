@@ -33,9 +33,11 @@ struct PreparedRun {
 
 /// Builds the cell of a scene, and starts the threads of its coprocessor.
 /// @param recording to be replayed; null: none
+/// @param remote see `describe`
 /// @throws SetupError for a scene that cannot be built, with file and line
 [[nodiscard]] std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene,
                                                    const RunOptions& options,
-                                                   const Recording* recording = nullptr);
+                                                   const Recording* recording = nullptr,
+                                                   network::RemoteLink* remote = nullptr);
 
 }  // namespace repel::teleop

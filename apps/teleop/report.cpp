@@ -416,6 +416,7 @@ void print_report(const RunResult& r, std::FILE* out) {
   print_work(r, out);
   print_steps(r, out);
   print_camera(r, out);
+  if (r.link) print_link(*r.link, out);
   print_skipped(r, out);
   if (r.nearest_pair.empty()) {
     print_line("nearest", "none", out);
@@ -510,6 +511,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["obstacles"] = obstacle_list(r);
   report["steps"] = steps_to_json(r);
   report["camera"] = camera_to_json(r);
+  report["link"] = r.link ? link_to_json(*r.link) : ordered_json(nullptr);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
   report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);

@@ -22,6 +22,7 @@
 
 #include "camera_feed.hpp"
 #include "chatter.hpp"
+#include "link_result.hpp"
 #include "machine.hpp"
 #include "part_steps.hpp"
 #include "replay.hpp"
@@ -116,6 +117,7 @@ struct RunResult {
   bool begins_anew = false;            ///< the user requested another run
   std::vector<PartStepResult> steps;   ///< of the parts that come and go
   std::optional<CameraResult> camera;  ///< if the scene has one
+  std::optional<LinkResult> link;      ///< if the operator is in another program
   ReplayReport replay;                 ///< of a replay
   host::Machine machine;
   /// Since set-up, of all pairs whose law is not passable, and of those whose law is.

@@ -1,14 +1,11 @@
 #include "run.hpp"
 
-#include <pthread.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <thread>
 
-#include <repel/base/complaint.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/world/changed_arm.hpp>
@@ -25,6 +22,7 @@
 #include "loaded_arm.hpp"
 #include "machine.hpp"
 #include "pace.hpp"
+#include "progress_thread.hpp"
 #include "replay.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
@@ -34,32 +32,6 @@ namespace {
 
 using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
-
-/// The name as shown by `ps -L` and /proc, up to 15 characters.
-void name_this_thread(const char* name) noexcept {
-  (void)pthread_setname_np(pthread_self(), name);
-}
-
-/// Shows progress from a separate thread, so that a slow terminal cannot delay a tick.
-class ProgressThread {
- public:
-  ProgressThread(Mailbox<Progress>& box, const std::function<void(const Progress&)>& show)
-      : thread_([&box, &show](const std::stop_token& stop) {
-          name_this_thread("repel progress");
-          while (!stop.stop_requested()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(200));
-            if (!box.take()) continue;
-            const std::string why = complaint_of([&] { show(box.newest()); });
-            if (why.empty()) continue;
-            std::fprintf(stderr, "Progress is not shown any more, the run goes on: %s\n",
-                         why.c_str());
-            return;
-          }
-        }) {}
-
- private:
-  std::jthread thread_;
-};
 
 Progress progress_of(const TickRecord& record, const RunResult& result) noexcept {
   return {record.time,          record.phase,
@@ -332,7 +304,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   const RunOptions& options = result.options;
   Cell& cell = prepared.cell;
   DrivenCell driven(cell, prepared.scene, make_arms(prepared, attached.recording),
-                    make_operators(prepared, attached));
+                    make_operators(prepared, attached), attached.remote);
   const std::int64_t ticks = ticks_of(options, attached.recording);
   Observers observers = observers_for(options, cell, ticks);
   result.times.reserve(static_cast<std::size_t>(kept_ticks(options, ticks)));

@@ -3,29 +3,19 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 
-#include <repel/base/status.hpp>
 #include <repel/loop/tap.hpp>
+#include <repel/network/remote/link.hpp>
 
 #include "controls.hpp"
 #include "device.hpp"
 #include "prepared_run.hpp"
+#include "progress_thread.hpp"
 #include "recording.hpp"
 #include "results.hpp"
 
 namespace repel::teleop {
-
-/// Intermediate state of a run.
-struct Progress {
-  double time = 0.0;  ///< [s]
-  std::int32_t phase = 0;
-  double nearest = 0.0;  ///< [m] in this tick
-  double force = 0.0;    ///< [N]
-  Status status = 0;
-  std::int64_t misses = 0;
-};
 
 /// Optional connections of a run. All may be null.
 struct Attachments {
@@ -33,6 +23,7 @@ struct Attachments {
   Controls* controls = nullptr;  ///< for the first arm, and for pausing, restarting and seeking
   devices::DeviceLink* device = nullptr;  ///< drives the first arm and feels its forces
   const Recording* recording = nullptr;   ///< to replay, instead of simulated arms and operators
+  network::RemoteLink* remote = nullptr;  ///< over which the operator of the arm is
   const std::atomic<bool>* at_once = nullptr;  ///< request to end without fading the forces
 };
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include <repel/link/link_thread.hpp>
 #include <repel/network/modules/spaceball.hpp>
 
 #include "listening.hpp"
@@ -61,6 +62,28 @@ class RunLog {
   host::PartFile part_;
   std::unique_ptr<TickLog> log_;
   LogThread thread_;
+};
+
+/// The end of the link to the station.
+class RemoteEnd {
+ public:
+  RemoteEnd(const scene::Scene& scene, const RunOptions& options) : link(remote_options(scene)) {
+    if (!options.log.ends_with(".mcap")) return;
+    throw SetupError("--log " + options.log +
+                     ": what a station sent is not in a recording, so it could not be replayed; "
+                     "allowed with --site: a CSV file");
+  }
+  void open(const LinkChoice& choice) { thread_.emplace(link, open_link(choice)); }
+  /// Nothing passes any more. @return what did
+  [[nodiscard]] LinkResult close() {
+    thread_->stop();
+    return link_result(link, thread_->name(), thread_->foreign(), thread_->unsent());
+  }
+
+  network::RemoteLink link;
+
+ private:
+  std::optional<link::LinkThread> thread_;
 };
 
 #ifdef REPEL_TELEOP_VISUAL
@@ -138,9 +161,21 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
                      "camera could not be replayed; allowed: with --fast, or a CSV file");
   }
   const Device device = open_device(session.device);
-  std::unique_ptr<PreparedRun> prepared = prepare(scene, options, recording);
-  Attachments attached{nullptr, nullptr, device.link.get(), recording, &at_once};
-  if (!session.view && options.log.empty()) return run(*prepared, attached, stop, show);
+  std::optional<RemoteEnd> remote;
+  if (session.link.side) remote.emplace(scene, options);
+  std::unique_ptr<PreparedRun> prepared =
+      prepare(scene, options, recording, remote ? &remote->link : nullptr);
+  Attachments attached{nullptr, nullptr, device.link.get(), recording, nullptr, &at_once};
+  if (remote) {
+    remote->open(session.link);
+    attached.remote = &remote->link;
+  }
+  const auto run_once = [&] {
+    RunResult result = run(*prepared, attached, stop, show);
+    if (remote) result.link = remote->close();
+    return result;
+  };
+  if (!session.view && options.log.empty()) return run_once();
   const Heading heading = heading_of(prepared->scene, prepared->cell);
   TapOptions tap_options;
   tap_options.arms = static_cast<int>(heading.arms.size());
@@ -148,7 +183,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   Tap tap(prepared->cell.world(), tap_options);
   attached.tap = &tap;
   Controls controls;
-  controls.may_restart = options.log.empty();
+  controls.may_restart = options.log.empty() && !remote;
   controls.over_device = session.page_drives;
   controls.may_change = !options.log.ends_with(".mcap");
   std::optional<RunLog> log;
@@ -165,17 +200,17 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
     throw SetupError("the live view is not built in; to have it: apt-get install libboost-dev");
   }
 #endif
-  const auto run_once = [&] {
+  const auto run_controlled = [&] {
     controls.changes.open(&prepared->cell.changes());
-    RunResult result = run(*prepared, attached, stop, show);
+    RunResult result = run_once();
     controls.changes.open(nullptr);
     return result;
   };
-  RunResult result = run_once();
+  RunResult result = run_controlled();
   while (result.begins_anew) {
     controls.restart = false;
     prepared = prepare(scene, options, recording);
-    result = run_once();
+    result = run_controlled();
   }
   if (log) log->close(result);
   return result;

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "link_choice.hpp"
+
 namespace repel::teleop {
 
 struct SessionOptions {
@@ -16,6 +18,7 @@ struct SessionOptions {
   std::string secret;        ///< the secret, once settle_secret has read it
   bool view_only = false;    ///< pages may only watch
   bool page_drives = false;  ///< pages may override the device
+  LinkChoice link;           ///< to the other side of the scene
 };
 
 }  // namespace repel::teleop

@@ -1,9 +1,13 @@
 #include <repel/scene/build_network.hpp>
 
 #include <algorithm>
+#include <any>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
+
+#include <repel/network/elements/line.hpp>
 
 namespace repel::scene {
 namespace {
@@ -28,14 +32,53 @@ bool brings(const ArmSetup& setup, network::Walls walls) {
                      [&](const Module& m) { return m.walls == walls; });
 }
 
-}  // namespace
-
-bool feels_links(const ArmSetup& setup) {
-  return brings(setup, network::Walls::links);
+/// The names of the modules at the right port of module `i`.
+std::vector<std::string> right_of(const std::vector<Module>& modules, std::size_t i) {
+  if (!modules[i].to.next) return modules[i].to.names;
+  if (i + 1 == modules.size()) return {};
+  return {modules[i + 1].name};
 }
 
-network::Plan plan_network(const Scene& scene, const ArmSetup& setup, const ArmModel& arm) {
+/// The names of all modules that are joined to `from` without passing `line`; without `line`.
+std::set<std::string> joined_to(const std::vector<Module>& modules, const std::string& from,
+                                const std::string& line) {
+  std::set<std::string> found{from};
+  for (std::size_t before = 0; before != found.size();) {
+    before = found.size();
+    for (std::size_t i = 0; i < modules.size(); ++i) {
+      for (const std::string& name : right_of(modules, i)) {
+        if (name == line || modules[i].name == line) continue;
+        if (found.contains(name)) found.insert(modules[i].name);
+        if (found.contains(modules[i].name)) found.insert(name);
+      }
+    }
+  }
+  return found;
+}
+
+/// The module at which a network is cut. @throws SetupError if there is not exactly one line of
+/// waves
+const Module& line_of(const Scene& scene, const ArmSetup& setup) {
   const auto& modules = setup.network.modules;
+  const auto is_line = [](const Module& module) { return module.kind == "line"; };
+  const auto count = std::count_if(modules.begin(), modules.end(), is_line);
+  if (count != 1) {
+    throw SetupError("network: it has " + std::to_string(count) +
+                         " modules 'line'; allowed for two programs: one, where it is cut",
+                     scene.file);
+  }
+  const Module& line = *std::find_if(modules.begin(), modules.end(), is_line);
+  const auto* options = std::any_cast<network::LineOptions>(&line.options);
+  if (options == nullptr || options->kind != network::LineKind::waves) {
+    throw SetupError("network: the line '" + line.name +
+                         "' sends force and velocity, which is not passive; allowed for two "
+                         "programs: waves",
+                     scene.file, line.line);
+  }
+  return line;
+}
+
+void require_modules(const Scene& scene, const ArmSetup& setup) {
   if (!(scene.obstacles.empty() && scene.partners.empty()) &&
       !brings(setup, network::Walls::tool)) {
     throw SetupError("network: there are obstacles and no module 'obstacle' through which they act",
@@ -48,15 +91,58 @@ network::Plan plan_network(const Scene& scene, const ArmSetup& setup, const ArmM
         "network through which they feel them",
         scene.file);
   }
+}
+
+}  // namespace
+
+bool feels_links(const ArmSetup& setup) {
+  return brings(setup, network::Walls::links);
+}
+
+network::Plan plan_network(const Scene& scene, const ArmSetup& setup, const ArmModel& arm) {
+  require_modules(scene, setup);
   network::Plan plan;
   try {
-    for (const Module& module : modules) {
+    for (const Module& module : setup.network.modules) {
       plan.add(module.name, module.make(arm), module.to);
     }
   } catch (const SetupError& error) {
     if (!error.file().empty()) throw;  // a value of the file that does not suit this arm
     throw located(scene, SetupError(std::string("network: ") + error.what()));
   }
+  return plan;
+}
+
+network::Plan plan_half(const Scene& scene, const ArmSetup& setup, const ArmModel& arm,
+                        const NetworkHalf& half) {
+  require_modules(scene, setup);
+  const auto& modules = setup.network.modules;
+  const Module& line = line_of(scene, setup);
+  const auto at = static_cast<std::size_t>(&line - modules.data());
+  const auto& options = *std::any_cast<network::LineOptions>(&line.options);
+  const std::vector<std::string> beyond = right_of(modules, at);
+  const std::set<std::string> of_site =
+      joined_to(modules, beyond.empty() ? line.name : beyond.front(), line.name);
+  network::Plan plan;
+  const auto add_end = [&](const network::To& to) {
+    plan.add(line.name,
+             network::RemoteLine(*half.link, {options.impedance, options.angular_impedance}), to);
+  };
+  if (!half.is_station) add_end(beyond);
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    if (i == at || of_site.contains(modules[i].name) == half.is_station) continue;
+    const std::vector<std::string> right = right_of(modules, i);
+    const bool crosses =
+        of_site.contains(modules[i].name) && std::count(right.begin(), right.end(), line.name) != 0;
+    if (crosses) {
+      throw SetupError("network: the line '" + line.name +
+                           "' does not divide it: there is another way from one side to the other; "
+                           "allowed for two programs: none",
+                       scene.file, line.line);
+    }
+    plan.add(modules[i].name, modules[i].make(arm), right);
+  }
+  if (half.is_station) add_end(std::vector<std::string>{});
   return plan;
 }
 

@@ -7,9 +7,11 @@ TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   const Ending ending = teleop("--help");
   EXPECT_EQ(ending.status, 0) << ending;
   for (const char* words :
-       {"anderson_4x8", "--tool-alone", "bullet", "ode", "reference", "ideal", "spaceball",
-        "torque_arm", "Exit status", "--fast", "--report", "--log", "--threads", "--budget", "i860",
-        "--every-pair", "--contact", "--plant-inertia", "--html"}) {
+       {"anderson_4x8", "--tool-alone", "bullet",          "ode",         "reference",
+        "ideal",        "spaceball",    "torque_arm",      "Exit status", "--fast",
+        "--report",     "--log",        "--threads",       "--budget",    "i860",
+        "--every-pair", "--contact",    "--plant-inertia", "--html",      "--site",
+        "--station",    "--link"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
   }
 }

@@ -5,6 +5,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/network/network.hpp>
 #include <repel/network/plan.hpp>
+#include <repel/network/remote/remote_line.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/world/arm.hpp>
 
@@ -17,6 +18,19 @@ namespace repel::scene {
 /// @throws SetupError naming the file, if the plan lacks a module that the scene requires
 [[nodiscard]] network::Plan plan_network(const Scene& scene, const ArmSetup& setup,
                                          const ArmModel& arm);
+
+/// A network that is cut at its line, for two programs: the half of one side, whose end of the line
+/// is a remote one.
+struct NetworkHalf {
+  bool is_station = false;  ///< the half of the operator; otherwise that of the robot
+  /// For that end; must outlive the network
+  network::RemoteLink* link = nullptr;
+};
+
+/// The half of the network of a setup; of its `line`, which must be the only one and the only way
+/// from one side to the other, impedance and buffer apply. @throws SetupError as `plan_network`
+[[nodiscard]] network::Plan plan_half(const Scene& scene, const ArmSetup& setup,
+                                      const ArmModel& arm, const NetworkHalf& half);
 
 /// The same network, built for a period of 1 / `rate_hz`.
 /// @throws SetupError naming the file and the modules, if it cannot be built

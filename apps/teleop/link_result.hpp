@@ -1,0 +1,33 @@
+/// @file
+/// What passed over the link between two programs.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <repel/network/remote/link.hpp>
+
+namespace repel::teleop {
+
+struct LinkResult {
+  std::string name;  ///< of the transport, for people
+  network::RemoteCounts counts;
+  std::int64_t foreign = 0;  ///< messages that were no packets of this version, or of others
+  std::int64_t unsent = 0;   ///< packets that the transport did not take
+  double buffer = 0.0;       ///< [s] at the end
+  double silent = 0.0;       ///< [s] at the end
+  DurationHistogram round_trips;
+  double energy_sent = 0.0, energy_played = 0.0;    ///< [J] of this side
+  double partner_sent = 0.0, partner_played = 0.0;  ///< [J] what the other side says
+};
+
+/// Once the thread of the link has stopped.
+[[nodiscard]] LinkResult link_result(const network::RemoteLink& link, std::string name,
+                                     std::int64_t foreign, std::int64_t unsent);
+
+void print_link(const LinkResult& result, std::FILE* out);
+[[nodiscard]] nlohmann::ordered_json link_to_json(const LinkResult& result);
+
+}  // namespace repel::teleop

@@ -1,0 +1,51 @@
+/// @file
+/// Shows the progress of a run from a thread of its own.
+#pragma once
+
+#include <pthread.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include <repel/base/complaint.hpp>
+#include <repel/base/mailbox.hpp>
+#include <repel/base/status.hpp>
+
+namespace repel::teleop {
+
+/// Intermediate state of a run.
+struct Progress {
+  double time = 0.0;  ///< [s]
+  std::int32_t phase = 0;
+  double nearest = 0.0;  ///< [m] in this tick
+  double force = 0.0;    ///< [N]
+  Status status = 0;
+  std::int64_t misses = 0;
+};
+
+/// A slow terminal cannot delay a tick.
+class ProgressThread {
+ public:
+  ProgressThread(Mailbox<Progress>& box, const std::function<void(const Progress&)>& show)
+      : thread_([&box, &show](const std::stop_token& stop) {
+          (void)pthread_setname_np(pthread_self(), "repel progress");
+          while (!stop.stop_requested()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+            if (!box.take()) continue;
+            const std::string why = complaint_of([&] { show(box.newest()); });
+            if (why.empty()) continue;
+            std::fprintf(stderr, "Progress is not shown any more, the run goes on: %s\n",
+                         why.c_str());
+            return;
+          }
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+}  // namespace repel::teleop

@@ -1,0 +1,50 @@
+/// @file
+/// The operator's side of a scene that is divided between two programs.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <ostream>
+
+#include <repel/scene/scene.hpp>
+
+#include "link_choice.hpp"
+#include "link_result.hpp"
+#include "results.hpp"
+#include "run.hpp"
+#include "run_options.hpp"
+
+namespace repel::teleop {
+
+/// What a station measured.
+struct StationResult {
+  RunOptions options;
+  scene::Scene scene;
+  std::int64_t ticks = 0;
+  DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
+  std::int64_t skipped_ticks = 0;
+  std::int64_t allocations_in_tick = -1;
+  std::int64_t system_calls_in_tick = -1;
+  LinkResult link;
+  double linked = 0.0;              ///< [s] in which the site was heard
+  double peak_lever_torque = 0.0;   ///< [N m] that the operator felt
+  double peak_virtual_force = 0.0;  ///< [N] on the tool, as the site says
+  double nearest = 1e9;             ///< [m] as the site says
+  std::vector<ModuleResult> modules;
+  bool interrupted = false;
+  host::Machine machine;
+};
+
+/// Runs the part of the network on the operator's side of its line: by the clock, with the script
+/// of the scene or the device, until the script and the time are over or `stop`. It has no arm and
+/// no world; what is near the tool is known at the site. Parameters as of run_session.
+/// @throws SetupError for a scene that cannot be divided, or a link or a device that is not there
+[[nodiscard]] StationResult run_station(const scene::Scene& scene, const RunOptions& options,
+                                        const LinkChoice& choice, const std::string& device,
+                                        const std::atomic<bool>& stop,
+                                        const std::function<void(const Progress&)>& show);
+
+void print_station(const StationResult& result, std::FILE* out);
+void write_station_json(const StationResult& result, std::ostream& out);
+
+}  // namespace repel::teleop

@@ -1,0 +1,96 @@
+/// @file
+/// The operator's side of a scene in each tick.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include <repel/network/modules/torque_arm.hpp>
+#include <repel/network/network.hpp>
+#include <repel/scene/build_network.hpp>
+
+#include "describe.hpp"
+#include "operator_input.hpp"
+#include "remote_values.hpp"
+#include "run_options.hpp"
+
+namespace repel::teleop {
+
+/// The network on the operator's side, ended by the link.
+/// @throws SetupError for a scene that cannot be divided
+[[nodiscard]] inline network::Network station_network(const scene::Scene& scene,
+                                                      const RunOptions& options,
+                                                      network::RemoteLink& link) {
+  // Some modules choose their gains for the arm.
+  const DescribedScene described = describe(scene, options.rate_hz);
+  const network::Plan plan =
+      scene::plan_half(scene, scene, described.robots.front().arm, {true, &link});
+  try {
+    return plan.build(1.0 / options.rate_hz);
+  } catch (const SetupError& error) {
+    throw scene::located(scene, SetupError(std::string("network: ") + error.what()));
+  }
+}
+
+/// The operator, the link and the network between them. Allocates only at construction.
+class StationSide {
+ public:
+  /// @param link must outlive this object @param device null: none
+  StationSide(const scene::Scene& scene, const RunOptions& options, network::RemoteLink& link,
+              devices::DeviceLink* device)
+      : link_(link),
+        network_(station_network(scene, options, link)),
+        operator_(scene.script, nullptr, device) {
+    const network::Vec<network::any_size> none(0);
+    signals_.joints = signals_.rates = signals_.mean_rates = signals_.arm_torques = none;
+    signals_.jacobian.setZero(6, 0);
+    signals_.period = 1.0 / options.rate_hz;
+  }
+
+  /// @param now [ns] when the tick is due
+  void tick(std::chrono::nanoseconds now, double elapsed) noexcept {
+    link_.receive(now);
+    site_ = heard_state(link_);
+    signals_.elapsed = elapsed;
+    signals_.X_WT = site_.X_WT;
+    const network::Command& command = operator_.step(site_.X_WT.linear(), elapsed);
+    tell(command, link_);
+    phase_ = command.phase;
+    if (command.sound && is_finite(command.hand.ball) && is_finite(command.hand.direction_W)) {
+      signals_.hand = command.hand;
+    } else {
+      signals_.hand.ball = {};
+      signals_.hand.lever_rate = 0.0;
+    }
+    // Nobody holds against the hand: its spring begins anew.
+    signals_.at_rest = !is_heard();
+    (void)network_.run(signals_);
+  }
+  /// From now on the hand is at rest and silent.
+  void let_go() noexcept { operator_.let_go(); }
+
+  /// The site was heard within the last 0.1 s.
+  [[nodiscard]] bool is_heard() const noexcept {
+    return link_.is_linked() && link_.silent_for() <= network::WavePlayer::silence;
+  }
+  /// [N m] Torque of the lever on the hand.
+  [[nodiscard]] double felt() const noexcept {
+    const auto* lever = network_.find<network::TorqueArm>();
+    return lever == nullptr ? 0.0 : lever->felt();
+  }
+  /// What the site said last.
+  [[nodiscard]] const SiteState& site() const noexcept { return site_; }
+  [[nodiscard]] std::int32_t phase() const noexcept { return phase_; }
+  [[nodiscard]] const network::Network& network() const noexcept { return network_; }
+
+ private:
+  network::RemoteLink& link_;
+  network::Network network_;
+  OperatorInput operator_;
+  network::Signals signals_;
+  SiteState site_;
+  std::int32_t phase_ = 0;
+};
+
+}  // namespace repel::teleop

@@ -1,0 +1,102 @@
+// Site and station as two programs, by the clock, as a user runs them.
+#include <unistd.h>
+
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "end_to_end/teleop.hpp"
+
+namespace repel::test {
+namespace two_programs_test {
+
+using nlohmann::json;
+
+std::string own_port() {
+  return std::to_string(20000 + getpid() % 20000);
+}
+
+/// The links that this build has.
+std::vector<std::string> links() {
+  std::vector<std::string> all{"udp:127.0.0.1:" + own_port(), "'udp:[::1]:" + own_port() + "'"};
+  if (teleop("--help").says("LINK=dds")) all.emplace_back("dds");
+  return all;
+}
+
+TEST(TwoPrograms, ShareASceneOverEachLink) {
+  for (const std::string& link : links()) {
+    SCOPED_TRACE(link);
+    const Folder folder;
+    Ending of_site;
+    std::thread site([&] {
+      of_site = teleop("delayed --site --seconds 6 --link " + link + " --report " +
+                       quoted(folder / "site.json"));
+    });
+    const Ending of_station = teleop("delayed --station --seconds 5 --link " + link + " --report " +
+                                     quoted(folder / "station.json"));
+    site.join();
+    if (of_site.says("Cannot assign requested address")) continue;  // a machine without IPv6
+    ASSERT_EQ(of_site.status, 0) << of_site;
+    ASSERT_EQ(of_station.status, 0) << of_station;
+    const json there = report_of(folder / "site.json");
+    const json here = report_of(folder / "station.json");
+    const json& at_site = there.at("link");
+    const json& at_station = here.at("link");
+    EXPECT_EQ(at_site.at("partner_sessions"), 1);
+    EXPECT_EQ(at_station.at("partner_sessions"), 1);
+    EXPECT_GT(at_site.at("packets_received"), 500);
+    EXPECT_GT(at_station.at("packets_received"), 500);
+    EXPECT_GT(here.at("site_heard_s"), 1.0);
+    // What one side has output, the other has sent.
+    EXPECT_GT(at_site.at("energy_played_j"), 0.0);
+    EXPECT_LE(at_site.at("energy_played_j").get<double>(),
+              at_station.at("energy_sent_j").get<double>() * (1.0 + 1e-9));
+    EXPECT_LE(at_station.at("energy_played_j").get<double>(),
+              at_site.at("energy_sent_j").get<double>() * (1.0 + 1e-9));
+    EXPECT_GT(there.at("nearest_wall_m"), 0.0);
+    for (const json& report : {there, here}) {
+      for (const char* count : {"allocations_in_tick", "system_calls_in_tick"}) {
+        const json& counted = report.at(count);
+        EXPECT_TRUE(counted.is_null() || counted == 0) << count << ' ' << counted;
+      }
+    }
+    EXPECT_TRUE(of_station.says("round trip"));
+    EXPECT_TRUE(of_site.says("energy over the link"));
+  }
+}
+
+TEST(TwoPrograms, AStationAloneSaysThatNobodyWasThere) {
+  const Ending ending =
+      teleop("delayed --station --seconds 0.5 --link udp:127.0.0.1:" + own_port());
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("NOT heard")) << ending;
+}
+
+TEST(TwoPrograms, WhatCannotBeDividedIsRefused) {
+  const struct {
+    const char* arguments;
+    int status;
+    const char* words;
+  } cases[] = {
+      {"plates --site", 1, "'line'"},
+      {"plates --station", 1, "'line'"},
+      {"two_arms --site", 1, "partners"},
+      {"delayed --site --station", 2, "--station"},
+      {"delayed --site --fast", 2, "--fast"},
+      {"delayed --station --view", 2, "--view"},
+      {"delayed --link udp", 2, "--site or --station"},
+      {"delayed --site --link smoke", 2, "dds:INTERFACE"},
+      {"delayed --site --link udp:127.0.0.1:0", 2, "udp:ADDRESS:PORT"},
+      {"delayed --site --link udp:127.0.0.1:1e3", 2, "udp:ADDRESS:PORT"},
+      {"delayed --site --seconds 1 --link udp:no.such.name:7411", 1, "no.such.name"},
+      {"delayed --site --log x.mcap", 1, "--site"},
+  };
+  for (const auto& each : cases) {
+    const Ending ending = teleop(each.arguments);
+    EXPECT_EQ(ending.status, each.status) << each.arguments << '\n' << ending;
+    EXPECT_TRUE(ending.says(each.words)) << each.arguments << '\n' << ending;
+  }
+}
+
+}  // namespace two_programs_test
+}  // namespace repel::test
