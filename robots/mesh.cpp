@@ -145,6 +145,7 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
 
 MeshParts MeshReader::read(const std::string& path, const Vec3& scale) const {
   MeshParts parts;
+  parts.path = path;
   if (convex_parts_) parts.hulls = convex_parts_(path, scale);
   parts.is_cover = !parts.hulls.empty();
   if (!parts.is_cover) parts.hulls.push_back(hull_of_mesh(path, scale));
