@@ -1,10 +1,12 @@
 #include "mesh.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <functional>
-#include <iterator>
 #include <optional>
+#include <unordered_map>
 
 #include <tinyxml2.h>
 
@@ -145,6 +147,7 @@ fs::path find_mesh(const std::string& uri, const MeshFolders& folders) {
 
 MeshParts MeshReader::read(const std::string& path, const Vec3& scale) const {
   MeshParts parts;
+  parts.path = path;
   if (convex_parts_) parts.hulls = convex_parts_(path, scale);
   parts.is_cover = !parts.hulls.empty();
   if (!parts.is_cover) parts.hulls.push_back(hull_of_mesh(path, scale));
@@ -177,24 +180,66 @@ const MeshParts& MeshReader::parts(const std::string& uri, const Vec3& scale) {
 #ifdef REPEL_HAS_ASSIMP
 namespace {
 
-/// Collects every vertex of a scene, transformed by its nodes.
-// NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
-void gather(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above,
-            std::vector<aiVector3D>& out) {
-  const aiMatrix4x4 X = above * node.mTransformation;
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-    if (mesh.mNumVertices > input_limits.mesh_vertices - out.size()) {
-      throw SetupError("has more than " + std::to_string(input_limits.mesh_vertices) +
-                       " vertices; allowed: up to " + std::to_string(input_limits.mesh_vertices));
+/// The vertices and triangles of a scene. Vertices that are equal become one: in STL each facet has
+/// its own.
+class Gathering {
+ public:
+  /// Adds `node` and all below it, transformed by them.
+  // NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
+  void add(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above) {
+    const aiMatrix4x4 X = above * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene.mMeshes[node.mMeshes[i]], X);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(scene, *node.mChildren[i], X);
+  }
+
+  [[nodiscard]] const std::vector<aiVector3D>& vertices() const { return vertices_; }
+  [[nodiscard]] std::vector<std::array<int, 3>> take_triangles() { return std::move(triangles_); }
+
+ private:
+  using Bits = std::array<std::uint32_t, 3>;
+
+  struct Hash {
+    std::size_t operator()(const Bits& bits) const {
+      std::uint64_t hash = 0xcbf29ce484222325U;
+      for (const std::uint32_t word : bits) hash = (hash ^ word) * 0x9e3779b97f4a7c15U;
+      return static_cast<std::size_t>(hash ^ (hash >> 29U));
     }
-    std::transform(mesh.mVertices, mesh.mVertices + mesh.mNumVertices, std::back_inserter(out),
-                   [&](const aiVector3D& v) { return X * v; });
+  };
+
+  void add(const aiMesh& mesh, const aiMatrix4x4& X) {
+    std::vector<int> index(mesh.mNumVertices);
+    for (unsigned k = 0; k < mesh.mNumVertices; ++k) index[k] = index_of(X * mesh.mVertices[k]);
+    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+      const aiFace& face = mesh.mFaces[k];
+      if (face.mNumIndices != 3) continue;
+      require(triangles_.size() + 1, input_limits.mesh_triangles, "triangles");
+      triangles_.push_back(
+          {index[face.mIndices[0]], index[face.mIndices[1]], index[face.mIndices[2]]});
+    }
   }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) {
-    gather(scene, *node.mChildren[i], X, out);
+
+  int index_of(const aiVector3D& v) {
+    Bits bits;
+    const std::array<float, 3> numbers{v.x + 0.0F, v.y + 0.0F, v.z + 0.0F};  // -0 is 0
+    std::memcpy(bits.data(), numbers.data(), sizeof bits);
+    const auto [known, is_new] = index_.try_emplace(bits, static_cast<int>(vertices_.size()));
+    if (is_new) {
+      require(vertices_.size() + 1, input_limits.mesh_vertices, "different vertices");
+      vertices_.push_back(v);
+    }
+    return known->second;
   }
-}
+
+  static void require(std::size_t count, std::size_t most, const char* what) {
+    if (count <= most) return;
+    throw SetupError("has more than " + std::to_string(most) + " " + what + "; allowed: up to " +
+                     std::to_string(most));
+  }
+
+  std::vector<aiVector3D> vertices_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::unordered_map<Bits, int, Hash> index_;
+};
 
 /// The scene in a file, as long as `importer` lives.
 const aiScene& read_scene(Assimp::Importer& importer, const std::string& path, unsigned steps) {
@@ -220,47 +265,26 @@ void append_scaled(const std::vector<aiVector3D>& vertices, const Vec3& scale,
 /// hull_of_mesh() in this process; errors do not name the file.
 std::vector<Vec3> read_hull(const std::string& path, const Vec3& scale) {
   Assimp::Importer importer;
-  const aiScene& scene = read_scene(importer, path, aiProcess_JoinIdenticalVertices);
-  std::vector<aiVector3D> vertices;
-  gather(scene, *scene.mRootNode, aiMatrix4x4(), vertices);
+  const aiScene& scene = read_scene(importer, path, 0);
+  Gathering gathering;
+  gathering.add(scene, *scene.mRootNode, aiMatrix4x4());
   std::vector<Vec3> points;
-  append_scaled(vertices, scale, points);
+  append_scaled(gathering.vertices(), scale, points);
   // A planar set has no facets: all of its points stay.
   const std::vector<Facet> facets = hull_facets(points);
   if (!facets.empty()) points = hull_corners(points, facets);
   return points;
 }
 
-/// Collects the triangles of a scene, in the order in which gather() takes the vertices.
-// NOLINTNEXTLINE(misc-no-recursion): a scene is a tree, read once at set-up
-void gather_triangles(const aiScene& scene, const aiNode& node, int& vertices,
-                      std::vector<std::array<int, 3>>& out) {
-  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
-      const aiFace& face = mesh.mFaces[k];
-      if (face.mNumIndices != 3) continue;
-      out.push_back({vertices + static_cast<int>(face.mIndices[0]),
-                     vertices + static_cast<int>(face.mIndices[1]),
-                     vertices + static_cast<int>(face.mIndices[2])});
-    }
-    vertices += static_cast<int>(mesh.mNumVertices);
-  }
-  for (unsigned i = 0; i < node.mNumChildren; ++i) {
-    gather_triangles(scene, *node.mChildren[i], vertices, out);
-  }
-}
-
 /// read_mesh() in this process; errors do not name the file.
 TriangleMesh read_triangles(const std::string& path, const Vec3& scale) {
   Assimp::Importer importer;
   const aiScene& scene = read_scene(importer, path, aiProcess_Triangulate);
-  std::vector<aiVector3D> vertices;
-  gather(scene, *scene.mRootNode, aiMatrix4x4(), vertices);
+  Gathering gathering;
+  gathering.add(scene, *scene.mRootNode, aiMatrix4x4());
   TriangleMesh mesh;
-  append_scaled(vertices, scale, mesh.vertices);
-  int count = 0;
-  gather_triangles(scene, *scene.mRootNode, count, mesh.triangles);
+  append_scaled(gathering.vertices(), scale, mesh.vertices);
+  mesh.triangles = gathering.take_triangles();
   if (mesh.triangles.empty()) throw SetupError("holds no triangle");
   return mesh;
 }

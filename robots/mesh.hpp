@@ -43,6 +43,7 @@ struct MeshFolders {
 struct MeshParts {
   std::vector<std::vector<Vec3>> hulls;  ///< [m] corners of each
   bool is_cover = false;  ///< its convex parts; otherwise it has one hull, that of the mesh
+  std::string path;       ///< of the file
 };
 
 /// Reads the meshes of one description, within the total limits of input_limits.

@@ -99,7 +99,8 @@ class PartReader {
     const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
     if (!mesh) return {simple_part(shape, document_.is_capsule(link, index))};
     try {
-      const detail::MeshParts& read = meshes_.parts(mesh->filename, from_urdf(mesh->scale));
+      const Vec3 scale = from_urdf(mesh->scale);
+      const detail::MeshParts& read = meshes_.parts(mesh->filename, scale);
       std::vector<RobotPart> parts;
       for (const std::vector<Vec3>& hull : read.hulls) {
         RobotPart& part = parts.emplace_back();
@@ -107,6 +108,8 @@ class PartReader {
         part.kind = PartKind::hull;
         part.points = hull;
         part.is_of_cover = read.is_cover;
+        part.mesh = read.path;
+        part.mesh_scale = scale;
       }
       return parts;
     } catch (const SetupError& error) {

@@ -203,6 +203,21 @@ Cover cover_of_mesh(const Arguments& a, const Vec3& scale) {
   }
 }
 
+/// Where the surface is in no part, deepest first.
+scene::Gaps gaps_of(const Cover& cover) {
+  scene::Gaps gaps;
+  gaps.count = cover.uncovered.size();
+  for (const Uncovered& piece : cover.uncovered) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : piece.polygon) sum += p;
+    gaps.deepest.push_back({sum / static_cast<double>(piece.polygon.size()), piece.depth});
+  }
+  std::stable_sort(gaps.deepest.begin(), gaps.deepest.end(),
+                   [](const scene::Gap& a, const scene::Gap& b) { return a.depth > b.depth; });
+  if (gaps.count > scene::Gaps::most_kept) gaps.deepest.resize(scene::Gaps::most_kept);
+  return gaps;
+}
+
 int run(const Arguments& a) {
   const std::string parts_file =
       a.parts_file.empty() ? scene::part_list_beside(a.mesh) : a.parts_file;
@@ -222,7 +237,7 @@ int run(const Arguments& a) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   scene::write_part_list(
       {std::filesystem::path(a.mesh).filename().string(), scene::checksum_of_file(a.mesh), scale,
-       cover.uncovered_m, cover.excess_m, cover.seam_m, cover.parts},
+       cover.uncovered_m, cover.excess_m, cover.seam_m, cover.parts, gaps_of(cover)},
       parts.stream());
   parts.close();
   if (json.wanted()) {

@@ -8,10 +8,10 @@
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
-#include <repel/scene/part_list.hpp>
 #include <repel/world/changed_arm.hpp>
 
 #include "camera_feed.hpp"
+#include "covers_beside.hpp"
 #include "static_model.hpp"
 
 namespace repel::teleop {
@@ -30,15 +30,9 @@ void make_ideal(ArmModel& model) {
   }
 }
 
-/// @param part_lists to which the paths of the lists of its parts are added
-Robot load_robot(const scene::RobotChoice& choice, bool with_gravity,
-                 std::vector<std::string>& part_lists) {
+Robot load_robot(const scene::RobotChoice& choice, bool with_gravity, CoversBeside& covers) {
   UrdfOptions options;
-  if (choice.covers) {
-    options.convex_parts = [&part_lists](const std::string& mesh, const Vec3& scale) {
-      return scene::parts_beside(mesh, scale, part_lists);
-    };
-  }
+  if (choice.covers) options.convex_parts = covers.reader();
   options.tip = choice.tip_link;
   options.package_paths = choice.packages;
   for (const scene::JointHold& hold : choice.hold) {
@@ -107,8 +101,10 @@ std::vector<std::pair<int, int>> disabled_pairs(const scene::RobotChoice& choice
   return pairs;
 }
 
+/// @param gaps to which those of each part are added, in the order of the parts
 ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& setup,
-                            const Robot& robot, network::RemoteLink* remote) {
+                            const Robot& robot, network::RemoteLink* remote,
+                            const CoversBeside& covers, std::vector<scene::Gaps>& gaps) {
   ArmDescription arm;
   arm.model = robot.arm;
   arm.kinematics = std::make_unique<Kinematics>(robot.arm);
@@ -118,6 +114,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   std::vector<std::string> links;  // link name in the URDF file, for each part
   for (const scene::Part& part : setup.tool) {
     arm.parts.push_back({part.name, part.shape, part.X_BP});
+    gaps.push_back(part.gaps);
     links.push_back(setup.robot.tip_link.empty() ? robot.arm.links.back().name
                                                  : setup.robot.tip_link);
   }
@@ -125,6 +122,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
     for (const RobotPart& part : robot.parts) {
       if (part.link != link || !is_kept(setup, part)) continue;
       arm.parts.push_back({part.name, shape_of(part, {.levels = 1}), part.X_LP, link});
+      gaps.push_back(covers.gaps_of(part));
       links.push_back(part.in_link);
     }
   }
@@ -149,17 +147,18 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
   cell.start_inside = scene.start_inside;
   cell.measure = scene.measure;
   cell.levels = scene.levels;
+  CoversBeside covers;
   for (std::size_t i = 0; i <= scene.partners.size(); ++i) {
     const scene::ArmSetup& setup = scene.arm_setup(i);
-    described.robots.push_back(load_robot(setup.robot, with_gravity, described.part_lists));
-    ArmDescription& arm =
-        cell.arms.emplace_back(describe_arm(scene, setup, described.robots.back(), remote));
+    described.robots.push_back(load_robot(setup.robot, with_gravity, covers));
+    ArmDescription& arm = cell.arms.emplace_back(
+        describe_arm(scene, setup, described.robots.back(), remote, covers, described.gaps));
     if (i == 0) continue;
     arm.name = scene.partners[i - 1].name;
     arm.law = scene.partners[i - 1].law;
   }
   for (const scene::StaticModel& model : scene.models) {
-    for (scene::Obstacle& obstacle : obstacles_of(model, described.part_lists)) {
+    for (scene::Obstacle& obstacle : obstacles_of(model, covers)) {
       described.model_obstacles.push_back(std::move(obstacle));
     }
   }
@@ -167,11 +166,14 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     for (const scene::Obstacle& obstacle : *obstacles) {
       cell.obstacles.push_back(
           {obstacle.name, obstacle.shape, obstacle.X_WP, obstacle.law, obstacle.motion});
+      described.gaps.push_back(obstacle.gaps);
     }
   }
+  described.part_lists = covers.lists();
   for (const scene::LoosePart& part : scene.loose) {
     cell.loose.push_back({part.name, part.shape, part.X_WP, part.law, part.at_start, 0.0, part.mass,
                           part.is_mass_known});
+    described.gaps.push_back(part.gaps);
   }
   for (int i = 1; i <= scene.spare.count; ++i) {
     const Shape nothing = Shape::sphere(0.01 * scene.spare.room, {.levels = 1});

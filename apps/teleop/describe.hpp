@@ -18,6 +18,9 @@ struct DescribedScene {
   std::vector<scene::Obstacle> model_obstacles;  ///< of Scene::models, the last ones of the cell
   /// Paths of the files that the parts of meshes in URDF files are from.
   std::vector<std::string> part_lists;
+  /// Of each part of the world, in its order, as far as they are given in files: where the mesh
+  /// that it is the first part of is not covered.
+  std::vector<scene::Gaps> gaps;
 };
 
 /// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.

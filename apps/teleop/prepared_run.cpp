@@ -93,8 +93,7 @@ std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions
   // A recorded run was allowed to start.
   if (recording != nullptr && refuses) described.cell.start_inside = StartInside::allow;
   try {
-    return std::make_unique<PreparedRun>(std::move(changed), options, std::move(described.robots),
-                                         std::move(described.cell));
+    return std::make_unique<PreparedRun>(std::move(changed), options, std::move(described));
   } catch (const SetupError& error) {
     throw scene::located(scene, error);
   }

@@ -10,6 +10,7 @@
 #include <repel/robots/urdf.hpp>
 #include <repel/scene/scene.hpp>
 
+#include "describe.hpp"
 #include "recording.hpp"
 #include "run_options.hpp"
 
@@ -17,17 +18,18 @@ namespace repel::teleop {
 
 /// The state that a run starts from and consumes.
 struct PreparedRun {
-  PreparedRun(scene::Scene changed, const RunOptions& run, std::vector<Robot> read,
-              CellDescription described)
+  PreparedRun(scene::Scene changed, const RunOptions& run, DescribedScene described)
       : scene(std::move(changed)),
         options(run),
-        robots(std::move(read)),
-        cell(std::move(described)) {}
+        robots(std::move(described.robots)),
+        gaps(std::move(described.gaps)),
+        cell(std::move(described.cell)) {}
 
   /// With the changes made by the options, the obstacles of its models, and all lists of parts.
   scene::Scene scene;
   RunOptions options;
-  std::vector<Robot> robots;  ///< of the arms, in their order
+  std::vector<Robot> robots;      ///< of the arms, in their order
+  std::vector<scene::Gaps> gaps;  ///< of DescribedScene
   Cell cell;
 };
 

@@ -87,10 +87,26 @@ class RemoteEnd {
 };
 
 #ifdef REPEL_TELEOP_VISUAL
-visual::SceneInfo scene_info_of(const scene::Scene& scene, const Cell& cell,
-                                const RunOptions& options, const Heading& heading,
+/// What is not covered of the meshes, for display.
+std::vector<visual::GapsInfo> gaps_info_of(const std::vector<scene::Gaps>& gaps) {
+  std::vector<visual::GapsInfo> infos;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (gaps[i].count == 0) continue;
+    visual::GapsInfo& info = infos.emplace_back();
+    info.part = PartId{static_cast<std::int32_t>(i)};
+    info.count = gaps[i].count;
+    for (const scene::Gap& gap : gaps[i].deepest) info.deepest.push_back({gap.p_M, gap.depth});
+  }
+  return infos;
+}
+
+visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& heading,
                                 const Recording* recording) {
+  const scene::Scene& scene = prepared.scene;
+  const Cell& cell = prepared.cell;
+  const RunOptions& options = prepared.options;
   visual::SceneInfo info;
+  info.gaps = gaps_info_of(prepared.gaps);
   info.scene = scene.name;
   info.rate_hz = options.rate_hz;
   info.replay = recording != nullptr;
@@ -192,8 +208,8 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   std::optional<View> view;
   if (session.view) {
     attached.controls = &controls;
-    view.emplace(scene_info_of(prepared->scene, prepared->cell, options, heading, recording),
-                 prepared->cell.world(), tap, controls, session, device.name);
+    view.emplace(scene_info_of(*prepared, heading, recording), prepared->cell.world(), tap,
+                 controls, session, device.name);
   }
 #else
   if (session.view) {

@@ -3,19 +3,13 @@
 #include <utility>
 
 #include <repel/robots/parts.hpp>
-#include <repel/scene/part_list.hpp>
 
 namespace repel::teleop {
 
-std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model,
-                                          std::vector<std::string>& part_lists) {
+std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, CoversBeside& covers) {
   UrdfOptions options;
   options.package_paths = model.packages;
-  if (model.covers) {
-    options.convex_parts = [&part_lists](const std::string& mesh, const Vec3& scale) {
-      return scene::parts_beside(mesh, scale, part_lists);
-    };
-  }
+  if (model.covers) options.convex_parts = covers.reader();
   std::vector<scene::Obstacle> obstacles;
   for (const RobotPart& part : load_parts(model.urdf, options)) {
     std::string name = model.name;
@@ -25,7 +19,8 @@ std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model,
                          to_text(part.kind),
                          model.X_WM * part.X_LP,
                          model.law,
-                         {}});
+                         {},
+                         covers.gaps_of(part)});
   }
   if (obstacles.empty()) {
     throw SetupError("'" + model.name + "' has no collision part; allowed: 1 or more", model.urdf);

@@ -7,12 +7,14 @@
 
 #include <repel/scene/scene.hpp>
 
+#include "covers_beside.hpp"
+
 namespace repel::teleop {
 
 /// The collision parts of `model`, where they stand in the world.
-/// @param part_lists to which the paths of the lists of its parts are added
+/// @param covers for its meshes, if the model takes them
 /// @throws SetupError naming file, line, value and what is allowed
 [[nodiscard]] std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model,
-                                                        std::vector<std::string>& part_lists);
+                                                        CoversBeside& covers);
 
 }  // namespace repel::teleop

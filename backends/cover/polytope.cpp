@@ -169,10 +169,107 @@ Polytope Polytope::clipped(const HalfSpace& plane) const {
   return result;
 }
 
+namespace {
+
+bool precedes(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// Sandwiches the hull of many points between that of a few of them and the planes parallel to the
+/// facets of that one.
+class Sandwich {
+ public:
+  explicit Sandwich(std::span<const Vec3> points) : points_(points.begin(), points.end()) {
+    std::sort(points_.begin(), points_.end(), &precedes);
+    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+    low_ = high_ = points_[0];
+    for (const Vec3& p : points_) {
+      low_ = low_.cwiseMin(p);
+      high_ = high_.cwiseMax(p);
+    }
+    for (int k = 0; k < 26; ++k) {
+      const int at = k < 13 ? k : k + 1;  // all but the middle of a cube of 27
+      const Vec3 n(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
+      inner_.push_back(*std::max_element(points_.begin(), points_.end(),
+                                         [&](auto& a, auto& b) { return n.dot(a) < n.dot(b); }));
+    }
+  }
+
+  /// Corners of a convex set that contains all points; none if these are in one plane.
+  std::vector<Vec3> corners_around() {
+    constexpr std::size_t most_inner = 160;
+    constexpr int most_rounds = 8;
+    const double enough = 1e-5 * Vec3(high_ - low_).norm();
+    for (int round = 0;; ++round) {
+      measure();
+      if (sides_.empty()) return {};
+      std::vector<Side> sides = sides_;
+      std::sort(sides.begin(), sides.end(),
+                [](const Side& a, const Side& b) { return a.gap > b.gap; });
+      const std::size_t before = inner_.size();
+      for (const Side& side : sides) {
+        if (side.gap > enough && inner_.size() < most_inner) inner_.push_back(side.farthest);
+      }
+      if (inner_.size() == before || round == most_rounds) break;
+    }
+    const Vec3 around = Vec3::Constant(Vec3(high_ - low_).norm());
+    Polytope outer = Polytope::box(low_ - around, high_ + around);
+    for (const Side& side : sides_) {
+      outer = outer.clipped({side.plane.n, side.plane.offset + side.gap});
+    }
+    return outer.corners();
+  }
+
+ private:
+  struct Side {
+    HalfSpace plane;   ///< of a facet of the inner hull
+    double gap = 0.0;  ///< [m] how far points are above it
+    Vec3 farthest{0, 0, 0};
+  };
+
+  /// The sides of the inner hull. Points inside of it no longer count.
+  void measure() {
+    sides_.clear();
+    for (const Facet& f : hull_facets(inner_)) {
+      Side& side = sides_.emplace_back();
+      side.plane = {f.n, f.offset};
+    }
+    const auto is_inside = [&](const Vec3& p) {
+      bool is_above = false;
+      for (Side& side : sides_) {
+        const double height = side.plane.height(p);
+        is_above = is_above || height > 0.0;
+        if (height <= side.gap) continue;
+        side.gap = height;
+        side.farthest = p;
+      }
+      return !is_above;
+    };
+    if (!sides_.empty()) std::erase_if(points_, is_inside);
+  }
+
+  std::vector<Vec3> points_;
+  Vec3 low_, high_;
+  std::vector<Vec3> inner_;
+  std::vector<Side> sides_;
+};
+
+/// Points with the same hull; of very many points with one around it that has few corners.
+std::vector<Vec3> points_for_hull(std::span<const Vec3> points) {
+  constexpr std::size_t most_exact = 100'000;
+  if (points.size() > most_exact) {
+    std::vector<Vec3> around = Sandwich(points).corners_around();
+    if (!around.empty()) return around;
+  }
+  return {points.begin(), points.end()};
+}
+
+}  // namespace
+
 ConvexPart ConvexPart::of(std::span<const Vec3> points, double thickness) {
   ConvexPart part;
   if (points.empty()) return part;
-  std::vector<Vec3> all(points.begin(), points.end());
+  std::vector<Vec3> all = points_for_hull(points);
   std::vector<Facet> facets = hull_facets(all);
   if (facets.empty()) {
     const Vec3 n = normal_of_flat(points);

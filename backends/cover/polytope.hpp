@@ -59,8 +59,9 @@ struct ConvexPart {
   std::vector<HalfSpace> planes;  ///< of the facets, each once
   Vec3 low{0, 0, 0}, high{0, 0, 0};
 
-  /// The hull of `points`. A set in one plane is made `thickness` [m] thick; without planes if the
-  /// points are in one line.
+  /// The hull of `points`; of more than 100 000, a convex set around it of some hundred corners,
+  /// which contains every point. A set in one plane is made `thickness` [m] thick; without planes
+  /// if the points are in one line.
   [[nodiscard]] static ConvexPart of(std::span<const Vec3> points, double thickness);
 
   /// Whether p is inside every plane, or above it by at most `margin` [m].

@@ -17,8 +17,28 @@
 namespace repel::scene {
 namespace {
 
+constexpr Rule coordinate{unit::length, -Shape::largest, Shape::largest};
+constexpr Rule bound{unit::length, 0.0, Shape::largest};
+
 std::string text_of(const Vec3& p) {
   return to_text(p.x()) + " " + to_text(p.y()) + " " + to_text(p.z());
+}
+
+Gaps gaps_of(const Map& map) {
+  Gaps gaps;
+  if (const Value* list = map.find("gaps")) {
+    for (const Value& entry : list->list(Gaps::most_kept)) {
+      const Map gap(entry);
+      gap.allow({"at", "depth"});
+      gaps.deepest.push_back({gap.at("at").vector(coordinate), gap.at("depth").number(bound)});
+    }
+  }
+  gaps.count = gaps.deepest.size();
+  if (const Value* count = map.find("gap_count")) {
+    gaps.count = static_cast<std::size_t>(
+        count->integer(static_cast<std::int64_t>(gaps.count), 1'000'000'000));
+  }
+  return gaps;
 }
 
 }  // namespace
@@ -31,6 +51,10 @@ void write_part_list(const PartList& list, std::ostream& out) {
       << "uncovered: " << to_text(list.uncovered) << " m\n"
       << "excess: " << to_text(list.excess) << " m\n";
   if (list.seam) out << "seam: " << to_text(*list.seam) << " m\n";
+  if (list.gaps.count > 0) out << "gap_count: " << list.gaps.count << "\ngaps:\n";
+  for (const Gap& gap : list.gaps.deepest) {
+    out << "  - {at: " << text_of(gap.p_M) << " m, depth: " << to_text(gap.depth) << " m}\n";
+  }
   out << "parts:\n";
   for (const std::vector<Vec3>& part : list.parts) {
     out << "  - points:\n";
@@ -39,11 +63,10 @@ void write_part_list(const PartList& list, std::ostream& out) {
 }
 
 PartList read_part_list(const std::string& path) {
-  constexpr Rule coordinate{unit::length, -Shape::largest, Shape::largest};
-  constexpr Rule bound{unit::length, 0.0, Shape::largest};
   const Value document = Value::document(text_of_file(path, "a list of parts"), path);
   const Map map(document);
-  map.allow({"mesh", "checksum", "scale", "uncovered", "excess", "seam", "parts"});
+  map.allow(
+      {"mesh", "checksum", "scale", "uncovered", "excess", "seam", "gap_count", "gaps", "parts"});
   PartList list;
   map.read("mesh", list.mesh);
   map.read("checksum", list.checksum);
@@ -51,6 +74,7 @@ PartList read_part_list(const std::string& path) {
   map.read("uncovered", bound, list.uncovered);
   map.read("excess", bound, list.excess);
   if (const Value* seam = map.find("seam")) list.seam = seam->number(bound);
+  list.gaps = gaps_of(map);
   for (const Value& entry : map.at("parts").list()) {
     const Map part(entry);
     part.allow({"points"});
@@ -74,8 +98,7 @@ PartList part_list_of(const std::string& mesh, const std::string& path) {
   return list;
 }
 
-std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh, const Vec3& scale,
-                                            std::vector<std::string>& lists) {
+PartList list_beside(const std::string& mesh, const Vec3& scale, std::vector<std::string>& lists) {
   const std::string path = part_list_beside(mesh);
   std::error_code unused;
   if (!std::filesystem::is_regular_file(path, unused)) return {};
@@ -85,11 +108,25 @@ std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh, const Vec3&
                      " and the mesh '" + mesh + "' " + text_of(scale) + "; allowed: not 0");
   }
   const Vec3 ratio = scale.cwiseQuotient(list.scale);
+  const double most = ratio.cwiseAbs().maxCoeff();  // what distances grow by, at most
   for (std::vector<Vec3>& part : list.parts) {
     for (Vec3& p : part) p = ratio.cwiseProduct(p);
   }
+  for (Gap& gap : list.gaps.deepest) gap = {ratio.cwiseProduct(gap.p_M), most * gap.depth};
+  for (double* length : {&list.uncovered, &list.excess}) *length *= most;
+  if (list.seam) {
+    *list.seam *= most;
+    // Where lengths change by different factors, it is another depth that was not searched for.
+    if (ratio.cwiseAbs().minCoeff() != most) list.seam.reset();
+  }
+  list.scale = scale;
   if (std::find(lists.begin(), lists.end(), path) == lists.end()) lists.push_back(path);
-  return std::move(list.parts);
+  return list;
+}
+
+std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh, const Vec3& scale,
+                                            std::vector<std::string>& lists) {
+  return list_beside(mesh, scale, lists).parts;
 }
 
 std::string checksum_of_file(const std::string& path) {

@@ -148,12 +148,13 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
     std::string name = map.at("name").text();
     name.append(1, '/').append(std::to_string(parts.size() + 1));
     try {
-      parts.push_back({name, Shape::hull(points, {.levels = 1}), "hull", pose_of(map)});
+      parts.push_back({name, Shape::hull(points, {.levels = 1}), "hull", pose_of(map), {}});
     } catch (const SetupError& error) {
       std::string text = name;
       mesh.fail(text.append(" in '").append(path).append("': ").append(error.what()));
     }
   }
+  parts.front().gaps = list.gaps;
   return parts;
 }
 
@@ -173,7 +174,7 @@ std::vector<Part> parts_of(const Value& value, const Map& map,
   map.allow(common);
   if (kind == "mesh") return parts_of_mesh(map, shapes);
   try {
-    return {{name, shape_of(map, kind, shapes.counted), kind, pose_of(map)}};
+    return {{name, shape_of(map, kind, shapes.counted), kind, pose_of(map), {}}};
   } catch (const SetupError& error) {
     if (error.line() > 0) throw;
     value.fail(kind + " '" + name + "': " + error.what());
@@ -317,7 +318,7 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
     }
     for (Part& part : parts_of(entry, map, keys, shapes)) {
       obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
-                           part.X_BP, law_called(laws, map), motion_of(map)});
+                           part.X_BP, law_called(laws, map), motion_of(map), std::move(part.gaps)});
     }
     require_new(names, map);
   }
@@ -343,6 +344,7 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
     part.shape = std::move(parts.front().shape);
     part.kind = std::move(parts.front().kind);
     part.X_WP = parts.front().X_BP;
+    part.gaps = std::move(parts.front().gaps);
     part.law = law_called(laws, map);
     if (const Value* there = map.find("at_start")) {
       part.at_start = there->word_of({"yes", "no"}) == "yes";

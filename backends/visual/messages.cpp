@@ -158,6 +158,14 @@ std::string scene_message(const SceneInfo& info, const World& world) {
   for (const Pair& pair : world.pairs()) {
     pairs.push_back({pair.a.index, pair.b.index, pair.law.range});
   }
+  for (const GapsInfo& gaps : info.gaps) {
+    Json& json = parts.at(static_cast<std::size_t>(gaps.part.index));
+    json["gap_count"] = gaps.count;
+    for (const GapsInfo::Gap& gap : gaps.deepest) {
+      json["gaps"].push_back(
+          {rounded(gap.p_P.x()), rounded(gap.p_P.y()), rounded(gap.p_P.z()), rounded(gap.depth)});
+    }
+  }
   Json arms = Json::array();
   for (const ArmInfo& arm : info.arms) {
     arms.push_back({{"name", arm.name},

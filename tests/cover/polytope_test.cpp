@@ -17,6 +17,35 @@ double volume_of(const Polytope& shape) {
   return ConvexPart::of(shape.corners(), 0.0).volume();
 }
 
+TEST(ConvexPart, OfVeryManyPointsHasFewCornersAndContainsThemAll) {
+  std::mt19937_64 random(1);
+  std::vector<Vec3> ball;
+  for (int i = 0; i < 120'000; ++i) ball.push_back(draw(random, 1.0).normalized());
+  const ConvexPart part = ConvexPart::of(ball, 0.0);
+  EXPECT_LT(part.vertices.size(), 1000U);
+  for (const Vec3& p : ball) ASSERT_TRUE(part.contains(p, 1e-11)) << p.transpose();
+  for (const Vec3& p : part.vertices) EXPECT_LT(p.norm(), 1.05) << "reaches out far";
+  EXPECT_EQ(ConvexPart::of(ball, 0.0).vertices, part.vertices);
+}
+
+TEST(ConvexPart, OfVeryManyPointsInABoxIsThatBox) {
+  std::mt19937_64 random(2);
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  std::vector<Vec3> points;
+  for (int i = 0; i < 120'000; ++i) points.push_back(turn * draw(random, 0.999));
+  for (int i = 0; i < 8; ++i) {
+    points.push_back(turn * Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+  }
+  EXPECT_NEAR(ConvexPart::of(points, 0.0).volume(), 8.0, 1e-6);
+}
+
+TEST(ConvexPart, OfVeryManyPointsInAPlaneHasItsThickness) {
+  std::mt19937_64 random(3);
+  std::vector<Vec3> points{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  for (int i = 0; i < 100'000; ++i) points.push_back(draw(random, 1.0).cwiseProduct(Vec3(1, 1, 0)));
+  EXPECT_NEAR(ConvexPart::of(points, 0.1).volume(), 0.4, 1e-9);
+}
+
 TEST(Polytope, ABoxCutByPlanesKeepsItsVolume) {
   std::mt19937_64 random(1);
   int cut = 0;

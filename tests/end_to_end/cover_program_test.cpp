@@ -55,6 +55,37 @@ TEST(CoverProgram, AnOpenMeshIsCoveredAndSaidToBeOpen) {
   EXPECT_TRUE(ending.says("excess is more than")) << ending;
 }
 
+TEST(CoverProgram, KeepsWhereTheSurfaceIsInNoPartBesideTheParts) {
+  const Folder folder;
+  const std::string mesh = folder.with("box.obj", obj_of(box_mesh({0.2, 0.1, 0.1})));
+  const std::string list = folder / "p.yaml";
+  const std::string arguments =
+      quoted(mesh) + " -o " + quoted(list) + " --engine coacd --json " + quoted(folder / "j");
+  const auto run = [&](const std::string& more) {
+    return run_program("env",
+                       "REPEL_COACD=" REPEL_HALF_COVER " " REPEL_COVER " " + arguments + more);
+  };
+  EXPECT_EQ(run("").status, 1);
+  const Ending ending = run(" --allow-gaps");
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = json::parse(text_of(folder / "j"));
+  EXPECT_NEAR(report.at("uncovered_m"), 0.09, 0.011) << "half of the box is in no part";
+  const std::string text = text_of(list);
+  const std::size_t count = report.at("uncovered").size();
+  ASSERT_GT(count, 0U);
+  EXPECT_NE(text.find("gap_count: " + std::to_string(count) + "\n"), std::string::npos) << text;
+  const std::size_t first = text.find("- {at: ");
+  ASSERT_NE(first, std::string::npos) << text;
+  const double x = std::stod(text.substr(first + 7));
+  EXPECT_GT(x, 0.1) << "in the half that is not covered";
+  EXPECT_LT(x, 0.2001);
+  const std::size_t depth = text.find("depth: ");
+  EXPECT_NEAR(std::stod(text.substr(depth + 7)), report.at("uncovered_m"), 1e-6)
+      << "the deepest comes first";
+  ASSERT_EQ(cover(quoted(mesh) + " -o " + quoted(list)).status, 0);
+  EXPECT_EQ(text_of(list).find("gap"), std::string::npos) << "nothing is uncovered";
+}
+
 TEST(CoverProgram, RefusesWhatIsNoMeshWithItsName) {
   const Folder folder;
   const std::string mesh = folder.with("notes.stl", "these are no triangles");

@@ -44,6 +44,22 @@ TEST(LinkCover, IsTheListBesideTheMeshUnlessTheSceneSaysNo) {
   EXPECT_EQ(whole[0].name, "hook");
 }
 
+TEST(LinkCover, TellsWhichPartOfTheWorldHasTheGapsOfItsMesh) {
+  const Folder folder;
+  (void)folder.with("hook.stl.parts.yaml",
+                    hook_list("gap_count: 3\ngaps: [{at: 0 0 0.06 m, depth: 2 mm}]\n"));
+  const auto described = teleop::describe(scene::load(scene_of(folder, "", "2 2 2")), 400.0);
+  std::size_t part = 0;
+  for (const ArmPart& each : described.cell.arms[0].parts) {
+    const scene::Gaps& gaps = described.gaps.at(part++);
+    EXPECT_EQ(gaps.count, each.name == "hook/1" ? 3U : 0U) << each.name;
+    if (gaps.count == 0) continue;
+    EXPECT_LT((gaps.deepest.at(0).p_M - Vec3(0, 0, 0.12)).norm(), 1e-12);
+    EXPECT_NEAR(gaps.deepest[0].depth, 4e-3, 1e-12);
+  }
+  EXPECT_EQ(described.gaps.size(), part + described.cell.obstacles.size());
+}
+
 TEST(LinkCover, HasTheScaleOfTheMeshInTheRobotFile) {
   const Folder folder;
   for (const double made_for : {1.0, 0.5}) {

@@ -2,12 +2,16 @@
 // limit.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 
 #include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
 
 #include "end_to_end/folder.hpp"
@@ -41,6 +45,67 @@ void expect_refused(const Folder& folder, const std::string& in_link, const std:
     EXPECT_GT(error.line(), 0);
     EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
   }
+}
+
+/// A binary STL file of facets with the corners corner(0), corner(1), ...
+template <class Corner>
+std::string stl_of(std::uint32_t facets, const Corner& corner) {
+  std::string text(84 + std::size_t{50} * facets, '\0');
+  std::memcpy(&text[80], &facets, sizeof facets);
+  for (std::uint32_t i = 0; i < 3 * facets; ++i) {
+    const std::array<float, 3> p = corner(i);
+    std::memcpy(&text[96 + 50 * std::size_t{i / 3} + 12 * std::size_t{i % 3}], p.data(), sizeof p);
+  }
+  return text;
+}
+
+/// Reads it as a mesh by itself; the complaint, if it is refused.
+std::string complaint_about(const std::string& path) {
+  try {
+    (void)read_mesh(path);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MeshLimits, AnStlFileOfAMillionTrianglesCountsEachVertexOnce) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  constexpr std::uint32_t facets = 1'000'000;
+  constexpr std::uint32_t row = 1000;
+  const auto corner = [](std::uint32_t i) {
+    const std::uint32_t place = i / 3 + (i % 3 == 1 ? 1 : 0) + (i % 3 == 2 ? row : 0);
+    return std::array<float, 3>{static_cast<float>(place % row), static_cast<float>(place / row),
+                                i % 2 == 0 ? 0.0F : -0.0F};
+  };
+  const TriangleMesh mesh = read_mesh(folder.with("a.stl", stl_of(facets, corner)));
+  EXPECT_EQ(mesh.triangles.size(), facets);
+  EXPECT_EQ(mesh.vertices.size(), facets + row);
+  for (const int i : mesh.triangles.back()) {
+    EXPECT_GE(mesh.vertices.at(static_cast<std::size_t>(i)).y(), 998.0);
+  }
+}
+
+TEST(MeshLimits, AMeshOfTooManyDifferentVerticesIsRefused) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  const auto corner = [](std::uint32_t i) {
+    return std::array<float, 3>{static_cast<float>(i % 2000), static_cast<float>(i / 2000), 0.0F};
+  };
+  const std::string why = complaint_about(folder.with("a.stl", stl_of(666'668, corner)));
+  EXPECT_NE(why.find("more than 2000000 different vertices; allowed: up to"), std::string::npos)
+      << why;
+}
+
+TEST(MeshLimits, AMeshOfTooManyTrianglesIsRefused) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const Folder folder;
+  const auto corner = [](std::uint32_t i) {
+    return std::array<float, 3>{static_cast<float>(i % 3), static_cast<float>(i % 2), 0.0F};
+  };
+  const std::string why = complaint_about(folder.with("a.stl", stl_of(4'000'001, corner)));
+  EXPECT_NE(why.find("more than 4000000 triangles; allowed: up to"), std::string::npos) << why;
 }
 
 // assimp 5.2.5 loops for ever searching for the end of this header; found by fuzzing.

@@ -22,8 +22,10 @@ class MeshParts : public ::testing::Test {
   MeshParts() {
     (void)folder_.with("bin.stl", "the bytes of a mesh");
     (void)folder_.with("puma.urdf", test::text_of("robots/puma560.urdf"));
-    list_ = {"bin.stl",     checksum_of_file(folder_ / "bin.stl"), {1, 1, 1}, 1e-9, 2e-3, 5e-3,
-             {wedge, other}};
+    list_ = {"bin.stl",      checksum_of_file(folder_ / "bin.stl"),
+             {1, 1, 1},      1e-9,
+             2e-3,           5e-3,
+             {wedge, other}, {7, {{{0.1, 1.0 / 3.0, -0.2}, 4e-3}, {{0, 0, 0.3}, 1e-3}}}};
   }
 
   void write(const std::string& name) const {
@@ -66,6 +68,31 @@ TEST_F(MeshParts, ReadBackAsTheyWereWritten) {
   ASSERT_EQ(read.parts.size(), 2U);
   EXPECT_EQ(read.parts[0], wedge);  // to the bit, a third too
   EXPECT_EQ(read.parts[1], other);
+  EXPECT_EQ(read.gaps.count, 7U);
+  ASSERT_EQ(read.gaps.deepest.size(), 2U);
+  EXPECT_EQ(read.gaps.deepest[0].p_M, list_.gaps.deepest[0].p_M);
+  EXPECT_EQ(read.gaps.deepest[1].depth, 1e-3);
+}
+
+TEST_F(MeshParts, TellTheirFirstObstacleWhatIsNotCovered) {
+  write("bin.stl.parts.yaml");
+  const Scene scene = parsed("");
+  EXPECT_EQ(scene.obstacles[0].gaps.count, 7U);
+  EXPECT_EQ(scene.obstacles[0].gaps.deepest.at(0).p_M.z(), -0.2);
+  EXPECT_EQ(scene.obstacles[1].gaps.count, 0U);
+  list_.gaps = {};
+  write("bin.stl.parts.yaml");
+  EXPECT_EQ(parsed("").obstacles[0].gaps.count, 0U);
+}
+
+TEST_F(MeshParts, WithGapsThatCannotBeAreRefusedWithTheirLine) {
+  const std::string parts = "\nparts:\n  - points: [0 0 0 m]\n";
+  for (const char* wrong : {"gaps: [{at: 0 0 0 m, depth: -1 mm}]", "gaps: [{at: 0 0 0 m}]",
+                            "gap_count: 1\ngaps: [{at: 0 0 0 m, depth: 1 mm}, "
+                            "{at: 0 0 0 m, depth: 1 mm}]"}) {
+    (void)folder_.with("bin.stl.parts.yaml", wrong + parts);
+    EXPECT_NE(complaint().find("parts.yaml:1"), std::string::npos) << complaint();
+  }
 }
 
 TEST_F(MeshParts, BesideTheMeshAreObstaclesWithItsPoseAndLaw) {
@@ -120,6 +147,14 @@ TEST_F(MeshParts, AreConvertedToTheScaleThatIsAskedFor) {
   EXPECT_NEAR(parts[1][0].x(), 2.0 * other[0].x(), 1e-12);
   EXPECT_NEAR(parts[1][2].y(), -other[2].y(), 1e-12);
   EXPECT_EQ(lists, std::vector<std::string>{folder_ / "bin.stl.parts.yaml"});
+  const PartList list = list_beside(folder_ / "bin.stl", {0.002, -0.001, 0.001}, lists);
+  EXPECT_EQ(list.gaps.count, 7U);
+  EXPECT_LT((list.gaps.deepest[0].p_M - Vec3(0.2, -1.0 / 3.0, -0.2)).norm(), 1e-12);
+  EXPECT_NEAR(list.gaps.deepest[0].depth, 8e-3, 1e-12) << "as if all was along x";
+  EXPECT_NEAR(list.uncovered, 2e-9, 1e-18);
+  EXPECT_NEAR(list.excess, 4e-3, 1e-12);
+  EXPECT_FALSE(list.seam) << "not searched for in what is not a scaled copy";
+  EXPECT_NEAR(*list_beside(folder_ / "bin.stl", {0.002, -0.002, 0.002}, lists).seam, 1e-2, 1e-12);
   EXPECT_THROW((void)parts_beside(folder_ / "bin.stl", {1, 0, 1}, lists), SetupError);
   list_.scale.x() = 0.0;
   write("bin.stl.parts.yaml");

@@ -93,6 +93,15 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
                                    "max_turn_rad_s", "max_lever_rad_s"}));
 }
 
+TEST(Messages, APartHasWhatIsNotCoveredOfItsMesh) {
+  Stage stage;
+  stage.info.gaps = {{PartId{1}, 7, {{{0.1, 0, -0.2}, 0.004}, {{0, 0, 1}, 0.001}}}};
+  const Json parts = Json::parse(scene_message(stage.info, stage.world)).at("parts");
+  EXPECT_EQ(parts[1].at("gap_count"), 7);
+  EXPECT_EQ(parts[1].at("gaps"), (Json{{0.1, 0.0, -0.2, 0.004}, {0.0, 0.0, 1.0, 0.001}}));
+  for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("gaps"));
+}
+
 // The order of the pairs does not matter, nor what else the parts that meet it are in a pair with.
 TEST(Messages, APartIsPassableIfAllThatMeetItMayEnter) {
   const ForceLaw wall{.range = 0.02};

@@ -7,6 +7,7 @@ import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { Drag } from "./drag.js";
 import { Gamepad } from "./gamepad.js";
+import { Gaps } from "./gaps.js";
 import { startHelp, toggleHelp } from "./help.js";
 import { Histogram } from "./histogram.js";
 import { Keyboard } from "./keyboard.js";
@@ -46,6 +47,7 @@ const parts = new Parts(stage);
 const cameras = new Cameras(stage);
 const labels = new Labels(at("labels"), stage);
 const marks = new Marks(stage, labels);
+const gaps = new Gaps(stage, parts);
 const triad = new Triad(at("triad"), stage.camera);
 const trail = new Trail(stage);
 const readouts = new Readouts((pair, range) => marks.colourOf(pair, range));
@@ -69,7 +71,7 @@ const drag = new Drag(stage, parts,
                       { mayDrive: () => controls.ours, take: () => controls.take() });
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag], lever,
                               heading);
-startProbe({ connection, stage, parts, marks, cameras });
+startProbe({ connection, stage, parts, marks, gaps, cameras });
 
 const toolAt = new Vector3();
 const near = new Set();
@@ -105,6 +107,7 @@ connection.on("scene", (scene) => {
   at("level").max = parts.mostLevels - 1;
   at("level").value = settings.level;
   readouts.scene(scene);
+  gaps.scene(scene);
   transport.scene(scene);
   controls.scene(scene);
   drag.scene(scene.arms[0]?.tool_body);
@@ -185,6 +188,7 @@ function draw(now) {
     clearView(now);
     labels.clear();
     marks.update(state.frame);
+    gaps.update(marks.unit);
     labels.show();
     drag.draw();
     triad.draw();

@@ -185,6 +185,12 @@ export class Parts {
     return copy;
   }
 
+  // What a part hangs on, if its body is there.
+  seen(part) {
+    const { holder, body } = this.parts[part] ?? {};
+    return this.bodies[body]?.visible === false ? null : holder;
+  }
+
   solidsOf(body) {
     return this.parts.filter((part) => part.body === body).map((part) => part.solid);
   }

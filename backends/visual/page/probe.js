@@ -1,11 +1,11 @@
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// pixels(), look(), send().
+// pixels(), tinted(), look(), send().
 
 import { settings } from "./settings.js";
 import { state } from "./state.js";
 import { theme } from "./theme.js";
 
-export function startProbe({ connection, stage, parts, marks, cameras }) {
+export function startProbe({ connection, stage, parts, marks, gaps, cameras }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -21,7 +21,7 @@ export function startProbe({ connection, stage, parts, marks, cameras }) {
         operator: operator ?? null,
         pairs: frame?.pairs?.length ?? 0,
         partsInScene: scene?.parts?.length ?? 0,
-        drawn: { ...parts.counts(), ...marks.counts },
+        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count },
         // By body: where each box from the page is, if it is there.
         boxes: (scene?.spare ?? []).map((part) => scene.parts[part].body)
           .filter((each) => !frame?.absent?.includes(each))
@@ -37,6 +37,7 @@ export function startProbe({ connection, stage, parts, marks, cameras }) {
       };
     },
     pixels: () => stage.pixels(),
+    tinted: (colour, within) => stage.tinted(colour, within),
     send: (message) => connection.send(message),
     // From elsewhere than the fixed views: where the camera is, and what it looks at.
     look(position, target) {

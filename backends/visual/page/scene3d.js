@@ -108,13 +108,28 @@ export class Stage {
     this.invalidate();
   }
 
-  // Mean colour and its variance over the drawing, for tests: read right after it was drawn.
-  pixels() {
+  #bytes() {
     this.renderer.render(this.scene, this.camera);
     const gl = this.renderer.getContext();
     const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
     const bytes = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return { width, height, bytes };
+  }
+
+  // How many pixels have a colour up to `within`, for tests as pixels().
+  tinted(colour, within) {
+    const { bytes } = this.#bytes();
+    let count = 0;
+    for (let k = 0; k < bytes.length; k += 4) {
+      count += colour.every((value, c) => Math.abs(bytes[k + c] - value) <= within) ? 1 : 0;
+    }
+    return count;
+  }
+
+  // Mean colour and its variance over the drawing, for tests: read right after it was drawn.
+  pixels() {
+    const { width, height, bytes } = this.#bytes();
     const sum = [0, 0, 0, 0];
     const squares = [0, 0, 0, 0];
     bytes.forEach((value, k) => {

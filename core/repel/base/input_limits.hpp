@@ -21,7 +21,8 @@ struct InputLimits {
   /// Of all hulls of a scene; vertices of all meshes of a robot
   std::size_t hull_points = 100'000;
   std::size_t mesh_bytes = std::size_t{256} << 20;  ///< [byte] of all mesh files of a robot
-  std::size_t mesh_vertices = 2'000'000;            ///< of one mesh file
+  std::size_t mesh_vertices = 2'000'000;            ///< different ones, of one mesh file
+  std::size_t mesh_triangles = 4'000'000;           ///< of one mesh file
   std::size_t meshes = 1000;  ///< different mesh files of one robot; a file counts once per scale
   int mesh_seconds = 60;      ///< [s] of processor time for one mesh file; less for small files
   /// [byte] To read one mesh file; less for small files

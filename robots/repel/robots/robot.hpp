@@ -45,8 +45,10 @@ struct RobotPart {
   /// one of its convex parts.
   std::vector<Vec3> points;
   bool is_of_cover =
-      false;  ///< a hull from UrdfOptions::convex_parts; its name ends in /1, /2, ...
-  Pose X_LP = Pose::Identity();  ///< [m] pose of the part in its link
+      false;         ///< a hull from UrdfOptions::convex_parts; its name ends in /1, /2, ...
+  std::string mesh;  ///< path of the mesh file; hull only
+  Vec3 mesh_scale = Vec3::Ones();  ///< factors of its vertices; hull only
+  Pose X_LP = Pose::Identity();    ///< [m] pose of the part in its link
 };
 
 /// One link of the file. A link behind a fixed or held joint moves with a link of the arm.

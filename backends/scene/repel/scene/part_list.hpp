@@ -2,6 +2,7 @@
 /// Files with the convex parts of a mesh: the program `cover` writes them, scenes read them.
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -10,6 +11,20 @@
 #include <repel/base/types.hpp>
 
 namespace repel::scene {
+
+/// A piece of the surface of a mesh that lies in no part.
+struct Gap {
+  Vec3 p_M{0, 0, 0};   ///< [m] a point of it
+  double depth = 0.0;  ///< [m] no point of it is farther from the parts
+};
+
+/// Such pieces.
+struct Gaps {
+  static constexpr std::size_t most_kept = 100;
+
+  std::size_t count = 0;     ///< of all
+  std::vector<Gap> deepest;  ///< the deepest ones, the deepest first, at most `most_kept`
+};
 
 /// The parts of a mesh, and what was proven of them when they were made.
 struct PartList {
@@ -20,6 +35,7 @@ struct PartList {
   double excess = 0.0;         ///< [m] no point of the parts is farther from the mesh
   std::optional<double> seam;  ///< [m] depth up to which an intrusion feels one part
   std::vector<std::vector<Vec3>> parts;  ///< [m] corners of convex hulls
+  Gaps gaps;                             ///< where the mesh is in none of them
 };
 
 /// Where the parts of a mesh file are unless said otherwise: beside it.
@@ -39,10 +55,14 @@ void write_part_list(const PartList& list, std::ostream& out);
 ///   version of the mesh, with the command that makes it anew
 [[nodiscard]] PartList part_list_of(const std::string& mesh, const std::string& path);
 
-/// The parts of the file `mesh` for its vertices multiplied by `scale`, from the list beside it
-/// [m]; none if there is no list.
+/// The list beside the file `mesh`, converted to its vertices multiplied by `scale`; without parts
+/// if there is no list.
 /// @param lists to which the path of the list is added, unless it is there
 /// @throws SetupError as part_list_of(), or if the list or `scale` has a factor of 0
+[[nodiscard]] PartList list_beside(const std::string& mesh, const Vec3& scale,
+                                   std::vector<std::string>& lists);
+
+/// The parts of list_beside() [m].
 [[nodiscard]] std::vector<std::vector<Vec3>> parts_beside(const std::string& mesh,
                                                           const Vec3& scale,
                                                           std::vector<std::string>& lists);

@@ -20,6 +20,7 @@
 #include <repel/reduction/shape.hpp>
 #include <repel/scene/module_kinds.hpp>
 #include <repel/scene/network.hpp>
+#include <repel/scene/part_list.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/changed_arm.hpp>
@@ -36,6 +37,7 @@ struct Part {
   Shape shape;
   std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
   Pose X_BP = Pose::Identity();  ///< [m] pose in the tool frame
+  Gaps gaps{};                   ///< of the mesh, in the frame P; only of its first part
 };
 
 /// One convex part P of the world.
@@ -46,6 +48,7 @@ struct Obstacle {
   Pose X_WP = Pose::Identity();  ///< [m] pose; initial pose if it moves
   ForceLaw law;
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
+  Gaps gaps{};                                ///< of the mesh, as those of a Part
 };
 
 /// A robot description M of which every collision part is an obstacle, with all joints at zero.
@@ -68,6 +71,7 @@ struct LoosePart {
   bool at_start = true;       ///< it is there at the start
   double mass = 0.0;          ///< [kg]
   bool is_mass_known = true;  ///< to the controller, not only to the simulated arm
+  Gaps gaps{};                ///< of the mesh, as those of a Part
 };
 
 /// Parts reserved for what is not known before: boxes from the page of the live view.

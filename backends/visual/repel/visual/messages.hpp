@@ -2,6 +2,7 @@
 /// The messages to the page, as JSON text; docs/live_view.md describes the format.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -31,6 +32,18 @@ struct ArmInfo {
   double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
 };
 
+/// Where the surface of a mesh is in none of its convex parts.
+struct GapsInfo {
+  struct Gap {
+    Vec3 p_P{0, 0, 0};   ///< [m] a point of it
+    double depth = 0.0;  ///< [m] no point of it is farther from the parts
+  };
+
+  PartId part;               ///< in whose frame the points are
+  std::size_t count = 0;     ///< of all such places
+  std::vector<Gap> deepest;  ///< some of them, the deepest first
+};
+
 /// Properties that are constant while a scene runs.
 struct SceneInfo {
   std::string scene;
@@ -38,7 +51,8 @@ struct SceneInfo {
   bool replay = false;     ///< replay of a recording
   double duration = 0.0;   ///< [s] 0: until it is stopped
   std::vector<ArmInfo> arms;
-  std::vector<PartId> spare;  ///< reserved for boxes from a page
+  std::vector<PartId> spare;   ///< reserved for boxes from a page
+  std::vector<GapsInfo> gaps;  ///< of the meshes that are not covered as a whole
 };
 
 /// `scene`: bodies, parts with their levels as meshes, pairs, arms. Takes milliseconds.
