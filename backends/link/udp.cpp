@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include <repel/base/setup_error.hpp>
@@ -52,11 +53,11 @@ class Udp final : public Transport {
     socket_ = ::socket(site.address.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     const auto* address = reinterpret_cast<const sockaddr*>(&site.address);  // NOLINT(*-cast)
     if (socket_ >= 0 && options.side == Side::site && ::bind(socket_, address, site.size) != 0) {
-      const std::string why = std::strerror(errno);
+      const std::string why = std::generic_category().message(errno);
       ::close(std::exchange(socket_, -1));
       throw SetupError("the site cannot listen on " + place() + ": " + why);
     }
-    if (socket_ < 0) throw SetupError("no UDP socket: " + std::string(std::strerror(errno)));
+    if (socket_ < 0) throw SetupError("no UDP socket: " + std::generic_category().message(errno));
     if (options.side == Side::station) partner_ = site;
   }
   Udp(const Udp&) = delete;
