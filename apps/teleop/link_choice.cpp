@@ -54,7 +54,7 @@ std::string default_link() {
 }
 
 std::string link_complaint(const std::string& where) {
-  const std::string allowed = "'" + where + "' names no link; allowed: " + forms;
+  std::string allowed = "'" + where + "' names no link; allowed: " + forms;
   if (const auto place = behind(where, "udp")) return udp_place(*place) ? "" : allowed;
   const auto place = behind(where, "dds");
   if (!place || (where != "dds" && (place->empty() || place->starts_with(',')))) return allowed;
