@@ -189,7 +189,8 @@ class Sandwich {
     }
     for (int k = 0; k < 26; ++k) {
       const int at = k < 13 ? k : k + 1;  // all but the middle of a cube of 27
-      const Vec3 n(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1);
+      const int layer = at / 9;
+      const Vec3 n(at % 3 - 1, at / 3 % 3 - 1, layer - 1);
       inner_.push_back(*std::max_element(points_.begin(), points_.end(),
                                          [&](auto& a, auto& b) { return n.dot(a) < n.dot(b); }));
     }
