@@ -38,7 +38,8 @@ if(REPEL_HAS_DDS)
   enable_language(C)  # of what idlc writes
 endif()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
-foreach(part ${REPEL_COMPONENTS} meshes hacd)
+repel_all_found(SDF REPEL_HAS_ROBOTS SDFORMAT_FOUND)
+foreach(part ${REPEL_COMPONENTS} meshes hacd sdf)
   repel_say_if_left_out(${part})
 endforeach()
 

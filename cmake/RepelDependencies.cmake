@@ -46,7 +46,20 @@ macro(repel_find_robots)
   if(REPEL_ROBOTS_READ_MESHES)
     set(repel_for_meshes assimp_FOUND ZLIB_FOUND)
   endif()
-  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_for_meshes})
+  # Only for SDF files; where it was built in, it is needed. The target of pkg-config would ask for
+  # C++17.
+  repel_pkg_config(SDFORMAT sdformat12)
+  if(SDFORMAT_FOUND AND NOT TARGET repel_sdformat::sdformat)
+    add_library(repel_sdformat::sdformat INTERFACE IMPORTED)
+    set_target_properties(repel_sdformat::sdformat PROPERTIES
+      INTERFACE_INCLUDE_DIRECTORIES "${SDFORMAT_INCLUDE_DIRS}"
+      INTERFACE_LINK_LIBRARIES "${SDFORMAT_LINK_LIBRARIES}")
+  endif()
+  if(REPEL_ROBOTS_READ_SDF)
+    set(repel_for_sdf SDFORMAT_FOUND)
+  endif()
+  repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_for_meshes}
+                  ${repel_for_sdf})
 endmacro()
 
 macro(repel_find_cover)

@@ -344,7 +344,7 @@ void require_files_apart(const Arguments& arguments, const Work& work) {
   };
   add(work.scene.robot);
   for (const scene::OtherArm& partner : work.scene.partners) add(partner.robot);
-  for (const scene::StaticModel& model : work.scene.models) read.push_back({"a model", model.urdf});
+  for (const scene::StaticModel& model : work.scene.models) read.push_back({"a model", model.file});
   host::require_apart(
       read, {{"--log", arguments.log}, {"--report", arguments.report}, {"--html", arguments.html}});
 }

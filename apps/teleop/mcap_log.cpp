@@ -81,7 +81,7 @@ class McapLog final : public TickLog {
       attach(mcap::robot_attachment(i), "application/xml", scene.arm_setup(i).robot.urdf);
     }
     for (std::size_t i = 0; i < scene.models.size(); ++i) {
-      attach(mcap::model_attachment(i), "application/xml", scene.models[i].urdf);
+      attach(mcap::model_attachment(i), "application/xml", scene.models[i].file);
     }
     for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {
       attach(mcap::parts_attachment(i), "application/yaml", scene.part_lists[i]);

@@ -250,7 +250,7 @@ void read_scene(const McapReader& reader, const std::string& recorded,
                  recording.file);
   }
   for (std::size_t i = 0; i < scene.models.size(); ++i) {
-    require_same(reader, mcap::model_attachment(i), scene.models[i].urdf, "the model is",
+    require_same(reader, mcap::model_attachment(i), scene.models[i].file, "the model is",
                  recording.file);
   }
   for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <repel/robots/parts.hpp>
+#include <repel/robots/sdf.hpp>
 
 namespace repel::teleop {
 
@@ -10,8 +11,9 @@ std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, Cover
   UrdfOptions options;
   options.package_paths = model.packages;
   if (model.covers) options.convex_parts = covers.reader();
+  const auto read = model.is_sdf ? &load_sdf_parts : &load_parts;
   std::vector<scene::Obstacle> obstacles;
-  for (const RobotPart& part : load_parts(model.urdf, options)) {
+  for (const RobotPart& part : read(model.file, options)) {
     std::string name = model.name;
     name.append(1, '/').append(part.in_link).append(1, '/').append(part.name);
     obstacles.push_back({std::move(name),
@@ -23,7 +25,7 @@ std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, Cover
                          covers.gaps_of(part)});
   }
   if (obstacles.empty()) {
-    throw SetupError("'" + model.name + "' has no collision part; allowed: 1 or more", model.urdf);
+    throw SetupError("'" + model.name + "' has no collision part; allowed: 1 or more", model.file);
   }
   return obstacles;
 }

@@ -1,5 +1,5 @@
 /// @file
-/// The obstacles that a robot description is made into.
+/// The obstacles that a robot description or an SDF file is made into.
 #pragma once
 
 #include <string>

@@ -21,8 +21,8 @@ constexpr Rule position{unit::length, -Shape::largest, Shape::largest};
 constexpr Rule extent{unit::length, 0.0, Shape::largest};
 constexpr Rule angles{unit::angle, -1e3, 1e3};
 
-constexpr std::array<std::string_view, 8> obstacle_shapes{"box",  "sphere", "capsule", "cylinder",
-                                                          "cone", "hull",   "mesh",    "urdf"};
+constexpr std::array<std::string_view, 9> obstacle_shapes{
+    "box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh", "urdf", "sdf"};
 constexpr std::size_t part_shapes = 7;  // so many of them are shapes of tools too
 
 using Laws = std::map<std::string, ForceLaw>;
@@ -291,7 +291,8 @@ StaticModel model_of(const Map& map, const Laws& laws, const std::string& file) 
   map.allow({"name", "shape", "position", "rpy", "law", "file", "packages", "covers"});
   StaticModel model;
   model.name = map.at("name").text();
-  model.urdf = path_of(map.at("file"), file);
+  model.is_sdf = map.at("shape").text() == "sdf";
+  model.file = path_of(map.at("file"), file);
   if (const Value* packages = map.find("packages")) model.packages = packages_of(*packages, file);
   model.covers = takes_covers(map);
   model.X_WM = pose_of(map);
@@ -307,10 +308,11 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry);
-    if (const Value* shape = map.find("shape");
-        shape && shape->word_of(obstacle_shapes) == "urdf") {
+    const Value* const shape = map.find("shape");
+    const std::string kind = shape == nullptr ? "" : shape->word_of(obstacle_shapes);
+    if (kind == "urdf" || kind == "sdf") {
       if (models.size() == most_models) {
-        entry.fail("more than " + std::to_string(most_models) + " obstacles of shape urdf");
+        entry.fail("more than " + std::to_string(most_models) + " obstacles of shape urdf or sdf");
       }
       models.push_back(model_of(map, laws, shapes.file));
       require_new(names, map);

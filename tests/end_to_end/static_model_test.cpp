@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include <repel/robots/sdf.hpp>
 #include <repel/scene/scene.hpp>
 
 #include "contact.hpp"
@@ -79,6 +80,37 @@ TEST(StaticModel, IsRecordedAndAnotherOneIsRefused) {
   const Ending other = replay();
   EXPECT_EQ(other.status, 1) << other;
   EXPECT_TRUE(other.says("cell.urdf")) << other;
+}
+
+TEST(StaticModel, OfAnSdfFilePushesAsTheSceneWouldAndIsRecorded) {
+  if (!reads_sdf()) GTEST_SKIP() << "built without libsdformat";
+  const Folder folder;
+  (void)scene_of(folder);
+  const std::string file = folder.with(
+      "cell.sdf",
+      "<sdf version='1.9'><model name='m'><link name='table'><collision name='plate'><geometry>"
+      "<box><size>0.6 0.8 0.05</size></box></geometry></collision></link>"
+      "<link name='side'><pose relative_to='table'>0 0.3 0.02 0 0 0</pose><collision name='hook'>"
+      "<geometry><mesh><uri>hook.stl</uri></mesh></geometry></collision></link></model></sdf>");
+  std::string text = text_of(folder / "scene.yaml");
+  text.replace(text.find("shape: urdf, file: cell.urdf"), 28, "shape: sdf, file: cell.sdf");
+  const std::string scene = folder.with("sdf.yaml", text);
+  const auto cell = teleop::describe(scene::load(scene), 400.0).cell;
+  const auto other = teleop::describe(scene::load(folder / "scene.yaml"), 400.0).cell;
+  ASSERT_EQ(cell.obstacles.size(), 3U);
+  EXPECT_EQ(cell.obstacles[0].name, "cell/m::table/plate");
+  EXPECT_EQ(cell.obstacles[2].name, "cell/m::side/hook/2");
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(cell.obstacles[i].X_WP.isApprox(other.obstacles[i].X_WP, 1e-12)) << i;
+  }
+  const std::string recording = folder / "run.mcap";
+  const Ending ending = teleop(quoted(scene) + " --fast --seconds 1 --log " + quoted(recording));
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_EQ(teleop("--replay " + quoted(recording)).status, 0);
+  std::ofstream(file, std::ios::app) << "<!-- changed -->\n";
+  const Ending changed = teleop("--replay " + quoted(recording));
+  EXPECT_EQ(changed.status, 1) << changed;
+  EXPECT_TRUE(changed.says("cell.sdf")) << changed;
 }
 
 TEST(StaticModel, WithoutACollisionPartIsRefused) {

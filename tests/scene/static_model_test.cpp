@@ -45,13 +45,20 @@ TEST(StaticModel, HasFilePoseLawAndPackages) {
   ASSERT_EQ(scene.models.size(), 1U);
   const scene::StaticModel& model = scene.models[0];
   EXPECT_EQ(model.name, "cell");
-  EXPECT_EQ(model.urdf, folder / "cell.urdf");
+  EXPECT_EQ(model.file, folder / "cell.urdf");
   EXPECT_EQ(model.X_WM.translation(), Vec3(1, 2, 3));
   EXPECT_EQ(model.law.range, 0.03);
   EXPECT_EQ(model.packages.size(), 1U);
   EXPECT_FALSE(model.covers);
+  EXPECT_FALSE(model.is_sdf);
   const test::Folder other;
   EXPECT_TRUE(parsed(other, "name: cell, shape: urdf, file: cell.urdf").models[0].covers);
+  (void)other.with("cell.sdf", "not read here");
+  const Scene sdf = parsed(other, "name: cell, shape: sdf, file: cell.sdf, law: soft");
+  ASSERT_EQ(sdf.models.size(), 1U);
+  EXPECT_TRUE(sdf.models[0].is_sdf);
+  EXPECT_EQ(sdf.models[0].file, other / "cell.sdf");
+  EXPECT_EQ(sdf.models[0].law.range, 0.03);
 }
 
 TEST(StaticModel, WithWhatItCannotHaveIsRefusedWithItsLine) {

@@ -51,13 +51,15 @@ struct Obstacle {
   Gaps gaps{};                                ///< of the mesh, as those of a Part
 };
 
-/// A robot description M of which every collision part is an obstacle, with all joints at zero.
+/// A robot description M, or what an SDF file has, of which every collision part is an obstacle,
+/// with all joints at zero.
 struct StaticModel {
   std::string name;                   ///< its parts are called NAME/LINK/PART
-  std::string urdf;                   ///< path
+  std::string file;                   ///< path
+  bool is_sdf = false;                ///< otherwise it is a URDF file
   std::vector<std::string> packages;  ///< folders where package:// leads
   bool covers = true;                 ///< meshes become the parts in the lists beside them
-  Pose X_WM = Pose::Identity();       ///< [m] pose of its root link
+  Pose X_WM = Pose::Identity();       ///< [m] pose of its root link, or of the SDF world
   ForceLaw law;
 };
 
