@@ -52,6 +52,26 @@ ReadModule torque_arm_of(const Map& map) {
   return made_of(options, make<network::TorqueArm>);
 }
 
+ReadModule six_axes_of(const Map& map) {
+  allow(map, {"mass", "inertia", "friction", "angular_friction", "hand_stiffness", "hand_damping",
+              "angular_hand_stiffness", "angular_hand_damping", "force_limit", "torque_limit",
+              "motion_scale"});
+  network::SixAxesOptions options;
+  map.read("mass", {unit::mass, 1e-6, 1e3}, options.mass);
+  map.read("inertia", {unit::inertia, 1e-9, 1e3}, options.inertia);
+  map.read("friction", {unit::damping, 0.0, 1e4}, options.friction);
+  map.read("angular_friction", {unit::angular_damping, 0.0, 1e3}, options.angular_friction);
+  map.read("hand_stiffness", {unit::stiffness, 0.0, 1e6}, options.hand_stiffness);
+  map.read("hand_damping", {unit::damping, 0.0, 1e5}, options.hand_damping);
+  map.read("angular_hand_stiffness", {unit::angular_stiffness, 0.0, 1e5},
+           options.angular_hand_stiffness);
+  map.read("angular_hand_damping", {unit::angular_damping, 0.0, 1e4}, options.angular_hand_damping);
+  map.read("force_limit", {unit::force, 0.0, 1e5}, options.force_limit);
+  map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
+  map.read("motion_scale", {unit::share, 1e-3, 1e3}, options.motion_scale);
+  return made_of(options, make<network::SixAxes>);
+}
+
 ReadModule multiplex_of(const Map& map) {
   allow(map, {"velocity_scale", "force_scale", "turning_time"});
   network::MultiplexOptions options;
@@ -328,6 +348,7 @@ ModuleKinds::ModuleKinds() {
       {"puma_joints", joints_of},
       {"ground", ground_of},
       {"line", line_of},
+      {"six_axes", six_axes_of},
       {"junction", junction_of},
       {"spring", read_element<Element::Kind::spring>},
       {"damper", read_element<Element::Kind::damper>},

@@ -553,7 +553,9 @@ network::Phase phase_of(const Value& value) {
   if (const Value* silent = map.find("silent")) {
     phase.silent = silent->word_of({"yes", "no"}) == "yes";
   }
-  if (map.at("device").word_of({"spaceball", "torque_arm"}) == "spaceball") {
+  const std::string_view device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
+  if (device != "torque_arm") {
+    if (device == "six_axes") phase.master = network::Master::six_axes;
     map.allow(phase_keys({"linear", "angular"}));
     map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
     map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);

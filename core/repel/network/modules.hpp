@@ -13,6 +13,7 @@
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/puma_kin.hpp>
 #include <repel/network/modules/relief.hpp>
+#include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/spaceball.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/modules/visual.hpp>

@@ -15,6 +15,7 @@ namespace repel::network {
 enum class Master {
   spaceball,   ///< six rates, no force feedback
   torque_arm,  ///< one lever with force feedback
+  six_axes,    ///< six rates of a hand, with force feedback
 };
 
 /// Frame in which a phase states its directions.
@@ -26,7 +27,7 @@ struct Phase {
   Master master = Master::spaceball;     ///< the device in the operator's hand
   PhaseFrame frame = PhaseFrame::world;  ///< of the rates and of the direction
   double duration = 1.0;                 ///< [s]
-  Twist rates;                           ///< [m/s, rad/s] spaceball: constant through the phase
+  Twist rates;              ///< [m/s, rad/s] spaceball, six axes: constant through the phase
   Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction in which the lever drives the tool
   double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
   bool silent = false;      ///< the device does not respond: its last sample is held
@@ -76,7 +77,7 @@ class ScriptedOperator {
  private:
   [[nodiscard]] bool read(const Phase& phase, const Mat3& R_WT, double period) noexcept {
     const bool in_tool = phase.frame == PhaseFrame::tool;
-    if (phase.master == Master::spaceball) {
+    if (phase.master != Master::torque_arm) {
       if (!is_finite(phase.rates)) return false;
       command_.hand.ball = in_tool ? rotated(R_WT, phase.rates) : phase.rates;
       return true;

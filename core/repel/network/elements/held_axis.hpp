@@ -1,0 +1,91 @@
+/// @file
+/// One axis of a force-reflecting master, with the hand that holds it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <repel/network/elements/port.hpp>
+
+namespace repel::network {
+
+/// Gains of a sliding axis [kg, N s/m, N/m, N s/m, N], or of a turning one [kg m^2, N m s/rad,
+/// N m/rad, N m s/rad, N m].
+struct HeldAxisGains {
+  double inertia = 0.0;
+  double friction = 0.0;
+  double hand_stiffness = 0.0;
+  double hand_damping = 0.0;
+  double limit = 0.0;  ///< of the motor
+};
+
+/// Inertia, bearing and a hand that follows its own trajectory through a spring and a damper, by
+/// the bilinear rule:
+///
+///     R = 2 I / T + c + (k_h T / 2 + c_h)      b = b_I + b_k - (k_h T / 2 + c_h) v_hand
+///
+/// with b_I and b_k the waves reflected by inertia and spring. The hand is an energy source; what
+/// it supplies is counted separately. The motor never exceeds its limit: the axis takes the wave
+/// a' that goes with the effort it can give. Where the hand overpowers the motor, |a'| > |a|: what
+/// the axis then takes beyond the power of its port is the work of the hand and counts as
+/// supplied.
+class HeldAxis {
+ public:
+  HeldAxis() = default;
+  /// @param period [s]
+  HeldAxis(const HeldAxisGains& gains, double period) noexcept
+      : period_(period),
+        limit_(gains.limit),
+        mass_resistance_(2.0 * gains.inertia / period),
+        spring_resistance_(0.5 * gains.hand_stiffness * period),
+        hand_resistance_(spring_resistance_ + gains.hand_damping),
+        resistance_(mass_resistance_ + gains.friction + hand_resistance_) {}
+
+  /// The hand moves at this rate [m/s, rad/s] in this tick. @param at_rest lets go of spring and
+  /// motion
+  void move(double hand_rate, bool at_rest) noexcept {
+    hand_rate_ = hand_rate;
+    if (at_rest) mass_wave_ = spring_wave_ = rate_ = 0.0;
+  }
+
+  [[nodiscard]] double resistance() const noexcept { return resistance_; }
+  [[nodiscard]] double reflected() const noexcept {
+    return -mass_wave_ + spring_wave_ - hand_resistance_ * hand_rate_;
+  }
+  void incident(double a) noexcept {
+    const double b = reflected();
+    saturated_ = std::abs(a + b) > 2.0 * limit_;
+    double overpowered = 0.0;  // [W]
+    if (saturated_) {
+      const double taken = 2.0 * std::copysign(limit_, a + b) - b;
+      overpowered = std::max(0.0, (taken * taken - a * a) / (4.0 * resistance_));
+      a = taken;
+    }
+    const double rate = (a - b) / (2.0 * resistance_);
+    const double relative = rate - hand_rate_;
+    supplied_ = overpowered - (spring_wave_ + hand_resistance_ * relative) * hand_rate_;
+    mass_wave_ = -mass_wave_ + 2.0 * mass_resistance_ * rate;
+    spring_wave_ += 2.0 * spring_resistance_ * relative;
+    position_ += 0.5 * period_ * (rate + rate_);
+    rate_ = rate;
+    felt_ = 0.5 * (a + b);
+  }
+
+  [[nodiscard]] double position() const noexcept { return position_; }  ///< [m, rad]
+  [[nodiscard]] double rate() const noexcept { return rate_; }          ///< [m/s, rad/s]
+  [[nodiscard]] double felt() const noexcept { return felt_; }          ///< [N, N m] of the motor
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the hand
+  [[nodiscard]] bool saturated() const noexcept { return saturated_; }
+
+ private:
+  double period_ = 1.0;  // [s]
+  double limit_ = 0.0;
+  double mass_resistance_ = 0.0, spring_resistance_ = 0.0, hand_resistance_ = 0.0;
+  double resistance_ = 0.0;
+  double mass_wave_ = 0.0, spring_wave_ = 0.0;
+  double hand_rate_ = 0.0;
+  double position_ = 0.0, rate_ = 0.0, felt_ = 0.0, supplied_ = 0.0;
+  bool saturated_ = false;
+};
+
+}  // namespace repel::network

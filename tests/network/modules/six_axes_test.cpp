@@ -1,0 +1,98 @@
+#include <repel/network/modules/six_axes.hpp>
+
+#include <gtest/gtest.h>
+
+#include <repel/network/elements/one_ports.hpp>
+#include <repel/network/plan.hpp>
+
+#include "network/drawn.hpp"
+
+namespace repel::network {
+namespace six_axes_test {
+
+using test::Matrix;
+using test::period;
+using test::Vector;
+
+constexpr unsigned seed = 66;
+
+Signals moving(const Twist& hand) {
+  Signals signals = detail::neutral_signals(0, period);
+  signals.hand.ball = hand;
+  return signals;
+}
+
+/// The master against a spring at the tool.
+Network against_a_spring(const SixAxesOptions& options, double stiffness) {
+  return Plan()
+      .add("six_axes", SixAxes(options))
+      .add("spring", Spring<any_size>(stiffness * Matrix::Identity(6, 6)))
+      .build(period);
+}
+
+TEST(SixAxes, FeelsForceAndTorqueOfWhatItMoves) {
+  for (const double scale : {0.2, 1.0, 3.0}) {
+    SCOPED_TRACE(scale);
+    Network network = against_a_spring({.motion_scale = scale}, 50.0);
+    const Twist hand{Vec3(0.02, -0.01, 0.03), Vec3(0.004, 0.01, -0.02)};
+    for (int tick = 0; tick < 400; ++tick) ASSERT_TRUE(network.run(moving(hand)));
+    for (int tick = 0; tick < 4000; ++tick) ASSERT_TRUE(network.run(moving({})));
+    const auto& master = *network.find<SixAxes>();
+    // The hand went as far in a second; its grip and the spring at the tool share it.
+    const Vector wanted = to_vec(hand);
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      const double grip = i < 3 ? 300.0 : 3.0;
+      const double load = 50.0 * scale * scale;
+      EXPECT_NEAR(master.position()(i), wanted(i) * grip / (grip + load), 1e-5);
+      EXPECT_NEAR(master.felt()(i), -load * master.position()(i), 1e-6);
+    }
+    EXPECT_FALSE(master.saturated());
+  }
+}
+
+TEST(SixAxes, GivesNoMoreThanItTookAndTheHandSupplied) {
+  families::Rng rng(seed);
+  for (const double scale : {0.3, 2.0}) {
+    for (const double limit : {1.0, 100.0}) {
+      SCOPED_TRACE("scale " + std::to_string(scale) + ", seed " + std::to_string(seed));
+      Network network = against_a_spring(
+          {.force_limit = limit, .torque_limit = 0.1 * limit, .motion_scale = scale}, 200.0);
+      int saturated = 0;
+      for (int tick = 0; tick < families::draws(20000); ++tick) {
+        Twist hand;
+        for (Eigen::Index i = 0; i < 3; ++i) {
+          hand.linear[i] = families::uniform(rng, -0.5, 0.5);
+          hand.angular[i] = families::uniform(rng, -2.0, 2.0);
+        }
+        ASSERT_TRUE(network.run(moving(hand)));
+        saturated += network.find<SixAxes>()->saturated() ? 1 : 0;
+      }
+      for (const Node& node : network.nodes()) {
+        EXPECT_LE(node.ledger.deficit(), 1e-9) << node.name;
+      }
+      EXPECT_GT(network.find("six_axes")->ledger.passed, 1e-2);
+      EXPECT_EQ(saturated > 0, limit < 10.0);
+    }
+  }
+}
+
+TEST(SixAxes, LetsGoAtRest) {
+  Network network = against_a_spring({}, 50.0);
+  for (int tick = 0; tick < 100; ++tick) {
+    ASSERT_TRUE(network.run(moving({Vec3(0.1, 0, 0), Vec3(0, 0, 0.1)})));
+  }
+  Signals rest = moving({});
+  rest.at_rest = true;
+  ASSERT_TRUE(network.run(rest));
+  EXPECT_LT(network.find<SixAxes>()->rate().norm(), 0.1);
+}
+
+TEST(SixAxes, RefusesNumbersOutOfRange) {
+  EXPECT_THROW(SixAxes({.mass = 0.0}), SetupError);
+  EXPECT_THROW(SixAxes({.inertia = -1.0}), SetupError);
+  EXPECT_THROW(SixAxes({.force_limit = 1e6}), SetupError);
+  EXPECT_THROW(SixAxes({.motion_scale = 0.0}), SetupError);
+}
+
+}  // namespace six_axes_test
+}  // namespace repel::network
