@@ -8,6 +8,7 @@
 #include <random>
 #include <string_view>
 
+#include <repel/link/impaired.hpp>
 #include <repel/link/udp.hpp>
 #include <repel/network/elements/line.hpp>
 #ifdef REPEL_TELEOP_DDS
@@ -66,7 +67,9 @@ std::string link_complaint(const std::string& where) {
 #endif
 }
 
-std::unique_ptr<link::Transport> open_link(const LinkChoice& choice) {
+namespace {
+
+std::unique_ptr<link::Transport> open_place(const LinkChoice& choice) {
   const std::string where = choice.where.empty() ? default_link() : choice.where;
   if (const std::string complaint = link_complaint(where); !complaint.empty()) {
     throw SetupError(complaint);
@@ -80,6 +83,7 @@ std::unique_ptr<link::Transport> open_link(const LinkChoice& choice) {
   const std::string place = *behind(where, "dds");
   dds::DdsOptions options;
   options.side = *choice.side;
+  options.domain = choice.domain;
   const std::size_t comma = place.find(',');
   if (!place.empty()) options.interface = place.substr(0, comma);
   if (comma != std::string::npos) options.peer = place.substr(comma + 1);
@@ -87,6 +91,30 @@ std::unique_ptr<link::Transport> open_link(const LinkChoice& choice) {
 #else
   return nullptr;
 #endif
+}
+
+/// Of the scene's line; none if it has none.
+const network::LineOptions* line_of(const scene::Scene& scene) {
+  const network::LineOptions* line = nullptr;
+  for (const scene::Module& module : scene.network.modules) {
+    if (const auto* found = std::any_cast<network::LineOptions>(&module.options)) line = found;
+  }
+  return line;
+}
+
+}  // namespace
+
+bool has_line(const scene::Scene& scene) {
+  return line_of(scene) != nullptr;
+}
+
+std::unique_ptr<link::Transport> open_link(const LinkChoice& choice, const scene::Scene& scene) {
+  std::unique_ptr<link::Transport> transport = open_place(choice);
+  const network::LineOptions* const line = line_of(scene);
+  if (!choice.is_impaired || line == nullptr) return transport;
+  network::ChannelOptions channel = line->channel;
+  if (choice.side == link::Side::site) channel.seed = ~channel.seed;
+  return link::impaired(std::move(transport), channel);
 }
 
 network::RemoteOptions remote_options(const scene::Scene& scene) {
@@ -107,10 +135,7 @@ network::RemoteOptions remote_options(const scene::Scene& scene) {
   for (std::istreambuf_iterator<char> it(file), end; it != end; ++it) {
     options.agreement = (options.agreement ^ static_cast<unsigned char>(*it)) * 0x100000001b3U;
   }
-  for (const scene::Module& module : scene.network.modules) {
-    const auto* line = std::any_cast<network::LineOptions>(&module.options);
-    if (line != nullptr) options.playout.buffer = line->buffer;
-  }
+  if (const network::LineOptions* line = line_of(scene)) options.playout.buffer = line->buffer;
   return options;
 }
 

@@ -15,7 +15,9 @@ namespace repel::teleop {
 
 struct LinkChoice {
   std::optional<link::Side> side;  ///< of this program; none: it has both
-  std::string where;  ///< "dds:INTERFACE,PEER", "udp:ADDRESS:PORT"; empty: default_link
+  std::string where;         ///< "dds:INTERFACE,PEER", "udp:ADDRESS:PORT"; empty: default_link
+  std::uint32_t domain = 0;  ///< of DDS
+  bool is_impaired = false;  ///< what is sent is treated as by the line of the scene
 };
 
 /// DDS if it is built in, else UDP; both on the loopback interface.
@@ -25,7 +27,11 @@ struct LinkChoice {
 [[nodiscard]] std::string link_complaint(const std::string& where);
 
 /// @throws SetupError if it is not available, saying what to do
-[[nodiscard]] std::unique_ptr<link::Transport> open_link(const LinkChoice& choice);
+[[nodiscard]] std::unique_ptr<link::Transport> open_link(const LinkChoice& choice,
+                                                         const scene::Scene& scene);
+
+/// Whether the scene can be divided: its network has a line.
+[[nodiscard]] bool has_line(const scene::Scene& scene);
 
 /// Of this run of the scene: a session drawn at random; the other side must have the same text of
 /// the scene file. @throws SetupError for a scene that cannot be divided

@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <random>
 #include <sstream>
 
 #include <repel/world/changed_arm.hpp>
@@ -25,6 +28,7 @@
 #include "session.hpp"
 #include "session_options.hpp"
 #include "station.hpp"
+#include "station_program.hpp"
 
 namespace {
 
@@ -33,10 +37,11 @@ using namespace repel;
 
 struct Arguments {
   std::string scene = "anderson_4x8";
-  bool has_seconds = false;  ///< --seconds was given
-  double rate_hz = 0.0;      ///< 0: the scene's own
-  int threads = -1;          ///< -1: the scene's own
-  std::string coprocessor;   ///< empty: the scene's own
+  bool has_seconds = false;   ///< --seconds was given
+  std::optional<bool> apart;  ///< as two programs; none: as the scene says
+  double rate_hz = 0.0;       ///< 0: the scene's own
+  int threads = -1;           ///< -1: the scene's own
+  std::string coprocessor;    ///< empty: the scene's own
   teleop::RunOptions run;
   teleop::SessionOptions session;
   std::string replay;
@@ -130,6 +135,24 @@ void describe_sides(CLI::App& app, Arguments& a) {
          "scene file. Until it is stopped, unless --seconds is given")
       ->excludes("--fast", "--device")
       ->excludes(station);
+  CLI::Option* apart =
+      app.add_flag_callback(
+             "--apart", [&a] { a.apart = true; },
+             "Run both sides as two programs that are joined by the link, on which packets are "
+             "delayed and lost as by the line of the scene (default: if the scene says so, and it "
+             "is neither --fast nor recorded)")
+          ->excludes(station, "--site", "--fast");
+  app.add_flag_callback(
+         "--together", [&a] { a.apart = false; }, "Run one program in any case")
+      ->excludes(station, "--site", apart);
+  app.add_flag("--impaired", a.session.link.is_impaired,
+               "With --site or --station: delay and lose what is sent as the line of the scene "
+               "does, to try a far link nearby")
+      ->excludes(apart);
+  app.add_option("--domain", a.session.link.domain,
+                 "DDS domain of the link, the same on both sides (default: 0; with --apart a "
+                 "random one)")
+      ->check(CLI::Range(0, 230));
   app.add_option("--link", a.session.link.where,
                  "What joins them: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), udp or "
                  "udp:ADDRESS:PORT (where the site listens). Without more it is on this machine. "
@@ -235,8 +258,9 @@ void describe(CLI::App& app, Arguments& a) {
       "scene do not apply, counted ones do");
   describe_arm(app, a);
   app.final_callback([&a, &app] {
-    if (app.count("--link") > 0 && !a.session.link.side) {
-      throw CLI::RequiresError("--link", "--site or --station");
+    for (const char* option : {"--link", "--domain", "--impaired"}) {
+      if (app.count(option) == 0 || a.session.link.side || a.apart.value_or(false)) continue;
+      throw CLI::RequiresError(option, "--site or --station");
     }
     const std::string insecure = teleop::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);
@@ -283,7 +307,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
                  "--coprocessor", "--budget", "--measure", "--levels", "--every-pair",
                  "--tool-alone", "--plant-inertia", "--no-prediction", "--device", "--site",
-                 "--station");
+                 "--station", "--apart");
   app.footer(footer());
 }
 
@@ -381,6 +405,41 @@ int run_station(const Arguments& arguments, const Work& work) {
   return wrote(report, result, teleop::write_station_json) && is_printed ? 0 : 4;
 }
 
+/// Whether to run the scene as two programs.
+bool is_apart(const Arguments& arguments, const Work& work) {
+  if (arguments.session.link.side || work.recording || work.options.fast) return false;
+  return arguments.apart.value_or(work.scene.apart && !work.options.log.ends_with(".mcap"));
+}
+
+/// Starts the operator's side as a program of its own, for this one to be the site.
+std::unique_ptr<teleop::StationProgram> station_beside(const Work& work,
+                                                       teleop::SessionOptions& session) {
+  if (!teleop::has_line(work.scene)) {
+    throw SetupError("two programs need a module 'line' in the network, to part it there",
+                     work.scene.file);
+  }
+  session.link.is_impaired = true;
+  if (session.link.domain == 0) session.link.domain = 1 + std::random_device()() % 100;
+  if (session.link.where.empty()) session.link.where = teleop::default_link();
+  std::vector<std::string> words{work.scene.file,
+                                 "--station",
+                                 "--impaired",
+                                 "--link",
+                                 session.link.where,
+                                 "--domain",
+                                 std::to_string(session.link.domain),
+                                 "--rate",
+                                 std::to_string(work.options.rate_hz),
+                                 "--seconds",
+                                 "1e6"};
+  if (!session.device.empty()) {
+    words.insert(words.end(), {"--device", session.device});
+    session.device.clear();
+  }
+  session.link.side = link::Side::site;
+  return std::make_unique<teleop::StationProgram>(std::move(words));
+}
+
 int run(const Arguments& arguments) {
   const Work work = work_of(arguments);
   require_files_apart(arguments, work);
@@ -393,11 +452,23 @@ int run(const Arguments& arguments) {
   const bool by_hand = session.view || !session.device.empty();
   const char* after = by_hand ? "by hand, or at rest" : "script over";
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const teleop::RunResult result = teleop::run_session(
-      work.scene, work.options, session, recording, host::interruption(), host::insistence(),
-      [&](const teleop::Progress& p) { show(work.scene, p, after, work.options.fast, terminal); });
+  std::unique_ptr<teleop::StationProgram> station;
+  if (is_apart(arguments, work)) station = station_beside(work, session);
+  teleop::RunResult result =
+      teleop::run_session(work.scene, work.options, session, recording, host::interruption(),
+                          host::insistence(), [&](const teleop::Progress& p) {
+                            // The robot would only hold. What went wrong with the other program is
+                            // printed at the end.
+                            if (station && station->has_ended()) (void)std::raise(SIGTERM);
+                            show(work.scene, p, after, work.options.fast, terminal);
+                          });
+  if (station) result.station = station->stop();
   if (terminal) std::fputs("\r\033[K", stderr);
   teleop::print_report(result, stdout);
+  if (result.station) {
+    std::fputs(result.station->printed.c_str(), stdout);
+    if (result.station->status != 0) std::fputs(result.station->complaints.c_str(), stderr);
+  }
   if (recording != nullptr) teleop::print_replay(*recording, result, stdout);
   bool is_whole = result.log_trouble.empty();
   if (!host::has_printed()) {
@@ -406,6 +477,7 @@ int run(const Arguments& arguments) {
   }
   is_whole = wrote(report, result, teleop::write_json) && is_whole;
   is_whole = wrote(html, result, teleop::write_html) && is_whole;
+  if (result.station && result.station->status != 0) return 1;
   const teleop::ReplayReport& replay = result.replay;
   if (replay.same != replay.ticks) return 3;
   if (!is_whole) return 4;

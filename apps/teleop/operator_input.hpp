@@ -41,6 +41,10 @@ class OperatorInput {
   /// From now on replays the command of `record`, which must stay valid and is read at each tick.
   void follow(const TickRecord& record) noexcept { recorded_ = &record; }
 
+  /// The script begins at `begin`: until then the hand is at rest.
+  void await() noexcept { awaits_ = true; }
+  void begin() noexcept { awaits_ = false; }
+
   /// From now on the hand is at rest and silent, whoever drives: the fail-safe fades the forces.
   void let_go() noexcept { has_let_go_ = true; }
 
@@ -53,7 +57,7 @@ class OperatorInput {
       const bool listens = hear(period);
       if (device_ != nullptr) feel(period, listens);
       if (listens) listen(R_WT);
-      if (driver_ == Driver::script) command_ = script_.step(R_WT, period);
+      if (driver_ == Driver::script && !awaits_) command_ = script_.step(R_WT, period);
     }
     command_.phase = static_cast<std::int32_t>(phase());
     return command_;
@@ -124,6 +128,7 @@ class OperatorInput {
   network::Command command_;
   double unheard_ = 0.0;  ///< [s] since the last post
   bool has_let_go_ = false;
+  bool awaits_ = false;
 };
 
 }  // namespace repel::teleop

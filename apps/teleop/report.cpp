@@ -512,6 +512,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["steps"] = steps_to_json(r);
   report["camera"] = camera_to_json(r);
   report["link"] = r.link ? link_to_json(*r.link) : ordered_json(nullptr);
+  report["station"] = r.station ? r.station->report : ordered_json(nullptr);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
   report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);

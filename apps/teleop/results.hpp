@@ -27,6 +27,7 @@
 #include "part_steps.hpp"
 #include "replay.hpp"
 #include "run_options.hpp"
+#include "station_program.hpp"
 
 namespace repel::teleop {
 
@@ -114,11 +115,12 @@ struct RunResult {
   std::int64_t log_dropped = 0;         ///< ticks missing in the log
   std::string log_trouble;              ///< other reason why the log is incomplete; empty: none
   bool interrupted = false;
-  bool begins_anew = false;            ///< the user requested another run
-  std::vector<PartStepResult> steps;   ///< of the parts that come and go
-  std::optional<CameraResult> camera;  ///< if the scene has one
-  std::optional<LinkResult> link;      ///< if the operator is in another program
-  ReplayReport replay;                 ///< of a replay
+  bool begins_anew = false;              ///< the user requested another run
+  std::vector<PartStepResult> steps;     ///< of the parts that come and go
+  std::optional<CameraResult> camera;    ///< if the scene has one
+  std::optional<LinkResult> link;        ///< if the operator is in another program
+  std::optional<StationEnding> station;  ///< if it ran beside this program
+  ReplayReport replay;                   ///< of a replay
   host::Machine machine;
   /// Since set-up, of all pairs whose law is not passable, and of those whose law is.
   PairExtremes walls, passables;

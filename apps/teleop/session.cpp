@@ -71,9 +71,11 @@ class RemoteEnd {
     if (!options.log.ends_with(".mcap")) return;
     throw SetupError("--log " + options.log +
                      ": what a station sent is not in a recording, so it could not be replayed; "
-                     "allowed with --site: a CSV file");
+                     "allowed: a CSV file, or one program, --together");
   }
-  void open(const LinkChoice& choice) { thread_.emplace(link, open_link(choice)); }
+  void open(const LinkChoice& choice, const scene::Scene& scene) {
+    thread_.emplace(link, open_link(choice, scene));
+  }
   /// Nothing passes any more. @return what did
   [[nodiscard]] LinkResult close() {
     thread_->stop();
@@ -183,7 +185,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
       prepare(scene, options, recording, remote ? &remote->link : nullptr);
   Attachments attached{nullptr, nullptr, device.link.get(), recording, nullptr, &at_once};
   if (remote) {
-    remote->open(session.link);
+    remote->open(session.link, scene);
     attached.remote = &remote->link;
   }
   const auto run_once = [&] {

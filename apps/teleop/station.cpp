@@ -67,6 +67,9 @@ void make_ticks(StationSide& station, devices::DeviceLink* device, const std::at
     result.linked += station.is_heard() ? period_s : 0.0;
     const SiteState& site = station.site();
     result.peak_lever_torque = std::max(result.peak_lever_torque, std::abs(station.felt()));
+    const network::Vec<6> felt = station.felt_at_handle();
+    result.peak_hand_force = std::max(result.peak_hand_force, felt.head<3>().norm());
+    result.peak_hand_torque = std::max(result.peak_hand_torque, felt.tail<3>().norm());
     result.peak_virtual_force =
         std::max(result.peak_virtual_force, site.virtual_force.force.norm());
     if (station.is_heard()) result.nearest = std::min(result.nearest, site.nearest);
@@ -97,7 +100,7 @@ StationResult run_station(const scene::Scene& scene, const RunOptions& options,
   network::RemoteLink link(remote_options(scene));
   StationSide station(scene, options, link, device.link.get());
   // Their threads must not inherit the real-time priority.
-  link::LinkThread thread(link, open_link(choice));
+  link::LinkThread thread(link, open_link(choice, scene));
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
   const host::Grant grant = host::request_real_time();
@@ -107,6 +110,7 @@ StationResult run_station(const scene::Scene& scene, const RunOptions& options,
   make_ticks(station, device.link.get(), stop, result, progress);
   thread.stop();
   result.link = link_result(link, thread.name(), thread.foreign(), thread.unsent());
+  result.has_handle = station.has_handle();
   result.modules = module_results(station.network());
   result.interrupted = stop;
   result.allocations_in_tick = host::HeapGuard::allocations();
@@ -118,7 +122,7 @@ void print_station(const StationResult& r, std::FILE* out) {
   std::fprintf(out, "\n%s: station, %lld ticks at %g Hz (%.2f s)%s\n", r.scene.name.c_str(),
                static_cast<long long>(r.ticks), r.options.rate_hz,
                static_cast<double>(r.ticks) / r.options.rate_hz,
-               r.interrupted ? ", interrupted" : "");
+               r.interrupted ? ", until it was stopped" : "");
   host::print_times("compute of the tick", r.deadline.compute(), out);
   host::print_times("wake-up lateness", r.deadline.wakeup(), out);
   std::fprintf(out, "  deadline misses        %lld, skipped ticks %lld\n",
@@ -127,8 +131,14 @@ void print_station(const StationResult& r, std::FILE* out) {
   host::print_allocations(r.allocations_in_tick, out);
   print_link(r.link, out);
   std::fprintf(out, "  site heard for         %.2f s\n", r.linked);
-  std::fprintf(out, "  lever torque felt      %s N m at most\n",
-               host::figure(r.peak_lever_torque, 3).c_str());
+  if (r.has_handle) {
+    std::fprintf(out, "  felt at the handle     %s N and %s N m at most\n",
+                 host::figure(r.peak_hand_force, 2).c_str(),
+                 host::figure(r.peak_hand_torque, 3).c_str());
+  } else {
+    std::fprintf(out, "  lever torque felt      %s N m at most\n",
+                 host::figure(r.peak_lever_torque, 3).c_str());
+  }
   std::fprintf(out, "  virtual force          %s N on the tool at most, as the site says\n",
                host::figure(r.peak_virtual_force, 2).c_str());
   if (r.nearest < 1e9) {
@@ -148,6 +158,8 @@ void write_station_json(const StationResult& r, std::ostream& out) {
   report["link"] = link_to_json(r.link);
   report["site_heard_s"] = r.linked;
   report["peak_lever_torque_n_m"] = r.peak_lever_torque;
+  report["peak_hand_force_n"] = r.peak_hand_force;
+  report["peak_hand_torque_n_m"] = r.peak_hand_torque;
   report["peak_force_n"] = r.peak_virtual_force;
   report["nearest_m"] = r.nearest < 1e9 ? nlohmann::ordered_json(r.nearest) : nullptr;
   report["modules"] = modules_to_json(r.modules);

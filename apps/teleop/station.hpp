@@ -28,6 +28,9 @@ struct StationResult {
   LinkResult link;
   double linked = 0.0;              ///< [s] in which the site was heard
   double peak_lever_torque = 0.0;   ///< [N m] that the operator felt
+  bool has_handle = false;          ///< the operator holds a master of six axes
+  double peak_hand_force = 0.0;     ///< [N] that the operator felt at it
+  double peak_hand_torque = 0.0;    ///< [N m]
   double peak_virtual_force = 0.0;  ///< [N] on the tool, as the site says
   double nearest = 1e9;             ///< [m] as the site says
   std::vector<ModuleResult> modules;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/network.hpp>
 #include <repel/scene/build_network.hpp>
@@ -42,6 +43,7 @@ class StationSide {
       : link_(link),
         network_(station_network(scene, options, link)),
         operator_(scene.script, nullptr, device) {
+    operator_.await();
     const network::Vec<network::any_size> none(0);
     signals_.joints = signals_.rates = signals_.mean_rates = signals_.arm_torques = none;
     signals_.jacobian.setZero(6, 0);
@@ -54,6 +56,7 @@ class StationSide {
     site_ = heard_state(link_);
     signals_.elapsed = elapsed;
     signals_.X_WT = site_.X_WT;
+    if (is_heard()) operator_.begin();
     const network::Command& command = operator_.step(site_.X_WT.linear(), elapsed);
     tell(command, link_);
     phase_ = command.phase;
@@ -78,6 +81,14 @@ class StationSide {
   [[nodiscard]] double felt() const noexcept {
     const auto* lever = network_.find<network::TorqueArm>();
     return lever == nullptr ? 0.0 : lever->felt();
+  }
+  [[nodiscard]] bool has_handle() const noexcept {
+    return network_.find<network::SixAxes>() != nullptr;
+  }
+  /// [N, N m] Of the motors of a master of six axes; zero if there is none.
+  [[nodiscard]] network::Vec<6> felt_at_handle() const noexcept {
+    const auto* handle = network_.find<network::SixAxes>();
+    return handle == nullptr ? network::Vec<6>::Zero() : handle->felt();
   }
   /// What the site said last.
   [[nodiscard]] const SiteState& site() const noexcept { return site_; }

@@ -1,6 +1,7 @@
 #include <repel/scene/scene.hpp>
 
 #include <algorithm>
+#include <any>
 #include <array>
 #include <filesystem>
 #include <map>
@@ -9,6 +10,7 @@
 #include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/text_file.hpp>
+#include <repel/network/elements/line.hpp>
 #include <repel/scene/part_list.hpp>
 
 #include "network_reader.hpp"
@@ -673,6 +675,18 @@ Budget budget_of(const Map& scene) {
   return budget;
 }
 
+/// Whether the scene is to be run as two programs.
+bool apart_of(const Value& value, const Scene& scene) {
+  if (value.word_of({"yes", "no"}) == "no") return false;
+  const std::vector<Module>& modules = scene.network.modules;
+  const bool has_line = std::any_of(modules.begin(), modules.end(), [](const Module& module) {
+    return std::any_cast<network::LineOptions>(&module.options) != nullptr;
+  });
+  if (!has_line) value.fail("two programs need a module 'line' in the network, to part it there");
+  if (!scene.partners.empty()) value.fail("'apart' beside 'partners'; allowed: one arm");
+  return true;
+}
+
 }  // namespace
 
 std::string_view word_for(PartStep::What what) noexcept {
@@ -692,9 +706,10 @@ std::string_view word_for(PartStep::What what) noexcept {
 Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name", "rate", "robot", "tool", "laws", "obstacles", "loose", "spare", "camera",
-             "hidden", "network", "script", "partners", "budget", "coprocessor", "start_inside",
-             "tool_speed", "measure", "levels"});
+  map.allow({"name",         "rate",       "robot",    "tool",   "laws",
+             "obstacles",    "loose",      "spare",    "camera", "hidden",
+             "network",      "script",     "partners", "budget", "coprocessor",
+             "start_inside", "tool_speed", "measure",  "levels", "apart"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -720,6 +735,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   read_station(map, shared, scene);
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes, scene.models);
   scene.partners = partners_of(map, shared);
+  if (const Value* apart = map.find("apart")) scene.apart = apart_of(*apart, scene);
   scene.budget = budget_of(map);
   if (const Value* mode = map.find("coprocessor")) {
     const auto& names = coprocessor_mode_names;

@@ -65,6 +65,44 @@ TEST(TwoPrograms, ShareASceneOverEachLink) {
   }
 }
 
+TEST(TwoPrograms, RunInOneCommand) {
+  // The hand goes down into a corner 50 ms away, one packet in fifty lost: walls hold, and it feels
+  // them.
+  const Folder folder;
+  const Ending ending =
+      teleop("remote --link udp:127.0.0.1:" + std::to_string(21000 + getpid() % 20000) +
+             " --apart --seconds 10 --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  const json& station = report.at("station");
+  EXPECT_EQ(station.at("side"), "station");
+  EXPECT_TRUE(ending.says("delayed by 50 to 55 ms, 2 % lost")) << ending;
+  EXPECT_TRUE(ending.says("felt at the handle")) << ending;
+  for (const json& side : {report, station}) {
+    const json& link = side.at("link");
+    const double received = link.at("packets_received");
+    const double lost = link.at("packets_lost");
+    EXPECT_GT(received, 1000.0);
+    EXPECT_NEAR(lost / (received + lost), 0.02, 0.015);
+    EXPECT_GT(link.at("round_trip_p50_us").get<double>(), 100e3);
+    for (const json& module : side.at("modules")) {
+      EXPECT_EQ(module.at("passive"), module.at("claims_passive")) << module;
+    }
+  }
+  EXPECT_LE(report.at("link").at("energy_played_j").get<double>(),
+            station.at("link").at("energy_sent_j").get<double>() * (1.0 + 1e-9));
+  EXPECT_GT(report.at("nearest_wall_m"), 0.002);
+  EXPECT_GT(report.at("peak_force_n"), 10.0);
+  EXPECT_GT(station.at("peak_hand_force_n"), 5.0);
+}
+
+TEST(TwoPrograms, WhatTheOtherProgramCannotDoEndsBoth) {
+  const Ending ending =
+      teleop("remote --apart --device evdev:/dev/null --link udp:127.0.0.1:" + own_port());
+  EXPECT_EQ(ending.status, 1) << ending;
+  EXPECT_TRUE(ending.says("/dev/null")) << ending;
+}
+
 TEST(TwoPrograms, AStationAloneSaysThatNobodyWasThere) {
   const Ending ending =
       teleop("delayed --station --seconds 0.5 --link udp:127.0.0.1:" + own_port());
@@ -89,7 +127,12 @@ TEST(TwoPrograms, WhatCannotBeDividedIsRefused) {
       {"delayed --site --link udp:127.0.0.1:0", 2, "udp:ADDRESS:PORT"},
       {"delayed --site --link udp:127.0.0.1:1e3", 2, "udp:ADDRESS:PORT"},
       {"delayed --site --seconds 1 --link udp:no.such.name:7411", 1, "no.such.name"},
-      {"delayed --site --log x.mcap", 1, "--site"},
+      {"delayed --site --log x.mcap", 1, "--together"},
+      {"plates --apart", 1, "'line'"},
+      {"delayed --apart --fast", 2, "--fast"},
+      {"delayed --apart --together", 2, "--apart"},
+      {"delayed --impaired", 2, "--site or --station"},
+      {"delayed --site --domain 231", 2, "--domain"},
   };
   for (const auto& each : cases) {
     const Ending ending = teleop(each.arguments);

@@ -87,6 +87,23 @@ TEST(SceneNetwork, EveryNumberOfAModuleArrives) {
   EXPECT_EQ(line.channel.loss, 0.05);
   EXPECT_EQ(line.channel.seed, 7U);
 
+  const auto handle = options<network::SixAxesOptions>(with_module(
+      "six_axes, mass: 500 g, inertia: 0.002 kg m^2, friction: 2 N s/m, angular_friction: 0.02 "
+      "N m s/rad, hand_stiffness: 400 N/m, hand_damping: 20 N s/m, angular_hand_stiffness: 4 "
+      "N m/rad, angular_hand_damping: 0.3 N m s/rad, force_limit: 40 N, torque_limit: 3 N m, "
+      "motion_scale: 0.5"));
+  EXPECT_EQ(handle.mass, 0.5);
+  EXPECT_EQ(handle.inertia, 0.002);
+  EXPECT_EQ(handle.friction, 2.0);
+  EXPECT_EQ(handle.angular_friction, 0.02);
+  EXPECT_EQ(handle.hand_stiffness, 400.0);
+  EXPECT_EQ(handle.hand_damping, 20.0);
+  EXPECT_EQ(handle.angular_hand_stiffness, 4.0);
+  EXPECT_EQ(handle.angular_hand_damping, 0.3);
+  EXPECT_EQ(handle.force_limit, 40.0);
+  EXPECT_EQ(handle.torque_limit, 3.0);
+  EXPECT_EQ(handle.motion_scale, 0.5);
+
   const Scene obstacle = with_module("obstacle, gain_check: warning, most_energy: 2 J");
   EXPECT_EQ(obstacle.network.gain_check, network::GainCheck::warning);
   EXPECT_EQ(options<network::ObstacleOptions>(obstacle).passivity.most_energy, 2.0);

@@ -35,7 +35,7 @@ class Transport {
   /// What it joins, for people: "UDP 127.0.0.1:7411".
   [[nodiscard]] virtual std::string name() const = 0;
   /// Messages that were no packets of this version.
-  [[nodiscard]] std::int64_t foreign() const noexcept { return foreign_; }
+  [[nodiscard]] virtual std::int64_t foreign() const noexcept { return foreign_; }
 
  protected:
   void count_foreign() noexcept { ++foreign_; }

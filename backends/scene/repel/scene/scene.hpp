@@ -193,6 +193,7 @@ struct Scene : ArmSetup {
   std::optional<CameraChoice> camera;
   std::vector<HiddenPart> hidden;  ///< for the camera to see
   std::vector<OtherArm> partners;
+  bool apart = false;  ///< to be run as two programs, divided at the line of the network
   /// Paths of the files that the parts of meshes are from, those in URDF files excepted.
   std::vector<std::string> part_lists;
   Budget budget;
