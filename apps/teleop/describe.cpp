@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include <repel/cell/admittance.hpp>
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
@@ -153,6 +154,15 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     described.robots.push_back(load_robot(setup.robot, with_gravity, covers));
     ArmDescription& arm = cell.arms.emplace_back(
         describe_arm(scene, setup, described.robots.back(), remote, covers, described.gaps));
+    if (setup.robot.admittance) {
+      if (!with_gravity) {
+        throw SetupError(
+            "an arm with an admittance is driven by a controller of its own; allowed: --backend "
+            "bullet, ode or reference",
+            scene.file);
+      }
+      arm = admitted(std::move(arm), *setup.robot.admittance, 1.0 / rate_hz);
+    }
     if (i == 0) continue;
     arm.name = scene.partners[i - 1].name;
     arm.law = scene.partners[i - 1].law;

@@ -86,7 +86,7 @@ std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions
                            described.model_obstacles.end());
   described.cell.coprocessor = coprocessor_options(changed.budget, options);
   for (ArmDescription& arm : described.cell.arms) {
-    arm.options.joints.touches = options.contact;
+    arm.options.joints.touches = arm.options.joints.touches || options.contact;
     arm.options.prediction = options.prediction;
   }
   const bool refuses = described.cell.start_inside == StartInside::refuse;

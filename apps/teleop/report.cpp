@@ -488,6 +488,8 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["plant_inertia"] = r.options.plant_inertia;
   report["prediction"] = r.options.prediction;
   report["drive_delay_ticks"] = r.scene.robot.drive_delay;
+  report["admittance_response_s"] =
+      r.scene.robot.admittance ? ordered_json(r.scene.robot.admittance->response) : nullptr;
   add_payload(r.scene.robot, report);
   report["budget"] = budget_list(r);
   report.update(host::to_json(r.totals(), r.pairs));

@@ -24,6 +24,7 @@
 #include "pace.hpp"
 #include "progress_thread.hpp"
 #include "replay.hpp"
+#include "servoed_arm.hpp"
 #include "system_call_guard.hpp"
 #include "tick_usage.hpp"
 
@@ -225,7 +226,7 @@ double watchdog_of(const RunOptions& options) {
 /// The arm that is simulated: that of the controller, with what the controller does not know. The
 /// payload comes first, since a change of the inertia keeps the weight of what there is.
 ArmModel simulated_model(const PreparedRun& prepared, std::size_t arm) {
-  ArmModel model = prepared.cell.description().arms[arm].model;
+  ArmModel model = prepared.robots[arm].arm;
   const scene::RobotChoice& robot = prepared.scene.arm_setup(arm).robot;
   if (!robot.payload_known) model = with_payload(std::move(model), robot.payload);
   const double factor = prepared.options.plant_inertia;
@@ -251,6 +252,11 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
         backend.make(simulated_model(prepared, i), arm.start, watchdog_of(prepared.options), parts);
     if (!prepared.scene.loose.empty()) {
       simulated = std::make_unique<LoadedArm>(std::move(simulated), prepared.cell, i);
+    }
+    if (const auto& admittance = prepared.scene.arm_setup(i).robot.admittance) {
+      simulated =
+          std::make_unique<ServoedArm>(std::move(simulated), prepared.robots[i].arm, arm.model,
+                                       admittance->response, 1.0 / prepared.options.rate_hz);
     }
     arms.push_back(std::make_unique<DelayedArm>(std::move(simulated), arm.model.links.size(),
                                                 prepared.scene.arm_setup(i).robot.drive_delay));

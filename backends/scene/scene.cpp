@@ -480,6 +480,14 @@ void read_payload(const Value& value, RobotChoice& robot) {
   }
 }
 
+void read_admittance(const Value& value, AdmittanceOptions& admittance) {
+  const Map map(value);
+  map.allow({"response", "scale", "rest_time"});
+  map.read("response", {unit::time, 0.01, 1.0}, admittance.response);
+  map.read("scale", {unit::share, 1e-3, 1e3}, admittance.scale);
+  map.read("rest_time", {unit::time, 1e-3, 1e3}, admittance.rest_time);
+}
+
 /// A list of joints, or a map from joints to angles and lengths.
 std::vector<JointHold> holds_of(const Value& value) {
   std::vector<JointHold> holds;
@@ -501,7 +509,7 @@ std::vector<JointHold> holds_of(const Value& value) {
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
   map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
-             "payload", "hold", "packages", "drive_delay", "covers"});
+             "payload", "hold", "packages", "drive_delay", "covers", "admittance"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
@@ -514,8 +522,11 @@ RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& fi
   robot.X_WB = pose_at(map, "base");
   robot.X_LT = pose_at(map, "tool_frame");
   if (const Value* payload = map.find("payload")) read_payload(*payload, robot);
+  if (const Value* admittance = map.find("admittance")) {
+    read_admittance(*admittance, robot.admittance.emplace());
+  }
   if (const Value* delay = map.find("drive_delay")) {
-    robot.drive_delay = static_cast<int>(delay->integer(0, 10));
+    robot.drive_delay = static_cast<int>(delay->integer(0, 100));
   }
   if (const Value* links = map.find("links")) {
     robot.links.emplace();

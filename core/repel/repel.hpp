@@ -15,6 +15,7 @@
 #include <repel/base/status.hpp>
 #include <repel/base/text_file.hpp>
 #include <repel/base/types.hpp>
+#include <repel/cell/admittance.hpp>
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/distance/gjk.hpp>

@@ -36,6 +36,34 @@ TEST(Cell, BringsAnArmToAWallAndNoFurtherInOneCallATick) {
   EXPECT_GT(peak, 1.0);
 }
 
+// The motion was taken for one of the network: an arm moved by 0.3 m while its controller was off
+// was held for five seconds, for an energy that nobody had gained.
+TEST(Cell, AnArmThatIsMovedWhileTheLoopStandsGainsNothing) {
+  Cell cell(sliders());
+  test::SliderArm arm;
+  arm.friction = 500.0;
+  network::Command hands;
+  hands.hand.ball.linear.y() = 0.05;
+  std::chrono::nanoseconds now{0};
+  Status seen = 0;
+  int held = 0;
+  for (int tick = 0; tick < 1200; ++tick) {
+    if (tick == 400) {
+      now += std::chrono::seconds(3);
+      arm.q = {-0.2, arm.q[1], 0.2};
+      arm.v = {};
+    }
+    const TickRecord& record = cell.step({arm.q, arm.v}, hands, now += cell.period());
+    seen |= record.status;
+    if (tick >= 400) held += record.stop == Stop::running ? 0 : 1;
+    arm.set_torques(std::span(record.torques).first(3));
+    arm.step(0.0025);
+  }
+  EXPECT_NE(seen & status::clock_gap, 0U);
+  EXPECT_EQ(seen & status::energy_gain, 0U);
+  EXPECT_LT(held, 400) << "it goes on within a second";
+}
+
 /// The cell of the sliders, with a box that can come, and what drives it.
 struct LooseBox {
   LooseBox() : cell(description()) { arm.friction = 500.0; }

@@ -264,6 +264,29 @@ TEST(SceneError, ARobotFileThatIsNotThereIsRefused) {
   expect_refused(changed("../robots/puma560.urdf", "../robots"), 2, {"none at robots"});
 }
 
+TEST(SceneError, AdmittanceHasItsRanges) {
+  const auto admittance = [](const std::string& text) {
+    return changed("tool:", "  admittance: {" + text + "}\ntool:");
+  };
+  expect_refused(admittance("response: 5 ms"), 4, {"'response'", "0.01 to 1 s"});
+  expect_refused(admittance("response: 40"), 4, {"'response'", "ms"});
+  expect_refused(admittance("scale: 0"), 4, {"'scale'", "0.001 to 1000"});
+  expect_refused(admittance("rest_time: nan s"), 4, {"'rest_time'"});
+  expect_refused(admittance("inertia: 2 kg m^2"), 4, {"'inertia'", "response, scale, rest_time"});
+  const Scene scene =
+      parse(admittance("response: 40 ms, scale: 50 %, rest_time: 0.2 s"), "scene.yaml");
+  ASSERT_TRUE(scene.robot.admittance);
+  EXPECT_EQ(scene.robot.admittance->response, 0.04);
+  EXPECT_EQ(scene.robot.admittance->scale, 0.5);
+  EXPECT_EQ(scene.robot.admittance->rest_time, 0.2);
+  EXPECT_FALSE(parse(changed("tool:", "tool:"), "scene.yaml").robot.admittance);
+}
+
+TEST(SceneError, OnlyASceneWithALineIsApart) {
+  expect_refused(changed("tool:", "apart: maybe\ntool:"), 4, {"'apart' is 'maybe'", "yes, no"});
+  expect_refused(changed("tool:", "apart: yes\ntool:"), 4, {"two programs", "'line'"});
+}
+
 TEST(SceneError, APayloadThatIsNotAllowedIsRefused) {
   const auto payload = [](const std::string& text) {
     return changed("tool:", "  payload: {" + text + "}\ntool:");

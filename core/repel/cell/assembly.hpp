@@ -165,9 +165,7 @@ class CellAssembly {
   void settle(ForceLaw& law) {
     const double period = 1.0 / description_.rate_hz;
     law = settled(law, period, wall_delay());
-    // Scaled to a part, stiffness and damping round differently.
-    constexpr double rounding = 1.0 + 1e-9;
-    const double needed = rounding * wall_ticks(wall_delay()) * period * law.stiffness();
+    const double needed = gain_rounding * wall_ticks(wall_delay()) * period * law.stiffness();
     const bool would_be_stable =
         law.stiffness() <= stable_stiffness(law.damping, period, longest_delay());
     if (!would_be_stable || law.damping >= needed) return;

@@ -69,11 +69,16 @@ namespace detail {
   return damping / (wall_ticks(drive_delay) * period);
 }
 
+/// By which damping is raised beyond what is needed: scaled to a part, stiffness and damping round
+/// differently.
+inline constexpr double gain_rounding = 1.0 + 1e-9;
+
 /// The law with its damping raised, where it may rise, to what is stable for a tick of `period` [s]
 /// and a drive delayed by `drive_delay` [ticks].
 [[nodiscard]] inline ForceLaw settled(ForceLaw law, double period, double drive_delay) noexcept {
   if (law.damping_may_rise) {
-    law.damping = std::max(law.damping, wall_ticks(drive_delay) * period * law.stiffness());
+    const double needed = wall_ticks(drive_delay) * period * law.stiffness();
+    law.damping = std::max(law.damping, gain_rounding * needed);
   }
   return law;
 }

@@ -61,7 +61,7 @@ struct TeleoperatorOptions {
   /// motors hold the weight for as long as a pose is known.
   bool has_brakes = false;
   double drive_delay = 0.0;  ///< [ticks] from a torque to its effect, beyond its being held for one
-                             ///< tick; 0 to 10: the longer, the softer the arm follows
+                             ///< tick; 0 to 100: the longer, the softer the arm follows
   bool prediction = true;    ///< false: the network is solved for the measured rates, without the
                              ///< mass of the arm, to compare with
   EnergyWatchOptions energy;
@@ -75,7 +75,7 @@ struct TeleoperatorOptions {
 [[nodiscard]] inline const TeleoperatorOptions& checked(const TeleoperatorOptions& options) {
   checked("tool speed", options.tool_speed, 1e-3, 10.0, "m/s");
   checked("longest gap", options.longest_gap, 0.0, 1e6, "s");
-  checked("drive delay", options.drive_delay, 0.0, 10.0, "ticks");
+  checked("drive delay", options.drive_delay, 0.0, 100.0, "ticks");
   checked("exit speed", options.exit_speed, 0.0, 10.0, "m/s");
   return options;
 }

@@ -206,7 +206,8 @@ class Teleoperator {
     signals_.released = record_.stop == Stop::released || command_.is_poisoned();
     signals_.at_rest = command_.has_let_go() || signals_.released;
     signals_.joints = joints_vec(q_);
-    if (signals_.released) {
+    // What moved the arm while the loop stood was not the network.
+    if (signals_.released || (record_.status & status::clock_gap) != 0U) {
       flow_.reset(signals_.joints);
     } else {
       flow_.step(signals_.joints, joints_vec(v_), period_, signals_.elapsed);

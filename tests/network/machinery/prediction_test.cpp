@@ -136,12 +136,15 @@ TEST(Prediction, FrictionThatItDoesNotKnowChangesNothing) {
 
 TEST(Prediction, DelayOfTheDriveIsBorneWhereItIsTold) {
   int unstable_untold = 0;
-  for (const int delay : {1, 2}) {
+  // From 8 ticks on the delay was allowed and nothing was calm: what was taken back of the error of
+  // the summed flow came back too late.
+  for (const int delay : {1, 2, 4, 8, 10, 30, 100}) {
+    const double step = delay > 10 ? 1000.0 : 10.0;  // long runs
     for (const double model : {0.3, 0.6, 1.0, 1.7}) {
       for (double k = 1e-4; k < 2e4; k *= 100.0) {
-        for (double b = 1e-3; b < 2e4; b *= 10.0) {
+        for (double b = 1e-3; b < 2e4; b *= step) {
           Joint joint{.k = k, .b = b, .model = model, .delay = delay};
-          EXPECT_LT(joint.growth(3200), 1.05) << joint.said();
+          EXPECT_LT(joint.growth(std::max(3200, 400 * delay)), 1.05) << joint.said();
           joint.told_delay = 0;
           unstable_untold += joint.growth(400) > 1.05 ? 1 : 0;
         }
@@ -154,7 +157,7 @@ TEST(Prediction, DelayOfTheDriveIsBorneWhereItIsTold) {
 // The bound that `check_gains` of the loop applies.
 TEST(Prediction, WallIsStableWithDampingInProportionToItsStiffness) {
   int unstable_beyond = 0;
-  for (const int delay : {0, 1, 2}) {
+  for (const int delay : {0, 1, 2, 4, 10, 30}) {
     const double least = 0.5 + 2.0 * delay;
     for (const double model : {0.3, 0.6, 1.0, 1.7}) {
       for (double k = 1e-3; k < 2e4; k *= 10.0) {
@@ -162,7 +165,7 @@ TEST(Prediction, WallIsStableWithDampingInProportionToItsStiffness) {
           for (const double b : {1e-3, 1.0, 100.0}) {
             Joint joint{.k = 0.01 * b, .b = b, .wall_k = k, .model = model, .delay = delay};
             joint.wall_b = times * least * k;
-            EXPECT_LT(joint.growth(), 1.05) << joint.said();
+            EXPECT_LT(joint.growth(std::max(1600, 400 * delay)), 1.05) << joint.said();
           }
         }
         Joint beyond{.k = 1e-3, .b = 1e-3, .wall_k = k, .wall_b = 0.25 * least * k, .model = model};
@@ -227,7 +230,7 @@ TEST(Prediction, WithoutInertiaItChangesNothing) {
 }
 
 TEST(Prediction, DelayOutOfRangeIsRefused) {
-  EXPECT_THROW(Prediction({.drive_delay = 10.5}), SetupError);
+  EXPECT_THROW(Prediction({.drive_delay = 100.5}), SetupError);
   EXPECT_THROW(Prediction({.drive_delay = -1.0}), SetupError);
 }
 
@@ -268,7 +271,7 @@ TEST(Prediction, ShowsTheEffortAtTheMeasuredFlow) {
       const Eigen::MatrixXd held = signals.inertia / h + damping;
       const Eigen::VectorXd on_arm = walls - signals.jacobian.transpose() * f;
       const Eigen::VectorXd u = signals.jacobian * held.llt().solve(on_arm);
-      const Eigen::VectorXd taken_back = Prediction::leak / T * h * signals.tool_flow();
+      const Eigen::VectorXd taken_back = Prediction::leak(0.0) / T * h * signals.tool_flow();
       EXPECT_LE((v - at_root.flow - u - taken_back).norm(), 1e-9 * (1.0 + v.norm()));
       const Eigen::VectorXd less = damping * held.llt().solve(on_arm);
       EXPECT_LE((prediction.given_up(on_arm) - less).norm(), 1e-9 * (1.0 + less.norm()));

@@ -13,6 +13,7 @@
 #include <repel/base/layout.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/types.hpp>
+#include <repel/cell/admittance.hpp>
 #include <repel/cell/description.hpp>
 #include <repel/force/law.hpp>
 #include <repel/loop/reciprocating_motion.hpp>
@@ -150,6 +151,8 @@ struct RobotChoice {
   Payload payload;            ///< what the tool carries; mass 0: nothing
   bool payload_known = true;  ///< to the controller too, not only to the simulated arm
   int drive_delay = 0;        ///< [ticks] see TeleoperatorOptions::drive_delay
+  /// Of an arm that takes positions or rates; none: it takes torques.
+  std::optional<AdmittanceOptions> admittance;
 };
 
 /// Limits on the work of the distance queries in one tick.

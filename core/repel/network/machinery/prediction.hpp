@@ -39,14 +39,21 @@ class Prediction {
  public:
   /// A mass: it takes energy and gives it back, to the walls as well.
   static constexpr Traits traits{.passive = false};
-  /// Share of the error of the summed flow that is taken back in a tick.
-  static constexpr double leak = 0.1;
+  /// Longest delay of a drive [ticks].
+  static constexpr double longest_delay = 100.0;
+  /// Share of the error of the summed flow that is taken back in a tick. What is taken back is seen
+  /// a drive's delay later: taken back faster, it oscillates.
+  [[nodiscard]] static constexpr double leak(double drive_delay) noexcept {
+    return drive_delay > 2.0 ? 0.2 / drive_delay : 0.1;
+  }
   /// Share by which e follows in a tick.
-  static constexpr double adaptation = 0.01;
+  [[nodiscard]] static constexpr double adaptation(double drive_delay) noexcept {
+    return drive_delay > 2.0 ? 0.02 / drive_delay : 0.01;
+  }
 
   /// @throws SetupError for a delay out of range
   explicit Prediction(const PredictionOptions& options = {})
-      : ticks_(horizon(checked("drive delay", options.drive_delay, 0.0, 10.0, "ticks"))) {}
+      : delay_(checked("drive delay", options.drive_delay, 0.0, longest_delay, "ticks")) {}
 
   /// h / T for a drive with a delay of so many ticks.
   [[nodiscard]] static constexpr double horizon(double drive_delay) noexcept {
@@ -58,7 +65,7 @@ class Prediction {
     offset_.setZero(size);
     sum_.setZero(size);
   }
-  void prepare(double period) { horizon_ = ticks_ * detail::checked_period(period); }
+  void prepare(double period) { horizon_ = horizon(delay_) * detail::checked_period(period); }
 
   /// Second call of a tick, after all modules have read their signals. Cost: one factorization of
   /// the size of the joints, and its solution for the six rows of J. While M is not positive
@@ -139,7 +146,7 @@ class Prediction {
       const double inverse = 1.0 / signals.since_last();
       for (Eigen::Index i = 0; i < others_.size(); ++i) {
         const double seen = inverse * momentum.coeff(i) - sent_.coeff(i);
-        others_.coeffRef(i) += adaptation * (seen - others_.coeff(i));
+        others_.coeffRef(i) += adaptation(delay_) * (seen - others_.coeff(i));
       }
     }
     last_rates_ = signals.rates;
@@ -157,7 +164,7 @@ class Prediction {
     }
     if (signals.at_rest) sum_ = horizon_ * flow_;
     period_ = signals.period;
-    const double share = leak / period_;
+    const double share = leak(delay_) / period_;
     for (Eigen::Index i = 0; i < offset_.size(); ++i) {
       offset_.coeffRef(i) += share * (horizon_ * flow_.coeff(i) - sum_.coeff(i));
     }
@@ -196,7 +203,7 @@ class Prediction {
     flow.store(offset_.data());
   }
 
-  double ticks_;          // h / T
+  double delay_;          // [ticks]
   double horizon_ = 0.0;  // h [s]
   double period_ = 1.0;   // [s]
   bool in_joints_ = false;
