@@ -36,6 +36,7 @@
 #include <repel/world/changed_arm.hpp>
 #include <repel/world/contact.hpp>
 #include <repel/world/delayed_arm.hpp>
+#include <repel/world/sensed_arm.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>
 

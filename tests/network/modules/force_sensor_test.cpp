@@ -389,5 +389,14 @@ TEST(ForceSensor, AHeavyArmNeedsALowCutoffWhereWhatItTouchesRings) {
   EXPECT_GT(arm.growth(), 1.0);
 }
 
+TEST(ForceSensor, IsNotWhatMakesALightArmOscillateOnARingingSpring) {
+  Touching arm{.mass = 0.5, .stiffness = 1e6, .damping = 0.0, .gain = 0.0, .sticks = true};
+  EXPECT_GT(arm.growth(), 1.0);
+  arm.damping = 0.1;
+  EXPECT_LT(arm.growth(), 0.7);
+  arm.gain = 0.5;
+  EXPECT_LT(arm.growth(), 0.7);
+}
+
 }  // namespace force_sensor_test
 }  // namespace repel::network

@@ -24,6 +24,7 @@
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/changed_arm.hpp>
+#include <repel/world/sensed_arm.hpp>
 
 namespace repel::scene {
 
@@ -150,6 +151,7 @@ struct RobotChoice {
   Payload payload;            ///< what the tool carries; mass 0: nothing
   bool payload_known = true;  ///< to the controller too, not only to the simulated arm
   int drive_delay = 0;        ///< [ticks] see TeleoperatorOptions::drive_delay
+  SensorErrors sensor;        ///< of the simulated force sensor
 };
 
 /// Limits on the work of the distance queries in one tick.
