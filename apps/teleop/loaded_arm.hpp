@@ -54,6 +54,9 @@ class LoadedArm final : public TorqueDrivenArm {
   void engage_brakes(bool on) noexcept override { arm_->engage_brakes(on); }
   [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
   [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
+    return arm_->read_wrench();
+  }
 
  private:
   std::unique_ptr<TorqueDrivenArm> arm_;

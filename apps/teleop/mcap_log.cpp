@@ -48,6 +48,10 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
     inputs["q_read"] = first_of(k.q_read, joints);
     inputs["v_read"] = first_of(k.v_read, joints);
   }
+  if (k.wrench_read) {
+    inputs["force_read"] = to_json(k.wrench_read->force);
+    inputs["torque_read"] = to_json(k.wrench_read->torque);
+  }
   return inputs;
 }
 
@@ -147,6 +151,7 @@ class McapLog final : public TickLog {
             {"every_pair", word(options.every_pair)},
             {"tool_alone", word(options.tool_alone)},
             {"prediction", word(options.prediction)},
+            {"contact", word(options.contact)},
             {"plant_inertia", to_text(options.plant_inertia)}};
   }
 

@@ -49,6 +49,8 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "elapsed_ticks": {"type": "integer", "description": "since the tick before"},
       "q_read": {"type": "array", "description": "as read, where that was not believed"},
       "v_read": {"type": "array", "description": "as read, where that was not believed"},
+      "force_read": {"type": "array", "description": "of a force sensor [N], axes of the tool"},
+      "torque_read": {"type": "array", "description": "likewise [N m], about its origin"},
       "phase": {"type": "integer", "description": "of the script"},
       "linear": {"type": "array", "items": {"type": "number"}, "description": "hand [m/s]"},
       "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},

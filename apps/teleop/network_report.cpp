@@ -19,7 +19,8 @@ const char* remark_on(const ModuleResult& m) {
 
 constexpr const char* axes[] = {"x", "y", "z", "rx", "ry", "rz"};
 
-/// How far a compliance gave, or which joints a limit pushed back; nothing of other modules.
+/// How far a compliance gave, which joints a limit pushed back, or what was measured; nothing of
+/// other modules.
 void print_most(const ArmResult& arm, const ModuleResult& m, std::FILE* out) {
   for (int i = 0; m.given && i < 6; ++i) {
     const double most = m.given->coeff(i);
@@ -34,6 +35,12 @@ void print_most(const ArmResult& arm, const ModuleResult& m, std::FILE* out) {
                  figure(m.limit_torques[i], 1).c_str(),
                  arm.joints[i] == JointType::prismatic ? "N" : "N m");
   }
+  if (!m.sensor) return;
+  std::fprintf(out,
+               "    %20s %s N at most, %lld ticks at its range, %lld without a sound reading\n",
+               "measured", figure(m.sensor->peak_force, 1).c_str(),
+               static_cast<long long>(m.sensor->saturated_ticks),
+               static_cast<long long>(m.sensor->lost_ticks));
 }
 
 void print_modules(const ArmResult& arm, std::FILE* out) {
@@ -95,6 +102,18 @@ ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
                             {"angular_damping_n_m_s_per_rad", m.coupling->angular_damping}};
   }
   return list;
+}
+
+void add_measured(const ArmResult& arm, ordered_json& report) {
+  report["peak_measured_force_n"] = nullptr;
+  report["sensor_saturated_ticks"] = nullptr;
+  report["sensor_lost_ticks"] = nullptr;
+  for (const ModuleResult& m : arm.modules) {
+    if (!m.sensor) continue;
+    report["peak_measured_force_n"] = m.sensor->peak_force;
+    report["sensor_saturated_ticks"] = m.sensor->saturated_ticks;
+    report["sensor_lost_ticks"] = m.sensor->lost_ticks;
+  }
 }
 
 }  // namespace repel::teleop

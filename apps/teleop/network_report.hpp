@@ -15,4 +15,7 @@ void print_network(const RunResult& result, std::FILE* out);
 /// The modules of one network as JSON.
 [[nodiscard]] nlohmann::ordered_json modules_to_json(const std::vector<ModuleResult>& modules);
 
+/// Adds what the force sensor of an arm measured to its report; null without one.
+void add_measured(const ArmResult& arm, nlohmann::ordered_json& report);
+
 }  // namespace repel::teleop

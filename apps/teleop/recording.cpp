@@ -75,6 +75,9 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   // Present only if the readings were rejected.
   if (arm.has("q_read")) arm.at("q_read").read(k.q_read);
   if (arm.has("v_read")) arm.at("v_read").read(k.v_read);
+  if (arm.has("force_read")) {
+    k.wrench_read = Wrench{arm.at("force_read").vector(), arm.at("torque_read").vector()};
+  }
   if (arm.has("elapsed_ticks")) {
     k.elapsed = std::clamp<std::int64_t>(arm.at("elapsed_ticks").integer(), 1, 1000000000);
   }
@@ -199,6 +202,7 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
     options.prediction = word("prediction") == "yes";  // older recordings had none
+    options.contact = word("contact") == "yes";        // likewise: readings were judged without
     options.measure = word("measure");  // older recordings have neither: those of their scene
     options.levels = static_cast<int>(std::clamp(std::strtol(word("levels").c_str(), nullptr, 10),
                                                  -1L, ReductionOptions::most_levels + 1L));

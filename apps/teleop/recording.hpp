@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,6 +56,9 @@ class RecordedArm final : public TorqueDrivenArm {
   [[nodiscard]] ArmState state() const noexcept override {
     const bool stopped = (now_->status & status::arm_stopped) != 0U;
     return stopped ? ArmState::stopped : ArmState::enabled;
+  }
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
+    return now_->wrench_read;
   }
 
  private:

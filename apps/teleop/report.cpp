@@ -56,14 +56,19 @@ void print_counts(const RunResult& r, std::FILE* out) {
                static_cast<long long>(r.involuntary_switches_in_tick));
 }
 
-/// Physical contacts of an arm; null without --contact.
+/// Contacts were simulated: with --contact, and not in a replay.
+bool has_contacts(const RunResult& r) {
+  return r.options.contact && r.replay.ticks == 0;
+}
+
+/// Physical contacts of an arm; null if they were not simulated.
 ordered_json contact_to_json(const RunResult& r, const ArmResult& arm) {
-  if (!r.options.contact) return nullptr;
+  if (!has_contacts(r)) return nullptr;
   return {{"steps", arm.contact.steps}, {"deepest_m", arm.contact.deepest}};
 }
 
 void print_contact(const RunResult& r, std::FILE* out) {
-  if (!r.options.contact) return;
+  if (!has_contacts(r)) return;
   for (const ArmResult& arm : r.arms) {
     const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
     std::fprintf(out, "  physical contact       ");
@@ -159,6 +164,7 @@ ordered_json partner_list(const RunResult& r) {
                             {"held_joints", held_list(arm)},
                             {"modules", modules_to_json(arm.modules)}};
     add_payload(r.scene.arm_setup(i).robot, partner);
+    add_measured(arm, partner);
     list.push_back(std::move(partner));
   }
   return list;
@@ -516,6 +522,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["link"] = r.link ? link_to_json(*r.link) : ordered_json(nullptr);
   report["station"] = r.station ? r.station->report : ordered_json(nullptr);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
+  add_measured(r.arms.front(), report);
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);
   report["system_calls_in_tick"] = host::known(r.system_calls_in_tick);
   report["page_faults_in_tick"] = host::known(r.page_faults_in_tick);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include <repel/network/modules/force_sensor.hpp>
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/relief.hpp>
@@ -104,6 +105,9 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
       for (int i = 0; i < limits->size(); ++i) {
         result.limit_torques.push_back(limits->most_torque(i));
       }
+    }
+    if (const auto* sensor = node.module.as<network::ForceSensor>()) {
+      result.sensor = {sensor->peak_force(), sensor->saturated_ticks(), sensor->lost_ticks()};
     }
     results.push_back(result);
   }

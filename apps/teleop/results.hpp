@@ -54,6 +54,13 @@ struct ObstacleResult {
   std::vector<LinkLaw> link_laws{};  ///< the weakest pair of each link that it pushed
 };
 
+/// What a force sensor measured.
+struct SensorResult {
+  double peak_force = 0.0;           ///< [N] on the tool, after the low pass
+  std::int64_t saturated_ticks = 0;  ///< with a reading at its range or beyond
+  std::int64_t lost_ticks = 0;       ///< without a sound reading
+};
+
 /// The results of one module of the network.
 struct ModuleResult {
   std::string name;
@@ -64,7 +71,8 @@ struct ModuleResult {
   std::optional<network::Kbb2Options> coupling{};  ///< with the gains in use; of kbb2
   /// [m, rad] how far it gave along and about each axis at most; of relief
   std::optional<Eigen::Matrix<double, 6, 1>> given{};
-  std::vector<double> limit_torques{};  ///< [N m, N] the largest on each joint; of limits
+  std::vector<double> limit_torques{};   ///< [N m, N] the largest on each joint; of limits
+  std::optional<SensorResult> sensor{};  ///< of force_sensor
 
   /// It claims to be passive and was: what its ledger fell below zero is rounding.
   [[nodiscard]] bool passive() const { return claims_passive && ledger.deficit() <= 1e-9; }

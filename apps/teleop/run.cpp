@@ -10,6 +10,7 @@
 #include <repel/reduction/separation.hpp>
 #include <repel/world/changed_arm.hpp>
 #include <repel/world/delayed_arm.hpp>
+#include <repel/world/sensed_arm.hpp>
 
 #include "arm_backend.hpp"
 #include "camera_feed.hpp"
@@ -250,6 +251,8 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
     }
     auto simulated =
         backend.make(simulated_model(prepared, i), arm.start, watchdog_of(prepared.options), parts);
+    const SensorErrors& errors = prepared.scene.arm_setup(i).robot.sensor;
+    if (!errors.none()) simulated = std::make_unique<SensedArm>(std::move(simulated), errors);
     if (!prepared.scene.loose.empty()) {
       simulated = std::make_unique<LoadedArm>(std::move(simulated), prepared.cell, i);
     }

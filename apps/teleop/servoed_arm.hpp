@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -80,6 +81,9 @@ class ServoedArm final : public TorqueDrivenArm {
   }
   [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
   [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
+    return arm_->read_wrench();
+  }
 
  private:
   static constexpr double creeping = 0.01;  // [rad/s] or [m/s]

@@ -140,6 +140,7 @@ void Arm::Simulation::sub_step(double h) noexcept {
   find_free_acceleration();                                      // -> a, M^-1
   if (contacts) contacts->find(q);
   joints.solve(M_inverse, a, v, h, braked, contacts.get());  // -> a with rotors, stops and friction
+  if (contacts) contacts->note_forces();
   v += h * a;
   if (!v.allFinite() || !(q + h * v).allFinite()) {
     faults.state = true;
@@ -212,6 +213,10 @@ void Arm::read_velocities(std::span<double> out) const noexcept {
 
 ContactReport Arm::contact() const noexcept {
   return simulation_->contacts ? simulation_->contacts->report() : ContactReport{};
+}
+
+std::optional<Wrench> Arm::read_wrench() const noexcept {
+  return simulation_->contacts ? simulation_->contacts->on_tool() : Wrench{};
 }
 
 ArmFaults Arm::faults() const noexcept {

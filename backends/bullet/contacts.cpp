@@ -68,7 +68,8 @@ void Contacts::begin(const Eigen::MatrixXd& W, const Eigen::VectorXd& v, double 
       const bool out = row % rows_per_point == 0;
       set_row(row, touch.link, touch.p_W, direction_W);
       response_.col(row).noalias() = W * J_.col(row);
-      rows_[static_cast<std::size_t>(row)] = {.speed = J_.col(row).dot(v),
+      rows_[static_cast<std::size_t>(row)] = {.direction_W = direction_W,
+                                              .speed = J_.col(row).dot(v),
                                               .target = out ? target : 0.0,
                                               .softness = out ? along : across,
                                               .gain = h * J_.col(row).dot(response_.col(row))};
@@ -100,15 +101,33 @@ double Contacts::sweep(Eigen::VectorXd& a) noexcept {
   return largest_change;
 }
 
+void Contacts::note_forces() noexcept {
+  const int last = static_cast<int>(X_WL_.size()) - 1;
+  const Pose X_WT = X_WL_.back() * model_.X_LT;
+  Wrench F_W;
+  std::size_t row = 0;
+  for (const Touch& touch : touches_) {
+    for (int i = 0; i < rows_per_point; ++i, ++row) {
+      if (touch.link != last) continue;
+      const Vec3 force_W = rows_[row].force * rows_[row].direction_W;
+      F_W += wrench_of_force(force_W, touch.p_W - X_WT.translation());
+    }
+  }
+  sum_ += rotated(X_WT.linear().transpose(), F_W);
+}
+
 void Contacts::end_step() noexcept {
   report_.steps += touching_ ? 1 : 0;
   touching_ = false;
+  on_tool_ = (1.0 / options_.substeps) * sum_;
+  sum_ = {};
 }
 
 void Contacts::forget() noexcept {
   touches_ = {};
   report_ = {};
   touching_ = false;
+  sum_ = on_tool_ = {};
 }
 
 }  // namespace repel::bullet::detail

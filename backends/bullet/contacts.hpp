@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <repel/base/spatial.hpp>
 #include <repel/world/simulated_arm.hpp>
 
 #include "contact_search.hpp"
@@ -38,8 +39,15 @@ class Contacts {
   /// a speed [m/s].
   double sweep(Eigen::VectorXd& a) noexcept;
 
+  /// Adds up the forces on the last link, once they are solved in a sub-step.
+  void note_forces() noexcept;
+
   /// Ends a step: counts it if any of its sub-steps had a contact.
   void end_step() noexcept;
+
+  /// Sum of the contact forces on the last link about the origin of the tool, in axes of the tool,
+  /// mean of the last step [N, N m].
+  [[nodiscard]] const Wrench& on_tool() const noexcept { return on_tool_; }
 
   /// Clears contacts and report.
   void forget() noexcept;
@@ -49,11 +57,12 @@ class Contacts {
  private:
   /// One direction of one contact point.
   struct Row {
-    double speed = 0.0;     // [m/s] J v
-    double target = 0.0;    // [m/s] K x / (C + h K); 0 for tangential rows
-    double softness = 0.0;  // [m/(N s)] 1 / (C + h K); 1 / C for tangential rows
-    double gain = 0.0;      // [m/(N s)] h J W J^T
-    double force = 0.0;     // [N]
+    Vec3 direction_W{0, 0, 0};  // unit, of the force on the link
+    double speed = 0.0;         // [m/s] J v
+    double target = 0.0;        // [m/s] K x / (C + h K); 0 for tangential rows
+    double softness = 0.0;      // [m/(N s)] 1 / (C + h K); 1 / C for tangential rows
+    double gain = 0.0;          // [m/(N s)] h J W J^T
+    double force = 0.0;         // [N]
   };
 
   void place_links(const Eigen::VectorXd& q) noexcept;
@@ -71,6 +80,8 @@ class Contacts {
   double h_ = 0.0;
   ContactReport report_;
   bool touching_ = false;  // in this step
+  Wrench sum_;             // of the last link in this step, over its sub-steps
+  Wrench on_tool_;
 };
 
 }  // namespace repel::bullet::detail

@@ -218,6 +218,7 @@ void Arm::Simulation::sub_step(double h) noexcept {
   last_q = q;
   if (contacts) contacts->find(h);
   (void)dWorldStep(world.get(), h);
+  if (contacts) contacts->note_forces();
   read_state();
   double sum = 0.0;
   for (std::size_t i = 0; i < q.size(); ++i) sum += std::abs(q[i]) + std::abs(v[i]);
@@ -325,6 +326,10 @@ double Arm::parted() const noexcept {
 
 ContactReport Arm::contact() const noexcept {
   return simulation_->contacts ? simulation_->contacts->report() : ContactReport{};
+}
+
+std::optional<Wrench> Arm::read_wrench() const noexcept {
+  return simulation_->contacts ? simulation_->contacts->on_tool() : Wrench{};
 }
 
 ArmFaults Arm::faults() const noexcept {

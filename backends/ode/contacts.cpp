@@ -6,7 +6,8 @@
 namespace repel::ode::detail {
 namespace {
 
-constexpr int most_points = 8;  // per pair
+constexpr int most_points = 8;              // per pair
+constexpr std::size_t most_measured = 256;  // on the last link
 
 dxGeom* geometry_of(const ContactPart& part) {
   const Level& level = part.shape.level(0);
@@ -54,7 +55,11 @@ Contacts::Contacts(dWorldID world, const ArmModel& model, const SimulationOption
       options_(options),
       links_(dSimpleSpaceCreate(nullptr)),
       obstacles_(dSimpleSpaceCreate(nullptr)),
-      joints_(dJointGroupCreate(0)) {
+      joints_(dJointGroupCreate(0)),
+      last_(body.back()),
+      X_CT_(Eigen::Translation3d(-model.links.back().p_LC) * model.X_LT),
+      R_WC_(Mat3::Identity()),
+      feedback_(most_measured) {
   require_touchable(parts, model);
   for (const ContactPart& part : parts) {
     dxGeom* const geometry = geometry_of(part);
@@ -83,6 +88,9 @@ void Contacts::find(double h) noexcept {
   surface_.soft_cfm = 1.0 / damping;
   surface_.soft_erp = h * options_.contact_stiffness / damping;
   dJointGroupEmpty(joints_.get());
+  points_ = 0;
+  const dReal* r = dBodyGetQuaternion(last_);
+  R_WC_ = Eigen::Quaterniond(r[0], r[1], r[2], r[3]).toRotationMatrix();
   dSpaceCollide2(reinterpret_cast<dxGeom*>(links_.get()),
                  reinterpret_cast<dxGeom*>(obstacles_.get()), this,
                  [](void* contacts, dxGeom* first, dxGeom* second) {
@@ -98,21 +106,43 @@ void Contacts::touch(dGeomID first, dGeomID second) noexcept {
     contact.surface = surface_;
     contact.geom = points[i];
     dxJoint* const joint = dJointCreateContact(world_, joints_.get(), &contact);
-    dJointAttach(joint, dGeomGetBody(points[i].g1), dGeomGetBody(points[i].g2));
+    dxBody* const one = dGeomGetBody(points[i].g1);
+    dxBody* const other = dGeomGetBody(points[i].g2);
+    dJointAttach(joint, one, other);
+    listen(joint, one != nullptr ? one : other);
     report_.deepest = std::max(report_.deepest, points[i].depth);
     touching_ = true;
   }
 }
 
+void Contacts::listen(dxJoint* joint, dxBody* link) noexcept {
+  if (link == last_ && points_ < feedback_.size()) dJointSetFeedback(joint, &feedback_[points_++]);
+}
+
+// The only body of a joint is its first; its torque is about the centre of mass.
+void Contacts::note_forces() noexcept {
+  Wrench F_C_W;
+  for (const dJointFeedback& point : std::span(feedback_).first(points_)) {
+    F_C_W +=
+        Wrench{{point.f1[0], point.f1[1], point.f1[2]}, {point.t1[0], point.t1[1], point.t1[2]}};
+  }
+  const Mat3 R_TW = (R_WC_ * X_CT_.linear()).transpose();
+  sum_ += rotated(R_TW, moved_to(F_C_W, R_WC_ * X_CT_.translation()));
+}
+
 void Contacts::end_step() noexcept {
   report_.steps += touching_ ? 1 : 0;
   touching_ = false;
+  on_tool_ = (1.0 / options_.substeps) * sum_;
+  sum_ = {};
 }
 
 void Contacts::forget() noexcept {
   dJointGroupEmpty(joints_.get());
   report_ = {};
   touching_ = false;
+  points_ = 0;
+  sum_ = on_tool_ = {};
 }
 
 }  // namespace repel::ode::detail

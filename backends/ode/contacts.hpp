@@ -5,9 +5,12 @@
 
 #include <ode/ode.h>
 
+#include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
+#include <repel/base/spatial.hpp>
 #include <repel/world/contact.hpp>
 #include <repel/world/simulated_arm.hpp>
 
@@ -27,8 +30,15 @@ class Contacts {
   /// of the last one.
   void find(double h) noexcept;
 
+  /// Adds up the forces on the last link, once the world has made its sub-step.
+  void note_forces() noexcept;
+
   /// Ends a step: counts it if any of its sub-steps had a contact.
   void end_step() noexcept;
+
+  /// Sum of the contact forces on the last link about the origin of the tool, in axes of the tool,
+  /// mean of the last step [N, N m].
+  [[nodiscard]] const Wrench& on_tool() const noexcept { return on_tool_; }
 
   /// Clears contacts and report.
   void forget() noexcept;
@@ -44,6 +54,7 @@ class Contacts {
   };
 
   void touch(dGeomID first, dGeomID second) noexcept;
+  void listen(dxJoint* joint, dxBody* link) noexcept;
 
   dWorldID world_;
   SimulationOptions options_;
@@ -51,7 +62,14 @@ class Contacts {
   std::unique_ptr<dxJointGroup, EndGroup> joints_;
   dSurfaceParameters surface_{};
   ContactReport report_;
-  bool touching_ = false;  // in this step
+  bool touching_ = false;                 // in this step
+  dBodyID last_ = nullptr;                // the link that carries the tool
+  Pose X_CT_;                             // [m] tool in that body
+  Mat3 R_WC_;                             // of that body, at the start of the sub-step
+  std::vector<dJointFeedback> feedback_;  // of its contact points
+  std::size_t points_ = 0;                // how many of these, in this sub-step
+  Wrench sum_;                            // on that body in this step, over its sub-steps
+  Wrench on_tool_;
 };
 
 }  // namespace repel::ode::detail

@@ -140,6 +140,23 @@ ReadModule arm_obstacle_of(const Map& map) {
   return made_of(options, make<network::ArmObstacle>, network::ArmObstacle::traits.walls);
 }
 
+ReadModule force_sensor_of(const Map& map) {
+  allow(map, {"gain", "cutoff", "force_range", "torque_range", "tare", "mass", "position"});
+  network::ForceSensorOptions options;
+  map.read("gain", {unit::share, 0.0, network::ForceSensor::most_gain}, options.gain);
+  map.read("cutoff", {unit::frequency, 0.0, 1e5}, options.cutoff);
+  map.read("force_range", {unit::force, 1e-3, 1e6}, options.force_range);
+  map.read("torque_range", {unit::torque, 1e-3, 1e6}, options.torque_range);
+  map.read("tare", {unit::time, 0.0, 100.0}, options.tare);
+  map.read("mass", {unit::mass, 0.0, 1e3}, options.mass);
+  map.read("position", {unit::length, -5.0, 5.0}, options.p_TC);
+  return {options, [options](const ArmModel& arm) {
+            network::ForceSensorOptions own = options;
+            own.gravity_W = arm.gravity_W;
+            return network::ForceSensor(own);
+          }};
+}
+
 ReadModule obstacle_of(const Map& map) {
   allow(map, {"gain_check", "most_energy", "most_damping"});
   network::ObstacleOptions options;
@@ -344,6 +361,7 @@ ModuleKinds::ModuleKinds() {
       {"puma_kin", plain_of<network::PumaKin>},
       {"arm_obstacle", arm_obstacle_of},
       {"limits", limits_of},
+      {"force_sensor", force_sensor_of},
       {"visual", plain_of<network::Visual>},
       {"puma_joints", joints_of},
       {"ground", ground_of},

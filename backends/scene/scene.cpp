@@ -488,6 +488,18 @@ void read_admittance(const Value& value, AdmittanceOptions& admittance) {
   map.read("rest_time", {unit::time, 1e-3, 1e3}, admittance.rest_time);
 }
 
+void read_sensor_errors(const Value& value, SensorErrors& errors) {
+  const Map map(value);
+  map.allow({"force_noise", "torque_noise", "force_bias", "torque_bias", "seed"});
+  map.read("force_noise", {unit::force, 0.0, 1e6}, errors.force_noise);
+  map.read("torque_noise", {unit::torque, 0.0, 1e6}, errors.torque_noise);
+  map.read("force_bias", {unit::force, -1e6, 1e6}, errors.bias.force);
+  map.read("torque_bias", {unit::torque, -1e6, 1e6}, errors.bias.torque);
+  if (const Value* seed = map.find("seed")) {
+    errors.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
+  }
+}
+
 /// A list of joints, or a map from joints to angles and lengths.
 std::vector<JointHold> holds_of(const Value& value) {
   std::vector<JointHold> holds;
@@ -509,7 +521,8 @@ std::vector<JointHold> holds_of(const Value& value) {
 RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& file) {
   const Map map(value);
   map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
-             "payload", "hold", "packages", "drive_delay", "covers", "admittance"});
+             "payload", "hold", "packages", "drive_delay", "covers", "admittance",
+             "sensor_errors"});
   RobotChoice robot;
   robot.urdf = path_of(map.at("urdf"), file);
   if (const Value* srdf = map.find("srdf")) robot.srdf = path_of(*srdf, file);
@@ -528,6 +541,7 @@ RobotChoice robot_of(const Value& value, const Laws& laws, const std::string& fi
   if (const Value* delay = map.find("drive_delay")) {
     robot.drive_delay = static_cast<int>(delay->integer(0, 100));
   }
+  if (const Value* errors = map.find("sensor_errors")) read_sensor_errors(*errors, robot.sensor);
   if (const Value* links = map.find("links")) {
     robot.links.emplace();
     for (const Value& link : links->list()) robot.links->push_back(link.text());

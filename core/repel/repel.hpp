@@ -37,6 +37,7 @@
 #include <repel/world/changed_arm.hpp>
 #include <repel/world/contact.hpp>
 #include <repel/world/delayed_arm.hpp>
+#include <repel/world/sensed_arm.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>
 

@@ -61,5 +61,10 @@ TEST(BulletContact, SetUpNamesThePartThatCannotBeTouched) {
   }
 }
 
+TEST(BulletContact, SensorReadsWhatHoldsTheTool) {
+  expect_its_wrench_to_hold_the_sledge<Arm>();
+  expect_no_wrench_of_other_links<Arm>();
+}
+
 }  // namespace contact_test
 }  // namespace repel::bullet::test

@@ -221,6 +221,18 @@ TEST(Admittance, SendsNothingThatLeadsOutOfTheRangeOfAJoint) {
   EXPECT_EQ(end.rates()[0], 0.0);
 }
 
+TEST(Admittance, AForceSensorIsRefused) {
+  Trial trial;
+  CellDescription cell = trial.description();
+  cell.arms[0].network = test::plan_with({network::Obstacle()}, {network::ForceSensor()});
+  try {
+    Cell refused(std::move(cell));
+    FAIL() << "must be refused";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string(error.what()).find("force_sensor"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Admittance, RefusesWhatNoArmCanShow) {
   const auto refusal = [](const AdmittanceOptions& options) {
     CellDescription cell = test::sliders();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,6 +80,9 @@ class DrawnSignals {
       signals.walls = {drawn_vector(rng_, 3, most), drawn_vector(rng_, 3, 0.1 * most)};
       signals.arm_torques = drawn_vector(rng_, n, most);
     }
+    signals.is_measured = tick_ % 1000 > 10;
+    signals.measured.force = Vec3(30.0 * std::sin(0.1 * tick_), 10.0, 0.0);
+    signals.measured.torque.z() = 3.0 * std::cos(0.03 * tick_);
     signals.at_rest = tick_ % 5000 > 4980;
     return signals;
   }

@@ -94,7 +94,9 @@ class DrawnPlan {
     }
     if (whole) plan.add("arm_obstacle", network::ArmObstacle(), "limits");
     const std::vector<network::JointRange> ranges(static_cast<std::size_t>(joints), {-0.2, 0.2});
-    plan.add("limits", network::Limits({}, ranges), "puma_joints");
+    const bool measures = joints % 2 == 0;
+    plan.add("limits", network::Limits({}, ranges), measures ? "force_sensor" : "puma_joints");
+    if (measures) plan.add("force_sensor", network::ForceSensor(), "puma_joints");
     grow(first, network::Space::tool, 4);
     plan.add("puma_joints", network::PumaJoints(joints));
   }

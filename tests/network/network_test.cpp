@@ -33,8 +33,8 @@ struct MetOf {
   }
 };
 using Met = MetOf<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaKin, ArmObstacle,
-                  Limits, Visual, PumaJoints, Junction, Line, Spring<any_size>, Mass<any_size>,
-                  Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
+                  ForceSensor, Limits, Visual, PumaJoints, Junction, Line, Spring<any_size>,
+                  Mass<any_size>, Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
 
 /// The sum of the ledgers of all modules, sources and robot included: energy into one comes out of
 /// another. A multiplex with a power factor declares the part it does not pass on.
@@ -116,6 +116,7 @@ Plan of_everything() {
   plan.add("obstacle", Obstacle()).add("visual", Visual()).add("puma_kin", PumaKin());
   plan.add("arm_obstacle", ArmObstacle());
   plan.add("limits", Limits({}, std::vector<JointRange>(6, {-0.2, 0.2})));
+  plan.add("force_sensor", ForceSensor());
   plan.add("puma_joints", PumaJoints(6));
   return plan;
 }

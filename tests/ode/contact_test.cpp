@@ -43,5 +43,10 @@ TEST(OdeContact, SetUpNamesThePartThatCannotBeTouched) {
   }
 }
 
+TEST(OdeContact, SensorReadsWhatHoldsTheTool) {
+  expect_its_wrench_to_hold_the_sledge<Arm>();
+  expect_no_wrench_of_other_links<Arm>();
+}
+
 }  // namespace contact_test
 }  // namespace repel::ode

@@ -126,5 +126,53 @@ TEST(ModuleKinds, CanDependOnTheArm) {
   EXPECT_EQ(build_network(scene, scene, arm, 400.0).find<network::PumaJoints>()->size(), 5);
 }
 
+TEST(ModuleKinds, ForceSensorTakesItsOptionsAndTheGravityOfTheArm) {
+  const std::string text =
+      base_scene +
+      "network:\n  - {module: ground}\n  - {module: kbb2}\n  - {module: obstacle}\n"
+      "  - {module: puma_kin}\n  - {module: force_sensor, gain: 60 %, cutoff: 3 Hz, force_range: "
+      "90 N, torque_range: 9 N "
+      "m, "
+      "tare: 100 ms, mass: 2 kg, position: 0 0 50 mm}\n  - {module: puma_joints}\n";
+  const Scene scene = parse(text, "scenes/test.yaml");
+  const auto* options =
+      std::any_cast<network::ForceSensorOptions>(&scene.network.modules[4].options);
+  ASSERT_NE(options, nullptr);
+  EXPECT_EQ(options->gain, 0.6);
+  EXPECT_EQ(options->cutoff, 3.0);
+  EXPECT_EQ(options->force_range, 90.0);
+  EXPECT_EQ(options->torque_range, 9.0);
+  EXPECT_EQ(options->tare, 0.1);
+  EXPECT_EQ(options->mass, 2.0);
+  EXPECT_EQ(options->p_TC, Vec3(0, 0, 0.05));
+  ArmModel arm;
+  arm.links.resize(3);
+  arm.gravity_W = Vec3::Zero();
+  network::ForceSensor sensor =
+      *build_network(scene, scene, arm, 400.0).find<network::ForceSensor>();
+  network::Signals signals = network::detail::neutral_signals(3, 0.0025);
+  signals.is_measured = true;
+  for (int tick = 0; tick < 200; ++tick) sensor.read(signals);
+  EXPECT_EQ(sensor.force().force, Vec3::Zero()) << "without gravity the tool has no weight";
+  EXPECT_THROW((void)parse(base_scene + "network:\n  - {module: force_sensor, gain: 0.8}\n",
+                           "scenes/test.yaml"),
+               SetupError);
+}
+
+TEST(ModuleKinds, SimulatedForceSensorHasTheErrorsOfTheScene) {
+  std::string text = base_scene;
+  const std::string before = "  start:";
+  text.insert(text.find(before),
+              "  sensor_errors: {force_noise: 1 N, torque_noise: 20 mN m, force_bias: 1 2 3 N, "
+              "torque_bias: 0 0 1 N m, seed: 9}\n");
+  const SensorErrors errors = parse(text, "scenes/test.yaml").robot.sensor;
+  EXPECT_EQ(errors.force_noise, 1.0);
+  EXPECT_EQ(errors.torque_noise, 0.02);
+  EXPECT_EQ(errors.bias.force, Vec3(1, 2, 3));
+  EXPECT_EQ(errors.bias.torque, Vec3(0, 0, 1));
+  EXPECT_EQ(errors.seed, 9U);
+  EXPECT_TRUE(parse(base_scene, "scenes/test.yaml").robot.sensor.none());
+}
+
 }  // namespace module_kinds_test
 }  // namespace repel::scene

@@ -273,13 +273,12 @@ TEST(SceneError, AdmittanceHasItsRanges) {
   expect_refused(admittance("scale: 0"), 4, {"'scale'", "0.001 to 1000"});
   expect_refused(admittance("rest_time: nan s"), 4, {"'rest_time'"});
   expect_refused(admittance("inertia: 2 kg m^2"), 4, {"'inertia'", "response, scale, rest_time"});
-  const Scene scene =
-      parse(admittance("response: 40 ms, scale: 50 %, rest_time: 0.2 s"), "scene.yaml");
+  const Scene scene = parsed(admittance("response: 40 ms, scale: 50 %, rest_time: 0.2 s"));
   ASSERT_TRUE(scene.robot.admittance);
   EXPECT_EQ(scene.robot.admittance->response, 0.04);
   EXPECT_EQ(scene.robot.admittance->scale, 0.5);
   EXPECT_EQ(scene.robot.admittance->rest_time, 0.2);
-  EXPECT_FALSE(parse(changed("tool:", "tool:"), "scene.yaml").robot.admittance);
+  EXPECT_FALSE(parsed(base_scene).robot.admittance);
 }
 
 TEST(SceneError, OnlyASceneWithALineIsApart) {

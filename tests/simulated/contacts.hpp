@@ -116,6 +116,51 @@ void expect_to_rest_on_a_table(const ArmModel& model) {
   EXPECT_FALSE(arm.faults().state);
 }
 
+/// A sensor on the sledge reads what holds it: 50 N along x, at a
+/// tool that is turned and does not lie in the line of the force.
+template <class Arm>
+void expect_its_wrench_to_hold_the_sledge() {
+  ArmModel model = sledge();
+  model.links[0].p_LC = Vec3(0.03, 0.0, 0.0);
+  model.X_LT = at(0.2, 0.1, 0.3);
+  model.X_LT.linear() = Eigen::AngleAxisd(0.7, Vec3(1, 2, 2) / 3.0).toRotationMatrix();
+  const std::vector<ContactPart> parts{{"ball", 0, Shape::sphere(0.1), Pose::Identity()},
+                                       {"wall", -1, Shape::box({0.2, 0.5, 0.5}), at(0.5, 0, 0)}};
+  Arm arm(model, {}, parts);
+  arm.reset(std::vector{0.0});
+  arm.set_torques(std::vector{50.0});
+  arm.step(1.0 / 400);
+  ASSERT_TRUE(arm.read_wrench());
+  EXPECT_EQ(arm.read_wrench()->force, Vec3::Zero()) << "it touches nothing yet";
+  for (int tick = 0; tick < 800; ++tick) arm.step(1.0 / 400);
+  const Wrench F_W = rotated(model.X_LT.linear(), *arm.read_wrench());
+  // At the contact, x is 0.1 m; the tool is at (0.2, 0.1, 0.3) from the origin of the link.
+  const Wrench expected = wrench_of_force(Vec3(-50.0, 0, 0), Vec3(-0.1, -0.1, -0.3));
+  EXPECT_LT((F_W.force - expected.force).norm(), 0.01) << F_W.force.transpose();
+  EXPECT_LT((F_W.torque - expected.torque).norm(), 0.01) << F_W.torque.transpose();
+  arm.reset(std::vector{0.0});
+  EXPECT_EQ(arm.read_wrench()->force, Vec3::Zero());
+  const Arm alone(model);
+  ASSERT_TRUE(alone.read_wrench());
+  EXPECT_EQ(alone.read_wrench()->force, Vec3::Zero());
+}
+
+/// On a link that does not carry the tool nothing is measured.
+template <class Arm>
+void expect_no_wrench_of_other_links() {
+  ArmModel model = sledge();
+  model.links.push_back(link_with(0.5, Vec3::Zero(), {0.01, 0.01, 0.01}));
+  model.links[1].axis_J = Vec3::UnitX();
+  const std::vector<ContactPart> parts{{"ball", 0, Shape::sphere(0.1), Pose::Identity()},
+                                       {"wall", -1, Shape::box({0.2, 0.5, 0.5}), at(0.5, 0, 0)}};
+  Arm arm(model, {}, parts);
+  arm.reset(std::vector{0.0, 0.0});
+  arm.set_torques(std::vector{50.0, 0.0});
+  for (int tick = 0; tick < 400; ++tick) arm.step(1.0 / 400);
+  EXPECT_GT(arm.contact().steps, 0);
+  EXPECT_EQ(arm.read_wrench()->force, Vec3::Zero());
+}
+
 /// Parts out of reach leave the motion bitwise unchanged.
 template <class Arm>
 void expect_untouched_the_same(const ArmModel& model) {

@@ -18,6 +18,9 @@ struct Listener : TorqueDrivenArm {
   void read_positions(std::span<double> out) const noexcept override { out[0] = 7.0; }
   void read_velocities(std::span<double> out) const noexcept override { out[0] = 8.0; }
   [[nodiscard]] ArmState state() const noexcept override { return ArmState::stopped; }
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
+    return Wrench{{1, 2, 3}, {4, 5, 6}};
+  }
   std::vector<double>* heard;
 };
 
@@ -47,6 +50,8 @@ TEST(DelayedArm, EverythingElseIsThatOfTheArm) {
   arm.read_velocities(out);
   EXPECT_EQ(out[0], 8.0);
   EXPECT_EQ(arm.state(), ArmState::stopped);
+  ASSERT_TRUE(arm.read_wrench());
+  EXPECT_EQ(arm.read_wrench()->torque, Vec3(4, 5, 6));
 }
 
 TEST(DelayedArm, DelayOutOfRangeIsRefused) {

@@ -50,6 +50,7 @@ const BITS = {
   arm_stopped: ["bad", "the arm is stopped"],
   pushed_out: ["bad", "the arm is pushed out of what it started in"],
   energy_gain: ["bad", "the arm gains energy from its own control"],
+  bad_wrench: ["warn", "the force sensor cannot be believed"],
   torque_rate: ["warn", "a torque changed as fast as it may"],
   tool_speed: ["warn", "the tool is as fast as it may be"],
   speed_limit: ["warn", "a joint is as fast as it may be"],

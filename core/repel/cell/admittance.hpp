@@ -128,6 +128,7 @@ class AdmittedKinematics final : public ArmKinematics {
   arm.options.drive_delay += options.response / period;
   // It reports the same position until it answers, and where its own loop lets friction hold it.
   arm.options.joints.touches = true;
+  arm.takes_motion = true;
   arm.options.joints.repeats += 2 * static_cast<int>(std::ceil(arm.options.drive_delay));
   arm.kinematics =
       std::make_unique<detail::AdmittedKinematics>(std::move(arm.kinematics), std::move(inertia));

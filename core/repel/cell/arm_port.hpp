@@ -21,7 +21,7 @@ class ArmPort {
   [[nodiscard]] ArmReadings read() noexcept {
     arm_->read_positions(q_);
     arm_->read_velocities(v_);
-    return {q_, v_, arm_->state()};
+    return {q_, v_, arm_->state(), arm_->read_wrench()};
   }
 
   void apply(const TickRecord& record) noexcept {

@@ -208,6 +208,7 @@ class CellAssembly {
                                                layouts_[i].links, built_network(arm)},
                              period_, arm.options);
       records_.push_back(nullptr);
+      require_fitting_sensor(arm, controls_.back().network());
     }
   }
 

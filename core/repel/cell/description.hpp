@@ -44,6 +44,7 @@ struct ArmDescription {
   std::vector<std::pair<int, int>> may_touch;  ///< indices of parts, excluded from `self_law`
   ForceLaw law;  ///< between its parts and those of the arms before it in the list
   TeleoperatorOptions options;
+  bool takes_motion = false;  ///< it takes rates or positions: set by `admitted`
 };
 
 /// A convex part P of the environment.

@@ -13,6 +13,8 @@
 #include <repel/network/elements/dense.hpp>
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/machinery/prediction.hpp>
+#include <repel/network/modules/force_sensor.hpp>
+#include <repel/network/network.hpp>
 
 namespace repel {
 
@@ -36,6 +38,15 @@ namespace detail {
 }
 
 }  // namespace detail
+
+/// What an arm that takes rates or positions touches does not move what its admittance shows.
+/// @throws SetupError if it has a force sensor all the same
+inline void require_fitting_sensor(const ArmDescription& arm, const network::Network& network) {
+  if (!arm.takes_motion || network.find<network::ForceSensor>() == nullptr) return;
+  throw SetupError(
+      "network: a force_sensor makes an arm lighter that takes torques; this one takes rates or "
+      "positions; allowed: none");
+}
 
 /// The least masses of an arm at its start and in 63 poses of its workspace, the same in every run,
 /// divided by the uncertainty of its masses; and how late it answers. Leaves the kinematics at the

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <repel/base/status.hpp>
@@ -31,6 +32,8 @@ struct TickRecord {
   std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] their rates
   std::array<double, network::most_joints> q_read{};  ///< as read, believed or not
   std::array<double, network::most_joints> v_read{};
+  /// [N, N m] of the force sensor, as read; empty without a reading or a module for it.
+  std::optional<Wrench> wrench_read{};
   network::Command command;   ///< of the operator
   Vec3 p_WT{0, 0, 0};         ///< [m] tool
   Vec3 v_WT{0, 0, 0};         ///< [m/s]

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/held_weight.hpp>
 #include <repel/loop/options.hpp>
+#include <repel/loop/readings.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/teleoperator_parts.hpp>
@@ -48,6 +48,7 @@ class Teleoperator {
         tool_(parts.tool),
         links_(joined(world_, tool_, parts.links), static_cast<int>(parts.model.links.size())),
         network_(std::move(parts.network)),
+        sensor_(network_.find<network::ForceSensor>()),
         clock_(period, in_nanoseconds(options.longest_gap)),
         period_(std::chrono::duration<double>(period).count()),
         gravity_W_(parts.model.gravity_W),
@@ -129,6 +130,7 @@ class Teleoperator {
     copy_readings(readings.q, read_q_);
     copy_readings(readings.v, read_v_);
     drive_state_ = readings.state;
+    if (sensor_ != nullptr) record_.wrench_read = readings.wrench;
     if (drive_state_ != ArmState::enabled) watch_.hold();
     record_.status |= watch_.step(read_q_, read_v_, signals_.elapsed, inertia_.matrix());
     for (std::size_t i = 0; i < q_.size(); ++i) {
@@ -217,6 +219,7 @@ class Teleoperator {
     signals_.jacobian = jacobian_;
     signals_.inertia = inertia_.matrix();
     signals_.X_WT = X_WT_;
+    if (sensor_ != nullptr) pass_wrench(record_.wrench_read, *sensor_, signals_);
     if (!network_.run(signals_)) record_.status |= status::network_fault;
     note_limits();
     record_.network_time = std::chrono::steady_clock::now() - begin;
@@ -229,6 +232,7 @@ class Teleoperator {
     const auto* arm = network_.find<network::TorqueArm>();
     const auto* limits = network_.find<network::Limits>();
     if (limits != nullptr && limits->active()) record_.status |= status::joint_limit;
+    if (sensor_ != nullptr && sensor_->is_lost()) record_.status |= status::bad_wrench;
     record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
   }
 
@@ -259,13 +263,6 @@ class Teleoperator {
     }
   }
 
-  // Missing entries read as NaN.
-  static void copy_readings(std::span<const double> from, std::vector<double>& to) noexcept {
-    for (std::size_t i = 0; i < to.size(); ++i) {
-      to[i] = i < from.size() ? from[i] : std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-
   [[nodiscard]] static Eigen::Map<const network::Vec<network::any_size>> joints_vec(
       const std::vector<double>& values) noexcept {
     return {values.data(), static_cast<Eigen::Index>(values.size())};
@@ -277,6 +274,7 @@ class Teleoperator {
   BodyId tool_;
   ArmBodies links_;
   network::Network network_;
+  const network::ForceSensor* sensor_;  // in it; null: none
   TickClock clock_;
   double period_;   ///< [s]
   Vec3 gravity_W_;  ///< [m/s^2]

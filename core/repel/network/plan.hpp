@@ -198,6 +198,8 @@ inline Network Plan::build(double period, const std::optional<PredictionOptions>
       if (c != vertex.toward_root) node.branches.push_back(c);
     }
   }
+  RobotEnd moved = robot;
+  for (const Node& node : network.nodes_) moved = moved.lightened(node.traits.lightens);
   network.downward_.assign(network.upward_.rbegin(), network.upward_.rend());
   for (std::size_t c = 0; c < network.connections_.size(); ++c) {
     network.nodes_[network.connections_[c].right_node].left = static_cast<int>(c);
@@ -208,7 +210,7 @@ inline Network Plan::build(double period, const std::optional<PredictionOptions>
     const bool on_right =
         node.toward_root >= 0 && network.connection(node.toward_root).left_node == i;
     detail::ready(node, network.connection(first), on_right ? Side::right : Side::left, period,
-                  robot);
+                  moved);
   }
   require_solvable(network, detail::neutral_signals(planner.joints(), period));
   return network;

@@ -6,10 +6,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <repel/base/spatial.hpp>
 #include <repel/base/types.hpp>
 
 namespace repel {
@@ -85,6 +87,9 @@ class TorqueDrivenArm {
   [[nodiscard]] virtual ArmState state() const noexcept { return ArmState::enabled; }
   /// Contacts, for an arm that simulates physical contact.
   [[nodiscard]] virtual ContactReport contact() const noexcept { return {}; }
+  /// What a force sensor reads that carries the tool [N, N m]: see ArmReadings::wrench. The mean of
+  /// the last `step`; empty without a sensor.
+  [[nodiscard]] virtual std::optional<Wrench> read_wrench() const noexcept { return {}; }
 
  protected:
   TorqueDrivenArm() = default;
@@ -100,6 +105,10 @@ struct ArmReadings {
   std::span<const double> q;           ///< [rad] or [m]
   std::span<const double> v;           ///< [rad/s] or [m/s]
   ArmState state = ArmState::enabled;  ///< of its drive
+  /// [N, N m] read by a force sensor that carries the tool: of all that pushes and pulls beyond it,
+  /// on the tool, about its origin, in axes of the tool, bias and weight included. Empty without a
+  /// sensor or a reading; used by the module FORCE SENSOR (network/modules/force_sensor.hpp).
+  std::optional<Wrench> wrench{};
 };
 
 }  // namespace repel

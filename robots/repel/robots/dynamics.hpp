@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -90,6 +91,9 @@ class ReferenceArm final : public TorqueDrivenArm {
   void engage_brakes(bool on) noexcept override;
 
   [[nodiscard]] ArmState state() const noexcept override;
+
+  /// Zero: the arm touches nothing.
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override { return Wrench{}; }
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
   void read_positions(std::span<double> out) const noexcept override;

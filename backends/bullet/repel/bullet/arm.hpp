@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <repel/base/layout.hpp>
@@ -68,6 +69,10 @@ class Arm final : public TorqueDrivenArm {
 
   /// Contacts since the last reset.
   [[nodiscard]] ContactReport contact() const noexcept override;
+
+  /// The sum of all contact forces on the parts of the last link, mean of the sub-steps of the last
+  /// step; zero without parts. The weight of the tool is not part of it.
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override;
 
   [[nodiscard]] ArmFaults faults() const noexcept;
   void clear_faults() noexcept;

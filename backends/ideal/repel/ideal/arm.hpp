@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -109,6 +110,9 @@ class IdealArm final : public TorqueDrivenArm {
     const auto count = std::min(out.size(), joints_.size());
     for (std::size_t i = 0; i < count; ++i) out[i] = joints_[i].velocity;
   }
+
+  /// Zero: the arm touches nothing.
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override { return Wrench{}; }
 
   /// True once an entry passed to `set_torques` was unusable.
   [[nodiscard]] bool torque_fault() const noexcept { return torque_fault_; }

@@ -25,6 +25,7 @@
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/changed_arm.hpp>
+#include <repel/world/sensed_arm.hpp>
 
 namespace repel::scene {
 
@@ -153,6 +154,7 @@ struct RobotChoice {
   int drive_delay = 0;        ///< [ticks] see TeleoperatorOptions::drive_delay
   /// Of an arm that takes positions or rates; none: it takes torques.
   std::optional<AdmittanceOptions> admittance;
+  SensorErrors sensor;  ///< of the simulated force sensor
 };
 
 /// Limits on the work of the distance queries in one tick.

@@ -127,6 +127,8 @@ struct Traits {
   bool needs_flow = false;     ///< nonlinear: needs a flow measured by the root
   bool keeps_flow = false;     ///< a flow measured on one side is known on the other
   Walls walls = Walls::none;   ///< the forces it takes from the world model
+  bool at_robot = false;       ///< stands beside the module that measures its flow, on its left
+  double lightens = 0.0;       ///< g: what is on its left moves 1 / (1 + g) of the inertia
   bool passive = true;         ///< returns no more energy than it absorbed and was supplied; the
                                ///< latter is by its own source, as `supplied` reports it
 };

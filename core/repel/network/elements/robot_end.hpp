@@ -22,6 +22,15 @@ struct RobotEnd {
   double speed = 0.25;      ///< [m/s] greatest of the tool
   double response = 0.0;    ///< [s] h, in which the arm follows a change of its torques
   double wall_ticks = 0.5;  ///< B >= wall_ticks T K keeps a wall or a limit stable
+
+  /// The same of an arm of 1 / (1 + g) times the inertia.
+  [[nodiscard]] RobotEnd lightened(double g) const {
+    RobotEnd lighter = *this;
+    lighter.mass /= 1.0 + g;
+    lighter.inertia /= 1.0 + g;
+    lighter.joints *= 1.0 / (1.0 + g);
+    return lighter;
+  }
 };
 
 /// A spring and a damper, of a translation or a rotation.

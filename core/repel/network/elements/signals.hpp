@@ -30,8 +30,13 @@ struct Signals {
                                ///< the links on the tool of the same arm
   double walls_power = 0.0;    ///< [W] supplied to the tool by moving obstacles
   double arm_power = 0.0;      ///< [W] and to the links
-  Mat<any_size> inertia;       ///< [kg m^2] or [kg] of the joints, symmetric; of size 0: not known
+  Mat<any_size> inertia;       ///< [kg m^2] or [kg] of the joints, symmetric, as the modules move
+                               ///< them: 1 / (1 + g) of the arm's with a FORCE SENSOR; of size 0:
+                               ///< not known
   Mat<any_size> wall_damping;  ///< [N m s/rad] of the world model at the joints; of size 0: none
+  Wrench measured;           ///< [N, N m] reading of a sensor at the tool: of all that is beyond it
+                             ///< on the tool, about its origin, in axes of the tool
+  bool is_measured = false;  ///< there is such a reading
   HandInput hand;
   double period = 0.0025;  ///< [s]
   double elapsed = 0.0;    ///< [s] since the last tick, more after missed ticks; 0: one period

@@ -242,7 +242,17 @@ class Planner {
     }
     for (const int v : tree) {
       if (nodes_[vertices_[v].node].traits.needs_flow) check_flow(v, root);
+      if (nodes_[vertices_[v].node].traits.at_robot) check_place(v, root);
     }
+  }
+  void check_place(int v, int root) const {
+    const int next = across(vertices_[v].toward_root, v);
+    if (next == root) return;
+    const std::string& name = nodes_[vertices_[v].node].name;
+    const std::string& robot = nodes_[vertices_[root].node].name;
+    throw SetupError("'" + name + "' must be the last module before '" + robot + "'; '" +
+                     nodes_[vertices_[next].node].name + "' stands between them: put it before '" +
+                     name + "'");
   }
   void check_flow(int v, int root) const {
     const std::string& name = nodes_[vertices_[v].node].name;

@@ -1,0 +1,225 @@
+/// @file
+/// FORCE SENSOR: a measured force, in a loop at the joints that makes an arm lighter.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include <repel/network/elements/two_port.hpp>
+
+namespace repel::network {
+
+struct ForceSensorOptions {
+  double gain = 0.5;            ///< g, 0 to `ForceSensor::most_gain`
+  double cutoff = 5.0;          ///< [Hz] of the low pass, first order; 0: none
+  double force_range = 200.0;   ///< [N] a reading is clipped to it along each axis of the tool
+  double torque_range = 20.0;   ///< [N m] likewise
+  double tare = 0.0;            ///< [s] standing still, at the start, of which the mean reading is
+                                ///< the bias; 0: no bias
+  double mass = 0.0;            ///< [kg] of the tool beyond the sensor
+  Vec3 p_TC{0, 0, 0};           ///< [m] its centre of mass in the tool frame
+  Vec3 gravity_W{0, 0, -9.81};  ///< [m/s^2]
+};
+
+/// A two-port of the joints that measures what the tool touches:
+///
+///     tau_right = tau_left + g (tau_left + J^T F)
+///
+/// with F the wrench of the environment on the tool: the reading without bias and weight, after a
+/// low pass. A contact acts on the arm by itself, so that
+///
+///     M a = tau_right + J^T F - friction,   M / (1 + g) a = tau_left + J^T F - friction / (1 + g)
+///
+/// The network moves an arm of 1 / (1 + g) times the inertia and friction, and is pushed by a
+/// contact just once, as by a virtual wall. Nothing is added to what the operator feels. It must be
+/// the last module before the robot.
+///
+/// A reading that is missing, not finite, or more than `beyond` times the range is not used: g
+/// falls to zero in `fall` with the last force, stays there until readings were sound for `hold`,
+/// and returns in `rise`. Likewise while the operator's force is removed.
+///
+/// It is an amplifier. Its traits say `passive` as those of SPACEBALL do: its ledger counts the
+/// power g (tau_left + J^T F) . v that it supplies.
+class ForceSensor {
+ public:
+  static constexpr double most_gain = 0.7;
+  static constexpr double fall = 0.05;          ///< [s] in which g falls to zero
+  static constexpr double hold = 0.25;          ///< [s] of sound readings before it returns
+  static constexpr double rise = 0.5;           ///< [s] in which it returns
+  static constexpr double beyond = 10.0;        ///< [ranges] a greater reading is not believed
+  static constexpr double still = 0.01;         ///< [m/s] below which the tool stands still
+  static constexpr double angular_still = 0.1;  ///< [rad/s] likewise
+
+  /// @throws SetupError for a number out of range
+  explicit ForceSensor(const ForceSensorOptions& options = {}) : options_(options) {
+    checked("gain", options.gain, 0.0, most_gain, "");
+    checked("cutoff", options.cutoff, 0.0, 1e5, "Hz");
+    checked("force range", options.force_range, 1e-3, 1e6, "N");
+    checked("torque range", options.torque_range, 1e-3, 1e6, "N m");
+    checked("tare", options.tare, 0.0, 100.0, "s");
+    checked("mass", options.mass, 0.0, 1e3, "kg");
+    checked("distance of the centre of mass", options.p_TC.norm(), 0.0, 10.0, "m");
+    checked("gravity", options.gravity_W.norm(), 0.0, 100.0, "m/s^2");
+  }
+
+  [[nodiscard]] Traits traits() const noexcept {
+    return {.left = Space::joints,
+            .right = Space::joints,
+            .needs_flow = true,
+            .keeps_flow = true,
+            .at_robot = true,
+            .lightens = options_.gain};
+  }
+
+  /// For an arm of `size` joints.
+  void fit(Space /*space*/, int size) { torque_.setZero(size); }
+  void prepare(double period) {
+    const double turned = 2.0 * std::numbers::pi * options_.cutoff * detail::checked_period(period);
+    follows_ = options_.cutoff > 0.0 ? 1.0 - std::exp(-turned) : 1.0;
+  }
+
+  void read(const Signals& signals) noexcept {
+    const bool is_sound = take(signals);
+    lost_ticks_ += is_sound ? 0 : 1;
+    is_lost_ = !is_sound;
+    if (signals.released) {
+      forget();
+    } else {
+      if (is_sound) weigh(signals);
+      const bool may_act = is_sound && !signals.at_rest && is_tared();
+      fade(may_act, signals.since_last());
+      // While the share falls the last force is held; at share zero any may be taken.
+      if (is_sound && share_ == 0.0) force_ = reading_;
+      if (is_sound && !has_tripped_) follow();
+    }
+    if (share_ > 0.0) peak_ = std::max(peak_, force_.force.norm());
+    force_W_ = rotated(signals.X_WT.linear(), force_);
+    dense::transposed_product(signals.jacobian, to_vec(force_W_), torque_);
+    torque_ *= gain();
+  }
+
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept {
+    shown = behind;
+    const double scale = 1.0 + gain();
+    if (shown.form == Form::impedance) {
+      shown.matrix *= scale;
+      shown.offset *= scale;
+    } else {
+      shown.matrix *= 1.0 / scale;
+    }
+    shown.add_effort(-torque_);
+    return true;
+  }
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) noexcept {
+    const double share = 1.0 / (1.0 + gain());
+    at_leaf.flow = at_root.flow;
+    at_leaf.effort = share * (at_root.effort + torque_);
+    supplied_ = (at_leaf.effort - at_root.effort).dot(at_root.flow);
+  }
+
+  /// g in this tick, 0 where there is no sound reading.
+  [[nodiscard]] double gain() const noexcept { return share_ * options_.gain; }
+  /// Of the environment on the tool, about its origin, world axes [N, N m].
+  [[nodiscard]] const Wrench& force() const noexcept { return force_W_; }
+  [[nodiscard]] const Wrench& bias() const noexcept { return bias_; }  ///< [N, N m] in tool axes
+  /// The bias is known, or there is none.
+  [[nodiscard]] bool is_tared() const noexcept { return tared_for_ >= options_.tare; }
+  [[nodiscard]] bool is_lost() const noexcept { return is_lost_; }  ///< no sound reading
+  [[nodiscard]] bool saturated() const noexcept { return is_saturated_; }
+  [[nodiscard]] std::int64_t saturated_ticks() const noexcept { return saturated_ticks_; }
+  [[nodiscard]] std::int64_t lost_ticks() const noexcept { return lost_ticks_; }
+  [[nodiscard]] double peak_force() const noexcept { return peak_; }    ///< [N] since set-up
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W]
+
+ private:
+  // Clips the reading. False when it cannot be used.
+  [[nodiscard]] bool take(const Signals& signals) noexcept {
+    is_saturated_ = false;
+    if (!signals.is_measured || !is_finite(signals.measured)) return false;
+    const Wrench& raw = signals.measured;
+    const double force = largest_entry(raw.force) / options_.force_range;
+    const double torque = largest_entry(raw.torque) / options_.torque_range;
+    if (!(std::max(force, torque) <= beyond)) return false;
+    is_saturated_ = std::max(force, torque) >= 1.0;
+    saturated_ticks_ += is_saturated_ ? 1 : 0;
+    reading_ = {clipped(raw.force, options_.force_range),
+                clipped(raw.torque, options_.torque_range)};
+    return true;
+  }
+  [[nodiscard]] static Vec3 clipped(const Vec3& all, double most) noexcept {
+    return {std::clamp(all.x(), -most, most), std::clamp(all.y(), -most, most),
+            std::clamp(all.z(), -most, most)};
+  }
+
+  // Takes weight and bias off the reading; until the bias is known, adds to it.
+  void weigh(const Signals& signals) noexcept {
+    const Vec3 weight_T =
+        signals.X_WT.linear().transpose() * Vec3(options_.mass * options_.gravity_W);
+    reading_ += -1.0 * wrench_of_force(weight_T, options_.p_TC);
+    if (!is_tared()) tare(signals);
+    reading_ += -1.0 * bias_;
+  }
+  void tare(const Signals& signals) noexcept {
+    const Vec<any_size> flow = signals.mean_tool_flow();
+    if (three(flow, 0).norm() > still || three(flow, 3).norm() > angular_still) {
+      tared_for_ = 0.0;
+      count_ = 0;
+      sum_ = {};
+      return;
+    }
+    sum_ += reading_;
+    tared_for_ += signals.since_last();
+    bias_ = (1.0 / static_cast<double>(++count_)) * sum_;
+  }
+
+  void fade(bool may_act, double elapsed) noexcept {
+    sound_for_ = may_act ? sound_for_ + elapsed : 0.0;
+    has_tripped_ = has_tripped_ || !may_act;
+    if (has_tripped_ && (share_ > 0.0 || sound_for_ < hold)) {
+      share_ = std::max(0.0, share_ - elapsed / fall);
+    } else {
+      has_tripped_ = false;
+      share_ = std::min(1.0, share_ + elapsed / rise);
+    }
+  }
+
+  void follow() noexcept {
+    force_.force += follows_ * (reading_.force - force_.force);
+    force_.torque += follows_ * (reading_.torque - force_.torque);
+  }
+
+  // A bias that is known stays: what the tool touches now is not part of it.
+  void forget() noexcept {
+    share_ = sound_for_ = 0.0;
+    has_tripped_ = true;
+    force_ = {};
+    if (is_tared()) return;
+    tared_for_ = 0.0;
+    count_ = 0;
+    sum_ = {};
+  }
+
+  ForceSensorOptions options_;
+  double follows_ = 1.0;  // share of a reading that the low pass takes over in a tick
+  double share_ = 0.0;    // of the gain
+  double sound_for_ = 0.0;
+  bool has_tripped_ = false;
+  Wrench reading_;          // clipped, without weight and bias; tool axes, as the next four
+  Wrench force_;            // after the low pass
+  Wrench bias_;             // [N, N m]
+  Wrench sum_;              // of readings while taring
+  Wrench force_W_;          // `force_` in world axes
+  int count_ = 0;           // of those
+  double tared_for_ = 0.0;  // [s]
+  Vec<any_size> torque_;    // g J^T F [N m]
+  double supplied_ = 0.0;   // [W]
+  double peak_ = 0.0;       // [N]
+  bool is_lost_ = false, is_saturated_ = false;
+  std::int64_t saturated_ticks_ = 0, lost_ticks_ = 0;
+};
+
+}  // namespace repel::network
