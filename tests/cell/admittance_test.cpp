@@ -98,14 +98,21 @@ TEST(Admittance, BringsAnArmThatTakesRatesOrPositionsToAWallAndNoFurther) {
   for (const double rate_hz : {125.0, 400.0, 1000.0}) {
     for (const bool by_position : {false, true}) {
       for (const auto& [dead, lag] : {std::pair{0.0, 0.0}, {0.01, 0.02}, {0.03, 0.03}}) {
-        for (const double mass : {0.2, 5.0, 50.0}) {
+        for (const auto& [mass, told] : {std::pair{0.2, 1.0},
+                                         {5.0, 1.0},
+                                         {50.0, 1.0},
+                                         {0.2, 0.7},
+                                         {5.0, 0.7},
+                                         {5.0, 1.6},
+                                         {50.0, 1.6}}) {
           Trial trial{.rate_hz = rate_hz};
           trial.options.inertia = {mass, mass, mass};
-          trial.options.response = dead + lag;
+          trial.options.response = told * (dead + lag);
           trial.rails.dead = dead;
           trial.rails.lag = lag;
           trial.rails.by_position = by_position;
-          SCOPED_TRACE(trial.said() + ", " + to_text(mass) + " kg");
+          SCOPED_TRACE(trial.said() + ", told " + to_text(told) + " times that, " + to_text(mass) +
+                       " kg");
           trial.push(0.1);
           EXPECT_EQ(trial.seen & status::failsafe, 0U) << to_text(trial.seen);
           EXPECT_GT(trial.deepest_q, 0.17) << "the ball must come near the wall";
