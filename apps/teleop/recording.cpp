@@ -86,6 +86,7 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   k.command.hand.ball = {arm.at("linear").vector(), arm.at("angular").vector()};
   k.command.hand.lever_rate = arm.at("lever_rate").number();
   k.command.hand.direction_W = arm.at("direction").vector();
+  if (arm.has("scale")) k.command.hand.scale = arm.at("scale").number();
   k.command.sound = arm.at("sound").yes();
   k.command.silent_for = arm.at("silent_for_s").number();
 }

@@ -64,6 +64,7 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   row.put(hand.direction_W);
   row.put(hand.ball.linear);
   row.put(hand.ball.angular);
+  row.next() = std::isfinite(hand.scale) ? hand.scale : 1.0;
 }
 
 /// The command that the site heard last. Once the link has been silent for 0.1 s the operator is
@@ -79,7 +80,8 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   command.hand.direction_W = row.vec3();
   command.hand.ball.linear = row.vec3();
   command.hand.ball.angular = row.vec3();
-  if (!link.is_linked()) command.hand.direction_W = Vec3(1, 0, 0);
+  command.hand.scale = row.next();
+  if (!link.is_linked()) command.hand.direction_W = Vec3(1, 0, 0), command.hand.scale = 1.0;
   if (!link.is_linked() || link.silent_for() > network::WavePlayer::silence) {
     command.silent_for = std::max(OperatorInput::silent_after, link.silent_for());
     // The hand that moved when the line went silent is not known to move on.

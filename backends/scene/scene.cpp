@@ -561,7 +561,7 @@ constexpr std::array all_steps{PartStep::What::spawn, PartStep::What::grip, Part
 /// Keys of a phase of any device.
 std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
   std::vector<std::string_view> keys{"name",   "device", "frame", "duration",
-                                     "silent", "over",   "blind"};
+                                     "silent", "over",   "blind", "scale"};
   for (const PartStep::What what : all_steps) keys.push_back(word_for(what));
   keys.insert(keys.end(), more);
   return keys;
@@ -580,6 +580,8 @@ network::Phase phase_of(const Value& value) {
   if (const Value* silent = map.find("silent")) {
     phase.silent = silent->word_of({"yes", "no"}) == "yes";
   }
+  map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
+           phase.scale);
   const std::string_view device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
   if (device != "torque_arm") {
     if (device == "six_axes") phase.master = network::Master::six_axes;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace repel {
 namespace speed_share_test {
 
@@ -44,6 +46,13 @@ TEST(SpeedShare, NoHandLeadsFasterThanTheToolMayBe) {
     EXPECT_EQ(hand.lever_rate, -2.5);
     EXPECT_NEAR(hand.direction_W.x(), 1.0, 1e-12);
   }
+  hand.lever_rate = 2.0;
+  hand.scale = 2.0;  // the tool moves twice as far as the lever's scale says
+  EXPECT_TRUE(cut_to_speed(hand, 0.25, 0.1));
+  EXPECT_EQ(hand.lever_rate, 1.25);
+  hand.scale = std::numeric_limits<double>::quiet_NaN();
+  (void)cut_to_speed(hand, 0.25, 0.1);
+  EXPECT_EQ(hand.scale, 1.0);
 }
 
 }  // namespace speed_share_test

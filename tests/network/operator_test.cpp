@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include <cmath>
 
 #include "support/families.hpp"
@@ -129,6 +131,18 @@ TEST(ScriptedOperator, HandThatDoesNotLeadTheLeverHoldsItStill) {
   EXPECT_EQ(hand.lever_rate, 0.0);
   EXPECT_EQ(hand.direction_W, Vec3::UnitY());
   EXPECT_EQ(hand.ball.linear, Vec3(0.1, 0, 0));
+}
+
+TEST(ScriptedOperator, AScaleHoldsUntilTheNext) {
+  ScriptedOperator hands({{.duration = 0.01},
+                          {.duration = 0.01, .scale = 0.5},
+                          {.duration = 0.01},
+                          {.duration = 0.01, .scale = 2.0}});
+  std::vector<double> scales;
+  for (int tick = 0; tick < 5; ++tick) {
+    scales.push_back(hands.step(Mat3::Identity(), 0.01).hand.scale);
+  }
+  EXPECT_EQ(scales, (std::vector<double>{1.0, 0.5, 0.5, 2.0, 2.0}));
 }
 
 TEST(ScriptedOperator, SilentDeviceKeepsItsLastSampleAndSaysItsAge) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/signals.hpp>
 
 namespace repel {
@@ -35,7 +36,7 @@ namespace detail {
 }  // namespace detail
 
 /// Clamps the operator's rates to the speed limit of the tool and the lever direction to length
-/// one. True when a rate was clamped.
+/// one; a scale that is none becomes 1. True when a rate was clamped.
 /// @param scale of the lever [m/rad], above 0
 [[nodiscard]] inline bool cut_to_speed(network::HandInput& hand, double limit,
                                        double scale) noexcept {
@@ -43,7 +44,10 @@ namespace detail {
   if (ball > limit) hand.ball.linear = hand.ball.linear * (limit / ball);
   const double length = detail::length_of(hand.direction_W);
   if (length > 1.0 + 1e-9) hand.direction_W = hand.direction_W / length;
-  const double most = limit / scale;
+  const bool has_scale =
+      hand.scale >= network::ChangingScale::least && hand.scale <= network::ChangingScale::most;
+  if (!has_scale) hand.scale = 1.0;
+  const double most = limit / (scale * hand.scale);
   const bool is_fast = ball > limit || std::abs(hand.lever_rate) > most;
   hand.lever_rate = std::clamp(hand.lever_rate, -most, most);
   return is_fast;

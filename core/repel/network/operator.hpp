@@ -23,13 +23,14 @@ enum class PhaseFrame { world, tool };
 
 /// One phase of the script.
 struct Phase {
-  std::string name;                      ///< shown in the progress line and the log
+  std::string name{};                    ///< shown in the progress line and the log
   Master master = Master::spaceball;     ///< the device in the operator's hand
   PhaseFrame frame = PhaseFrame::world;  ///< of the rates and of the direction
   double duration = 1.0;                 ///< [s]
-  Twist rates;              ///< [m/s, rad/s] spaceball, six axes: constant through the phase
+  Twist rates{};            ///< [m/s, rad/s] spaceball, six axes: constant through the phase
   Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction in which the lever drives the tool
   double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
+  double scale = 0.0;       ///< HandInput::scale from here on; 0: as before
   bool silent = false;      ///< the device does not respond: its last sample is held
 };
 
@@ -64,6 +65,7 @@ class ScriptedOperator {
     }
     command_.hand.ball = {};
     command_.hand.lever_rate = 0.0;
+    if (!over() && script_[phase_].scale > 0.0) command_.hand.scale = script_[phase_].scale;
     command_.silent_for = 0.0;
     command_.sound = over() || read(script_[phase_], R_WT, period);
     return command_;

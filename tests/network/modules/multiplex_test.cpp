@@ -120,6 +120,31 @@ TEST(Multiplex, FeltEffortDoesNotJumpWhenTheDirectionDoes) {
   EXPECT_NEAR(largest_step(0.000025) / coarse, 0.01, 0.0005);
 }
 
+TEST(Multiplex, AScaleThatChangesLosesNothing) {
+  Rng rng(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  DrawnSignals drawn(rng, 0);
+  DrawnEnds tool(rng, 6, 20.0);
+  DrawnEnds lever(rng, 1, 2.0);
+  Cell cell(Multiplex({.velocity_scale = 0.2, .force_scale = 0.2}), Side::right);
+  double least = 1e9, greatest = 0.0;
+  for (int tick = 0; tick < families::draws(20000); ++tick) {
+    Signals signals = drawn.next();
+    signals.hand.scale = tick % 400 < 200 ? 0.2 : 5.0;
+    ASSERT_TRUE(cell.run(signals, lever.definite(), tool.slack()));
+    const double scale = cell.module.flow_scale();
+    least = std::min(least, scale);
+    greatest = std::max(greatest, scale);
+    const Six d = along(cell.module);
+    ASSERT_LE((cell.at_root.flow - scale * d * cell.at_leaf.flow(0)).norm(),
+              1e-11 * (1.0 + cell.at_root.flow.norm()));
+    ASSERT_NEAR(cell.at_leaf.effort(0), scale * d.dot(cell.at_root.effort), 1e-8);
+  }
+  EXPECT_LT(least, 0.3);
+  EXPECT_GT(greatest, 0.6);
+  EXPECT_LE(std::abs(cell.ledger.energy), 1e-9 * cell.ledger.passed);
+}
+
 TEST(Multiplex, RefusesNumbersOutOfRange) {
   EXPECT_THROW(Multiplex({.velocity_scale = 0.0}), SetupError);
   EXPECT_THROW(Multiplex({.force_scale = -1.0}), SetupError);

@@ -76,6 +76,33 @@ TEST(SixAxes, GivesNoMoreThanItTookAndTheHandSupplied) {
   }
 }
 
+TEST(SixAxes, AScaleThatChangesSuppliesNothingAndNothingJumps) {
+  families::Rng rng(seed);
+  SCOPED_TRACE(families::of_seed(seed, "change", 0));
+  Network network = against_a_spring({}, 200.0);
+  Signals signals = moving({Vec3(0.05, 0, 0), Vec3(0, 0, 0.2)});
+  for (int tick = 0; tick < 400; ++tick) ASSERT_TRUE(network.run(signals));
+  signals.hand.ball = {};
+  const auto& master = *network.find<SixAxes>();
+  Vector felt = master.felt();
+  Vec<6> at = master.position();
+  double jump = 0.0, move = 0.0, most = 0.0;
+  for (int tick = 0; tick < families::draws(20000); ++tick) {
+    if (tick % 200 == 0) signals.hand.scale = std::exp(families::uniform(rng, -1.5, 1.5));
+    ASSERT_TRUE(network.run(signals));
+    jump = std::max(jump, (master.felt() - felt).norm());
+    move = std::max(move, (master.position() - at).norm());
+    most = std::max(most, master.felt().norm());
+    felt = master.felt();
+    at = master.position();
+  }
+  EXPECT_GT(most, 5.0) << "the hand must lean on the spring";
+  // A change of scale by e^3 in 0.3 s, in force and in place.
+  EXPECT_LT(jump, 0.1 * most);
+  EXPECT_LT(move, 0.005);
+  for (const Node& node : network.nodes()) EXPECT_LE(node.ledger.deficit(), 1e-9) << node.name;
+}
+
 TEST(SixAxes, LetsGoAtRest) {
   Network network = against_a_spring({}, 50.0);
   for (int tick = 0; tick < 100; ++tick) {

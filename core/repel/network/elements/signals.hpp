@@ -14,6 +14,9 @@ struct HandInput {
   Twist ball;                 ///< [m/s, rad/s] raw rates of the force ball, world axes
   double lever_rate = 0.0;    ///< [rad/s] rate of the hand at the lever
   Vec3 direction_W{1, 0, 0};  ///< unit, world axes: direction in which the lever drives the tool
+  /// Multiplies the scale of a master that is felt, 1e-3 to 1e3: tool motion per hand motion, and
+  /// force at the hand per force at the tool. It may change at any time: see ChangingScale.
+  double scale = 1.0;
 };
 
 /// The state of arm, world and operator at the start of a tick. All numbers are finite: the loop

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
@@ -20,7 +21,7 @@ struct MultiplexOptions {
 ///
 /// A new direction is approached as d += (new - d)(1 - exp(-T / turning_time)). The transformer is
 /// lossless for any d, also of length below one, so the change injects no energy and no effort
-/// jumps.
+/// jumps. Both scales are multiplied by HandInput::scale (ChangingScale).
 ///
 /// With s_f != s_v the lever receives s_f / s_v of the power at the tool; the ledger therefore
 /// weights the power at the lever by s_v / s_f.
@@ -38,6 +39,7 @@ class Multiplex {
   void prepare(double period) {
     const double time = options_.turning_time;
     share_ = time > 0.0 ? -std::expm1(-detail::checked_period(period) / time) : 1.0;
+    scale_.prepare(period);
   }
   void face(Side root) noexcept { root_ = root; }
 
@@ -45,9 +47,10 @@ class Multiplex {
     direction_ = begun_ ? direction_ + share_ * (signals.hand.direction_W - direction_)
                         : signals.hand.direction_W;
     begun_ = true;
+    scale_.step(signals.hand.scale);
     for (int i = 0; i < 3; ++i) {
-      flow_map_[i] = options_.velocity_scale * direction_[i];
-      effort_map_[i] = options_.force_scale * direction_[i];
+      flow_map_[i] = scale_.value() * options_.velocity_scale * direction_[i];
+      effort_map_[i] = scale_.value() * options_.force_scale * direction_[i];
     }
   }
 
@@ -87,12 +90,17 @@ class Multiplex {
   [[nodiscard]] double velocity_scale() const noexcept {  ///< s_v [m/rad]
     return options_.velocity_scale;
   }
+  /// s_v [m/rad] times the scale of the hand, in this tick.
+  [[nodiscard]] double flow_scale() const noexcept {
+    return scale_.value() * options_.velocity_scale;
+  }
   /// d, world axes; of length below one while it turns.
   [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
 
  private:
   using Column = Eigen::Matrix<double, 6, 1>;
   MultiplexOptions options_;
+  ChangingScale scale_;
   Side root_ = Side::right;
   double share_ = 1.0;
   bool begun_ = false;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 
+#include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/held_axis.hpp>
 #include <repel/network/elements/signals.hpp>
 
@@ -25,7 +26,7 @@ struct SixAxesOptions {
   double force_limit = 30.0;            ///< [N] of the motors, along each axis
   double torque_limit = 2.0;            ///< [N m] about each axis
   /// Tool motion per hand motion. The hand feels the wrench at the tool times the same number, so
-  /// that no power is lost.
+  /// that no power is lost. Multiplied by HandInput::scale (ChangingScale).
   double motion_scale = 1.0;
 };
 
@@ -58,15 +59,14 @@ class SixAxes {
     const HeldAxisGains about{options_.inertia, options_.angular_friction,
                               options_.angular_hand_stiffness, options_.angular_hand_damping,
                               options_.torque_limit};
-    const double s = options_.motion_scale;
-    for (std::size_t i = 0; i < 6; ++i) {
-      axes_[i] = HeldAxis(i < 3 ? along : about, period);
-      resistance_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) =
-          axes_[i].resistance() / (s * s);
-    }
+    for (std::size_t i = 0; i < 6; ++i) axes_[i] = HeldAxis(i < 3 ? along : about, period);
+    scale_.prepare(period);
+    show_resistance();
   }
 
   void read(const Signals& signals) noexcept {
+    scale_.step(signals.hand.scale);
+    show_resistance();
     const Vec<any_size> hand = to_vec(signals.hand.ball);
     for (std::size_t i = 0; i < 6; ++i) {
       axes_[i].move(hand.coeff(static_cast<Eigen::Index>(i)), signals.at_rest);
@@ -76,14 +76,16 @@ class SixAxes {
   [[nodiscard]] const Mat<6>& resistance() const noexcept { return resistance_; }
   // Seen from the tool, with v = s v_hand and f_hand = s f, waves are 1 / s of those at the hand.
   [[nodiscard]] Vec<6> reflected() const noexcept {
-    return all([&](const HeldAxis& axis) { return axis.reflected() / options_.motion_scale; });
+    return all([&](const HeldAxis& axis) { return axis.reflected() / scale(); });
   }
   void incident(const Vec<6>& wave) noexcept {
     for (std::size_t i = 0; i < 6; ++i) {
-      axes_[i].incident(options_.motion_scale * wave.coeff(static_cast<Eigen::Index>(i)));
+      axes_[i].incident(scale() * wave.coeff(static_cast<Eigen::Index>(i)));
     }
   }
 
+  /// Tool motion per hand motion, in this tick.
+  [[nodiscard]] double scale() const noexcept { return options_.motion_scale * scale_.value(); }
   /// [m, rad] of the hand, since the start.
   [[nodiscard]] Vec<6> position() const noexcept {
     return all([](const HeldAxis& axis) { return axis.position(); });
@@ -106,6 +108,13 @@ class SixAxes {
   }
 
  private:
+  void show_resistance() noexcept {
+    const double s = scale();
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      resistance_.coeffRef(at, at) = axes_[i].resistance() / (s * s);
+    }
+  }
   template <class Of>
   [[nodiscard]] Vec<6> all(Of&& of) const noexcept {
     Vec<6> values;
@@ -116,6 +125,7 @@ class SixAxes {
 
   SixAxesOptions options_;
   std::array<HeldAxis, 6> axes_;
+  ChangingScale scale_;
   Mat<6> resistance_ = Mat<6>::Zero();
 };
 

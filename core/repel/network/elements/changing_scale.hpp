@@ -1,0 +1,34 @@
+/// @file
+/// The scale between a hand and the tool, changed while both move.
+#pragma once
+
+#include <cmath>
+
+namespace repel::network {
+
+/// Follows HandInput::scale as a first-order lag. A transformer between motions and between forces
+/// by the same number, constant within a tick, neither stores nor supplies energy, whatever number
+/// it has in the next: so a change moves nothing, and a force that is felt goes over to its new
+/// size.
+class ChangingScale {
+ public:
+  static constexpr double time = 0.3;  ///< [s] in which 63 % of a change are made
+  static constexpr double least = 1e-3, most = 1e3;
+
+  /// @param period [s]
+  void prepare(double period) noexcept { share_ = -std::expm1(-period / time); }
+  /// A number that is none, or out of range, leaves it as it is. The first is taken over at once.
+  void step(double wanted) noexcept {
+    if (!(wanted >= least && wanted <= most)) return;
+    value_ = begun_ ? value_ + share_ * (wanted - value_) : wanted;
+    begun_ = true;
+  }
+  [[nodiscard]] double value() const noexcept { return value_; }
+
+ private:
+  double share_ = 1.0;
+  double value_ = 1.0;
+  bool begun_ = false;
+};
+
+}  // namespace repel::network
