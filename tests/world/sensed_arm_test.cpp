@@ -11,7 +11,7 @@ namespace sensed_arm_test {
 
 /// An arm whose sensor reads a constant, or nothing.
 struct Steady : TorqueDrivenArm {
-  explicit Steady(std::optional<Wrench> always) : reading(always) {}
+  explicit Steady(const std::optional<Wrench>& always) : reading(always) {}
   void set_torques(std::span<const double> /*torques*/) noexcept override {}
   void step(double /*period*/) noexcept override {}
   void read_positions(std::span<double> out) const noexcept override { out[0] = 7.0; }
@@ -22,7 +22,7 @@ struct Steady : TorqueDrivenArm {
 };
 
 SensedArm with(const SensorErrors& errors,
-               std::optional<Wrench> reading = Wrench{{1, 2, 3}, {4, 5, 6}}) {
+               const std::optional<Wrench>& reading = Wrench{{1, 2, 3}, {4, 5, 6}}) {
   return {std::make_unique<Steady>(reading), errors};
 }
 

@@ -62,8 +62,7 @@ class SensedArm final : public TorqueDrivenArm {
   [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
   [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
     const std::optional<Wrench> exact = arm_->read_wrench();
-    if (!exact) return exact;
-    return *exact + error_;
+    return exact ? std::optional(*exact + error_) : std::nullopt;
   }
 
  private:
