@@ -37,7 +37,7 @@ Pose pose_of_element(const Element& element, const std::string& path) {
   ignition::math::Pose3d X;
   const sdf::Errors errors = element.SemanticPose().Resolve(X, "");
   if (!errors.empty()) fail_with(errors[0], path);
-  const Pose result = from_sdf(X);
+  Pose result = from_sdf(X);
   if (!is_finite(result)) {
     const sdf::ElementPtr at = element.Element();
     throw SetupError("the pose of '" + element.Name() + "' is not finite; allowed: numbers", path,

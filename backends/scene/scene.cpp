@@ -582,7 +582,7 @@ network::Phase phase_of(const Value& value) {
   }
   map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
            phase.scale);
-  const std::string_view device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
+  const std::string device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
   if (device != "torque_arm") {
     if (device == "six_axes") phase.master = network::Master::six_axes;
     map.allow(phase_keys({"linear", "angular"}));

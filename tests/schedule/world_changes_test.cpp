@@ -351,10 +351,13 @@ TEST(WorldChanges, ComeFromAnotherThread) {
   std::int64_t asked = 0;
   std::thread asking([&] {
     std::mt19937 random(11);
-    for (int i = 0; i < draws(2000); ++i) {
+    while (asked < draws(2000)) {
       const PartId id =
           changes.add(random_shape(random, Scene::room), random_pose(random, 0.2), 0.0);
-      if (!id.valid()) continue;
+      if (!id.valid()) {  // the other thread is behind, as far as the machine lets it
+        std::this_thread::yield();
+        continue;
+      }
       ++asked;
       while (!changes.remove(id, 0.0)) std::this_thread::yield();
       ++asked;
@@ -369,7 +372,6 @@ TEST(WorldChanges, ComeFromAnotherThread) {
   }
   asking.join();
   EXPECT_EQ(changes.counts().applied, asked);
-  EXPECT_GT(asked, draws(500));
 }
 
 }  // namespace world_changes_test
