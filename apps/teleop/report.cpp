@@ -381,6 +381,13 @@ void print_workers(const RunResult& r, std::FILE* out) {
                count(usage.page_faults), count(usage.switches));
 }
 
+/// Null if there was none beside this program, or if it wrote no report.
+ordered_json station_to_json(const RunResult& r) {
+  if (!r.station) return nullptr;
+  ordered_json report = ordered_json::parse(r.station->report, nullptr, false);
+  return report.is_discarded() ? ordered_json(nullptr) : report;
+}
+
 }  // namespace
 
 void print_report(const RunResult& r, std::FILE* out) {
@@ -520,7 +527,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["steps"] = steps_to_json(r);
   report["camera"] = camera_to_json(r);
   report["link"] = r.link ? link_to_json(*r.link) : ordered_json(nullptr);
-  report["station"] = r.station ? r.station->report : ordered_json(nullptr);
+  report["station"] = station_to_json(r);
   report["physical_contact"] = contact_to_json(r, r.arms.front());
   add_measured(r.arms.front(), report);
   report["allocations_in_tick"] = host::known(r.allocations_in_tick);

@@ -106,8 +106,7 @@ StationEnding StationProgram::stop() {
   ending.status = wait();
   ending.printed = printed_.text();
   ending.complaints = complaints_.text();
-  ending.report = nlohmann::ordered_json::parse(report_.text(), nullptr, false);
-  if (ending.report.is_discarded()) ending.report = nullptr;
+  ending.report = report_.text();
   return ending;
 }
 

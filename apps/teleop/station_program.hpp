@@ -7,16 +7,14 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 namespace repel::teleop {
 
 /// How it ended.
 struct StationEnding {
-  int status = 0;                 ///< its exit status; 128 and the signal that killed it
-  std::string printed;            ///< its report, for people
-  std::string complaints;         ///< what it said on stderr
-  nlohmann::ordered_json report;  ///< as of --report; null if it wrote none
+  int status = 0;          ///< its exit status; 128 and the signal that killed it
+  std::string printed;     ///< its report, for people
+  std::string complaints;  ///< what it said on stderr
+  std::string report;      ///< as of --report: JSON; empty if it wrote none
 };
 
 /// Runs this program once more, beside this one. Set-up and the time after the run only.
