@@ -110,13 +110,14 @@ TEST(TwoPrograms, WhatTheOtherProgramCannotDoEndsBoth) {
 class TwoMachines {
  public:
   TwoMachines() {
-    const std::string commands[] = {"ip netns add " + name_ + "a",
-                                    "ip netns add " + name_ + "b",
+    const std::string commands[] = {"ip netns add " + name_ + "a", "ip netns add " + name_ + "b",
                                     "ip link add " + name_ + "a type veth peer name " + name_ + "b",
                                     "ip link set " + name_ + "a netns " + name_ + "a",
                                     "ip link set " + name_ + "b netns " + name_ + "b",
                                     on("a", "ip address add 10.77.9.1/24 dev " + name_ + "a"),
                                     on("b", "ip address add 10.77.9.2/24 dev " + name_ + "b"),
+                                    // DDS ends by a message to itself.
+                                    on("a", "ip link set lo up"), on("b", "ip link set lo up"),
                                     on("a", "ip link set " + name_ + "a up"),
                                     on("b", "ip link set " + name_ + "b up")};
     for (const std::string& command : commands) {
