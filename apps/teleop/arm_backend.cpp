@@ -29,7 +29,8 @@ ArmPointer make_ideal(const ArmModel& model, std::span<const double> start, doub
                       std::span<const ContactPart> /*parts*/) {
   std::vector<IdealJoint> joints;
   for (const ArmLink& link : model.links) {
-    joints.push_back({std::max(0.1, link.rotor_inertia), std::max(1.0, link.viscous_friction),
+    joints.push_back({std::max(least_ideal_inertia, link.rotor_inertia),
+                      std::max(1.0, link.viscous_friction),
                       brake_torque(model, static_cast<int>(joints.size()))});
   }
   return at_start(std::make_unique<IdealArm>(joints, IdealOptions{.watchdog = watchdog}), start);

@@ -155,12 +155,6 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     ArmDescription& arm = cell.arms.emplace_back(
         describe_arm(scene, setup, described.robots.back(), remote, covers, described.gaps));
     if (setup.robot.admittance) {
-      if (!with_gravity) {
-        throw SetupError(
-            "an arm with an admittance is driven by a controller of its own; allowed: --backend "
-            "bullet, ode or reference",
-            scene.file);
-      }
       arm = admitted(std::move(arm), *setup.robot.admittance, 1.0 / rate_hz);
     }
     if (i == 0) continue;

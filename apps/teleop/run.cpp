@@ -234,6 +234,19 @@ ArmModel simulated_model(const PreparedRun& prepared, std::size_t arm) {
   return factor == 1.0 ? model : with_inertia(std::move(model), factor);
 }
 
+/// What the own controller of an arm that takes positions knows of it.
+ArmModel known_model(const PreparedRun& prepared, std::size_t arm) {
+  ArmModel model = prepared.robots[arm].arm;
+  if (arm_backend(prepared.options.backend).has_gravity) return model;
+  for (ArmLink& link : model.links) {
+    link.mass = 0.0;
+    link.I_C_L.setZero();
+    link.rotor_inertia = std::max(least_ideal_inertia, link.rotor_inertia);
+    link.coulomb_friction = 0.0;
+  }
+  return model;
+}
+
 /// Creates the arms of the cell, at their start positions.
 std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepared,
                                                         const Recording* recording) {
@@ -258,7 +271,7 @@ std::vector<std::unique_ptr<TorqueDrivenArm>> make_arms(const PreparedRun& prepa
     }
     if (const auto& admittance = prepared.scene.arm_setup(i).robot.admittance) {
       simulated =
-          std::make_unique<ServoedArm>(std::move(simulated), prepared.robots[i].arm, arm.model,
+          std::make_unique<ServoedArm>(std::move(simulated), known_model(prepared, i), arm.model,
                                        admittance->response, 1.0 / prepared.options.rate_hz);
     }
     arms.push_back(std::make_unique<DelayedArm>(std::move(simulated), arm.model.links.size(),

@@ -29,22 +29,23 @@ namespace repel::teleop {
 /// of the arm inside. Allocates at construction only.
 class ServoedArm final : public TorqueDrivenArm {
  public:
-  /// @param model of the arm, which its controller knows; must outlive this object
+  /// @param model of the arm, which its controller knows
   /// @param shown the model as its admittance shows it: see `admitted`
   /// @param response [s] at least 0.01 @param period [s] of the tick
-  ServoedArm(std::unique_ptr<TorqueDrivenArm> arm, const ArmModel& model, const ArmModel& shown,
+  ServoedArm(std::unique_ptr<TorqueDrivenArm> arm, ArmModel model, const ArmModel& shown,
              double response, double period)
       : arm_(std::move(arm)),
-        kinematics_(model),
-        inertia_(model),
+        model_(std::move(model)),
+        kinematics_(model_),
+        inertia_(model_),
         end_(shown, response, period),
         dead_time_(0.4 * response),
         stiffness_rate_(2.0 / (0.6 * response)),
         period_(period),
-        joints_(model.links.size()) {
+        joints_(model_.links.size()) {
     for (std::size_t i = 0; i < joints_; ++i) {
-      efforts_[i] = effort_bound(model, i);
-      friction_[i] = model.links[i].coulomb_friction;
+      efforts_[i] = effort_bound(model_, i);
+      friction_[i] = model_.links[i].coulomb_friction;
     }
     read();
     commands_.fill({q_, {}, 0.0});
@@ -135,6 +136,7 @@ class ServoedArm final : public TorqueDrivenArm {
   }
 
   std::unique_ptr<TorqueDrivenArm> arm_;
+  ArmModel model_;
   Kinematics kinematics_;
   ArmInertia inertia_;
   JointAdmittance end_;
