@@ -165,13 +165,13 @@ std::string slowest(const RunResult& r) {
 }
 
 std::string obstacle_table(const RunResult& r) {
-  std::vector<std::vector<std::string>> rows{
-      {"obstacle", "hardest on", "of", "peak [N]", "nearest [mm]", "deepest [mm]"}};
+  std::vector<std::vector<std::string>> rows{{"obstacle", "hardest on", "of", "peak [N]",
+                                              "nearest [mm]", "deepest [mm]", "withstood [N]"}};
   for (const ObstacleResult& o : r.obstacles) {
     const PairExtremes& e = o.extremes;
     rows.push_back({o.name, o.part, o.body, number(e.peak_force),
                     std::isfinite(e.nearest) ? number(1e3 * e.nearest) : "never near",
-                    number(1e3 * e.deepest)});
+                    number(1e3 * e.deepest), o.is_hard ? number(o.withstood) : "soft"});
   }
   return table(rows, 3);
 }

@@ -128,7 +128,7 @@ void describe_sides(CLI::App& app, Arguments& a) {
              "Only the operator's side of the network, up to its line; the robot is at a site")
           ->excludes("--fast", "--view", "--log", "--html", "--backend", "--contact",
                      "--plant-inertia", "--no-prediction", "--threads", "--coprocessor", "--budget",
-                     "--measure", "--levels", "--every-pair", "--tool-alone");
+                     "--measure", "--levels", "--every-pair", "--tool-alone", "--hold");
   app.add_flag_callback(
          "--site", [&a] { a.session.link.side = link::Side::site; },
          "Only the robot's side; the operator is at a station, with the same "
@@ -283,6 +283,10 @@ void describe(CLI::App& app, Arguments& a) {
                "Ask also the pairs that cannot be within range: to compare with");
   app.add_flag("--tool-alone", a.run.tool_alone,
                "Keep only the tools off the obstacles, not the links of the arms: the paper's way");
+  app.add_option("--hold", a.run.hold,
+                 "hard: no wall may be entered, whoever pushes; soft: walls are springs (default: "
+                 "as the laws of the scene say)")
+      ->check(CLI::IsMember({"hard", "soft"}));
   app.add_option("--report", a.report, "Write the report as JSON to FILE");
   app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
   app.add_option("--log", a.log,
@@ -306,8 +310,8 @@ void describe(CLI::App& app, Arguments& a) {
                  "In place of a scene: go through the recording FILE again and compare the forces")
       ->excludes("scene", "--seconds", "--rate", "--fast", "--backend", "--contact", "--threads",
                  "--coprocessor", "--budget", "--measure", "--levels", "--every-pair",
-                 "--tool-alone", "--plant-inertia", "--no-prediction", "--device", "--site",
-                 "--station", "--apart");
+                 "--tool-alone", "--hold", "--plant-inertia", "--no-prediction", "--device",
+                 "--site", "--station", "--apart");
   app.footer(footer());
 }
 

@@ -151,6 +151,7 @@ class McapLog final : public TickLog {
             {"by_the_clock", word(!options.fast)},
             {"every_pair", word(options.every_pair)},
             {"tool_alone", word(options.tool_alone)},
+            {"hold", options.hold},
             {"prediction", word(options.prediction)},
             {"contact", word(options.contact)},
             {"plant_inertia", to_text(options.plant_inertia)}};

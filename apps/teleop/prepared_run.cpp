@@ -72,6 +72,21 @@ scene::Scene as_run(const scene::Scene& scene, const RunOptions& options) {
   return result;
 }
 
+/// All walls of the cell hold as the option says.
+void set_hold(CellDescription& cell, const std::string& word) {
+  if (word.empty()) return;
+  const HoldKind kind = word == "hard" ? HoldKind::hard : HoldKind::soft;
+  const auto set = [kind](ForceLaw& law) {
+    if (!law.passable) law.hold = kind;
+  };
+  for (ObstacleDescription& obstacle : cell.obstacles) set(obstacle.law);
+  for (LooseDescription& loose : cell.loose) set(loose.law);
+  for (ArmDescription& arm : cell.arms) {
+    set(arm.law);
+    if (arm.self_law) set(*arm.self_law);
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions& options,
@@ -84,6 +99,7 @@ std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions
                             described.part_lists.end());
   changed.obstacles.insert(changed.obstacles.end(), described.model_obstacles.begin(),
                            described.model_obstacles.end());
+  set_hold(described.cell, options.hold);
   described.cell.coprocessor = coprocessor_options(changed.budget, options);
   for (ArmDescription& arm : described.cell.arms) {
     arm.options.joints.touches = arm.options.joints.touches || options.contact;

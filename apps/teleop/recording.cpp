@@ -202,6 +202,7 @@ void read_options(const McapReader& reader, Recording& recording, std::string& s
     options.budget = word("budget");
     options.every_pair = word("every_pair") == "yes";
     options.tool_alone = word("tool_alone") == "yes";
+    options.hold = word("hold");
     options.prediction = word("prediction") == "yes";  // older recordings had none
     options.contact = word("contact") == "yes";        // likewise: readings were judged without
     options.measure = word("measure");  // older recordings have neither: those of their scene

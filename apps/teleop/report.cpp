@@ -212,6 +212,8 @@ ordered_json obstacle_list(const RunResult& r) {
                     {"nearest_m", o.extremes.nearest},
                     {"deepest_m", o.extremes.deepest},
                     {"peak_force_n", o.extremes.peak_force},
+                    {"hold", o.is_hard ? "hard" : "soft"},
+                    {"withstood_n", o.is_hard ? ordered_json(o.withstood) : ordered_json()},
                     {"part", o.part},
                     {"body", o.body},
                     {"link_laws", link_laws_to_json(o)}});

@@ -59,7 +59,9 @@ void note_steps(const PartSteps& steps, RunResult& result) {
   }
 }
 
-void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result) {
+void note_pairs(const Cell& cell, RunResult& result) {
+  const World& world = cell.world();
+  const Coprocessor& coprocessor = cell.coprocessor();
   RunTotals& totals = result.arms.front().totals;
   const std::vector<std::size_t> places = obstacles_of_pairs(world);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
@@ -78,6 +80,8 @@ void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& r
       result.nearest_pair = name_of(world, {i});
     }
     ObstacleResult& obstacle = result.obstacles[place];
+    obstacle.is_hard = obstacle.is_hard || pair.law.hold == HoldKind::hard;
+    obstacle.withstood = std::max(obstacle.withstood, cell.withstood({i}));
     const bool hardest = extremes.peak_force > obstacle.extremes.peak_force;
     obstacle.extremes.add(extremes);
     if (!hardest) continue;

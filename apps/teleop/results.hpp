@@ -49,6 +49,8 @@ struct LinkLaw {
 struct ObstacleResult {
   std::string name;
   PairExtremes extremes{};           ///< of all pairs with it
+  bool is_hard = false;              ///< it may not be entered
+  double withstood = 0.0;            ///< [N] hardest push that it withstood, if it is hard
   std::string part{};                ///< of a tool or arm, in the pair with the largest force
   std::string body{};                ///< the tool or link of that part
   std::vector<LinkLaw> link_laws{};  ///< the weakest pair of each link that it pushed
@@ -146,7 +148,7 @@ struct RunResult {
 
 /// Collects the extremes of every obstacle, of the walls and of the passable bodies, and the
 /// nearest pair of all. Call once `coprocessor` has stopped.
-void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result);
+void note_pairs(const Cell& cell, RunResult& result);
 
 /// For each pair the place of its obstacle in `RunResult::obstacles`. What a tool holds meets
 /// obstacles that are there already.

@@ -354,7 +354,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
     result.arms[i].chatter = observers.chatter[i].result();
     result.arms[i].contact = driven.arm(i).contact();
   }
-  note_pairs(cell.world(), cell.coprocessor(), result);
+  note_pairs(cell, result);
   note_steps(driven.steps(), result);
   note_link_laws(cell, result);
   result.interrupted = stop;

@@ -20,6 +20,7 @@ struct RunOptions {
   int levels = 0;           ///< of the reduction; 0: the scene's own
   bool every_pair = false;  ///< also evaluate pairs that cannot be within range
   bool tool_alone = false;  ///< apply the walls to tools only, whatever the scene says
+  std::string hold;         ///< "hard" or "soft" for all walls; empty: as the scene says
   bool contact = false;     ///< with "bullet" and "ode": solid obstacles stop the arms physically
   double plant_inertia = 1.0;  ///< inertia of the simulated arms as a multiple of their models'
   bool prediction = true;      ///< see TeleoperatorOptions

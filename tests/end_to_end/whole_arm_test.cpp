@@ -113,6 +113,21 @@ TEST(WholeArm, APostNearTheBaseIsEnteredFarLessWithALawGivenAtTheTool) {
   EXPECT_TRUE(none.empty()) << none;
 }
 
+// With the leverage of the tool, the hand pressed the upper arm 47 mm into the post.
+TEST(WholeArm, AHardPostIsNotEnteredWhateverTheLeverage) {
+  const Folder folder;
+  const std::string scene = folder.with("swing.yaml", swing_scene(""));
+  const Ending ending = teleop(quoted(scene) + " --fast --seconds 8 --hold hard --report " +
+                               quoted(folder / "r.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "r.json");
+  const json& post = report.at("obstacles").at(0);
+  EXPECT_EQ(post.at("hold"), "hard");
+  EXPECT_LT(post.at("deepest_m"), 1e-4) << post;
+  EXPECT_GT(post.at("withstood_n"), 100.0) << post;
+  EXPECT_EQ(report.at("status_ticks").at("hold_lost"), 0);
+}
+
 /// The robot of the repository, with a gripper on its flange.
 std::string robot_with_gripper() {
   std::string urdf = text_of(REPEL_SOURCE "/robots/puma560.urdf");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <vector>
 
 #include "loop/slider.hpp"
 
@@ -74,7 +75,7 @@ TEST(ArmInertia, AJointOfWhichNoMassIsKnownMovesAHundredthOfItsEffort) {
   EXPECT_EQ(inertia.matrix()(1, 1), 3.0);
   EXPECT_EQ(inertia.missing(), 1);
   ArmInertia::Vector p;
-  inertia.momenta({1.0, 2.0, 0.0}, p);
+  inertia.momenta(std::vector{1.0, 2.0, 0.0}, p);
   EXPECT_EQ(p(0), 5.0);
   EXPECT_EQ(p(1), 6.0);
   EXPECT_EQ(p(2), 0.0);

@@ -152,6 +152,13 @@ TEST(SceneError, APassableLawNeedsALowCeilingAndOnlyItHasADepth) {
   expect_refused(passable + "plateau: 1.1}}\n", 8, {"'1.1'", "0 to 1"});
 }
 
+TEST(SceneError, AWallIsHardOrSoftAndWhatMayBeEnteredIsSoft) {
+  const std::string law = base_scene + "laws: {a: {hold: ";
+  expect_refused(law + "firm}}\n", 8, {"'hold' is 'firm'", "allowed: hard", "soft"});
+  expect_refused(law + "hard, passable: yes, ceiling: 5 N}}\n", 8,
+                 {"hold is hard for a passable body", "allowed: soft"});
+}
+
 TEST(SceneError, ALawIsGivenAtThePartOrAtTheTool) {
   const std::string law = base_scene + "laws: {a: {given_at: ";
   expect_refused(law + "hand}}\n", 8, {"'given_at' is 'hand'", "allowed: part", "tool"});

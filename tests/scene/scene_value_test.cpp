@@ -264,6 +264,16 @@ TEST(SceneValue, ALawIsGivenAtThePartUnlessItSaysTheTool) {
   EXPECT_EQ(scene.obstacles[2].law.given_at, GivenAt::part);
 }
 
+TEST(SceneValue, AWallIsSoftUnlessItSaysHard) {
+  const Scene scene = parsed(base_scene +
+                             "  - {name: post, shape: sphere, radius: 1 m, law: firm}\n"
+                             "  - {name: pad, shape: sphere, radius: 1 m, law: pad}\n"
+                             "laws: {firm: {hold: hard}, pad: {hold: soft}}\n");
+  EXPECT_EQ(scene.obstacles[0].law.hold, HoldKind::hard);
+  EXPECT_EQ(scene.obstacles[1].law.hold, HoldKind::soft);
+  EXPECT_EQ(scene.obstacles[2].law.hold, HoldKind::soft);
+}
+
 TEST(SceneValue, TheScriptIsReadPhaseByPhase) {
   const Scene scene =
       parsed(base_scene +

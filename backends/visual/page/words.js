@@ -51,6 +51,7 @@ const BITS = {
   pushed_out: ["bad", "the arm is pushed out of what it started in"],
   energy_gain: ["bad", "the arm gains energy from its own control"],
   bad_wrench: ["warn", "the force sensor cannot be believed"],
+  hold_lost: ["bad", "a hard wall cannot be held"],
   torque_rate: ["warn", "a torque changed as fast as it may"],
   tool_speed: ["warn", "the tool is as fast as it may be"],
   speed_limit: ["warn", "a joint is as fast as it may be"],

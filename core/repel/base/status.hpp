@@ -72,6 +72,9 @@ inline constexpr Status pushed_out = 1U << 21;
 inline constexpr Status energy_gain = 1U << 22;
 /// The force sensor gave no sound reading: the arm goes on as without it; repair cable or sensor
 inline constexpr Status bad_wrench = 1U << 23;
+/// A hard wall cannot be held: it comes faster than the arm can flee, or the arm is too fast for
+/// its efforts; it was told before the wall was reached: lower the speed of the obstacle or the arm
+inline constexpr Status hold_lost = 1U << 24;
 
 /// Faults of joint sensing: the present joint positions are unknown.
 inline constexpr Status blind = bad_joints | implausible_joints | frozen_joints;
@@ -104,7 +107,7 @@ enum class Stop : std::uint8_t {
       "late_result",   "torque_limit", "crowded_pairs", "expired_pairs", "silent_device",
       "saturated",     "joint_limit",  "network_fault", "speed_limit",   "implausible_joints",
       "frozen_joints", "clock_gap",    "bad_torque",    "torque_rate",   "tool_speed",
-      "arm_stopped",   "pushed_out",   "energy_gain",   "bad_wrench"};
+      "arm_stopped",   "pushed_out",   "energy_gain",   "bad_wrench",    "hold_lost"};
   std::string text;
   for (unsigned i = 0; i < std::size(names); ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);

@@ -19,6 +19,7 @@
 #include <repel/cell/description.hpp>
 #include <repel/cell/layout.hpp>
 #include <repel/cell/robot_end.hpp>
+#include <repel/cell/settled_laws.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/loop/tick_clock.hpp>
@@ -61,12 +62,14 @@ class CellAssembly {
     world_.carry();
     forces_ = &coprocessor_->exchange();
     contacts_->collect(*coprocessor_);
+    hard_->collect(*coprocessor_, soon());
   }
 
   std::span<const TickRecord* const> act(std::span<const network::Command> hands) noexcept {
     for (std::size_t i = 0; i < controls_.size(); ++i) {
-      records_[i] = &controls_[i].act(*forces_, coprocessor_->workers(), contacts_->all(),
-                                      i < hands.size() ? hands[i] : silent_);
+      records_[i] =
+          &controls_[i].act(*forces_, coprocessor_->workers(), {contacts_->all(), hard_->all()},
+                            i < hands.size() ? hands[i] : silent_);
     }
     return records_;
   }
@@ -93,6 +96,13 @@ class CellAssembly {
   [[nodiscard]] double leverage(PairId id) const {
     return repel::leverage(world_, layouts_, world_.pair(id).a, world_.pair(id).b);
   }
+  [[nodiscard]] double withstood(PairId id) const noexcept {
+    double most = 0.0;
+    for (const Teleoperator& control : controls_) {
+      most = std::max(most, control.barrier().withstood(id));
+    }
+    return most;
+  }
   [[nodiscard]] std::span<const MovingBody> moving() const noexcept { return moving_; }
   [[nodiscard]] double device_damping() const noexcept { return device_damping_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
@@ -106,8 +116,15 @@ class CellAssembly {
     return static_cast<int>(std::clamp<std::int64_t>(period_.count() / 400'000, 1, 64));
   }
 
+  /// [s] In which a gap that closes must be known to the barrier before hard walls.
+  [[nodiscard]] double soon() const noexcept {
+    double longest = 0.1;
+    for (const auto& each : controls_) longest = std::max(longest, 0.1 + each.barrier().reaction());
+    return longest;
+  }
+
   void lay_out() {
-    settle_laws();
+    raised_ = settle_laws(description_);
     reduce_shapes();
     for (ArmDescription& arm : description_.arms) {
       start(arm);
@@ -133,48 +150,6 @@ class CellAssembly {
     }
     for (std::size_t i = 0; i < layouts_.size(); ++i) {
       add_own_pairs(world_, description_.arms[i], layouts_[i]);
-    }
-  }
-
-  /// [ticks] How late the force of a wall acts: as late as the slowest drive, and a tick more where
-  /// the coprocessor works beside.
-  [[nodiscard]] double wall_delay() const { return longest_delay() + (works_beside() ? 1.0 : 0.0); }
-  [[nodiscard]] bool works_beside() const {
-    const CoprocessorOptions& coprocessor = description_.coprocessor;
-    return coprocessor.mode == CoprocessorMode::beside && coprocessor.threads > 0;
-  }
-  [[nodiscard]] double longest_delay() const {
-    double delay = 0.0;
-    for (const ArmDescription& arm : description_.arms) {
-      delay = std::max(delay, arm.options.drive_delay);
-    }
-    return delay;
-  }
-
-  void settle_laws() {
-    for (ArmDescription& arm : description_.arms) {
-      settle(arm.law);
-      if (arm.self_law) settle(*arm.self_law);
-    }
-    for (ObstacleDescription& obstacle : description_.obstacles) settle(obstacle.law);
-    for (LooseDescription& loose : description_.loose) settle(loose.law);
-  }
-
-  /// Raises the damping of a law where it may rise, and where a wall is stable but for the tick by
-  /// which answers are older beside.
-  void settle(ForceLaw& law) {
-    const double period = 1.0 / description_.rate_hz;
-    law = settled(law, period, wall_delay());
-    const double needed = gain_rounding * wall_ticks(wall_delay()) * period * law.stiffness();
-    const bool would_be_stable =
-        law.stiffness() <= stable_stiffness(law.damping, period, longest_delay());
-    if (!would_be_stable || law.damping >= needed) return;
-    std::string said = "beside, forces are one tick late: the damping of walls of " +
-                       repel::to_text(law.stiffness(), 4) + " N/m is " + repel::to_text(needed, 4) +
-                       " N s/m, not " + repel::to_text(law.damping, 4);
-    law.damping = needed;
-    if (std::find(raised_.begin(), raised_.end(), said) == raised_.end()) {
-      raised_.push_back(std::move(said));
     }
   }
 
@@ -252,8 +227,8 @@ class CellAssembly {
 
   void check_stiffness() {
     try {
-      warnings_ = check_gains(world_, 1.0 / description_.rate_hz, wall_delay(), device_damping_,
-                              description_.gain_check);
+      warnings_ = check_gains(world_, 1.0 / description_.rate_hz, wall_delay(description_),
+                              device_damping_, description_.gain_check);
       warnings_.insert(warnings_.end(), raised_.begin(), raised_.end());
     } catch (const SetupError& error) {
       throw SetupError(std::string("wall too stiff: ") + error.what() +
@@ -272,6 +247,7 @@ class CellAssembly {
     }
     changes_.emplace(world_, most_changes, description_.levels.value_or(ReductionOptions{}.levels));
     contacts_.emplace(world_, std::min<std::size_t>(world_.pairs().size(), 4096), moved);
+    hard_.emplace(world_, moved);
   }
 
   CellDescription description_;
@@ -284,6 +260,7 @@ class CellAssembly {
   std::vector<const TickRecord*> records_;
   std::optional<Coprocessor> coprocessor_;
   std::optional<ActiveContacts> contacts_;
+  std::optional<HardContacts> hard_;
   std::optional<WorldChanges> changes_;
   std::vector<PartId> loose_;  // in the order of the description
   const PairForces* forces_ = nullptr;

@@ -104,6 +104,8 @@ class Cell {
   /// The leverage of the tools over a pair, 1 to `most_leverage`: what its force at the parts is
   /// divided by to compare it with a force at the tool. Not for the tick.
   [[nodiscard]] double leverage(PairId id) const;
+  /// [N] The hardest push of any arm that the wall of a hard pair has withstood; 0 for a soft one.
+  [[nodiscard]] double withstood(PairId id) const noexcept;
   /// The bodies of the moving obstacles.
   [[nodiscard]] std::span<const MovingBody> moving() const noexcept;
   /// The least viscous damping of any arm at its tool, in its start pose [N s/m].
@@ -205,6 +207,9 @@ REPEL_DEFINITION const Teleoperator& Cell::control(std::size_t arm) const noexce
 }
 REPEL_DEFINITION double Cell::leverage(PairId id) const {
   return parts_->leverage(id);
+}
+REPEL_DEFINITION double Cell::withstood(PairId id) const noexcept {
+  return parts_->withstood(id);
 }
 REPEL_DEFINITION std::span<const MovingBody> Cell::moving() const noexcept {
   return parts_->moving();

@@ -53,6 +53,13 @@ enum class GivenAt : std::uint8_t {
   tool,  ///< at the tool: at the part a cell scales them by the leverage of the tool over it
 };
 
+/// What keeps the shapes of a pair apart.
+enum class HoldKind : std::uint8_t {
+  soft,  ///< the force of the law: who pushes harder goes deeper
+  hard,  ///< besides it, an arm that could soon not stop any more is slowed while it still can
+         ///< (repel/loop/entry_barrier.hpp)
+};
+
 /// The nonlinear spring-damper of one pair (Anderson 1993, section 2: zero outside a threshold
 /// region, a large force at the surface).
 ///
@@ -87,9 +94,15 @@ struct ForceLaw {
   /// parallel faces.
   double tilt = 0.005;
   bool damping_may_rise = false;  ///< a cell raises c0 to what keeps the wall stable at its rate
+  HoldKind hold = HoldKind::soft;
+  double watched = 0.0;  ///< [m] beyond the range, where the approach to a hard wall is watched; a
+                         ///< cell raises it to what its arms need to stop
 
   static constexpr double most_nearer = 0.5e-3;  ///< [m]
   static constexpr double most = 1e9;            ///< upper bound of every number but the ceiling
+
+  /// [m] The distance within which a pair with this law is evaluated.
+  [[nodiscard]] double reach() const noexcept { return range + watched; }
 
   [[nodiscard]] LawFormula<double> formula() const noexcept {
     return {range, surface_force, damping, ceiling};
@@ -154,6 +167,10 @@ inline const ForceLaw& checked(const ForceLaw& law) {
   checked("depth", law.depth, 0.0, most, "m");
   checked("plateau", law.plateau, 0.0, 1.0, "");
   checked("tilt", law.tilt, 0.0, 0.05, "rad");
+  checked("watched", law.watched, 0.0, 10.0, "m");
+  if (law.passable && law.hold == HoldKind::hard) {
+    throw SetupError("hold is hard for a passable body; allowed: soft, since it may be entered");
+  }
   if (law.passable) {
     // With at most half of the surface force, the ceiling is reached before the spring may begin to
     // fall.

@@ -88,6 +88,14 @@ class ArmBodies {
     }
   }
 
+  /// The body is one of them.
+  [[nodiscard]] bool has(BodyId body) const noexcept {
+    for (const LinkBody& link : links_) {
+      if (link.body == body) return true;
+    }
+    return false;
+  }
+
   /// Adds to `torques` [N m] those of the wrench `F` on `body`; nothing if it is not on the arm.
   void add_torques(BodyId body, const Wrench& F,
                    network::Vec<network::any_size>& torques) const noexcept {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/energy_watch.hpp>
+#include <repel/loop/entry_barrier.hpp>
 #include <repel/loop/failsafe.hpp>
 #include <repel/loop/joint_torques.hpp>
 #include <repel/loop/joint_watch.hpp>
@@ -35,12 +37,16 @@ struct ArmMotion {
 class ArmCommand {
  public:
   /// @throws SetupError for an option out of range
-  ArmCommand(const ArmModel& model, double period, const TeleoperatorOptions& options)
+  /// @param pairs of the world
+  ArmCommand(const ArmModel& model, double period, const TeleoperatorOptions& options,
+             std::size_t pairs = 0)
       : options_(options),
         failsafe_(options.failsafe),
         energy_watch_(period, options.energy),
         stop_control_(period, options.stop),
-        torques_(model, period, options.torques) {
+        torques_(model, period, options.torques),
+        barrier_(model, period, options.drive_delay, options.torques.slew_time, pairs,
+                 options.barrier) {
     walls_.setZero(static_cast<Eigen::Index>(model.links.size()));
     asked_ = total_ = walls_;
   }
@@ -59,6 +65,10 @@ class ArmCommand {
     record.brakes = stop_control_.brakes();
   }
 
+  /// The barrier before hard walls: takes its contacts before `drive`.
+  [[nodiscard]] EntryBarrier& barrier() noexcept { return barrier_; }
+  [[nodiscard]] const EntryBarrier& barrier() const noexcept { return barrier_; }
+
   /// Buffer for the gravity torques, to be filled before `drive` [N m].
   [[nodiscard]] std::span<double> gravity() noexcept { return torques_.gravity(); }
 
@@ -70,8 +80,13 @@ class ArmCommand {
     asked_ = robot->torques();
     walls_ = motion.network.walls();
     yield(motion.network, shares);
-    const Status found = torques_.compose(asked_, walls_, shares, motion.v, inertia);
+    // An arm that is pushed out of where it started, or held by its brakes, is not held by walls.
+    const bool is_held = !record.brakes && (record.status & status::pushed_out) == 0U;
+    if (!is_held) barrier_.forget();
+    const Status found = torques_.compose(asked_, walls_, shares, motion.v, inertia, &barrier_);
     record.status |= found;
+    record.held_force = barrier_.force();
+    record.held_pair = barrier_.pushed();
     is_poisoned_ = (found & status::bad_torque) != 0U;
     std::copy(torques_.torques().begin(), torques_.torques().end(), record.torques.begin());
     const bool held = options_.has_brakes && (record.brakes || !is_enabled_);
@@ -153,6 +168,7 @@ class ArmCommand {
   EnergyWatch energy_watch_;
   StopControl stop_control_;
   JointTorques torques_;
+  EntryBarrier barrier_;
   network::Vec<network::any_size> walls_;  // [N m] of walls and limits on the joints
   network::Vec<network::any_size> asked_;  // [N m] of the whole network
   network::Vec<network::any_size> total_;  // [N m] the same, as far as it is sent

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -82,7 +83,7 @@ class ArmInertia {
   [[nodiscard]] int missing() const noexcept { return missing_; }
 
   /// Momenta M v [kg m^2/s] or [kg m/s].
-  void momenta(const std::vector<double>& v, Vector& out) const noexcept {
+  void momenta(std::span<const double> v, Vector& out) const noexcept {
     out.resize(size());
     for (Eigen::Index i = 0; i < size(); ++i) {
       double sum = 0.0;

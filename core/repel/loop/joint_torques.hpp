@@ -11,6 +11,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/base/status.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/entry_barrier.hpp>
 #include <repel/loop/joint_speed.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/network/elements/friction.hpp>
@@ -49,7 +50,10 @@ class JointTorques {
         slew_(std::min(1.0, period / checked("slew time", options.slew_time, 0.0, 10.0, "s"))),
         gravity_(model.links.size()),
         last_gravity_(gravity_),
-        torques_(model.links.size()) {
+        torques_(model.links.size()),
+        sum_(torques_),
+        lower_(torques_),
+        upper_(torques_) {
     for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
     const auto size = static_cast<Eigen::Index>(model.links.size());
     net_.setZero(size);
@@ -61,18 +65,27 @@ class JointTorques {
 
   /// Computes the torques of this tick. @param network all its joint torques [N m]; `walls` the
   /// part of them that comes from walls and limits; `v` [rad/s]
+  /// @param barrier before hard walls, or null
   /// @return status bits
   [[nodiscard]] Status compose(const Vector& network, const Vector& walls, const TorqueShares& s,
-                               const std::vector<double>& v, const ArmInertia& inertia) noexcept {
+                               const std::vector<double>& v, const ArmInertia& inertia,
+                               EntryBarrier* barrier = nullptr) noexcept {
     const bool sound = keep_sound(network, walls);
     Status found = sound ? 0U : status::bad_torque;
     const TorqueShares given =
         sound ? s : TorqueShares{.operators = 0.0, .walls = 0.0, .friction = 0.0, .brake = s.brake};
     if (share_out(network, walls, given, v)) found |= status::speed_limit;
     const double braking = brake(walls, given, v, inertia);
-    for (std::size_t i = 0; i < torques_.size(); ++i) found |= send(i);
+    for (std::size_t i = 0; i < torques_.size(); ++i) found |= bound(i);
+    if (barrier != nullptr) {
+      found |= barrier->limit(sum_, gravity_, lower_, upper_, v, inertia);
+    }
+    for (std::size_t i = 0; i < torques_.size(); ++i) {
+      torques_[i] = std::clamp(sum_[i], lower_[i], upper_[i]);
+    }
     has_sent_ = true;
     expect(v, inertia, braking);
+    if (barrier != nullptr) barrier->note_sent(net_);
     return found;
   }
 
@@ -157,20 +170,20 @@ class JointTorques {
     return share;
   }
 
-  [[nodiscard]] Status send(std::size_t i) noexcept {
+  // Sums the contributions, and the range in which the joint can follow.
+  [[nodiscard]] Status bound(std::size_t i) noexcept {
     Status found = 0;
     const double most = effort_[i];
-    double torque = gravity_[i] + wanted_(index(i)) + brake_(index(i));
-    if (std::abs(torque) > most) {
-      found |= status::torque_limit;
-      torque = std::clamp(torque, -most, most);
-    }
-    const double change = torque - torques_[i];
-    if (has_sent_ && std::abs(change) > slew_ * most) {
-      found |= status::torque_rate;
-      torque = torques_[i] + std::clamp(change, -slew_ * most, slew_ * most);
-    }
-    torques_[i] = torque;
+    const double wish = gravity_[i] + wanted_(index(i)) + brake_(index(i));
+    const double torque = std::clamp(wish, -most, most);
+    if (torque != wish) found |= status::torque_limit;
+    sum_[i] = torque;
+    lower_[i] = -most;
+    upper_[i] = most;
+    if (!has_sent_) return found;
+    lower_[i] = std::max(-most, torques_[i] - slew_ * most);
+    upper_[i] = std::min(most, torques_[i] + slew_ * most);
+    if (torque < lower_[i] || torque > upper_[i]) found |= status::torque_rate;
     return found;
   }
 
@@ -196,6 +209,7 @@ class JointTorques {
   double slew_;                 // largest change in a tick, as a share of the effort
   std::vector<double> effort_;  // [N m] limits
   std::vector<double> gravity_, last_gravity_, torques_;  // [N m]
+  std::vector<double> sum_, lower_, upper_;               // [N m] asked for, and its range
   Vector wanted_, brake_, net_, rate_;
   bool has_sent_ = false;
 };

@@ -36,6 +36,13 @@ struct JointTorqueOptions {
   double slew_time = 0.005;  ///< [s] in which a torque may go from zero to its limit
 };
 
+/// Options of the barrier before hard walls (loop/entry_barrier.hpp).
+struct EntryBarrierOptions {
+  double margin = 0.25e-3;        ///< [m] before the surface where an arm is held
+  double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
+  double recovery = 0.05;         ///< [m/s] at most, at which an arm goes back to the margin
+};
+
 /// Tolerances for the readings of a sound arm. Angles; lengths likewise in [m] and [m/s].
 struct JointWatchOptions {
   double position_noise = 1e-3;  ///< [rad] error of one reading relative to the next
@@ -69,6 +76,7 @@ struct TeleoperatorOptions {
   StopOptions stop;
   JointTorqueOptions torques;
   JointWatchOptions joints;
+  EntryBarrierOptions barrier;
 };
 
 /// Returns `options`. @throws SetupError naming the one that is out of range

@@ -41,6 +41,8 @@ struct TickRecord {
   Wrench coupling;            ///< [N, N m] from the operator's side on the tool
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
   double gain = 1.0;          ///< of the fail-safe
+  double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
+  PairId held_pair;           ///< that of the hardest one; invalid: none did
   std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_nodes> energy{};

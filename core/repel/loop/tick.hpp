@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <repel/loop/active_contacts.hpp>
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/hard_contacts.hpp>
 #include <repel/loop/held_weight.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/readings.hpp>
@@ -54,7 +54,7 @@ class Teleoperator {
         gravity_W_(parts.model.gravity_W),
         watch_(parts.model, period_, options.joints),
         inertia_(parts.model),
-        command_(parts.model, period_, options),
+        command_(parts.model, period_, options, has_hard(world_) ? world_.pairs().size() : 0),
         q_(parts.model.links.size()),
         v_(q_),
         read_q_(q_),
@@ -86,10 +86,10 @@ class Teleoperator {
   /// The second half: writes the command of the arm to the record. @param forces of the world in
   /// which all arms have been placed, and the `contacts` they are of
   const TickRecord& act(const PairForces& forces, const WorkerReport& workers,
-                        std::span<const ActiveContact> contacts,
-                        const network::Command& command) noexcept {
+                        const Contacts& contacts, const network::Command& command) noexcept {
     push_away(forces, workers);  // world -> virtual forces on tool and links
-    gather_damping(contacts, tool_, jacobian_, links_, signals_.wall_damping);
+    gather_damping(contacts.active, tool_, jacobian_, links_, signals_.wall_damping);
+    command_.barrier().watch(contacts.hard, tool_, jacobian_, links_, q_, v_);
     follow(command);  // operator's input
     run_network();    // operator's input, walls, joint rates -> torques
     command_.judge(record_, watch_, drive_state_, network_, signals_.elapsed);  // -> stop
@@ -99,6 +99,7 @@ class Teleoperator {
   }
 
   [[nodiscard]] const network::Network& network() const noexcept { return network_; }
+  [[nodiscard]] const EntryBarrier& barrier() const noexcept { return command_.barrier(); }
   /// Pose of the tool in the world [m], as of the last `sense`.
   [[nodiscard]] const Pose& X_WT() const noexcept { return X_WT_; }
   /// Time since the last tick, as of the last `sense` [s].

@@ -122,7 +122,7 @@ struct PairIndex {
       PairList list{boxes_[first->part_a], 0.0, 0, static_cast<std::int32_t>(pairs.size())};
       std::vector<std::int32_t> partners;
       for (const std::int32_t a = first->part_a; first != end && first->part_a == a; ++first) {
-        list.range = std::max(list.range, world.pair({first->pair}).law.range + lookahead_);
+        list.range = std::max(list.range, world.pair({first->pair}).law.reach() + lookahead_);
         partners.push_back(first->part_b);
         body_pair.partners.extend(boxes_[first->part_b]);
         pairs.push_back({first->pair});

@@ -140,7 +140,7 @@ class PairMemory {
     tracking = {};
     tracking.body_a = world_->part(pair.a).body;
     tracking.body_b = world_->part(pair.b).body;
-    tracking.reach = pair.law.range + lookahead_;
+    tracking.reach = pair.law.reach() + lookahead_;
     tracking.pair = id;
     tracking.is_loose = world_->part(pair.a).room > 0.0 || world_->part(pair.b).room > 0.0;
     answers_[slot] = {};

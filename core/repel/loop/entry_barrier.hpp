@@ -1,0 +1,293 @@
+/// @file
+/// Keeps an arm from entering hard walls: changes its joint torques as little as possible, so that
+/// it can always stop before them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/base/status.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/barrier_rows.hpp>
+#include <repel/loop/least_constraint.hpp>
+#include <repel/loop/options.hpp>
+#include <repel/network/machinery/prediction.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// What the barrier has done since set-up.
+struct BarrierTotals {
+  std::int64_t ticks = 0;   ///< in which it changed a torque
+  std::int64_t lost = 0;    ///< in which some wall could not be held
+  double peak_force = 0.0;  ///< [N] hardest push that a wall withstood
+  double energy = 0.0;      ///< [J] taken from gaps that closed, less what was given to open them
+};
+
+/// A barrier on the approach to hard walls. A gap d (BarrierRows) may close no faster than
+///
+///     d = b t + b^2 / (2 a)        b(d) = sqrt(a^2 t^2 + 2 a d) - a t
+///
+/// with a the deceleration that the efforts of the joints leave to the arm there, by its inertia
+/// times `mass_uncertainty`, and t the time until a torque acts: the delay of the drive, the slew
+/// rate of the torques, and some ticks, so that the gap closes exponentially at last. Of all
+/// torques that bring every gap to its speed within a step, the ones are sent that change the
+/// acceleration of the arm least (LeastConstraint), as if walls without friction pushed. So retreat
+/// and sliding are free. The forces only brake what approaches, or take off what is asked for; they
+/// add energy only to flee from a wall that comes, and to return to the margin as much as was taken
+/// before.
+///
+/// Where no torque within the limits can stop the arm any more, `limit` says so while the gap is
+/// still open. Allocates at construction only. Cost: up to 60 sweeps over the gaps where one of
+/// them binds, else a solution with the mass matrix for each.
+class EntryBarrier {
+ public:
+  using Vector = ArmInertia::Vector;
+
+  /// @param period [s] @param drive_delay [ticks] of the arm @param slew_time [s] of its torques
+  /// @param pairs of the world; 0: none is hard, and nothing is changed
+  /// @throws SetupError for an option out of range
+  EntryBarrier(const ArmModel& model, double period, double drive_delay, double slew_time,
+               std::size_t pairs, const EntryBarrierOptions& options = {})
+      : model_(model),
+        options_(options),
+        period_(period),
+        delay_(drive_delay),
+        slew_time_(slew_time),
+        step_(std::max(period, slew_time)),
+        reaction_(network::Prediction::horizon(drive_delay) * period + 2.0 * step_),
+        rows_(model, checked("margin", options.margin, 0.0, 0.1, "m")),
+        solver_(model.links.size(), BarrierRows::most),
+        stops_(BarrierRows::most),
+        withstood_(pairs, 0.0),
+        sent_(static_cast<std::size_t>(std::ceil(drive_delay)) + 1) {
+    checked("mass uncertainty", options.mass_uncertainty, 1.0, 10.0, "");
+    checked("recovery", options.recovery, 0.0, 10.0, "m/s");
+    drift_.setZero(static_cast<Eigen::Index>(model.links.size()));
+    disturbance_ = last_rates_ = drift_;
+    for (Vector& sent : sent_) sent = drift_;
+    for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
+  }
+
+  /// t [s]. A gap that cannot close in several of these need not be known.
+  [[nodiscard]] double reaction() const noexcept { return reaction_; }
+
+  /// Takes the contacts that concern this arm, in its present pose. @param q [rad] or [m]
+  /// @param v [rad/s] or [m/s] of the joints @param jacobian of the tool
+  void watch(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
+             const ArmBodies& links, std::span<const double> q,
+             std::span<const double> v) noexcept {
+    if (is_on()) rows_.gather(contacts, tool, jacobian, links, q, v, reaction_);
+  }
+  /// Without contacts, until the next `watch`.
+  void forget() noexcept { rows_.clear(); }
+
+  /// Changes `torques` [N m] so that no hard wall is entered, and brings them within `lower` and
+  /// `upper` if it has to. @param weight [N m] the part of them that carries the weight
+  /// @return `hold_lost`, or 0
+  [[nodiscard]] Status limit(std::span<double> torques, std::span<const double> weight,
+                             std::span<const double> lower, std::span<const double> upper,
+                             std::span<const double> v, const ArmInertia& inertia) noexcept {
+    force_ = 0.0;
+    pushed_ = {};
+    if (!is_on()) return 0;
+    observe(v, inertia);
+    if (rows_.all().empty() || !begin(inertia)) return 0;
+    predict(v, inertia);
+    for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
+    if (!solver_.solve(torques, weight, lower, upper)) return 0;
+    account();
+    for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.torque(i);
+    return judge();
+  }
+
+  /// To be called in every tick, with the torques that were sent less those of the weight [N m].
+  void note_sent(const Vector& net) noexcept {
+    sent_[oldest_] = net;
+    oldest_ = (oldest_ + 1) % sent_.size();
+  }
+
+  /// [N] With which it pushed at the last tick on the pair on which it did so hardest.
+  [[nodiscard]] double force() const noexcept { return force_; }
+  [[nodiscard]] PairId pushed() const noexcept { return pushed_; }
+  /// [N] Hardest push that the wall of this pair withstood since set-up.
+  [[nodiscard]] double withstood(PairId pair) const noexcept {
+    return is_on() ? withstood_[static_cast<std::size_t>(pair.index)] : 0.0;
+  }
+  [[nodiscard]] const BarrierTotals& totals() const noexcept { return totals_; }
+
+ private:
+  static constexpr double least_speed = 1e-6;  // [m/s]
+  static constexpr double memory = 0.02;       // [s] of what else acts on the arm
+  static constexpr double slack = 1e-4;        // [m] of the sentence that a wall is lost
+
+  /// How a gap can be braked [m/s^2].
+  struct Stopping {
+    double surely = 0.0;   ///< a: by a push along the gap, with the inertia that is uncertain
+    double at_most = 0.0;  ///< if all joints did their utmost for this gap alone
+  };
+
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+  [[nodiscard]] bool is_on() const noexcept { return !withstood_.empty(); }
+
+  // M and the viscous friction until the torque of this tick has acted, by an implicit rule.
+  [[nodiscard]] bool begin(const ArmInertia& inertia) noexcept {
+    const double until = delay_ * period_ + 0.5 * (period_ + step_);
+    const auto& M = inertia.matrix();
+    const Eigen::Index n = M.rows();
+    const auto entry = [&](Eigen::Index i) {
+      const auto joint = static_cast<std::size_t>(i / n);
+      const bool is_diagonal = i % (n + 1) == 0;
+      return M.data()[i] + (is_diagonal ? until * model_.links[joint].viscous_friction : 0.0);
+    };
+    return solver_.begin(n, entry, step_);
+  }
+
+  // What else acts on the arm, as the Prediction of a network estimates it: the low-passed
+  // difference of its change of momentum and the torques and viscous friction that acted.
+  void observe(std::span<const double> v, const ArmInertia& inertia) noexcept {
+    Vector change = last_rates_;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      change.coeffRef(index(i)) = v[i] - last_rates_.coeff(index(i));
+      last_rates_.coeffRef(index(i)) = v[i];
+    }
+    const Vector momentum = network::dense::product<Vector>(inertia.matrix(), change);
+    const double share = period_ / (period_ + memory + 5.0 * delay_ * period_);
+    const Vector& acted = sent_[oldest_];
+    for (Eigen::Index i = 0; i < momentum.size(); ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      const double friction = model_.links[joint].viscous_friction * v[joint];
+      const double seen = momentum.coeff(i) / period_ - acted.coeff(i) + friction;
+      disturbance_.coeffRef(i) += share * (seen - disturbance_.coeff(i));
+    }
+  }
+
+  // The change of the rates by friction and by the torques that were sent and have not acted yet.
+  void predict(std::span<const double> v, const ArmInertia& inertia) noexcept {
+    inertia.momenta(v, drift_);
+    // Newest first; the oldest has acted, but for its rest where the delay is no whole number.
+    double left = delay_;  // [ticks]
+    for (std::size_t k = 1; left > 0.0; ++k, left -= 1.0) {
+      const Vector& sent = sent_[(oldest_ + sent_.size() - k) % sent_.size()];
+      const double time = std::min(left, 1.0) * period_;
+      for (Eigen::Index i = 0; i < drift_.size(); ++i) drift_.coeffRef(i) += time * sent.coeff(i);
+    }
+    const double until = delay_ * period_ + step_;
+    for (Eigen::Index i = 0; i < drift_.size(); ++i) {
+      drift_.coeffRef(i) += until * disturbance_.coeff(i);
+    }
+    solver_.solve_mass(drift_);
+    for (std::size_t i = 0; i < v.size(); ++i) drift_.coeffRef(index(i)) -= v[i];
+  }
+
+  void add(const BarrierRow& row, Stopping& stop, std::span<const double> weight) noexcept {
+    double gained = 0.0;
+    for (Eigen::Index i = 0; i < drift_.size(); ++i) gained += row.h.coeff(i) * drift_.coeff(i);
+    LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained);
+    if (bound == nullptr) return;
+    stop = stopping(*bound, weight);
+    if (row.top_speed > 0.0) {
+      bound->least_rate = -row.top_speed;
+      return;
+    }
+    double gap = row.gap + delay_ * period_ * std::min({row.rate, bound->rate, 0.0});
+    if (row.is_shared) {
+      // Either arm stops within its half; what the other exceeds it by is made up for.
+      gap = gap > 0.0 ? 0.5 * gap : gap;
+      bound->rate += std::min(0.0, row.others + allowed(gap, stop.surely)) - row.others;
+    }
+    bound->least_rate = -allowed(gap + 0.5 * step_ * bound->rate, stop.surely);
+  }
+
+  [[nodiscard]] Stopping stopping(const LeastConstraint::Row& row,
+                                  std::span<const double> weight) const noexcept {
+    double force = std::numeric_limits<double>::infinity();  // [N] that the joints can give
+    Stopping stop;
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      const double h = row.h.coeff(index(i));
+      const double u = row.moved.coeff(index(i));
+      stop.at_most += std::abs(u) * std::max(0.0, effort_[i] - (u > 0.0 ? weight[i] : -weight[i]));
+      if (std::abs(h) < 1e-9) continue;
+      const double room = std::max(0.0, h > 0.0 ? effort_[i] - weight[i] : effort_[i] + weight[i]);
+      force = std::min(force, room / std::abs(h));
+    }
+    stop.surely = force * row.mobility / options_.mass_uncertainty;
+    return stop;
+  }
+
+  // b [m/s] at a gap of d [m]; below zero for one that is to be opened. @param a [m/s^2]
+  [[nodiscard]] double allowed(double d, double a) const noexcept {
+    const double t = reaction_ + 0.5 * step_;
+    if (d < 0.0) return totals_.energy > 0.0 ? std::max(d / t, -options_.recovery) : 0.0;
+    return 2.0 * a * d / (a * t + std::sqrt(a * t * a * t + 2.0 * a * d) + 1e-300);
+  }
+
+  void account() noexcept {
+    const double share = solver_.share();
+    double force = 0.0;  // on one pair
+    for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+      const LeastConstraint::Row& bound = solver_.rows()[k];
+      const PairId pair = rows_.all()[k].pair;
+      if (!pair.valid()) continue;
+      if (k == 0 || rows_.all()[k - 1].pair != pair) force = 0.0;
+      const double pushed = share * bound.force;
+      const double rate = rows_.all()[k].rate;
+      const bool gives = bound.least_rate > 0.0;
+      totals_.energy -= period_ * pushed * (gives ? rate : std::min(rate, 0.0));
+      force += pushed;
+      double& most = withstood_[static_cast<std::size_t>(pair.index)];
+      most = std::max(most, force);
+      if (force > force_) {
+        force_ = force;
+        pushed_ = pair;
+      }
+    }
+    totals_.peak_force = std::max(totals_.peak_force, force_);
+    if (force_ > 0.0) ++totals_.ticks;
+  }
+
+  // A wall is lost where the arm, braked with all it has, comes to rest behind it.
+  [[nodiscard]] Status judge() noexcept {
+    for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+      const BarrierRow& row = rows_.all()[k];
+      const double approach = -solver_.rate_after(solver_.rows()[k]);
+      if (!row.pair.valid() || !(approach > least_speed)) continue;
+      const double time = delay_ * period_ + 0.5 * slew_time_;
+      const double stop = 0.5 * approach * approach / std::max(stops_[k].at_most, 1e-9);
+      if (approach * time + stop > row.gap + options_.margin + slack) {
+        ++totals_.lost;
+        return status::hold_lost;
+      }
+    }
+    return 0;
+  }
+
+  const ArmModel& model_;
+  EntryBarrierOptions options_;
+  double period_;     // [s]
+  double delay_;      // [ticks]
+  double slew_time_;  // [s]
+  double step_;       // [s] in which a gap is brought to its speed
+  double reaction_;   // t [s]
+  BarrierRows rows_;
+  LeastConstraint solver_;
+  std::vector<Stopping> stops_;    // of each row
+  std::vector<double> withstood_;  // [N] by PairId; empty: it is off
+  std::vector<double> effort_;     // [N m] limits
+  std::vector<Vector> sent_;       // ring of what has not acted yet
+  std::size_t oldest_ = 0;
+  Vector drift_;        // [rad/s] by what cannot be changed any more
+  Vector disturbance_;  // [N m]
+  Vector last_rates_;
+  double force_ = 0.0;
+  PairId pushed_;
+  BarrierTotals totals_;
+};
+
+}  // namespace repel
