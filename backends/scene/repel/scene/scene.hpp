@@ -87,6 +87,7 @@ struct SpareParts {
 
 /// A depth camera that looks at the scene, simulated, and the parts that are made of its images.
 struct CameraChoice {
+  std::string name;               ///< empty: that of the key `camera`, the only one
   Pose X_WC = Pose::Identity();   ///< [m] x to the right of the image, y down, z along the axis
   int width = 320, height = 240;  ///< [px]
   double view = 1.05;             ///< [rad] across the image
@@ -104,7 +105,7 @@ struct CameraChoice {
   ForceLaw law;                   ///< of the parts
 };
 
-/// One convex part P that a camera sees and the world model does not know.
+/// One convex part P that cameras see and the world model does not know.
 struct HiddenPart {
   std::string name;
   Shape shape = Shape::sphere(0.0);
@@ -173,7 +174,8 @@ struct ArmSetup {
   Network network;
   network::Script script;
   std::vector<PartStep> steps;  ///< in the order of the script
-  std::vector<bool> blind;      ///< by phase: the camera is silent
+  /// By phase, then by camera in their order, the last ones left out or all: it is silent.
+  std::vector<std::vector<bool>> blind;
 };
 
 /// A further arm in the cell. Its forces from obstacles follow the obstacles' laws.
@@ -195,8 +197,8 @@ struct Scene : ArmSetup {
   std::vector<StaticModel> models;  ///< further obstacles, for whoever can read robot descriptions
   std::vector<LoosePart> loose;
   SpareParts spare;
-  std::optional<CameraChoice> camera;
-  std::vector<HiddenPart> hidden;  ///< for the camera to see
+  std::vector<CameraChoice> cameras;  ///< each with a name of its own
+  std::vector<HiddenPart> hidden;     ///< for the cameras to see
   std::vector<OtherArm> partners;
   bool apart = false;  ///< to be run as two programs, divided at the line of the network
   /// Paths of the files that the parts of meshes are from, those in URDF files excepted.
