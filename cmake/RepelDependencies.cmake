@@ -81,6 +81,11 @@ macro(repel_find_cover)
   repel_all_found(COVER ${repel_for_hacd})
 endmacro()
 
+macro(repel_find_octrees)
+  repel_pkg_config(OCTOMAP octomap)
+  repel_all_found(OCTREES OCTOMAP_FOUND)
+endmacro()
+
 macro(repel_find_bullet)
   repel_pkg_config(BULLET bullet-float64)  # plain `bullet` is single precision
   repel_all_found(BULLET BULLET_FOUND)

@@ -21,6 +21,10 @@
 #include <repel/percepts/perceived_parts.hpp>
 #include <repel/percepts/simulated_camera.hpp>
 #endif
+#ifdef PART_octrees
+#include <repel/octrees/depth_map.hpp>
+#include <repel/octrees/mapped_parts.hpp>
+#endif
 #ifdef PART_cover
 #include <repel/cover/cover.hpp>
 #include <repel/cover/occupancy.hpp>
