@@ -20,35 +20,11 @@ percepts::DepthCamera camera_of(const scene::CameraChoice& choice) {
   return camera;
 }
 
-percepts::CellOptions cells_of(const scene::CameraChoice& choice) {
-  percepts::CellOptions options;
-  options.most = choice.parts / 2;  // what is new comes before what it replaces goes
-  options.room = room_of_seen - 0.1;
-  if (choice.is_unseen_solid) options.thickness = options.room;
-  // Twice the blocks to begin with must be within `most`.
-  const auto blocks = [&] {
-    return ((choice.width - 1) / options.largest + 1) * ((choice.height - 1) / options.largest + 1);
-  };
-  while (2 * blocks() > options.most) options.largest *= 2;
-  return options;
-}
-
 std::size_t images_waiting(const scene::CameraChoice& choice) {
   return static_cast<std::size_t>(std::ceil(choice.latency * choice.rate_hz)) + 2;
 }
 
-percepts::PerceivedOptions perceived(const CameraPlace& place) {
-  percepts::PerceivedOptions options;
-  options.share = place.share;
-  options.on_add = place.on_add;
-  return options;
-}
-
 }  // namespace
-
-std::string name_of_seen(const scene::CameraChoice& camera) {
-  return camera.name.empty() ? "seen" : "seen_" + camera.name;
-}
 
 CameraFeed::CameraFeed(const scene::CameraChoice& choice, const Sights& sights,
                        const CameraPlace& place)
@@ -57,9 +33,7 @@ CameraFeed::CameraFeed(const scene::CameraChoice& choice, const Sights& sights,
       simulated_(camera_, sights.meshes(),
                  {.noise = choice_.noise, .lost = choice_.lost, .seed = choice_.seed}),
       own_(camera_, sights.known(), choice_.margin),
-      memory_(camera_),
-      division_(camera_, cells_of(choice_)),
-      parts_(*place.changes, perceived(place)),
+      maker_(make_part_maker(choice_, camera_, place)),
       image_(camera_.pixels()),
       X_C_(sights.size(), Pose::Identity()),
       ring_(images_waiting(choice_), Scenery{0.0, X_C_}),
@@ -90,12 +64,13 @@ bool CameraFeed::serve(bool early) {
   const double now = now_.load(std::memory_order_acquire);
   if (now < oldest->time + choice_.latency - 0.5 * period_) return was_new && early;
   const auto begin = steady_clock::now();
-  const percepts::PerceptCounts counts = parts_.see(cells_, division_, choice_.X_WC, oldest->time);
+  const MadeParts made = maker_->make();
   result_.compute.record(looking_ + (steady_clock::now() - begin));
   ++result_.images;
-  result_.most_cells = std::max(result_.most_cells, counts.cells);
-  result_.left_out += counts.left_out;
-  result_.made += counts.added;
+  result_.most_cells = std::max(result_.most_cells, made.cells);
+  result_.largest_cube = std::max(result_.largest_cube, made.cube);
+  result_.left_out += made.left_out;
+  result_.made += made.added;
   seen_at_.store(oldest->time, std::memory_order_release);
   has_looked_ = false;
   ring_.pop();
@@ -108,8 +83,7 @@ void CameraFeed::look(const Scenery& scenery) {
   simulated_.take(X_C_, image_);
   const auto begin = steady_clock::now();
   (void)own_.remove(X_C_, image_);
-  (void)memory_.fill(image_, scenery.time);
-  cells_ = division_.divide(image_);
+  maker_->look(image_, scenery.time);
   looking_ = steady_clock::now() - begin;
   has_looked_ = true;
 }

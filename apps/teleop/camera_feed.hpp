@@ -6,47 +6,32 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <functional>
-#include <span>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <repel/base/ring.hpp>
-#include <repel/percepts/depth_memory.hpp>
 #include <repel/percepts/own_body.hpp>
-#include <repel/percepts/perceived_parts.hpp>
 #include <repel/percepts/simulated_camera.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/schedule/deadline.hpp>
 
+#include "part_maker.hpp"
 #include "sights.hpp"
 
 namespace repel::teleop {
-
-/// [m] Largest reach of a part that is made of an image.
-constexpr double room_of_seen = 1.1;
-
-/// The name of the parts that are made of the images of a camera.
-[[nodiscard]] std::string name_of_seen(const scene::CameraChoice& camera);
 
 /// What has become of the images of a camera.
 struct ImageResult {
   std::string name;           ///< of the camera
   std::int64_t images = 0;    ///< of which parts were made
   std::int64_t lost = 0;      ///< that came faster than they could be used
-  int most_cells = 0;         ///< of an image
+  int most_cells = 0;         ///< or boxes, of an image
+  double largest_cube = 0.0;  ///< [m] of a map; 0: there is none
   std::int64_t left_out = 0;  ///< cells for which no reserved part was free, over all images
   std::int64_t made = 0;      ///< parts made, over all images
   double silent = 0.0;        ///< [s] time in which the camera counted as silent
   DurationHistogram compute;  ///< from an image to its parts, without drawing the image
-};
-
-/// What of the running cell a camera is to have.
-struct CameraPlace {
-  WorldChanges* changes = nullptr;                     ///< not null, outlives the camera
-  ReservedShare share{};                               ///< of the reserved parts, its own
-  double period = 0.0;                                 ///< [s] of the tick
-  std::function<void(PartId, const Shape&)> on_add{};  ///< see PerceivedOptions
 };
 
 /// Takes images of a running cell and makes parts of them. One thread follows the cell, one makes
@@ -83,12 +68,9 @@ class CameraFeed {
   percepts::DepthCamera camera_;
   percepts::SimulatedCamera simulated_;
   percepts::OwnBody own_;
-  percepts::DepthMemory memory_;
-  percepts::DepthCells division_;
-  percepts::PerceivedParts parts_;
+  std::unique_ptr<PartMaker> maker_;
   std::vector<float> image_;
-  std::vector<Pose> X_C_;  ///< [m] in the frame of the camera
-  std::span<const percepts::Cell> cells_;
+  std::vector<Pose> X_C_;    ///< [m] in the frame of the camera
   bool has_looked_ = false;  ///< at the oldest image in the ring
   Ring<Scenery> ring_;
   double next_ = 0.0;  ///< [s] when the next image is due

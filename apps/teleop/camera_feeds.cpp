@@ -90,6 +90,7 @@ CameraResult CameraFeeds::finish() {
     result.all.images += each.images;
     result.all.lost += each.lost;
     result.all.most_cells = std::max(result.all.most_cells, each.most_cells);
+    result.all.largest_cube = std::max(result.all.largest_cube, each.largest_cube);
     result.all.left_out += each.left_out;
     result.all.made += each.made;
     result.all.compute.add(each.compute);

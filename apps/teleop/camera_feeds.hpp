@@ -14,7 +14,7 @@ namespace repel::teleop {
 
 /// What has become of the images of a run.
 struct CameraResult {
-  ImageResult all;                ///< of all cameras: sums, but for `most_cells`
+  ImageResult all;                ///< of all cameras: sums, but for what is most or largest
   std::vector<ImageResult> each;  ///< in their order
   Clearance clearance;
 };

@@ -285,6 +285,7 @@ ordered_json images_to_json(const ImageResult& c) {
   return {{"images", c.images},
           {"images_lost", c.lost},
           {"most_cells", c.most_cells},
+          {"largest_cube_m", c.largest_cube > 0.0 ? ordered_json(c.largest_cube) : ordered_json()},
           {"parts_made", c.made},
           {"cells_left_out", c.left_out},
           {"silent_s", c.silent},

@@ -401,6 +401,38 @@ void read_faults(const Map& map, CameraChoice& camera) {
   }
 }
 
+/// The map of a camera, in which all that it can see has a place.
+std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera) {
+  const Value* const value = of_camera.find("map");
+  if (value == nullptr) return {};
+  const Map map(*value);
+  map.allow({"cube", "keeps"});
+  MapChoice choice;
+  map.read("cube", {unit::length, 0.005, 1.0}, choice.cube);
+  map.read("keeps", {unit::time, 0.0, 1e6}, choice.keeps);
+  choice.low = choice.high = camera.X_WC.translation();
+  const double side = camera.farthest * std::tan(0.5 * camera.view);
+  const double height = side * camera.height / camera.width;
+  for (const double x : {-side, side}) {
+    for (const double y : {-height, height}) {
+      const Vec3 corner = camera.X_WC * Vec3(x, y, camera.farthest);
+      choice.low = choice.low.cwiseMin(corner);
+      choice.high = choice.high.cwiseMax(corner);
+    }
+  }
+  constexpr double most = 16e6;
+  const double cubes = ((choice.high - choice.low) / choice.cube).array().ceil().prod();
+  if (!(cubes <= most)) {
+    value->fail("a map of all that the camera can see has " + to_text(cubes, 3) +
+                " cubes; allowed: up to " + to_text(most) + ", by larger ones, or less 'farthest'");
+  }
+  if (camera.is_unseen_solid) {
+    of_camera.at("unseen").fail(
+        "what is unseen is solid beside 'map'; allowed: 'free', since the arm is in it");
+  }
+  return choice;
+}
+
 /// @param more keys beside those of the camera itself
 CameraChoice camera_of(const Value& value, const Laws& laws,
                        std::initializer_list<std::string_view> more) {
@@ -408,7 +440,7 @@ CameraChoice camera_of(const Value& value, const Laws& laws,
   std::vector<std::string_view> keys{"position",     "look_at",  "width",  "height",  "view",
                                      "nearest",      "farthest", "rate",   "latency", "noise",
                                      "lost",         "seed",     "unseen", "margin",  "parts",
-                                     "silent_after", "law"};
+                                     "silent_after", "law",      "map"};
   keys.insert(keys.end(), more);
   map.allow(keys);
   CameraChoice camera;
@@ -439,6 +471,7 @@ CameraChoice camera_of(const Value& value, const Laws& laws,
         "latency and 1 / rate together");
   }
   camera.law = law_called(laws, map);
+  camera.map = map_of(map, camera);
   return camera;
 }
 

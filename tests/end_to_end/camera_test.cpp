@@ -181,6 +181,55 @@ TEST(Camera, OfSeveralIsReplayedBitForBit) {
   EXPECT_TRUE(by_the_clock.says("allocations in tick    0")) << by_the_clock;
 }
 
+#ifdef REPEL_TELEOP_OCTREES
+TEST(Camera, WithAMapKeepsTheArmOffWhatOnlyItSees) {
+  constexpr unsigned seed = 321;
+  families::Rng rng(seed);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(rng);
+  };
+  const int draws = std::max(1, families::draws(3));
+  int touched = 0;
+  for (int i = 0; i < draws; ++i) {
+    const std::string cube = std::to_string(between(20.0, 50.0)) + " mm";
+    const auto place = [&](double x, double y, const char* z) {
+      return "position: " + std::to_string(x + between(-0.02, 0.02)) + " " +
+             std::to_string(y + between(-0.02, 0.02)) + " " + z;
+    };
+    const std::string scene =
+        seen_with({{"parts: 600", "parts: 800\n  map: {cube: " + cube + "}"},
+                   {"noise: 1 mm", "noise: " + std::to_string(between(0.0, 1.2)) + " mm"},
+                   {"lost: 0.02", "lost: " + std::to_string(between(0.0, 0.3))},
+                   {"position: 0.62 0.20 0.21", place(0.62, 0.20, "0.21")},
+                   {"position: 0.52 -0.30 0.19", place(0.52, -0.30, "0.19")}});
+    const json camera = run_of(scene, "").at("camera");
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", draw " + std::to_string(i) + "\n" + scene +
+                 camera.dump(1));
+    EXPECT_GT(camera.at("least_clearance_m"), 0.002);
+    EXPECT_EQ(camera.at("cells_left_out"), 0);
+    EXPECT_GT(camera.at("images"), 300);
+    EXPECT_GE(camera.at("largest_cube_m"), 0.02);
+    if (camera.at("least_clearance_m") < 0.06) ++touched;
+  }
+  EXPECT_GE(2 * touched, draws) << "the arm should come near what is seen";
+}
+
+TEST(Camera, WithAMapIsReplayedBitForBit) {
+  const Folder folder;
+  const std::string scene = quoted(folder.with(
+      "scene.yaml", seen_with({{"parts: 600", "parts: 600\n  map: {cube: 5 cm}"}})));
+  const std::string file = quoted(folder / "seen.mcap");
+  const Ending recorded = teleop(scene + " --fast --seconds 2 --log " + file);
+  ASSERT_EQ(recorded.status, 0) << recorded;
+  const Ending again = teleop("--replay " + file);
+  ASSERT_EQ(again.status, 0) << again;
+  EXPECT_TRUE(again.says("800 of 800 ticks, bit for bit")) << again;
+  const Ending by_the_clock = teleop(scene + " --seconds 2");
+  EXPECT_EQ(by_the_clock.status, 0) << by_the_clock;
+  EXPECT_TRUE(by_the_clock.says("allocations in tick    0")) << by_the_clock;
+}
+#endif
+
 TEST(Camera, IsRefusedWithLineAndCureWhereItMakesNoSense) {
   const auto refusal = [&](const std::vector<std::pair<std::string, std::string>>& changes) {
     const Folder folder;

@@ -56,6 +56,28 @@ TEST(CamerasOfAScene, AreBlindAllOrByName) {
             std::string::npos);
 }
 
+TEST(CamerasOfAScene, MayHaveAMapOfAllThatTheyCanSee) {
+  EXPECT_FALSE(scene_with(two).cameras[0].map);
+  const Scene scene = scene_with(
+      "camera: {position: 0 0 2 m, look_at: 0 0 0 m, farthest: 3 m, view: 90 deg, width: 400, "
+      "height: 200, map: {cube: 10 cm, keeps: 5 s}}\n");
+  const std::optional<MapChoice>& map = scene.cameras[0].map;
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->cube, 0.1);
+  EXPECT_EQ(map->keeps, 5.0);
+  // The top of the image is towards x.
+  EXPECT_TRUE(map->low.isApprox(Vec3(-1.5, -3, -1), 1e-9)) << map->low.transpose();
+  EXPECT_TRUE(map->high.isApprox(Vec3(1.5, 3, 2), 1e-9)) << map->high.transpose();
+  const auto says = [](const std::string& more, const std::string& what) {
+    const std::string text = "camera: {" + at + ", " + more + "}\n";
+    EXPECT_NE(complaint(text).find(what), std::string::npos) << complaint(text);
+  };
+  says("map: {cube: 1 cm, keeps: 1 s}", "cubes; allowed: up to");
+  says("map: {cube: 1 mm}", "cube");
+  says("map: {size: 1 m}", "size");
+  says("unseen: solid, map: {cube: 5 cm}", "allowed: 'free'");
+}
+
 TEST(CamerasOfAScene, AreRefusedWhereTheyMakeNoSense) {
   const auto says = [](const std::string& text, const std::string& what) {
     EXPECT_NE(complaint(text).find(what), std::string::npos) << complaint(text);

@@ -85,6 +85,14 @@ struct SpareParts {
   ForceLaw law;
 };
 
+/// A map in which the images of a camera are entered.
+struct MapChoice {
+  double cube = 0.05;        ///< [m] edge of its cubes
+  double keeps = 2.0;        ///< [s] what is seen no more, but not seen through either
+  Vec3 low = Vec3::Zero();   ///< [m] corners of the region of the map: all that the camera can see
+  Vec3 high = Vec3::Zero();  ///< [m]
+};
+
 /// A depth camera that looks at the scene, simulated, and the parts that are made of its images.
 struct CameraChoice {
   std::string name;               ///< empty: that of the key `camera`, the only one
@@ -103,6 +111,7 @@ struct CameraChoice {
   int parts = 400;                ///< reserved
   double silent_after = 0.2;      ///< [s] without an image the operator's commands no longer count
   ForceLaw law;                   ///< of the parts
+  std::optional<MapChoice> map;   ///< none: each image becomes parts by itself
 };
 
 /// One convex part P that cameras see and the world model does not know.
