@@ -16,6 +16,7 @@
 #include <repel/dds/dds.hpp>
 #endif
 #ifdef PART_percepts
+#include <repel/percepts/depth_image_file.hpp>
 #include <repel/percepts/depth_memory.hpp>
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/perceived_parts.hpp>

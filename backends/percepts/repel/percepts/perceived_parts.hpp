@@ -13,10 +13,10 @@
 namespace repel::percepts {
 
 struct PerceivedOptions {
-  double slack = 0.01;  ///< [m] by which parts are grown at the front and back, so that noise of
-                        ///< the camera changes none
-  double over = 0.05;   ///< [s] in which parts come and go
-  double keeps = 2.0;   ///< [s] how long what is hidden stays after it was last seen
+  double slack = 0.01;    ///< [m] by which parts are grown at the front and back, so that noise of
+                          ///< the camera changes none
+  double over = 0.05;     ///< [s] in which parts come and go
+  double keeps = 2.0;     ///< [s] how long what is hidden stays after it was last seen
   ReservedShare share{};  ///< of the reserved parts, for this camera alone
   /// Is told of every new part with its shape, for displays; may be empty.
   std::function<void(PartId, const Shape&)> on_add{};
