@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/percepts/depth_image_file.hpp>
 
 namespace repel::teleop {
 namespace {
@@ -15,6 +19,10 @@ percepts::DepthCamera camera_of(const scene::CameraChoice& choice) {
   camera.fx = camera.fy = 0.5 * choice.width / std::tan(0.5 * choice.view);
   camera.cx = 0.5 * (choice.width - 1);
   camera.cy = 0.5 * (choice.height - 1);
+  if (const auto& recording = choice.recording) {
+    camera.fx = recording->fx, camera.fy = recording->fy;
+    camera.cx = recording->cx, camera.cy = recording->cy;
+  }
   camera.nearest = choice.nearest;
   camera.farthest = choice.farthest;
   return camera;
@@ -30,24 +38,56 @@ CameraFeed::CameraFeed(const scene::CameraChoice& choice, const Sights& sights,
                        const CameraPlace& place)
     : choice_(choice),
       camera_(camera_of(choice_)),
-      simulated_(camera_, sights.meshes(),
-                 {.noise = choice_.noise, .lost = choice_.lost, .seed = choice_.seed}),
       own_(camera_, sights.known(), choice_.margin),
       maker_(make_part_maker(choice_, camera_, place)),
       image_(camera_.pixels()),
       X_C_(sights.size(), Pose::Identity()),
-      ring_(images_waiting(choice_), Scenery{0.0, X_C_}),
+      ring_(images_waiting(choice_), Scenery{0.0, 0, X_C_}),
       period_(place.period) {
   result_.name = choice_.name.empty() ? "camera" : choice_.name;
+  if (!choice_.recording) {
+    simulated_.emplace(
+        camera_, sights.meshes(),
+        percepts::CameraFaults{.noise = choice_.noise, .lost = choice_.lost, .seed = choice_.seed});
+    return;
+  }
+  for (const scene::RecordedImage& image : choice_.recording->images) {
+    percepts::check_depth_image(image.file, camera_);
+  }
 }
 
 void CameraFeed::follow(double time, const std::vector<Pose>& X_W, bool is_blind) noexcept {
   now_.store(time, std::memory_order_release);
+  if (choice_.recording) return follow_recording(time, X_W, is_blind);
   // Half a tick early or late, so that images are equally spaced whatever the rates are.
   if (time < next_ - 0.5 * period_) return;
   next_ = std::max(next_ + 1.0 / choice_.rate_hz, time);
-  if (is_blind) return;
+  if (!is_blind) post(time, 0, X_W);
+}
+
+void CameraFeed::follow_recording(double time, const std::vector<Pose>& X_W,
+                                  bool is_blind) noexcept {
+  const std::size_t first = next_image_;
+  while (due(next_image_) <= time + 0.5 * period_) ++next_image_;
+  if (next_image_ == first) return;
+  // Of several that have become due since the last tick, the last.
+  skipped_ += static_cast<std::int64_t>(next_image_ - first) - 1;
+  const std::size_t last = next_image_ - 1;
+  if (!is_blind) post(due(last), last % choice_.recording->images.size(), X_W);
+}
+
+double CameraFeed::due(std::size_t image) const noexcept {
+  const std::vector<scene::RecordedImage>& images = choice_.recording->images;
+  const std::size_t rounds = image / images.size();
+  if (rounds > 0 && !choice_.recording->repeats) return std::numeric_limits<double>::infinity();
+  const double first = images.front().time;
+  const double duration = images.back().time - first + 1.0 / choice_.rate_hz;
+  return images[image % images.size()].time - first + duration * static_cast<double>(rounds);
+}
+
+void CameraFeed::post(double time, std::size_t image, const std::vector<Pose>& X_W) noexcept {
   ring_.draft().time = time;
+  ring_.draft().image = image;
   ring_.draft().X_W = X_W;
   (void)ring_.post();
 }
@@ -60,7 +100,11 @@ bool CameraFeed::serve(bool early) {
   const Scenery* const oldest = ring_.front();
   if (oldest == nullptr) return false;
   const bool was_new = !has_looked_;
-  if (was_new) look(*oldest);
+  if (was_new && !look(*oldest)) {
+    ++result_.lost;
+    ring_.pop();
+    return true;
+  }
   const double now = now_.load(std::memory_order_acquire);
   if (now < oldest->time + choice_.latency - 0.5 * period_) return was_new && early;
   const auto begin = steady_clock::now();
@@ -77,15 +121,26 @@ bool CameraFeed::serve(bool early) {
   return true;
 }
 
-void CameraFeed::look(const Scenery& scenery) {
+bool CameraFeed::look(const Scenery& scenery) {
   const Pose X_CW = choice_.X_WC.inverse();
   for (std::size_t i = 0; i < X_C_.size(); ++i) X_C_[i] = composed(X_CW, scenery.X_W[i]);
-  simulated_.take(X_C_, image_);
+  if (simulated_) {
+    simulated_->take(X_C_, image_);
+  } else {
+    const scene::RecordingChoice& recording = *choice_.recording;
+    try {
+      percepts::read_depth_image(recording.images[scenery.image].file, camera_, recording.unit,
+                                 image_);
+    } catch (const SetupError&) {  // it is damaged behind its head, or no longer there
+      return false;
+    }
+  }
   const auto begin = steady_clock::now();
   (void)own_.remove(X_C_, image_);
   maker_->look(image_, scenery.time);
   looking_ = steady_clock::now() - begin;
   has_looked_ = true;
+  return true;
 }
 
 double CameraFeed::silent_for() const noexcept {
@@ -96,7 +151,7 @@ double CameraFeed::silent_for() const noexcept {
 
 ImageResult CameraFeed::result() const {
   ImageResult result = result_;
-  result.lost = ring_.dropped();
+  result.lost += ring_.dropped() + skipped_;
   result.silent = silent_;
   return result;
 }

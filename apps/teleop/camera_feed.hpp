@@ -1,12 +1,13 @@
 /// @file
-/// A simulated depth camera that looks at a running cell, and the parts that are made of its
-/// images.
+/// A depth camera that looks at a running cell, simulated or recorded, and the parts that are made
+/// of its images.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace repel::teleop {
 struct ImageResult {
   std::string name;           ///< of the camera
   std::int64_t images = 0;    ///< of which parts were made
-  std::int64_t lost = 0;      ///< that came faster than they could be used
+  std::int64_t lost = 0;      ///< that came faster than they could be used, or are damaged
   int most_cells = 0;         ///< or boxes, of an image
   double largest_cube = 0.0;  ///< [m] of a map; 0: there is none
   std::int64_t left_out = 0;  ///< cells for which no reserved part was free, over all images
@@ -58,28 +59,37 @@ class CameraFeed {
 
  private:
   struct Scenery {
-    double time = 0.0;  ///< [s]
+    double time = 0.0;      ///< [s]
+    std::size_t image = 0;  ///< of a recording
     std::vector<Pose> X_W;
   };
 
-  void look(const Scenery& scenery);
+  void post(double time, std::size_t image, const std::vector<Pose>& X_W) noexcept;
+  void follow_recording(double time, const std::vector<Pose>& X_W, bool is_blind) noexcept;
+  /// [s] When an image of the recording is due, counted through all repetitions; infinite after its
+  /// end.
+  [[nodiscard]] double due(std::size_t image) const noexcept;
+  /// False if the image cannot be read.
+  [[nodiscard]] bool look(const Scenery& scenery);
 
   const scene::CameraChoice choice_;
   percepts::DepthCamera camera_;
-  percepts::SimulatedCamera simulated_;
+  std::optional<percepts::SimulatedCamera> simulated_;  ///< none: the images are recorded
   percepts::OwnBody own_;
   std::unique_ptr<PartMaker> maker_;
   std::vector<float> image_;
   std::vector<Pose> X_C_;    ///< [m] in the frame of the camera
   bool has_looked_ = false;  ///< at the oldest image in the ring
   Ring<Scenery> ring_;
-  double next_ = 0.0;  ///< [s] when the next image is due
+  double next_ = 0.0;           ///< [s] when the next image is due
+  std::size_t next_image_ = 0;  ///< of a recording, counted through all repetitions
   std::atomic<double> now_{0.0};
   std::atomic<double> seen_at_{0.0};     ///< [s] when the last image was taken that was used
   double period_ = 0.0;                  ///< [s] of the tick
   std::chrono::nanoseconds looking_{0};  ///< at the oldest image in the ring
   ImageResult result_;                   ///< of the thread that serves, but for:
   double silent_ = 0.0;                  ///< [s] of the thread of the tick
+  std::int64_t skipped_ = 0;             ///< images, of the thread of the tick
 };
 
 }  // namespace repel::teleop

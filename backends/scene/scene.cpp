@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <any>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -10,9 +11,11 @@
 #include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/text_file.hpp>
+#include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/line.hpp>
 #include <repel/scene/part_list.hpp>
 
+#include "camera_reader.hpp"
 #include "network_reader.hpp"
 #include "yaml.hpp"
 
@@ -376,22 +379,6 @@ SpareParts spare_of(const Map& scene, const Laws& laws) {
 constexpr std::size_t most_cameras = 8;
 constexpr int most_seen = 2000;  // parts that are reserved for what all cameras see
 
-/// A camera at `position` that looks at a point, its image upright.
-Pose pose_of_camera(const Map& map) {
-  const Value& at = map.at("look_at");
-  const Vec3 p = map.at("position").vector(position);
-  const Vec3 axis = at.vector(position) - p;
-  if (axis.norm() < 1e-3) at.fail_with_value("a point 1 mm or more from the camera");
-  const Vec3 z = axis.normalized();
-  // Looking straight up or down, the top of the image is towards x.
-  const Vec3 up = std::abs(z.z()) > 0.999 ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
-  const Vec3 x = z.cross(up).normalized();
-  Pose X = Pose::Identity();
-  X.translation() = p;
-  X.linear() << x, z.cross(x), z;
-  return X;
-}
-
 /// What is wrong with the images of a camera.
 void read_faults(const Map& map, CameraChoice& camera) {
   map.read("noise", {unit::length, 0.0, 0.1}, camera.noise);
@@ -399,6 +386,22 @@ void read_faults(const Map& map, CameraChoice& camera) {
   if (const Value* seed = map.find("seed")) {
     camera.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
   }
+}
+
+/// The rays through the corners of the image, with z = 1.
+std::array<Vec3, 4> corner_rays(const CameraChoice& camera) {
+  double left = -std::tan(0.5 * camera.view);
+  double right = -left;
+  double top = left * camera.height / camera.width;
+  double bottom = -top;
+  if (camera.recording) {
+    const RecordingChoice& from = *camera.recording;
+    left = (-0.5 - from.cx) / from.fx;
+    right = (camera.width - 0.5 - from.cx) / from.fx;
+    top = (-0.5 - from.cy) / from.fy;
+    bottom = (camera.height - 0.5 - from.cy) / from.fy;
+  }
+  return {{{left, top, 1.0}, {right, top, 1.0}, {left, bottom, 1.0}, {right, bottom, 1.0}}};
 }
 
 /// The map of a camera, in which all that it can see has a place.
@@ -411,14 +414,10 @@ std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera
   map.read("cube", {unit::length, 0.005, 1.0}, choice.cube);
   map.read("keeps", {unit::time, 0.0, 1e6}, choice.keeps);
   choice.low = choice.high = camera.X_WC.translation();
-  const double side = camera.farthest * std::tan(0.5 * camera.view);
-  const double height = side * camera.height / camera.width;
-  for (const double x : {-side, side}) {
-    for (const double y : {-height, height}) {
-      const Vec3 corner = camera.X_WC * Vec3(x, y, camera.farthest);
-      choice.low = choice.low.cwiseMin(corner);
-      choice.high = choice.high.cwiseMax(corner);
-    }
+  for (const Vec3& ray : corner_rays(camera)) {
+    const Vec3 corner = camera.X_WC * (camera.farthest * ray);
+    choice.low = choice.low.cwiseMin(corner);
+    choice.high = choice.high.cwiseMax(corner);
   }
   constexpr double most = 16e6;
   const double cubes = ((choice.high - choice.low) / choice.cube).array().ceil().prod();
@@ -433,18 +432,9 @@ std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera
   return choice;
 }
 
-/// @param more keys beside those of the camera itself
-CameraChoice camera_of(const Value& value, const Laws& laws,
-                       std::initializer_list<std::string_view> more) {
-  const Map map(value);
-  std::vector<std::string_view> keys{"position",     "look_at",  "width",  "height",  "view",
-                                     "nearest",      "farthest", "rate",   "latency", "noise",
-                                     "lost",         "seed",     "unseen", "margin",  "parts",
-                                     "silent_after", "law",      "map"};
-  keys.insert(keys.end(), more);
-  map.allow(keys);
-  CameraChoice camera;
-  camera.X_WC = pose_of_camera(map);
+/// Where a simulated camera is and what its images are like.
+void read_simulated(const Map& map, CameraChoice& camera) {
+  camera.X_WC = detail::pose_of_camera(map);
   if (const Value* width = map.find("width")) {
     camera.width = static_cast<int>(width->integer(16, 1920));
   }
@@ -452,11 +442,45 @@ CameraChoice camera_of(const Value& value, const Laws& laws,
     camera.height = static_cast<int>(height->integer(16, 1080));
   }
   map.read("view", {unit::angle, 0.1, 2.6}, camera.view);
+  map.read("rate", {unit::frequency, 0.1, 1000.0}, camera.rate_hz);
+  read_faults(map, camera);
+}
+
+/// The same of recorded images. @param file of the scene
+void read_recorded(const Map& map, const std::string& file, CameraChoice& camera) {
+  const Value& value = map.at("recording");
+  camera.recording = detail::recording_of(folder_of(value, file), camera);
+  if (const Value* repeats = map.find("repeat")) {
+    camera.recording->repeats = repeats->word_of({"yes", "no"}) == "yes";
+  }
+}
+
+/// @param more keys beside those of the camera itself @param file of the scene
+CameraChoice camera_of(const Value& value, const Laws& laws, const std::string& file,
+                       std::initializer_list<std::string_view> more) {
+  const Map map(value);
+  const bool is_recorded = map.find("recording") != nullptr;
+  std::vector<std::string_view> keys{"nearest", "farthest",     "latency", "unseen", "margin",
+                                     "parts",   "silent_after", "law",     "map"};
+  keys.insert(keys.end(), more);
+  // What a recording says of itself the scene does not say.
+  keys.emplace_back("recording");
+  if (is_recorded) {
+    keys.emplace_back("repeat");
+  } else {
+    keys.insert(keys.end(), {"position", "look_at", "orientation", "width", "height", "view",
+                             "rate", "noise", "lost", "seed"});
+  }
+  map.allow(keys);
+  CameraChoice camera;
+  if (is_recorded) {
+    read_recorded(map, file, camera);
+  } else {
+    read_simulated(map, camera);
+  }
   map.read("nearest", {unit::length, 1e-3, 100.0}, camera.nearest);
   map.read("farthest", {unit::length, camera.nearest, 1000.0}, camera.farthest);
-  map.read("rate", {unit::frequency, 0.1, 1000.0}, camera.rate_hz);
   map.read("latency", {unit::time, 0.0, 10.0}, camera.latency);
-  read_faults(map, camera);
   if (const Value* unseen = map.find("unseen")) {
     camera.is_unseen_solid = unseen->word_of({"free", "solid"}) == "solid";
   }
@@ -476,17 +500,17 @@ CameraChoice camera_of(const Value& value, const Laws& laws,
 }
 
 /// The one of `camera`, or those of `cameras`.
-std::vector<CameraChoice> cameras_of(const Map& scene, const Laws& laws) {
+std::vector<CameraChoice> cameras_of(const Map& scene, const Laws& laws, const std::string& file) {
   std::vector<CameraChoice> cameras;
   const Value* const only = scene.find("camera");
-  if (only != nullptr) cameras.push_back(camera_of(*only, laws, {}));
+  if (only != nullptr) cameras.push_back(camera_of(*only, laws, file, {}));
   const Value* const all = scene.find("cameras");
   if (all == nullptr) return cameras;
   if (only != nullptr) all->fail("'cameras' beside 'camera'; allowed: one of the two");
   std::set<std::string> names;
   int parts = 0;
   for (const Value& entry : all->list(most_cameras)) {
-    CameraChoice& camera = cameras.emplace_back(camera_of(entry, laws, {"name"}));
+    CameraChoice& camera = cameras.emplace_back(camera_of(entry, laws, file, {"name"}));
     const Map map(entry);
     const Value& name = map.at("name");
     camera.name = name.text();
@@ -848,7 +872,7 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   const ShapeFile shapes{file, counted, scene.part_lists};
   scene.loose = loose_of(map, laws, shapes);
   scene.spare = spare_of(map, laws);
-  scene.cameras = cameras_of(map, laws);
+  scene.cameras = cameras_of(map, laws, file);
   scene.hidden = hidden_of(map, shapes, !scene.cameras.empty());
   if (!scene.cameras.empty() && scene.spare.count > 0) {
     map.at("spare").fail("'spare' beside a camera; allowed: one of the two");

@@ -56,6 +56,18 @@ TEST(CamerasOfAScene, AreBlindAllOrByName) {
             std::string::npos);
 }
 
+TEST(CamerasOfAScene, AreTurnedByAPointOrAQuaternion) {
+  const auto pose = [](const std::string& turn) {
+    return scene_with("camera: {position: 1.25 0.35 0.95 m, " + turn + "}\n").cameras[0].X_WC;
+  };
+  const Pose X = pose("look_at: 0.5 -0.1 0.15 m");
+  EXPECT_TRUE(pose("orientation: -0.45088 -0.79634 0.35083 0.19864").isApprox(X, 1e-4));
+  EXPECT_NE(complaint("camera: {" + at + ", orientation: 0 0 0 1}\n").find("one of the two"),
+            std::string::npos);
+  EXPECT_NE(complaint("camera: {position: 0 0 0 m, orientation: 0 0 1 1}\n").find("squares is 1"),
+            std::string::npos);
+}
+
 TEST(CamerasOfAScene, MayHaveAMapOfAllThatTheyCanSee) {
   EXPECT_FALSE(scene_with(two).cameras[0].map);
   const Scene scene = scene_with(

@@ -19,6 +19,7 @@
 #include <repel/loop/reciprocating_motion.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/scene/camera.hpp>
 #include <repel/scene/module_kinds.hpp>
 #include <repel/scene/network.hpp>
 #include <repel/scene/part_list.hpp>
@@ -83,35 +84,6 @@ struct SpareParts {
   int count = 0;
   double room = 0.3;  ///< [m] largest reach from their centres
   ForceLaw law;
-};
-
-/// A map in which the images of a camera are entered.
-struct MapChoice {
-  double cube = 0.05;        ///< [m] edge of its cubes
-  double keeps = 2.0;        ///< [s] what is seen no more, but not seen through either
-  Vec3 low = Vec3::Zero();   ///< [m] corners of the region of the map: all that the camera can see
-  Vec3 high = Vec3::Zero();  ///< [m]
-};
-
-/// A depth camera that looks at the scene, simulated, and the parts that are made of its images.
-struct CameraChoice {
-  std::string name;               ///< empty: that of the key `camera`, the only one
-  Pose X_WC = Pose::Identity();   ///< [m] x to the right of the image, y down, z along the axis
-  int width = 320, height = 240;  ///< [px]
-  double view = 1.05;             ///< [rad] across the image
-  double nearest = 0.2;           ///< [m] nearer depths are not measured
-  double farthest = 4.0;          ///< [m] nor are farther ones
-  double rate_hz = 30.0;          ///< [Hz]
-  double latency = 0.033;         ///< [s] from an image to the parts made of it
-  double noise = 0.0;             ///< [m] standard deviation at 1 m
-  double lost = 0.0;              ///< share of pixels without a depth
-  std::uint64_t seed = 1;         ///< of both
-  bool is_unseen_solid = false;   ///< what is behind something that is seen
-  double margin = 0.03;           ///< [m] around what is in the model: is taken out of images
-  int parts = 400;                ///< reserved
-  double silent_after = 0.2;      ///< [s] without an image the operator's commands no longer count
-  ForceLaw law;                   ///< of the parts
-  std::optional<MapChoice> map;   ///< none: each image becomes parts by itself
 };
 
 /// One convex part P that cameras see and the world model does not know.
