@@ -1,5 +1,7 @@
 #include "part_maker.hpp"
 
+#include <algorithm>
+
 #include <repel/base/setup_error.hpp>
 #include <repel/percepts/depth_memory.hpp>
 #include <repel/percepts/perceived_parts.hpp>
@@ -62,9 +64,15 @@ class CellMaker final : public PartMaker {
 };
 
 #ifdef REPEL_TELEOP_OCTREES
+/// [m] As that of cells, unless the cubes are too small for it.
+double slack_of(const scene::MapChoice& choice) {
+  return std::min(percepts::PerceivedOptions{}.slack, 0.25 * choice.cube);
+}
+
 octrees::DepthMapOptions map_of(const scene::MapChoice& choice) {
   octrees::DepthMapOptions options;
   options.cube = choice.cube;
+  options.slack = slack_of(choice);
   options.keeps = choice.keeps;
   options.region = {choice.low, choice.high};
   return options;
@@ -75,6 +83,7 @@ octrees::MappedOptions mapped(const scene::CameraChoice& choice, const CameraPla
   options.most = choice.parts / 2;
   options.region = {choice.map->low, choice.map->high};
   options.room = room_of_seen - 0.1;
+  options.slack = slack_of(*choice.map);
   options.share = place.share;
   options.on_add = place.on_add;
   return options;

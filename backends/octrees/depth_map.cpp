@@ -28,6 +28,7 @@ DepthMap::DepthMap(const percepts::DepthCamera& camera, const DepthMapOptions& o
     : camera_(percepts::checked(camera)),
       options_(options),
       tree_(repel::checked("edge of a cube", options.cube, 1e-3, 10.0, "m")) {
+  repel::checked("slack", options.slack, 0.0, 0.25 * options.cube, "m");
   repel::checked("images until a cube is free", options.frees, 1, 1000, "");
   repel::checked("keeps", options.keeps, 0.0, 1e6, "s");
   const cover::CubeRange cubes = cubes_in(options_.region, options_.cube);
@@ -38,7 +39,7 @@ DepthMap::DepthMap(const percepts::DepthCamera& camera, const DepthMapOptions& o
     places_ *= static_cast<std::size_t>(size_[k]);
   }
   marks_.assign(places_, Mark::none);
-  known_.assign(places_, 0);
+  states_.assign(places_, State::unknown);
   hit_at_.assign(places_, 0.0F);
   // A hit fills up, whatever there was; so many images take it all and a little more. What is free
   // is as free after one image as after many.
@@ -95,7 +96,7 @@ void DepthMap::mark_ends(std::span<const float> depth, const Pose& X_WC) {
       const octomap::point3d end = point_of(X_WC * (far * camera_.ray(u, v)));
       octomap::OcTreeKey key;
       if (!tree_.coordToKeyChecked(end, key)) continue;
-      mark(key, is_hit ? Mark::hit : Mark::hidden);
+      mark(is_hit ? taken_for(end, key) : key, is_hit ? Mark::hit : Mark::hidden);
       // At this depth every so many pixels are half a cube; a power of two, so that the rays of
       // what is farther are between those of what is nearer.
       const double pixels = 0.5 * options_.cube * std::min(camera_.fx, camera_.fy) / far;
@@ -104,6 +105,35 @@ void DepthMap::mark_ends(std::span<const float> depth, const Pose& X_WC) {
       if (u % step == 0 && v % step == 0) ends_.push_back(end);
     }
   }
+}
+
+bool DepthMap::is_taken(const octomap::OcTreeKey& key) const noexcept {
+  const std::size_t place = place_of(key);
+  if (place == places_) return false;
+  return states_[place] == State::occupied || marks_[place] == Mark::hit;
+}
+
+octomap::OcTreeKey DepthMap::taken_for(const octomap::point3d& p,
+                                       const octomap::OcTreeKey& own) const {
+  if (options_.slack == 0.0 || is_taken(own)) return own;
+  // The neighbours within the slack: over a face, an edge or a corner.
+  std::array<int, 3> step{0, 0, 0};
+  for (unsigned k = 0; k < 3; ++k) {
+    const double from_middle = static_cast<double>(p(k)) - tree_.keyToCoord(own[k]);
+    if (std::abs(from_middle) < 0.5 * options_.cube - options_.slack) continue;
+    step[k] = from_middle > 0.0 ? 1 : -1;
+  }
+  for (unsigned choice = 1; choice < 8; ++choice) {
+    octomap::OcTreeKey other = own;
+    bool is_near = true;
+    for (unsigned k = 0; k < 3; ++k) {
+      if ((choice >> k & 1U) == 0U) continue;
+      is_near = is_near && step[k] != 0;
+      other[k] = static_cast<octomap::key_type>(other[k] + step[k]);
+    }
+    if (is_near && is_taken(other)) return other;
+  }
+  return own;
 }
 
 void DepthMap::mark_rays(const octomap::point3d& from) {
@@ -116,22 +146,21 @@ void DepthMap::mark_rays(const octomap::point3d& from) {
 void DepthMap::settle(std::size_t place, const octomap::OcTreeKey& key, double time) {
   if (marks_[place] == Mark::hit) {
     (void)tree_.updateNode(key, true);
-    known_[place] = 0;
+    states_[place] = State::occupied;
     hit_at_[place] = static_cast<float>(time);
     return;
   }
-  if (known_[place] != 0) return;
-  const octomap::OcTreeNode* node = tree_.search(key);
-  const bool is_occupied = node != nullptr && tree_.isNodeOccupied(node);
+  if (states_[place] == State::free) return;
+  const bool is_occupied = states_[place] == State::occupied;
   if (marks_[place] == Mark::hidden) {
     // What the robot hides within its margin may have gone unseen.
     if (!is_occupied || time - static_cast<double>(hit_at_[place]) <= options_.keeps) return;
     (void)tree_.setNodeValue(key, tree_.getClampingThresMinLog());
+    states_[place] = State::free;
     return;
   }
-  (void)tree_.updateNode(key, false);
-  node = tree_.search(key);
-  known_[place] = node != nullptr && !tree_.isNodeOccupied(node) ? 1 : 0;
+  const octomap::OcTreeNode* const node = tree_.updateNode(key, false);
+  if (!tree_.isNodeOccupied(node)) states_[place] = State::free;
 }
 
 }  // namespace repel::octrees

@@ -132,12 +132,13 @@ MappedParts::MappedParts(double resolution, WorldChanges& changes, const MappedO
     : resolution_(repel::checked("edge of a cube", resolution, 1e-3, 10.0, "m")),
       changes_(&changes),
       options_(options),
+      reach_(options.room - diagonal(repel::checked("slack", options.slack, 0.0, 0.1, "m"))),
       range_(cubes_in(options.region, resolution)) {
   repel::checked("boxes", options.most, 1, 100'000, "");
   repel::checked("over", options.over, 0.0, 10.0, "s");
-  repel::checked("room", options.room, std::max(1e-3, 0.5 * diagonal(resolution)), 100.0, "m");
+  repel::checked("room", options.room, diagonal(0.5 * resolution + options.slack), 100.0, "m");
   const auto has_room = [&](int level) {
-    return 0.5 * diagonal(std::ldexp(resolution, level)) <= options.room;
+    return 0.5 * diagonal(std::ldexp(resolution, level)) <= reach_;
   };
   while (most_level_ < most_doublings && has_room(most_level_ + 1)) ++most_level_;
 }
@@ -170,18 +171,18 @@ std::vector<CubeRange> MappedParts::planned(const OccupancyGrid& fine, MapCounts
   };
   if (level_ > 0) {
     const auto limit = static_cast<std::size_t>(few * options_.most);
-    Plan finer(fine, range_, level_ - 1, options_.room);
+    Plan finer(fine, range_, level_ - 1, reach_);
     if (makes(finer, false, limit, 2 * limit)) --level_;
   }
   for (;; ++level_) {
     for (const bool keeps : {true, false}) {
-      Plan plan(fine, range_, level_, options_.room);
+      Plan plan(fine, range_, level_, reach_);
       // Thinning out makes fewer of them, but not of any number.
       if (makes(plan, keeps, most, 2 * most)) return boxes_of(plan);
     }
     if (level_ == most_level_) break;
   }
-  Plan plan(fine, range_, level_, options_.room);
+  Plan plan(fine, range_, level_, reach_);
   (void)plan.fill(fine.solid.size());
   plan.thin_out();
   std::vector<CubeRange> boxes = boxes_of(plan);
@@ -225,7 +226,7 @@ bool MappedParts::add(const CubeRange& cubes) {
   Pose X_WP = Pose::Identity();
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
-    half[axis] = 0.5 * resolution_ * (cubes.high[k] + 1 - cubes.low[k]);
+    half[axis] = 0.5 * resolution_ * (cubes.high[k] + 1 - cubes.low[k]) + options_.slack;
     X_WP.translation()[axis] = 0.5 * resolution_ * (cubes.high[k] + 1 + cubes.low[k]);
   }
   const Shape shape = Shape::box(half, {.levels = 1});

@@ -120,6 +120,44 @@ TEST(DepthMap, KeepsWhatTheRobotHides) {
   EXPECT_FALSE(stage.is_occupied(other, front));
 }
 
+TEST(DepthMap, WithASlackIsNotChangedByNoise) {
+  constexpr unsigned seed = 45;
+  constexpr double slack = 0.01;
+  std::array<int, 2> changes{};
+  for (const bool has_slack : {false, true}) {
+    std::mt19937 random(seed);
+    Stage stage;
+    DepthMap map = stage.map({.slack = has_slack ? slack : 0.0});
+    const auto clean = seen::depths(stage.camera, {ball}, {wall});
+    const cover::CubeRange region = cubes_in(map.options().region, map.options().cube);
+    std::vector<std::uint8_t> last;
+    for (int i = 0; i < 40; ++i) {
+      auto image = clean;
+      seen::spoil(image, 0.001, 0.1, random);
+      (void)map.insert(image, stage.X_WC, i / 30.0);
+      for (std::size_t k = 0; k < image.size() && i == 39; k += 7) {
+        if (!stage.camera.measures(image[k])) continue;
+        const Vec3 p = stage.X_WC *
+                       stage.point(static_cast<int>(k) % 160, static_cast<int>(k) / 160, image[k]);
+        bool is_near = false;
+        for (int side = 0; side < 27; ++side) {
+          const Vec3 q = p + 1.001 * slack * Vec3(side % 3 - 1, side / 3 % 3 - 1, side / 9 - 1);
+          const auto* const node = map.tree().search(q.x(), q.y(), q.z());
+          is_near = is_near || (node != nullptr && map.tree().isNodeOccupied(node));
+        }
+        ASSERT_TRUE(is_near) << "seed " << seed;
+      }
+      const std::vector<std::uint8_t> now = grid_of(map.tree(), region, false).solid;
+      for (std::size_t k = 0; k < last.size() && i >= 10; ++k) {
+        changes[has_slack ? 1 : 0] += now[k] != last[k] ? 1 : 0;
+      }
+      last = now;
+    }
+  }
+  EXPECT_GT(changes[0], 50) << "the noise should cross faces of cubes, seed " << seed;
+  EXPECT_LE(changes[1], changes[0] / 20) << "seed " << seed;
+}
+
 TEST(DepthMap, EndsWithItsRegion) {
   Stage stage;
   const DepthMapOptions options{.region = {{-0.3, -0.3, -0.4}, {0.3, 0.3, 0.3}}};
@@ -139,6 +177,7 @@ TEST(DepthMap, RefusesWhatIsOutOfRange) {
   EXPECT_THROW((void)stage.map({.cube = 0.0}), SetupError);
   EXPECT_THROW((void)stage.map({.cube = 1e-3}), SetupError) << "too many cubes";
   EXPECT_THROW((void)stage.map({.frees = 0}), SetupError);
+  EXPECT_THROW((void)stage.map({.slack = 0.02}), SetupError) << "more than a quarter of a cube";
   EXPECT_THROW((void)stage.map({.keeps = -1.0}), SetupError);
 }
 

@@ -273,6 +273,19 @@ TEST(MappedParts, AreNoLargerThanTheirRoom) {
   }
 }
 
+TEST(MappedParts, AreLargerByTheirSlack) {
+  Stage stage({.region = region, .room = 0.3, .slack = 0.01});
+  stage.set_block({-11, -9, -5}, {20, 20, 2}, true);
+  (void)stage.see();
+  EXPECT_NEAR(stage.outside({0.0, 0.0, -0.14}), 0.0, 1e-9);
+  EXPECT_NEAR(stage.outside({0.0, 0.0, -0.26}), 0.0, 1e-9);
+  for (const auto& loose : stage.world.loose()) {
+    if (stage.world.is_there(loose.part)) {
+      EXPECT_LE(stage.world.part(loose.part).shape.reach(), 0.3);
+    }
+  }
+}
+
 TEST(MappedParts, RefuseWhatIsOutOfRange) {
   Stage stage({.region = region});
   EXPECT_THROW((void)stage.parts->see(octomap::OcTree(0.1)), SetupError);

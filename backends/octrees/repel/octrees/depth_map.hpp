@@ -17,13 +17,16 @@ namespace repel::octrees {
 
 struct DepthMapOptions {
   double cube = 0.05;  ///< [m] edge of a cube, 0.001 to 10
+  double slack = 0.0;  ///< [m] a point that is so near to an occupied cube is counted as in it, so
+                       ///< that noise of the camera changes no cubes; 0 to a quarter of `cube`
   int frees = 3;       ///< images that see through an occupied cube until it is free, 1 to 1000
   double keeps = 2.0;  ///< [s] how long a cube stays occupied in which only the robot is seen, 0 to
                        ///< 1e6
   Region region{};     ///< of which there is a map
 };
 
-/// Enters depth images in an octree: a cube in which a point was measured is occupied. It stays so
+/// Enters depth images in an octree: a cube in which a point was measured is occupied, or with a
+/// `slack` another one that is no farther away than that and occupied already. It stays so
 /// where nothing is seen of it, and is free again when several images have seen through it. Pixels
 /// with a negative depth show the robot (percepts::OwnBody): what is before them is free, where
 /// they end is neither, since within its margin there may be something else.
@@ -43,9 +46,14 @@ class DepthMap {
   [[nodiscard]] const DepthMapOptions& options() const noexcept { return options_; }
 
  private:
+  enum class State : std::uint8_t { unknown, free, occupied };
   /// What an image says of a cube; the greater one counts.
   enum class Mark : std::uint8_t { none, free, hidden, hit };
 
+  /// The cube that a measured point [m] makes, or keeps, occupied. @param own in which it is
+  [[nodiscard]] octomap::OcTreeKey taken_for(const octomap::point3d& p,
+                                             const octomap::OcTreeKey& own) const;
+  [[nodiscard]] bool is_taken(const octomap::OcTreeKey& key) const noexcept;
   /// The place of a cube in the lists; `places_` if it is not in the region.
   [[nodiscard]] std::size_t place_of(const octomap::OcTreeKey& key) const noexcept;
   void mark(const octomap::OcTreeKey& key, Mark what);
@@ -59,9 +67,9 @@ class DepthMap {
   std::array<int, 3> low_{}, size_{};  ///< of the region, in cubes of OctoMap's count
   std::size_t places_ = 0;
   // By place:
-  std::vector<Mark> marks_;          ///< of this image
-  std::vector<std::uint8_t> known_;  ///< whether the tree has it as free for certain
-  std::vector<float> hit_at_;        ///< [s] when something was last measured there
+  std::vector<Mark> marks_;    ///< of this image
+  std::vector<State> states_;  ///< as in the tree
+  std::vector<float> hit_at_;  ///< [s] when something was last measured there
   std::vector<octomap::OcTreeKey> marked_;
   std::vector<octomap::point3d> ends_;  ///< [m] of the rays of this image
   octomap::KeyRay ray_;

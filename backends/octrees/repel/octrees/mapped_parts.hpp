@@ -17,6 +17,8 @@ struct MappedOptions {
   bool is_unseen_solid = false;  ///< what the tree does not know, within the region
   Region region{};               ///< what is occupied outside of it is left out
   double room = 1.0;             ///< [m] largest reach of a box from its centre, 0.001 to 100
+  double slack = 0.0;            ///< [m] by which boxes are larger on all sides, 0 to 0.1: that of
+                                 ///< the map, DepthMapOptions
   double over = 0.05;            ///< [s] in which parts come and go, 0 to 10
   ReservedShare share{};         ///< of the reserved parts, for this map alone
   /// Is told of every new part with its shape, for displays; may be empty.
@@ -35,11 +37,12 @@ struct MapCounts {
 };
 
 /// Makes the solid cubes of an octree parts of a world that come and go: boxes that contain every
-/// solid cube and nothing else. A box that is still solid stays as it is, so where the tree has not
-/// changed nothing does. Where it has, new boxes come before those that they replace go. If they
-/// are more than `most`, they are made anew, then with cubes twice as large, until they are few
-/// enough or a cube would have no room; with smaller cubes again when these need at most 70 % of
-/// `most`. For one thread, which is the only one that uses these `WorldChanges`; it may allocate.
+/// solid cube and, but for a slack, nothing else. A box that is still solid stays as it is, so
+/// where the tree has not changed nothing does. Where it has, new boxes come before those that they
+/// replace go. If they are more than `most`, they are made anew, then with cubes twice as large,
+/// until they are few enough or a cube would have no room; with smaller cubes again when these need
+/// at most 70 % of `most`. For one thread, which is the only one that uses these `WorldChanges`; it
+/// may allocate.
 class MappedParts {
  public:
   /// @param resolution [m] edge of the cubes of the trees @param changes must outlive this object.
@@ -77,6 +80,7 @@ class MappedParts {
   double resolution_;  ///< [m]
   WorldChanges* changes_;
   MappedOptions options_;
+  double reach_;            ///< [m] largest of a box without its slack
   cover::CubeRange range_;  ///< of the region
   int level_ = 0;           ///< how often cubes are doubled
   int most_level_ = 0;
