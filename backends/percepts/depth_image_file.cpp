@@ -65,13 +65,12 @@ void read(std::FILE* file, const DepthCamera& camera, std::uint16_t* pixels, std
     message = "libpng has no memory";
     return;
   }
-  png_infop const info = png_create_info_struct(png);
+  png_infop info = png_create_info_struct(png);
   if (setjmp(png_jmpbuf(png)) == 0) {  // NOLINT(*-err52-cpp): as libpng asks for
     png_init_io(png, file);
     read_rows(png, info, camera, pixels);
   }
-  png_infop to_destroy = info;
-  png_destroy_read_struct(&png, &to_destroy, nullptr);
+  png_destroy_read_struct(&png, &info, nullptr);
 }
 
 void read_or_throw(const std::string& path, const DepthCamera& camera, std::uint16_t* pixels) {
