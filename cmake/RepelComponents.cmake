@@ -4,8 +4,8 @@ include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/.
-set(REPEL_COMPONENTS core compiled ideal devices link dds record robots cover percepts bullet ode
-    scene visual)
+set(REPEL_COMPONENTS core compiled ideal devices link dds record robots cover percepts octrees
+    bullet ode scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)
@@ -39,7 +39,8 @@ if(REPEL_HAS_DDS)
 endif()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
 repel_all_found(SDF REPEL_HAS_ROBOTS SDFORMAT_FOUND)
-foreach(part ${REPEL_COMPONENTS} meshes hacd sdf)
+repel_all_found(PNGS PNG_FOUND)
+foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs)
   repel_say_if_left_out(${part})
 endforeach()
 
@@ -51,9 +52,6 @@ endif()
 if(REPEL_BUILD_APPS)
   repel_all_found(TELEOP REPEL_HAS_HOST REPEL_HAS_ROBOTS REPEL_HAS_SCENE)
   repel_say_if_left_out(teleop)
-  repel_pkg_config(OCTOMAP octomap)
-  repel_all_found(OCTREES OCTOMAP_FOUND)
-  repel_say_if_left_out(octrees)
 endif()
 if(REPEL_BUILD_TESTS)
   find_package(GTest QUIET)

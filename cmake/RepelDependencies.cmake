@@ -81,6 +81,20 @@ macro(repel_find_cover)
   repel_all_found(COVER ${repel_for_hacd})
 endmacro()
 
+macro(repel_find_percepts)
+  # Only for recorded depth images; where it was built in, it is needed.
+  find_package(PNG QUIET)
+  if(REPEL_PERCEPTS_READS_PNG)
+    set(repel_for_pngs PNG_FOUND)
+  endif()
+  repel_all_found(PERCEPTS ${repel_for_pngs})
+endmacro()
+
+macro(repel_find_octrees)
+  repel_pkg_config(OCTOMAP octomap)
+  repel_all_found(OCTREES OCTOMAP_FOUND)
+endmacro()
+
 macro(repel_find_bullet)
   repel_pkg_config(BULLET bullet-float64)  # plain `bullet` is single precision
   repel_all_found(BULLET BULLET_FOUND)

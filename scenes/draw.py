@@ -265,8 +265,9 @@ def obstacles_of(scene):
     for part in scene.get("hidden", []):
         yield from with_way(part, "fill='#9d4edd' fill-opacity='0.18' stroke='#7b2cbf' "
                                   "stroke-width='0.8'")
-    if "camera" in scene:
-        camera = {"name": "camera", "position": scene["camera"]["position"]}
+    only = [{"name": "camera", **scene["camera"]}] if "camera" in scene else []
+    for each in only + scene.get("cameras", []):
+        camera = {"name": each["name"], "position": each["position"]}
         yield camera, (box([0.05, 0.05, 0.05]), 0.0, pose_in(camera)), "fill='#333' fill-opacity='0.3'"
     for part in scene["obstacles"]:
         law = scene.get("laws", {}).get(part.get("law", "default"), {})

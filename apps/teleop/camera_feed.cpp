@@ -1,15 +1,11 @@
 #include "camera_feed.hpp"
 
-#include <pthread.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <utility>
+#include <limits>
 
-#include <repel/reduction/separation.hpp>
-#include <repel/reduction/shape_mesh.hpp>
-#include <repel/robots/parts.hpp>
+#include <repel/base/setup_error.hpp>
+#include <repel/percepts/depth_image_file.hpp>
 
 namespace repel::teleop {
 namespace {
@@ -23,207 +19,128 @@ percepts::DepthCamera camera_of(const scene::CameraChoice& choice) {
   camera.fx = camera.fy = 0.5 * choice.width / std::tan(0.5 * choice.view);
   camera.cx = 0.5 * (choice.width - 1);
   camera.cy = 0.5 * (choice.height - 1);
+  if (const auto& recording = choice.recording) {
+    camera.fx = recording->fx, camera.fy = recording->fy;
+    camera.cx = recording->cx, camera.cy = recording->cy;
+  }
   camera.nearest = choice.nearest;
   camera.farthest = choice.farthest;
   return camera;
-}
-
-percepts::CellOptions cells_of(const scene::CameraChoice& choice) {
-  percepts::CellOptions options;
-  options.most = choice.parts / 2;  // what is new comes before what it replaces goes
-  options.room = room_of_seen - 0.1;
-  if (choice.is_unseen_solid) options.thickness = options.room;
-  // Twice the blocks to begin with must be within `most`.
-  const auto blocks = [&] {
-    return ((choice.width - 1) / options.largest + 1) * ((choice.height - 1) / options.largest + 1);
-  };
-  while (2 * blocks() > options.most) options.largest *= 2;
-  return options;
 }
 
 std::size_t images_waiting(const scene::CameraChoice& choice) {
   return static_cast<std::size_t>(std::ceil(choice.latency * choice.rate_hz)) + 2;
 }
 
-Pose nowhere() {
-  Pose X = Pose::Identity();
-  X.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
-  return X;
-}
-
-percepts::PerceivedOptions perceived(std::function<void(PartId, const Shape&)> on_add) {
-  percepts::PerceivedOptions options;
-  options.on_add = std::move(on_add);
-  return options;
-}
-
 }  // namespace
 
-Sights::Sights(const scene::Scene& scene, const std::vector<Robot>& robots, const Cell& cell)
-    : cell_(cell) {
-  for (std::size_t arm = 0; arm < robots.size(); ++arm) {
-    const scene::ArmSetup& setup = scene.arm_setup(arm);
-    kinematics_.emplace_back(cell.description().arms[arm].model);
-    joints_.push_back(cell.description().arms[arm].model.links.size());
-    const int index = static_cast<int>(arm);
-    for (const scene::Part& part : setup.tool) {
-      sights_.push_back(
-          {.name = part.name, .shape = part.shape, .X = part.X_BP, .arm = index, .is_tool = true});
-    }
-    for (const RobotPart& part : robots[arm].parts) {
-      sights_.push_back({.name = part.name,
-                         .shape = shape_of(part, {.levels = 1}),
-                         .X = part.X_LP,
-                         .arm = index,
-                         .link = part.link});
-    }
-  }
-  for (const ObstacleDescription& each : cell.description().obstacles) {
-    sights_.push_back(
-        {.name = each.name, .shape = each.shape, .X = each.X_WP, .motion = each.motion});
-  }
-  for (std::size_t i = 0; i < scene.loose.size(); ++i) {
-    const scene::LoosePart& part = scene.loose[i];
-    sights_.push_back({.name = part.name, .shape = part.shape, .loose = cell.loose()[i]});
-  }
-  for (const scene::HiddenPart& part : scene.hidden) {
-    sights_.push_back({.name = part.name,
-                       .shape = part.shape,
-                       .X = part.X_WP,
-                       .is_hidden = true,
-                       .motion = part.motion});
-  }
-}
-
-Pose Sights::pose_of(const Sight& sight, double time) const noexcept {
-  if (sight.arm >= 0) {
-    const Kinematics& arm = kinematics_[static_cast<std::size_t>(sight.arm)];
-    return composed(sight.is_tool ? arm.X_WT() : arm.X_WL(sight.link), sight.X);
-  }
-  if (sight.loose.valid()) {
-    const World& world = cell_.world();
-    const auto body = static_cast<std::size_t>(world.part(sight.loose).body.index);
-    return world.is_there(sight.loose) ? world.motion().bodies[body].X_WB : nowhere();
-  }
-  Pose X = sight.X;
-  if (sight.motion) X.translation() += sight.motion->offset(time);
-  return X;
-}
-
-void Sights::place(std::span<const TickRecord* const> records, std::vector<Pose>& X_W) noexcept {
-  for (std::size_t i = 0; i < std::min(records.size(), kinematics_.size()); ++i) {
-    kinematics_[i].update(std::span(records[i]->q).first(joints_[i]));
-  }
-  for (std::size_t i = 0; i < std::min(sights_.size(), X_W.size()); ++i) {
-    X_W[i] = pose_of(sights_[i], records.front()->time);
-  }
-}
-
-std::vector<TriangleMesh> Sights::meshes() const {
-  std::vector<TriangleMesh> meshes;
-  for (const Sight& sight : sights_) meshes.push_back(mesh_of(sight.shape));
-  return meshes;
-}
-
-std::vector<Shape> Sights::known() const {
-  std::vector<Shape> shapes;
-  for (const Sight& sight : sights_) {
-    if (!sight.is_hidden) shapes.push_back(sight.shape);
-  }
-  return shapes;
-}
-
-void Sights::measure(const std::vector<Pose>& X_W, CameraResult& result) const {
-  for (std::size_t i = 0; i < sights_.size(); ++i) {
-    const Sight& of_arm = sights_[i];
-    if (of_arm.arm < 0 || of_arm.link < 0) continue;
-    for (std::size_t k = 0; k < sights_.size(); ++k) {
-      if (!sights_[k].is_hidden) continue;
-      const Separation s = separation(of_arm.shape, X_W[i], sights_[k].shape, X_W[k],
-                                      {.ignore_beyond = result.least_clearance});
-      if (!(s.distance < result.least_clearance)) continue;
-      result.least_clearance = s.distance;
-      result.nearest_pair = of_arm.name + " - " + sights_[k].name;
-    }
-  }
-}
-
-CameraFeed::CameraFeed(const scene::Scene& scene, const std::vector<Robot>& robots, Cell& cell,
-                       bool in_step, std::function<void(PartId, const Shape&)> on_add)
-    : choice_(*scene.camera),
+CameraFeed::CameraFeed(const scene::CameraChoice& choice, const Sights& sights,
+                       const CameraPlace& place)
+    : choice_(choice),
       camera_(camera_of(choice_)),
-      sights_(scene, robots, cell),
-      simulated_(camera_, sights_.meshes(),
-                 {.noise = choice_.noise, .lost = choice_.lost, .seed = choice_.seed}),
-      own_(camera_, sights_.known(), choice_.margin),
-      memory_(camera_),
-      division_(camera_, cells_of(choice_)),
-      parts_(cell.changes(), perceived(std::move(on_add))),
+      own_(camera_, sights.known(), choice_.margin),
+      maker_(make_part_maker(choice_, camera_, place)),
       image_(camera_.pixels()),
-      X_C_(sights_.size(), Pose::Identity()),
-      X_W_(sights_.size(), Pose::Identity()),
-      ring_(images_waiting(choice_), Scenery{0.0, X_W_}),
-      period_(1e-9 * static_cast<double>(cell.period().count())),
-      in_step_(in_step) {
-  if (in_step_) return;
-  thread_ = std::jthread([this](const std::stop_token& stopped) {
-    (void)pthread_setname_np(pthread_self(), "repel camera");
-    while (!stopped.stop_requested()) {
-      if (!serve()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  });
+      X_C_(sights.size(), Pose::Identity()),
+      ring_(images_waiting(choice_), Scenery{0.0, 0, X_C_}),
+      period_(place.period) {
+  result_.name = choice_.name.empty() ? "camera" : choice_.name;
+  if (!choice_.recording) {
+    simulated_.emplace(
+        camera_, sights.meshes(),
+        percepts::CameraFaults{.noise = choice_.noise, .lost = choice_.lost, .seed = choice_.seed});
+    return;
+  }
+  for (const scene::RecordedImage& image : choice_.recording->images) {
+    percepts::check_depth_image(image.file, camera_);
+  }
 }
 
-void CameraFeed::follow(std::span<const TickRecord* const> records, bool is_blind) {
-  const double time = records.front()->time;
+void CameraFeed::follow(double time, const std::vector<Pose>& X_W, bool is_blind) noexcept {
   now_.store(time, std::memory_order_release);
-  sights_.place(records, X_W_);
-  sights_.measure(X_W_, result_);
+  if (choice_.recording) return follow_recording(time, X_W, is_blind);
   // Half a tick early or late, so that images are equally spaced whatever the rates are.
-  if (time >= next_ - 0.5 * period_) {
-    next_ = std::max(next_ + 1.0 / choice_.rate_hz, time);
-    if (!is_blind) {
-      ring_.draft().time = time;
-      ring_.draft().X_W = X_W_;
-      (void)ring_.post();
-    }
-  }
-  if (in_step_) {
-    while (serve()) continue;
-  }
-  if (silent_for() > 0.0) result_.silent += period_ * static_cast<double>(records.front()->elapsed);
+  if (time < next_ - 0.5 * period_) return;
+  next_ = std::max(next_ + 1.0 / choice_.rate_hz, time);
+  if (!is_blind) post(time, 0, X_W);
 }
 
-bool CameraFeed::serve() {
+void CameraFeed::follow_recording(double time, const std::vector<Pose>& X_W,
+                                  bool is_blind) noexcept {
+  const std::size_t first = next_image_;
+  while (due(next_image_) <= time + 0.5 * period_) ++next_image_;
+  if (next_image_ == first) return;
+  // Of several that have become due since the last tick, the last.
+  skipped_ += static_cast<std::int64_t>(next_image_ - first) - 1;
+  const std::size_t last = next_image_ - 1;
+  if (!is_blind) post(due(last), last % choice_.recording->images.size(), X_W);
+}
+
+double CameraFeed::due(std::size_t image) const noexcept {
+  const std::vector<scene::RecordedImage>& images = choice_.recording->images;
+  const std::size_t rounds = image / images.size();
+  if (rounds > 0 && !choice_.recording->repeats) return std::numeric_limits<double>::infinity();
+  const double first = images.front().time;
+  const double duration = images.back().time - first + 1.0 / choice_.rate_hz;
+  return images[image % images.size()].time - first + duration * static_cast<double>(rounds);
+}
+
+void CameraFeed::post(double time, std::size_t image, const std::vector<Pose>& X_W) noexcept {
+  ring_.draft().time = time;
+  ring_.draft().image = image;
+  ring_.draft().X_W = X_W;
+  (void)ring_.post();
+}
+
+void CameraFeed::count_silence(double elapsed) noexcept {
+  if (silent_for() > 0.0) silent_ += elapsed;
+}
+
+bool CameraFeed::serve(bool early) {
   const Scenery* const oldest = ring_.front();
   if (oldest == nullptr) return false;
   const bool was_new = !has_looked_;
-  if (was_new) look(*oldest);
+  if (was_new && !look(*oldest)) {
+    ++result_.lost;
+    ring_.pop();
+    return true;
+  }
   const double now = now_.load(std::memory_order_acquire);
-  if (now < oldest->time + choice_.latency - 0.5 * period_) return was_new && !in_step_;
+  if (now < oldest->time + choice_.latency - 0.5 * period_) return was_new && early;
   const auto begin = steady_clock::now();
-  const percepts::PerceptCounts counts = parts_.see(cells_, division_, choice_.X_WC, oldest->time);
+  const MadeParts made = maker_->make();
   result_.compute.record(looking_ + (steady_clock::now() - begin));
   ++result_.images;
-  result_.most_cells = std::max(result_.most_cells, counts.cells);
-  result_.left_out += counts.left_out;
-  result_.made += counts.added;
+  result_.most_cells = std::max(result_.most_cells, made.cells);
+  result_.largest_cube = std::max(result_.largest_cube, made.cube);
+  result_.left_out += made.left_out;
+  result_.made += made.added;
   seen_at_.store(oldest->time, std::memory_order_release);
   has_looked_ = false;
   ring_.pop();
   return true;
 }
 
-void CameraFeed::look(const Scenery& scenery) {
+bool CameraFeed::look(const Scenery& scenery) {
   const Pose X_CW = choice_.X_WC.inverse();
   for (std::size_t i = 0; i < X_C_.size(); ++i) X_C_[i] = composed(X_CW, scenery.X_W[i]);
-  simulated_.take(X_C_, image_);
+  if (simulated_) {
+    simulated_->take(X_C_, image_);
+  } else {
+    const scene::RecordingChoice& recording = *choice_.recording;
+    try {
+      percepts::read_depth_image(recording.images[scenery.image].file, camera_, recording.unit,
+                                 image_);
+    } catch (const SetupError&) {  // it is damaged behind its head, or no longer there
+      return false;
+    }
+  }
   const auto begin = steady_clock::now();
   (void)own_.remove(X_C_, image_);
-  (void)memory_.fill(image_, scenery.time);
-  cells_ = division_.divide(image_);
+  maker_->look(image_, scenery.time);
   looking_ = steady_clock::now() - begin;
   has_looked_ = true;
+  return true;
 }
 
 double CameraFeed::silent_for() const noexcept {
@@ -232,12 +149,11 @@ double CameraFeed::silent_for() const noexcept {
   return age > choice_.silent_after ? age : 0.0;
 }
 
-void CameraFeed::stop() {
-  if (thread_.joinable()) {
-    thread_.request_stop();
-    thread_.join();
-  }
-  result_.lost = ring_.dropped();
+ImageResult CameraFeed::result() const {
+  ImageResult result = result_;
+  result.lost += ring_.dropped() + skipped_;
+  result.silent = silent_;
+  return result;
 }
 
 }  // namespace repel::teleop

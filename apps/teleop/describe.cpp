@@ -184,11 +184,10 @@ DescribedScene describe(const scene::Scene& scene, double rate_hz, bool with_gra
     cell.loose.push_back({"spare_" + std::to_string(i), nothing, Pose::Identity(), scene.spare.law,
                           false, scene.spare.room});
   }
-  if (scene.camera) {
-    const scene::CameraChoice& camera = *scene.camera;
+  for (const scene::CameraChoice& camera : scene.cameras) {
     const Shape nothing = Shape::box({5e-3, 5e-3, 5e-3}, {.levels = 1});  // few corners to send
     for (int i = 0; i < camera.parts; ++i) {
-      cell.loose.push_back({.name = "seen",
+      cell.loose.push_back({.name = name_of_seen(camera),
                             .shape = nothing,
                             .law = camera.law,
                             .room = room_of_seen,

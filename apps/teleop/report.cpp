@@ -283,34 +283,53 @@ void print_steps(const RunResult& r, std::FILE* out) {
                static_cast<int>(refused));
 }
 
-/// The camera and what it saw: null if the scene has none.
-ordered_json camera_to_json(const RunResult& r) {
-  if (!r.camera) return nullptr;
-  const CameraResult& c = *r.camera;
-  const bool has_nearest = std::isfinite(c.least_clearance);
+ordered_json images_to_json(const ImageResult& c) {
   return {{"images", c.images},
           {"images_lost", c.lost},
           {"most_cells", c.most_cells},
+          {"largest_cube_m", c.largest_cube > 0.0 ? ordered_json(c.largest_cube) : ordered_json()},
           {"parts_made", c.made},
           {"cells_left_out", c.left_out},
           {"silent_s", c.silent},
           {"compute_p50_us", c.compute.percentile_us(0.5)},
-          {"compute_p99_us", c.compute.percentile_us(0.99)},
-          {"least_clearance_m", has_nearest ? ordered_json(c.least_clearance) : ordered_json()},
-          {"least_clearance_pair", c.nearest_pair}};
+          {"compute_p99_us", c.compute.percentile_us(0.99)}};
+}
+
+/// All cameras together and what they saw: null if the scene has none.
+ordered_json camera_to_json(const RunResult& r) {
+  if (!r.camera) return nullptr;
+  ordered_json object = images_to_json(r.camera->all);
+  const Clearance& c = r.camera->clearance;
+  object["least_clearance_m"] = std::isfinite(c.least) ? ordered_json(c.least) : ordered_json();
+  object["least_clearance_pair"] = c.pair;
+  return object;
+}
+
+/// One entry for each camera.
+ordered_json cameras_to_json(const RunResult& r) {
+  ordered_json list = ordered_json::array();
+  if (!r.camera) return list;
+  for (const ImageResult& each : r.camera->each) {
+    ordered_json object = {{"name", each.name}};
+    object.update(images_to_json(each));
+    list.push_back(std::move(object));
+  }
+  return list;
 }
 
 void print_camera(const RunResult& r, std::FILE* out) {
   if (!r.camera) return;
-  const CameraResult& c = *r.camera;
-  std::fprintf(out,
-               "  camera                 %lld images, up to %d cells; p99 %.1f ms an image; silent "
-               "for %.1f s%s\n",
-               static_cast<long long>(c.images), c.most_cells, 1e-3 * c.compute.percentile_us(0.99),
-               c.silent, c.left_out > 0 ? "; NOT ALL of it found a part" : "");
-  if (c.nearest_pair.empty()) return;
-  std::fprintf(out, "  clearance to what it saw %.1f mm at least (%s)\n", 1e3 * c.least_clearance,
-               c.nearest_pair.c_str());
+  for (const ImageResult& c : r.camera->each) {
+    std::fprintf(out,
+                 "  %-22s %lld images, up to %d cells; p99 %.1f ms an image; silent for %.1f s%s\n",
+                 c.name.c_str(), static_cast<long long>(c.images), c.most_cells,
+                 1e-3 * c.compute.percentile_us(0.99), c.silent,
+                 c.left_out > 0 ? "; NOT ALL of it found a part" : "");
+  }
+  const Clearance& clearance = r.camera->clearance;
+  if (clearance.pair.empty()) return;
+  std::fprintf(out, "  clearance to what it saw %.1f mm at least (%s)\n", 1e3 * clearance.least,
+               clearance.pair.c_str());
 }
 
 /// What the run did not evaluate or use, in one paragraph.
@@ -528,6 +547,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["obstacles"] = obstacle_list(r);
   report["steps"] = steps_to_json(r);
   report["camera"] = camera_to_json(r);
+  report["cameras"] = cameras_to_json(r);
   report["link"] = r.link ? link_to_json(*r.link) : ordered_json(nullptr);
   report["station"] = station_to_json(r);
   report["physical_contact"] = contact_to_json(r, r.arms.front());

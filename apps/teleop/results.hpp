@@ -20,7 +20,7 @@
 #include <repel/world/contact.hpp>
 #include <repel/world/world.hpp>
 
-#include "camera_feed.hpp"
+#include "camera_feeds.hpp"
 #include "chatter.hpp"
 #include "link_result.hpp"
 #include "machine.hpp"
@@ -127,7 +127,7 @@ struct RunResult {
   bool interrupted = false;
   bool begins_anew = false;              ///< the user requested another run
   std::vector<PartStepResult> steps;     ///< of the parts that come and go
-  std::optional<CameraResult> camera;    ///< if the scene has one
+  std::optional<CameraResult> camera;    ///< if the scene has cameras
   std::optional<LinkResult> link;        ///< if the operator is in another program
   std::optional<StationEnding> station;  ///< if it ran beside this program
   ReplayReport replay;                   ///< of a replay

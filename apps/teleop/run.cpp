@@ -13,7 +13,7 @@
 #include <repel/world/sensed_arm.hpp>
 
 #include "arm_backend.hpp"
-#include "camera_feed.hpp"
+#include "camera_feeds.hpp"
 #include "chatter.hpp"
 #include "contact.hpp"
 #include "driven_cell.hpp"
@@ -128,31 +128,21 @@ nanoseconds due_before(nanoseconds late) noexcept {
   return std::chrono::duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()) - late;
 }
 
-/// Whether a phase of a script that is being played makes the camera silent.
-bool is_blind(const scene::Scene& scene, std::span<const TickRecord* const> records) noexcept {
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const std::vector<bool>& blind = scene.arm_setup(i).blind;
-    const auto phase = static_cast<std::size_t>(records[i]->phase);
-    if (phase < blind.size() && blind[phase]) return true;
-  }
-  return false;
-}
-
-/// The camera of a scene; none without.
-std::unique_ptr<CameraFeed> make_camera(PreparedRun& prepared, const Attachments& attached) {
-  if (!prepared.scene.camera) return nullptr;
+/// The cameras of a scene; null without.
+std::unique_ptr<CameraFeeds> make_cameras(PreparedRun& prepared, const Attachments& attached) {
+  if (prepared.scene.cameras.empty()) return nullptr;
   std::function<void(PartId, const Shape&)> on_add;
   if (Controls* const controls = attached.controls) {
     on_add = [controls](PartId part, const Shape& shape) { controls->shapes.note(part, shape); };
   }
   const bool in_step = prepared.options.fast || attached.recording != nullptr;
-  return std::make_unique<CameraFeed>(prepared.scene, prepared.robots, prepared.cell, in_step,
-                                      std::move(on_add));
+  return std::make_unique<CameraFeeds>(prepared.scene, prepared.robots, prepared.cell, in_step,
+                                       on_add);
 }
 
 /// Runs the ticks.
-/// @param camera null: none
-void make_ticks(DrivenCell& driven, CameraFeed* camera, const Attachments& attached,
+/// @param cameras null: none
+void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& attached,
                 const std::atomic<bool>& stop, RunResult& result, Observers& observers,
                 Mailbox<Progress>& progress, TickUsage& usage) {
   const RunOptions& options = result.options;
@@ -187,7 +177,7 @@ void make_ticks(DrivenCell& driven, CameraFeed* camera, const Attachments& attac
     driven.move_arms(period_s, lost);
     k += lost;
     if (recording != nullptr) driven.replay(*recording, tick);
-    if (camera != nullptr) driven.set_blind_for(camera->silent_for());
+    if (cameras != nullptr) driven.set_blind_for(cameras->silent_for());
     usage.begin();
     const auto begin = steady_clock::now();
     {
@@ -202,7 +192,7 @@ void make_ticks(DrivenCell& driven, CameraFeed* camera, const Attachments& attac
     driven.move_arms(period_s, 1);
     result.arm_step.record(steady_clock::now() - arm_begin);
     note_tick(records, times, result, observers);
-    if (camera != nullptr) camera->follow(records, is_blind(result.scene, records));
+    if (cameras != nullptr) cameras->follow(result.scene, records);
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
     show_force(attached.device, *records.front());
     show_tick(attached, coprocessor, options.fast, records,
@@ -333,7 +323,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
   // Like that one, its thread must not inherit the real-time priority.
-  const std::unique_ptr<CameraFeed> camera = make_camera(prepared, attached);
+  const std::unique_ptr<CameraFeeds> cameras = make_cameras(prepared, attached);
 
   const host::Grant grant = options.fast ? host::Grant{} : host::request_real_time();
   result.machine = host::describe_machine(options.fast ? "not by the clock" : host::to_text(grant));
@@ -341,13 +331,10 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
   SystemCallGuard::arm(options.fast ? Pauses::yields : Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
   TickUsage usage;
-  make_ticks(driven, camera.get(), attached, stop, result, observers, progress, usage);
+  make_ticks(driven, cameras.get(), attached, stop, result, observers, progress, usage);
   result.worker_usage = cell.coprocessor().usage();
   cell.stop();
-  if (camera) {
-    camera->stop();
-    result.camera = camera->result();
-  }
+  if (cameras) result.camera = cameras->finish();
   for (std::size_t i = 0; i < cell.arms(); ++i) {
     result.arms[i].modules = module_results(cell.network(i));
     result.arms[i].records = observers.recorders[i].records();

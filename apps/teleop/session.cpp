@@ -173,7 +173,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
                       const SessionOptions& session, const Recording* recording,
                       const std::atomic<bool>& stop, const std::atomic<bool>& at_once,
                       const std::function<void(const Progress&)>& show) {
-  if (scene.camera && !options.fast && options.log.ends_with(".mcap")) {
+  if (!scene.cameras.empty() && !options.fast && options.log.ends_with(".mcap")) {
     throw SetupError("--log " + options.log +
                      ": by the clock no two runs see the same, so a recording of a scene with a "
                      "camera could not be replayed; allowed: with --fast, or a CSV file");

@@ -2,9 +2,24 @@
 
 #include <sys/mman.h>
 
-namespace repel::teleop {
+#include <array>
+#include <cstddef>
 
-TickUsage::TickUsage() noexcept : locked_(mlockall(MCL_CURRENT) == 0) {}
+namespace repel::teleop {
+namespace {
+
+/// What the caller calls later finds its stack in memory, however deep the set-up has been.
+[[gnu::noinline]] bool touch_stack() noexcept {
+  constexpr std::size_t depth = 256 * 1024;  // [bytes] many times what a tick needs
+  constexpr std::size_t page = 4096;
+  std::array<volatile char, depth> stack;  // NOLINT(*-member-init): only one byte of each page
+  for (std::size_t i = 0; i < depth; i += page) stack[i] = 1;
+  return stack[0] != 0;
+}
+
+}  // namespace
+
+TickUsage::TickUsage() noexcept : locked_(touch_stack() && mlockall(MCL_CURRENT) == 0) {}
 
 void TickUsage::begin() noexcept {
   getrusage(RUSAGE_THREAD, &before_);

@@ -12,8 +12,9 @@ namespace repel::teleop {
 /// over all ticks. Both make a system call: call them just before and just after the measured time.
 class TickUsage {
  public:
-  /// Locks all memory that the program has now; otherwise the kernel may evict any page. Memory
-  /// allocated later is not locked: where the limit is low, allocating it must not fail.
+  /// Touches the stack that ticks need, and locks all memory that the program has now; otherwise
+  /// the kernel may evict any page. Memory allocated later is not locked: where the limit is low,
+  /// allocating it must not fail.
   TickUsage() noexcept;
 
   void begin() noexcept;

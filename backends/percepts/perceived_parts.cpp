@@ -100,7 +100,7 @@ bool PerceivedParts::add(const Cell& cell, const DepthCamera& camera, double tim
   for (Vec3& p : corners) p -= middle;
   const Pose X_WP = X_WC_ * Pose(Eigen::Translation3d(middle.x(), middle.y(), middle.z()));
   const Shape shape = Shape::hull(corners, {.levels = 1});
-  const PartId part = changes_->add(shape, X_WP, options_.over);
+  const PartId part = changes_->add(shape, X_WP, options_.over, options_.share);
   if (!part.valid()) return false;
   if (options_.on_add) options_.on_add(part, shape);
   parts_.push_back({wider, part, time, true});

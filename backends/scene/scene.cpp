@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <any>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -10,9 +11,11 @@
 #include <repel/base/limits.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/text_file.hpp>
+#include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/line.hpp>
 #include <repel/scene/part_list.hpp>
 
+#include "camera_reader.hpp"
 #include "network_reader.hpp"
 #include "yaml.hpp"
 
@@ -377,31 +380,65 @@ SpareParts spare_of(const Map& scene, const Laws& laws) {
   return spare;
 }
 
-/// A camera at `position` that looks at a point, its image upright.
-Pose pose_of_camera(const Map& map) {
-  const Value& at = map.at("look_at");
-  const Vec3 p = map.at("position").vector(position);
-  const Vec3 axis = at.vector(position) - p;
-  if (axis.norm() < 1e-3) at.fail_with_value("a point 1 mm or more from the camera");
-  const Vec3 z = axis.normalized();
-  // Looking straight up or down, the top of the image is towards x.
-  const Vec3 up = std::abs(z.z()) > 0.999 ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
-  const Vec3 x = z.cross(up).normalized();
-  Pose X = Pose::Identity();
-  X.translation() = p;
-  X.linear() << x, z.cross(x), z;
-  return X;
+constexpr std::size_t most_cameras = 8;
+constexpr int most_seen = 2000;  // parts that are reserved for what all cameras see
+
+/// What is wrong with the images of a camera.
+void read_faults(const Map& map, CameraChoice& camera) {
+  map.read("noise", {unit::length, 0.0, 0.1}, camera.noise);
+  map.read("lost", {unit::none, 0.0, 1.0}, camera.lost);
+  if (const Value* seed = map.find("seed")) {
+    camera.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
+  }
 }
 
-std::optional<CameraChoice> camera_of(const Map& scene, const Laws& laws) {
-  const Value* value = scene.find("camera");
-  if (!value) return {};
+/// The rays through the corners of the image, with z = 1.
+std::array<Vec3, 4> corner_rays(const CameraChoice& camera) {
+  double left = -std::tan(0.5 * camera.view);
+  double right = -left;
+  double top = left * camera.height / camera.width;
+  double bottom = -top;
+  if (camera.recording) {
+    const RecordingChoice& from = *camera.recording;
+    left = (-0.5 - from.cx) / from.fx;
+    right = (camera.width - 0.5 - from.cx) / from.fx;
+    top = (-0.5 - from.cy) / from.fy;
+    bottom = (camera.height - 0.5 - from.cy) / from.fy;
+  }
+  return {{{left, top, 1.0}, {right, top, 1.0}, {left, bottom, 1.0}, {right, bottom, 1.0}}};
+}
+
+/// The map of a camera, in which all that it can see has a place.
+std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera) {
+  const Value* const value = of_camera.find("map");
+  if (value == nullptr) return {};
   const Map map(*value);
-  map.allow({"position", "look_at", "width", "height", "view", "nearest", "farthest", "rate",
-             "latency", "noise", "lost", "seed", "unseen", "margin", "parts", "silent_after",
-             "law"});
-  CameraChoice camera;
-  camera.X_WC = pose_of_camera(map);
+  map.allow({"cube", "keeps"});
+  MapChoice choice;
+  map.read("cube", {unit::length, 0.005, 1.0}, choice.cube);
+  map.read("keeps", {unit::time, 0.0, 1e6}, choice.keeps);
+  choice.low = choice.high = camera.X_WC.translation();
+  for (const Vec3& ray : corner_rays(camera)) {
+    const Vec3 corner = camera.X_WC * (camera.farthest * ray);
+    choice.low = choice.low.cwiseMin(corner);
+    choice.high = choice.high.cwiseMax(corner);
+  }
+  constexpr double most = 16e6;
+  const double cubes = ((choice.high - choice.low) / choice.cube).array().ceil().prod();
+  if (!(cubes <= most)) {
+    value->fail("a map of all that the camera can see has " + to_text(cubes, 3) +
+                " cubes; allowed: up to " + to_text(most) + ", by larger ones, or less 'farthest'");
+  }
+  if (camera.is_unseen_solid) {
+    of_camera.at("unseen").fail(
+        "what is unseen is solid beside 'map'; allowed: 'free', since the arm is in it");
+  }
+  return choice;
+}
+
+/// Where a simulated camera is and what its images are like.
+void read_simulated(const Map& map, CameraChoice& camera) {
+  camera.X_WC = detail::pose_of_camera(map);
   if (const Value* width = map.find("width")) {
     camera.width = static_cast<int>(width->integer(16, 1920));
   }
@@ -409,38 +446,96 @@ std::optional<CameraChoice> camera_of(const Map& scene, const Laws& laws) {
     camera.height = static_cast<int>(height->integer(16, 1080));
   }
   map.read("view", {unit::angle, 0.1, 2.6}, camera.view);
+  map.read("rate", {unit::frequency, 0.1, 1000.0}, camera.rate_hz);
+  read_faults(map, camera);
+}
+
+/// The same of recorded images. @param file of the scene
+void read_recorded(const Map& map, const std::string& file, CameraChoice& camera) {
+  const Value& value = map.at("recording");
+  camera.recording = detail::recording_of(folder_of(value, file), camera);
+  if (const Value* repeats = map.find("repeat")) {
+    camera.recording->repeats = repeats->word_of({"yes", "no"}) == "yes";
+  }
+}
+
+/// @param more keys beside those of the camera itself @param file of the scene
+CameraChoice camera_of(const Value& value, const Laws& laws, const std::string& file,
+                       std::initializer_list<std::string_view> more) {
+  const Map map(value);
+  const bool is_recorded = map.find("recording") != nullptr;
+  std::vector<std::string_view> keys{"nearest", "farthest",     "latency", "unseen", "margin",
+                                     "parts",   "silent_after", "law",     "map"};
+  keys.insert(keys.end(), more);
+  // What a recording says of itself the scene does not say.
+  keys.emplace_back("recording");
+  if (is_recorded) {
+    keys.emplace_back("repeat");
+  } else {
+    keys.insert(keys.end(), {"position", "look_at", "orientation", "width", "height", "view",
+                             "rate", "noise", "lost", "seed"});
+  }
+  map.allow(keys);
+  CameraChoice camera;
+  if (is_recorded) {
+    read_recorded(map, file, camera);
+  } else {
+    read_simulated(map, camera);
+  }
   map.read("nearest", {unit::length, 1e-3, 100.0}, camera.nearest);
   map.read("farthest", {unit::length, camera.nearest, 1000.0}, camera.farthest);
-  map.read("rate", {unit::frequency, 0.1, 1000.0}, camera.rate_hz);
   map.read("latency", {unit::time, 0.0, 10.0}, camera.latency);
-  map.read("noise", {unit::length, 0.0, 0.1}, camera.noise);
-  map.read("lost", {unit::none, 0.0, 1.0}, camera.lost);
-  if (const Value* seed = map.find("seed")) {
-    camera.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
-  }
   if (const Value* unseen = map.find("unseen")) {
     camera.is_unseen_solid = unseen->word_of({"free", "solid"}) == "solid";
   }
   map.read("margin", {unit::length, 0.0, 1.0}, camera.margin);
   if (const Value* parts = map.find("parts")) {
-    camera.parts = static_cast<int>(parts->integer(80, 2000));
+    camera.parts = static_cast<int>(parts->integer(80, most_seen));
   }
   map.read("silent_after", {unit::time, 1e-3, 1e3}, camera.silent_after);
   if (!(camera.silent_after > camera.latency + 1.0 / camera.rate_hz)) {
-    value->fail(
+    value.fail(
         "the camera would be silent between two images; allowed: silent_after above "
         "latency and 1 / rate together");
   }
   camera.law = law_called(laws, map);
+  camera.map = map_of(map, camera);
   return camera;
 }
 
-/// What only the camera sees.
-std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes) {
+/// The one of `camera`, or those of `cameras`.
+std::vector<CameraChoice> cameras_of(const Map& scene, const Laws& laws, const std::string& file) {
+  std::vector<CameraChoice> cameras;
+  const Value* const only = scene.find("camera");
+  if (only != nullptr) cameras.push_back(camera_of(*only, laws, file, {}));
+  const Value* const all = scene.find("cameras");
+  if (all == nullptr) return cameras;
+  if (only != nullptr) all->fail("'cameras' beside 'camera'; allowed: one of the two");
+  std::set<std::string> names;
+  int parts = 0;
+  for (const Value& entry : all->list(most_cameras)) {
+    CameraChoice& camera = cameras.emplace_back(camera_of(entry, laws, file, {"name"}));
+    const Map map(entry);
+    const Value& name = map.at("name");
+    camera.name = name.text();
+    // `blind` takes them for something else.
+    if (camera.name == "yes" || camera.name == "no") name.fail_with_value("another name");
+    require_new(names, map);
+    parts += camera.parts;
+  }
+  if (parts > most_seen) {
+    all->fail("the cameras reserve " + std::to_string(parts) + " parts; allowed: up to " +
+              std::to_string(most_seen) + " together");
+  }
+  return cameras;
+}
+
+/// What only the cameras see.
+std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes, bool has_camera) {
   std::vector<HiddenPart> hidden;
   const Value* value = scene.find("hidden");
   if (!value) return hidden;
-  if (scene.find("camera") == nullptr) {
+  if (!has_camera) {
     value->fail("'hidden' without 'camera'; allowed: a scene with a camera, which sees it");
   }
   constexpr std::string_view keys[] = {"motion"};
@@ -629,15 +724,39 @@ void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart
   }
 }
 
-void read_script(const Map& scene, const std::vector<LoosePart>& loose, ArmSetup& setup) {
+/// Which cameras are silent in a phase.
+std::vector<bool> blind_in(const Map& phase, const std::vector<CameraChoice>& cameras) {
+  std::vector<bool> blind;
+  const Value* const value = phase.find("blind");
+  if (value == nullptr) return blind;
+  if (!value->is_list()) {
+    const std::string word = value->text();
+    if (word == "no") return blind;
+    if (word == "yes") return std::vector<bool>(cameras.size(), true);
+  }
+  blind.resize(cameras.size());
+  const auto add = [&](const Value& name) {
+    const std::string wanted = name.text();
+    const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                    [&](const CameraChoice& each) { return each.name == wanted; });
+    if (found == cameras.end()) name.fail_with_value("yes, no, or the name of a camera");
+    blind[static_cast<std::size_t>(found - cameras.begin())] = true;
+  };
+  if (!value->is_list()) add(*value);
+  if (value->is_list()) {
+    for (const Value& name : value->list()) add(name);
+  }
+  return blind;
+}
+
+void read_script(const Map& scene, const Scene& whole, ArmSetup& setup) {
   const Value* value = scene.find("script");
   if (!value) return;
   std::set<std::string> names;
   for (const Value& entry : value->list()) {
     const Map map(entry);
-    read_steps(map, setup.script.size(), loose, setup.steps);
-    const Value* blind = map.find("blind");
-    setup.blind.push_back(blind != nullptr && blind->word_of({"yes", "no"}) == "yes");
+    read_steps(map, setup.script.size(), whole.loose, setup.steps);
+    setup.blind.push_back(blind_in(map, whole.cameras));
     setup.script.push_back(phase_of(entry));
     require_new(names, map);
   }
@@ -649,14 +768,14 @@ struct Shared {
   const std::string& file;
   const ModuleKinds& kinds;
   ShapeFile shapes;
-  const std::vector<LoosePart>& loose;
+  const Scene& scene;  ///< with what can come and go, and cameras
 };
 
 void read_station(const Map& map, const Shared& shared, ArmSetup& setup) {
   setup.robot = robot_of(map.at("robot"), shared.laws, shared.file);
   setup.tool = tool_of(map.at("tool"), shared.shapes);
   setup.network = detail::network_of(map.find("network"), shared.kinds);
-  read_script(map, shared.loose, setup);
+  read_script(map, shared.scene, setup);
 }
 
 std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
@@ -737,10 +856,10 @@ std::string_view word_for(PartStep::What what) noexcept {
 Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
   const Map map(document);
-  map.allow({"name",         "rate",       "robot",    "tool",   "laws",
-             "obstacles",    "loose",      "spare",    "camera", "hidden",
-             "network",      "script",     "partners", "budget", "coprocessor",
-             "start_inside", "tool_speed", "measure",  "levels", "apart"});
+  map.allow({"name",    "rate",     "robot",  "tool",        "laws",         "obstacles",
+             "loose",   "spare",    "camera", "cameras",     "hidden",       "network",
+             "script",  "partners", "budget", "coprocessor", "start_inside", "tool_speed",
+             "measure", "levels",   "apart"});
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
@@ -757,12 +876,12 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   const ShapeFile shapes{file, counted, scene.part_lists};
   scene.loose = loose_of(map, laws, shapes);
   scene.spare = spare_of(map, laws);
-  scene.camera = camera_of(map, laws);
-  scene.hidden = hidden_of(map, shapes);
-  if (scene.camera && scene.spare.count > 0) {
-    map.at("spare").fail("'spare' beside 'camera'; allowed: one of the two");
+  scene.cameras = cameras_of(map, laws, file);
+  scene.hidden = hidden_of(map, shapes, !scene.cameras.empty());
+  if (!scene.cameras.empty() && scene.spare.count > 0) {
+    map.at("spare").fail("'spare' beside a camera; allowed: one of the two");
   }
-  const Shared shared{laws, file, kinds, shapes, scene.loose};
+  const Shared shared{laws, file, kinds, shapes, scene};
   read_station(map, shared, scene);
   scene.obstacles = obstacles_of(map.at("obstacles"), laws, shared.shapes, scene.models);
   scene.partners = partners_of(map, shared);

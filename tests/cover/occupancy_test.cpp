@@ -84,6 +84,35 @@ TEST(Occupancy, OfLargerCubesContainsTheSmallOnes) {
   EXPECT_DOUBLE_EQ(coarse.edge, 0.1);
 }
 
+TEST(Occupancy, OfLargerCubesMayBeginBeforeTheSmallOnes) {
+  OccupancyGrid grid = empty(5, 5, 5);
+  fill(grid, {1, 2, 3}, {2, 3, 4});
+  const OccupancyGrid coarse = coarser(grid, 4, {3, 0, 1});
+  EXPECT_EQ(coarse.size, (std::array<int, 3>{2, 2, 2}));
+  EXPECT_TRUE(coarse.low.isApprox(grid.low - Vec3(0.15, 0.0, 0.05), 1e-12));
+  for (std::size_t i = 0; i < coarse.solid.size(); ++i) {
+    EXPECT_EQ(coarse.solid[i], i == coarse.place(1, 0, 1) ? 1 : 0) << i;
+  }
+  EXPECT_THROW((void)coarser(grid, 2, {2, 0, 0}), SetupError);
+}
+
+TEST(Occupancy, OfABoxGrowsNoFartherThanItsReach) {
+  OccupancyGrid grid = empty(20, 20, 20);
+  fill(grid, {0, 0, 0}, {20, 20, 20});
+  const CubeRange whole = grown_from(grid, {3, 4, 5});
+  EXPECT_EQ(whole, (CubeRange{{0, 0, 0}, {19, 19, 19}}));
+  const CubeRange part = grown_from(grid, {3, 4, 5}, 0.2);
+  Vec3 size = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    size[static_cast<int>(k)] = part.high[k] + 1 - part.low[k];
+    EXPECT_LE(part.low[k], 3 + static_cast<int>(k));
+    EXPECT_GE(part.high[k], 3 + static_cast<int>(k));
+  }
+  EXPECT_LE(0.5 * grid.edge * size.norm(), 0.2);
+  EXPECT_GT(0.5 * grid.edge * size.norm(), 0.15);
+  EXPECT_EQ(grown_from(grid, {3, 4, 5}, 0.01), (CubeRange{{3, 4, 5}, {3, 4, 5}}));
+}
+
 TEST(Occupancy, OfTooManyBoxesIsRefusedWithTheirNumber) {
   OccupancyGrid grid = empty(5, 1, 1);
   for (const int x : {0, 2, 4}) grid.solid[grid.place(x, 0, 0)] = 1;

@@ -104,6 +104,132 @@ TEST(Camera, IsReplayedBitForBitUnlessTheRunWasByTheClock) {
   EXPECT_TRUE(by_the_clock.says("allocations in tick    0")) << by_the_clock;
 }
 
+/// The scene with two cameras at its sides instead of its own.
+std::string seen_by_two(const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::string text = seen_with(changes);
+  const std::size_t begin = text.find("\ncamera:\n") + 1;
+  const std::size_t end = text.find("hidden:\n");
+  const std::string both =
+      "width: 240, height: 180, view: 60 deg, nearest: 300 mm, farthest: 2.5 m, latency: 33 ms, "
+      "noise: 1 mm, lost: 0.02, margin: 10 mm, parts: 500, law: seen, look_at: 0.5 -0.1 0.15 m";
+  return text.replace(begin, end - begin,
+                      "cameras:\n  - {name: left, position: 1.2 0.5 0.95 m, rate: 30 Hz, " + both +
+                          "}\n  - {name: right, position: 1.1 -0.8 0.8 m, rate: 25 Hz, seed: 2, " +
+                          both + "}\n");
+}
+
+TEST(Camera, IsOneOfSeveralEachWithPartsOfItsOwn) {
+  const json report = run_of(seen_by_two({}), "");
+  EXPECT_GT(report.at("camera").at("least_clearance_m"), 0.002);
+  EXPECT_LT(report.at("camera").at("least_clearance_m"), 0.03) << "it should come near";
+  const json& cameras = report.at("cameras");
+  ASSERT_EQ(cameras.size(), 2U);
+  EXPECT_EQ(cameras[0].at("name"), "left");
+  std::int64_t images = 0;
+  for (const json& camera : cameras) {
+    EXPECT_GT(camera.at("images"), 300);
+    EXPECT_GT(camera.at("parts_made"), 50);
+    EXPECT_EQ(camera.at("cells_left_out"), 0);
+    images += camera.at("images").get<std::int64_t>();
+  }
+  EXPECT_EQ(report.at("camera").at("images"), images);
+  EXPECT_GT(cameras[0].at("images"), cameras[1].at("images")) << "30 Hz and 25 Hz";
+  std::vector<std::string> felt;
+  for (const json& obstacle : report.at("obstacles")) {
+    if (obstacle.at("peak_force_n") > 1.0) felt.push_back(obstacle.at("name"));
+  }
+  for (const char* name : {"seen_left", "seen_right"}) {
+    EXPECT_EQ(std::count(felt.begin(), felt.end(), name), 1) << name;
+  }
+}
+
+TEST(Camera, OfSeveralKeepsTheArmOffWhatItAloneSees) {
+  // The other one looks away.
+  for (const char* look_at : {"look_at: 3 3 0.15 m", "look_at: 3 -3 0.15 m"}) {
+    std::string scene = seen_by_two({});
+    const bool is_left = std::string(look_at).find("-3") == std::string::npos;
+    const std::string away = "look_at: 0.5 -0.1 0.15 m";
+    scene.replace(is_left ? scene.find(away) : scene.rfind(away), away.size(), look_at);
+    const json report = run_of(scene, "", 5.0);
+    EXPECT_GT(report.at("camera").at("least_clearance_m"), 0.002) << look_at;
+    EXPECT_EQ(report.at("cameras")[is_left ? 0 : 1].at("parts_made"), 0) << look_at;
+    EXPECT_GT(report.at("cameras")[is_left ? 1 : 0].at("parts_made"), 20) << look_at;
+  }
+}
+
+TEST(Camera, OfSeveralSilencesTheOperatorAlone) {
+  const json report = run_of(seen_by_two({{"blind: yes", "blind: right"}}), "", 9.8);
+  EXPECT_EQ(report.at("cameras")[0].at("silent_s"), 0.0);
+  const double silent = report.at("cameras")[1].at("silent_s");
+  EXPECT_GT(silent, 0.5);
+  EXPECT_EQ(report.at("camera").at("silent_s"), silent);
+  EXPECT_GT(report.at("status_ticks").at("silent_device"), 200);
+}
+
+TEST(Camera, OfSeveralIsReplayedBitForBit) {
+  const Folder folder;
+  const std::string scene = quoted(folder.with("scene.yaml", seen_by_two({})));
+  const std::string file = quoted(folder / "seen.mcap");
+  const Ending recorded = teleop(scene + " --fast --seconds 2 --log " + file);
+  ASSERT_EQ(recorded.status, 0) << recorded;
+  EXPECT_TRUE(recorded.says("  left                   ")) << recorded;
+  const Ending again = teleop("--replay " + file);
+  ASSERT_EQ(again.status, 0) << again;
+  EXPECT_TRUE(again.says("800 of 800 ticks, bit for bit")) << again;
+  const Ending by_the_clock = teleop(scene + " --seconds 2");
+  EXPECT_EQ(by_the_clock.status, 0) << by_the_clock;
+  EXPECT_TRUE(by_the_clock.says("allocations in tick    0")) << by_the_clock;
+}
+
+#ifdef REPEL_TELEOP_OCTREES
+TEST(Camera, WithAMapKeepsTheArmOffWhatOnlyItSees) {
+  constexpr unsigned seed = 321;
+  families::Rng rng(seed);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(rng);
+  };
+  const int draws = std::max(1, families::draws(3));
+  int touched = 0;
+  for (int i = 0; i < draws; ++i) {
+    const std::string cube = std::to_string(between(20.0, 50.0)) + " mm";
+    const auto place = [&](double x, double y, const char* z) {
+      return "position: " + std::to_string(x + between(-0.02, 0.02)) + " " +
+             std::to_string(y + between(-0.02, 0.02)) + " " + z;
+    };
+    const std::string scene =
+        seen_with({{"parts: 600", "parts: 800\n  map: {cube: " + cube + "}"},
+                   {"noise: 1 mm", "noise: " + std::to_string(between(0.0, 1.2)) + " mm"},
+                   {"lost: 0.02", "lost: " + std::to_string(between(0.0, 0.3))},
+                   {"position: 0.62 0.20 0.21", place(0.62, 0.20, "0.21")},
+                   {"position: 0.52 -0.30 0.19", place(0.52, -0.30, "0.19")}});
+    const json camera = run_of(scene, "").at("camera");
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", draw " + std::to_string(i) + "\n" + scene +
+                 camera.dump(1));
+    EXPECT_GT(camera.at("least_clearance_m"), 0.002);
+    EXPECT_EQ(camera.at("cells_left_out"), 0);
+    EXPECT_GT(camera.at("images"), 300);
+    EXPECT_GE(camera.at("largest_cube_m"), 0.02);
+    if (camera.at("least_clearance_m") < 0.06) ++touched;
+  }
+  EXPECT_GE(2 * touched, draws) << "the arm should come near what is seen";
+}
+
+TEST(Camera, WithAMapIsReplayedBitForBit) {
+  const Folder folder;
+  const std::string scene = quoted(folder.with(
+      "scene.yaml", seen_with({{"parts: 600", "parts: 600\n  map: {cube: 5 cm}"}})));
+  const std::string file = quoted(folder / "seen.mcap");
+  const Ending recorded = teleop(scene + " --fast --seconds 2 --log " + file);
+  ASSERT_EQ(recorded.status, 0) << recorded;
+  const Ending again = teleop("--replay " + file);
+  ASSERT_EQ(again.status, 0) << again;
+  EXPECT_TRUE(again.says("800 of 800 ticks, bit for bit")) << again;
+  const Ending by_the_clock = teleop(scene + " --seconds 2");
+  EXPECT_EQ(by_the_clock.status, 0) << by_the_clock;
+  EXPECT_TRUE(by_the_clock.says("allocations in tick    0")) << by_the_clock;
+}
+#endif
+
 TEST(Camera, IsRefusedWithLineAndCureWhereItMakesNoSense) {
   const auto refusal = [&](const std::vector<std::pair<std::string, std::string>>& changes) {
     const Folder folder;

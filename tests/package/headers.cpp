@@ -16,10 +16,15 @@
 #include <repel/dds/dds.hpp>
 #endif
 #ifdef PART_percepts
+#include <repel/percepts/depth_image_file.hpp>
 #include <repel/percepts/depth_memory.hpp>
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/perceived_parts.hpp>
 #include <repel/percepts/simulated_camera.hpp>
+#endif
+#ifdef PART_octrees
+#include <repel/octrees/depth_map.hpp>
+#include <repel/octrees/mapped_parts.hpp>
 #endif
 #ifdef PART_cover
 #include <repel/cover/cover.hpp>

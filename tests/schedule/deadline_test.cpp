@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -60,6 +61,24 @@ TEST(DurationHistogram, NegativeDurationsCountAsNone) {
   EXPECT_EQ(histogram.count(), 1);
   EXPECT_EQ(histogram.max_us(), 0.0);
   EXPECT_EQ(histogram.percentile_us(1.0), 0.0);
+}
+
+TEST(DurationHistogram, SumsUpAsIfAllHadBeenRecordedInOne) {
+  std::mt19937_64 random(seed);
+  std::array<DurationHistogram, 2> parts;
+  DurationHistogram all;
+  for (int i = 0; i < 1000; ++i) {
+    const nanoseconds sample(static_cast<std::int64_t>(random() % 10'000'000));
+    parts[random() % 3 == 0 ? 0 : 1].record(sample);
+    all.record(sample);
+  }
+  DurationHistogram sum;
+  for (const DurationHistogram& part : parts) sum.add(part);
+  EXPECT_EQ(sum.count(), 1000);
+  EXPECT_EQ(sum.max_us(), all.max_us());
+  for (const double p : {0.0, 0.1, 0.5, 0.99}) {
+    EXPECT_EQ(sum.percentile_us(p), all.percentile_us(p)) << "p " << p << ", seed " << seed;
+  }
 }
 
 TEST(DurationHistogram, EmptyOneAnswersZero) {

@@ -343,6 +343,29 @@ TEST(WorldChanges, GiveNoNewShapeToAPartThatIsToKeepItsOwn) {
   EXPECT_TRUE(changes.add(kept, Pose::Identity())) << "as it is";
 }
 
+TEST(WorldChanges, TakePartsOfTheShareThatIsAskedFor) {
+  World world;
+  std::vector<PartId> all;
+  for (int i = 0; i < 6; ++i) {
+    all.push_back(world.reserve("spare", Shape::sphere(0.01, {.levels = 1}), 0.2));
+  }
+  WorldChanges changes(world);
+  const Shape ball = Shape::sphere(0.1, {.levels = 1});
+  const auto add = [&](const ReservedShare& share) {
+    return changes.add(ball, Pose::Identity(), 0.0, share);
+  };
+  EXPECT_EQ(add({.first = 2, .count = 2}), all[2]);
+  EXPECT_EQ(add({.first = 2, .count = 2}), all[3]);
+  EXPECT_FALSE(add({.first = 2, .count = 2}).valid());
+  EXPECT_EQ(add({.first = 4}), all[4]) << "and all behind it";
+  EXPECT_EQ(add({}), all[0]);
+  EXPECT_EQ(add({.first = 5, .count = 100}), all[5]);
+  EXPECT_FALSE(add({.first = 6}).valid());
+  EXPECT_TRUE(changes.remove(all[3], 0.0));
+  EXPECT_FALSE(add({.first = 4}).valid());
+  EXPECT_EQ(add({.first = 2, .count = 2}), all[3]);
+}
+
 TEST(WorldChanges, ComeFromAnotherThread) {
   Scene scene(3);
   Coprocessor coprocessor(scene.world, {});

@@ -20,6 +20,13 @@ class DurationHistogram {
     if (ns > max_) max_ = ns;
   }
 
+  /// Adds the samples of another one.
+  void add(const DurationHistogram& other) noexcept {
+    for (std::size_t bin = 0; bin < bins_.size(); ++bin) bins_[bin] += other.bins_[bin];
+    count_ += other.count_;
+    if (other.max_ > max_) max_ = other.max_;
+  }
+
   /// The `p` quantile (0 to 1) of the samples [us]; 0 without samples.
   [[nodiscard]] double percentile_us(double p) const noexcept {
     if (count_ == 0) return 0.0;

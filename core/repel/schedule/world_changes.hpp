@@ -22,6 +22,13 @@ struct ChangeCounts {
   std::int64_t waited = 0;   ///< ticks in which a change waited for threads to let go of a shape
 };
 
+/// Some of the reserved parts of a world, one after the other in the order of World::loose. By
+/// default all.
+struct ReservedShare {
+  std::size_t first = 0;
+  std::size_t count = static_cast<std::size_t>(-1);
+};
+
 /// A wait-free queue of changes between one thread that asks for them and the thread of the tick,
 /// which applies them between two ticks, in their order. The asking thread may allocate, the tick
 /// allocates and frees nothing: shapes that are no longer used come back through the queue. The
@@ -50,10 +57,15 @@ class WorldChanges {
   /// Lets a new part come, in the reserved part that has been free the longest of those with room
   /// for it and for more than the shape they were reserved with. Invalid if there is none, too.
   /// @param shape without levels or with; they are made here if the measure of the world needs them
-  /// @param X_WP [m] @param over [s] see World::add
-  PartId add(const Shape& shape, const Pose& X_WP, double over = usual_time) {
+  /// @param X_WP [m] @param over [s] see World::add @param share of the reserved parts, of which
+  /// one is taken
+  PartId add(const Shape& shape, const Pose& X_WP, double over = usual_time,
+             const ReservedShare& share = {}) {
     Reserved* chosen = nullptr;
-    for (Reserved& part : parts_) {
+    const std::size_t begin = std::min(share.first, parts_.size());
+    const std::size_t end = begin + std::min(share.count, parts_.size() - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      Reserved& part = parts_[i];
       if (part.keeps_shape || part.is_used || !(shape.reach() <= part.room)) continue;
       if (chosen == nullptr || part.freed_at < chosen->freed_at) chosen = &part;
     }

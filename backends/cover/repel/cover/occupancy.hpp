@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <repel/base/types.hpp>
@@ -28,8 +29,24 @@ struct OccupancyGrid {
   }
 };
 
+/// Cubes from `low` to `high`, both included.
+struct CubeRange {
+  std::array<int, 3> low{0, 0, 0}, high{0, 0, 0};
+
+  friend bool operator==(const CubeRange&, const CubeRange&) = default;
+};
+
 /// The same with cubes `factor` times as large, 1 or more; one is solid if any within it is.
-[[nodiscard]] OccupancyGrid coarser(const OccupancyGrid& grid, int factor);
+/// @param before cubes that the first large one has along x, y, z before the first of `grid`, so
+/// that large cubes may begin at multiples of their edge: 0 to `factor` - 1
+[[nodiscard]] OccupancyGrid coarser(const OccupancyGrid& grid, int factor,
+                                    const std::array<int, 3>& before = {0, 0, 0});
+
+/// The box that grows from a cube, in all directions as long as all is solid, in turns.
+/// @param cube solid @param reach [m] largest from the centre of the box to its corners, unless one
+/// cube alone has a larger one
+[[nodiscard]] CubeRange grown_from(const OccupancyGrid& grid, const std::array<int, 3>& cube,
+                                   double reach = std::numeric_limits<double>::infinity());
 
 /// Boxes that contain every solid cube and nothing else, as their 8 corners [m]. From a cube that
 /// is in none yet, each grows in all directions as long as all is solid, through others too: so

@@ -13,10 +13,11 @@
 namespace repel::percepts {
 
 struct PerceivedOptions {
-  double slack = 0.01;  ///< [m] by which parts are grown at the front and back, so that noise of
-                        ///< the camera changes none
-  double over = 0.05;   ///< [s] in which parts come and go
-  double keeps = 2.0;   ///< [s] how long what is hidden stays after it was last seen
+  double slack = 0.01;    ///< [m] by which parts are grown at the front and back, so that noise of
+                          ///< the camera changes none
+  double over = 0.05;     ///< [s] in which parts come and go
+  double keeps = 2.0;     ///< [s] how long what is hidden stays after it was last seen
+  ReservedShare share{};  ///< of the reserved parts, for this camera alone
   /// Is told of every new part with its shape, for displays; may be empty.
   std::function<void(PartId, const Shape&)> on_add{};
 };
@@ -34,11 +35,12 @@ struct PerceptCounts {
 /// Makes the cells of depth images parts of a world that come and go. A cell that is where a part
 /// already is changes nothing. Where there is a new one, it comes before what it replaces goes. A
 /// part in front of which nothing is measured, as when the robot hides it, stays for a while.
-/// For one thread, which is the only one that uses these `WorldChanges`; it may allocate.
+/// For one thread, which is the only one that uses these `WorldChanges`; it may allocate. Several
+/// cameras have an object each, with shares that have no part in common.
 class PerceivedParts {
  public:
-  /// @param changes must outlive this object. The world should have reserved twice as many parts as
-  /// there are cells, with the room of these (World::reserve)
+  /// @param changes must outlive this object. The share should be twice as many parts as there are
+  /// cells, with the room of these (World::reserve)
   /// @throws SetupError for a number out of range
   explicit PerceivedParts(WorldChanges& changes, const PerceivedOptions& options = {});
 

@@ -19,6 +19,7 @@
 #include <repel/loop/reciprocating_motion.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/scene/camera.hpp>
 #include <repel/scene/module_kinds.hpp>
 #include <repel/scene/network.hpp>
 #include <repel/scene/part_list.hpp>
@@ -85,26 +86,7 @@ struct SpareParts {
   ForceLaw law;
 };
 
-/// A depth camera that looks at the scene, simulated, and the parts that are made of its images.
-struct CameraChoice {
-  Pose X_WC = Pose::Identity();   ///< [m] x to the right of the image, y down, z along the axis
-  int width = 320, height = 240;  ///< [px]
-  double view = 1.05;             ///< [rad] across the image
-  double nearest = 0.2;           ///< [m] nearer depths are not measured
-  double farthest = 4.0;          ///< [m] nor are farther ones
-  double rate_hz = 30.0;          ///< [Hz]
-  double latency = 0.033;         ///< [s] from an image to the parts made of it
-  double noise = 0.0;             ///< [m] standard deviation at 1 m
-  double lost = 0.0;              ///< share of pixels without a depth
-  std::uint64_t seed = 1;         ///< of both
-  bool is_unseen_solid = false;   ///< what is behind something that is seen
-  double margin = 0.03;           ///< [m] around what is in the model: is taken out of images
-  int parts = 400;                ///< reserved
-  double silent_after = 0.2;      ///< [s] without an image the operator's commands no longer count
-  ForceLaw law;                   ///< of the parts
-};
-
-/// One convex part P that a camera sees and the world model does not know.
+/// One convex part P that cameras see and the world model does not know.
 struct HiddenPart {
   std::string name;
   Shape shape = Shape::sphere(0.0);
@@ -173,7 +155,8 @@ struct ArmSetup {
   Network network;
   network::Script script;
   std::vector<PartStep> steps;  ///< in the order of the script
-  std::vector<bool> blind;      ///< by phase: the camera is silent
+  /// By phase, then by camera in their order, the last ones left out or all: it is silent.
+  std::vector<std::vector<bool>> blind;
 };
 
 /// A further arm in the cell. Its forces from obstacles follow the obstacles' laws.
@@ -195,8 +178,8 @@ struct Scene : ArmSetup {
   std::vector<StaticModel> models;  ///< further obstacles, for whoever can read robot descriptions
   std::vector<LoosePart> loose;
   SpareParts spare;
-  std::optional<CameraChoice> camera;
-  std::vector<HiddenPart> hidden;  ///< for the camera to see
+  std::vector<CameraChoice> cameras;  ///< each with a name of its own
+  std::vector<HiddenPart> hidden;     ///< for the cameras to see
   std::vector<OtherArm> partners;
   bool apart = false;  ///< to be run as two programs, divided at the line of the network
   /// Paths of the files that the parts of meshes are from, those in URDF files excepted.

@@ -1,0 +1,78 @@
+/// @file
+/// A map of cubes that is kept up to date by depth images.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <octomap/OcTree.h>
+
+#include <repel/octrees/grid.hpp>
+#include <repel/percepts/depth_camera.hpp>
+
+namespace repel::octrees {
+
+struct DepthMapOptions {
+  double cube = 0.05;  ///< [m] edge of a cube, 0.001 to 10
+  double slack = 0.0;  ///< [m] a point that is so near to an occupied cube is counted as in it, so
+                       ///< that noise of the camera changes no cubes; 0 to a quarter of `cube`
+  int frees = 3;       ///< images that see through an occupied cube until it is free, 1 to 1000
+  double keeps = 2.0;  ///< [s] how long a cube stays occupied in which only the robot is seen, 0 to
+                       ///< 1e6
+  Region region{};     ///< of which there is a map
+};
+
+/// Enters depth images in an octree: a cube in which a point was measured is occupied, or with a
+/// `slack` another one that is no farther away than that and occupied already. It stays so
+/// where nothing is seen of it, and is free again when several images have seen through it. Pixels
+/// with a negative depth show the robot (percepts::OwnBody): what is before them is free, where
+/// they end is neither, since within its margin there may be something else.
+class DepthMap {
+ public:
+  /// @throws SetupError for a number out of range, or a region of too many cubes
+  explicit DepthMap(const percepts::DepthCamera& camera, const DepthMapOptions& options = {});
+
+  /// @param depth [m] width x height of the camera; a shorter image is as if nothing was measured
+  /// @param X_WC [m] the camera in the frame of the map when it was taken @param time [s] of the
+  /// image, not before that of the last one @return cubes in which something was measured. Cost:
+  /// about 10 ns a pixel, and 10 ns for each cube that a ray passes; rays are half a cube apart
+  /// where they end
+  int insert(std::span<const float> depth, const Pose& X_WC, double time);
+
+  [[nodiscard]] const octomap::OcTree& tree() const noexcept { return tree_; }
+  [[nodiscard]] const DepthMapOptions& options() const noexcept { return options_; }
+
+ private:
+  enum class State : std::uint8_t { unknown, free, occupied };
+  /// What an image says of a cube; the greater one counts.
+  enum class Mark : std::uint8_t { none, free, hidden, hit };
+
+  /// The cube that a measured point [m] makes, or keeps, occupied. @param own in which it is
+  [[nodiscard]] octomap::OcTreeKey taken_for(const octomap::point3d& p,
+                                             const octomap::OcTreeKey& own) const;
+  [[nodiscard]] bool is_taken(const octomap::OcTreeKey& key) const noexcept;
+  /// The place of a cube in the lists; `places_` if it is not in the region.
+  [[nodiscard]] std::size_t place_of(const octomap::OcTreeKey& key) const noexcept;
+  void mark(const octomap::OcTreeKey& key, Mark what);
+  void mark_ends(std::span<const float> depth, const Pose& X_WC);
+  void mark_rays(const octomap::point3d& from);
+  void settle(std::size_t place, const octomap::OcTreeKey& key, double time);
+
+  percepts::DepthCamera camera_;
+  DepthMapOptions options_;
+  octomap::OcTree tree_;
+  std::array<int, 3> low_{}, size_{};  ///< of the region, in cubes of OctoMap's count
+  std::size_t places_ = 0;
+  // By place:
+  std::vector<Mark> marks_;    ///< of this image
+  std::vector<State> states_;  ///< as in the tree
+  std::vector<float> hit_at_;  ///< [s] when something was last measured there
+  std::vector<octomap::OcTreeKey> marked_;
+  std::vector<octomap::point3d> ends_;  ///< [m] of the rays of this image
+  octomap::KeyRay ray_;
+};
+
+}  // namespace repel::octrees
