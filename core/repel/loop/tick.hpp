@@ -25,7 +25,6 @@
 #include <repel/network/modules/obstacle.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/puma_kin.hpp>
-#include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/schedule/pair_forces.hpp>
 #include <repel/world/arm_kinematics.hpp>
@@ -229,11 +228,10 @@ class Teleoperator {
     for (const network::Node& node : network_.nodes()) {
       if (node.module->saturated()) record_.status |= status::saturated;
     }
-    const auto* arm = network_.find<network::TorqueArm>();
     const auto* limits = network_.find<network::Limits>();
     if (limits != nullptr && limits->active()) record_.status |= status::joint_limit;
     if (sensor_ != nullptr && sensor_->is_lost()) record_.status |= status::bad_wrench;
-    record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
+    note_masters(network_, record_);
   }
 
   [[gnu::noinline]] void drive() noexcept {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <repel/network/elements/one_ports.hpp>
 #include <repel/network/plan.hpp>
 
@@ -112,6 +114,76 @@ TEST(SixAxes, LetsGoAtRest) {
   rest.at_rest = true;
   ASSERT_TRUE(network.run(rest));
   EXPECT_LT(network.find<SixAxes>()->rate().norm(), 0.1);
+}
+
+TEST(SixAxes, GivesTheHandThePowerOfItsGrip) {
+  families::Rng rng(seed);
+  SCOPED_TRACE(families::of_seed(seed, "hand", 0));
+  Network network = against_a_spring({}, 200.0);
+  const auto& master = *network.find<SixAxes>();
+  double most = 0.0;
+  for (int tick = 0; tick < families::draws(2000); ++tick) {
+    Twist hand;
+    for (Eigen::Index i = 0; i < 3; ++i) hand.linear[i] = families::uniform(rng, -0.1, 0.1);
+    ASSERT_TRUE(network.run(moving(hand)));
+    ASSERT_NEAR(-master.grip().dot(to_vec(hand)), master.supplied(), 1e-12);
+    most = std::max(most, master.supplied());
+  }
+  EXPECT_GT(most, 0.1);
+}
+
+/// [J] of a device of 0.1 kg that held still, was pushed once and moves the hand for two seconds,
+/// as a part of what the push gave; a force acts on it from the tick after its motion was read.
+double energy_left(const SixAxesOptions& options, double load, double damping) {
+  constexpr double mass = 0.1;
+  Network network = against_a_spring(options, load);
+  const auto& master = *network.find<SixAxes>();
+  double rate = 0.1, position = 0.0, read = 0.0, force = 0.0;
+  for (int tick = 0; tick < 800; ++tick) {
+    Signals signals = moving({});
+    signals.hand.ball.linear.x() = (position - read) / period;
+    read = position;
+    if (!network.run(signals)) return 1e9;
+    force = master.grip()(0);
+    for (int part = 0; part < 20; ++part) {
+      rate += period / 20 / mass * (force - damping * rate);
+      position += period / 20 * rate;
+    }
+    if (!(std::abs(rate) < 1e3)) return 1e9;
+  }
+  return rate * rate / 0.01;
+}
+
+TEST(SixAxes, ADeviceWithTheDampingThatItNeedsComesToRest) {
+  families::Rng rng(seed);
+  int restless = 0;
+  for (int i = 0; i < families::draws(60); ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "device", i));
+    const SixAxesOptions options{.mass = families::uniform(rng, 0.05, 0.5),
+                                 .hand_stiffness = families::uniform(rng, 100.0, 1500.0),
+                                 .hand_damping = families::uniform(rng, 0.3, 10.0),
+                                 .force_limit = 1e5};
+    const double load = std::pow(10.0, families::uniform(rng, 1.0, 6.0));
+    SixAxes alone(options);
+    alone.prepare(period);
+    EXPECT_LT(energy_left(options, load, alone.device_damping(0.0)(0)), 1.0);
+    restless += energy_left(options, load, 0.01) > 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(restless, families::draws(60) / 10) << "the condition must be about something";
+}
+
+TEST(SixAxes, TheDampingThatADeviceNeedsIsLeastForADamperOfItsOwnHalf) {
+  const auto needed = [](double damping, double late) {
+    SixAxes master({.hand_stiffness = 400.0, .hand_damping = damping});
+    master.prepare(period);
+    return master.device_damping(late)(0);
+  };
+  const double k_t = 400.0 * period;
+  EXPECT_NEAR(needed(0.5 * k_t, 0.0), k_t, 1e-12);
+  EXPECT_GT(needed(0.4 * k_t, 0.0), k_t);
+  EXPECT_GT(needed(0.6 * k_t, 0.0), k_t);
+  EXPECT_NEAR(needed(k_t, period), 2.0 * k_t, 1e-12);
+  EXPECT_TRUE(std::isinf(needed(0.0, 0.0)));
 }
 
 TEST(SixAxes, RefusesNumbersOutOfRange) {

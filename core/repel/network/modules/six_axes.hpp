@@ -96,6 +96,14 @@ class SixAxes {
   [[nodiscard]] Vec<6> felt() const noexcept {  ///< [N, N m] of the motors
     return all([](const HeldAxis& axis) { return axis.felt(); });
   }
+  /// [N, N m] of the grip on the hand: what a device is to show whose motion HandInput::ball is.
+  [[nodiscard]] Vec<6> grip() const noexcept {
+    return all([](const HeldAxis& axis) { return axis.grip(); });
+  }
+  /// [N s/m, N m s/rad] HeldAxis::device_damping of every axis. @param late [s]
+  [[nodiscard]] Vec<6> device_damping(double late) const noexcept {
+    return all([&](const HeldAxis& axis) { return axis.device_damping(late); });
+  }
   [[nodiscard]] double supplied() const noexcept {  ///< [W] by the hand
     double sum = 0.0;
     for (const HeldAxis& axis : axes_) sum += axis.supplied();
