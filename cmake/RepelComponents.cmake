@@ -39,7 +39,9 @@ if(REPEL_HAS_DDS)
 endif()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
 repel_all_found(SDF REPEL_HAS_ROBOTS SDFORMAT_FOUND)
-foreach(part ${REPEL_COMPONENTS} meshes hacd sdf)
+# The driver of Haply is part of the devices, with the packages of the live view.
+repel_all_found(HAPLY REPEL_HAS_DEVICES REPEL_HAS_VISUAL)
+foreach(part ${REPEL_COMPONENTS} meshes hacd sdf haply)
   repel_say_if_left_out(${part})
 endforeach()
 

@@ -184,6 +184,9 @@ TEST(SixAxes, TheDampingThatADeviceNeedsIsLeastForADamperOfItsOwnHalf) {
   EXPECT_GT(needed(0.6 * k_t, 0.0), k_t);
   EXPECT_NEAR(needed(k_t, period), 2.0 * k_t, 1e-12);
   EXPECT_TRUE(std::isinf(needed(0.0, 0.0)));
+  SixAxes master({.hand_stiffness = 400.0});
+  master.prepare(period);
+  EXPECT_NEAR(master.best_grip_damping(period)(0), k_t, 1e-12);
 }
 
 TEST(SixAxes, RefusesNumbersOutOfRange) {

@@ -88,6 +88,11 @@ class HeldAxis {
     const double by_damper = hand_resistance_ - spring_resistance_;
     return by_spring == 0.0 ? by_damper : by_damper + by_spring * by_spring / (4.0 * by_damper);
   }
+  /// [N s/m, N m s/rad] The damping of the grip for which `device_damping` is least, and is twice
+  /// as much.
+  [[nodiscard]] double best_grip_damping(double late) const noexcept {
+    return spring_resistance_ * (1.0 + late / period_);
+  }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the hand
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 

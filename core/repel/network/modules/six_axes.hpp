@@ -104,6 +104,10 @@ class SixAxes {
   [[nodiscard]] Vec<6> device_damping(double late) const noexcept {
     return all([&](const HeldAxis& axis) { return axis.device_damping(late); });
   }
+  /// [N s/m, N m s/rad] HeldAxis::best_grip_damping of every axis.
+  [[nodiscard]] Vec<6> best_grip_damping(double late) const noexcept {
+    return all([&](const HeldAxis& axis) { return axis.best_grip_damping(late); });
+  }
   [[nodiscard]] double supplied() const noexcept {  ///< [W] by the hand
     double sum = 0.0;
     for (const HeldAxis& axis : axes_) sum += axis.supplied();
