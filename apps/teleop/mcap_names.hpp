@@ -56,6 +56,7 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
       "lever_rate": {"type": "number", "description": "hand at the lever [rad/s]"},
       "direction": {"type": "array", "items": {"type": "number"}, "description": "of the lever"},
+      "turning": {"type": "array", "description": "of a lever that turns the tool [rad/m]"},
       "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
       "sound": {"type": "boolean"}, "silent_for_s": {"type": "number"}}}}}})"};
 

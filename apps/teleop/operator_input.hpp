@@ -94,7 +94,10 @@ class OperatorInput {
     command_.hand.lever_rate = input.lever_rate;
     command_.sound = is_finite(input.rates) && is_finite(input.direction_W) &&
                      input.lever_rate - input.lever_rate == 0.0;
-    if (command_.sound) command_.hand.direction_W = input.direction_W;
+    if (command_.sound) {
+      command_.hand.direction_W = input.direction_W;
+      command_.hand.turning_W = Vec3::Zero();
+    }
     if (!command_.sound || unheard_ > rest_after) {
       command_.hand.ball = {};
       command_.hand.lever_rate = 0.0;
@@ -112,7 +115,10 @@ class OperatorInput {
     command_.sound = true;
     command_.hand.ball = m.measured_cv;
     command_.hand.lever_rate = m.lever_rate;
-    if (m.lever_rate != 0.0) command_.hand.direction_W = m.lever_direction_W;
+    if (m.lever_rate != 0.0) {
+      command_.hand.direction_W = m.lever_direction_W;
+      command_.hand.turning_W = Vec3::Zero();
+    }
     command_.silent_for = m.silent ? std::max(silent_after, device_->silent_for()) : 0.0;
 #else
     (void)period;

@@ -60,7 +60,7 @@ class StationSide {
     const network::Command& command = operator_.step(site_.X_WT.linear(), elapsed);
     tell(command, link_);
     phase_ = command.phase;
-    if (command.sound && is_finite(command.hand.ball) && is_finite(command.hand.direction_W)) {
+    if (command.sound && command.hand.is_finite()) {
       signals_.hand = command.hand;
     } else {
       signals_.hand.ball = {};

@@ -569,7 +569,7 @@ std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view>
 
 network::Phase phase_of(const Value& value) {
   const Map map(value);
-  map.allow(phase_keys({"linear", "angular", "direction", "lever"}));
+  map.allow(phase_keys({"linear", "angular", "direction", "lever", "pitch", "axis"}));
   network::Phase phase;
   phase.name = map.at("name").text();
   phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
@@ -589,10 +589,15 @@ network::Phase phase_of(const Value& value) {
     map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
     map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
   } else {
-    map.allow(phase_keys({"direction", "lever"}));
+    map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
     phase.master = network::Master::torque_arm;
     phase.direction = direction_of(map.at("direction"));
     phase.lever_rate = map.at("lever").number({unit::angular_speed, -100.0, 100.0, true});
+    if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
+      phase.screw.emplace();
+      map.read("pitch", {unit::length_per_angle, -10.0, 10.0}, phase.screw->pitch);
+      map.read("axis", {unit::length, -10.0, 10.0}, phase.screw->axis);
+    }
   }
   return phase;
 }

@@ -46,6 +46,32 @@ TEST(NetworkOfAScene, ThoseOfThePaperAndOfTheArmKeepTheirLedgersAtEveryRate) {
   }
 }
 
+TEST(NetworkOfAScene, ALeverScrewsTheToolIntoATable) {
+  const Folder folder;
+  // Against the x axis of the tool's hand; down, and about the vertical.
+  const std::string scene = folder.with(
+      "screw.yaml", "name: screw\nrate: 400 Hz\n" + robot_text() + table_text() +
+                        "script:\n"
+                        "  - {name: screw, device: torque_arm, duration: 3 s, direction: 0 0 -1, "
+                        "lever: 0.4 rad/s, pitch: 25 mm/rad}\n");
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 3 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  const Columns log = columns_of(folder / "log.csv");
+  // The tool points down: its last joint turns it, as the lever turns, which the table slows down.
+  const double turned = log.at("q6_rad").back() - log.at("q6_rad").front();
+  const double sunk = log.at("z_m").front() - log.at("z_m").back();
+  EXPECT_GT(std::abs(turned), 0.5);
+  EXPECT_NEAR(sunk, 0.025 * std::abs(turned), 0.004);
+  EXPECT_NEAR(log.at("x_m").back(), log.at("x_m").front(), 0.003);
+  EXPECT_GT(log.at("virtual_fz_n").back(), 1.0);
+  // The pitch makes a torque of the force: dW = F dz = T d(lever), with 0.1 m of the lever's scale.
+  EXPECT_GT(std::abs(log.at("lever_torque_nm").back()), 0.01);
+}
+
 TEST(NetworkOfAScene, LedgersOfEveryTickAreInTheLog) {
   const Folder folder;
   const Ending ending = teleop("--fast --seconds 3 --log " + quoted(folder / "log.csv"));

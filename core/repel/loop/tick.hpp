@@ -186,12 +186,12 @@ class Teleoperator {
   [[gnu::noinline]] void follow(const network::Command& command) noexcept {
     record_.command = command;
     network::HandInput& hand = record_.command.hand;
-    if (!is_finite(hand.ball) || !is_finite(hand.direction_W) ||
-        hand.lever_rate - hand.lever_rate != 0.0) {
+    if (!hand.is_finite()) {
       record_.command.sound = false;
       hand.ball = {};
       hand.lever_rate = 0.0;
       hand.direction_W = signals_.hand.direction_W;
+      hand.turning_W = signals_.hand.turning_W;
     }
     if (!record_.command.sound) record_.status |= status::bad_command;
     if (command.silent_for > patience) record_.status |= status::silent_device;

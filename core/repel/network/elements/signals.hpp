@@ -13,10 +13,19 @@ using Jacobian = Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joi
 struct HandInput {
   Twist ball;                 ///< [m/s, rad/s] raw rates of the force ball, world axes
   double lever_rate = 0.0;    ///< [rad/s] rate of the hand at the lever
-  Vec3 direction_W{1, 0, 0};  ///< unit, world axes: direction in which the lever drives the tool
+  Vec3 direction_W{1, 0, 0};  ///< world axes: direction in which the lever drives the tool; unit,
+                              ///< or shorter where it turns the tool as well
+  Vec3 turning_W{0, 0, 0};    ///< [rad/m] world axes: how far it turns the tool about its origin
+                              ///< for what drives it by a metre along a unit direction
   /// Multiplies the scale of a master that is felt, 1e-3 to 1e3: tool motion per hand motion, and
   /// force at the hand per force at the tool. It may change at any time: see ChangingScale.
   double scale = 1.0;
+
+  /// Every number but the scale, of which ChangingScale takes care.
+  [[nodiscard]] bool is_finite() const noexcept {
+    return repel::is_finite(ball) && repel::is_finite(direction_W) && repel::is_finite(turning_W) &&
+           lever_rate - lever_rate == 0.0;
+  }
 };
 
 /// The state of arm, world and operator at the start of a tick. All numbers are finite: the loop
