@@ -12,6 +12,7 @@
 
 #ifdef REPEL_TELEOP_DEVICES
 #include <repel/devices/device_thread.hpp>
+#include <repel/devices/hand_follower.hpp>
 #endif
 
 #include "controls.hpp"
@@ -110,10 +111,10 @@ class OperatorInput {
   void feel(double period, bool taken) noexcept {
 #ifdef REPEL_TELEOP_DEVICES
     const devices::Measured& m = device_->measured(period);
-    if (taken) return;
+    if (taken) return follower_.rest();
     driver_ = Driver::device;
     command_.sound = true;
-    command_.hand.ball = m.measured_cv;
+    command_.hand.ball = follower_.step(m, period);
     command_.hand.lever_rate = m.lever_rate;
     if (m.lever_rate != 0.0) {
       command_.hand.direction_W = m.lever_direction_W;
@@ -129,6 +130,9 @@ class OperatorInput {
   network::ScriptedOperator script_;
   Controls* controls_;
   devices::DeviceLink* device_;
+#ifdef REPEL_TELEOP_DEVICES
+  devices::HandFollower follower_;
+#endif
   const TickRecord* recorded_ = nullptr;
   Driver driver_ = Driver::script;
   network::Command command_;

@@ -90,6 +90,11 @@ class StationSide {
     const auto* handle = network_.find<network::SixAxes>();
     return handle == nullptr ? network::Vec<6>::Zero() : handle->felt();
   }
+  /// [N, N m] Of the grip of that master on the hand; zero if there is none.
+  [[nodiscard]] Wrench grip() const noexcept {
+    const auto* handle = network_.find<network::SixAxes>();
+    return handle == nullptr ? Wrench{} : network::to_wrench(handle->grip());
+  }
   /// What the site said last.
   [[nodiscard]] const SiteState& site() const noexcept { return site_; }
   [[nodiscard]] std::int32_t phase() const noexcept { return phase_; }
