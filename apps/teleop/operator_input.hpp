@@ -72,7 +72,7 @@ class OperatorInput {
  private:
   /// Keeps the direction of the lever, so that the force of its spring does not change direction.
   void rest(double period) noexcept {
-    command_.hand.ball = {};
+    command_.hand.ball = command_.second.ball = {};
     command_.hand.lever_rate = 0.0;
     command_.sound = true;
     command_.silent_for = std::max(silent_after, command_.silent_for + period);

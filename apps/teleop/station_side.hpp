@@ -60,10 +60,11 @@ class StationSide {
     const network::Command& command = operator_.step(site_.X_WT.linear(), elapsed);
     tell(command, link_);
     phase_ = command.phase;
-    if (command.sound && command.hand.is_finite()) {
+    if (command.sound && command.hand.is_finite() && command.second.is_finite()) {
       signals_.hand = command.hand;
+      signals_.second = command.second;
     } else {
-      signals_.hand.ball = {};
+      signals_.hand.ball = signals_.second.ball = {};
       signals_.hand.lever_rate = 0.0;
     }
     // Nobody holds against the hand: its spring begins anew.

@@ -560,8 +560,8 @@ constexpr std::array all_steps{PartStep::What::spawn, PartStep::What::grip, Part
 
 /// Keys of a phase of any device.
 std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
-  std::vector<std::string_view> keys{"name",   "device", "frame", "duration",
-                                     "silent", "over",   "blind", "scale"};
+  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent",
+                                     "over", "blind",  "scale", "second"};
   for (const PartStep::What what : all_steps) keys.push_back(word_for(what));
   keys.insert(keys.end(), more);
   return keys;
@@ -582,6 +582,12 @@ network::Phase phase_of(const Value& value) {
   }
   map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
            phase.scale);
+  if (const Value* second = map.find("second")) {
+    const Map rates(*second);
+    rates.allow({"linear", "angular"});
+    rates.read("linear", {unit::speed, -10.0, 10.0, true}, phase.second.linear);
+    rates.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.second.angular);
+  }
   const std::string device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
   if (device != "torque_arm") {
     if (device == "six_axes") phase.master = network::Master::six_axes;

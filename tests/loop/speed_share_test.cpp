@@ -30,6 +30,20 @@ TEST(SpeedShare, NeverDrivesAndBrakesAtOnce) {
   }
 }
 
+TEST(SpeedShare, AHandWhoseNumbersAreNoneRestsWhereItsLeverPointed) {
+  network::HandInput last;
+  last.direction_W = Vec3::UnitY();
+  network::HandInput hand;
+  hand.ball.linear = Vec3(0.1, 0, 0);
+  EXPECT_TRUE(rest_unless_finite(hand, last));
+  EXPECT_EQ(hand.ball.linear.x(), 0.1);
+  hand.turning_W.z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(rest_unless_finite(hand, last));
+  EXPECT_EQ(hand.ball.linear, Vec3::Zero());
+  EXPECT_EQ(hand.direction_W, Vec3::UnitY());
+  EXPECT_EQ(hand.turning_W, Vec3::Zero());
+}
+
 TEST(SpeedShare, NoHandLeadsFasterThanTheToolMayBe) {
   network::HandInput hand;
   hand.ball.linear = Vec3(0.0, 0.1, 0.0);

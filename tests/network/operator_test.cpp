@@ -182,6 +182,23 @@ TEST(ScriptedOperator, TheNextDirectionTurnsNothing) {
   EXPECT_EQ(hand.direction_W, Vec3::UnitX());
 }
 
+TEST(ScriptedOperator, ASecondHandMovesMeanwhileInTheSameFrame) {
+  const Mat3 R_WT = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()).toRotationMatrix();  // x to y
+  Phase with_ball = ball_phase(0.0025, {0.1, 0, 0}, PhaseFrame::tool);
+  with_ball.second.linear = Vec3(0.2, 0, 0);
+  Phase with_lever = lever_phase(0.0025, {1, 0, 0}, 1.0);
+  with_lever.second.angular = Vec3(0, 0, 0.3);
+  Phase faulty = ball_phase(0.0025, {0.1, 0, 0});
+  faulty.second.linear.x() = nan;
+  ScriptedOperator the_operator({with_ball, with_lever, faulty});
+  EXPECT_NEAR(the_operator.step(R_WT, 0.0025).second.ball.linear.y(), 0.2, 1e-15);
+  EXPECT_EQ(the_operator.step(R_WT, 0.0025).second.ball.angular, Vec3(0, 0, 0.3));
+  EXPECT_FALSE(the_operator.step(R_WT, 0.0025).sound);
+  const Command& over = the_operator.step(R_WT, 0.0025);
+  EXPECT_TRUE(over.sound);
+  EXPECT_EQ(over.second.ball.linear, Vec3::Zero());
+}
+
 TEST(ScriptedOperator, HandThatDoesNotLeadTheLeverHoldsItStill) {
   ScriptedOperator the_operator({lever_phase(0.5, {0, 1, 0}, 2.0), ball_phase(0.5, {0.1, 0, 0})});
   for (int tick = 0; tick < 200; ++tick) {

@@ -299,6 +299,18 @@ TEST(SceneValue, ALeverMayTurnTheTool) {
   EXPECT_EQ(scene.script[2].screw->axis, Vec3(0.0, 0.02, 0.0));
 }
 
+TEST(SceneValue, ASecondHandHasRatesOfItsOwn) {
+  const Scene scene =
+      parsed(base_scene +
+             "script:\n"
+             "  - {name: a, device: six_axes, duration: 1 s, second: {linear: 1 0 0 m/s}}\n"
+             "  - {name: b, device: torque_arm, duration: 1 s, direction: 0 0 1, lever: 1 rad/s, "
+             "second: {angular: 0 2 0 rad/s}}\n");
+  EXPECT_EQ(scene.script[0].second.linear, Vec3(1, 0, 0));
+  EXPECT_EQ(scene.script[0].rates.linear, Vec3(0, 0, 0));
+  EXPECT_EQ(scene.script[1].second.angular, Vec3(0, 2, 0));
+}
+
 TEST(SceneValue, ADeviceMayFailByRatesThatAreNotANumber) {
   const Scene scene = parsed(
       base_scene +

@@ -42,7 +42,7 @@ struct TickRecord {
   Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
   Wrench coupling;            ///< [N, N m] from the operator's side on the tool
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
-  Wrench grip;                ///< [N, N m] of the master of six axes on the hand; not logged
+  Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
   double gain = 1.0;          ///< of the fail-safe
   std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
@@ -56,8 +56,13 @@ struct TickRecord {
 inline void note_masters(const network::Network& network, TickRecord& record) noexcept {
   const auto* lever = network.find<network::TorqueArm>();
   record.lever_torque = lever != nullptr ? lever->felt() : 0.0;
-  const auto* handle = network.find<network::SixAxes>();
-  record.grip = handle != nullptr ? network::to_wrench(handle->grip()) : Wrench{};
+  record.grip = {};
+  for (const network::Node& node : network.nodes()) {
+    const auto* handle = node.module.as<network::SixAxes>();
+    if (handle == nullptr || handle->hand() != network::Hand::first) continue;
+    record.grip = network::to_wrench(handle->grip());
+    return;
+  }
 }
 
 /// Keeps the ticks of a run in memory reserved at set-up; ticks beyond it are dropped and counted.

@@ -35,6 +35,18 @@ namespace detail {
 
 }  // namespace detail
 
+/// Puts a hand to rest whose numbers are not finite; it keeps the `last` direction of its lever.
+/// True when it was finite.
+[[nodiscard]] inline bool rest_unless_finite(network::HandInput& hand,
+                                             const network::HandInput& last) noexcept {
+  if (hand.is_finite()) return true;
+  hand.ball = {};
+  hand.lever_rate = 0.0;
+  hand.direction_W = last.direction_W;
+  hand.turning_W = last.turning_W;
+  return false;
+}
+
 /// Clamps the operator's rates to the speed limit of the tool and the lever direction to length
 /// one, with its turning; a scale that is none becomes 1. True when a rate was clamped.
 /// @param scale of the lever [m/rad], above 0

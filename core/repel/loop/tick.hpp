@@ -185,19 +185,18 @@ class Teleoperator {
 
   [[gnu::noinline]] void follow(const network::Command& command) noexcept {
     record_.command = command;
-    network::HandInput& hand = record_.command.hand;
-    if (!hand.is_finite()) {
+    const bool is_sound = rest_unless_finite(record_.command.hand, signals_.hand);
+    if (!rest_unless_finite(record_.command.second, signals_.second) || !is_sound) {
       record_.command.sound = false;
-      hand.ball = {};
-      hand.lever_rate = 0.0;
-      hand.direction_W = signals_.hand.direction_W;
-      hand.turning_W = signals_.hand.turning_W;
     }
     if (!record_.command.sound) record_.status |= status::bad_command;
     if (command.silent_for > patience) record_.status |= status::silent_device;
-    signals_.hand = hand;
-    if (cut_to_speed(signals_.hand, options_.tool_speed, lever_scale_)) {
-      record_.status |= status::saturated;
+    signals_.hand = record_.command.hand;
+    signals_.second = record_.command.second;
+    for (network::HandInput* hand : {&signals_.hand, &signals_.second}) {
+      if (cut_to_speed(*hand, options_.tool_speed, lever_scale_)) {
+        record_.status |= status::saturated;
+      }
     }
   }
 

@@ -54,7 +54,8 @@ struct Phase {
   /// the tool.
   std::optional<Screw> screw{};
   double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
-  double scale = 0.0;       ///< HandInput::scale from here on; 0: as before
+  Twist second{};           ///< [m/s, rad/s] of a second hand with six axes, meanwhile
+  double scale = 0.0;       ///< HandInput::scale of both from here on; 0: as before
   bool silent = false;      ///< the device does not respond: its last sample is held
 };
 
@@ -63,6 +64,7 @@ using Script = std::vector<Phase>;
 /// The operator's input of one period.
 struct Command {
   HandInput hand{};         ///< if not finite: taken as rest, and a fault
+  HandInput second{};       ///< of a second hand at the same tool; likewise
   bool sound = true;        ///< false: the source reports that its data are invalid
   double silent_for = 0.0;  ///< [s] age of the sample
   std::int32_t phase = 0;   ///< of a script; copied to the record
@@ -87,9 +89,11 @@ class ScriptedOperator {
       command_.silent_for += period;
       return command_;
     }
-    command_.hand.ball = {};
+    command_.hand.ball = command_.second.ball = {};
     command_.hand.lever_rate = 0.0;
-    if (!over() && script_[phase_].scale > 0.0) command_.hand.scale = script_[phase_].scale;
+    if (!over() && script_[phase_].scale > 0.0) {
+      command_.hand.scale = command_.second.scale = script_[phase_].scale;
+    }
     command_.silent_for = 0.0;
     command_.sound = over() || read(script_[phase_], R_WT, period);
     return command_;
@@ -103,6 +107,8 @@ class ScriptedOperator {
  private:
   [[nodiscard]] bool read(const Phase& phase, const Mat3& R_WT, double period) noexcept {
     const bool in_tool = phase.frame == PhaseFrame::tool;
+    if (!is_finite(phase.second)) return false;
+    command_.second.ball = in_tool ? rotated(R_WT, phase.second) : phase.second;
     if (phase.master != Master::torque_arm) {
       if (!is_finite(phase.rates)) return false;
       command_.hand.ball = in_tool ? rotated(R_WT, phase.rates) : phase.rates;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <repel/network/elements/junction.hpp>
 #include <repel/network/elements/one_ports.hpp>
 #include <repel/network/plan.hpp>
 
@@ -114,6 +115,54 @@ TEST(SixAxes, LetsGoAtRest) {
   rest.at_rest = true;
   ASSERT_TRUE(network.run(rest));
   EXPECT_LT(network.find<SixAxes>()->rate().norm(), 0.1);
+}
+
+/// Two masters that hold the same tool, against a spring.
+Network held_by_two(double first_scale, double second_scale, double stiffness) {
+  return Plan()
+      .add("left", SixAxes({.motion_scale = first_scale}), "tool")
+      .add("right", SixAxes({.motion_scale = second_scale, .hand = Hand::second}), "tool")
+      .add("tool", Junction())
+      .add("spring", Spring<any_size>(stiffness * Matrix::Identity(6, 6)))
+      .build(period);
+}
+
+TEST(SixAxes, TwoHandsHoldOneToolAndEachFeelsTheOther) {
+  Network network = held_by_two(1.0, 2.0, 50.0);
+  Signals signals = moving({Vec3(0.02, 0.01, 0), Vec3(0, 0, 0.01)});
+  signals.second.ball = {Vec3(-0.01, 0.03, 0), Vec3::Zero()};
+  for (int tick = 0; tick < 400; ++tick) ASSERT_TRUE(network.run(signals));
+  signals.hand.ball = signals.second.ball = {};
+  for (int tick = 0; tick < 4000; ++tick) ASSERT_TRUE(network.run(signals));
+  const auto& left = *network.find("left")->module.as<SixAxes>();
+  const auto& right = *network.find("right")->module.as<SixAxes>();
+  for (int i = 0; i < 2; ++i) {
+    // The tool is where both handles say, between the hands.
+    const double x = left.position()(i);
+    EXPECT_NEAR(2.0 * right.position()(i), x, 1e-6);
+    const double first = Vec3(0.02, 0.01, 0)[i], second = Vec3(-0.01, 0.03, 0)[i];
+    EXPECT_NEAR(300.0 * (first - x) + 300.0 / 2.0 * (second - 0.5 * x), 50.0 * x, 1e-4);
+    EXPECT_NEAR(left.grip()(i), 300.0 * (x - first), 1e-4);
+    EXPECT_NEAR(right.grip()(i), 300.0 * (0.5 * x - second), 1e-4);
+  }
+}
+
+TEST(SixAxes, TwoHandsGiveNoMoreThanTheyTookAndSupplied) {
+  families::Rng rng(seed);
+  SCOPED_TRACE(families::of_seed(seed, "hands", 0));
+  Network network = held_by_two(0.5, 3.0, 200.0);
+  for (int tick = 0; tick < families::draws(20000); ++tick) {
+    Signals signals = moving({});
+    for (HandInput* hand : {&signals.hand, &signals.second}) {
+      hand->ball = {families::uniform(rng, 0.0, 0.3) * families::direction(rng),
+                    families::uniform(rng, 0.0, 1.0) * families::direction(rng)};
+    }
+    ASSERT_TRUE(network.run(signals));
+  }
+  for (const Node& node : network.nodes()) EXPECT_LE(node.ledger.deficit(), 1e-9) << node.name;
+  for (const char* name : {"left", "right"}) {
+    EXPECT_GT(network.find(name)->ledger.passed, 1e-2) << name;
+  }
 }
 
 TEST(SixAxes, GivesTheHandThePowerOfItsGrip) {

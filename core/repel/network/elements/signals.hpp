@@ -28,6 +28,9 @@ struct HandInput {
   }
 };
 
+/// Which of the hands that hold one tool.
+enum class Hand { first, second };
+
 /// The state of arm, world and operator at the start of a tick. All numbers are finite: the loop
 /// holds the last valid ones where an input fails.
 struct Signals {
@@ -50,11 +53,15 @@ struct Signals {
                              ///< on the tool, about its origin, in axes of the tool
   bool is_measured = false;  ///< there is such a reading
   HandInput hand;
+  HandInput second;        ///< of a second hand at the same tool, for the modules that name it
   double period = 0.0025;  ///< [s]
   double elapsed = 0.0;    ///< [s] since the last tick, more after missed ticks; 0: one period
   bool at_rest = false;    ///< no force of the operator: states of the operator side are reset
   bool released = false;   ///< nothing can be trusted: states of the walls are reset, too
 
+  [[nodiscard]] const HandInput& of(Hand which) const noexcept {
+    return which == Hand::first ? hand : second;
+  }
   /// Time since the last tick [s].
   [[nodiscard]] double since_last() const noexcept { return elapsed > 0.0 ? elapsed : period; }
   /// Twist of the tool, J rates, and that of the last period, J mean_rates.

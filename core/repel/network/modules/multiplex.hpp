@@ -14,6 +14,7 @@ struct MultiplexOptions {
   double velocity_scale = 0.1;  ///< s_v [m/rad] tool motion per lever motion
   double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
   double turning_time = 0.05;   ///< [s] time constant with which the direction follows a new one
+  Hand hand = Hand::first;      ///< of the lever
 };
 
 /// A transformer along one twist d, a direction [1] and a turning [rad/m]: v6 = s_v d v1 and f1 =
@@ -45,11 +46,11 @@ class Multiplex {
   void face(Side root) noexcept { root_ = root; }
 
   void read(const Signals& signals) noexcept {
-    const HandInput& hand = signals.hand;
+    const HandInput& hand = signals.of(options_.hand);
     direction_ = begun_ ? direction_ + share_ * (hand.direction_W - direction_) : hand.direction_W;
     turning_ = begun_ ? turning_ + share_ * (hand.turning_W - turning_) : hand.turning_W;
     begun_ = true;
-    scale_.step(signals.hand.scale);
+    scale_.step(hand.scale);
     for (int i = 0; i < 3; ++i) {
       flow_map_[i] = scale_.value() * options_.velocity_scale * direction_[i];
       effort_map_[i] = scale_.value() * options_.force_scale * direction_[i];

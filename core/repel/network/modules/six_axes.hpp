@@ -28,10 +28,11 @@ struct SixAxesOptions {
   /// Tool motion per hand motion. The hand feels the wrench at the tool times the same number, so
   /// that no power is lost. Multiplied by HandInput::scale (ChangingScale).
   double motion_scale = 1.0;
+  Hand hand = Hand::first;  ///< that holds it
 };
 
 /// A one-port of the tool space: wrench in, twist out; a HeldAxis along and about each of the world
-/// axes at the origin of the tool. The hand moves at the rates of HandInput::ball. Not in the
+/// axes at the origin of the tool. Its hand moves at the rates of HandInput::ball. Not in the
 /// paper, whose spaceball feels nothing.
 class SixAxes {
  public:
@@ -65,9 +66,10 @@ class SixAxes {
   }
 
   void read(const Signals& signals) noexcept {
-    scale_.step(signals.hand.scale);
+    const HandInput& input = signals.of(options_.hand);
+    scale_.step(input.scale);
     show_resistance();
-    const Vec<any_size> hand = to_vec(signals.hand.ball);
+    const Vec<any_size> hand = to_vec(input.ball);
     for (std::size_t i = 0; i < 6; ++i) {
       axes_[i].move(hand.coeff(static_cast<Eigen::Index>(i)), signals.at_rest);
     }
@@ -84,6 +86,7 @@ class SixAxes {
     }
   }
 
+  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
   /// Tool motion per hand motion, in this tick.
   [[nodiscard]] double scale() const noexcept { return options_.motion_scale * scale_.value(); }
   /// [m, rad] of the hand, since the start.
