@@ -18,16 +18,16 @@ bool is_alphanumeric(char c) noexcept {
   return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
 }
 
+#ifdef REPEL_HAS_HAPLY
+
+using HaplyJson = nlohmann::json;
+
 /// The identifier is sent back in every command, so nothing in it may need an escape.
 bool is_device_id(std::string_view text) noexcept {
   return !text.empty() && text.size() <= HaplyBounds::id &&
          std::all_of(text.begin(), text.end(),
                      [](char c) { return is_alphanumeric(c) || c == '-' || c == '_'; });
 }
-
-#ifdef REPEL_HAS_HAPLY
-
-using HaplyJson = nlohmann::json;
 
 /// JSON without the same key twice in one object; discarded if it is not that.
 HaplyJson parsed_haply(std::string_view text) {
