@@ -298,12 +298,11 @@ void describe(CLI::App& app, Arguments& a) {
       ->needs(view)
       ->check(CLI::Validator(teleop::listen_complaint, "ADDRESS:PORT"));
   describe_pages(app, a, view);
-  app.add_option(
-         "--device", a.session.device,
-         "In place of the script: the master that drives, spacenav (a six-axis mouse, "
-         "through spacenavd) or evdev:PATH (a motorised lever). Until it is stopped, unless "
-         "--seconds is given")
-      ->check(CLI::Validator(teleop::device_complaint, "spacenav or evdev:PATH"));
+  app.add_option("--device", a.session.device,
+                 "In place of the script: the master that drives, spacenav (a six-axis mouse, "
+                 "through spacenavd), evdev:PATH (a motorised lever) or haply[:URL] (an Inverse3, "
+                 "through its service). Until it is stopped, unless --seconds is given")
+      ->check(CLI::Validator(teleop::device_complaint, "spacenav, evdev:PATH or haply[:URL]"));
   app.get_option("--page-drives")->needs("--device");
   describe_sides(app, a);
   app.add_option("--replay", a.replay,

@@ -45,6 +45,12 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
                  {"sound", command.sound},
                  {"silent_for_s", command.silent_for}};
   if (command.hand.scale != 1.0) inputs["scale"] = command.hand.scale;
+  if (!command.hand.turning_W.isZero(0.0)) inputs["turning"] = to_json(command.hand.turning_W);
+  const Twist& second = command.second.ball;
+  if (command.second.scale != 1.0 || !second.linear.isZero(0.0) || !second.angular.isZero(0.0)) {
+    inputs["second_linear"] = to_json(second.linear);
+    inputs["second_angular"] = to_json(second.angular);
+  }
   if ((k.status & status::blind) != 0U) {  // numbers that are not finite become null
     inputs["q_read"] = first_of(k.q_read, joints);
     inputs["v_read"] = first_of(k.v_read, joints);

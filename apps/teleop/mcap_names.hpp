@@ -56,6 +56,9 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
       "lever_rate": {"type": "number", "description": "hand at the lever [rad/s]"},
       "direction": {"type": "array", "items": {"type": "number"}, "description": "of the lever"},
+      "turning": {"type": "array", "description": "of a lever that turns the tool [rad/m]"},
+      "second_linear": {"type": "array", "description": "of a second hand, if it moves [m/s]"},
+      "second_angular": {"type": "array", "description": "likewise [rad/s]"},
       "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
       "sound": {"type": "boolean"}, "silent_for_s": {"type": "number"}}}}}})"};
 

@@ -12,6 +12,7 @@
 
 #ifdef REPEL_TELEOP_DEVICES
 #include <repel/devices/device_thread.hpp>
+#include <repel/devices/hand_follower.hpp>
 #endif
 
 #include "controls.hpp"
@@ -71,7 +72,7 @@ class OperatorInput {
  private:
   /// Keeps the direction of the lever, so that the force of its spring does not change direction.
   void rest(double period) noexcept {
-    command_.hand.ball = {};
+    command_.hand.ball = command_.second.ball = {};
     command_.hand.lever_rate = 0.0;
     command_.sound = true;
     command_.silent_for = std::max(silent_after, command_.silent_for + period);
@@ -94,7 +95,10 @@ class OperatorInput {
     command_.hand.lever_rate = input.lever_rate;
     command_.sound = is_finite(input.rates) && is_finite(input.direction_W) &&
                      input.lever_rate - input.lever_rate == 0.0;
-    if (command_.sound) command_.hand.direction_W = input.direction_W;
+    if (command_.sound) {
+      command_.hand.direction_W = input.direction_W;
+      command_.hand.turning_W = Vec3::Zero();
+    }
     if (!command_.sound || unheard_ > rest_after) {
       command_.hand.ball = {};
       command_.hand.lever_rate = 0.0;
@@ -107,12 +111,15 @@ class OperatorInput {
   void feel(double period, bool taken) noexcept {
 #ifdef REPEL_TELEOP_DEVICES
     const devices::Measured& m = device_->measured(period);
-    if (taken) return;
+    if (taken) return follower_.rest();
     driver_ = Driver::device;
     command_.sound = true;
-    command_.hand.ball = m.measured_cv;
+    command_.hand.ball = follower_.step(m, period);
     command_.hand.lever_rate = m.lever_rate;
-    if (m.lever_rate != 0.0) command_.hand.direction_W = m.lever_direction_W;
+    if (m.lever_rate != 0.0) {
+      command_.hand.direction_W = m.lever_direction_W;
+      command_.hand.turning_W = Vec3::Zero();
+    }
     command_.silent_for = m.silent ? std::max(silent_after, device_->silent_for()) : 0.0;
 #else
     (void)period;
@@ -123,6 +130,9 @@ class OperatorInput {
   network::ScriptedOperator script_;
   Controls* controls_;
   devices::DeviceLink* device_;
+#ifdef REPEL_TELEOP_DEVICES
+  devices::HandFollower follower_;
+#endif
   const TickRecord* recorded_ = nullptr;
   Driver driver_ = Driver::script;
   network::Command command_;

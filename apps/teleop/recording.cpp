@@ -87,6 +87,11 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   k.command.hand.lever_rate = arm.at("lever_rate").number();
   k.command.hand.direction_W = arm.at("direction").vector();
   if (arm.has("scale")) k.command.hand.scale = arm.at("scale").number();
+  if (arm.has("turning")) k.command.hand.turning_W = arm.at("turning").vector();
+  if (arm.has("second_linear")) {
+    k.command.second.ball = {arm.at("second_linear").vector(), arm.at("second_angular").vector()};
+    k.command.second.scale = k.command.hand.scale;
+  }
   k.command.sound = arm.at("sound").yes();
   k.command.silent_for = arm.at("silent_for_s").number();
 }

@@ -53,8 +53,8 @@ class Row {
 /// From the station to the site. A command that is not finite is told as one that is not sound.
 inline void tell(const network::Command& command, network::RemoteLink& link) noexcept {
   const network::HandInput& hand = command.hand;
-  const bool finite = is_finite(hand.ball) && is_finite(hand.direction_W) &&
-                      std::isfinite(hand.lever_rate) && std::isfinite(command.silent_for);
+  const network::HandInput& second = command.second;
+  const bool finite = hand.is_finite() && second.is_finite() && std::isfinite(command.silent_for);
   detail::Row row(link.values());
   row.next() = finite && command.sound ? 1.0 : 0.0;
   row.next() = static_cast<double>(command.phase);
@@ -65,6 +65,10 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   row.put(hand.ball.linear);
   row.put(hand.ball.angular);
   row.next() = std::isfinite(hand.scale) ? hand.scale : 1.0;
+  row.put(hand.turning_W);
+  row.put(second.ball.linear);
+  row.put(second.ball.angular);
+  row.next() = std::isfinite(second.scale) ? second.scale : 1.0;
 }
 
 /// The command that the site heard last. Once the link has been silent for 0.1 s the operator is
@@ -81,11 +85,19 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   command.hand.ball.linear = row.vec3();
   command.hand.ball.angular = row.vec3();
   command.hand.scale = row.next();
-  if (!link.is_linked()) command.hand.direction_W = Vec3(1, 0, 0), command.hand.scale = 1.0;
+  command.hand.turning_W = row.vec3();
+  command.second.ball.linear = row.vec3();
+  command.second.ball.angular = row.vec3();
+  command.second.scale = row.next();
+  if (!link.is_linked()) {
+    command.hand.direction_W = Vec3(1, 0, 0);
+    command.hand.turning_W = Vec3::Zero();
+    command.hand.scale = command.second.scale = 1.0;
+  }
   if (!link.is_linked() || link.silent_for() > network::WavePlayer::silence) {
     command.silent_for = std::max(OperatorInput::silent_after, link.silent_for());
     // The hand that moved when the line went silent is not known to move on.
-    command.hand.ball = {};
+    command.hand.ball = command.second.ball = {};
     command.hand.lever_rate = 0.0;
   }
   return command;

@@ -100,15 +100,17 @@ Pacing pacing_of(const RunOptions& options, const Attachments& attached) {
 }
 
 /// Sends the forces to the device, faded by the same gain as those on the arm.
-void show_force(devices::DeviceLink* device, const TickRecord& record) {
+/// @param has_handle the device is the hand of SIX AXES
+void show_force(devices::DeviceLink* device, const TickRecord& record, bool has_handle) {
 #ifdef REPEL_TELEOP_DEVICES
   if (device == nullptr) return;
-  const Wrench& F = record.virtual_force;
+  const Wrench& F = has_handle ? record.grip : record.virtual_force;
   device->servo_cf(record.gain * record.lever_torque,
                    {record.gain * F.force, record.gain * F.torque});
 #else
   (void)device;
   (void)record;
+  (void)has_handle;
 #endif
 }
 
@@ -159,6 +161,7 @@ void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& att
     if (attached.tap != nullptr && !records.empty())
       attached.tap->show(coprocessor, records, times);
   };
+  const bool has_handle = driven.cell().network(0).find<network::SixAxes>() != nullptr;
   FadeOut fade(stop, recording == nullptr ? attached.at_once : &stop, period_s);
   for (std::int64_t k = 0; k < ticks && !fade.is_over(records); ++k) {
     if (fade.has_begun()) driven.let_go();
@@ -194,7 +197,7 @@ void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& att
     note_tick(records, times, result, observers);
     if (cameras != nullptr) cameras->follow(result.scene, records);
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
-    show_force(attached.device, *records.front());
+    show_force(attached.device, *records.front(), has_handle);
     show_tick(attached, coprocessor, options.fast, records,
               recording == nullptr ? times : recording->times[tick]);
     if (pace.has_arrived()) show_last();

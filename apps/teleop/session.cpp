@@ -183,6 +183,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   if (session.link.side) remote.emplace(scene, options);
   std::unique_ptr<PreparedRun> prepared =
       prepare(scene, options, recording, remote ? &remote->link : nullptr);
+  require_passive_grip(device, prepared->cell.network(0));
   Attachments attached{nullptr, nullptr, device.link.get(), recording, nullptr, &at_once};
   if (remote) {
     remote->open(session.link, scene);

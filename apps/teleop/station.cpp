@@ -28,7 +28,7 @@ using std::chrono::steady_clock;
 void show_to(devices::DeviceLink* device, const StationSide& station) {
 #ifdef REPEL_TELEOP_DEVICES
   if (device == nullptr) return;
-  const Wrench& F = station.site().virtual_force;
+  const Wrench F = station.has_handle() ? station.grip() : station.site().virtual_force;
   const double gain = station.is_heard() ? station.site().gain : 0.0;
   device->servo_cf(gain * station.felt(), {gain * F.force, gain * F.torque});
 #else
@@ -99,6 +99,7 @@ StationResult run_station(const scene::Scene& scene, const RunOptions& options,
   const Device device = open_device(device_name);
   network::RemoteLink link(remote_options(scene));
   StationSide station(scene, options, link, device.link.get());
+  require_passive_grip(device, station.network());
   // Their threads must not inherit the real-time priority.
   link::LinkThread thread(link, open_link(choice, scene));
   Mailbox<Progress> progress({});

@@ -60,10 +60,11 @@ class StationSide {
     const network::Command& command = operator_.step(site_.X_WT.linear(), elapsed);
     tell(command, link_);
     phase_ = command.phase;
-    if (command.sound && is_finite(command.hand.ball) && is_finite(command.hand.direction_W)) {
+    if (command.sound && command.hand.is_finite() && command.second.is_finite()) {
       signals_.hand = command.hand;
+      signals_.second = command.second;
     } else {
-      signals_.hand.ball = {};
+      signals_.hand.ball = signals_.second.ball = {};
       signals_.hand.lever_rate = 0.0;
     }
     // Nobody holds against the hand: its spring begins anew.
@@ -89,6 +90,11 @@ class StationSide {
   [[nodiscard]] network::Vec<6> felt_at_handle() const noexcept {
     const auto* handle = network_.find<network::SixAxes>();
     return handle == nullptr ? network::Vec<6>::Zero() : handle->felt();
+  }
+  /// [N, N m] Of the grip of that master on the hand; zero if there is none.
+  [[nodiscard]] Wrench grip() const noexcept {
+    const auto* handle = network_.find<network::SixAxes>();
+    return handle == nullptr ? Wrench{} : network::to_wrench(handle->grip());
   }
   /// What the site said last.
   [[nodiscard]] const SiteState& site() const noexcept { return site_; }

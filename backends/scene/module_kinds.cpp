@@ -55,7 +55,7 @@ ReadModule torque_arm_of(const Map& map) {
 ReadModule six_axes_of(const Map& map) {
   allow(map, {"mass", "inertia", "friction", "angular_friction", "hand_stiffness", "hand_damping",
               "angular_hand_stiffness", "angular_hand_damping", "force_limit", "torque_limit",
-              "motion_scale"});
+              "motion_scale", "hand"});
   network::SixAxesOptions options;
   map.read("mass", {unit::mass, 1e-6, 1e3}, options.mass);
   map.read("inertia", {unit::inertia, 1e-9, 1e3}, options.inertia);
@@ -69,6 +69,10 @@ ReadModule six_axes_of(const Map& map) {
   map.read("force_limit", {unit::force, 0.0, 1e5}, options.force_limit);
   map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
   map.read("motion_scale", {unit::share, 1e-3, 1e3}, options.motion_scale);
+  if (const Value* hand = map.find("hand")) {
+    const bool is_second = hand->word_of({"first", "second"}) == "second";
+    options.hand = is_second ? network::Hand::second : network::Hand::first;
+  }
   return made_of(options, make<network::SixAxes>);
 }
 

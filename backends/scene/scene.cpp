@@ -659,8 +659,8 @@ constexpr std::array all_steps{PartStep::What::spawn, PartStep::What::grip, Part
 
 /// Keys of a phase of any device.
 std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
-  std::vector<std::string_view> keys{"name",   "device", "frame", "duration",
-                                     "silent", "over",   "blind", "scale"};
+  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent",
+                                     "over", "blind",  "scale", "second"};
   for (const PartStep::What what : all_steps) keys.push_back(word_for(what));
   keys.insert(keys.end(), more);
   return keys;
@@ -668,7 +668,7 @@ std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view>
 
 network::Phase phase_of(const Value& value) {
   const Map map(value);
-  map.allow(phase_keys({"linear", "angular", "direction", "lever"}));
+  map.allow(phase_keys({"linear", "angular", "direction", "lever", "pitch", "axis"}));
   network::Phase phase;
   phase.name = map.at("name").text();
   phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
@@ -681,6 +681,12 @@ network::Phase phase_of(const Value& value) {
   }
   map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
            phase.scale);
+  if (const Value* second = map.find("second")) {
+    const Map rates(*second);
+    rates.allow({"linear", "angular"});
+    rates.read("linear", {unit::speed, -10.0, 10.0, true}, phase.second.linear);
+    rates.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.second.angular);
+  }
   const std::string device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
   if (device != "torque_arm") {
     if (device == "six_axes") phase.master = network::Master::six_axes;
@@ -688,10 +694,15 @@ network::Phase phase_of(const Value& value) {
     map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
     map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
   } else {
-    map.allow(phase_keys({"direction", "lever"}));
+    map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
     phase.master = network::Master::torque_arm;
     phase.direction = direction_of(map.at("direction"));
     phase.lever_rate = map.at("lever").number({unit::angular_speed, -100.0, 100.0, true});
+    if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
+      phase.screw.emplace();
+      map.read("pitch", {unit::length_per_angle, -10.0, 10.0}, phase.screw->pitch);
+      map.read("axis", {unit::length, -10.0, 10.0}, phase.screw->axis);
+    }
   }
   return phase;
 }

@@ -46,6 +46,71 @@ TEST(NetworkOfAScene, ThoseOfThePaperAndOfTheArmKeepTheirLedgersAtEveryRate) {
   }
 }
 
+TEST(NetworkOfAScene, ALeverScrewsTheToolIntoATable) {
+  const Folder folder;
+  // Against the x axis of the tool's hand; down, and about the vertical.
+  const std::string scene = folder.with(
+      "screw.yaml", "name: screw\nrate: 400 Hz\n" + robot_text() + table_text() +
+                        "script:\n"
+                        "  - {name: screw, device: torque_arm, duration: 3 s, direction: 0 0 -1, "
+                        "lever: 0.4 rad/s, pitch: 25 mm/rad}\n");
+  const Ending ending =
+      teleop(quoted(scene) + " --fast --seconds 3 --log " + quoted(folder / "log.csv") +
+             " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  const Columns log = columns_of(folder / "log.csv");
+  // The tool points down: its last joint turns it, as the lever turns, which the table slows down.
+  const double turned = log.at("q6_rad").back() - log.at("q6_rad").front();
+  const double sunk = log.at("z_m").front() - log.at("z_m").back();
+  EXPECT_GT(std::abs(turned), 0.5);
+  EXPECT_NEAR(sunk, 0.025 * std::abs(turned), 0.006) << "but for what gives way";
+  EXPECT_NEAR(log.at("x_m").back(), log.at("x_m").front(), 0.003);
+  EXPECT_GT(log.at("virtual_fz_n").back(), 1.0);
+  // The pitch makes a torque of the force: dW = F dz = T d(lever), with 0.1 m of the lever's scale.
+  EXPECT_GT(std::abs(log.at("lever_torque_nm").back()), 0.01);
+}
+
+TEST(NetworkOfAScene, TwoHandsLeadOneToolIntoATable) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "hands.yaml",
+      "name: hands\nrate: 400 Hz\n" + robot_text() + table_text() +
+          "network:\n"
+          "  - {module: six_axes, name: left, to: tool}\n"
+          "  - {module: six_axes, name: right, hand: second, motion_scale: 2, to: tool}\n"
+          "  - {module: junction, name: tool}\n"
+          "  - {module: relief}\n"
+          "  - {module: kbb2}\n"
+          "  - {module: obstacle}\n"
+          "  - {module: puma_kin}\n"
+          "  - {module: limits}\n"
+          "  - {module: puma_joints}\n"
+          "script:\n"
+          "  - {name: down, device: six_axes, duration: 1.5 s, linear: 0 0 -40 mm/s, "
+          "second: {linear: 0 0 -20 mm/s}}\n"
+          "  - {name: against, device: six_axes, duration: 1 s, linear: 0 20 0 mm/s, "
+          "second: {linear: 0 -40 0 mm/s}}\n");
+  const std::string run = quoted(scene) + " --fast --seconds 2.5";
+  const Ending ending = teleop(run + " --log " + quoted(folder / "log.csv") + " --report " +
+                               quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  EXPECT_GT(module_of(report, "left").at("supplied_j"), 0.001);
+  EXPECT_GT(module_of(report, "right").at("supplied_j"), 0.001);
+  EXPECT_GT(report.at("peak_force_n"), 2.0);
+  const Columns log = columns_of(folder / "log.csv");
+  EXPECT_GT(log.at("z_m").front() - log.at("z_m").back(), 0.005);
+  // They draw it to opposite sides, the second twice as far at half the force.
+  EXPECT_NEAR(log.at("y_m").back(), log.at("y_m").front(), 0.004);
+  const Ending recorded = teleop(run + " --log " + quoted(folder / "run.mcap"));
+  ASSERT_EQ(recorded.status, 0) << recorded;
+  const Ending replayed = teleop("--replay " + quoted(folder / "run.mcap"));
+  EXPECT_EQ(replayed.status, 0) << replayed;
+}
+
 TEST(NetworkOfAScene, LedgersOfEveryTickAreInTheLog) {
   const Folder folder;
   const Ending ending = teleop("--fast --seconds 3 --log " + quoted(folder / "log.csv"));

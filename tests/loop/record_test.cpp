@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/network/elements/one_ports.hpp>
+#include <repel/network/plan.hpp>
+
 namespace repel {
 namespace record_test {
 
@@ -37,6 +40,26 @@ TEST(Recorder, WithoutRoomItOnlyCounts) {
   recorder.add({});
   EXPECT_TRUE(recorder.records().empty());
   EXPECT_EQ(recorder.dropped(), 1);
+}
+
+TEST(TickRecord, NotesWhatTheMasterDoesToTheHand) {
+  constexpr double period = 0.0025;
+  network::Network with_handle =
+      network::Plan()
+          .add("six_axes", network::SixAxes())
+          .add("friction", network::Damper<network::any_size>(
+                               5.0 * network::Mat<network::any_size>::Identity(6, 6)))
+          .build(period);
+  network::Signals signals = network::detail::neutral_signals(0, period);
+  signals.hand.ball.linear.y() = 0.1;
+  ASSERT_TRUE(with_handle.run(signals));
+  TickRecord record;
+  record.lever_torque = 1.0;
+  note_masters(with_handle, record);
+  EXPECT_EQ(record.grip.force.y(), with_handle.find<network::SixAxes>()->grip()(1));
+  EXPECT_LT(record.grip.force.y(), -0.1) << "it resists";
+  EXPECT_EQ(record.grip.force.x(), 0.0);
+  EXPECT_EQ(record.lever_torque, 0.0) << "there is no lever";
 }
 
 TEST(RunTotals, AddUpAndKeepTheExtremes) {

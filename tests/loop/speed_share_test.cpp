@@ -30,6 +30,20 @@ TEST(SpeedShare, NeverDrivesAndBrakesAtOnce) {
   }
 }
 
+TEST(SpeedShare, AHandWhoseNumbersAreNoneRestsWhereItsLeverPointed) {
+  network::HandInput last;
+  last.direction_W = Vec3::UnitY();
+  network::HandInput hand;
+  hand.ball.linear = Vec3(0.1, 0, 0);
+  EXPECT_TRUE(rest_unless_finite(hand, last));
+  EXPECT_EQ(hand.ball.linear.x(), 0.1);
+  hand.turning_W.z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(rest_unless_finite(hand, last));
+  EXPECT_EQ(hand.ball.linear, Vec3::Zero());
+  EXPECT_EQ(hand.direction_W, Vec3::UnitY());
+  EXPECT_EQ(hand.turning_W, Vec3::Zero());
+}
+
 TEST(SpeedShare, NoHandLeadsFasterThanTheToolMayBe) {
   network::HandInput hand;
   hand.ball.linear = Vec3(0.0, 0.1, 0.0);
@@ -46,6 +60,11 @@ TEST(SpeedShare, NoHandLeadsFasterThanTheToolMayBe) {
     EXPECT_EQ(hand.lever_rate, -2.5);
     EXPECT_NEAR(hand.direction_W.x(), 1.0, 1e-12);
   }
+  hand.direction_W = Vec3(0.0, 2.0, 0.0);
+  hand.turning_W = Vec3(0.0, 10.0, 0.0);
+  (void)cut_to_speed(hand, 0.25, 0.1);
+  EXPECT_EQ(hand.direction_W, Vec3::UnitY());
+  EXPECT_EQ(hand.turning_W, Vec3(0.0, 5.0, 0.0)) << "the same screw";
   hand.lever_rate = 2.0;
   hand.scale = 2.0;  // the tool moves twice as far as the lever's scale says
   EXPECT_TRUE(cut_to_speed(hand, 0.25, 0.1));

@@ -100,7 +100,12 @@ class DrawnSignals {
     signals.hand.ball = {families::uniform(rng_, 0.0, 0.4) * families::direction(rng_),
                          families::uniform(rng_, 0.0, 2.0) * families::direction(rng_)};
     signals.hand.lever_rate = families::uniform(rng_, -2.0, 2.0);
-    if (tick_ % 160 == 0) signals.hand.direction_W = families::direction(rng_);
+    if (tick_ % 160 == 0) {
+      signals.hand.direction_W = families::direction(rng_);
+      // At times the lever turns the tool as well.
+      signals.hand.turning_W = families::uniform(rng_, -5.0, 10.0) * families::direction(rng_);
+      if (tick_ % 320 == 0) signals.hand.turning_W = Vec3::Zero();
+    }
   }
 
   Rng& rng_;

@@ -119,6 +119,86 @@ TEST(ScriptedOperator, DirectionsAreThoseOfTheFrameThePhaseNames) {
   }
 }
 
+TEST(Screw, MovesTheFasterOfTwoPointsByTheScaleOfTheLever) {
+  // About an axis through the tool: a point 0.1 m off it.
+  const Twist turn = Screw{}.per_motion(Vec3::UnitZ());
+  EXPECT_EQ(turn.linear, Vec3::Zero());
+  EXPECT_EQ(turn.angular, Vec3(0, 0, 10));
+  const Twist fine = Screw{.pitch = 0.01}.per_motion(Vec3::UnitZ());
+  EXPECT_NEAR(fine.linear.z(), 0.1, 1e-15);
+  EXPECT_NEAR(fine.angular.z(), 10.0, 1e-12);
+  // Steep, or far off: the tool itself.
+  EXPECT_NEAR(Screw{.pitch = -2.0}.per_motion(Vec3::UnitX()).linear.norm(), 1.0, 1e-15);
+  const Twist far = Screw{.axis = Vec3(0.5, 0, 0)}.per_motion(Vec3::UnitZ());
+  EXPECT_NEAR((far.linear - Vec3(0, -1, 0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR(far.angular.z(), 2.0, 1e-15);
+}
+
+// A tool that follows exactly, from any orientation.
+TEST(ScriptedOperator, AScrewKeepsTheToolOnItsAxis) {
+  constexpr unsigned seed = 8;
+  constexpr double period = 0.0025, lever_scale = 0.1;
+  families::Rng rng(seed);
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "screw", i));
+    const PhaseFrame frame = i % 2 == 0 ? PhaseFrame::world : PhaseFrame::tool;
+    const Vec3 a = families::direction(rng);
+    const Screw screw{.pitch = families::uniform(rng, -0.05, 0.05),
+                      .axis = families::uniform(rng, 0.0, 0.2) * families::direction(rng)};
+    Phase phase = lever_phase(2.0, a, 1.0, frame);
+    phase.screw = screw;
+    ScriptedOperator the_operator({phase});
+    Pose X(Eigen::AngleAxisd(families::uniform(rng, 0.0, 3.0), families::direction(rng)));
+    const Mat3 R_WF = frame == PhaseFrame::tool ? Mat3(X.linear()) : Mat3(Mat3::Identity());
+    const Vec3 a_W = R_WF * a, axis_W = R_WF * screw.axis;
+    const double off = axis_W.cross(a_W).norm();
+    double angle = 0.0;
+    for (int tick = 0; tick < 800; ++tick) {
+      const HandInput& hand = the_operator.step(X.linear(), period).hand;
+      ASSERT_LE(hand.direction_W.norm(), 1.0 + 1e-12);
+      ASSERT_LE((hand.turning_W.normalized() - a_W).norm(), 1e-9);
+      const double step = period * lever_scale * hand.lever_rate;
+      // By the middle of the period, to second order.
+      const Mat3 half(Eigen::AngleAxisd(0.5 * step * hand.turning_W.norm(), a_W));
+      X.translation() += step * (half * hand.direction_W);
+      X.linear() = half * half * X.linear();
+      angle += step * hand.turning_W.norm();
+    }
+    EXPECT_NEAR((X.translation() - axis_W).cross(a_W).norm(), off, 1e-4);
+    EXPECT_NEAR(X.translation().dot(a_W), screw.pitch * angle, 1e-6);
+    EXPECT_GT(angle, 0.3);
+  }
+}
+
+TEST(ScriptedOperator, TheNextDirectionTurnsNothing) {
+  Phase screw = lever_phase(0.5, {0, 0, 1}, 1.0);
+  screw.screw.emplace();
+  ScriptedOperator the_operator({screw, lever_phase(0.5, {1, 0, 0}, 1.0)});
+  for (int tick = 0; tick < 200; ++tick) {
+    EXPECT_EQ(the_operator.step(Mat3::Identity(), 0.0025).hand.turning_W, Vec3(0, 0, 10));
+  }
+  const HandInput& hand = the_operator.step(Mat3::Identity(), 0.0025).hand;
+  EXPECT_EQ(hand.turning_W, Vec3::Zero());
+  EXPECT_EQ(hand.direction_W, Vec3::UnitX());
+}
+
+TEST(ScriptedOperator, ASecondHandMovesMeanwhileInTheSameFrame) {
+  const Mat3 R_WT = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()).toRotationMatrix();  // x to y
+  Phase with_ball = ball_phase(0.0025, {0.1, 0, 0}, PhaseFrame::tool);
+  with_ball.second.linear = Vec3(0.2, 0, 0);
+  Phase with_lever = lever_phase(0.0025, {1, 0, 0}, 1.0);
+  with_lever.second.angular = Vec3(0, 0, 0.3);
+  Phase faulty = ball_phase(0.0025, {0.1, 0, 0});
+  faulty.second.linear.x() = nan;
+  ScriptedOperator the_operator({with_ball, with_lever, faulty});
+  EXPECT_NEAR(the_operator.step(R_WT, 0.0025).second.ball.linear.y(), 0.2, 1e-15);
+  EXPECT_EQ(the_operator.step(R_WT, 0.0025).second.ball.angular, Vec3(0, 0, 0.3));
+  EXPECT_FALSE(the_operator.step(R_WT, 0.0025).sound);
+  const Command& over = the_operator.step(R_WT, 0.0025);
+  EXPECT_TRUE(over.sound);
+  EXPECT_EQ(over.second.ball.linear, Vec3::Zero());
+}
+
 TEST(ScriptedOperator, HandThatDoesNotLeadTheLeverHoldsItStill) {
   ScriptedOperator the_operator({lever_phase(0.5, {0, 1, 0}, 2.0), ball_phase(0.5, {0.1, 0, 0})});
   for (int tick = 0; tick < 200; ++tick) {

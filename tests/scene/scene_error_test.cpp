@@ -186,6 +186,11 @@ TEST(SceneError, ValuesOutOfTheirRangeAreRefused) {
                      "  - {name: a, device: torque_arm, duration: 1 s, direction: 0 0 0, "
                      "lever: 1 rad/s}\n",
                  9, {"'direction' is '0 0 0'"});
+  expect_refused(base_scene +
+                     "script:\n"
+                     "  - {name: a, device: torque_arm, duration: 1 s, direction: 0 0 1, "
+                     "lever: 1 rad/s, pitch: 11 m/rad}\n",
+                 9, {"'pitch' is '11 m/rad'"});
   expect_refused(base_scene + "script:\n  - {name: a, device: spaceball, duration: 0 s}\n", 9,
                  {"'duration' is '0 s'"});
 }

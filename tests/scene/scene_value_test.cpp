@@ -295,6 +295,32 @@ TEST(SceneValue, TheScriptIsReadPhaseByPhase) {
   EXPECT_DOUBLE_EQ(scene.script[1].lever_rate, pi / 2);
 }
 
+TEST(SceneValue, ALeverMayTurnTheTool) {
+  const std::string rest = ", device: torque_arm, duration: 1 s, direction: 0 0 1, lever: 1 rad/s";
+  const Scene scene =
+      parsed(base_scene + "script:\n  - {name: a" + rest + "}\n  - {name: b" + rest +
+             ", pitch: -5 mm/rad}\n  - {name: c" + rest + ", axis: 0 20 0 mm}\n");
+  ASSERT_EQ(scene.script.size(), 3U);
+  EXPECT_FALSE(scene.script[0].screw.has_value());
+  ASSERT_TRUE(scene.script[1].screw && scene.script[2].screw);
+  EXPECT_EQ(scene.script[1].screw->pitch, -0.005);
+  EXPECT_EQ(scene.script[1].screw->axis, Vec3::Zero());
+  EXPECT_EQ(scene.script[2].screw->pitch, 0.0);
+  EXPECT_EQ(scene.script[2].screw->axis, Vec3(0.0, 0.02, 0.0));
+}
+
+TEST(SceneValue, ASecondHandHasRatesOfItsOwn) {
+  const Scene scene =
+      parsed(base_scene +
+             "script:\n"
+             "  - {name: a, device: six_axes, duration: 1 s, second: {linear: 1 0 0 m/s}}\n"
+             "  - {name: b, device: torque_arm, duration: 1 s, direction: 0 0 1, lever: 1 rad/s, "
+             "second: {angular: 0 2 0 rad/s}}\n");
+  EXPECT_EQ(scene.script[0].second.linear, Vec3(1, 0, 0));
+  EXPECT_EQ(scene.script[0].rates.linear, Vec3(0, 0, 0));
+  EXPECT_EQ(scene.script[1].second.angular, Vec3(0, 2, 0));
+}
+
 TEST(SceneValue, ADeviceMayFailByRatesThatAreNotANumber) {
   const Scene scene = parsed(
       base_scene +

@@ -220,6 +220,40 @@ devices::Measured deflected(double x) {
   return measured;
 }
 
+// The network integrates what it gets: the sum is the pose of the hand, from where it took hold.
+TEST(OperatorInput, AHandWhosePoseIsMeasuredIsFollowed) {
+  FakeLink link;
+  Controls controls;
+  controls.over_device = true;
+  OperatorInput hands(script(), &controls, &link);
+  const auto tick = [&]() -> const Command& { return hands.step(Mat3::Identity(), period); };
+  const auto drive = [&](Driver driver) {
+    controls.input.draft() = {};
+    controls.input.draft().driver = driver;
+    controls.input.post();
+  };
+  devices::Measured measured = deflected(0.0);
+  measured.operating_state = devices::OperatingState::enabled;
+  measured.has_position = true;
+  measured.position_W = Vec3(0.1, 0.2, 0.3);
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < 400; ++i) {
+    if (i > 0) measured.position_W.z() -= 0.0001;
+    link.post(measured);
+    sum += period * tick().hand.ball.linear;
+  }
+  EXPECT_NEAR(sum.z(), -0.0399, 0.0005);
+  EXPECT_NEAR(sum.x(), 0.0, 1e-12);
+  // While a page drives, the hand moves without the tool.
+  drive(Driver::page);
+  link.post(measured);
+  (void)tick();
+  measured.position_W.z() += 0.04;
+  drive(Driver::device);
+  link.post(measured);
+  EXPECT_TRUE(at_rest(tick()));
+}
+
 // Input of the device from the meantime is stale: it must not be applied when the device regains
 // control.
 TEST(OperatorInput, WhereAPageMayHaveThemFromADeviceItDrivesUntilItGivesThemBack) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <repel/base/status.hpp>
+#include <repel/network/modules/six_axes.hpp>
+#include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/schedule/pair_forces.hpp>
@@ -40,6 +42,7 @@ struct TickRecord {
   Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
   Wrench coupling;            ///< [N, N m] from the operator's side on the tool
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
+  Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
   double gain = 1.0;          ///< of the fail-safe
   double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
   PairId held_pair;           ///< that of the hardest one; invalid: none did
@@ -50,6 +53,19 @@ struct TickRecord {
   PairTotals pairs;
   WorkerReport workers;
 };
+
+/// Notes what the masters of the network do to the hands that hold them; zero where there is none.
+inline void note_masters(const network::Network& network, TickRecord& record) noexcept {
+  const auto* lever = network.find<network::TorqueArm>();
+  record.lever_torque = lever != nullptr ? lever->felt() : 0.0;
+  record.grip = {};
+  for (const network::Node& node : network.nodes()) {
+    const auto* handle = node.module.as<network::SixAxes>();
+    if (handle == nullptr || handle->hand() != network::Hand::first) continue;
+    record.grip = network::to_wrench(handle->grip());
+    return;
+  }
+}
 
 /// Keeps the ticks of a run in memory reserved at set-up; ticks beyond it are dropped and counted.
 class Recorder {

@@ -35,15 +35,30 @@ namespace detail {
 
 }  // namespace detail
 
+/// Puts a hand to rest whose numbers are not finite; it keeps the `last` direction of its lever.
+/// True when it was finite.
+[[nodiscard]] inline bool rest_unless_finite(network::HandInput& hand,
+                                             const network::HandInput& last) noexcept {
+  if (hand.is_finite()) return true;
+  hand.ball = {};
+  hand.lever_rate = 0.0;
+  hand.direction_W = last.direction_W;
+  hand.turning_W = last.turning_W;
+  return false;
+}
+
 /// Clamps the operator's rates to the speed limit of the tool and the lever direction to length
-/// one; a scale that is none becomes 1. True when a rate was clamped.
+/// one, with its turning; a scale that is none becomes 1. True when a rate was clamped.
 /// @param scale of the lever [m/rad], above 0
 [[nodiscard]] inline bool cut_to_speed(network::HandInput& hand, double limit,
                                        double scale) noexcept {
   const double ball = detail::length_of(hand.ball.linear);
   if (ball > limit) hand.ball.linear = hand.ball.linear * (limit / ball);
   const double length = detail::length_of(hand.direction_W);
-  if (length > 1.0 + 1e-9) hand.direction_W = hand.direction_W / length;
+  if (length > 1.0 + 1e-9) {
+    hand.direction_W = hand.direction_W / length;
+    hand.turning_W = hand.turning_W / length;  // the same screw
+  }
   const bool has_scale =
       hand.scale >= network::ChangingScale::least && hand.scale <= network::ChangingScale::most;
   if (!has_scale) hand.scale = 1.0;

@@ -25,7 +25,6 @@
 #include <repel/network/modules/obstacle.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/puma_kin.hpp>
-#include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/schedule/pair_forces.hpp>
 #include <repel/world/arm_kinematics.hpp>
@@ -187,19 +186,18 @@ class Teleoperator {
 
   [[gnu::noinline]] void follow(const network::Command& command) noexcept {
     record_.command = command;
-    network::HandInput& hand = record_.command.hand;
-    if (!is_finite(hand.ball) || !is_finite(hand.direction_W) ||
-        hand.lever_rate - hand.lever_rate != 0.0) {
+    const bool is_sound = rest_unless_finite(record_.command.hand, signals_.hand);
+    if (!rest_unless_finite(record_.command.second, signals_.second) || !is_sound) {
       record_.command.sound = false;
-      hand.ball = {};
-      hand.lever_rate = 0.0;
-      hand.direction_W = signals_.hand.direction_W;
     }
     if (!record_.command.sound) record_.status |= status::bad_command;
     if (command.silent_for > patience) record_.status |= status::silent_device;
-    signals_.hand = hand;
-    if (cut_to_speed(signals_.hand, options_.tool_speed, lever_scale_)) {
-      record_.status |= status::saturated;
+    signals_.hand = record_.command.hand;
+    signals_.second = record_.command.second;
+    for (network::HandInput* hand : {&signals_.hand, &signals_.second}) {
+      if (cut_to_speed(*hand, options_.tool_speed, lever_scale_)) {
+        record_.status |= status::saturated;
+      }
     }
   }
 
@@ -230,11 +228,10 @@ class Teleoperator {
     for (const network::Node& node : network_.nodes()) {
       if (node.module->saturated()) record_.status |= status::saturated;
     }
-    const auto* arm = network_.find<network::TorqueArm>();
     const auto* limits = network_.find<network::Limits>();
     if (limits != nullptr && limits->active()) record_.status |= status::joint_limit;
     if (sensor_ != nullptr && sensor_->is_lost()) record_.status |= status::bad_wrench;
-    record_.lever_torque = arm != nullptr ? arm->felt() : 0.0;
+    note_masters(network_, record_);
   }
 
   [[gnu::noinline]] void drive() noexcept {

@@ -2,8 +2,10 @@
 /// A scripted operator: a repeatable substitute for a person at the master.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +23,25 @@ enum class Master {
 /// Frame in which a phase states its directions.
 enum class PhaseFrame { world, tool };
 
+/// A screw about an axis of known direction.
+struct Screw {
+  double pitch = 0.0;  ///< [m/rad] motion along the axis per turning about it
+  Vec3 axis{0, 0, 0};  ///< [m] from the origin of the tool to a point of the axis
+
+  /// [m] What the lever moves by its scale is the faster of two points: the origin of the tool, and
+  /// one so far off an axis without pitch. With the scale of 0.1 m/rad the tool turns by as much as
+  /// the lever.
+  static constexpr double arm = 0.1;
+
+  /// The motion of the tool per motion that the lever's scale states: the linear part without unit,
+  /// of length one or less, the angular one [rad/m]. @param direction unit
+  [[nodiscard]] Twist per_motion(const Vec3& direction) const noexcept {
+    const Vec3 linear = pitch * direction - direction.cross(axis);
+    const double most = std::max(arm, linear.norm());
+    return {linear / most, direction / most};
+  }
+};
+
 /// One phase of the script.
 struct Phase {
   std::string name{};                    ///< shown in the progress line and the log
@@ -29,8 +50,12 @@ struct Phase {
   double duration = 1.0;                 ///< [s]
   Twist rates{};            ///< [m/s, rad/s] spaceball, six axes: constant through the phase
   Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction in which the lever drives the tool
+  /// Torque arm: the lever screws the tool about an axis along `direction`, which stays fixed to
+  /// the tool.
+  std::optional<Screw> screw{};
   double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
-  double scale = 0.0;       ///< HandInput::scale from here on; 0: as before
+  Twist second{};           ///< [m/s, rad/s] of a second hand with six axes, meanwhile
+  double scale = 0.0;       ///< HandInput::scale of both from here on; 0: as before
   bool silent = false;      ///< the device does not respond: its last sample is held
 };
 
@@ -39,6 +64,7 @@ using Script = std::vector<Phase>;
 /// The operator's input of one period.
 struct Command {
   HandInput hand{};         ///< if not finite: taken as rest, and a fault
+  HandInput second{};       ///< of a second hand at the same tool; likewise
   bool sound = true;        ///< false: the source reports that its data are invalid
   double silent_for = 0.0;  ///< [s] age of the sample
   std::int32_t phase = 0;   ///< of a script; copied to the record
@@ -63,9 +89,11 @@ class ScriptedOperator {
       command_.silent_for += period;
       return command_;
     }
-    command_.hand.ball = {};
+    command_.hand.ball = command_.second.ball = {};
     command_.hand.lever_rate = 0.0;
-    if (!over() && script_[phase_].scale > 0.0) command_.hand.scale = script_[phase_].scale;
+    if (!over() && script_[phase_].scale > 0.0) {
+      command_.hand.scale = command_.second.scale = script_[phase_].scale;
+    }
     command_.silent_for = 0.0;
     command_.sound = over() || read(script_[phase_], R_WT, period);
     return command_;
@@ -79,6 +107,8 @@ class ScriptedOperator {
  private:
   [[nodiscard]] bool read(const Phase& phase, const Mat3& R_WT, double period) noexcept {
     const bool in_tool = phase.frame == PhaseFrame::tool;
+    if (!is_finite(phase.second)) return false;
+    command_.second.ball = in_tool ? rotated(R_WT, phase.second) : phase.second;
     if (phase.master != Master::torque_arm) {
       if (!is_finite(phase.rates)) return false;
       command_.hand.ball = in_tool ? rotated(R_WT, phase.rates) : phase.rates;
@@ -86,19 +116,35 @@ class ScriptedOperator {
     }
     const bool finite = is_finite(phase.direction) && phase.lever_rate - phase.lever_rate == 0.0;
     if (!finite) return false;
-    // The direction is fixed at the start of the phase: a lever coupled to a rotating axis would
-    // move the tool without any motion of the hand.
-    if (in_phase_ <= period) {
+    if (phase.screw) {
+      follow_screw(phase, R_WT, in_phase_ <= period);
+    } else if (in_phase_ <= period) {
+      // The direction is fixed at the start of the phase: a lever coupled to a rotating axis would
+      // move the tool without any motion of the hand.
       command_.hand.direction_W = in_tool ? R_WT * phase.direction : phase.direction;
+      command_.hand.turning_W = Vec3::Zero();
     }
     command_.hand.lever_rate = phase.lever_rate;
     return true;
+  }
+
+  /// The axis is fixed to the tool from the start of the phase on, so that the tool stays on it:
+  /// its screw about the axis leaves the axis where it is in the world.
+  void follow_screw(const Phase& phase, const Mat3& R_WT, bool begins) noexcept {
+    if (begins) {
+      screw_T_ = phase.screw->per_motion(phase.direction);
+      if (phase.frame == PhaseFrame::world) screw_T_ = rotated(R_WT.transpose(), screw_T_);
+    }
+    const Twist screw_W = rotated(R_WT, screw_T_);
+    command_.hand.direction_W = screw_W.linear;
+    command_.hand.turning_W = screw_W.angular;
   }
 
   Script script_;
   Command command_;
   std::size_t phase_ = 0;
   double in_phase_ = 0.0;  ///< [s]
+  Twist screw_T_;          ///< of the phase, in axes of the tool
 };
 
 }  // namespace repel::network

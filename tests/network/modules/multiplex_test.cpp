@@ -22,10 +22,11 @@ Signals toward(const Vec3& direction_W) {
   return signals;
 }
 
-/// d as six numbers, without rotation.
+/// d as six numbers.
 Six along(const Multiplex& multiplex) {
   Six d = Six::Zero();
   d.head<3>() = multiplex.direction();
+  d.tail<3>() = multiplex.turning();
   return d;
 }
 
@@ -143,6 +144,40 @@ TEST(Multiplex, AScaleThatChangesLosesNothing) {
   EXPECT_LT(least, 0.3);
   EXPECT_GT(greatest, 0.6);
   EXPECT_LE(std::abs(cell.ledger.energy), 1e-9 * cell.ledger.passed);
+}
+
+TEST(Multiplex, AScrewPassesOnAllPowerThatItsTurningTakes) {
+  Rng rng(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  DrawnEnds tool(rng, 6, 20.0);
+  DrawnEnds lever(rng, 1, 2.0);
+  double moving = 0.0, turning = 0.0;
+  for (int i = 0; i < families::draws(2000); ++i) {
+    Signals signals = toward(families::uniform(rng, 0.0, 1.0) * families::direction(rng));
+    signals.hand.turning_W = families::uniform(rng, 0.0, 10.0) * families::direction(rng);
+    Cell cell(Multiplex({.velocity_scale = 0.1, .force_scale = 0.1}), Side::right);
+    ASSERT_TRUE(cell.run(signals, lever.definite(), tool.definite()));
+    const auto& at_tool = cell.at_root;
+    ASSERT_LE((at_tool.flow.tail(3) - 0.1 * cell.at_leaf.flow(0) * signals.hand.turning_W).norm(),
+              1e-9 * (1.0 + at_tool.flow.norm()));
+    const double size = at_tool.effort.norm() * at_tool.flow.norm();
+    ASSERT_NEAR(cell.at_leaf.power(), at_tool.power(), 1e-8 * size);
+    moving += std::abs(at_tool.effort.head(3).dot(at_tool.flow.head(3)));
+    turning += std::abs(at_tool.effort.tail(3).dot(at_tool.flow.tail(3)));
+  }
+  EXPECT_GT(moving, 0.1 * turning);
+  EXPECT_GT(turning, 0.1 * moving);
+}
+
+TEST(Multiplex, ATurningIsApproachedLikeADirection) {
+  Multiplex multiplex({.turning_time = 0.05});
+  multiplex.prepare(0.0025);
+  Signals signals = toward(Vec3::UnitX());
+  multiplex.read(signals);
+  EXPECT_EQ(multiplex.turning(), Vec3::Zero());
+  signals.hand.turning_W = Vec3(0, 0, 10);
+  for (int tick = 0; tick < 20; ++tick) multiplex.read(signals);
+  EXPECT_NEAR(multiplex.turning().z(), 10.0 * (1.0 - std::exp(-1.0)), 1e-9);
 }
 
 TEST(Multiplex, RefusesNumbersOutOfRange) {

@@ -42,16 +42,23 @@ struct Measured {
   Twist measured_cv;                       ///< [m/s, rad/s] shaped, in the axes of `Shaping`
   Vec3 lever_direction_W = Vec3::UnitX();  ///< unit: direction in which a lever drives the tool
   double lever_rate = 0.0;                 ///< [rad/s] of a device with one degree of freedom
-  bool clutch = false;                     ///< engaged: the motion counts
-  bool silent = false;                     ///< sends nothing although it should
-  const char* why = "no reading yet";      ///< static text, for the user; "" if all is well
-  std::uint64_t count = 0;                 ///< number of the reading; set by `DeviceThread`
+  /// Pose of a handle that measures it, in the axes of W from an origin of its own: measured_cp.
+  /// Also while paused. `HandFollower` makes rates of it.
+  Vec3 position_W{0, 0, 0};  ///< [m]
+  Eigen::Quaterniond R_WH = Eigen::Quaterniond::Identity();
+  bool has_position = false;
+  bool has_orientation = false;
+  bool clutch = false;                 ///< engaged: the motion counts
+  bool silent = false;                 ///< sends nothing although it should
+  const char* why = "no reading yet";  ///< static text, for the user; "" if all is well
+  std::uint64_t count = 0;             ///< number of the reading; set by `DeviceThread`
 };
 
 /// Force feedback to the operator.
 struct Felt {
   double lever_torque = 0.0;  ///< [N m] on the lever; positive towards larger angles
-  Wrench tool_force;          ///< [N, N m] on the tool, about its origin, in W
+  Wrench tool_force;          ///< [N, N m] in W: on the hand, where the network has SIX AXES, else
+                              ///< that of the walls on the tool, about its origin
 };
 
 /// A device that is read and driven by its own thread; see `DeviceThread`.

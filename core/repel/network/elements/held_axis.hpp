@@ -63,7 +63,8 @@ class HeldAxis {
     }
     const double rate = (a - b) / (2.0 * resistance_);
     const double relative = rate - hand_rate_;
-    supplied_ = overpowered - (spring_wave_ + hand_resistance_ * relative) * hand_rate_;
+    grip_ = spring_wave_ + hand_resistance_ * relative;
+    supplied_ = overpowered - grip_ * hand_rate_;
     mass_wave_ = -mass_wave_ + 2.0 * mass_resistance_ * rate;
     spring_wave_ += 2.0 * spring_resistance_ * relative;
     position_ += 0.5 * period_ * (rate + rate_);
@@ -74,6 +75,24 @@ class HeldAxis {
   [[nodiscard]] double position() const noexcept { return position_; }  ///< [m, rad]
   [[nodiscard]] double rate() const noexcept { return rate_; }          ///< [m/s, rad/s]
   [[nodiscard]] double felt() const noexcept { return felt_; }          ///< [N, N m] of the motor
+  /// [N, N m] of spring and damper on the hand; its product with the rate of the hand is the power
+  /// that the hand gets.
+  [[nodiscard]] double grip() const noexcept { return grip_; }
+  /// [N s/m, N m s/rad] What a real device must have of damping by itself, its operator's hand
+  /// included, where `move` is given its measured motion and `grip` acts on it: with that it stays
+  /// passive behind any passive network. Infinite for a grip that has none.
+  /// docs/network/six_axes.md derives it. @param late [s] from a motion to the force against it,
+  /// in addition to the sampling
+  [[nodiscard]] double device_damping(double late) const noexcept {
+    const double by_spring = 2.0 * spring_resistance_ * (1.0 + late / period_);
+    const double by_damper = hand_resistance_ - spring_resistance_;
+    return by_spring == 0.0 ? by_damper : by_damper + by_spring * by_spring / (4.0 * by_damper);
+  }
+  /// [N s/m, N m s/rad] The damping of the grip for which `device_damping` is least, and is twice
+  /// as much.
+  [[nodiscard]] double best_grip_damping(double late) const noexcept {
+    return spring_resistance_ * (1.0 + late / period_);
+  }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the hand
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 
@@ -84,7 +103,7 @@ class HeldAxis {
   double resistance_ = 0.0;
   double mass_wave_ = 0.0, spring_wave_ = 0.0;
   double hand_rate_ = 0.0;
-  double position_ = 0.0, rate_ = 0.0, felt_ = 0.0, supplied_ = 0.0;
+  double position_ = 0.0, rate_ = 0.0, felt_ = 0.0, grip_ = 0.0, supplied_ = 0.0;
   bool saturated_ = false;
 };
 

@@ -13,11 +13,23 @@ using Jacobian = Eigen::Matrix<double, 6, any_size, Eigen::ColMajor, 6, most_joi
 struct HandInput {
   Twist ball;                 ///< [m/s, rad/s] raw rates of the force ball, world axes
   double lever_rate = 0.0;    ///< [rad/s] rate of the hand at the lever
-  Vec3 direction_W{1, 0, 0};  ///< unit, world axes: direction in which the lever drives the tool
+  Vec3 direction_W{1, 0, 0};  ///< world axes: direction in which the lever drives the tool; unit,
+                              ///< or shorter where it turns the tool as well
+  Vec3 turning_W{0, 0, 0};    ///< [rad/m] world axes: how far it turns the tool about its origin
+                              ///< for what drives it by a metre along a unit direction
   /// Multiplies the scale of a master that is felt, 1e-3 to 1e3: tool motion per hand motion, and
   /// force at the hand per force at the tool. It may change at any time: see ChangingScale.
   double scale = 1.0;
+
+  /// Every number but the scale, of which ChangingScale takes care.
+  [[nodiscard]] bool is_finite() const noexcept {
+    return repel::is_finite(ball) && repel::is_finite(direction_W) && repel::is_finite(turning_W) &&
+           lever_rate - lever_rate == 0.0;
+  }
 };
+
+/// Which of the hands that hold one tool.
+enum class Hand { first, second };
 
 /// The state of arm, world and operator at the start of a tick. All numbers are finite: the loop
 /// holds the last valid ones where an input fails.
@@ -41,11 +53,15 @@ struct Signals {
                              ///< on the tool, about its origin, in axes of the tool
   bool is_measured = false;  ///< there is such a reading
   HandInput hand;
+  HandInput second;        ///< of a second hand at the same tool, for the modules that name it
   double period = 0.0025;  ///< [s]
   double elapsed = 0.0;    ///< [s] since the last tick, more after missed ticks; 0: one period
   bool at_rest = false;    ///< no force of the operator: states of the operator side are reset
   bool released = false;   ///< nothing can be trusted: states of the walls are reset, too
 
+  [[nodiscard]] const HandInput& of(Hand which) const noexcept {
+    return which == Hand::first ? hand : second;
+  }
   /// Time since the last tick [s].
   [[nodiscard]] double since_last() const noexcept { return elapsed > 0.0 ? elapsed : period; }
   /// Twist of the tool, J rates, and that of the last period, J mean_rates.

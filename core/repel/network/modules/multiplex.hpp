@@ -14,14 +14,16 @@ struct MultiplexOptions {
   double velocity_scale = 0.1;  ///< s_v [m/rad] tool motion per lever motion
   double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
   double turning_time = 0.05;   ///< [s] time constant with which the direction follows a new one
+  Hand hand = Hand::first;      ///< of the lever
 };
 
-/// A transformer along one direction d: v6 = s_v d v1 and f1 = s_f d.f6. The other five directions
-/// of the tool side have zero flow, whatever the effort.
+/// A transformer along one twist d, a direction [1] and a turning [rad/m]: v6 = s_v d v1 and f1 =
+/// s_f d.f6. The other five directions of the tool side have zero flow, whatever the effort. With
+/// no turning, the tool is moved along the direction; with both along one axis it is screwed.
 ///
-/// A new direction is approached as d += (new - d)(1 - exp(-T / turning_time)). The transformer is
-/// lossless for any d, also of length below one, so the change injects no energy and no effort
-/// jumps. Both scales are multiplied by HandInput::scale (ChangingScale).
+/// A new d is approached as d += (new - d)(1 - exp(-T / turning_time)). The transformer is lossless
+/// for any d, also of length below one, so the change injects no energy and no effort jumps. Both
+/// scales are multiplied by HandInput::scale (ChangingScale).
 ///
 /// With s_f != s_v the lever receives s_f / s_v of the power at the tool; the ledger therefore
 /// weights the power at the lever by s_v / s_f.
@@ -44,13 +46,16 @@ class Multiplex {
   void face(Side root) noexcept { root_ = root; }
 
   void read(const Signals& signals) noexcept {
-    direction_ = begun_ ? direction_ + share_ * (signals.hand.direction_W - direction_)
-                        : signals.hand.direction_W;
+    const HandInput& hand = signals.of(options_.hand);
+    direction_ = begun_ ? direction_ + share_ * (hand.direction_W - direction_) : hand.direction_W;
+    turning_ = begun_ ? turning_ + share_ * (hand.turning_W - turning_) : hand.turning_W;
     begun_ = true;
-    scale_.step(signals.hand.scale);
+    scale_.step(hand.scale);
     for (int i = 0; i < 3; ++i) {
       flow_map_[i] = scale_.value() * options_.velocity_scale * direction_[i];
       effort_map_[i] = scale_.value() * options_.force_scale * direction_[i];
+      flow_map_[3 + i] = scale_.value() * options_.velocity_scale * turning_[i];
+      effort_map_[3 + i] = scale_.value() * options_.force_scale * turning_[i];
     }
   }
 
@@ -94,8 +99,10 @@ class Multiplex {
   [[nodiscard]] double flow_scale() const noexcept {
     return scale_.value() * options_.velocity_scale;
   }
-  /// d, world axes; of length below one while it turns.
+  /// The direction of d, world axes; of length below one while it changes.
   [[nodiscard]] const Vec3& direction() const noexcept { return direction_; }
+  /// [rad/m] The turning of d, world axes.
+  [[nodiscard]] const Vec3& turning() const noexcept { return turning_; }
 
  private:
   using Column = Eigen::Matrix<double, 6, 1>;
@@ -105,8 +112,9 @@ class Multiplex {
   double share_ = 1.0;
   bool begun_ = false;
   Vec3 direction_{1, 0, 0};
-  Column flow_map_ = Column::Zero();    // [m/rad]
-  Column effort_map_ = Column::Zero();  // [m]
+  Vec3 turning_{0, 0, 0};
+  Column flow_map_ = Column::Zero();    // [m/rad, rad/rad]
+  Column effort_map_ = Column::Zero();  // [m, rad]
 };
 
 }  // namespace repel::network

@@ -28,10 +28,11 @@ struct SixAxesOptions {
   /// Tool motion per hand motion. The hand feels the wrench at the tool times the same number, so
   /// that no power is lost. Multiplied by HandInput::scale (ChangingScale).
   double motion_scale = 1.0;
+  Hand hand = Hand::first;  ///< that holds it
 };
 
 /// A one-port of the tool space: wrench in, twist out; a HeldAxis along and about each of the world
-/// axes at the origin of the tool. The hand moves at the rates of HandInput::ball. Not in the
+/// axes at the origin of the tool. Its hand moves at the rates of HandInput::ball. Not in the
 /// paper, whose spaceball feels nothing.
 class SixAxes {
  public:
@@ -65,9 +66,10 @@ class SixAxes {
   }
 
   void read(const Signals& signals) noexcept {
-    scale_.step(signals.hand.scale);
+    const HandInput& input = signals.of(options_.hand);
+    scale_.step(input.scale);
     show_resistance();
-    const Vec<any_size> hand = to_vec(signals.hand.ball);
+    const Vec<any_size> hand = to_vec(input.ball);
     for (std::size_t i = 0; i < 6; ++i) {
       axes_[i].move(hand.coeff(static_cast<Eigen::Index>(i)), signals.at_rest);
     }
@@ -84,6 +86,7 @@ class SixAxes {
     }
   }
 
+  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
   /// Tool motion per hand motion, in this tick.
   [[nodiscard]] double scale() const noexcept { return options_.motion_scale * scale_.value(); }
   /// [m, rad] of the hand, since the start.
@@ -95,6 +98,18 @@ class SixAxes {
   }
   [[nodiscard]] Vec<6> felt() const noexcept {  ///< [N, N m] of the motors
     return all([](const HeldAxis& axis) { return axis.felt(); });
+  }
+  /// [N, N m] of the grip on the hand: what a device is to show whose motion HandInput::ball is.
+  [[nodiscard]] Vec<6> grip() const noexcept {
+    return all([](const HeldAxis& axis) { return axis.grip(); });
+  }
+  /// [N s/m, N m s/rad] HeldAxis::device_damping of every axis. @param late [s]
+  [[nodiscard]] Vec<6> device_damping(double late) const noexcept {
+    return all([&](const HeldAxis& axis) { return axis.device_damping(late); });
+  }
+  /// [N s/m, N m s/rad] HeldAxis::best_grip_damping of every axis.
+  [[nodiscard]] Vec<6> best_grip_damping(double late) const noexcept {
+    return all([&](const HeldAxis& axis) { return axis.best_grip_damping(late); });
   }
   [[nodiscard]] double supplied() const noexcept {  ///< [W] by the hand
     double sum = 0.0;

@@ -15,6 +15,7 @@ struct TorqueArmOptions {
   double hand_stiffness = 20.0;  ///< [N m/rad] of the hand's grip
   double hand_damping = 0.6;     ///< [N m s/rad]
   double torque_limit = 10.0;    ///< [N m] limit of the motor
+  Hand hand = Hand::first;       ///< that holds it
 };
 
 /// A one-port: torque in, rate out; a HeldAxis of the lever space.
@@ -39,7 +40,7 @@ class TorqueArm {
   }
 
   void read(const Signals& signals) noexcept {
-    axis_.move(signals.hand.lever_rate, signals.at_rest);
+    axis_.move(signals.of(options_.hand).lever_rate, signals.at_rest);
   }
 
   [[nodiscard]] const Mat<1>& resistance() const noexcept { return resistance_; }

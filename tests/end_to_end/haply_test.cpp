@@ -1,0 +1,126 @@
+// The program led by a hand at a force-reflecting handle, whose service is a stand-in with a device
+// and a hand of its own. By the clock.
+#include <chrono>
+
+#include <devices/fake_haply.hpp>
+#include <end_to_end/teleop.hpp>
+
+namespace repel::test {
+namespace haply_test {
+
+using devices::FakeHandle;
+using nlohmann::json;
+
+/// A handle of 0.1 kg, and a hand that holds it and moves down, waits and comes up again. In axes
+/// of the device: z is up.
+class Hand {
+ public:
+  static constexpr double depth = 0.04;  ///< [m]
+
+  /// The force of the last command has acted until now.
+  void feel(const Vec3& force, FakeHandle& handle) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!begun_) begin_ = last_ = now;
+    begun_ = true;
+    const double passed = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    for (double t = 0.0; t < std::min(passed, 0.05); t += 1e-4) {
+      const Vec3 wanted = at_first_ - Vec3(0, 0, depth) * share();
+      const Vec3 hand = 200.0 * (wanted - handle.position) - 8.0 * handle.velocity;
+      handle.velocity += 1e-4 / 0.1 * (hand + held_);
+      handle.position += 1e-4 * handle.velocity;
+    }
+    held_ = force;
+    const double up = force.z();
+    most_ = std::max(most_, force.norm());
+    if (share() == 1.0) most_up_ = std::max(most_up_, up);
+    if (time() < 0.9) most_at_first_ = std::max(most_at_first_, force.norm());
+    lowest_ = std::min(lowest_, handle.position.z() - at_first_.z());
+  }
+
+  double most_ = 0.0;           // [N]
+  double most_up_ = 0.0;        // [N] while it was down
+  double most_at_first_ = 0.0;  // [N] before it moved
+  double lowest_ = 0.0;         // [m]
+
+ private:
+  [[nodiscard]] double time() const {
+    return std::chrono::duration<double>(last_ - begin_).count();
+  }
+  [[nodiscard]] double share() const {
+    const double t = time();
+    return std::clamp(t < 4.0 ? (t - 1.0) / 2.0 : (6.0 - t) / 2.0, 0.0, 1.0);
+  }
+
+  const Vec3 at_first_ = FakeHandle{}.position;
+  std::chrono::steady_clock::time_point begin_, last_;
+  Vec3 held_{0, 0, 0};
+  bool begun_ = false;
+};
+
+std::string scene_text(const std::string& grip) {
+  return "name: led\nrate: 400 Hz\n" + robot_text() + table_text() +
+         "network:\n"
+         "  - {module: six_axes, motion_scale: 2, hand_stiffness: 300 N/m, " +
+         grip +
+         "}\n"
+         "  - {module: relief}\n"
+         "  - {module: kbb2}\n"
+         "  - {module: obstacle}\n"
+         "  - {module: puma_kin}\n"
+         "  - {module: limits}\n"
+         "  - {module: puma_joints}\n";
+}
+
+TEST(Haply, AHandLeadsTheToolIntoAWallAndFeelsIt) {
+  const Folder folder;
+  const std::string scene = folder.with("led.yaml", scene_text("hand_damping: 0.8 N s/m"));
+  devices::FakeHaply service;
+  Hand hand;
+  service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
+  const Ending ending = teleop(
+      quoted(scene) + " --seconds 7.5 --backend ideal --device haply:" + service.url() + " --log " +
+      quoted(folder / "log.csv") + " --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  const Columns log = columns_of(folder / "log.csv");
+  const auto& z = log.at("z_m");
+  const double sunk = z.front() - *std::min_element(z.begin(), z.end());
+  // Without the table it would sink twice as far as the hand.
+  EXPECT_LT(hand.lowest_, -0.01);
+  EXPECT_GT(sunk, 0.01);
+  EXPECT_GT(report.at("peak_force_n"), 2.0);
+  EXPECT_GT(hand.most_up_, 1.0);
+  EXPECT_LT(hand.most_at_first_, 0.3);
+  EXPECT_LE(hand.most_, 3.0 + 1e-4);
+  EXPECT_NEAR(z.back(), z.front(), 0.5 * sunk) << "it comes back with the hand";
+  EXPECT_TRUE(service.force().isZero(0.0)) << "and is let go at the end";
+  EXPECT_EQ(report.at("allocations_in_tick"), 0);
+  for (const json& module : report.at("modules")) {
+    if (!module.at("claims_passive").get<bool>()) continue;
+    EXPECT_LE(module.at("deficit"), 1e-9) << module;
+  }
+}
+
+TEST(Haply, AGripThatNoDeviceCanKeepPassiveIsRefused) {
+  const Folder folder;
+  const std::string scene = folder.with("led.yaml", scene_text("hand_damping: 30 N s/m"));
+  devices::FakeHaply service;
+  const Ending ending = teleop(quoted(scene) + " --seconds 1 --device haply:" + service.url());
+  EXPECT_EQ(ending.status, 1) << ending;
+  EXPECT_TRUE(ending.says("hand_damping: 0.825 N s/m")) << ending;
+}
+
+TEST(Haply, WithoutAServiceTheProgramSaysHowToGetIt) {
+  std::string url;
+  {
+    const devices::FakeHaply gone;
+    url = gone.url();
+  }
+  const Ending ending = teleop("six_axes --seconds 1 --device haply:" + url);
+  EXPECT_EQ(ending.status, 1) << ending;
+  EXPECT_TRUE(ending.says("systemctl start haply-inverse-service")) << ending;
+}
+
+}  // namespace haply_test
+}  // namespace repel::test
