@@ -124,6 +124,31 @@ TEST(JointTorques, SayHowFastEachJointIsExpectedToBe) {
   EXPECT_NEAR(bench.torques.expected_rate()(0), period * 6.0 / 5.0, 1e-12);
 }
 
+/// Of the first two sliders, each is moved by the other.
+struct CoupledSliders : test::SliderKinematics {
+  [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override {
+    M.setZero();
+    M.diagonal().setConstant(5.0);
+    M(0, 1) = M(1, 0) = 4.0;
+    return true;
+  }
+};
+
+// A joint that stands still because another one moves, as what holds an arm makes it do, was taken
+// for one whose encoder is frozen, and the pose that was then predicted was 60 mm inside a wall.
+TEST(JointTorques, SayWhatMovesAJointAloneWhereABarrierHoldsTheArm) {
+  Bench bench;
+  bench.inertia.update(CoupledSliders());
+  EntryBarrier barrier(bench.model, period, 0.0, 0.005, 1);
+  bench.network << 10.0, 8.0, 0.0;
+  (void)bench.torques.compose(bench.network, bench.walls, {.friction = 0.0}, bench.v, bench.inertia,
+                              &barrier);
+  EXPECT_NEAR(bench.torques.net()(1), 8.0, 1e-9);
+  EXPECT_NEAR(bench.torques.alone()(0), 10.0, 1e-9);
+  EXPECT_NEAR(bench.torques.alone()(1), 0.0, 1e-9);
+  EXPECT_NEAR(bench.torques.expected_rate()(1), 0.0, 1e-12);
+}
+
 // A joint at rest whose encoder toggles between two steps: its rate is their difference, and the
 // damping of the operator's coupling turns that into a torque that it is asked for.
 TEST(JointTorques, NoiseOfAnEncoderAtStandstillDoesNotSwitchTheCompensationOfFriction) {

@@ -90,7 +90,7 @@ class ArmCommand {
     is_poisoned_ = (found & status::bad_torque) != 0U;
     std::copy(torques_.torques().begin(), torques_.torques().end(), record.torques.begin());
     const bool held = options_.has_brakes && (record.brakes || !is_enabled_);
-    watch.expect(torques_.net(), torques_.gravity(), torques_.expected_rate(), held);
+    watch.expect(torques_.alone(), torques_.gravity(), torques_.expected_rate(), held);
   }
 
   /// The operator's force has been ramped down to zero.

@@ -62,11 +62,12 @@ class EntryBarrier {
         slew_time_(slew_time),
         step_(std::max(period, slew_time)),
         reaction_(network::Prediction::horizon(drive_delay) * period + 2.0 * step_),
-        rows_(model, checked("margin", options.margin, 0.0, 0.1, "m")),
+        rows_(model, margin()),
         solver_(model.links.size(), BarrierRows::most),
         stops_(BarrierRows::most),
         withstood_(pairs, 0.0),
         sent_(static_cast<std::size_t>(std::ceil(drive_delay)) + 1) {
+    checked("margin", options.margin, 0.0, 0.1, "m");
     checked("mass uncertainty", options.mass_uncertainty, 1.0, 10.0, "");
     checked("recovery", options.recovery, 0.0, 10.0, "m/s");
     drift_.setZero(static_cast<Eigen::Index>(model.links.size()));
@@ -75,6 +76,8 @@ class EntryBarrier {
     for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
   }
 
+  /// Some wall is hard.
+  [[nodiscard]] bool is_on() const noexcept { return !withstood_.empty(); }
   /// t [s]. A gap that cannot close in several of these need not be known.
   [[nodiscard]] double reaction() const noexcept { return reaction_; }
 
@@ -134,7 +137,10 @@ class EntryBarrier {
   };
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
-  [[nodiscard]] bool is_on() const noexcept { return !withstood_.empty(); }
+  // [m] What turns and bends within a tick grows with it.
+  [[nodiscard]] double margin() const noexcept {
+    return options_.margin * std::max(1.0, 400.0 * period_);
+  }
 
   // M and the viscous friction until the torque of this tick has acted, by an implicit rule.
   [[nodiscard]] bool begin(const ArmInertia& inertia) noexcept {
@@ -260,7 +266,7 @@ class EntryBarrier {
       if (!row.pair.valid() || !(approach > least_speed)) continue;
       const double time = delay_ * period_ + 0.5 * slew_time_;
       const double stop = 0.5 * approach * approach / std::max(stops_[k].at_most, 1e-9);
-      if (approach * time + stop > row.gap + options_.margin + slack) {
+      if (approach * time + stop > row.gap + margin() + slack) {
         ++totals_.lost;
         return status::hold_lost;
       }

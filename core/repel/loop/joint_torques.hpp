@@ -57,7 +57,7 @@ class JointTorques {
     for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
     const auto size = static_cast<Eigen::Index>(model.links.size());
     net_.setZero(size);
-    wanted_ = brake_ = rate_ = net_;
+    wanted_ = brake_ = alone_ = rate_ = net_;
   }
 
   /// Buffer for the gravity torques, to be filled before `compose` [N m].
@@ -85,13 +85,21 @@ class JointTorques {
     }
     has_sent_ = true;
     expect(v, inertia, braking);
-    if (barrier != nullptr) barrier->note_sent(net_);
+    alone_ = net_;
+    if (barrier != nullptr && barrier->is_on()) {
+      barrier->note_sent(net_);
+      expect_together(v, inertia);
+    }
     return found;
   }
 
   [[nodiscard]] const std::vector<double>& torques() const noexcept { return torques_; }  ///< [N m]
   /// tau - g of the last tick [N m].
   [[nodiscard]] const Vector& net() const noexcept { return net_; }
+  /// What accelerates each joint, if it moved alone, as `net` accelerates it with all others [N m].
+  /// Without a barrier the same as `net`: what the network sends is not meant to cancel, what holds
+  /// an arm is.
+  [[nodiscard]] const Vector& alone() const noexcept { return alone_; }
   /// Predicted rate of each joint one period later with the torques sent and dry friction [rad/s].
   [[nodiscard]] const Vector& expected_rate() const noexcept { return rate_; }
 
@@ -200,6 +208,17 @@ class JointTorques {
     }
   }
 
+  // The same by the whole inertia matrix, but for friction.
+  void expect_together(const std::vector<double>& v, const ArmInertia& inertia) noexcept {
+    const ArmInertia::Matrix& M = inertia.matrix();
+    if (!mass_.factor(M.rows(), [&](Eigen::Index i) { return M.data()[i]; })) return;
+    mass_.solve(alone_);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      rate_(index(i)) = v[i] + period_ * alone_(index(i));
+      alone_(index(i)) *= M(index(i), index(i));
+    }
+  }
+
   static constexpr double give_way = 4.0;
 
   const ArmModel& model_;
@@ -210,7 +229,8 @@ class JointTorques {
   std::vector<double> effort_;  // [N m] limits
   std::vector<double> gravity_, last_gravity_, torques_;  // [N m]
   std::vector<double> sum_, lower_, upper_;               // [N m] asked for, and its range
-  Vector wanted_, brake_, net_, rate_;
+  Vector wanted_, brake_, net_, alone_, rate_;
+  network::dense::Factored mass_;
   bool has_sent_ = false;
 };
 

@@ -38,7 +38,8 @@ struct JointTorqueOptions {
 
 /// Options of the barrier before hard walls (loop/entry_barrier.hpp).
 struct EntryBarrierOptions {
-  double margin = 0.25e-3;        ///< [m] before the surface where an arm is held
+  double margin = 0.25e-3;  ///< [m] before the surface where an arm is held, at 400 Hz and more; in
+                            ///< proportion to the period at lower rates
   double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
   double recovery = 0.05;         ///< [m/s] at most, at which an arm goes back to the margin
 };
