@@ -45,6 +45,9 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
                  {"sound", command.sound},
                  {"silent_for_s", command.silent_for}};
   if (command.hand.scale != 1.0) inputs["scale"] = command.hand.scale;
+  if (command.hand.guides >= 0) inputs["guides"] = command.hand.guides;
+  if (command.hand.guide_strength != 1.0) inputs["guide_strength"] = command.hand.guide_strength;
+  if (command.hand.compliant >= 0) inputs["compliant"] = command.hand.compliant;
   if ((k.status & status::blind) != 0U) {  // numbers that are not finite become null
     inputs["q_read"] = first_of(k.q_read, joints);
     inputs["v_read"] = first_of(k.v_read, joints);

@@ -86,7 +86,13 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   k.command.hand.ball = {arm.at("linear").vector(), arm.at("angular").vector()};
   k.command.hand.lever_rate = arm.at("lever_rate").number();
   k.command.hand.direction_W = arm.at("direction").vector();
-  if (arm.has("scale")) k.command.hand.scale = arm.at("scale").number();
+  network::HandInput& hand = k.command.hand;
+  if (arm.has("scale")) hand.scale = arm.at("scale").number();
+  if (arm.has("guides")) hand.guides = static_cast<std::int32_t>(arm.at("guides").integer());
+  if (arm.has("guide_strength")) hand.guide_strength = arm.at("guide_strength").number();
+  if (arm.has("compliant")) {
+    hand.compliant = static_cast<std::int32_t>(arm.at("compliant").integer());
+  }
   k.command.sound = arm.at("sound").yes();
   k.command.silent_for = arm.at("silent_for_s").number();
 }

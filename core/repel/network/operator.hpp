@@ -21,6 +21,9 @@ enum class Master {
 /// Frame in which a phase states its directions.
 enum class PhaseFrame { world, tool };
 
+/// In place of a set of bits in a phase: that of the phase before.
+inline constexpr std::int32_t as_before = -2;
+
 /// One phase of the script.
 struct Phase {
   std::string name{};                    ///< shown in the progress line and the log
@@ -31,7 +34,10 @@ struct Phase {
   Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction in which the lever drives the tool
   double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
   double scale = 0.0;       ///< HandInput::scale from here on; 0: as before
-  bool silent = false;      ///< the device does not respond: its last sample is held
+  std::int32_t guides = as_before;  ///< HandInput::guides from here on
+  double guide_strength = -1.0;     ///< HandInput::guide_strength from here on; below 0: as before
+  std::int32_t compliant = as_before;  ///< HandInput::compliant from here on
+  bool silent = false;              ///< the device does not respond: its last sample is held
 };
 
 using Script = std::vector<Phase>;
@@ -65,7 +71,7 @@ class ScriptedOperator {
     }
     command_.hand.ball = {};
     command_.hand.lever_rate = 0.0;
-    if (!over() && script_[phase_].scale > 0.0) command_.hand.scale = script_[phase_].scale;
+    if (!over()) switch_over(script_[phase_]);
     command_.silent_for = 0.0;
     command_.sound = over() || read(script_[phase_], R_WT, period);
     return command_;
@@ -77,6 +83,13 @@ class ScriptedOperator {
   [[nodiscard]] const Script& script() const noexcept { return script_; }
 
  private:
+  // What stays from phase to phase.
+  void switch_over(const Phase& phase) noexcept {
+    if (phase.scale > 0.0) command_.hand.scale = phase.scale;
+    if (phase.guides != as_before) command_.hand.guides = phase.guides;
+    if (phase.compliant != as_before) command_.hand.compliant = phase.compliant;
+    if (phase.guide_strength >= 0.0) command_.hand.guide_strength = phase.guide_strength;
+  }
   [[nodiscard]] bool read(const Phase& phase, const Mat3& R_WT, double period) noexcept {
     const bool in_tool = phase.frame == PhaseFrame::tool;
     if (phase.master != Master::torque_arm) {
