@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,8 +38,7 @@ class Guide {
   static constexpr Traits traits{
       .left = Space::tool, .right = Space::tool, .needs_flow = true, .keeps_flow = true};
   static constexpr std::size_t most_fixtures = 30;
-  /// [s] in which the damper follows the direction of a path or the side of a cone.
-  static constexpr double turning_time = 0.02;
+  static constexpr double turning_time = 0.02;  ///< [s] of the damper behind a bend or corner
 
   /// One fixture as of the last tick.
   struct Held {
@@ -49,14 +47,14 @@ class Guide {
     Attraction along{}, about{};
     double damping = 0.0, angular_damping = 0.0;  ///< [N s/m], [N m s/rad] in use
     FixtureView view{};                           ///< while it acts
+    double clear = 0.0;                           ///< [m] no place of the fixture is nearer
     Mat3 across = Mat3::Zero();                   ///< of the damper
     double gain = 0.0, angular_gain = 0.0;        ///< 0 to 1
     double most_force = 0.0;                      ///< [N] exerted since set-up
 
     [[nodiscard]] bool acts() const noexcept { return gain > 0.0 || angular_gain > 0.0; }
-    /// Within the region in which it holds the orientation.
+    /// Where it holds the orientation, too.
     [[nodiscard]] bool is_near() const noexcept { return view.distance < options.range; }
-    /// [J]
     [[nodiscard]] double stored() const noexcept {
       return gain * along.energy(view.distance) + angular_gain * about.energy(view.angle);
     }
@@ -125,11 +123,9 @@ class Guide {
   /// Energy in the springs [J].
   [[nodiscard]] double stored() const noexcept {
     double sum = 0.0;
-    for (const Held& held : held_) sum += held.acts() ? held.stored() : 0.0;
+    for (const Held& held : held_) sum += held.stored();
     return sum;
   }
-  /// Entry energy that is left [J].
-  [[nodiscard]] double entry_energy() const noexcept { return entry_.left(); }
 
   void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept {
     Vec<any_size> at_joints;
@@ -153,8 +149,7 @@ class Guide {
     }
   }
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
-  /// [W] of the entry energy
-  [[nodiscard]] double supplied() const noexcept { return supplied_; }
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] of entry energy
 
  private:
   using Six = Eigen::Matrix<double, 6, 1>;
@@ -216,7 +211,10 @@ class Guide {
     for (std::size_t i = 0; i < held_.size(); ++i) {
       Held& held = held_[i];
       const double target = signals.at_rest ? 0.0 : wanted(signals.hand, held, i);
-      if (!held.acts() && target == 0.0) continue;
+      if (!held.acts() && target == 0.0) {
+        held.clear = 0.0;
+        continue;
+      }
       look(held, signals.X_WT, motion);
       held.gain = std::max(std::min(held.gain, target), held.gain - step);
       const double angular_target = held.is_near() ? target : 0.0;
@@ -237,20 +235,27 @@ class Guide {
   }
 
   // A place that attracts nothing may be left for a nearer one; if that would attract, as something
-  // that is switched on.
+  // that is switched on. It is looked for where the tool may have come within range of it.
+  static void search(Held& held, const Pose& X_WT) noexcept {
+    held.geometry.begin(origin(X_WT));
+    held.view = held.geometry.view(X_WT);
+    held.clear = held.view.distance;
+  }
   void look(Held& held, const Pose& X_WT, double motion) noexcept {
     const bool is_new = !held.acts();
-    const Vec3 x = origin(X_WT);
-    if (is_new) {
-      held.geometry.begin(x);
+    held.clear -= motion;
+    const bool may_be_near = held.clear < held.along.border();
+    if (is_new && may_be_near) {
+      search(held, X_WT);
     } else {
-      held.geometry.follow(x, motion);
-    }
-    held.view = held.geometry.view(X_WT);
-    if (!is_new && held.geometry.has_place() && held.view.distance >= held.along.border()) {
-      held.geometry.begin(x);
+      held.geometry.follow(origin(X_WT), motion);
       held.view = held.geometry.view(X_WT);
-      if (held.view.distance < held.along.border()) held.gain = 0.0;
+      const bool is_free = held.geometry.has_place() && held.angular_gain == 0.0 &&
+                           held.view.distance >= held.along.border();
+      if (is_free && may_be_near) {
+        search(held, X_WT);
+        if (held.view.distance < held.along.border()) held.gain = 0.0;
+      }
     }
     const double share = is_new ? 1.0 : turn_share_;
     held.across += share * (held.view.across - held.across);
