@@ -77,6 +77,7 @@ class Relief {
   void prepare(double period) {
     step_ = std::min(1.0, detail::checked_period(period) / switching_time);
     frame_ = options_.frame;
+    is_settled_ = false;
     for (int i = 0; i < 6; ++i) {
       const bool angular = i >= 3;
       const double k = angular ? options_.angular_stiffness : options_.stiffness;
@@ -142,6 +143,9 @@ class Relief {
   using Six = Eigen::Matrix<double, 6, 1>;
   // A frame changes while all directions are rigid: their springs have no force.
   void switch_over(std::int32_t wanted) noexcept {
+    if (wanted == wanted_ && is_settled_) return;
+    wanted_ = wanted;
+    is_settled_ = true;
     const ReliefFrame frame = wanted < 0                  ? options_.frame
                               : (wanted & world_bit) != 0 ? ReliefFrame::world
                                                           : ReliefFrame::tool;
@@ -154,6 +158,7 @@ class Relief {
       const double step = step_ * full_conductance_[i];
       conductance_[i] = std::clamp(target, conductance_[i] - step, conductance_[i] + step);
       if (conductance_[i] < 1e-9 * step) conductance_[i] = 0.0;
+      is_settled_ = is_settled_ && !turns && conductance_[i] == target;
       if (conductance_[i] > 0.0) is_rigid = false;
       if (conductance_[i] > 0.0 || wave_[i] == 0.0) continue;
       forgotten_ += 0.5 * wave_[i] * wave_[i] * inverse_stiffness_[i];
@@ -188,6 +193,8 @@ class Relief {
 
   ReliefOptions options_;
   ReliefFrame frame_ = ReliefFrame::tool;
+  std::int32_t wanted_ = -1;      // in the last tick
+  bool is_settled_ = false;       // nothing is left to change for it
   double step_ = 1.0;             // of a change, in a tick
   double forgotten_ = 0.0;        // [J]
   Mat3 turn_ = Mat3::Identity();  // from the task frame to the world
