@@ -2,7 +2,7 @@
 """draw.py SCENE.yaml LOG.csv PICTURE.svg: a scene from the side and from above: its obstacles, the
 way of each tool with a number where a phase of the script ends, and the arms at the start (pale)
 and where they were pushed hardest. What can come and go is yellow, dashed if it comes later; what
-only a camera sees is violet."""
+only a camera sees is violet, virtual fixtures that attract are dashed and green."""
 
 import csv
 import math
@@ -285,6 +285,21 @@ def with_way(part, style):
         yield None, (*shape_of(part), (pose[0], there)), style + " stroke-dasharray='4 3'"
 
 
+def fixtures_of(scene):
+    """The course of each virtual fixture as points: a path, or a piece of an axis or a cone."""
+    for module in scene.get("network", []):
+        for fixture in module.get("fixtures", []):
+            pose, reach = pose_in(fixture), 0.08
+            if "points" in fixture:
+                yield [value(point) for point in fixture["points"]]
+            elif fixture["shape"] == "cone":
+                side = reach * math.tan(value(fixture["half_angle"])[0])
+                for x, y in ((side, 0), (0, side)):
+                    yield [moved(pose, p) for p in ([-x, -y, reach], [0, 0, 0], [x, y, reach])]
+            elif fixture["shape"] in ("line", "axis", "tube"):
+                yield [moved(pose, [0, 0, z]) for z in (-reach, reach)]
+
+
 def names_of(panel, scene):
     """The name of each obstacle at its top or a little below, of each numbered row once; none where
     others leave no room for it."""
@@ -327,6 +342,9 @@ def view(panel, scene, arms, log):
     for _, shape, style in obstacles_of(scene):
         yield panel.area(shape, style)
     yield from names_of(panel, scene)
+    for points in fixtures_of(scene):
+        yield panel.way([[p[axis] for axis in panel.axes] for p in points],
+                        "stroke='#2a9d8f' stroke-width='1.6' stroke-dasharray='4 2'")
     for arm, colour in zip(arms, WAYS):
         yield from way_of(arm, panel, log, colour)
 

@@ -51,6 +51,9 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
     inputs["second_linear"] = to_json(second.linear);
     inputs["second_angular"] = to_json(second.angular);
   }
+  if (command.hand.guides >= 0) inputs["guides"] = command.hand.guides;
+  if (command.hand.guide_strength != 1.0) inputs["guide_strength"] = command.hand.guide_strength;
+  if (command.hand.compliant >= 0) inputs["compliant"] = command.hand.compliant;
   if ((k.status & status::blind) != 0U) {  // numbers that are not finite become null
     inputs["q_read"] = first_of(k.q_read, joints);
     inputs["v_read"] = first_of(k.v_read, joints);

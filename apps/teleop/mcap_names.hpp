@@ -60,6 +60,9 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "second_linear": {"type": "array", "description": "of a second hand, if it moves [m/s]"},
       "second_angular": {"type": "array", "description": "likewise [rad/s]"},
       "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
+      "guides": {"type": "integer", "description": "bits of the fixtures, if not as set up"},
+      "guide_strength": {"type": "number", "description": "of the fixtures, if it is not 1"},
+      "compliant": {"type": "integer", "description": "bits of relief, if not as set up"},
       "sound": {"type": "boolean"}, "silent_for_s": {"type": "number"}}}}}})"};
 
 inline constexpr Channel forces{"/forces", "repel.Forces", R"({

@@ -19,8 +19,8 @@ const char* remark_on(const ModuleResult& m) {
 
 constexpr const char* axes[] = {"x", "y", "z", "rx", "ry", "rz"};
 
-/// How far a compliance gave, which joints a limit pushed back, or what was measured; nothing of
-/// other modules.
+/// How far a compliance gave, which joints a limit pushed back, how hard fixtures pulled, or what
+/// was measured; nothing of other modules.
 void print_most(const ArmResult& arm, const ModuleResult& m, std::FILE* out) {
   for (int i = 0; m.given && i < 6; ++i) {
     const double most = m.given->coeff(i);
@@ -34,6 +34,10 @@ void print_most(const ArmResult& arm, const ModuleResult& m, std::FILE* out) {
     std::fprintf(out, "    %20s %s with %s %s at most\n", "pushed", arm.joint_names[i].c_str(),
                  figure(m.limit_torques[i], 1).c_str(),
                  arm.joints[i] == JointType::prismatic ? "N" : "N m");
+  }
+  for (const FixtureResult& fixture : m.fixtures) {
+    std::fprintf(out, "    %20s %s N at most   %.4g N/m, %.4g N s/m\n", fixture.name.c_str(),
+                 figure(fixture.most_force, 1).c_str(), fixture.stiffness, fixture.damping);
   }
   if (!m.sensor) return;
   std::fprintf(out,
@@ -95,6 +99,12 @@ ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
       for (int i = 0; i < 6; ++i) list.back()["most_given"][axes[i]] = m.given->coeff(i);
     }
     if (!m.limit_torques.empty()) list.back()["most_torques"] = m.limit_torques;
+    for (const FixtureResult& fixture : m.fixtures) {
+      list.back()["fixtures"].push_back({{"name", fixture.name},
+                                         {"most_force_n", fixture.most_force},
+                                         {"stiffness_n_per_m", fixture.stiffness},
+                                         {"damping_n_s_per_m", fixture.damping}});
+    }
     if (!m.coupling) continue;
     list.back()["gains"] = {{"stiffness_n_per_m", m.coupling->stiffness},
                             {"damping_n_s_per_m", m.coupling->damping},

@@ -86,11 +86,17 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   k.command.hand.ball = {arm.at("linear").vector(), arm.at("angular").vector()};
   k.command.hand.lever_rate = arm.at("lever_rate").number();
   k.command.hand.direction_W = arm.at("direction").vector();
-  if (arm.has("scale")) k.command.hand.scale = arm.at("scale").number();
-  if (arm.has("turning")) k.command.hand.turning_W = arm.at("turning").vector();
+  network::HandInput& hand = k.command.hand;
+  if (arm.has("scale")) hand.scale = arm.at("scale").number();
+  if (arm.has("turning")) hand.turning_W = arm.at("turning").vector();
   if (arm.has("second_linear")) {
     k.command.second.ball = {arm.at("second_linear").vector(), arm.at("second_angular").vector()};
-    k.command.second.scale = k.command.hand.scale;
+    k.command.second.scale = hand.scale;
+  }
+  if (arm.has("guides")) hand.guides = static_cast<std::int32_t>(arm.at("guides").integer());
+  if (arm.has("guide_strength")) hand.guide_strength = arm.at("guide_strength").number();
+  if (arm.has("compliant")) {
+    hand.compliant = static_cast<std::int32_t>(arm.at("compliant").integer());
   }
   k.command.sound = arm.at("sound").yes();
   k.command.silent_for = arm.at("silent_for_s").number();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -48,6 +49,11 @@ class Row {
   std::size_t at_ = 0;
 };
 
+/// A set of bits as told; -1 for what is none.
+[[nodiscard]] inline std::int32_t bits_of(double told) noexcept {
+  return told >= 0.0 && told < 2147483648.0 ? static_cast<std::int32_t>(told) : -1;
+}
+
 }  // namespace detail
 
 /// From the station to the site. A command that is not finite is told as one that is not sound.
@@ -69,6 +75,9 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   row.put(second.ball.linear);
   row.put(second.ball.angular);
   row.next() = std::isfinite(second.scale) ? second.scale : 1.0;
+  row.next() = static_cast<double>(hand.guides);
+  row.next() = std::isfinite(hand.guide_strength) ? hand.guide_strength : 1.0;
+  row.next() = static_cast<double>(hand.compliant);
 }
 
 /// The command that the site heard last. Once the link has been silent for 0.1 s the operator is
@@ -89,11 +98,10 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   command.second.ball.linear = row.vec3();
   command.second.ball.angular = row.vec3();
   command.second.scale = row.next();
-  if (!link.is_linked()) {
-    command.hand.direction_W = Vec3(1, 0, 0);
-    command.hand.turning_W = Vec3::Zero();
-    command.hand.scale = command.second.scale = 1.0;
-  }
+  command.hand.guides = detail::bits_of(row.next());
+  command.hand.guide_strength = row.next();
+  command.hand.compliant = detail::bits_of(row.next());
+  if (!link.is_linked()) command.hand = command.second = {};
   if (!link.is_linked() || link.silent_for() > network::WavePlayer::silence) {
     command.silent_for = std::max(OperatorInput::silent_after, link.silent_for());
     // The hand that moved when the line went silent is not known to move on.

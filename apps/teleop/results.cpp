@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include <repel/network/modules/force_sensor.hpp>
+#include <repel/network/modules/guide.hpp>
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/relief.hpp>
@@ -108,6 +109,12 @@ std::vector<ModuleResult> module_results(const network::Network& network) {
     if (const auto* limits = node.module.as<network::Limits>()) {
       for (int i = 0; i < limits->size(); ++i) {
         result.limit_torques.push_back(limits->most_torque(i));
+      }
+    }
+    if (const auto* guide = node.module.as<network::Guide>()) {
+      for (const network::Guide::Held& held : guide->fixtures()) {
+        result.fixtures.push_back(
+            {held.options.name, held.along.stiffness(), held.damping, held.most_force});
       }
     }
     if (const auto* sensor = node.module.as<network::ForceSensor>()) {

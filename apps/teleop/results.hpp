@@ -63,6 +63,14 @@ struct SensorResult {
   std::int64_t lost_ticks = 0;       ///< without a sound reading
 };
 
+/// What a virtual fixture did.
+struct FixtureResult {
+  std::string name;
+  double stiffness = 0.0;   ///< [N/m] in use
+  double damping = 0.0;     ///< [N s/m] in use
+  double most_force = 0.0;  ///< [N] largest on the tool
+};
+
 /// The results of one module of the network.
 struct ModuleResult {
   std::string name;
@@ -73,8 +81,9 @@ struct ModuleResult {
   std::optional<network::Kbb2Options> coupling{};  ///< with the gains in use; of kbb2
   /// [m, rad] how far it gave along and about each axis at most; of relief
   std::optional<Eigen::Matrix<double, 6, 1>> given{};
-  std::vector<double> limit_torques{};   ///< [N m, N] the largest on each joint; of limits
-  std::optional<SensorResult> sensor{};  ///< of force_sensor
+  std::vector<double> limit_torques{};    ///< [N m, N] the largest on each joint; of limits
+  std::optional<SensorResult> sensor{};   ///< of force_sensor
+  std::vector<FixtureResult> fixtures{};  ///< of guide
 
   /// It claims to be passive and was: what its ledger fell below zero is rounding.
   [[nodiscard]] bool passive() const { return claims_passive && ledger.deficit() <= 1e-9; }

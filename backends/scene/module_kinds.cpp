@@ -8,6 +8,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
 
+#include "guide_reader.hpp"
 #include "yaml.hpp"
 
 namespace repel::scene {
@@ -102,12 +103,8 @@ ReadModule relief_of(const Map& map) {
   allow(map,
         {"compliant", "frame", "stiffness", "damping", "angular_stiffness", "angular_damping"});
   network::ReliefOptions options;
-  constexpr std::string_view words[] = {"x", "y", "z", "rx", "ry", "rz"};
   if (const Value* list = map.find("compliant")) {
-    for (const Value& entry : list->list()) {
-      const std::string word = entry.word_of({"x", "y", "z", "rx", "ry", "rz"});
-      options.compliant[std::find(std::begin(words), std::end(words), word) - words] = true;
-    }
+    options.compliant = detail::directions_of(*list);
   }
   if (const Value* frame = map.find("frame")) {
     const bool world = frame->word_of({"world", "tool"}) == "world";
@@ -118,6 +115,13 @@ ReadModule relief_of(const Map& map) {
   map.read("angular_stiffness", {unit::angular_stiffness, 0.0, 1e6}, options.angular_stiffness);
   map.read("angular_damping", gain(unit::angular_damping, 0.0, 1e6), options.angular_damping);
   return made_of(options, make<network::Relief>);
+}
+
+ReadModule guide_of(const Map& map) {
+  std::vector<std::string_view> keys(std::begin(common_keys), std::end(common_keys));
+  keys.insert(keys.end(), detail::guide_keys.begin(), detail::guide_keys.end());
+  map.allow(keys);
+  return made_of(detail::guide_of(map), make<network::Guide>);
 }
 
 ReadModule kbb2_of(const Map& map) {
@@ -361,6 +365,7 @@ ModuleKinds::ModuleKinds() {
       {"spaceball", spaceball_of},
       {"relief", relief_of},
       {"kbb2", kbb2_of},
+      {"guide", guide_of},
       {"obstacle", obstacle_of},
       {"puma_kin", plain_of<network::PumaKin>},
       {"arm_obstacle", arm_obstacle_of},

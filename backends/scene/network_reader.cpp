@@ -46,9 +46,13 @@ void read_gain_check(const Value& module, Network& network) {
 
 Network listed_in(const Value& list, const ModuleKinds& kinds) {
   Network network;
+  bool has_guide = false;
   for (const Value& entry : list.list(input_limits.modules)) {
     network.modules.push_back(module_of(entry, kinds));
     if (network.modules.back().kind == "obstacle") read_gain_check(entry, network);
+    if (network.modules.back().kind != "guide") continue;
+    if (has_guide) entry.fail("a second module 'guide'; allowed: one, with all fixtures");
+    has_guide = true;
   }
   return network;
 }

@@ -16,15 +16,19 @@
 #include <repel/scene/part_list.hpp>
 
 #include "camera_reader.hpp"
+#include "guiding_reader.hpp"
 #include "network_reader.hpp"
+#include "pose_reader.hpp"
 #include "yaml.hpp"
 
 namespace repel::scene {
 namespace {
 
-constexpr Rule position{unit::length, -Shape::largest, Shape::largest};
+using detail::angles;
+using detail::pose_of;
+using detail::position;
+
 constexpr Rule extent{unit::length, 0.0, Shape::largest};
-constexpr Rule angles{unit::angle, -1e3, 1e3};
 
 constexpr std::array<std::string_view, 9> obstacle_shapes{
     "box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh", "urdf", "sdf"};
@@ -51,21 +55,6 @@ class HullPoints {
  private:
   std::size_t sum_ = 0;
 };
-
-/// Rotations about the fixed axes x, then y, then z, as in URDF.
-Pose pose_of(const Map& map) {
-  Vec3 p = Vec3::Zero();
-  Vec3 rpy = Vec3::Zero();
-  map.read("position", position, p);
-  map.read("rpy", angles, rpy);
-  Pose X = Pose::Identity();
-  X.translation() = p;
-  X.linear() =
-      (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-       Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-          .toRotationMatrix();
-  return X;
-}
 
 Pose pose_at(const Map& parent, std::string_view key) {
   const Value* value = parent.find(key);
@@ -662,6 +651,7 @@ std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view>
   std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent",
                                      "over", "blind",  "scale", "second"};
   for (const PartStep::What what : all_steps) keys.push_back(word_for(what));
+  keys.insert(keys.end(), detail::guiding_keys.begin(), detail::guiding_keys.end());
   keys.insert(keys.end(), more);
   return keys;
 }
@@ -769,6 +759,7 @@ void read_script(const Map& scene, const Scene& whole, ArmSetup& setup) {
     read_steps(map, setup.script.size(), whole.loose, setup.steps);
     setup.blind.push_back(blind_in(map, whole.cameras));
     setup.script.push_back(phase_of(entry));
+    detail::read_guiding(map, setup.network, setup.script.back());
     require_new(names, map);
   }
 }

@@ -225,6 +225,24 @@ TEST(ScriptedOperator, AScaleHoldsUntilTheNext) {
   EXPECT_EQ(scales, (std::vector<double>{1.0, 0.5, 0.5, 2.0, 2.0}));
 }
 
+TEST(ScriptedOperator, FixturesAndComplianceStayAsAPhaseSetThem) {
+  ScriptedOperator hands({{.duration = 0.01},
+                          {.duration = 0.01, .guides = 5, .guide_strength = 0.5},
+                          {.duration = 0.01, .compliant = 3},
+                          {.duration = 0.01, .guides = -1}});
+  std::vector<int> guides, compliant;
+  std::vector<double> strengths;
+  for (int tick = 0; tick < 5; ++tick) {
+    const HandInput& hand = hands.step(Mat3::Identity(), 0.01).hand;
+    guides.push_back(hand.guides);
+    compliant.push_back(hand.compliant);
+    strengths.push_back(hand.guide_strength);
+  }
+  EXPECT_EQ(guides, (std::vector<int>{-1, 5, 5, -1, -1}));
+  EXPECT_EQ(compliant, (std::vector<int>{-1, -1, 3, 3, 3}));
+  EXPECT_EQ(strengths, (std::vector<double>{1.0, 0.5, 0.5, 0.5, 0.5}));
+}
+
 TEST(ScriptedOperator, SilentDeviceKeepsItsLastSampleAndSaysItsAge) {
   Phase lost;
   lost.duration = 0.1;

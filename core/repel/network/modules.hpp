@@ -7,6 +7,7 @@
 #include <repel/network/elements/one_ports.hpp>
 #include <repel/network/modules/arm_obstacle.hpp>
 #include <repel/network/modules/force_sensor.hpp>
+#include <repel/network/modules/guide.hpp>
 #include <repel/network/modules/kbb2.hpp>
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/multiplex.hpp>

@@ -41,6 +41,8 @@ struct Screw {
     return {linear / most, direction / most};
   }
 };
+/// In place of a set of bits in a phase: that of the phase before.
+inline constexpr std::int32_t as_before = -2;
 
 /// One phase of the script.
 struct Phase {
@@ -53,10 +55,13 @@ struct Phase {
   /// Torque arm: the lever screws the tool about an axis along `direction`, which stays fixed to
   /// the tool.
   std::optional<Screw> screw{};
-  double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
-  Twist second{};           ///< [m/s, rad/s] of a second hand with six axes, meanwhile
-  double scale = 0.0;       ///< HandInput::scale of both from here on; 0: as before
-  bool silent = false;      ///< the device does not respond: its last sample is held
+  double lever_rate = 0.0;          ///< [rad/s] torque arm: rate of the hand
+  Twist second{};                   ///< [m/s, rad/s] of a second hand with six axes, meanwhile
+  double scale = 0.0;               ///< HandInput::scale of both from here on; 0: as before
+  std::int32_t guides = as_before;  ///< HandInput::guides from here on
+  double guide_strength = -1.0;     ///< HandInput::guide_strength from here on; below 0: as before
+  std::int32_t compliant = as_before;  ///< HandInput::compliant from here on
+  bool silent = false;                 ///< the device does not respond: its last sample is held
 };
 
 using Script = std::vector<Phase>;
@@ -91,9 +96,7 @@ class ScriptedOperator {
     }
     command_.hand.ball = command_.second.ball = {};
     command_.hand.lever_rate = 0.0;
-    if (!over() && script_[phase_].scale > 0.0) {
-      command_.hand.scale = command_.second.scale = script_[phase_].scale;
-    }
+    if (!over()) switch_over(script_[phase_]);
     command_.silent_for = 0.0;
     command_.sound = over() || read(script_[phase_], R_WT, period);
     return command_;
@@ -105,6 +108,13 @@ class ScriptedOperator {
   [[nodiscard]] const Script& script() const noexcept { return script_; }
 
  private:
+  // What stays from phase to phase.
+  void switch_over(const Phase& phase) noexcept {
+    if (phase.scale > 0.0) command_.hand.scale = command_.second.scale = phase.scale;
+    if (phase.guides != as_before) command_.hand.guides = phase.guides;
+    if (phase.compliant != as_before) command_.hand.compliant = phase.compliant;
+    if (phase.guide_strength >= 0.0) command_.hand.guide_strength = phase.guide_strength;
+  }
   [[nodiscard]] bool read(const Phase& phase, const Mat3& R_WT, double period) noexcept {
     const bool in_tool = phase.frame == PhaseFrame::tool;
     if (!is_finite(phase.second)) return false;

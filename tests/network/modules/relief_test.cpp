@@ -149,6 +149,123 @@ TEST(Relief, LetsGoAtRest) {
   EXPECT_EQ(cell.module.stored(), 0.0);
 }
 
+// A constant force through a direction that becomes rigid, and compliant again.
+TEST(Relief, HoldsTheExtensionOfADirectionThatBecomesRigid) {
+  Cell cell(Relief({.compliant = {true, false, false, false, false, false},
+                    .stiffness = 400.0,
+                    .damping = 40.0}),
+            Side::right);
+  Signals signals;
+  double stretch = 0.0, last = 0.0, most_change = 0.0;
+  const auto run = [&](int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      ASSERT_TRUE(cell.run(signals, ground(), push(20.0 * Vector::Unit(6, 0))));
+      const double rate = cell.at_root.flow(0) - cell.at_leaf.flow(0);
+      most_change = std::max(most_change, std::abs(rate - last));
+      last = rate;
+      stretch += period * rate;
+    }
+  };
+  run(2000);
+  EXPECT_NEAR(stretch, 20.0 / 400.0, 1e-6);
+  most_change = 0.0;
+  signals.hand.compliant = 0;
+  run(400);
+  EXPECT_NEAR(stretch, 20.0 / 400.0, 1e-6) << "held";
+  EXPECT_EQ(cell.module.stored(), 0.0);
+  EXPECT_NEAR(cell.module.forgotten(), 0.5 * 20.0 * 20.0 / 400.0, 1e-6);
+  EXPECT_FALSE(cell.module.gives(0));
+  EXPECT_LE(most_change, 1e-6);
+  signals.hand.compliant = 1;
+  run(1);
+  EXPECT_LE(cell.module.stored(), 1e-3) << "begins without force";
+  run(2000);
+  EXPECT_NEAR(stretch, 2.0 * 20.0 / 400.0, 1e-5) << "gives once more";
+  // Without the ramp it would begin at once with the rate of its damper, 20 N / 40 N s/m.
+  EXPECT_LE(most_change, 1.01 * 0.5 * period / Relief::switching_time);
+  EXPECT_LE(cell.ledger.deficit(), 1e-12);
+  EXPECT_NEAR(cell.ledger.energy, stretch * 20.0, 1e-9) << "all that it took is in the books";
+}
+
+TEST(Relief, MovesOnWhereADirectionBecomesRigid) {
+  Cell cell(Relief({.compliant = {true, false, false, false, false, false},
+                    .stiffness = 0.0,
+                    .damping = 40.0}),
+            Side::right);
+  Signals signals;
+  double last = 0.5;
+  ASSERT_TRUE(cell.run(signals, ground(), push(20.0 * Vector::Unit(6, 0))));
+  signals.hand.compliant = 0;
+  for (int tick = 0; tick < 100; ++tick) {
+    ASSERT_TRUE(cell.run(signals, ground(), push(20.0 * Vector::Unit(6, 0))));
+    const double rate = cell.at_root.flow(0);
+    EXPECT_LE(rate, last + 1e-12);
+    EXPECT_GE(rate, last - 1.01 * 0.5 * period / Relief::switching_time);
+    last = rate;
+  }
+  EXPECT_EQ(last, 0.0);
+}
+
+TEST(Relief, ChangesItsFrameWhileItIsRigid) {
+  Cell cell(Relief({.compliant = {true, true, true, false, false, false}, .stiffness = 400.0}),
+            Side::right);
+  Signals signals;
+  signals.X_WT.linear() = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()).toRotationMatrix();
+  Vector last = Vector::Zero(6);
+  const double full = 1.0 / (0.5 * 400.0 * period + ReliefOptions{}.damping);
+  for (int tick = 0; tick < 2000; ++tick) {
+    if (tick == 1000) signals.hand.compliant = 1 | Relief::world_bit;
+    ASSERT_TRUE(cell.run(signals, ground(), push(10.0 * Vector::Unit(6, 0))));
+    const Vector rate = cell.at_root.flow;
+    ASSERT_LE((rate - last).norm(), tick == 0 ? 1.0 : 10.0 * full * 0.02) << tick;
+    last = rate;
+    if (tick == 999) {
+      EXPECT_EQ(cell.module.frame(), ReliefFrame::tool);
+    }
+    if (tick == 1000 + 79) {
+      EXPECT_FALSE(cell.module.gives(0));
+    }
+  }
+  EXPECT_EQ(cell.module.frame(), ReliefFrame::world);
+  EXPECT_TRUE(cell.module.gives(0));
+  EXPECT_FALSE(cell.module.gives(1));
+  EXPECT_NEAR(cell.module.stored(), 0.5 * 10.0 * 10.0 / 400.0, 1e-4) << "along x of the world";
+  signals.hand.compliant = -1;
+  for (int tick = 0; tick < 1000; ++tick) {
+    ASSERT_TRUE(cell.run(signals, ground(), push(10.0 * Vector::Unit(6, 0))));
+  }
+  EXPECT_EQ(cell.module.frame(), ReliefFrame::tool);
+  EXPECT_TRUE(cell.module.gives(2));
+}
+
+TEST(Relief, SwitchedAtRandomReturnsNoMoreThanItTook) {
+  for (const Side root : {Side::left, Side::right}) {
+    Rng rng(seed);
+    DrawnSignals drawn(rng, 0);
+    DrawnEnds ends(rng, 6, 20.0);
+    Cell cell(Relief({.compliant = {true, false, true, false, false, true}, .damping = 5.0}), root);
+    double lost = 0.0;
+    int changes = 0;
+    for (int tick = 0; tick < families::draws(400000); ++tick) {
+      if (tick % 60 == 0) {
+        drawn.signals.hand.compliant = families::count_between(rng, -1, 127);
+        ++changes;
+      }
+      const auto behind = tick % 3 == 0 ? ends.slack() : ends.moved(0.5);
+      const Signals& signals = drawn.next();
+      ASSERT_TRUE(cell.run(signals, behind, ends.definite()));
+      ASSERT_EQ(cell.at_root.effort, cell.at_leaf.effort);
+      ASSERT_LE(cell.error_behind(behind), 1e-8);
+      const double lost_now = cell.ledger.energy - cell.module.stored();
+      ASSERT_GE(lost_now, lost - 1e-12 * (1.0 + cell.ledger.passed)) << "tick " << tick;
+      lost = lost_now;
+    }
+    EXPECT_GT(changes, 10);
+    EXPECT_GT(cell.module.forgotten(), 1e-3);
+    EXPECT_LE(cell.ledger.deficit(), 1e-9) << test::to_text(root) << ", seed " << seed;
+  }
+}
+
 TEST(Relief, RefusesADirectionThatHoldsNothing) {
   const ReliefOptions slack{
       .compliant = {true, false, false, false, false, false}, .stiffness = 0.0, .damping = 0.0};

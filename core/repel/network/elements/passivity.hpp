@@ -15,6 +15,8 @@ struct PassivityOptions {
   double most_damping = 300.0;  ///< [N s/m] limit of the damping against energy from sampling; the
                                 ///< rest is carried over
   double lever = 0.1;           ///< [m] lever arm of the damping of rotations
+  bool keeps_energy = false;    ///< also while it exerts no effort: it stores energy where it does
+                                ///< not push
 };
 
 /// Energy balance of a passivity controller.
@@ -91,11 +93,13 @@ class PassivityController {
       held_.coeffRef(i) = effort.coeff(i) + damped_.coeff(i);
     }
     is_idle_ = held_.isZero(0.0);
-    if (is_idle_) reset();
+    if (is_idle_ && !options_.keeps_energy) reset();
     report_.owed = std::max(0.0, -sampled_);
     return damping;
   }
 
+  /// Port energy [J], never negative.
+  [[nodiscard]] double energy() const noexcept { return energy_; }
   [[nodiscard]] const Vec<N>& weight() const noexcept { return weight_; }
   [[nodiscard]] const PassivityReport& report() const noexcept { return report_; }
 

@@ -2,6 +2,8 @@
 /// The inputs of a network in one tick.
 #pragma once
 
+#include <cstdint>
+
 #include <repel/network/elements/port.hpp>
 
 namespace repel::network {
@@ -20,6 +22,12 @@ struct HandInput {
   /// Multiplies the scale of a master that is felt, 1e-3 to 1e3: tool motion per hand motion, and
   /// force at the hand per force at the tool. It may change at any time: see ChangingScale.
   double scale = 1.0;
+  /// Which fixtures of a GUIDE are on: bit i for the i-th; below 0: as set up.
+  std::int32_t guides = -1;
+  double guide_strength = 1.0;  ///< share of their force, 0 to 1
+  /// In which directions RELIEF is compliant: bits 0 to 5 for x, y, z, rx, ry, rz, and bit 6 for
+  /// those of the world, else of the tool; below 0: as set up.
+  std::int32_t compliant = -1;
 
   /// Every number but the scale, of which ChangingScale takes care.
   [[nodiscard]] bool is_finite() const noexcept {

@@ -2,7 +2,10 @@
 /// RELIEF: compliance along chosen degrees of freedom.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/two_port.hpp>
@@ -31,9 +34,18 @@ struct ReliefOptions {
 /// and rigid along the others. The directions rotate with their frame; the same ones are used for
 /// effort and flow in one tick, and the spring states are stored along them, so that rotating the
 /// frame neither stores nor releases energy.
+///
+/// HandInput::compliant changes directions and frame at any time, in `switching_time`: the damper
+/// of a direction that becomes rigid grows until nothing moves. Its spring, whose energy is then
+/// dissipated, is forgotten, and its extension is held. One that becomes compliant begins with a
+/// spring without force and a damper that shrinks to its own. In all of this the module is a spring
+/// and a positive damper in each tick: passive, and u changes by no more than its share of the
+/// time.
 class Relief {
  public:
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
+  static constexpr double switching_time = 0.2;  ///< [s] of a direction; of a frame twice as long
+  static constexpr std::int32_t world_bit = 1 << 6;
 
   /// @throws SetupError for a number out of range, or when a direction would have neither spring
   /// nor damper
@@ -63,18 +75,23 @@ class Relief {
             .damping;
   }
   void prepare(double period) {
-    (void)detail::checked_period(period);
+    step_ = std::min(1.0, detail::checked_period(period) / switching_time);
+    frame_ = options_.frame;
+    is_settled_ = false;
     for (int i = 0; i < 6; ++i) {
       const bool angular = i >= 3;
       const double k = angular ? options_.angular_stiffness : options_.stiffness;
       const double b = angular ? options_.angular_damping : options_.damping;
       spring_resistance_[i] = 0.5 * k * period;
-      conductance_[i] = options_.compliant[i] ? 1.0 / (spring_resistance_[i] + b) : 0.0;
+      const double resistance = spring_resistance_[i] + b;
+      full_conductance_[i] = resistance > 0.0 ? 1.0 / resistance : 0.0;
+      conductance_[i] = options_.compliant[i] ? full_conductance_[i] : 0.0;
       inverse_stiffness_[i] = k > 0.0 ? 1.0 / k : 0.0;
     }
   }
   void read(const Signals& signals) noexcept {
-    if (options_.frame == ReliefFrame::tool) turn_ = rotation(signals.X_WT);
+    switch_over(signals.hand.compliant);
+    turn_ = frame_ == ReliefFrame::tool ? rotation(signals.X_WT) : Mat3(Mat3::Identity());
     if (signals.at_rest) wave_.setZero();
   }
 
@@ -111,12 +128,45 @@ class Relief {
     return 0.5 * product(wave_, wave_).dot(inverse_stiffness_);
   }
 
+  /// Energy of springs whose direction became rigid, since set-up [J].
+  [[nodiscard]] double forgotten() const noexcept { return forgotten_; }
+  /// Whether it gives way along, or about, the i-th axis, if only while that changes.
+  [[nodiscard]] bool gives(int i) const noexcept { return conductance_[i] > 0.0; }
+  /// The frame in use.
+  [[nodiscard]] ReliefFrame frame() const noexcept { return frame_; }
+
   /// How far it gave along, and about, each axis of the task frame at most since set-up [m, rad];
   /// 0 where it is rigid or a pure damper.
   [[nodiscard]] const Eigen::Matrix<double, 6, 1>& most_given() const noexcept { return most_; }
 
  private:
   using Six = Eigen::Matrix<double, 6, 1>;
+  // A frame changes while all directions are rigid: their springs have no force.
+  void switch_over(std::int32_t wanted) noexcept {
+    if (wanted == wanted_ && is_settled_) return;
+    wanted_ = wanted;
+    is_settled_ = true;
+    const ReliefFrame frame = wanted < 0                  ? options_.frame
+                              : (wanted & world_bit) != 0 ? ReliefFrame::world
+                                                          : ReliefFrame::tool;
+    const bool turns = frame != frame_;
+    bool is_rigid = true;
+    for (int i = 0; i < 6; ++i) {
+      const bool is_wanted =
+          wanted < 0 ? options_.compliant[static_cast<std::size_t>(i)] : ((wanted >> i) & 1) != 0;
+      const double target = is_wanted && !turns ? full_conductance_[i] : 0.0;
+      const double step = step_ * full_conductance_[i];
+      conductance_[i] = std::clamp(target, conductance_[i] - step, conductance_[i] + step);
+      if (conductance_[i] < 1e-9 * step) conductance_[i] = 0.0;
+      is_settled_ = is_settled_ && !turns && conductance_[i] == target;
+      if (conductance_[i] > 0.0) is_rigid = false;
+      if (conductance_[i] > 0.0 || wave_[i] == 0.0) continue;
+      forgotten_ += 0.5 * wave_[i] * wave_[i] * inverse_stiffness_[i];
+      wave_[i] = 0.0;
+    }
+    if (is_rigid) frame_ = frame;
+  }
+
   [[nodiscard]] Six in_task(const Vec<any_size>& world) const noexcept {
     Six task;
     for (int i = 0; i < 6; ++i) {
@@ -142,8 +192,13 @@ class Relief {
   }
 
   ReliefOptions options_;
+  ReliefFrame frame_ = ReliefFrame::tool;
+  std::int32_t wanted_ = -1;      // in the last tick
+  bool is_settled_ = false;       // nothing is left to change for it
+  double step_ = 1.0;             // of a change, in a tick
+  double forgotten_ = 0.0;        // [J]
   Mat3 turn_ = Mat3::Identity();  // from the task frame to the world
-  Six spring_resistance_ = Six::Zero(), conductance_ = Six::Zero();
+  Six spring_resistance_ = Six::Zero(), conductance_ = Six::Zero(), full_conductance_ = Six::Zero();
   Six inverse_stiffness_ = Six::Zero();
   Six wave_ = Six::Zero();  // of the springs, in the task frame [N, N m]
   Six most_ = Six::Zero();  // extension [m, rad]

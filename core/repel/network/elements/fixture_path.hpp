@@ -1,0 +1,222 @@
+/// @file
+/// A path through points in space, and a point that follows it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/base/types.hpp>
+
+namespace repel::network {
+
+/// How a path runs from point to point.
+enum class Course {
+  straight,  ///< a polyline
+  spline,    ///< the natural cubic spline over the lengths of the chords
+};
+
+/// A point of a path: that of the local parameter `along` [m] of a piece.
+struct PathPlace {
+  std::size_t piece = 0;
+  double along = 0.0;  ///< [m] 0 to the length of its chord
+
+  friend bool operator==(const PathPlace&, const PathPlace&) = default;
+};
+
+/// What a path is at a place.
+struct PathPoint {
+  Vec3 p_W{0, 0, 0};       ///< [m]
+  Vec3 first_W{0, 0, 0};   ///< derivative by the parameter: of length 1 on a polyline, about 1 else
+  Vec3 second_W{0, 0, 0};  ///< [1/m] second derivative
+};
+
+/// A polyline or a cubic spline, with a frame at each point if it is given any. All allocation is
+/// at construction.
+class FixturePath {
+ public:
+  static constexpr std::size_t most_points = 256;
+
+  FixturePath() = default;
+  /// @param points [m] at least two, each at least 0.1 mm from the one before
+  /// @param frames none, or one for each point; between two points it turns about one axis
+  /// @throws SetupError otherwise
+  FixturePath(const std::vector<Vec3>& points, const std::vector<Mat3>& frames, Course course) {
+    checked("number of points of a path", static_cast<double>(points.size()), 2, most_points, "");
+    if (!frames.empty() && frames.size() != points.size()) {
+      throw SetupError("a path of " + std::to_string(points.size()) + " points has " +
+                       std::to_string(frames.size()) + " frames; allowed: none or one for each");
+    }
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      const Vec3 chord = points[i + 1] - points[i];
+      Piece& piece = pieces_.emplace_back();
+      piece.length = checked("distance of two points of a path", norm(chord), 1e-4, 1e3, "m");
+      piece.p = points[i];
+      piece.first = chord / piece.length;
+      if (frames.empty()) continue;
+      piece.R = frames[i];
+      const Eigen::AngleAxisd turn(Mat3(frames[i + 1] * transposed(frames[i])));
+      piece.turn = turn.angle() * turn.axis();
+    }
+    if (course == Course::spline) bend();
+    has_frames_ = !frames.empty();
+  }
+
+  [[nodiscard]] bool has_frames() const noexcept { return has_frames_; }
+  [[nodiscard]] std::size_t pieces() const noexcept { return pieces_.size(); }
+
+  /// Of the chord of a piece [m].
+  [[nodiscard]] double length(std::size_t piece) const noexcept { return pieces_[piece].length; }
+
+  [[nodiscard]] PathPoint at(const PathPlace& place) const noexcept {
+    const Piece& c = pieces_[place.piece];
+    const double u = place.along;
+    return {c.p + u * (c.first + u * (c.second + u * c.third)),
+            c.first + u * (2.0 * c.second + 3.0 * u * c.third), 2.0 * c.second + 6.0 * u * c.third};
+  }
+  /// The orientation of the frame there. At each point of the path it stands still, so that its
+  /// rate does not jump from piece to piece.
+  [[nodiscard]] Mat3 frame(const PathPlace& place) const noexcept {
+    const Piece& c = pieces_[place.piece];
+    const double turn = norm(c.turn);
+    if (!(turn > 0.0)) return c.R;
+    const double share = place.along / c.length;
+    const double angle = turn * share * share * (3.0 - 2.0 * share);
+    return Mat3(Eigen::AngleAxisd(angle, c.turn / turn).toRotationMatrix()) * c.R;
+  }
+  /// The rate at which the frame turns along the parameter [rad/m], world axes.
+  [[nodiscard]] Vec3 turning(const PathPlace& place) const noexcept {
+    const Piece& c = pieces_[place.piece];
+    const double share = place.along / c.length;
+    return 6.0 * share * (1.0 - share) / c.length * c.turn;
+  }
+  /// Whether it is an end of the path, or a corner of a polyline between two pieces.
+  [[nodiscard]] bool is_at_corner(const PathPlace& place) const noexcept {
+    return place.along <= 0.0 || place.along >= pieces_[place.piece].length;
+  }
+
+  /// The place nearest to `x` [m], looking at every piece. Cost: nine points of each.
+  [[nodiscard]] PathPlace nearest(const Vec3& x) const noexcept {
+    PathPlace best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      constexpr double samples = 8.0;  // a spline leaves its chord
+      for (double k = 0.0; k <= samples; k += 1.0) {
+        const PathPlace place{i, k / samples * pieces_[i].length};
+        const double square = squared_norm(x - at(place).p_W);
+        if (square < least) least = square, best = place;
+      }
+    }
+    for (int step = 0; step < 8; ++step) best = descended(best, x);
+    return best;
+  }
+
+  /// The place from `from` on down to the local nearest to `x`, at most `most` [m] from it. It
+  /// never moves away from `x`.
+  [[nodiscard]] PathPlace followed(const PathPlace& from, const Vec3& x,
+                                   double most) const noexcept {
+    if (!(most > 0.0)) return from;
+    const Vec3 start = at(from).p_W;
+    PathPlace place = from;
+    for (int step = 0; step < 4; ++step) {
+      const PathPlace next = descended(place, x);
+      if (next == place) break;
+      const double moved = norm(at(next).p_W - start);
+      if (moved > most) return part_way(place, next, start, most, x);
+      place = next;
+    }
+    return place;
+  }
+
+ private:
+  /// p + first u + second u^2 + third u^3
+  struct Piece {
+    Vec3 p{0, 0, 0}, first{0, 0, 0}, second{0, 0, 0}, third{0, 0, 0};
+    double length = 0.0;
+    Mat3 R = Mat3::Identity();
+    Vec3 turn{0, 0, 0};  // [rad] of the frame to the next point
+  };
+
+  // Natural spline: its second derivatives m at the points solve a tridiagonal system.
+  void bend() {
+    const std::size_t n = pieces_.size();
+    std::vector<Vec3> m(n + 1, Vec3(0, 0, 0));
+    std::vector<double> share(n + 1, 0.0);
+    for (std::size_t i = 1; i < n; ++i) {
+      const double before = pieces_[i - 1].length, after = pieces_[i].length;
+      const double pivot = 2.0 * (before + after) - before * share[i - 1];
+      share[i] = after / pivot;
+      m[i] = (6.0 * (pieces_[i].first - pieces_[i - 1].first) - before * m[i - 1]) / pivot;
+    }
+    for (std::size_t i = n; i-- > 1;) m[i] = m[i] - share[i] * m[i + 1];
+    for (std::size_t i = 0; i < n; ++i) {
+      Piece& c = pieces_[i];
+      c.first = c.first - c.length / 6.0 * (2.0 * m[i] + m[i + 1]);
+      c.second = 0.5 * m[i];
+      c.third = (m[i + 1] - m[i]) / (6.0 * c.length);
+    }
+  }
+
+  // One Newton step towards the local nearest, shortened until it does not move away. At the end of
+  // a piece it goes on to the next if that leads nearer still.
+  [[nodiscard]] PathPlace descended(const PathPlace& from, const Vec3& x) const noexcept {
+    const PathPlace place = turned_to(from, x);
+    const PathPoint here = at(place);
+    const Vec3 away = here.p_W - x;
+    const double slope = dot(away, here.first_W);
+    const double square = squared_norm(here.first_W);
+    if (std::abs(slope) < 1e-15 * std::sqrt(square)) return from;
+    const double curvature = std::max(square + dot(away, here.second_W), 0.25 * square);
+    double step = -slope / curvature;
+    const double length = pieces_[place.piece].length;
+    for (int halved = 0; halved < 6; ++halved, step *= 0.5) {
+      const PathPlace next{place.piece, std::clamp(place.along + step, 0.0, length)};
+      if (squared_norm(at(next).p_W - x) <= squared_norm(away)) return next;
+    }
+    return from;
+  }
+  [[nodiscard]] PathPlace turned_to(const PathPlace& place, const Vec3& x) const noexcept {
+    const auto slope_at = [&](const PathPlace& there) {
+      const PathPoint point = at(there);
+      return dot(point.p_W - x, point.first_W);
+    };
+    if (place.along <= 0.0 && place.piece > 0 && slope_at(place) > 0.0) {
+      const PathPlace other{place.piece - 1, pieces_[place.piece - 1].length};
+      if (slope_at(other) > 0.0) return other;
+    }
+    if (place.along >= pieces_[place.piece].length && place.piece + 1 < pieces_.size() &&
+        slope_at(place) < 0.0) {
+      const PathPlace other{place.piece + 1, 0.0};
+      if (slope_at(other) < 0.0) return other;
+    }
+    return place;
+  }
+
+  // Between two places of which the second is too far from `start`.
+  [[nodiscard]] PathPlace part_way(const PathPlace& place, const PathPlace& next, const Vec3& start,
+                                   double most, const Vec3& x) const noexcept {
+    const PathPlace begin =
+        next.piece == place.piece
+            ? place
+            : PathPlace{next.piece, next.piece > place.piece ? 0.0 : pieces_[next.piece].length};
+    double low = 0.0, high = 1.0;
+    const auto between = [&](double share) {
+      return PathPlace{next.piece, begin.along + share * (next.along - begin.along)};
+    };
+    for (int i = 0; i < 24; ++i) {
+      const double middle = 0.5 * (low + high);
+      (norm(at(between(middle)).p_W - start) > most ? high : low) = middle;
+    }
+    const PathPlace found = between(low);
+    return squared_norm(at(found).p_W - x) <= squared_norm(at(place).p_W - x) ? found : place;
+  }
+
+  std::vector<Piece> pieces_;
+  bool has_frames_ = false;
+};
+
+}  // namespace repel::network
