@@ -1,5 +1,5 @@
-// figures FOLDER: computes the figures of docs/reduction.md and docs/control.md. Writes the curves
-// to FOLDER as CSV and prints the tables.
+// figures FOLDER: computes the figures of docs/reduction.md, control.md and walls.md. Writes the
+// curves to FOLDER as CSV and prints the tables.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -12,6 +12,7 @@
 #include "motions.hpp"
 #include "passages.hpp"
 #include "plates.hpp"
+#include "pushed_walls.hpp"
 #include "settled.hpp"
 
 namespace {
@@ -72,7 +73,7 @@ void write_motions(const std::filesystem::path& folder) {
   std::ofstream outlines = csv(folder / "outlines.csv", "motion,shape,x_mm,y_mm");
   const auto write = [&](const std::string& name, auto&& motion_of) {
     write_curves(curves, name, motion_of);
-    const Motion motion = motion_of(8);
+    const figures::Motion motion = motion_of(8);
     write_outline(outlines, name + ",A", motion.A, motion.X_WA);
     write_outline(outlines, name + ",B", motion.B, Pose::Identity());
   };
@@ -156,6 +157,15 @@ void write_passages(const std::filesystem::path& folder) {
   }
 }
 
+void write_walls(const std::filesystem::path& folder) {
+  std::ofstream file = csv(folder / "walls.csv", "wall,hand_mm,ball_mm,felt_n");
+  for (const Pushed& wall : pushed_walls()) {
+    for (const PushedBall& at : push_ball(wall.law)) {
+      file << wall.name << ',' << 1e3 * at.hand << ',' << 1e3 * at.ball << ',' << at.force << '\n';
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -169,6 +179,7 @@ int main(int argc, char** argv) try {
   print_equidistance_regions();
   write_plates(folder);
   write_passages(folder);
+  write_walls(folder);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "figures: %s\n", error.what());

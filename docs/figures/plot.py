@@ -11,6 +11,7 @@ SERIES = {"2 levels": "#e69f00", "8 levels": "#009e73", "32 levels": "#0072b2",
           "deepest point": "#d55e00"}
 WITNESSES = {"filtered": "#e69f00", "plain": "#0072b2", "averaged": "#d55e00"}
 LAWS = {"ceiling only": "#e69f00", "passable": "#0072b2"}
+WALLS = {"spring": "#e69f00", "hard wall": "#0072b2", "membrane": "#d55e00"}
 LEGENDS = {"plain": "plain witness point", "filtered": "filtered over 5 ms",
            "averaged": "averaged over four tilts"}
 
@@ -225,10 +226,22 @@ def passages(folder):
     yield from legend(590, 70, LAWS)
 
 
+def walls(folder):
+    for i, (what, label) in enumerate((("ball_mm", "ball beyond the surface [mm]"),
+                                       ("felt_n", "force that is felt [N]"))):
+        panel = Panel((70 + 330 * i, 30, 250, 210), (-30, 70), (-30, 70))
+        yield from panel.axes(range(-20, 71, 20), range(-20, 71, 20),
+                              "hand beyond the surface [mm]", label)
+        for (wall,), line in curves(folder, "walls.csv", ("wall",), "hand_mm", what).items():
+            yield panel.curve(line, WALLS[wall])
+    yield from legend(670, 50, WALLS)
+
+
 PICTURES = {"into_a_box": (into_a_box, 880, 430),
             "through_a_rectangle": (through_a_rectangle, 840, 510),
             "parallel_plates": (parallel_plates, 950, 500),
-            "passages": (passages, 700, 530)}
+            "passages": (passages, 700, 530),
+            "walls": (walls, 770, 300)}
 
 
 def main():
