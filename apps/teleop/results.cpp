@@ -60,9 +60,8 @@ void note_steps(const PartSteps& steps, RunResult& result) {
   }
 }
 
-void note_pairs(const Cell& cell, RunResult& result) {
-  const World& world = cell.world();
-  const Coprocessor& coprocessor = cell.coprocessor();
+void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result,
+                std::span<const double> withstood) {
   RunTotals& totals = result.arms.front().totals;
   const std::vector<std::size_t> places = obstacles_of_pairs(world);
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(world.pairs().size()); ++i) {
@@ -82,7 +81,9 @@ void note_pairs(const Cell& cell, RunResult& result) {
     }
     ObstacleResult& obstacle = result.obstacles[place];
     obstacle.is_hard = obstacle.is_hard || pair.law.hold == HoldKind::hard;
-    obstacle.withstood = std::max(obstacle.withstood, cell.withstood({i}));
+    if (!withstood.empty()) {
+      obstacle.withstood = std::max(obstacle.withstood, withstood[static_cast<std::size_t>(i)]);
+    }
     const bool hardest = extremes.peak_force > obstacle.extremes.peak_force;
     obstacle.extremes.add(extremes);
     if (!hardest) continue;

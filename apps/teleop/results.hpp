@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -157,7 +158,9 @@ struct RunResult {
 
 /// Collects the extremes of every obstacle, of the walls and of the passable bodies, and the
 /// nearest pair of all. Call once `coprocessor` has stopped.
-void note_pairs(const Cell& cell, RunResult& result);
+/// @param withstood [N] by PairId, the hardest push that a hard wall withstood; empty: none is hard
+void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result,
+                std::span<const double> withstood = {});
 
 /// For each pair the place of its obstacle in `RunResult::obstacles`. What a tool holds meets
 /// obstacles that are there already.

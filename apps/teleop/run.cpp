@@ -311,6 +311,15 @@ RunResult result_of(const PreparedRun& prepared) {
   return result;
 }
 
+/// [N] By PairId, the hardest push that its wall withstood.
+std::vector<double> withstood_by(const Cell& cell) {
+  std::vector<double> pushes;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(cell.world().pairs().size()); ++i) {
+    pushes.push_back(cell.withstood({i}));
+  }
+  return pushes;
+}
+
 }  // namespace
 
 RunResult run(PreparedRun& prepared, const Attachments& attached, const std::atomic<bool>& stop,
@@ -344,7 +353,7 @@ RunResult run(PreparedRun& prepared, const Attachments& attached, const std::ato
     result.arms[i].chatter = observers.chatter[i].result();
     result.arms[i].contact = driven.arm(i).contact();
   }
-  note_pairs(cell, result);
+  note_pairs(cell.world(), cell.coprocessor(), result, withstood_by(cell));
   note_steps(driven.steps(), result);
   note_link_laws(cell, result);
   result.interrupted = stop;

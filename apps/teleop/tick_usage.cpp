@@ -10,7 +10,7 @@ namespace {
 
 /// What the caller calls later finds its stack in memory, however deep the set-up has been.
 [[gnu::noinline]] bool touch_stack() noexcept {
-  constexpr std::size_t depth = 256 * 1024;  // [bytes] many times what a tick needs
+  constexpr std::size_t depth = std::size_t{256} * 1024;  // [bytes] many times what a tick needs
   constexpr std::size_t page = 4096;
   std::array<volatile char, depth> stack;  // NOLINT(*-member-init): only one byte of each page
   for (std::size_t i = 0; i < depth; i += page) stack[i] = 1;
