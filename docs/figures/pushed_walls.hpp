@@ -73,8 +73,8 @@ inline std::vector<PushedBall> push_ball(const ForceLaw& law) {
   arm.parts.push_back({"ball", Shape::sphere(0.02)});
   arm.network = network::Plan()
                     .add("lever", network::TorqueArm())
-          .add("multiplex", network::Multiplex())
-          .add("ball", network::Spaceball({.dead_band = 0.0, .time_constant = 0.0}))
+                    .add("multiplex", network::Multiplex())
+                    .add("ball", network::Spaceball({.dead_band = 0.0, .time_constant = 0.0}))
                     .add("coupling", network::Kbb2({.stiffness = 2000.0, .force_limit = 1e4}))
                     .add("walls", network::Obstacle())
                     .add("kinematics", network::PumaKin())

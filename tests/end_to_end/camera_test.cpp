@@ -216,8 +216,8 @@ TEST(Camera, WithAMapKeepsTheArmOffWhatOnlyItSees) {
 
 TEST(Camera, WithAMapIsReplayedBitForBit) {
   const Folder folder;
-  const std::string scene = quoted(folder.with(
-      "scene.yaml", seen_with({{"parts: 600", "parts: 600\n  map: {cube: 5 cm}"}})));
+  const std::string scene = quoted(
+      folder.with("scene.yaml", seen_with({{"parts: 600", "parts: 600\n  map: {cube: 5 cm}"}})));
   const std::string file = quoted(folder / "seen.mcap");
   const Ending recorded = teleop(scene + " --fast --seconds 2 --log " + file);
   ASSERT_EQ(recorded.status, 0) << recorded;
