@@ -125,7 +125,7 @@ TEST(WholeArm, AHardPostIsNotEnteredWhateverTheLeverage) {
   EXPECT_EQ(post.at("hold"), "hard");
   EXPECT_LT(post.at("deepest_m"), 1e-4) << post;
   EXPECT_GT(post.at("withstood_n"), 100.0) << post;
-  EXPECT_EQ(report.at("status_ticks").at("hold_lost"), 0);
+  EXPECT_FALSE(report.at("status_ticks").contains("hold_lost")) << report.at("status_ticks");
 }
 
 /// The robot of the repository, with a gripper on its flange.

@@ -269,8 +269,8 @@ TEST(SceneValue, AWallIsSoftUnlessItSaysHard) {
                              "  - {name: post, shape: sphere, radius: 1 m, law: firm}\n"
                              "  - {name: pad, shape: sphere, radius: 1 m, law: pad}\n"
                              "laws: {firm: {hold: hard}, pad: {hold: soft}}\n");
-  EXPECT_EQ(scene.obstacles[0].law.hold, HoldKind::hard);
-  EXPECT_EQ(scene.obstacles[1].law.hold, HoldKind::soft);
+  EXPECT_EQ(scene.obstacles[0].law.hold, HoldKind::soft);
+  EXPECT_EQ(scene.obstacles[1].law.hold, HoldKind::hard);
   EXPECT_EQ(scene.obstacles[2].law.hold, HoldKind::soft);
 }
 
