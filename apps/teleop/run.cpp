@@ -314,6 +314,7 @@ RunResult result_of(const PreparedRun& prepared) {
 /// [N] By PairId, the hardest push that its wall withstood.
 std::vector<double> withstood_by(const Cell& cell) {
   std::vector<double> pushes;
+  pushes.reserve(cell.world().pairs().size());
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(cell.world().pairs().size()); ++i) {
     pushes.push_back(cell.withstood({i}));
   }
