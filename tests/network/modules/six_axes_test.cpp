@@ -218,8 +218,10 @@ TEST(SixAxes, ADeviceWithTheDampingThatItNeedsComesToRest) {
     EXPECT_LT(energy_left(options, load, alone.device_damping(0.0)(0)), 1.0);
     restless += energy_left(options, load, 0.01) > 1.0 ? 1 : 0;
   }
-  // Under sanitizers there are too few draws to ask for more.
-  EXPECT_GE(restless, families::draws(60) / 10) << "the condition must be about something";
+  // The few draws under a sanitizer need not have one.
+  if (families::draws(60) == 60) {
+    EXPECT_GT(restless, 6) << "the condition must be about something";
+  }
 }
 
 TEST(SixAxes, TheDampingThatADeviceNeedsIsLeastForADamperOfItsOwnHalf) {

@@ -99,19 +99,26 @@ class FixturePath {
     return place.along <= 0.0 || place.along >= pieces_[place.piece].length;
   }
 
-  /// The place nearest to `x` [m], looking at every piece. Cost: nine points of each.
+  /// The place nearest to `x` [m], looking at every piece. Of two that are nearly as near, the
+  /// points alone could name the wrong one: each piece that may have it is descended. Cost: nine
+  /// points of each, and eight steps from the nearest ones.
   [[nodiscard]] PathPlace nearest(const Vec3& x) const noexcept {
     PathPlace best;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       constexpr double samples = 8.0;  // a spline leaves its chord
+      const double spacing = pieces_[i].length / samples;
+      PathPlace place{i, 0.0};
+      double here = std::numeric_limits<double>::infinity();
       for (double k = 0.0; k <= samples; k += 1.0) {
-        const PathPlace place{i, k / samples * pieces_[i].length};
-        const double square = squared_norm(x - at(place).p_W);
-        if (square < least) least = square, best = place;
+        const double distance = norm(x - at({i, k * spacing}).p_W);
+        if (distance < here) here = distance, place = {i, k * spacing};
       }
+      if (!(here - spacing < least)) continue;
+      for (int step = 0; step < 8; ++step) place = descended(place, x);
+      const double reached = norm(x - at(place).p_W);
+      if (reached < least) least = reached, best = place;
     }
-    for (int step = 0; step < 8; ++step) best = descended(best, x);
     return best;
   }
 
