@@ -64,6 +64,15 @@ void describe(CLI::App& app, PartArguments& arguments, const Program& program);
 /// a result is wrong.
 [[nodiscard]] int run(const PartArguments& arguments, const Program& program);
 
+/// The main function of such a program. @tparam program with static storage
+template <const Program& program>
+[[nodiscard]] int start(int argc, char** argv) {
+  return host::start<PartArguments>(
+      argc, argv, program.name, program.about, 1,
+      [](CLI::App& app, PartArguments& arguments) { describe(app, arguments, program); },
+      [](const PartArguments& arguments) { return run(arguments, program); });
+}
+
 /// Shows on stderr how many rows of a part are done.
 void progress(const char* part, std::size_t done, std::size_t of);
 

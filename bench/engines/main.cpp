@@ -27,16 +27,8 @@ const bench::Program program{
         "with the same seed. docs/benchmarks.md says how to read the tables.",
     .scheduler = "as any program"};
 
-void describe(CLI::App& app, bench::PartArguments& arguments) {
-  bench::describe(app, arguments, program);
-}
-
-int run(const bench::PartArguments& arguments) {
-  return bench::run(arguments, program);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  return host::start(argc, argv, program.name, program.about, 1, describe, run);
+  return bench::start<program>(argc, argv);
 }

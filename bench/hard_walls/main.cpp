@@ -367,16 +367,8 @@ constexpr bench::Program program{"hard_walls",
                                  "Everything but the times repeats itself.",
                                  "none"};
 
-void describe_program(CLI::App& app, bench::PartArguments& arguments) {
-  bench::describe(app, arguments, program);
-}
-int run_program(const bench::PartArguments& arguments) {
-  return bench::run(arguments, program);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  return repel::host::start<bench::PartArguments>(argc, argv, program.name, program.about, 1,
-                                                  describe_program, run_program);
+  return repel::bench::start<program>(argc, argv);
 }

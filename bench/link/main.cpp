@@ -1,16 +1,20 @@
 /// @file
-/// The round trip of a packet between two programs on one machine, over each transport of a link.
+/// What a link between two programs costs, on one machine, over each transport: the round trip of a
+/// packet, and the time in the tick.
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <memory>
 #include <thread>
 
+#include <repel/link/link_thread.hpp>
 #include <repel/link/udp.hpp>
+#include <repel/network/remote/link.hpp>
 #include <repel/schedule/deadline.hpp>
 #ifdef REPEL_BENCH_DDS
 #include <repel/dds/dds.hpp>
@@ -25,6 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint16_t port = 17411;
 constexpr std::uint32_t domain = 211;
+constexpr std::chrono::microseconds period(2500);
 
 struct Carrier {
   const char* name;
@@ -71,7 +76,11 @@ bool comes_back(link::Transport& transport, const network::RemotePacket& sent) {
   return false;
 }
 
-bench::Result measure(const bench::Options& options) {
+[[nodiscard]] double tenths(double us) {
+  return std::round(10.0 * us) / 10.0;
+}
+
+bench::Result round_trip(const bench::Options& options) {
   bench::Result result;
   result.title = "Round trip of a packet of 720 bytes at 400 Hz, both sides on this machine";
   result.columns = {"link",     "packets",       "round trip p50 [us]", "p99 [us]", "p99.9 [us]",
@@ -92,7 +101,7 @@ bench::Result measure(const bench::Options& options) {
     int lost = 0;
     auto due = Clock::now();
     for (int i = 0; i < packets; ++i) {
-      due += std::chrono::microseconds(2500);
+      due += period;
       std::this_thread::sleep_until(due);
       ++packet.sequence;
       packet.values[0] = std::sqrt(static_cast<double>(i));
@@ -106,12 +115,10 @@ bench::Result measure(const bench::Options& options) {
       }
     }
     if (lost > packets / 100) result.fail(carrier.name, "more than one in a hundred was lost");
-    const auto us = [](const DurationHistogram& times, double share) {
-      return std::round(10.0 * times.percentile_us(share)) / 10.0;
-    };
-    result.rows.push_back({carrier.name, packets, us(trips, 0.5), us(trips, 0.99), us(trips, 0.999),
-                           std::round(10.0 * trips.max_us()) / 10.0, us(sends, 0.5),
-                           us(sends, 0.99), lost});
+    result.rows.push_back({carrier.name, packets, tenths(trips.percentile_us(0.5)),
+                           tenths(trips.percentile_us(0.99)), tenths(trips.percentile_us(0.999)),
+                           tenths(trips.max_us()), tenths(sends.percentile_us(0.5)),
+                           tenths(sends.percentile_us(0.99)), lost});
     bench::progress("round_trip", result.rows.size(), carriers().size());
   }
   result.notes = {
@@ -121,25 +128,119 @@ bench::Result measure(const bench::Options& options) {
   return result;
 }
 
-constexpr std::array<bench::Part, 1> all{
-    bench::Part{"round_trip", "a packet to the other side and back", measure}};
+/// One side of a link in its ticks: what comes in goes out again, and a push of 1 sqrt(W) with it.
+class Side {
+ public:
+  explicit Side(std::uint64_t session) : link({.session = session}) { link.prepare(size, seconds); }
+  void tick() noexcept {
+    link.receive(Clock::now().time_since_epoch());
+    wave_ = 0.5 * link.play(false);
+    wave_[0] += 1.0;
+    link.send(wave_, seconds);
+  }
+  /// Nothing came out that the other side has not put in.
+  [[nodiscard]] bool is_passive(const Side& other) const noexcept {
+    return link.player().output() <= other.link.energy_sent() * (1.0 + 1e-9);
+  }
+
+  network::RemoteLink link;
+
+ private:
+  static constexpr int size = 6;
+  static constexpr double seconds = 1e-6 * period.count();
+  network::Vec<network::any_size> wave_ = network::Vec<network::any_size>::Zero(size);
+};
+
+/// Runs `tick` by the clock and returns how long it took, each time.
+template <class Tick>
+DurationHistogram times_of(int ticks, const Tick& tick) {
+  DurationHistogram times;
+  auto due = Clock::now();
+  for (int i = 0; i < ticks; ++i) {
+    due += period;
+    std::this_thread::sleep_until(due);
+    times.record(tick());
+  }
+  return times;
+}
+
+template <class Work>
+std::chrono::nanoseconds time_of(const Work& work) {
+  const auto begin = Clock::now();
+  work();
+  return Clock::now() - begin;
+}
+
+bench::Result in_the_tick(const bench::Options& options) {
+  bench::Result result;
+  result.title = "A link in a tick at 400 Hz";
+  result.columns = {"link",
+                    "ticks",
+                    "thread p50 [us]",
+                    "thread p99 [us]",
+                    "thread max [us]",
+                    "received [%]",
+                    "system calls p50 [us]",
+                    "system calls p99 [us]"};
+  const int ticks = options.quick ? 200 : 10000;
+  for (const Carrier& carrier : carriers()) {
+    Side site(2 * options.seed + 1);
+    Side station(2 * options.seed + 2);
+    DurationHistogram threaded;
+    {
+      link::LinkThread there(site.link, carrier.open(link::Side::site));
+      link::LinkThread here(station.link, carrier.open(link::Side::station));
+      threaded = times_of(ticks, [&] {
+        const auto time = time_of([&] { station.tick(); });
+        site.tick();
+        return time;
+      });
+    }
+    const double share = 100.0 * static_cast<double>(station.link.counts().received) / ticks;
+    // The other side may be found late, not lost.
+    if (share < 50.0) result.fail(carrier.name, "less than half of the packets came");
+    if (!station.is_passive(site) || !site.is_passive(station)) {
+      result.fail(carrier.name, "a side output more energy than the other one sent");
+    }
+    const auto site_end = carrier.open(link::Side::site);
+    const auto station_end = carrier.open(link::Side::station);
+    network::RemotePacket packet;
+    packet.session = options.seed + 1;
+    const DurationHistogram called = times_of(ticks, [&] {
+      network::RemotePacket back;
+      const auto time = time_of([&] {
+        (void)station_end->send(packet);
+        (void)station_end->receive(back);
+      });
+      while (site_end->receive(back)) (void)site_end->send(back);
+      return time;
+    });
+    result.rows.push_back({carrier.name, ticks, tenths(threaded.percentile_us(0.5)),
+                           tenths(threaded.percentile_us(0.99)), tenths(threaded.max_us()),
+                           std::round(10.0 * share) / 10.0, tenths(called.percentile_us(0.5)),
+                           tenths(called.percentile_us(0.99))});
+    bench::progress("in_the_tick", result.rows.size(), carriers().size());
+  }
+  result.notes = {
+      "Checked: no side outputs more energy than the other one has sent.",
+      "`thread`, as the library does it: the packet of the tick is written, those that came "
+      "are read and played, and a thread of its own speaks with the system. `system calls`: the "
+      "same transport is asked to send and receive in the tick itself, and nothing is played."};
+  return result;
+}
+
+constexpr std::array<bench::Part, 2> all{
+    bench::Part{"round_trip", "a packet to the other side and back", round_trip},
+    bench::Part{"in_the_tick", "the time that a link takes of a tick", in_the_tick}};
 constexpr bench::Program program{"link_bench",
-                                 "The round trip of a packet between two programs on one machine.",
+                                 "What a link between two programs costs, on one machine.",
                                  all,
                                  "the session of the packets",
                                  "Both sides are threads of this program, with a transport each.",
                                  "none"};
 
-void describe_program(CLI::App& app, bench::PartArguments& arguments) {
-  bench::describe(app, arguments, program);
-}
-int run_program(const bench::PartArguments& arguments) {
-  return bench::run(arguments, program);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  return repel::host::start<bench::PartArguments>(argc, argv, program.name, program.about, 1,
-                                                  describe_program, run_program);
+  return repel::bench::start<program>(argc, argv);
 }

@@ -179,16 +179,8 @@ constexpr bench::Program program{"percepts",
                                  "A camera of 30 Hz leaves 33 ms for an image.",
                                  "none"};
 
-void describe_program(CLI::App& app, bench::PartArguments& arguments) {
-  bench::describe(app, arguments, program);
-}
-int run_program(const bench::PartArguments& arguments) {
-  return bench::run(arguments, program);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  return repel::host::start<bench::PartArguments>(argc, argv, program.name, program.about, 1,
-                                                  describe_program, run_program);
+  return repel::bench::start<program>(argc, argv);
 }

@@ -20,16 +20,8 @@ const bench::Program program{
         "otherwise. docs/benchmarks.md says how to read the tables.",
     .scheduler = "simulated time"};
 
-void describe(CLI::App& app, bench::PartArguments& arguments) {
-  bench::describe(app, arguments, program);
-}
-
-int run(const bench::PartArguments& arguments) {
-  return bench::run(arguments, program);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  return host::start(argc, argv, program.name, program.about, 1, describe, run);
+  return bench::start<program>(argc, argv);
 }
