@@ -46,10 +46,14 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
                  {"silent_for_s", command.silent_for}};
   if (command.hand.scale != 1.0) inputs["scale"] = command.hand.scale;
   if (!command.hand.turning_W.isZero(0.0)) inputs["turning"] = to_json(command.hand.turning_W);
-  const Twist& second = command.second.ball;
-  if (command.second.scale != 1.0 || !second.linear.isZero(0.0) || !second.angular.isZero(0.0)) {
-    inputs["second_linear"] = to_json(second.linear);
-    inputs["second_angular"] = to_json(second.angular);
+  const network::HandInput& second = command.second;
+  if (second.scale != 1.0 || !second.ball.linear.isZero(0.0) || !second.ball.angular.isZero(0.0)) {
+    inputs["second_linear"] = to_json(second.ball.linear);
+    inputs["second_angular"] = to_json(second.ball.angular);
+  }
+  if (second.lever_rate != 0.0 || second.direction_W != network::HandInput{}.direction_W) {
+    inputs["second_lever_rate"] = second.lever_rate;
+    inputs["second_direction"] = to_json(second.direction_W);
   }
   if (command.hand.guides >= 0) inputs["guides"] = command.hand.guides;
   if (command.hand.guide_strength != 1.0) inputs["guide_strength"] = command.hand.guide_strength;

@@ -59,6 +59,8 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "turning": {"type": "array", "description": "of a lever that turns the tool [rad/m]"},
       "second_linear": {"type": "array", "description": "of a second hand, if it moves [m/s]"},
       "second_angular": {"type": "array", "description": "likewise [rad/s]"},
+      "second_lever_rate": {"type": "number", "description": "of a second lever [rad/s]"},
+      "second_direction": {"type": "array", "description": "likewise, of that lever"},
       "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
       "guides": {"type": "integer", "description": "bits of the fixtures, if not as set up"},
       "guide_strength": {"type": "number", "description": "of the fixtures, if it is not 1"},

@@ -93,6 +93,10 @@ void read_inputs(const Fields& arm, TickRecord& k) {
     k.command.second.ball = {arm.at("second_linear").vector(), arm.at("second_angular").vector()};
     k.command.second.scale = hand.scale;
   }
+  if (arm.has("second_lever_rate")) {
+    k.command.second.lever_rate = arm.at("second_lever_rate").number();
+    k.command.second.direction_W = arm.at("second_direction").vector();
+  }
   if (arm.has("guides")) hand.guides = static_cast<std::int32_t>(arm.at("guides").integer());
   if (arm.has("guide_strength")) hand.guide_strength = arm.at("guide_strength").number();
   if (arm.has("compliant")) {

@@ -42,14 +42,22 @@ ReadModule made_of(const Options& options, network::Module (*from)(const Options
   return {options, [=](const ArmModel& /*arm*/) { return from(options); }, walls};
 }
 
+void read_hand(const Map& map, network::Hand& hand) {
+  const Value* const word = map.find("hand");
+  if (word == nullptr) return;
+  const bool is_second = word->word_of({"first", "second"}) == "second";
+  hand = is_second ? network::Hand::second : network::Hand::first;
+}
+
 ReadModule torque_arm_of(const Map& map) {
-  allow(map, {"inertia", "friction", "hand_stiffness", "hand_damping", "torque_limit"});
+  allow(map, {"inertia", "friction", "hand_stiffness", "hand_damping", "torque_limit", "hand"});
   network::TorqueArmOptions options;
   map.read("inertia", {unit::inertia, 1e-6, 1e3}, options.inertia);
   map.read("friction", {unit::angular_damping, 0.0, 1e3}, options.friction);
   map.read("hand_stiffness", {unit::angular_stiffness, 0.0, 1e5}, options.hand_stiffness);
   map.read("hand_damping", {unit::angular_damping, 0.0, 1e4}, options.hand_damping);
   map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
+  read_hand(map, options.hand);
   return made_of(options, make<network::TorqueArm>);
 }
 
@@ -70,20 +78,18 @@ ReadModule six_axes_of(const Map& map) {
   map.read("force_limit", {unit::force, 0.0, 1e5}, options.force_limit);
   map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
   map.read("motion_scale", {unit::share, 1e-3, 1e3}, options.motion_scale);
-  if (const Value* hand = map.find("hand")) {
-    const bool is_second = hand->word_of({"first", "second"}) == "second";
-    options.hand = is_second ? network::Hand::second : network::Hand::first;
-  }
+  read_hand(map, options.hand);
   return made_of(options, make<network::SixAxes>);
 }
 
 ReadModule multiplex_of(const Map& map) {
-  allow(map, {"velocity_scale", "force_scale", "turning_time"});
+  allow(map, {"velocity_scale", "force_scale", "turning_time", "hand"});
   network::MultiplexOptions options;
   map.read("velocity_scale", {unit::length_per_angle, 1e-6, 100.0}, options.velocity_scale);
   options.force_scale = options.velocity_scale;  // lossless unless the file says otherwise
   map.read("force_scale", {unit::length, 1e-6, 100.0}, options.force_scale);
   map.read("turning_time", {unit::time, 0.0, 100.0}, options.turning_time);
+  read_hand(map, options.hand);
   return made_of(options, make<network::Multiplex>);
 }
 

@@ -656,6 +656,17 @@ std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view>
   return keys;
 }
 
+constexpr Rule lever_rates{unit::angular_speed, -100.0, 100.0, true};
+
+/// What a second hand does in a phase: with six axes, or with a lever.
+void read_second(const Map& map, network::Phase& phase) {
+  map.allow({"linear", "angular", "direction", "lever"});
+  map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.second.linear);
+  map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.second.angular);
+  if (map.find("direction") == nullptr && map.find("lever") == nullptr) return;
+  phase.second_lever = {direction_of(map.at("direction")), map.at("lever").number(lever_rates)};
+}
+
 network::Phase phase_of(const Value& value) {
   const Map map(value);
   map.allow(phase_keys({"linear", "angular", "direction", "lever", "pitch", "axis"}));
@@ -671,12 +682,7 @@ network::Phase phase_of(const Value& value) {
   }
   map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
            phase.scale);
-  if (const Value* second = map.find("second")) {
-    const Map rates(*second);
-    rates.allow({"linear", "angular"});
-    rates.read("linear", {unit::speed, -10.0, 10.0, true}, phase.second.linear);
-    rates.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.second.angular);
-  }
+  if (const Value* second = map.find("second")) read_second(Map(*second), phase);
   const std::string device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
   if (device != "torque_arm") {
     if (device == "six_axes") phase.master = network::Master::six_axes;
@@ -687,7 +693,7 @@ network::Phase phase_of(const Value& value) {
     map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
     phase.master = network::Master::torque_arm;
     phase.direction = direction_of(map.at("direction"));
-    phase.lever_rate = map.at("lever").number({unit::angular_speed, -100.0, 100.0, true});
+    phase.lever_rate = map.at("lever").number(lever_rates);
     if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
       phase.screw.emplace();
       map.read("pitch", {unit::length_per_angle, -10.0, 10.0}, phase.screw->pitch);

@@ -72,6 +72,51 @@ TEST(NetworkOfAScene, ALeverScrewsTheToolIntoATable) {
   EXPECT_GT(std::abs(log.at("lever_torque_nm").back()), 0.01);
 }
 
+TEST(NetworkOfAScene, TwoLeversLeadOneTool) {
+  // One lever sideways, one down: each RELIEF gives way where the other lever leads the tool.
+  const Folder folder;
+  const std::string scene = folder.with(
+      "levers.yaml",
+      "name: levers\nrate: 400 Hz\n" + robot_text() + table_text() +
+          "network:\n"
+          "  - {module: torque_arm, name: left}\n"
+          "  - {module: multiplex, name: sideways}\n"
+          "  - {module: relief, name: left_grip, compliant: [x, y, z, rx, ry, rz], "
+          "stiffness: 1 N/mm, to: tool}\n"
+          "  - {module: torque_arm, name: right, hand: second}\n"
+          "  - {module: multiplex, name: down, hand: second}\n"
+          "  - {module: relief, name: right_grip, compliant: [x, y, z, rx, ry, rz], "
+          "stiffness: 1 N/mm, to: tool}\n"
+          "  - {module: junction, name: tool}\n"
+          "  - {module: kbb2}\n"
+          "  - {module: obstacle}\n"
+          "  - {module: puma_kin}\n"
+          "  - {module: limits}\n"
+          "  - {module: puma_joints}\n"
+          "script:\n"
+          "  - {name: both, device: torque_arm, duration: 2 s, direction: 0 1 0, lever: 0.4 rad/s, "
+          "second: {direction: 0 0 -1, lever: 0.2 rad/s}}\n");
+  const std::string run = quoted(scene) + " --fast --seconds 2";
+  const Ending ending = teleop(run + " --log " + quoted(folder / "log.csv") + " --report " +
+                               quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json report = report_of(folder / "report.json");
+  EXPECT_LE(worst_deficit(report), 1e-9) << report.at("modules");
+  EXPECT_GT(module_of(report, "left").at("supplied_j"), 0.001);
+  EXPECT_GT(module_of(report, "right").at("supplied_j"), 0.001);
+  const Columns log = columns_of(folder / "log.csv");
+  const auto moved = [&log](const char* axis) {
+    return log.at(axis).back() - log.at(axis).front();
+  };
+  EXPECT_NEAR(moved("x_m"), 0.0, 0.01);
+  EXPECT_GT(moved("y_m"), 0.015);
+  EXPECT_LT(moved("z_m"), -0.005);
+  const Ending recorded = teleop(run + " --log " + quoted(folder / "run.mcap"));
+  ASSERT_EQ(recorded.status, 0) << recorded;
+  const Ending replayed = teleop("--replay " + quoted(folder / "run.mcap"));
+  EXPECT_EQ(replayed.status, 0) << replayed;
+}
+
 TEST(NetworkOfAScene, TwoHandsLeadOneToolIntoATable) {
   const Folder folder;
   const std::string scene = folder.with(

@@ -199,6 +199,24 @@ TEST(ScriptedOperator, ASecondHandMovesMeanwhileInTheSameFrame) {
   EXPECT_EQ(over.second.ball.linear, Vec3::Zero());
 }
 
+TEST(ScriptedOperator, ASecondHandMovesALeverOfItsOwn) {
+  const Mat3 R_WT = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitZ()).toRotationMatrix();  // x to y
+  Phase both = lever_phase(0.005, {0, 0, 1}, 1.0);
+  both.frame = PhaseFrame::tool;
+  both.second_lever = {Vec3::UnitX(), -2.0};
+  Phase faulty = both;
+  faulty.second_lever->rate = nan;
+  ScriptedOperator the_operator({both, ball_phase(0.0025, {0.1, 0, 0}), faulty});
+  const Command& begun = the_operator.step(R_WT, 0.0025);
+  EXPECT_EQ(begun.hand.lever_rate, 1.0);
+  EXPECT_EQ(begun.second.lever_rate, -2.0);
+  EXPECT_NEAR(begun.second.direction_W.y(), 1.0, 1e-15);
+  // The direction stays where it was at the beginning of the phase.
+  EXPECT_NEAR(the_operator.step(Mat3::Identity(), 0.0025).second.direction_W.y(), 1.0, 1e-15);
+  EXPECT_EQ(the_operator.step(R_WT, 0.0025).second.lever_rate, 0.0);
+  EXPECT_FALSE(the_operator.step(R_WT, 0.0025).sound);
+}
+
 TEST(ScriptedOperator, HandThatDoesNotLeadTheLeverHoldsItStill) {
   ScriptedOperator the_operator({lever_phase(0.5, {0, 1, 0}, 2.0), ball_phase(0.5, {0.1, 0, 0})});
   for (int tick = 0; tick < 200; ++tick) {

@@ -41,6 +41,13 @@ struct Screw {
     return {linear / most, direction / most};
   }
 };
+
+/// A lever and what it does to the tool.
+struct LeverMotion {
+  Vec3 direction{1, 0, 0};  ///< unit, in the frame of the phase: in which the tool is driven
+  double rate = 0.0;        ///< [rad/s] of the hand
+};
+
 /// In place of a set of bits in a phase: that of the phase before.
 inline constexpr std::int32_t as_before = -2;
 
@@ -55,8 +62,9 @@ struct Phase {
   /// Torque arm: the lever screws the tool about an axis along `direction`, which stays fixed to
   /// the tool.
   std::optional<Screw> screw{};
-  double lever_rate = 0.0;          ///< [rad/s] torque arm: rate of the hand
-  Twist second{};                   ///< [m/s, rad/s] of a second hand with six axes, meanwhile
+  double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
+  Twist second{};           ///< [m/s, rad/s] of a second hand with six axes, meanwhile
+  std::optional<LeverMotion> second_lever{};  ///< of a second hand with a lever, meanwhile
   double scale = 0.0;               ///< HandInput::scale of both from here on; 0: as before
   std::int32_t guides = as_before;  ///< HandInput::guides from here on
   double guide_strength = -1.0;     ///< HandInput::guide_strength from here on; below 0: as before
@@ -95,7 +103,7 @@ class ScriptedOperator {
       return command_;
     }
     command_.hand.ball = command_.second.ball = {};
-    command_.hand.lever_rate = 0.0;
+    command_.hand.lever_rate = command_.second.lever_rate = 0.0;
     if (!over()) switch_over(script_[phase_]);
     command_.silent_for = 0.0;
     command_.sound = over() || read(script_[phase_], R_WT, period);
@@ -119,6 +127,14 @@ class ScriptedOperator {
     const bool in_tool = phase.frame == PhaseFrame::tool;
     if (!is_finite(phase.second)) return false;
     command_.second.ball = in_tool ? rotated(R_WT, phase.second) : phase.second;
+    if (phase.second_lever) {
+      const LeverMotion& lever = *phase.second_lever;
+      if (!is_finite(lever.direction) || lever.rate - lever.rate != 0.0) return false;
+      if (in_phase_ <= period) {
+        command_.second.direction_W = in_tool ? R_WT * lever.direction : lever.direction;
+      }
+      command_.second.lever_rate = lever.rate;
+    }
     if (phase.master != Master::torque_arm) {
       if (!is_finite(phase.rates)) return false;
       command_.hand.ball = in_tool ? rotated(R_WT, phase.rates) : phase.rates;
