@@ -1,6 +1,10 @@
 // The program led by a hand at a force-reflecting handle, whose service is a stand-in with a device
 // and a hand of its own. By the clock.
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
+#include <string>
 
 #include <devices/fake_haply.hpp>
 #include <end_to_end/teleop.hpp>
@@ -99,6 +103,45 @@ TEST(Haply, AHandLeadsTheToolIntoAWallAndFeelsIt) {
   for (const json& module : report.at("modules")) {
     if (!module.at("claims_passive").get<bool>()) continue;
     EXPECT_LE(module.at("deficit"), 1e-9) << module;
+  }
+}
+
+// The handle is at the station, table and arm at the site, 20 ms away.
+TEST(Haply, AHandFeelsATableInAnotherProgram) {
+  const Folder folder;
+  const std::string scene = folder.with(
+      "far.yaml",
+      "name: far\nrate: 400 Hz\n" + robot_text() + table_text() +
+          "network:\n"
+          "  - {module: six_axes, motion_scale: 2, hand_stiffness: 300 N/m, "
+          "hand_damping: 0.8 N s/m}\n"
+          "  - {module: line, delay: 20 ms, jitter: 3 ms, loss: 2 %, impedance: 20 N s/m, "
+          "angular_impedance: 0.2 N m s/rad}\n"
+          "  - {module: kbb2, shunt: 20 N s/m, angular_shunt: 0.2 N m s/rad}\n"
+          "  - {module: obstacle}\n"
+          "  - {module: puma_kin}\n"
+          "  - {module: limits}\n"
+          "  - {module: puma_joints}\n");
+  devices::FakeHaply service;
+  Hand hand;
+  service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
+  const Ending ending = teleop(
+      quoted(scene) + " --apart --seconds 8 --backend ideal --device haply:" + service.url() +
+      " --link udp:127.0.0.1:" + std::to_string(22000 + getpid() % 20000) + " --report " +
+      quoted(folder / "report.json"));
+  ASSERT_EQ(ending.status, 0) << ending;
+  const json site = report_of(folder / "report.json");
+  const json& station = site.at("station");
+  EXPECT_GT(site.at("peak_force_n"), 1.0);
+  EXPECT_GT(station.at("peak_hand_force_n"), 1.0);
+  EXPECT_GT(hand.most_up_, 0.5);
+  EXPECT_LE(hand.most_, 3.0 + 1e-4);
+  EXPECT_TRUE(service.force().isZero(0.0)) << "and is let go at the end";
+  for (const json& side : {site, station}) {
+    EXPECT_EQ(side.at("allocations_in_tick"), 0);
+    for (const json& module : side.at("modules")) {
+      EXPECT_EQ(module.at("passive"), module.at("claims_passive")) << module;
+    }
   }
 }
 
