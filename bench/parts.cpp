@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "distance/markdown.hpp"
@@ -16,7 +18,10 @@ std::string shown(const Json& cell) {
   if (cell.is_null()) return "wrong";
   if (cell.is_string()) return cell.get<std::string>();
   if (cell.is_boolean()) return cell.get<bool>() ? "yes" : "no";
-  return text("%.4g", cell.get<double>());
+  if (cell.is_number_integer()) return std::to_string(cell.get<std::int64_t>());
+  const double number = cell.get<double>();
+  const bool is_long = std::abs(number) >= 1e4 && std::abs(number) < 1e9;
+  return text(is_long ? "%.0f" : "%.4g", number);
 }
 
 void print(const Result& result) {
