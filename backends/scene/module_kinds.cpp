@@ -327,11 +327,8 @@ ReadModule plain_of(const Map& map) {
 }
 
 ReadModule ground_of(const Map& map) {
-  using network::any_size;
   allow(map, {});
-  return {{}, [](const ArmModel& /*arm*/) {
-            return network::FlowSource<any_size>(network::Vec<any_size>::Zero(6));
-          }};
+  return {{}, [](const ArmModel& /*arm*/) { return network::Ground(); }};
 }
 
 ReadModule joints_of(const Map& map) {

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include <repel/base/limits.hpp>
+#include <repel/base/capacities.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/text_file.hpp>
 #include <repel/network/elements/changing_scale.hpp>
@@ -791,7 +791,7 @@ std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
   const Value* value = scene.find("partners");
   if (!value) return partners;
   std::set<std::string> names;
-  for (const Value& entry : value->list(static_cast<std::size_t>(Limits{}.bodies))) {
+  for (const Value& entry : value->list(static_cast<std::size_t>(Capacities{}.bodies))) {
     const Map map(entry);
     map.allow({"name", "law", "robot", "tool", "network", "script"});
     OtherArm& partner = partners.emplace_back();
@@ -827,7 +827,7 @@ Budget budget_of(const Map& scene) {
   }
   if (const Value* work = map.find("work")) budget.work_units = work->integer(0, 1'000'000'000);
   if (const Value* threads = map.find("threads")) {
-    budget.threads = static_cast<int>(threads->integer(0, Limits{}.threads));
+    budget.threads = static_cast<int>(threads->integer(0, Capacities{}.threads));
   }
   if (const Value* age = map.find("max_age")) budget.max_age = age->integer(1, 1'000'000'000);
   return budget;

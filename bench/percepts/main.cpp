@@ -82,8 +82,8 @@ struct Room {
       (void)world.add_pair(finger, part, {.range = 0.03});
     }
   }
-  static Limits limits() {
-    Limits limits;
+  static Capacities limits() {
+    Capacities limits;
     limits.loose = 2000;
     return limits;
   }

@@ -3,11 +3,16 @@
 /// `pairs` and `schedule`.
 #pragma once
 
+// One message instead of hundreds.
+#if __cplusplus < 202002L && (!defined(_MSVC_LANG) || _MSVC_LANG < 202002L)
+#error "repel needs C++20: compile with -std=c++20 or newer"
+#else
+
+#include <repel/base/capacities.hpp>
 #include <repel/base/complaint.hpp>
 #include <repel/base/ids.hpp>
 #include <repel/base/input_limits.hpp>
 #include <repel/base/layout.hpp>
-#include <repel/base/limits.hpp>
 #include <repel/base/mailbox.hpp>
 #include <repel/base/ring.hpp>
 #include <repel/base/setup_error.hpp>
@@ -47,4 +52,6 @@
 #include <repel/loop/tick.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/world_changes.hpp>
+#endif
+
 #endif

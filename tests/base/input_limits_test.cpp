@@ -1,14 +1,14 @@
 // The limits of input files are consistent with the capacities of what is built from them.
 #include <gtest/gtest.h>
 
+#include <repel/base/capacities.hpp>
 #include <repel/base/input_limits.hpp>
-#include <repel/base/limits.hpp>
 
 namespace repel {
 namespace input_limits_test {
 
 TEST(InputLimits, AreGenerousForWhatAWorldMayHold) {
-  const Limits world;
+  const Capacities world;
   EXPECT_LE(2 * input_limits.entries, static_cast<std::size_t>(world.parts));
   EXPECT_GE(input_limits.hull_points, 40U * 2000U) << "forty hulls of two thousand points";
   EXPECT_GE(input_limits.values, input_limits.hull_points + 14 * input_limits.entries)

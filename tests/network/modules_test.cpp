@@ -22,7 +22,7 @@ TEST(Modules, BuildANetworkOfAllKindsWithThisHeaderAndAPlan) {
                               .add("relief", Relief())
                               .add("line", Line())
                               .add("kbb2", Kbb2(), "tool")
-                              .add("ground", FlowSource<any_size>(Vec<any_size>::Zero(6)), "weld")
+                              .add("ground", Ground(), "weld")
                               .add("weld", Kbb2(), "tool")
                               .add("tool", Junction(), "obstacle")
                               .add("obstacle", Obstacle())

@@ -99,8 +99,8 @@ struct Stage {
     }
     return false;
   }
-  static Limits limits() {
-    Limits limits;
+  static Capacities limits() {
+    Capacities limits;
     limits.loose = 1000;
     return limits;
   }

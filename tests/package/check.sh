@@ -57,6 +57,15 @@ fails_to_link_for_other_registers() {
   done
 }
 
+# An older language is refused in one line, not in hundreds.
+says_once_that_the_language_is_too_old() {
+  echo '#include <repel/repel.hpp>' >"$scratch/old.cpp"
+  ! "$1" -std=c++17 -fsyntax-only -I "$root/core" -isystem /usr/include/eigen3 "$scratch/old.cpp" \
+    >"$scratch/said" 2>&1 || return 1
+  grep 'error' "$scratch/said" | tee "$scratch/errors"
+  [ "$(grep -c 'error:' "$scratch/errors")" = 1 ] && grep -q 'needs C++20' "$scratch/errors"
+}
+
 # plain COMPILER FLAGS...: no build system at all.
 plain() {
   "$@" -o "$scratch/plain" && "$scratch/plain"
@@ -132,4 +141,5 @@ for compiler in g++ clang++; do
   # shellcheck disable=SC2086
   step "$compiler -I core, all warnings" \
     plain $compiler $strict $sources -I "$root/core" -isystem /usr/include/eigen3
+  step "$compiler -std=c++17" says_once_that_the_language_is_too_old $compiler
 done

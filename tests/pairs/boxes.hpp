@@ -94,7 +94,7 @@ struct Crowd {
   std::vector<BodyId> bodies{World::fixed};
   families::Rng random;
 
-  explicit Crowd(unsigned seed, const Limits& limits = {},
+  explicit Crowd(unsigned seed, const Capacities& limits = {},
                  Shape (*draw)(families::Rng&) = random_box)
       : world(limits), random(seed) {
     for (int i = 0; i < 3; ++i) bodies.push_back(world.add_body("body"));

@@ -45,8 +45,8 @@ struct Stage {
     }
     return force;
   }
-  static Limits limits() {
-    Limits limits;
+  static Capacities limits() {
+    Capacities limits;
     limits.loose = 1000;
     return limits;
   }

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/capacities.hpp>
 #include <repel/base/input_limits.hpp>
-#include <repel/base/limits.hpp>
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {
@@ -62,7 +62,7 @@ TEST(SceneFiles, TheLimitsOnThePageAreThoseThatHold) {
   expect_row("the file", input_limits.file_bytes);
   expect_row("one text", input_limits.text_bytes);
   expect_row("one list or map", input_limits.entries);
-  expect_row("`partners` |", static_cast<std::size_t>(Limits{}.bodies));
+  expect_row("`partners` |", static_cast<std::size_t>(Capacities{}.bodies));
   expect_row("`network` of one arm", input_limits.modules);
   expect_row("`points` of one hull", 10000);
   expect_row("`points` of all hulls", input_limits.hull_points);

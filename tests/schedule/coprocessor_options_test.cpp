@@ -15,7 +15,7 @@ namespace coprocessor_options_test {
 using namespace std::chrono_literals;
 
 TEST(CoprocessorOptions, RefusesMoreThreadsThanTheLimit) {
-  World world(Limits{.threads = 2});
+  World world(Capacities{.threads = 2});
   CoprocessorOptions options;
   for (const int threads : {-1, 3}) {
     options.threads = threads;

@@ -129,7 +129,7 @@ TEST(Coprocessor, ForcesAreThoseOfADirectEvaluation) {
 }
 
 /// Number of pairs evaluated in 250 ticks whose forces are compared with those of all pairs.
-std::int64_t expect_forces_of_all_pairs(int threads, const Limits& limits, bool crowded) {
+std::int64_t expect_forces_of_all_pairs(int threads, const Capacities& limits, bool crowded) {
   test::Crowd crowd(seed, limits);
   Coprocessor coprocessor(crowd.world, lock_step(threads));
   std::int64_t evaluated = 0;

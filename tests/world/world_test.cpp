@@ -79,20 +79,20 @@ TEST(World, MeasuresAllOverlapsInOneWayWhichBoundsTheirDepth) {
 }
 
 TEST(World, OverAnyLimitNamesTheFieldToRaise) {
-  World bodies(Limits{.bodies = 2});
+  World bodies(Capacities{.bodies = 2});
   bodies.add_body("one");
-  EXPECT_TRUE(says(message_of([&] { bodies.add_body("two"); }), "Limits::bodies"));
+  EXPECT_TRUE(says(message_of([&] { bodies.add_body("two"); }), "Capacities::bodies"));
 
-  World parts(Limits{.parts = 1});
+  World parts(Capacities{.parts = 1});
   parts.add_part(World::fixed, "one", Shape::sphere(1));
   EXPECT_TRUE(says(message_of([&] { parts.add_part(World::fixed, "two", Shape::sphere(1)); }),
-                   "Limits::parts"));
+                   "Capacities::parts"));
 
-  World pairs(Limits{.pairs = 1});
+  World pairs(Capacities{.pairs = 1});
   const PartId a = pairs.add_part(pairs.add_body("tool"), "a", Shape::sphere(1));
   const PartId b = pairs.add_part(World::fixed, "b", Shape::sphere(1));
   pairs.add_pair(a, b, {});
-  EXPECT_TRUE(says(message_of([&] { pairs.add_pair(a, b, {}); }), "Limits::pairs"));
+  EXPECT_TRUE(says(message_of([&] { pairs.add_pair(a, b, {}); }), "Capacities::pairs"));
   EXPECT_EQ(pairs.pairs().size(), 1U);
 }
 

@@ -8,7 +8,7 @@ namespace repel {
 
 /// Largest accepted scene files, robot descriptions and recordings. Larger input is refused with
 /// SetupError before it is read, or before it costs more than the largest allowed input. For the
-/// capacities of a world see Limits.
+/// capacities of a world see Capacities.
 struct InputLimits {
   std::size_t file_bytes = std::size_t{16} << 20;  ///< [byte] of a scene, URDF or SRDF file
   std::size_t text_bytes = 4096;                   ///< [byte] of one name, path or row of numbers

@@ -29,7 +29,7 @@ inline constexpr Status late_result = 1U << 5;
 /// A joint torque was clamped to its limit
 inline constexpr Status torque_limit = 1U << 6;
 /// More pairs could come within range than there is memory for: the others were evaluated from a
-/// cold start; raise Limits::candidates
+/// cold start; raise Capacities::candidates
 inline constexpr Status crowded_pairs = 1U << 7;
 /// Some result was older than Budget::max_age: nearby obstacles are unknown, the operator's force
 /// is removed; raise the budget or threads

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <repel/base/limits.hpp>
+#include <repel/base/capacities.hpp>
 #include <repel/base/types.hpp>
 #include <repel/force/law.hpp>
 #include <repel/loop/options.hpp>
@@ -85,7 +85,7 @@ struct CellDescription {
   std::vector<ArmDescription> arms{};
   std::vector<ObstacleDescription> obstacles{};
   std::vector<LooseDescription> loose{};
-  Limits limits{};                                            ///< capacities of the world
+  Capacities limits{};                                        ///< capacities of the world
   CoprocessorOptions coprocessor{};                           ///< its `period` is overwritten
   network::GainCheck gain_check = network::GainCheck::error;  ///< for walls that are too stiff
   StartInside start_inside = StartInside::refuse;

@@ -27,8 +27,8 @@ struct PairTotals {
   double deepest = 0.0;     ///< [m] proven upper bound of the penetration of all evaluated pairs
   double peak_force = 0.0;  ///< [N] largest of one pair
   PairId hardest_pair;      ///< the pair of `peak_force`; invalid while no pair exerts a force
-  int crowded = 0;          ///< pairs without a slot: the memory (`Limits::candidates`) was full
-  int expired = 0;          ///< stale pairs older than `Budget::max_age`: their force fades out
+  int crowded = 0;  ///< pairs without a slot: the memory (`Capacities::candidates`) was full
+  int expired = 0;  ///< stale pairs older than `Budget::max_age`: their force fades out
   /// [J] Sum over stale pairs that were evaluated again: potential of the law at the assumed
   /// distance minus that at the distance found. Upper bound of the energy their forces have added.
   double refresh_energy = 0.0;

@@ -36,7 +36,7 @@ class Coprocessor {
   static constexpr std::int64_t greatest_age = 4;
 
   /// Evaluates every pair once and starts the threads. Allocates.
-  /// @throws SetupError for a number of threads below 0 or above `Limits::threads`; for
+  /// @throws SetupError for a number of threads below 0 or above `Capacities::threads`; for
   /// `every_pair` with parts that can come and go
   Coprocessor(const World& world, const CoprocessorOptions& options)
       : world_(&world),
@@ -138,7 +138,7 @@ class Coprocessor {
   }
 
   /// The last answer for a pair; a default `Separation`, which bounds nothing, if its slot has been
-  /// reused for another pair (`Limits::candidates`), or beside if it is not near. Same calling
+  /// reused for another pair (`Capacities::candidates`), or beside if it is not near. Same calling
   /// condition, or after `stop`.
   [[nodiscard]] Separation separation_of(PairId id) const noexcept {
     if (!uses_answer_) return team_->pairs().separation_of(id);

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <repel/base/capacities.hpp>
 #include <repel/base/ids.hpp>
-#include <repel/base/limits.hpp>
 #include <repel/base/spatial.hpp>
 #include <repel/base/vec.hpp>
 #include <repel/distance/query.hpp>
@@ -50,7 +50,7 @@ class World {
   /// @param measure of the overlaps of all pairs, see docs/reduction.md. `Measure::reduction` has
   /// as many steps as the shapes have levels
   /// @throws SetupError for a value that is no measure
-  explicit World(const Limits& limits = {}, Measure measure = QueryOptions{}.measure)
+  explicit World(const Capacities& limits = {}, Measure measure = QueryOptions{}.measure)
       : limits_(limits), measure_(measure) {
     checked("measure", static_cast<double>(measure), 0.0, all_measures.size() - 1.0, "");
     add_body("world");
@@ -209,7 +209,7 @@ class World {
   /// The present state of all bodies; the caller counts the tick number.
   [[nodiscard]] Motion& motion() noexcept { return motion_; }
   [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
-  [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
+  [[nodiscard]] const Capacities& limits() const noexcept { return limits_; }
   /// The options of every query of a pair.
   [[nodiscard]] QueryOptions query_options() const noexcept { return {.measure = measure_}; }
   /// [m] The penetration of a pair by the measure of the world is never deeper.
@@ -240,11 +240,11 @@ class World {
     if (!is_finite(X) || !is_rigid(X)) throw SetupError(name + ": its pose is not a rigid one");
   }
   [[noreturn]] static void over(const std::string& field, int limit) {
-    throw SetupError("more " + field + " than Limits::" + field +
+    throw SetupError("more " + field + " than Capacities::" + field +
                      " allows: " + std::to_string(limit));
   }
 
-  Limits limits_;
+  Capacities limits_;
   Measure measure_;
   std::vector<std::string> body_names_;
   Motion motion_;

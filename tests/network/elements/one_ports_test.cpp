@@ -176,6 +176,19 @@ TEST(OnePorts, SourcesGiveTheirOwnWhateverTheOther) {
   EXPECT_EQ(state.flow, six);
 }
 
+TEST(OnePorts, TheGroundStaysWhereItIs) {
+  const Ground ground;
+  EXPECT_EQ(ground.size(), 6);
+  Equivalent<any_size> shown;
+  ground.equivalent(shown);
+  ASSERT_EQ(shown.form, Form::admittance);
+  PortState<any_size> state;
+  shown.at_effort(Vec<any_size>::Constant(6, 1e6), state);
+  EXPECT_EQ(state.flow, Vec<any_size>::Zero(6));
+  EXPECT_THROW(Ground(0), SetupError);
+  EXPECT_THROW(Ground(most_joints + 1), SetupError);
+}
+
 TEST(OnePorts, RefuseAGainThatCouldGiveEnergy) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Mat<6> one = Mat<6>::Identity();

@@ -138,4 +138,20 @@ class FlowSource {
   Vec<N> flow_;
 };
 
+/// The fixed frame: v = 0, whatever the effort. No power passes.
+class Ground {
+ public:
+  /// @param size of its port, 1 to `most_joints`; 6 at the tool @throws SetupError
+  explicit Ground(int size = 6) : size_(checked("size", size, 1, most_joints, "")) {}
+  [[nodiscard]] int size() const noexcept { return size_; }
+  void equivalent(Equivalent<any_size>& shown) const noexcept {
+    shown.form = Form::admittance;
+    shown.matrix.setZero(size_, size_);
+    shown.offset.setZero(size_);
+  }
+
+ private:
+  int size_;
+};
+
 }  // namespace repel::network

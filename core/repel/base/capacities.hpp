@@ -6,7 +6,7 @@ namespace repel {
 
 /// Capacities of a world. Set-up that needs more throws SetupError naming the field to raise; no
 /// container grows after set-up.
-struct Limits {
+struct Capacities {
   int bodies = 64;           ///< rigid bodies, including the fixed one, without those below
   int loose = 256;           ///< parts that can come and go, each with a body of its own
   int parts = 20000;         ///< convex parts of all bodies
