@@ -25,6 +25,11 @@ std::string cell_of(const std::string& text, bool in_quotes = false) {
   return cell += '"';
 }
 
+/// A number, or nothing where there is none.
+std::string or_nothing(double value) {
+  return std::isfinite(value) ? to_text(value) : std::string();
+}
+
 /// Writes the names of the columns that every arm has.
 void write_names(const ArmHeading& arm, std::ostream& file) {
   const std::string prefix = arm.prefix();
@@ -47,42 +52,58 @@ void write_names(const ArmHeading& arm, std::ostream& file) {
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     write("tau", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_nm" : "_n");
   }
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    write("dq", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad_s" : "_m_s");
+  }
+  write("held_n");
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
   file << ',' << k.phase << ',' << k.status;
   for (const Vec3& v :
        {k.p_WT, k.v_WT, k.virtual_force.force, k.virtual_force.torque, k.coupling.force}) {
-    for (int axis = 0; axis < 3; ++axis) file << ',' << to_text(v[axis]);
+    for (int axis = 0; axis < 3; ++axis) file << ',' << or_nothing(v[axis]);
   }
-  file << ',' << to_text(k.lever_torque) << ',' << to_text(k.gain);
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) file << ',' << to_text(k.q[i]);
-  for (std::size_t i = 0; i < arm.modules.size(); ++i) file << ',' << to_text(double{k.energy[i]});
-  file << ',' << to_text(k.stop) << ',' << (k.brakes ? 1 : 0);
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) file << ',' << to_text(k.torques[i]);
+  const std::size_t joints = arm.joints.size();
+  file << ',' << or_nothing(k.lever_torque) << ',' << or_nothing(k.gain);
+  for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.q[i]);
+  for (std::size_t i = 0; i < arm.modules.size(); ++i)
+    file << ',' << or_nothing(double{k.energy[i]});
+  file << ',' << or_nothing(k.stop) << ',' << (k.brakes ? 1 : 0);
+  for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.torques[i]);
+  for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.v[i]);
+  file << ',' << or_nothing(k.held_force);
 }
 
 class CsvLog final : public TickLog {
  public:
-  CsvLog(const std::string& path, const Heading& heading)
-      : path_(path), heading_(heading), file_(path, std::ios::binary | std::ios::app) {
+  CsvLog(const std::string& path, const Heading& heading, bool by_the_clock)
+      : path_(path),
+        heading_(heading),
+        by_the_clock_(by_the_clock),
+        file_(path, std::ios::binary | std::ios::app) {
     file_ << "tick,time_s,nearest_m,hardest_pair,hardest_n,pairs_near,pairs_evaluated,pairs_stale,"
              "oldest_age_ticks";
     for (const ArmHeading& arm : heading.arms) write_names(arm, file_);
-    file_ << '\n' << std::flush;
+    file_ << ",compute_us,late_us\n" << std::flush;
     look();
     if (!trouble_.empty()) throw SetupError(trouble_);
   }
 
   void write(const Snapshot& tick) override {
     const TickRecord& k = tick.arms.front();
-    file_ << k.tick << ',' << to_text(k.time) << ',' << to_text(k.pairs.nearest) << ','
-          << name(k.pairs.hardest_pair) << ',' << to_text(k.pairs.peak_force) << ',' << k.pairs.near
-          << ',' << k.pairs.evaluated << ',' << k.pairs.stale << ',' << k.pairs.oldest_age;
+    file_ << k.tick << ',' << to_text(k.time) << ',' << or_nothing(k.pairs.nearest) << ','
+          << name(k.pairs.hardest_pair) << ',' << or_nothing(k.pairs.peak_force) << ','
+          << k.pairs.near << ',' << k.pairs.evaluated << ',' << k.pairs.stale << ','
+          << k.pairs.oldest_age;
     for (std::size_t i = 0; i < heading_.arms.size(); ++i) {
       write_values(tick.arms[i], heading_.arms[i], file_);
     }
-    file_ << '\n';
+    if (by_the_clock_) {
+      file_ << ',' << us(tick.times.compute) << ',' << us(tick.times.late) << '\n';
+    } else {
+      file_ << ",,\n";
+    }
     look();
   }
   void flush() override {
@@ -96,6 +117,9 @@ class CsvLog final : public TickLog {
   [[nodiscard]] std::string trouble() const override { return trouble_; }
 
  private:
+  [[nodiscard]] static std::string us(std::chrono::nanoseconds time) {
+    return to_text(1e-3 * static_cast<double>(time.count()));
+  }
   /// Empty for an invalid id.
   [[nodiscard]] std::string name(PairId pair) const {
     if (!pair.valid()) return {};
@@ -111,14 +135,16 @@ class CsvLog final : public TickLog {
 
   std::string path_;
   Heading heading_;
+  bool by_the_clock_;
   std::ofstream file_;
   std::string trouble_;
 };
 
 }  // namespace
 
-std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading) {
-  return std::make_unique<CsvLog>(path, heading);
+std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading,
+                                 bool by_the_clock) {
+  return std::make_unique<CsvLog>(path, heading, by_the_clock);
 }
 
 LogThread::LogThread(Ring<Snapshot>& ticks, TickLog& log,

@@ -33,9 +33,12 @@ class TickLog {
 };
 
 /// One row per tick, one column per number, with units in the column names: CSV as of RFC 4180,
-/// except that lines end in a line feed alone.
+/// except that lines end in a line feed alone. A cell without a number, as the nearest distance
+/// where nothing is near, is empty.
+/// @param by_the_clock false: no times are written, so that two runs give the same file
 /// @throws SetupError if the file cannot be written
-[[nodiscard]] std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading);
+[[nodiscard]] std::unique_ptr<TickLog> csv_log(const std::string& path, const Heading& heading,
+                                               bool by_the_clock);
 
 /// Takes ticks out of the tap and writes them. Never delays the loop: ticks for which it is too
 /// slow are dropped and counted by the tap. If the file cannot be written or the log throws, the

@@ -31,7 +31,7 @@ class RunLog {
   RunLog(Tap& tap, const Heading& heading, const scene::Scene& scene, const RunOptions& options)
       : part_(options.log),
         log_(options.log.ends_with(".mcap") ? mcap_log(part_.name(), heading, scene, options)
-                                            : csv_log(part_.name(), heading)),
+                                            : csv_log(part_.name(), heading, !options.fast)),
         thread_(tap.log(), *log_, [this](const std::string& trouble) { note(trouble); }) {}
 
   /// Completes the file and moves it to its target, or keeps the incomplete temporary file.

@@ -1,6 +1,9 @@
 // Recording and replay of runs, as done by a user.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include <repel/record/mcap_reader.hpp>
 
@@ -96,6 +99,35 @@ TEST(Recording, EveryChannelHasItsTicks) {
 }
 
 // As after a crash: the existing part can be replayed, and is reported as incomplete.
+TEST(Recording, ATableHasRatesAndTimesAndNoNumberThatIsNone) {
+  const Folder folder;
+  // Nothing is near in its first second.
+  record("plates --fast --seconds 1", folder / "fast.csv");
+  record("plates --seconds 1", folder / "clock.csv");
+  for (const char* name : {"fast.csv", "clock.csv"}) {
+    SCOPED_TRACE(name);
+    const std::string text = text_of(folder / name);
+    EXPECT_NE(text.find(",nearest_m,"), std::string::npos);
+    EXPECT_NE(text.find(",compute_us,late_us\n"), std::string::npos);
+    EXPECT_EQ(text.find(",inf"), std::string::npos);
+    EXPECT_EQ(text.find("nan,"), std::string::npos);
+    const Columns log = columns_of(folder / name);
+    EXPECT_TRUE(std::isnan(log.at("nearest_m").front())) << log.at("nearest_m").front();
+    EXPECT_EQ(std::isnan(log.at("compute_us").back()), name == std::string("fast.csv"));
+    EXPECT_EQ(std::isnan(log.at("late_us").back()), name == std::string("fast.csv"));
+    double fastest = 0.0;
+    for (std::size_t i = 1; i < log.at("tick").size(); ++i) {
+      const double moved = log.at("q2_rad")[i] - log.at("q2_rad")[i - 1];
+      const double rate = log.at("dq2_rad_s")[i];
+      fastest = std::max(fastest, std::abs(rate));
+      if (log.at("tick")[i] == log.at("tick")[i - 1] + 1.0) {
+        EXPECT_NEAR(moved, 0.0025 * rate, 2e-4);
+      }
+    }
+    EXPECT_GT(fastest, 0.01);
+  }
+}
+
 TEST(Recording, FileThatIsCutOffReplaysUpToThere) {
   const Folder folder;
   const std::string file = folder / "run.mcap";

@@ -142,7 +142,8 @@ class FlowSource {
 class Ground {
  public:
   /// @param size of its port, 1 to `most_joints`; 6 at the tool @throws SetupError
-  explicit Ground(int size = 6) : size_(checked("size", size, 1, most_joints, "")) {}
+  explicit Ground(int size = 6)
+      : size_(static_cast<int>(checked("size", size, 1, most_joints, ""))) {}
   [[nodiscard]] int size() const noexcept { return size_; }
   void equivalent(Equivalent<any_size>& shown) const noexcept {
     shown.form = Form::admittance;
