@@ -219,7 +219,8 @@ std::string LiveView::conduct(const std::string& type, const Json& message) {
     controls_.paused = true;
     controls_.steps += std::llround(*ticks);
   } else if (type == "restart" && !controls_.may_restart) {
-    return "a log is being written, which begins once";
+    return controls_.no_driving.empty() ? "a log is being written, which begins once"
+                                        : controls_.no_driving;
   } else if (type == "restart") {
     if (driver_ != Driver::device)
       hand_over(device_.empty() ? Driver::script : Driver::device, nobody);

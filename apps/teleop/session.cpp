@@ -126,7 +126,9 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   std::unique_ptr<View> view;
   if (session.view) {
     attached.controls = &controls;
-    view = open_view(*prepared, heading, recording != nullptr, tap, controls, session, device.name);
+    // To pages at a site, the station is the master.
+    view = open_view(*prepared, heading, recording != nullptr, tap, controls, session,
+                     remote ? "The station" : device.name);
   }
   const auto run_controlled = [&] {
     controls.changes.open(&prepared->cell.changes());

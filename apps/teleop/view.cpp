@@ -73,7 +73,8 @@ class ServedView final : public View {
   ServedView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
              const SessionOptions& session, const std::string& device)
       : show_(info, world, tap, controls, device,
-              !session.view_only && (device.empty() || session.page_drives)),
+              !session.view_only &&
+                  (device.empty() || session.page_drives || !controls.no_driving.empty())),
         server_(options_of(session), visual::load_assets(session.page), show_) {
     announce(session, server_.url());
   }

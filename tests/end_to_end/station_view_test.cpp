@@ -102,6 +102,9 @@ TEST(StationView, APageAtTheStationDrivesTheRobotAndFeelsItsTable) {
   LivePage there(both.site());
   const Json scene = there.await("scene");
   ASSERT_FALSE(scene.is_null());
+  const Json who = there.await("operator");
+  EXPECT_EQ(who.at("by"), "device");
+  EXPECT_EQ(who.at("name"), "The station");
   EXPECT_EQ(there.refusal_of({{"type", "take"}}), "the operator is at the station");
   const Json first = there.await("frame", [](const Json& f) { return f.at("tick") > 0; });
   ASSERT_FALSE(first.is_null());
