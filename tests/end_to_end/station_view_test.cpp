@@ -17,16 +17,14 @@ std::string scene_text() {
   const std::string here = "../robots";
   text.replace(text.find(here), here.size(), REPEL_SOURCE "/robots");
   return text +
-         "script:\n  - {name: aside, device: six_axes, duration: 1 s, linear: 0 40 0 mm/s}\n";
+         "script:\n  - {name: aside, device: six_axes, duration: 2.5 s, linear: 0 40 0 mm/s}\n";
 }
 
-/// A site and a station, both with a view, joined by a link with the delay of the scene.
+/// A site and a station, both with a view, joined by a link with the delay of the scene. The script
+/// waits until the site is there.
 class Both {
  public:
-  Both() {
-    begin_site();
-    station_.emplace(arguments("--station"));
-  }
+  Both() { station_.emplace(arguments("--station")); }
   void begin_site() { site_.emplace(arguments("--site")); }
   void kill_site() { site_.reset(); }
   [[nodiscard]] LiveTeleop& site() { return *site_; }
@@ -67,9 +65,11 @@ Json at_the_site(
 TEST(StationView, ShowsWhatThePageAtTheSiteShows) {
   Both both;
   LivePage here(both.station());
-  LivePage there(both.site());
   const Json scene = here.await("scene");
   ASSERT_FALSE(scene.is_null());
+  EXPECT_TRUE(has_status(here.await("frame"), "silent_site")) << "nobody is there yet";
+  both.begin_site();
+  LivePage there(both.site());
   EXPECT_EQ(scene.at("parts"), there.await("scene").at("parts"));
   EXPECT_EQ(scene.at("arms")[0].at("modules"), Json::parse(R"(["six_axes", "line"])"));
   const Json moving = here.await("frame", [](const Json& f) {
@@ -98,6 +98,7 @@ TEST(StationView, ShowsWhatThePageAtTheSiteShows) {
 
 TEST(StationView, APageAtTheStationDrivesTheRobotAndFeelsItsTable) {
   Both both;
+  both.begin_site();
   LivePage here(both.station());
   LivePage there(both.site());
   const Json scene = there.await("scene");
@@ -153,6 +154,7 @@ TEST(StationView, TheRobotCannotBePausedFromElsewhere) {
 
 TEST(StationView, WithoutTheSiteThePageIsServedAndSaysSo) {
   Both both;
+  both.begin_site();
   LivePage here(both.station());
   const Json scene = here.await("scene");
   ASSERT_FALSE(scene.is_null());
