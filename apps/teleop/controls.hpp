@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include <repel/base/mailbox.hpp>
@@ -73,6 +74,8 @@ struct Controls {
   bool may_restart = true;             ///< false while a log is written; constant after set-up
   bool over_device = false;            ///< a page may override a device; constant after set-up
   bool may_change = true;              ///< false while a recording is written; likewise
+  std::string no_driving;              ///< why no page can drive; empty: it may; likewise
+  std::string no_conduct;              ///< why none can pause, step, restart or change parts
   ChangesPort changes;                 ///< not for the loop
   NewShapes shapes;                    ///< likewise
   std::atomic<double> seek{-1.0};      ///< [s] replay: time to jump to; negative: none

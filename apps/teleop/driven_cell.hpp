@@ -31,6 +31,7 @@ class DrivenCell {
              std::vector<OperatorInput> operators, network::RemoteLink* remote = nullptr)
       : cell_(cell),
         remote_(remote),
+        scripted_parts_(scene.loose.size()),
         steps_(scene, cell),
         arms_(std::move(arms)),
         operators_(std::move(operators)),
@@ -52,7 +53,9 @@ class DrivenCell {
       commands_[i].silent_for = std::max(commands_[i].silent_for, blind_for_);
     }
     const auto records = cell_.act(commands_);
-    if (remote_ != nullptr) tell(*records.front(), cell_.X_WT(0), *remote_);
+    if (remote_ != nullptr) {
+      tell(*records.front(), cell_.X_WT(0), next_part(records.front()->tick), *remote_);
+    }
     for (std::size_t i = 0; i < commands_.size(); ++i) steps_.follow(i, commands_[i].phase);
     for (std::size_t i = 0; i < ports_.size(); ++i) ports_[i].apply(*records[i]);
     return records;
@@ -94,8 +97,25 @@ class DrivenCell {
   [[nodiscard]] const TorqueDrivenArm& arm(std::size_t i) const noexcept { return *arms_[i]; }
 
  private:
+  /// What has become of a part that comes and goes, of each in turn: the station has no world.
+  [[nodiscard]] PartState next_part(std::int64_t tick) const noexcept {
+    PartState told;
+    if (scripted_parts_ == 0) return told;
+    const auto i = static_cast<std::size_t>(tick) % scripted_parts_;
+    const World& world = cell_.world();
+    const BodyId id = world.part(cell_.loose()[i]).body;
+    const BodyState& body = world.motion().bodies[static_cast<std::size_t>(id.index)];
+    told.part = static_cast<std::int32_t>(i);
+    if (!body.presence.is_there()) return told;
+    const bool is_held = body.arm.valid();
+    told.where = is_held ? PartState::Where::is_held : PartState::Where::lies_free;
+    told.X = is_held ? cell_.X_WT(0).inverse() * body.X_WB : body.X_WB;
+    return told;
+  }
+
   Cell& cell_;
   network::RemoteLink* remote_;
+  std::size_t scripted_parts_;
   bool has_let_go_ = false;
   PartSteps steps_;
   std::vector<std::unique_ptr<TorqueDrivenArm>> arms_;

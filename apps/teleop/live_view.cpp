@@ -134,6 +134,7 @@ std::string LiveView::bar_of(int page) const {
 
 std::string LiveView::drive(int page, const std::string& type, const Json& message) {
   if (info_.replay) return "this is a recording";
+  if (!controls_.no_driving.empty()) return controls_.no_driving;
   if (type == "take") {
     hand_over(Driver::page, page);
     return {};
@@ -171,6 +172,7 @@ std::string LiveView::drive(int page, const std::string& type, const Json& messa
 /// A box in one of the spare parts of the scene: it comes, moves or goes.
 std::string LiveView::change(const std::string& type, const Json& message, visual::Pages& pages) {
   if (info_.replay) return "this is a recording";
+  if (!controls_.no_conduct.empty()) return controls_.no_conduct;
   if (!controls_.may_change) return "a recording is being written, which has no room for this";
   if (info_.spare.empty()) return "the scene has no spare parts";
   const auto position = vector(message, "position", 1e3);
@@ -206,6 +208,8 @@ std::string LiveView::change(const std::string& type, const Json& message, visua
 }
 
 std::string LiveView::conduct(const std::string& type, const Json& message) {
+  const bool conducts = type == "pause" || type == "resume" || type == "step" || type == "restart";
+  if (conducts && !controls_.no_conduct.empty()) return controls_.no_conduct;
   if (type == "pause" || type == "resume") {
     controls_.steps = 0;
     controls_.paused = type == "pause";
@@ -215,7 +219,8 @@ std::string LiveView::conduct(const std::string& type, const Json& message) {
     controls_.paused = true;
     controls_.steps += std::llround(*ticks);
   } else if (type == "restart" && !controls_.may_restart) {
-    return "a log is being written, which begins once";
+    return controls_.no_driving.empty() ? "a log is being written, which begins once"
+                                        : controls_.no_driving;
   } else if (type == "restart") {
     if (driver_ != Driver::device)
       hand_over(device_.empty() ? Driver::script : Driver::device, nobody);

@@ -125,10 +125,11 @@ void describe_sides(CLI::App& app, Arguments& a) {
   CLI::Option* station =
       app.add_flag_callback(
              "--station", [&a] { a.session.link.side = link::Side::station; },
-             "Only the operator's side of the network, up to its line; the robot is at a site")
-          ->excludes("--fast", "--view", "--log", "--html", "--backend", "--contact",
-                     "--plant-inertia", "--no-prediction", "--threads", "--coprocessor", "--budget",
-                     "--measure", "--levels", "--every-pair", "--tool-alone", "--hold");
+             "Only the operator's side of the network, up to its line; the robot is at a site. "
+             "With --view, what the site tells is shown")
+          ->excludes("--fast", "--log", "--html", "--backend", "--contact", "--plant-inertia",
+                     "--no-prediction", "--threads", "--coprocessor", "--budget", "--measure",
+                     "--levels", "--every-pair", "--tool-alone", "--hold");
   app.add_flag_callback(
          "--site", [&a] { a.session.link.side = link::Side::site; },
          "Only the robot's side; the operator is at a station, with the same "
@@ -396,10 +397,12 @@ bool wrote(host::Output& file, const Result& result, Write&& write) {
 int run_station(const Arguments& arguments, const Work& work) {
   host::Output report(arguments.report);
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const char* after = arguments.session.device.empty() ? "script over" : "by hand";
+  teleop::SessionOptions session = arguments.session;
+  session.page = page_folder();
+  const bool by_hand = session.view || !session.device.empty();
+  const char* after = by_hand ? "by hand, or at rest" : "script over";
   const teleop::StationResult result = teleop::run_station(
-      work.scene, work.options, arguments.session.link, arguments.session.device,
-      host::interruption(),
+      work.scene, work.options, session, host::interruption(),
       [&](const teleop::Progress& p) { show(work.scene, p, after, false, terminal); });
   if (terminal) std::fputs("\r\033[K", stderr);
   teleop::print_station(result, stdout);

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
+
+#include <Eigen/Geometry>
 
 #include <repel/loop/record.hpp>
 #include <repel/network/operator.hpp>
@@ -17,14 +20,28 @@
 
 namespace repel::teleop {
 
+/// What the site says of a part that can come and go.
+struct PartState {
+  enum class Where : std::uint8_t { absent, lies_free, is_held };
+
+  std::int32_t part = -1;  ///< its place in Scene::loose; -1: of none
+  Where where = Where::absent;
+  Pose X = Pose::Identity();  ///< [m] in the world; in the tool that holds it
+};
+
 /// What the operator needs to know of the robot.
 struct SiteState {
+  bool is_told = false;          ///< false: nothing was said yet
   Pose X_WT = Pose::Identity();  ///< [m]
   Wrench virtual_force;          ///< [N, N m] on the tool, about its origin, in W
   double gain = 0.0;             ///< of the operator's force
   double nearest = 0.0;          ///< [m]; 1e9 when nothing is near
   double time = 0.0;             ///< [s] of the site
   Status status = 0;
+  Vec3 v_WT{0, 0, 0};                            ///< [m/s] tool
+  Wrench coupling;                               ///< TickRecord::coupling
+  std::array<double, network::most_joints> q{};  ///< [rad] or [m] joints, zeros beyond the last
+  PartState part;                                ///< one of them, another one in each tick
 };
 
 namespace detail {
@@ -49,9 +66,71 @@ class Row {
   std::size_t at_ = 0;
 };
 
+/// What is not finite would make the whole packet unsound.
+[[nodiscard]] inline double or_zero(double x) noexcept {
+  return std::isfinite(x) ? x : 0.0;
+}
+[[nodiscard]] inline Vec3 or_zero(const Vec3& v) noexcept {
+  return v.allFinite() ? v : Vec3::Zero();
+}
+
 /// A set of bits as told; -1 for what is none.
 [[nodiscard]] inline std::int32_t bits_of(double told) noexcept {
   return told >= 0.0 && told < 2147483648.0 ? static_cast<std::int32_t>(told) : -1;
+}
+
+/// @param hand finite
+template <class Numbers>
+void put(const network::HandInput& hand, Row<Numbers>& row) noexcept {
+  row.next() = hand.lever_rate;
+  row.put(hand.direction_W);
+  row.put(hand.turning_W);
+  row.put(hand.ball.linear);
+  row.put(hand.ball.angular);
+  row.next() = std::isfinite(hand.scale) ? hand.scale : 1.0;
+  row.next() = static_cast<double>(hand.guides);
+  row.next() = std::isfinite(hand.guide_strength) ? hand.guide_strength : 1.0;
+  row.next() = static_cast<double>(hand.compliant);
+}
+
+template <class Numbers>
+[[nodiscard]] network::HandInput read_hand(Row<Numbers>& row) noexcept {
+  network::HandInput hand;
+  hand.lever_rate = row.next();
+  hand.direction_W = row.vec3();
+  hand.turning_W = row.vec3();
+  hand.ball.linear = row.vec3();
+  hand.ball.angular = row.vec3();
+  hand.scale = row.next();
+  hand.guides = bits_of(row.next());
+  hand.guide_strength = row.next();
+  hand.compliant = bits_of(row.next());
+  return hand;
+}
+
+template <class Numbers>
+void put(const PartState& told, Row<Numbers>& row) noexcept {
+  row.next() = static_cast<double>(told.part);
+  row.next() = static_cast<double>(told.where);
+  row.put(told.X.translation());
+  const Eigen::Quaterniond turn(told.X.linear());
+  for (const double x : {turn.w(), turn.x(), turn.y(), turn.z()}) row.next() = x;
+}
+
+/// Of no part where what was told is no pose.
+template <class Numbers>
+[[nodiscard]] PartState read_part(Row<Numbers>& row) noexcept {
+  PartState told;
+  told.part = bits_of(row.next());
+  const double where = row.next();
+  if (where == 1.0) told.where = PartState::Where::lies_free;
+  if (where == 2.0) told.where = PartState::Where::is_held;
+  told.X.translation() = row.vec3();
+  Eigen::Quaterniond turn;
+  for (double* x : {&turn.w(), &turn.x(), &turn.y(), &turn.z()}) *x = row.next();
+  told.X.linear() = turn.normalized().toRotationMatrix();
+  if (!is_rigid(told.X)) told = {};
+  return told;
 }
 
 }  // namespace detail
@@ -66,18 +145,8 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   row.next() = static_cast<double>(command.phase);
   if (!finite) return;
   row.next() = command.silent_for;
-  row.next() = hand.lever_rate;
-  row.put(hand.direction_W);
-  row.put(hand.ball.linear);
-  row.put(hand.ball.angular);
-  row.next() = std::isfinite(hand.scale) ? hand.scale : 1.0;
-  row.put(hand.turning_W);
-  row.put(second.ball.linear);
-  row.put(second.ball.angular);
-  row.next() = std::isfinite(second.scale) ? second.scale : 1.0;
-  row.next() = static_cast<double>(hand.guides);
-  row.next() = std::isfinite(hand.guide_strength) ? hand.guide_strength : 1.0;
-  row.next() = static_cast<double>(hand.compliant);
+  detail::put(hand, row);
+  detail::put(second, row);
 }
 
 /// The command that the site heard last. Once the link has been silent for 0.1 s the operator is
@@ -89,30 +158,21 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   command.sound = row.next() == 1.0 || !link.is_linked();
   command.phase = static_cast<std::int32_t>(row.next());
   command.silent_for = row.next();
-  command.hand.lever_rate = row.next();
-  command.hand.direction_W = row.vec3();
-  command.hand.ball.linear = row.vec3();
-  command.hand.ball.angular = row.vec3();
-  command.hand.scale = row.next();
-  command.hand.turning_W = row.vec3();
-  command.second.ball.linear = row.vec3();
-  command.second.ball.angular = row.vec3();
-  command.second.scale = row.next();
-  command.hand.guides = detail::bits_of(row.next());
-  command.hand.guide_strength = row.next();
-  command.hand.compliant = detail::bits_of(row.next());
+  command.hand = detail::read_hand(row);
+  command.second = detail::read_hand(row);
   if (!link.is_linked()) command.hand = command.second = {};
   if (!link.is_linked() || link.silent_for() > network::WavePlayer::silence) {
     command.silent_for = std::max(OperatorInput::silent_after, link.silent_for());
     // The hand that moved when the line went silent is not known to move on.
     command.hand.ball = command.second.ball = {};
-    command.hand.lever_rate = 0.0;
+    command.hand.lever_rate = command.second.lever_rate = 0.0;
   }
   return command;
 }
 
-/// From the site to the station.
-inline void tell(const TickRecord& record, const Pose& X_WT, network::RemoteLink& link) noexcept {
+/// From the site to the station. @param part one of those that can come and go
+inline void tell(const TickRecord& record, const Pose& X_WT, const PartState& part,
+                 network::RemoteLink& link) noexcept {
   detail::Row row(link.values());
   for (int k = 0; k < 3; ++k) row.put(X_WT.linear().col(k));
   row.put(X_WT.translation());
@@ -122,6 +182,11 @@ inline void tell(const TickRecord& record, const Pose& X_WT, network::RemoteLink
   row.next() = std::min(record.pairs.nearest, 1e9);
   row.next() = record.time;
   row.next() = static_cast<double>(record.status);
+  row.put(detail::or_zero(record.v_WT));
+  row.put(detail::or_zero(record.coupling.force));
+  row.put(detail::or_zero(record.coupling.torque));
+  for (const double q : record.q) row.next() = detail::or_zero(q);
+  detail::put(part, row);
 }
 
 /// What the station heard last.
@@ -131,6 +196,10 @@ inline void tell(const TickRecord& record, const Pose& X_WT, network::RemoteLink
   detail::Row row(link.heard());
   for (int k = 0; k < 3; ++k) state.X_WT.linear().col(k) = row.vec3();
   state.X_WT.translation() = row.vec3();
+  // The first packet of a site says nothing yet. A stranger's packet with these agreements is
+  // conceivable, too; a pose that is none would spread.
+  if (!is_rigid(state.X_WT)) return {};
+  state.is_told = true;
   state.virtual_force.force = row.vec3();
   state.virtual_force.torque = row.vec3();
   state.gain = row.next();
@@ -138,8 +207,11 @@ inline void tell(const TickRecord& record, const Pose& X_WT, network::RemoteLink
   state.time = row.next();
   const double status = row.next();
   state.status = status >= 0.0 && status < 4294967296.0 ? static_cast<Status>(status) : 0;
-  // A stranger's packet with these agreements is conceivable; a pose that is none would spread.
-  if (!is_rigid(state.X_WT)) state.X_WT = Pose::Identity();
+  state.v_WT = row.vec3();
+  state.coupling.force = row.vec3();
+  state.coupling.torque = row.vec3();
+  for (double& q : state.q) q = row.next();
+  state.part = detail::read_part(row);
   return state;
 }
 

@@ -2,22 +2,16 @@
 
 #include <unistd.h>
 
-#include <any>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include <repel/link/link_thread.hpp>
-#include <repel/network/modules/spaceball.hpp>
 
-#include "listening.hpp"
 #include "log.hpp"
 #include "mcap_log.hpp"
 #include "part_file.hpp"
-#ifdef REPEL_TELEOP_VISUAL
-#include "live_view.hpp"
-#endif
+#include "view.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -88,85 +82,6 @@ class RemoteEnd {
   std::optional<link::LinkThread> thread_;
 };
 
-#ifdef REPEL_TELEOP_VISUAL
-/// What is not covered of the meshes, for display.
-std::vector<visual::GapsInfo> gaps_info_of(const std::vector<scene::Gaps>& gaps) {
-  std::vector<visual::GapsInfo> infos;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    if (gaps[i].count == 0) continue;
-    visual::GapsInfo& info = infos.emplace_back();
-    info.part = PartId{static_cast<std::int32_t>(i)};
-    info.count = gaps[i].count;
-    for (const scene::Gap& gap : gaps[i].deepest) info.deepest.push_back({gap.p_M, gap.depth});
-  }
-  return infos;
-}
-
-visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& heading,
-                                const Recording* recording) {
-  const scene::Scene& scene = prepared.scene;
-  const Cell& cell = prepared.cell;
-  const RunOptions& options = prepared.options;
-  visual::SceneInfo info;
-  info.gaps = gaps_info_of(prepared.gaps);
-  info.scene = scene.name;
-  info.rate_hz = options.rate_hz;
-  info.replay = recording != nullptr;
-  info.duration = info.replay ? options.seconds : 0.0;
-  const auto spare =
-      cell.loose().subspan(scene.loose.size(), static_cast<std::size_t>(scene.spare.count));
-  info.spare.assign(spare.begin(), spare.end());
-  for (std::size_t i = 0; i < heading.arms.size(); ++i) {
-    const ArmHeading& arm = heading.arms[i];
-    visual::ArmInfo& added = info.arms.emplace_back();
-    added.name = arm.name;
-    added.tool = arm.tool;
-    added.links = arm.links;
-    for (const JointType type : arm.joints) {
-      added.joints.emplace_back(type == JointType::revolute ? "revolute" : "prismatic");
-    }
-    added.modules = arm.modules;
-    added.phases = arm.phases;
-    for (const network::Phase& phase : scene.arm_setup(i).script) {
-      const double rate = std::abs(phase.lever_rate);
-      if (rate > added.max_lever_rate) added.max_lever_rate = rate;
-    }
-    for (const scene::Module& module : scene.arm_setup(i).network.modules) {
-      const auto* ball = std::any_cast<network::SpaceballOptions>(&module.options);
-      if (ball == nullptr) continue;
-      added.max_speed = ball->saturation;
-      added.max_turn = ball->angular_saturation;
-    }
-  }
-  return info;
-}
-
-/// The live view and its server, for as long as this object exists.
-class View {
- public:
-  View(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
-       const SessionOptions& session, const std::string& device)
-      : show_(info, world, tap, controls, device,
-              !session.view_only && (device.empty() || session.page_drives)),
-        server_(options_of(session), visual::load_assets(session.page), show_) {
-    announce(session, server_.url());
-  }
-
- private:
-  static visual::ServerOptions options_of(const SessionOptions& session) {
-    const Place place = place_of(session.listen).value_or(Place{});
-    visual::ServerOptions options;
-    options.address = place.address;
-    options.port = place.port;
-    options.secret = session.secret;
-    return options;
-  }
-
-  LiveView show_;
-  visual::Server server_;
-};
-#endif
-
 }  // namespace
 
 RunResult run_session(const scene::Scene& scene, const RunOptions& options,
@@ -203,22 +118,18 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   attached.tap = &tap;
   Controls controls;
   controls.may_restart = options.log.empty() && !remote;
+  if (remote) controls.no_driving = "the operator is at the station";
   controls.over_device = session.page_drives;
   controls.may_change = !options.log.ends_with(".mcap");
   std::optional<RunLog> log;
   if (!options.log.empty()) log.emplace(tap, heading, prepared->scene, options);
-#ifdef REPEL_TELEOP_VISUAL
-  std::optional<View> view;
+  std::unique_ptr<View> view;
   if (session.view) {
     attached.controls = &controls;
-    view.emplace(scene_info_of(*prepared, heading, recording), prepared->cell.world(), tap,
-                 controls, session, device.name);
+    // To pages at a site, the station is the master.
+    view = open_view(*prepared, heading, recording != nullptr, tap, controls, session,
+                     remote ? "The station" : device.name);
   }
-#else
-  if (session.view) {
-    throw SetupError("the live view is not built in; to have it: apt-get install libboost-dev");
-  }
-#endif
   const auto run_controlled = [&] {
     controls.changes.open(&prepared->cell.changes());
     RunResult result = run_once();

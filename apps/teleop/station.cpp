@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "network_report.hpp"
 #include "progress_thread.hpp"
 #include "station_side.hpp"
+#include "station_view.hpp"
 #include "system_call_guard.hpp"
 #include "times.hpp"
 
@@ -41,8 +43,9 @@ void show_to(devices::DeviceLink* device, const StationSide& station) {
 /// instead of by a silence.
 constexpr double farewell = 0.1;
 
-void make_ticks(StationSide& station, devices::DeviceLink* device, const std::atomic<bool>& stop,
-                StationResult& result, Mailbox<Progress>& progress) {
+/// @param view null: none
+void make_ticks(StationSide& station, devices::DeviceLink* device, StationView* view,
+                const std::atomic<bool>& stop, StationResult& result, Mailbox<Progress>& progress) {
   const double period_s = 1.0 / result.options.rate_hz;
   const nanoseconds period(std::llround(1e9 * period_s));
   host::Metronome metronome(period);
@@ -62,7 +65,8 @@ void make_ticks(StationSide& station, devices::DeviceLink* device, const std::at
       const SystemCallGuard system_calls;
       station.tick(due, period_s * static_cast<double>(1 + lost));
     }
-    result.deadline.record(late, steady_clock::now() - begin);
+    const TickTimes times{late, steady_clock::now() - begin};
+    result.deadline.record(times.late, times.compute);
     ++result.ticks;
     result.linked += station.is_heard() ? period_s : 0.0;
     const SiteState& site = station.site();
@@ -72,11 +76,12 @@ void make_ticks(StationSide& station, devices::DeviceLink* device, const std::at
     result.peak_hand_torque = std::max(result.peak_hand_torque, felt.tail<3>().norm());
     result.peak_virtual_force =
         std::max(result.peak_virtual_force, site.virtual_force.force.norm());
-    if (station.is_heard()) result.nearest = std::min(result.nearest, site.nearest);
+    if (station.is_heard() && site.is_told) result.nearest = std::min(result.nearest, site.nearest);
     show_to(device, station);
+    if (view != nullptr) view->note(station, k, times);
     progress.draft() = {
-        period_s * static_cast<double>(k), station.phase(), site.nearest,
-        site.virtual_force.force.norm(),   site.status,     result.deadline.misses()};
+        period_s * static_cast<double>(k), station.phase(),  site.nearest,
+        site.virtual_force.force.norm(),   station.status(), result.deadline.misses()};
     progress.post();
     lost = metronome.catch_up(std::chrono::milliseconds(50));
     result.skipped_ticks += lost;
@@ -88,27 +93,31 @@ void make_ticks(StationSide& station, devices::DeviceLink* device, const std::at
 }  // namespace
 
 StationResult run_station(const scene::Scene& scene, const RunOptions& options,
-                          const LinkChoice& choice, const std::string& device_name,
-                          const std::atomic<bool>& stop,
+                          const SessionOptions& session, const std::atomic<bool>& stop,
                           const std::function<void(const Progress&)>& show) {
   StationResult result;
   result.options = options;
   result.scene = scene;
   const nanoseconds period(std::llround(1e9 / options.rate_hz));
   result.deadline = DeadlineMonitor(period);
-  const Device device = open_device(device_name);
+  const Device device = open_device(session.device);
   network::RemoteLink link(remote_options(scene));
-  StationSide station(scene, options, link, device.link.get());
+  StationControls controls(session);
+  StationSide station(scene, options, link, device.link.get(), session.view ? &controls : nullptr);
   require_passive_grip(device, station.network());
   // Their threads must not inherit the real-time priority.
-  link::LinkThread thread(link, open_link(choice, scene));
+  std::unique_ptr<StationView> view;
+  if (session.view) {
+    view = std::make_unique<StationView>(scene, options, session, device.name, station, controls);
+  }
+  link::LinkThread thread(link, open_link(session.link, scene));
   Mailbox<Progress> progress({});
   const ProgressThread printing(progress, show);
   const host::Grant grant = host::request_real_time();
   result.machine = host::describe_machine(host::to_text(grant));
   SystemCallGuard::arm(Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
-  make_ticks(station, device.link.get(), stop, result, progress);
+  make_ticks(station, device.link.get(), view.get(), stop, result, progress);
   thread.stop();
   result.link = link_result(link, thread.name(), thread.foreign(), thread.unsent());
   result.has_handle = station.has_handle();

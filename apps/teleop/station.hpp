@@ -8,11 +8,11 @@
 
 #include <repel/scene/scene.hpp>
 
-#include "link_choice.hpp"
 #include "link_result.hpp"
 #include "results.hpp"
 #include "run.hpp"
 #include "run_options.hpp"
+#include "session_options.hpp"
 
 namespace repel::teleop {
 
@@ -39,11 +39,13 @@ struct StationResult {
 };
 
 /// Runs the part of the network on the operator's side of its line: by the clock, with the script
-/// of the scene or the device, until the script and the time are over or `stop`. It has no arm and
-/// no world; what is near the tool is known at the site. Parameters as of run_session.
-/// @throws SetupError for a scene that cannot be divided, or a link or a device that is not there
+/// of the scene, the device or a page, until the script and the time are over or `stop`. It has no
+/// arm; what is near the tool is known at the site, and a view shows what the site tells.
+/// Parameters as of run_session.
+/// @throws SetupError for a scene that cannot be divided, or a link, a device or an address that is
+/// not available
 [[nodiscard]] StationResult run_station(const scene::Scene& scene, const RunOptions& options,
-                                        const LinkChoice& choice, const std::string& device,
+                                        const SessionOptions& session,
                                         const std::atomic<bool>& stop,
                                         const std::function<void(const Progress&)>& show);
 

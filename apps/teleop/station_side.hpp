@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include <repel/loop/tick.hpp>
 #include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/network.hpp>
@@ -38,11 +39,12 @@ namespace repel::teleop {
 class StationSide {
  public:
   /// @param link must outlive this object @param device null: none
+  /// @param controls with which a page drives; null: none can
   StationSide(const scene::Scene& scene, const RunOptions& options, network::RemoteLink& link,
-              devices::DeviceLink* device)
+              devices::DeviceLink* device, Controls* controls = nullptr)
       : link_(link),
         network_(station_network(scene, options, link)),
-        operator_(scene.script, nullptr, device) {
+        operator_(scene.script, controls, device) {
     operator_.await();
     const network::Vec<network::any_size> none(0);
     signals_.joints = signals_.rates = signals_.mean_rates = signals_.arm_torques = none;
@@ -59,13 +61,13 @@ class StationSide {
     if (is_heard()) operator_.begin();
     const network::Command& command = operator_.step(site_.X_WT.linear(), elapsed);
     tell(command, link_);
-    phase_ = command.phase;
+    command_ = command;
     if (command.sound && command.hand.is_finite() && command.second.is_finite()) {
       signals_.hand = command.hand;
       signals_.second = command.second;
     } else {
       signals_.hand.ball = signals_.second.ball = {};
-      signals_.hand.lever_rate = 0.0;
+      signals_.hand.lever_rate = signals_.second.lever_rate = 0.0;
     }
     // Nobody holds against the hand: its spring begins anew.
     signals_.at_rest = !is_heard();
@@ -98,7 +100,16 @@ class StationSide {
   }
   /// What the site said last.
   [[nodiscard]] const SiteState& site() const noexcept { return site_; }
-  [[nodiscard]] std::int32_t phase() const noexcept { return phase_; }
+  [[nodiscard]] std::int32_t phase() const noexcept { return command_.phase; }
+  /// Of the operator, in the last tick.
+  [[nodiscard]] const network::Command& command() const noexcept { return command_; }
+  /// What the site said of itself last, as long as it is heard, and what is known here.
+  [[nodiscard]] Status status() const noexcept {
+    Status bits = is_heard() ? site_.status : status::silent_site;
+    if (!command_.sound) bits |= status::bad_command;
+    if (command_.silent_for > Teleoperator::patience) bits |= status::silent_device;
+    return bits;
+  }
   [[nodiscard]] const network::Network& network() const noexcept { return network_; }
 
  private:
@@ -107,7 +118,7 @@ class StationSide {
   OperatorInput operator_;
   network::Signals signals_;
   SiteState site_;
-  std::int32_t phase_ = 0;
+  network::Command command_;
 };
 
 }  // namespace repel::teleop

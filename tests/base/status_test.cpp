@@ -16,7 +16,7 @@ constexpr Status every_bit[] = {
     status::network_fault, status::speed_limit,   status::implausible_joints, status::frozen_joints,
     status::clock_gap,     status::bad_torque,    status::torque_rate,        status::tool_speed,
     status::arm_stopped,   status::pushed_out,    status::energy_gain,        status::bad_wrench,
-    status::hold_lost};
+    status::hold_lost,     status::silent_site};
 
 TEST(Status, ACleanTickReadsOk) {
   EXPECT_EQ(to_text(Status{0}), "ok");

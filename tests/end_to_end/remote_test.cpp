@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,8 +15,10 @@
 
 #include "arm_backend.hpp"
 #include "driven_cell.hpp"
+#include "end_to_end/program.hpp"
 #include "network/remote/relay.hpp"
 #include "prepared_run.hpp"
+#include "site_twin.hpp"
 #include "station_side.hpp"
 
 namespace repel::test {
@@ -72,7 +77,7 @@ struct Station {
 
 /// Both, the path between them, and what was worst.
 struct Divided {
-  scene::Scene scene = delayed();
+  scene::Scene scene;
   RelayPath path;
   std::unique_ptr<Site> site;
   std::unique_ptr<Station> station;
@@ -83,7 +88,8 @@ struct Divided {
   double hardest = 0.0;    ///< [N] of the walls
   double strongest = 0.0;  ///< [N m] at the lever
 
-  explicit Divided(const RelayPath& on) : path(on) {
+  explicit Divided(const RelayPath& on, const scene::Scene& divided = delayed())
+      : scene(divided), path(on) {
     site = std::make_unique<Site>(scene, 1);
     station = std::make_unique<Station>(scene, 2);
   }
@@ -194,6 +200,231 @@ TEST(Remote, IsTheSameNetworkAsInOneProgram) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"line", "kbb2", "obstacle", "puma_kin", "arm_obstacle",
                                              "limits", "visual", "puma_joints", "prediction"}));
+}
+
+/// The scene `delayed` with another script, a part beside the tool that it takes along and puts
+/// down, one that comes later, and a door that moves to and fro.
+scene::Scene with_parts() {
+  std::string text = text_of(REPEL_SOURCE "/scenes/delayed.yaml");
+  text.resize(text.find("script:"));
+  const std::string obstacles = "obstacles:\n";
+  text.insert(
+      text.find(obstacles) + obstacles.size(),
+      "  - {name: door, shape: box, size: 50 50 50 mm, position: 0.3 0.4 0.6 m, law: wall,\n"
+      "     motion: {along: 0 0.1 0 m, duration: 2 s}}\n");
+  text +=
+      "loose:\n"
+      "  - {name: ball, shape: sphere, radius: 10 mm, position: 0.6263 -0.15 0.5343 m, law: wall}\n"
+      "  - {name: late, shape: sphere, radius: 10 mm, position: 0.3 -0.6 0.6 m, law: wall,\n"
+      "     at_start: no}\n"
+      "script:\n"
+      "  - {name: take, device: torque_arm, duration: 1 s, direction: 0 0 1, lever: 10 deg/s,\n"
+      "     grip: ball, over: 0.1 s}\n"
+      "  - {name: put, device: torque_arm, duration: 1 s, direction: 0 1 0, lever: 10 deg/s,\n"
+      "     release: ball, over: 0.1 s}\n"
+      "  - {name: come, device: torque_arm, duration: 1 s, direction: 0 1 0, lever: 0 deg/s,\n"
+      "     spawn: late, over: 0.1 s}\n"
+      "  - {name: go, device: torque_arm, duration: 1 s, direction: 0 1 0, lever: 0 deg/s,\n"
+      "     remove: ball, over: 0.1 s}\n";
+  return scene::parse(text, REPEL_SOURCE "/scenes/delayed.yaml");
+}
+
+/// All that the site knows of its bodies after each of its ticks.
+struct SiteHistory {
+  std::vector<std::vector<BodyState>> ticks;
+
+  void note(const Site& site) { ticks.push_back(site.prepared->cell.world().motion().bodies); }
+};
+
+/// How often the parts of the scene were seen so.
+struct Seen {
+  int pictures = 0, held = 0, moved = 0, late = 0, gone = 0;
+};
+
+/// Every body is where it was at the site in the tick that was told last.
+void expect_placed_as_told(const Snapshot& shown, const std::vector<BodyState>& at_site,
+                           const Cell& twin, Seen& seen) {
+  ++seen.pictures;
+  for (std::size_t i = 0; i < at_site.size(); ++i) {
+    const bool is_there = !at_site[i].is_loose || at_site[i].presence.is_there();
+    // A part is told of every other tick: what comes or goes may be shown a tick late.
+    if (shown.is_there[i] == 0 || !is_there) continue;
+    const double off = (shown.X_WB[i].matrix() - at_site[i].X_WB.matrix()).norm();
+    EXPECT_LT(off, at_site[i].is_loose ? 1e-3 : 1e-9)
+        << twin.world().body_name({static_cast<std::int32_t>(i)});
+  }
+  const auto body_of = [&](std::size_t part) {
+    return static_cast<std::size_t>(twin.world().part(twin.loose()[part]).body.index);
+  };
+  seen.held += at_site[body_of(0)].arm.valid() ? 1 : 0;
+  seen.late += shown.is_there[body_of(1)];
+  seen.gone += 1 - shown.is_there[body_of(0)];
+}
+
+TEST(Remote, AStationShowsTheSiteWhereItSaysThatItIs) {
+  for (const double delay : {0.0, 0.05}) {
+    SCOPED_TRACE("delay " + std::to_string(delay) + " s, seed " + std::to_string(seed));
+    Divided divided({.delay = delay, .jitter = 0.0071, .loss = 0.05}, with_parts());
+    teleop::SiteTwin twin(divided.scene, in_step());
+    Tap tap(twin.prepared().cell.world());
+    teleop::StationShot shot = twin.room();
+    SiteHistory history;
+    Seen seen;
+    for (std::int64_t k = 0; k < 1800; ++k) {
+      divided.run(tick);
+      history.note(*divided.site);
+      const teleop::StationSide& station = divided.station->side;
+      teleop::note(station, k, {}, shot);
+      if (k % 7 != 0) continue;
+      twin.show(shot, tap);
+      ASSERT_TRUE(tap.pictures().take());
+      const Snapshot& shown = tap.pictures().newest();
+      const TickRecord& record = shown.arms.front();
+      const teleop::SiteState& told = station.site();
+      EXPECT_EQ(record.virtual_force.force, told.virtual_force.force);
+      EXPECT_EQ(record.gain, station.is_heard() ? told.gain : 0.0);
+      EXPECT_EQ((record.status & status::silent_site) != 0U, !station.is_heard());
+      EXPECT_EQ(record.lever_torque, station.felt());
+      if (!told.is_told) continue;
+      const auto at = static_cast<std::size_t>(std::llround(told.time / tick));
+      ASSERT_LT(at, history.ticks.size());
+      expect_placed_as_told(shown, history.ticks[at], twin.prepared().cell, seen);
+      if (HasFailure()) return;
+    }
+    EXPECT_GT(seen.pictures, 200);
+    EXPECT_GT(seen.held, 20);
+    EXPECT_GT(seen.late, 100);
+    EXPECT_GT(seen.gone, 20);
+    for (const teleop::PartStepResult& each : divided.site->driven->steps().results()) {
+      EXPECT_TRUE(each.was_made) << each.step.phase;
+    }
+  }
+}
+
+TEST(Remote, WithoutItsSiteAStationShowsTheLastPictureAndSaysSo) {
+  Divided divided({.delay = 0.02});
+  teleop::SiteTwin twin(divided.scene, in_step());
+  Tap tap(twin.prepared().cell.world());
+  teleop::StationShot shot = twin.room();
+  const auto shown = [&]() -> const Snapshot& {
+    teleop::note(divided.station->side, 0, {}, shot);
+    twin.show(shot, tap);
+    (void)tap.pictures().take();
+    return tap.pictures().newest();
+  };
+  divided.run(0.1, true, false);
+  const std::vector<double> start = twin.prepared().cell.description().arms.front().start;
+  EXPECT_EQ(shown().arms.front().q[1], start[1]) << "the scene as it starts";
+  EXPECT_NE(shown().arms.front().status & status::silent_site, 0U);
+  divided.run(4.0);
+  const TickRecord heard = shown().arms.front();
+  // The tool leans on the table: the pair that the site calls the nearest is found here, too.
+  ASSERT_EQ(tap.pictures().newest().pair_count, 1);
+  const Separation& table = tap.pictures().newest().near().front().separation;
+  EXPECT_LT(table.distance, 9e-3);
+  EXPECT_NEAR(table.distance, divided.station->side.site().nearest, 1e-6);
+  EXPECT_GT(norm(heard.virtual_force.force), 20.0);
+  EXPECT_EQ(heard.status & status::silent_site, 0U);
+  EXPECT_NE(heard.q[1], start[1]);
+  divided.run(1.0, true, false);
+  const TickRecord silent = shown().arms.front();
+  EXPECT_NE(silent.status & status::silent_site, 0U);
+  EXPECT_EQ(silent.gain, 0.0);
+  EXPECT_NEAR(silent.q[1], heard.q[1], 0.02);
+}
+
+/// Every number of a command; a member that is added does not compile here before it is told.
+std::vector<double> numbers_of(const network::HandInput& hand) {
+  const auto& [ball, lever_rate, direction, turning, scale, guides, strength, compliant] = hand;
+  std::vector<double> all{lever_rate, scale, static_cast<double>(guides), strength,
+                          static_cast<double>(compliant)};
+  for (const Vec3& v : {ball.linear, ball.angular, direction, turning}) {
+    all.insert(all.end(), v.data(), v.data() + 3);
+  }
+  return all;
+}
+std::vector<double> numbers_of(const network::Command& command) {
+  const auto& [hand, second, sound, silent_for, phase] = command;
+  std::vector<double> all = numbers_of(hand);
+  const std::vector<double> other = numbers_of(second);
+  all.insert(all.end(), other.begin(), other.end());
+  all.insert(all.end(), {sound ? 1.0 : 0.0, silent_for, static_cast<double>(phase)});
+  return all;
+}
+
+/// What one side tells arrives at the other.
+void pass(network::RemoteLink& from, network::RemoteLink& to) {
+  Relay relay(seed);
+  for (network::RemoteLink* link : {&from, &to}) link->prepare(1, tick);
+  from.receive(at(1.0));
+  from.send(network::Vec<network::any_size>::Zero(1), tick);
+  relay.carry(from, to, {.delay = 0.0}, 1.0);
+  to.receive(at(1.0));
+  ASSERT_TRUE(to.is_linked());
+}
+
+TEST(Remote, EveryNumberOfACommandArrives) {
+  network::Command told;
+  double next = 0.0;
+  for (network::HandInput* hand : {&told.hand, &told.second}) {
+    for (Vec3* v :
+         {&hand->ball.linear, &hand->ball.angular, &hand->direction_W, &hand->turning_W}) {
+      for (double& x : *v) x = next += 0.125;
+    }
+    for (double* x : {&hand->lever_rate, &hand->scale, &hand->guide_strength}) *x = next += 0.125;
+    hand->guides = static_cast<std::int32_t>(8.0 * (next += 0.125));
+    hand->compliant = static_cast<std::int32_t>(8.0 * (next += 0.125));
+  }
+  told.silent_for = next += 0.125;
+  told.phase = 1000;
+  network::RemoteLink station({.session = 1});
+  network::RemoteLink site({.session = 2});
+  teleop::tell(told, station);
+  pass(station, site);
+  const network::Command heard = teleop::heard_command(site);
+  EXPECT_EQ(numbers_of(heard), numbers_of(told));
+  told.second.lever_rate = std::numeric_limits<double>::quiet_NaN();
+  teleop::tell(told, station);
+  pass(station, site);
+  EXPECT_FALSE(teleop::heard_command(site).sound);
+}
+
+TEST(Remote, EveryNumberOfTheSiteArrives) {
+  TickRecord told;
+  double next = 0.0;
+  for (Vec3* v : {&told.virtual_force.force, &told.virtual_force.torque, &told.coupling.force,
+                  &told.coupling.torque, &told.v_WT}) {
+    for (double& x : *v) x = next += 0.125;
+  }
+  for (double& q : told.q) q = next += 0.125;
+  for (double* x : {&told.gain, &told.pairs.nearest, &told.time}) *x = next += 0.125;
+  told.status = status::saturated | status::hold_lost;
+  const Pose turned(Eigen::Translation3d(1.0, 2.0, 3.0) *
+                    Eigen::AngleAxisd(2.5, Vec3(1.0, 2.0, -3.0).normalized()));
+  teleop::PartState part;
+  part.part = 7;
+  part.where = teleop::PartState::Where::is_held;
+  part.X = turned.inverse();
+  network::RemoteLink station({.session = 1});
+  network::RemoteLink site({.session = 2});
+  teleop::tell(told, turned, part, site);
+  pass(site, station);
+  const teleop::SiteState heard = teleop::heard_state(station);
+  EXPECT_TRUE(heard.is_told);
+  EXPECT_TRUE(heard.X_WT.isApprox(turned, 1e-12));
+  EXPECT_EQ(heard.virtual_force.force, told.virtual_force.force);
+  EXPECT_EQ(heard.virtual_force.torque, told.virtual_force.torque);
+  EXPECT_EQ(heard.coupling.force, told.coupling.force);
+  EXPECT_EQ(heard.coupling.torque, told.coupling.torque);
+  EXPECT_EQ(heard.v_WT, told.v_WT);
+  EXPECT_EQ(heard.q, told.q);
+  EXPECT_EQ(heard.gain, told.gain);
+  EXPECT_EQ(heard.nearest, told.pairs.nearest);
+  EXPECT_EQ(heard.time, told.time);
+  EXPECT_EQ(heard.status, told.status);
+  EXPECT_EQ(heard.part.part, part.part);
+  EXPECT_EQ(heard.part.where, part.where);
+  EXPECT_TRUE(heard.part.X.isApprox(part.X, 1e-12));
 }
 
 TEST(Remote, ASceneWithoutALineCannotBeDivided) {

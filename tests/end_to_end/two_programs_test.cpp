@@ -62,6 +62,7 @@ TEST(TwoPrograms, ShareASceneOverEachLink) {
     EXPECT_LE(at_station.at("energy_played_j").get<double>(),
               at_site.at("energy_sent_j").get<double>() * (1.0 + 1e-9));
     EXPECT_GT(there.at("nearest_wall_m"), 0.0);
+    EXPECT_GT(here.at("nearest_m"), 0.0);
     for (const json& report : {there, here}) {
       for (const char* count : {"allocations_in_tick", "system_calls_in_tick"}) {
         const json& counted = report.at(count);
@@ -312,7 +313,8 @@ TEST(TwoPrograms, WhatCannotBeDividedIsRefused) {
       {"two_arms --site", 1, "partners"},
       {"delayed --site --station", 2, "--station"},
       {"delayed --site --fast", 2, "--fast"},
-      {"delayed --station --view", 2, "--view"},
+      {"delayed --station --view --log x.csv", 2, "--log"},
+      {"plates --station --view", 1, "'line'"},
       {"delayed --link udp", 2, "--site or --station"},
       {"delayed --site --link smoke", 2, "dds:INTERFACE"},
       {"delayed --site --link udp:127.0.0.1:0", 2, "udp:ADDRESS:PORT"},

@@ -164,6 +164,35 @@ TEST(LiveView, ALogIsNotBegunTwice) {
   EXPECT_FALSE(stage.controls.restart);
 }
 
+TEST(LiveView, ARobotElsewhereIsDrivenAndNothingElse) {
+  LiveStage stage(false, "", true, {PartId{1}});
+  stage.controls.no_conduct = "it is elsewhere";
+  for (const Json& message :
+       {Json{{"type", "pause"}}, Json{{"type", "resume"}}, Json{{"type", "restart"}},
+        Json{{"type", "step"}, {"ticks", 1}}, Json{{"type", "remove_part"}, {"part", 1}}}) {
+    EXPECT_EQ(stage.say(1, message), "it is elsewhere") << message;
+  }
+  EXPECT_FALSE(stage.controls.paused);
+  EXPECT_FALSE(stage.controls.restart);
+  EXPECT_EQ(stage.controls.steps, 0);
+  EXPECT_EQ(stage.say(1, Json{{"type", "take"}}), "");
+  EXPECT_EQ(stage.say(1, servo(0.1, 0.0, 0.0)), "");
+  ASSERT_TRUE(stage.posted());
+  EXPECT_EQ(stage.input().driver, Driver::page);
+}
+
+TEST(LiveView, AnOperatorElsewhereKeepsTheControls) {
+  LiveStage stage;
+  stage.controls.no_driving = "the operator is elsewhere";
+  for (const Json& message :
+       {Json{{"type", "take"}}, Json{{"type", "release"}}, servo(0.1, 0, 0)}) {
+    EXPECT_EQ(stage.say(1, message), "the operator is elsewhere") << message;
+  }
+  EXPECT_FALSE(stage.posted());
+  EXPECT_EQ(stage.say(1, Json{{"type", "pause"}}), "");
+  EXPECT_TRUE(stage.controls.paused);
+}
+
 TEST(LiveView, OnlyARecordingCanBeWoundOn) {
   const Json seek{{"type", "seek"}, {"time_s", 3.2}};
   const Json speed{{"type", "speed"}, {"factor", 0.25}};

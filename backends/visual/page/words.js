@@ -52,6 +52,7 @@ const BITS = {
   energy_gain: ["bad", "the arm gains energy from its own control"],
   bad_wrench: ["warn", "the force sensor cannot be believed"],
   hold_lost: ["bad", "a hard wall cannot be held"],
+  silent_site: ["bad", "the site is silent: this is what it told last"],
   torque_rate: ["warn", "a torque changed as fast as it may"],
   tool_speed: ["warn", "the tool is as fast as it may be"],
   speed_limit: ["warn", "a joint is as fast as it may be"],

@@ -75,6 +75,9 @@ inline constexpr Status bad_wrench = 1U << 23;
 /// A hard wall cannot be held: it comes faster than the arm can flee, or the arm is too fast for
 /// its efforts; it was told before the wall was reached: lower the speed of the obstacle or the arm
 inline constexpr Status hold_lost = 1U << 24;
+/// At the station of a divided scene: the site is not heard. What is shown of it is what it told
+/// last, and the master meets a damper; start the site, or repair the link
+inline constexpr Status silent_site = 1U << 25;
 
 /// Faults of joint sensing: the present joint positions are unknown.
 inline constexpr Status blind = bad_joints | implausible_joints | frozen_joints;
@@ -107,7 +110,8 @@ enum class Stop : std::uint8_t {
       "late_result",   "torque_limit", "crowded_pairs", "expired_pairs", "silent_device",
       "saturated",     "joint_limit",  "network_fault", "speed_limit",   "implausible_joints",
       "frozen_joints", "clock_gap",    "bad_torque",    "torque_rate",   "tool_speed",
-      "arm_stopped",   "pushed_out",   "energy_gain",   "bad_wrench",    "hold_lost"};
+      "arm_stopped",   "pushed_out",   "energy_gain",   "bad_wrench",    "hold_lost",
+      "silent_site"};
   std::string text;
   for (unsigned i = 0; i < std::size(names); ++i) {
     if ((bits >> i & 1U) != 0U) text += (text.empty() ? "" : ", ") + std::string(names[i]);
