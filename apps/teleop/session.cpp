@@ -16,6 +16,7 @@
 #include "mcap_log.hpp"
 #include "part_file.hpp"
 #ifdef REPEL_TELEOP_VISUAL
+#include "arm_inputs_info.hpp"
 #include "live_view.hpp"
 #endif
 
@@ -137,6 +138,7 @@ visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& head
       added.max_speed = ball->saturation;
       added.max_turn = ball->angular_saturation;
     }
+    note_inputs(scene.arm_setup(i).network, added);
   }
   return info;
 }
