@@ -81,7 +81,7 @@ export class Hand {
       box.checked = now.compliant?.includes(box.value) === true;
     }
     const frame = now.compliant_frame;
-    write(at("compliant-frame"), frame ? `of the ${frame}` : "");
+    write(at("compliant-frame"), frame ? `in the axes of the ${frame}` : "");
     if (finite(now.guide_strength)) at("guide-strength").value = now.guide_strength;
     if (finite(now.scale)) at("hand-scale").value = Math.log10(now.scale);
     write(at("strength-out"), `${fixed(100 * now.guide_strength, 0)} %`);
