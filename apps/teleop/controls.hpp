@@ -11,6 +11,7 @@
 
 #include <repel/base/mailbox.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/network/operator.hpp>
 #include <repel/schedule/world_changes.hpp>
 
 namespace repel::teleop {
@@ -25,6 +26,13 @@ struct DriverInput {
   bool in_tool = false;              ///< the rates are in tool axes, not world axes
   double lever_rate = 0.0;           ///< [rad/s] commanded motion of the lever
   Vec3 direction_W = Vec3::UnitX();  ///< unit: direction in which the lever drives the tool
+  Twist second;                      ///< [m/s, rad/s] of a second hand with six axes
+  bool second_in_tool = false;       ///< likewise
+  // What is switched stays so. As in a network::Phase:
+  double scale = 0.0;                           ///< HandInput::scale of both hands; 0: as before
+  std::int32_t guides = network::as_before;     ///< HandInput::guides
+  double guide_strength = -1.0;                 ///< HandInput::guide_strength; below 0: as before
+  std::int32_t compliant = network::as_before;  ///< HandInput::compliant
 };
 
 /// Where parts can be asked for while a run lasts. A lock keeps the cell in place, not the tick.

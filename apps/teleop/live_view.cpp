@@ -6,39 +6,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "message_fields.hpp"
 #include "operator_input.hpp"
 
 namespace repel::teleop {
 namespace {
 
 using Json = nlohmann::json;
-
-/// The number of that name, if within +-`most`.
-std::optional<double> number(const Json& message, const char* name, double most) {
-  const auto found = message.find(name);
-  if (found == message.end() || !found->is_number()) return std::nullopt;
-  const double value = found->get<double>();
-  if (!(std::abs(value) <= most)) return std::nullopt;
-  return value;
-}
-
-std::optional<Vec3> vector(const Json& message, const char* name, double most) {
-  const auto found = message.find(name);
-  if (found == message.end() || !found->is_array() || found->size() != 3) return std::nullopt;
-  Vec3 v;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Json& entry = (*found)[axis];
-    if (!entry.is_number()) return std::nullopt;
-    v[static_cast<Eigen::Index>(axis)] = entry.get<double>();
-  }
-  if (!(v.norm() <= most)) return std::nullopt;
-  return v;
-}
-
-std::string text(const Json& message, const char* name) {
-  const auto found = message.find(name);
-  return found != message.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
+using fields::number;
+using fields::out_of_range;
+using fields::text;
+using fields::vector;
 
 const char* to_word(Driver driver, bool replay) {
   if (replay) return "recording";
@@ -55,14 +33,6 @@ const char* to_word(Driver driver, bool replay) {
   return "nobody";
 }
 
-/// Limits the length: no page can command more than the master of the scene can.
-Vec3 within(const Vec3& v, double most) {
-  const double length = v.norm();
-  return length > most ? Vec3(v * (most / length)) : v;
-}
-
-constexpr const char* out_of_range = "a number is missing or out of range";
-
 }  // namespace
 
 LiveView::LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
@@ -75,6 +45,7 @@ LiveView::LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, 
       pages_drive_(pages_drive),
       greeting_(visual::scene_message(info, world)),
       period_(std::llround(1e9 / info.rate_hz)),
+      input_(info_.arms.front()),
       driver_(device.empty() ? Driver::script : Driver::device) {}
 
 void LiveView::opened(int page, visual::Role role, visual::Pages& pages) {
@@ -116,7 +87,7 @@ std::string LiveView::obey(int page, const std::string& type, const Json& messag
   std::string bar = bar_of(page);
   if (!bar.empty()) return bar;
   if (page_ != nobody && page_ != page) return "another page has the controls";
-  if (type == "take" || type == "release" || type == "servo_cv" || type == "servo_lever")
+  if (type == "take" || type == "release" || PageInput::knows(type))
     return drive(page, type, message);
   if (type == "add_box" || type == "move_part" || type == "remove_part")
     return change(type, message, pages);
@@ -144,27 +115,9 @@ std::string LiveView::drive(int page, const std::string& type, const Json& messa
     hand_over(device_.empty() ? Driver::nobody : Driver::device, nobody);
     return {};
   }
-  const visual::ArmInfo& arm = info_.arms.front();
-  DriverInput input;
-  input.driver = Driver::page;
-  if (type == "servo_cv") {
-    const auto linear = vector(message, "linear", 10.0);
-    const auto angular = vector(message, "angular", 100.0);
-    const std::string frame = text(message, "frame");
-    if (!linear || !angular || (frame != "world" && frame != "tool")) return out_of_range;
-    input.in_tool = frame == "tool";
-    const auto clutch = message.find("clutch");
-    const bool held = clutch != message.end() && clutch->is_boolean() && clutch->get<bool>();
-    if (held) input.rates = {within(*linear, arm.max_speed), within(*angular, arm.max_turn)};
-  } else {
-    const auto direction = vector(message, "direction", 1e3);
-    const auto rate = number(message, "rate", 100.0);
-    if (!direction || !rate || direction->norm() < 1e-6) return out_of_range;
-    input.direction_W = direction->normalized();
-    input.lever_rate = std::clamp(*rate, -arm.max_lever_rate, arm.max_lever_rate);
-  }
-  controls_.input.draft() = input;
-  controls_.input.post();
+  std::string why = input_.take(type, message, Clock::now());
+  if (!why.empty()) return why;
+  post();
   heard_ = Clock::now();
   return {};
 }
@@ -222,6 +175,7 @@ std::string LiveView::conduct(const std::string& type, const Json& message) {
     return controls_.no_driving.empty() ? "a log is being written, which begins once"
                                         : controls_.no_driving;
   } else if (type == "restart") {
+    input_.forget();
     if (driver_ != Driver::device)
       hand_over(device_.empty() ? Driver::script : Driver::device, nobody);
     controls_.steps = 0;
@@ -249,8 +203,12 @@ void LiveView::hand_over(Driver driver, int page) {
   page_ = page;
   silent_ = false;
   heard_ = Clock::now();
-  controls_.input.draft() = {};
-  controls_.input.draft().driver = driver;
+  input_.rest(driver);
+  post();
+}
+
+void LiveView::post() {
+  controls_.input.draft() = input_.of(Clock::now());
   controls_.input.post();
 }
 

@@ -17,6 +17,7 @@
 #include <repel/visual/server.hpp>
 
 #include "controls.hpp"
+#include "page_input.hpp"
 
 namespace repel::teleop {
 
@@ -51,6 +52,7 @@ class LiveView final : public visual::PageHandler {
   /// Why the page may not drive, pause, step or restart; empty: it may.
   [[nodiscard]] std::string bar_of(int page) const;
   void hand_over(Driver driver, int page);
+  void post();
   void say_who_drives(visual::Pages& pages) const;
   void read_samples();
   void watch_driver(visual::Pages& pages);
@@ -68,6 +70,7 @@ class LiveView final : public visual::PageHandler {
   std::map<int, visual::Role> open_pages_;
   /// Of the parts that have got another shape: boxes from pages, and what a camera sees.
   std::map<std::int32_t, Shape> reshaped_;
+  PageInput input_;
   Driver driver_;
   int page_ = nobody;  ///< the page that drives
   bool silent_ = false;

@@ -92,18 +92,27 @@ class OperatorInput {
     driver_ = input.driver;
     // Rates in tool axes are rotated to the world in every tick.
     command_.hand.ball = input.in_tool ? rotated(R_WT, input.rates) : input.rates;
+    command_.second.ball = input.second_in_tool ? rotated(R_WT, input.second) : input.second;
     command_.hand.lever_rate = input.lever_rate;
-    command_.sound = is_finite(input.rates) && is_finite(input.direction_W) &&
-                     input.lever_rate - input.lever_rate == 0.0;
+    switch_over(input);
+    command_.sound = is_finite(input.rates) && is_finite(input.second) &&
+                     is_finite(input.direction_W) && input.lever_rate - input.lever_rate == 0.0;
     if (command_.sound) {
       command_.hand.direction_W = input.direction_W;
       command_.hand.turning_W = Vec3::Zero();
     }
     if (!command_.sound || unheard_ > rest_after) {
-      command_.hand.ball = {};
+      command_.hand.ball = command_.second.ball = {};
       command_.hand.lever_rate = 0.0;
     }
     command_.silent_for = driver_ == Driver::page && unheard_ > silent_after ? unheard_ : 0.0;
+  }
+
+  void switch_over(const DriverInput& input) noexcept {
+    if (input.scale > 0.0) command_.hand.scale = command_.second.scale = input.scale;
+    if (input.guides != network::as_before) command_.hand.guides = input.guides;
+    if (input.guide_strength >= 0.0) command_.hand.guide_strength = input.guide_strength;
+    if (input.compliant != network::as_before) command_.hand.compliant = input.compliant;
   }
 
   /// A device reports itself whether it is silent; it then counts as at rest. It is also read while
@@ -113,6 +122,7 @@ class OperatorInput {
     const devices::Measured& m = device_->measured(period);
     if (taken) return follower_.rest();
     driver_ = Driver::device;
+    command_.second.ball = {};
     command_.sound = true;
     command_.hand.ball = follower_.step(m, period);
     command_.hand.lever_rate = m.lever_rate;

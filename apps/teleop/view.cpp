@@ -10,6 +10,7 @@
 
 #include <repel/network/modules/spaceball.hpp>
 
+#include "arm_inputs_info.hpp"
 #include "listening.hpp"
 #include "live_view.hpp"
 
@@ -64,6 +65,7 @@ visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& head
       added.max_speed = ball->saturation;
       added.max_turn = ball->angular_saturation;
     }
+    note_inputs(scene.arm_setup(i).network, added);
   }
   return info;
 }

@@ -6,24 +6,13 @@
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/visual/messages.hpp>
 
+#include "arm_inputs.hpp"
 #include "json_text.hpp"
 
 namespace repel::visual {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Rounds to 1e-6 (micrometre, microradian): invisible digits would be half of the text.
-double rounded(double value) {
-  return std::round(1e6 * value) / 1e6;
-}
-
-Json to_json(const Pose& X) {
-  const Vec3 p = X.translation();
-  const Eigen::Quaterniond q(X.linear());
-  return {rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()),
-          rounded(q.y()), rounded(q.z()), rounded(q.w())};
-}
 
 Json levels_of(const Shape& shape) {
   Json levels = Json::array();
@@ -95,7 +84,8 @@ void write(const ArmInfo& info, const TickRecord& k, JsonText& out) {
   for (std::size_t i = 0; i < info.joints.size(); ++i) out.number(k.q[i]);
   out.close(']').name("energy_j").open('[');
   for (std::size_t i = 0; i < info.modules.size(); ++i) out.number(k.energy[i]);
-  out.close(']').close('}');
+  write_inputs(info, k, out.close(']'));
+  out.close('}');
 }
 
 void write(Status status, JsonText& out) {
@@ -175,6 +165,7 @@ std::string scene_message(const SceneInfo& info, const World& world) {
                     {"max_speed_m_s", arm.max_speed},
                     {"max_turn_rad_s", arm.max_turn},
                     {"max_lever_rad_s", arm.max_lever_rate}});
+    add_inputs(arm, arms.back());
   }
   Json scene{{"type", "scene"},
              {"version", 1},

@@ -73,10 +73,23 @@ std::string vector_text(Bytes& bytes) {
   return text;
 }
 
+/// A list with one of two words, both, or what is none of them.
+std::string words_text(Bytes& bytes, const std::string& one, const std::string& other) {
+  const auto kind = bytes.take<std::uint8_t>();
+  if (kind < 16) return number_text(bytes);
+  if (kind < 32) return "[\"none\"]";
+  std::string text = "[";
+  if (kind % 4 == 1 || kind % 4 == 3) text += '"' + one + '"';
+  if (kind % 4 == 3) text += ',';
+  if (kind % 4 >= 2) text += '"' + other + '"';
+  return text + "]";
+}
+
 /// A message of a known type, possibly with a wrong number or a wrong byte; or arbitrary bytes.
 std::string message_text(Bytes& bytes) {
-  static constexpr std::array<const char*, 9> types{
-      "take", "release", "servo_cv", "servo_lever", "pause", "resume", "step", "restart", "seek"};
+  static constexpr std::array<const char*, 13> types{
+      "take",  "release", "servo_cv", "servo_lever", "scale", "guides", "compliant",
+      "pause", "resume",  "step",     "restart",     "seek",  "speed"};
   const auto kind = bytes.take<std::uint8_t>();
   std::string text;
   if (kind < 24) {
@@ -86,13 +99,16 @@ std::string message_text(Bytes& bytes) {
   }
   const auto type = bytes.take<std::uint8_t>();
   text = "{\"type\":\"";
-  text += type % 10 == 9 ? "speed" : types[type % 10];
+  text += types[type % types.size()];
   text += "\",\"linear\":" + vector_text(bytes);
   text += ",\"angular\":" + vector_text(bytes);
   text += ",\"direction\":" + vector_text(bytes);
   text += bytes.take<std::uint8_t>() < 240 ? ",\"frame\":\"world\"" : ",\"frame\":\"tool\"";
   text += bytes.take<std::uint8_t>() < 200 ? ",\"clutch\":true" : "";
-  for (const char* name : {"rate", "ticks", "time_s", "factor"}) {
+  text += bytes.take<std::uint8_t>() < 128 ? ",\"hand\":\"second\"" : "";
+  text += ",\"on\":" + words_text(bytes, "seam", "way in");
+  text += ",\"directions\":" + words_text(bytes, "z", "rx");
+  for (const char* name : {"rate", "ticks", "time_s", "factor", "strength"}) {
     text += ",\"";
     text += name;
     text += "\":" + number_text(bytes);
@@ -108,6 +124,7 @@ struct Stage {
       : replay(bytes.take<std::uint8_t>() % 8 == 0),
         device(bytes.take<std::uint8_t>() % 8 == 0),
         pages_drive(bytes.take<std::uint8_t>() % 8 != 0),
+        can_switch(bytes.take<std::uint8_t>() % 4 != 0),
         tool(world.add_body("tool")),
         tap(build(world, tool), {.pairs = 1, .samples = 2}),
         show(info(), world, tap, controls, device ? "a device" : "", pages_drive) {
@@ -126,13 +143,19 @@ struct Stage {
     visual::SceneInfo info;
     info.replay = replay;
     info.duration = 10.0;
-    info.arms.emplace_back().tool = tool;
+    visual::ArmInfo& arm = info.arms.emplace_back();
+    arm.tool = tool;
+    if (!can_switch) return info;
+    arm.fixtures = {{.name = "seam"}, {.name = "way in"}};
+    arm.relief = network::ReliefOptions{.angular_stiffness = 0.0, .angular_damping = 0.0};
+    arm.has_scale = arm.has_second_handle = true;
     return info;
   }
 
   bool replay;
   bool device;
   bool pages_drive;
+  bool can_switch;  ///< there are fixtures, RELIEF and a second hand
   World world;
   BodyId tool;
   Tap tap;
@@ -143,7 +166,22 @@ struct Stage {
 
 bool moves(const DriverInput& input) {
   return !input.rates.linear.isZero(0.0) || !input.rates.angular.isZero(0.0) ||
+         !input.second.linear.isZero(0.0) || !input.second.angular.isZero(0.0) ||
          input.lever_rate != 0.0;
+}
+
+void check_switches(const Stage& stage, const DriverInput& input) {
+  require(input.scale == 0.0 || (input.scale >= 1e-3 && input.scale <= 1e3), "scale in range");
+  require(input.guides == network::as_before || (input.guides >= 0 && input.guides < 4),
+          "fixtures that there are");
+  require(input.guide_strength <= 1.0, "a share of their strength");
+  require(input.compliant == network::as_before || (input.compliant & ~0b1000111) == 0,
+          "directions with gains");
+  const DriverInput as_before;
+  require(
+      stage.can_switch || (!(input.scale > 0.0) && input.guides == as_before.guides &&
+                           input.guide_strength < 0.0 && input.compliant == as_before.compliant),
+      "nothing is switched that is not there");
 }
 
 /// @param page the last sender; 0: none
@@ -153,15 +191,18 @@ void check(Stage& stage, int page) {
   const bool is_driver = page != 0 && drives[static_cast<std::size_t>(page)];
   if (stage.controls.input.take()) {
     const DriverInput& input = stage.controls.input.newest();
-    require(
-        is_finite(input.rates) && is_finite(input.direction_W) && std::isfinite(input.lever_rate),
-        "what is said to the loop is finite");
+    require(is_finite(input.rates) && is_finite(input.second) && is_finite(input.direction_W) &&
+                std::isfinite(input.lever_rate),
+            "what is said to the loop is finite");
     const visual::ArmInfo arm;
     constexpr double rounding = 1.0 + 1e-12;
     require(input.rates.linear.norm() <= arm.max_speed * rounding &&
                 input.rates.angular.norm() <= arm.max_turn * rounding &&
+                input.second.linear.norm() <= arm.max_speed * rounding &&
+                input.second.angular.norm() <= arm.max_turn * rounding &&
                 std::abs(input.lever_rate) <= arm.max_lever_rate,
             "and no faster than the master of the scene");
+    check_switches(stage, input);
     require(std::abs(input.direction_W.norm() - 1.0) < 1e-9, "the direction is a unit");
     require((input.driver != Driver::page && !moves(input)) || is_driver, "whoever drives said it");
     require(input.driver != Driver::page || (!stage.replay && stage.pages_drive),

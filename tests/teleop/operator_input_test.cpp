@@ -167,6 +167,62 @@ TEST(OperatorInput, TheLeverIsLedTheWayThatIsSaid) {
   EXPECT_EQ(bench.ticks(0.2).hand.lever_rate, 0.0);
 }
 
+TEST(OperatorInput, ASecondHandIsLedBesideTheFirst) {
+  Bench bench;
+  DriverInput input;
+  input.driver = Driver::page;
+  input.rates.linear = Vec3(0, 0, 0.1);
+  input.second = {Vec3(0.1, 0, 0), Vec3(0, 0, 1)};
+  input.second_in_tool = true;
+  bench.post(input);
+  const Command led = bench.tick(quarter_turn());
+  EXPECT_EQ(led.hand.ball.linear, Vec3(0, 0, 0.1));
+  EXPECT_TRUE(led.second.ball.linear.isApprox(Vec3(0, 0.1, 0)));
+  EXPECT_TRUE(bench.ticks(0.2).second.ball.linear.isZero(0.0)) << "whoever says nothing is at rest";
+  input.second.linear.x() = nan;
+  bench.post(input);
+  const Command unsound = bench.tick();
+  EXPECT_FALSE(unsound.sound);
+  EXPECT_TRUE(unsound.second.ball.linear.isZero(0.0));
+}
+
+TEST(OperatorInput, WhatIsSwitchedStaysAndTheRestIsAsTheScriptLeftIt) {
+  network::Script script = operator_input_test::script();
+  script[0].scale = 2.0;
+  script[0].guides = 5;
+  script[0].compliant = 4;
+  Controls controls;
+  OperatorInput hands(script, &controls);
+  (void)hands.step(Mat3::Identity(), period);
+  const auto post = [&](const DriverInput& input) {
+    controls.input.draft() = input;
+    controls.input.post();
+    return hands.step(Mat3::Identity(), period);
+  };
+  DriverInput input;
+  input.driver = Driver::page;
+  const Command taken = post(input);
+  EXPECT_EQ(taken.hand.scale, 2.0);
+  EXPECT_EQ(taken.hand.guides, 5);
+  EXPECT_EQ(taken.hand.compliant, 4);
+  input.scale = 0.5;
+  input.guides = 0;
+  input.guide_strength = 0.25;
+  input.compliant = 65;
+  const Command switched = post(input);
+  EXPECT_EQ(switched.hand.scale, 0.5);
+  EXPECT_EQ(switched.second.scale, 0.5);
+  EXPECT_EQ(switched.hand.guides, 0);
+  EXPECT_EQ(switched.hand.guide_strength, 0.25);
+  EXPECT_EQ(switched.hand.compliant, 65);
+  DriverInput released;
+  released.driver = Driver::nobody;
+  const Command later = post(released);
+  EXPECT_EQ(later.hand.scale, 0.5);
+  EXPECT_EQ(later.hand.guides, 0);
+  EXPECT_EQ(later.hand.compliant, 65);
+}
+
 TEST(OperatorInput, FollowARecordingWhateverIsSaid) {
   Bench bench;
   TickRecord record;

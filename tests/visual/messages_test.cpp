@@ -102,6 +102,56 @@ TEST(Messages, APartHasWhatIsNotCoveredOfItsMesh) {
   for (const std::size_t other : {0U, 2U, 3U}) EXPECT_FALSE(parts[other].contains("gaps"));
 }
 
+TEST(Messages, AnArmHasWhatAHandCanSwitchAndHowItIs) {
+  Stage stage;
+  ArmInfo& arm = stage.info.arms.front();
+  network::FixtureOptions cone;
+  cone.name = "\"way\" in";
+  cone.kind = network::FixtureKind::cone;
+  cone.X_WF.translation() = Vec3(1, 2, 3);
+  cone.is_on = false;
+  network::FixtureOptions seam;
+  seam.name = "seam";
+  seam.kind = network::FixtureKind::path;
+  seam.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  arm.fixtures = {cone, seam};
+  arm.relief = network::ReliefOptions{.compliant = {true}, .stiffness = 100.0};
+  arm.has_scale = arm.has_handle = true;
+  const Json told = Json::parse(scene_message(stage.info, stage.world)).at("arms")[0];
+  EXPECT_EQ(told.at("fixtures")[0].at("name"), "\"way\" in");
+  EXPECT_EQ(told.at("fixtures")[0].at("shape"), "cone");
+  EXPECT_EQ(told.at("fixtures")[0].at("half_angle_rad"), 0.5);
+  EXPECT_EQ(told.at("fixtures")[0].at("pose"), (Json{1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}));
+  const Json& course = told.at("fixtures")[1].at("course");
+  EXPECT_GT(course.size(), 10U) << "a spline";
+  EXPECT_EQ(course.front(), (Json{0.0, 0.0, 0.0}));
+  EXPECT_EQ(course.back(), (Json{1.0, 1.0, 0.0}));
+  EXPECT_EQ(told.at("compliant").size(), 6U);
+  EXPECT_EQ(told.at("scale"), (Json{1e-3, 1e3}));
+  EXPECT_FALSE(told.contains("hands"));
+
+  TickRecord& record = stage.shot.arms.front();
+  record.grip = {Vec3(1, 2, 3), Vec3(0.1, 0.2, 0.3)};
+  const auto now = [&] {
+    return Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true)).at("arms")[0];
+  };
+  Json as_set_up = now();
+  EXPECT_EQ(as_set_up.at("guides"), Json{"seam"});
+  EXPECT_EQ(as_set_up.at("compliant"), Json{"x"});
+  EXPECT_EQ(as_set_up.at("compliant_frame"), "tool");
+  EXPECT_EQ(as_set_up.at("grip_n"), (Json{1.0, 2.0, 3.0}));
+  EXPECT_EQ(as_set_up.at("grip_nm"), (Json{0.1, 0.2, 0.3}));
+  EXPECT_FALSE(as_set_up.contains("second_grip_n"));
+  record.command.hand.guides = 1;
+  record.command.hand.scale = 0.5;
+  record.command.hand.compliant = network::Relief::world_bit | 0b100100;
+  Json switched = now();
+  EXPECT_EQ(switched.at("guides"), Json{"\"way\" in"});
+  EXPECT_EQ(switched.at("scale"), 0.5);
+  EXPECT_EQ(switched.at("compliant"), (Json{"z", "rz"}));
+  EXPECT_EQ(switched.at("compliant_frame"), "world");
+}
+
 // The order of the pairs does not matter, nor what else the parts that meet it are in a pair with.
 TEST(Messages, APartIsPassableIfAllThatMeetItMayEnter) {
   const ForceLaw wall{.range = 0.02};

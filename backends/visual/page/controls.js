@@ -14,8 +14,8 @@ export class Controls {
 
   // `devices` answer poll(now) with rates between -1 and 1, ahead, left and up, or with `world`
   // rates in metres a second; with null when they are not there.
-  constructor(connection, devices, lever, heading) {
-    Object.assign(this, { connection, devices, lever, heading });
+  constructor(connection, devices, lever, hand, heading) {
+    Object.assign(this, { connection, devices, lever, hand, heading });
     const percent = (id) => (x) => write(at(id), `${Math.round(100 * x)} %`);
     bind("drive-speed", "driveSpeed", () => this.#speeds());
     bind("dead-band", "deadBand", percent("dead-out"));
@@ -99,13 +99,14 @@ export class Controls {
   #tick() {
     if (!this.ours || document.hidden) return;
     const { linear, angular, clutch } = this.#rates();
-    const rate = this.lever.rate();
+    const rate = this.hand.second ? 0 : this.lever.rate();
     const moving = [...linear, ...angular].some((x) => x !== 0);
     if (rate !== 0 || moving) this.#leading = rate !== 0;
-    if (this.#leading) {
+    if (this.#leading && !this.hand.second) {
       this.connection.send({ type: "servo_lever", direction: this.lever.direction(), rate });
     } else {
-      this.connection.send({ type: "servo_cv", linear, angular, frame: "world", clutch });
+      this.connection.send({ type: "servo_cv", linear, angular, frame: "world", clutch,
+                             ...this.hand.named });
     }
   }
 

@@ -11,6 +11,7 @@ const GROUPS = [
     ["J L", "turn left, right"],
     ["U O", "roll left, right"],
     ["M N", "lever: push, pull"],
+    ["H", "the other hand, where there are two"],
     ["Shift", "held: slowly"],
     ["C", "take or release the controls"],
   ]],

@@ -8,7 +8,9 @@ import { Controls } from "./controls.js";
 import { Drag } from "./drag.js";
 import { Gamepad } from "./gamepad.js";
 import { Gaps } from "./gaps.js";
+import { Fixtures } from "./fixtures.js";
 import { startHelp, toggleHelp } from "./help.js";
+import { Hand } from "./hand.js";
 import { Histogram } from "./histogram.js";
 import { Keyboard } from "./keyboard.js";
 import { Labels } from "./labels.js";
@@ -48,9 +50,10 @@ const cameras = new Cameras(stage);
 const labels = new Labels(at("labels"), stage);
 const marks = new Marks(stage, labels);
 const gaps = new Gaps(stage, parts);
+const fixtures = new Fixtures(stage);
 const triad = new Triad(at("triad"), stage.camera);
 const trail = new Trail(stage);
-const readouts = new Readouts((pair, range) => marks.colourOf(pair, range));
+const readouts = new Readouts((pair, range) => marks.colourOf(pair, range), () => hand.arm());
 const histogram = new Histogram(at("histogram"));
 const { history } = state;
 const strips = [
@@ -66,12 +69,13 @@ const keyboard = new Keyboard();
 const gamepad = new Gamepad();
 const heading = () => cameras.heading();
 const lever = new Lever(keyboard, heading);
+const hand = new Hand(connection);
 const boxes = new Boxes(connection, stage, parts);
 const drag = new Drag(stage, parts,
                       { mayDrive: () => controls.ours, take: () => controls.take() });
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag], lever,
-                              heading);
-startProbe({ connection, stage, parts, marks, gaps, cameras });
+                              hand, heading);
+startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras });
 
 const toolAt = new Vector3();
 const near = new Set();
@@ -108,6 +112,8 @@ connection.on("scene", (scene) => {
   at("level").value = settings.level;
   readouts.scene(scene);
   gaps.scene(scene);
+  fixtures.scene(scene);
+  hand.scene();
   transport.scene(scene);
   controls.scene(scene);
   drag.scene(scene.arms[0]?.tool_body);
@@ -189,6 +195,7 @@ function draw(now) {
     labels.clear();
     marks.update(state.frame);
     gaps.update(marks.unit);
+    fixtures.update(state.frame);
     labels.show();
     drag.draw();
     triad.draw();
@@ -196,7 +203,10 @@ function draw(now) {
   stage.render();
   if (now - panelsAt > PANELS_MS) {
     panelsAt = now;
-    if (panelsDue && state.frame) readouts.frame(state.frame, now);
+    if (panelsDue && state.frame) {
+      readouts.frame(state.frame, now);
+      hand.frame();
+    }
     panelsDue = false;
     for (const strip of strips) strip.draw();
     histogram.draw();
@@ -219,6 +229,7 @@ function handle(event) {
   } else if (event.repeat && event.key !== ".") return false;
   else if (event.key === "?") toggleHelp();
   else if (event.code === "KeyC") at("take").click();
+  else if (event.code === "KeyH") hand.swap();
   else if (event.code === "KeyT") at("theme").click();
   else if (event.key === "Delete") boxes.remove();
   else return transport.key(event) || cameras.key(event);

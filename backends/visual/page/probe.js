@@ -5,7 +5,7 @@ import { settings } from "./settings.js";
 import { state } from "./state.js";
 import { theme } from "./theme.js";
 
-export function startProbe({ connection, stage, parts, marks, gaps, cameras }) {
+export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -21,13 +21,14 @@ export function startProbe({ connection, stage, parts, marks, gaps, cameras }) {
         operator: operator ?? null,
         pairs: frame?.pairs?.length ?? 0,
         partsInScene: scene?.parts?.length ?? 0,
-        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count },
+        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count, ...fixtures.count },
         // By body: where each box from the page is, if it is there.
         boxes: (scene?.spare ?? []).map((part) => scene.parts[part].body)
           .filter((each) => !frame?.absent?.includes(each))
           .map((each) => frame?.bodies?.[each]?.slice(0, 3)),
         toolPosition: frame?.bodies?.[body]?.slice(0, 3) ?? null,
         force: frame?.arms?.[0]?.force ?? null,
+        hand: frame?.arms?.[0] ? { ...frame.arms[0], energy_j: undefined } : null,
         camera: { mode: cameras.mode, following: cameras.following,
                   position: stage.camera.position.toArray() },
         theme: theme(),

@@ -11,9 +11,9 @@ export class Readouts {
   #rows = [];
   #energies = [];
 
-  // `colourOf(pair)`: that of the thread in the scene.
-  constructor(colourOf) {
-    this.colourOf = colourOf;
+  // `colourOf(pair)`: that of the thread in the scene. `armChosen` hears when another arm is shown.
+  constructor(colourOf, armChosen) {
+    Object.assign(this, { colourOf, armChosen });
     for (let k = 0; k < ROWS; ++k) {
       const row = at("pair-rows").insertRow();
       const cells = [row.insertCell(), row.insertCell(), row.insertCell()];
@@ -40,6 +40,7 @@ export class Readouts {
     at("arm").onchange = () => {
       state.arm = Number(at("arm").value);
       this.#modules();
+      this.armChosen();
     };
     this.#modules();
   }

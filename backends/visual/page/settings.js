@@ -9,6 +9,7 @@ const DEFAULTS = {
   labels: true,
   directions: false,
   trail: false,
+  fixtures: true,
   shadows: true,
   zones: "near",
   levels: "none",

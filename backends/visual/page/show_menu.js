@@ -17,7 +17,7 @@ export function startShowMenu({ stage, parts, near, changed }) {
     const arrows = Number((1000 * forceScale()).toPrecision(3));
     write(at("scale-text"), `arrows ${arrows} mm per N${grid}`);
   };
-  for (const key of ["threads", "forces", "labels", "directions", "trail"]) {
+  for (const key of ["threads", "forces", "labels", "directions", "trail", "fixtures"]) {
     bind(`show-${key}`, key, redraw);
   }
   bind("show-shadows", "shadows", (on) => stage.setShadows(on));

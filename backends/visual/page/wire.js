@@ -30,11 +30,21 @@ function part(x) {
            gaps: list(gaps).map((gap) => vector(gap, 4)).filter((gap) => gap !== null) };
 }
 
+function fixture(x) {
+  const { name, shape, pose: at, course, radius_m, half_angle_rad } = object(x);
+  return { name: text(name), shape: text(shape), pose: pose(at),
+           course: list(course).map((p) => vector(p)).filter((p) => p !== null),
+           radius_m: number(radius_m) ?? 0, half_angle_rad: number(half_angle_rad) ?? 0.5 };
+}
+
 function arm(x) {
-  const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s } = object(x);
+  const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s, fixtures,
+          compliant, scale, hands } = object(x);
   return { name: text(name), modules: list(modules).map(text), tool_body,
            max_speed_m_s: number(max_speed_m_s), max_turn_rad_s: number(max_turn_rad_s),
-           max_lever_rad_s: number(max_lever_rad_s) };
+           max_lever_rad_s: number(max_lever_rad_s), fixtures: list(fixtures).map(fixture),
+           compliant: list(compliant).map(text), scales: Array.isArray(scale),
+           hands: number(hands) ?? 1 };
 }
 
 export function scene(x) {
@@ -69,9 +79,14 @@ function pair(x) {
 }
 
 function armNow(x) {
-  const { force, torque, coupling, lever_nm, gain, energy_j } = object(x);
+  const { force, torque, coupling, lever_nm, gain, energy_j, guides, guide_strength, compliant,
+          compliant_frame, scale, grip_n, grip_nm, second_grip_n, second_grip_nm } = object(x);
   return { force: vector(force), torque: vector(torque), coupling: vector(coupling),
-           lever_nm: number(lever_nm), gain: number(gain), energy_j: numbers(energy_j) };
+           lever_nm: number(lever_nm), gain: number(gain), energy_j: numbers(energy_j),
+           guides: list(guides).map(text), guide_strength: number(guide_strength),
+           compliant: list(compliant).map(text), compliant_frame: text(compliant_frame),
+           scale: number(scale), grip_n: vector(grip_n), grip_nm: vector(grip_nm),
+           second_grip_n: vector(second_grip_n), second_grip_nm: vector(second_grip_nm) };
 }
 
 export function frame(x) {

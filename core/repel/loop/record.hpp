@@ -43,6 +43,7 @@ struct TickRecord {
   Wrench coupling;            ///< [N, N m] from the operator's side on the tool
   double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
   Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
+  Wrench second_grip;         ///< [N, N m] and on a second one; likewise
   double gain = 1.0;          ///< of the fail-safe
   double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
   PairId held_pair;           ///< that of the hardest one; invalid: none did
@@ -58,12 +59,12 @@ struct TickRecord {
 inline void note_masters(const network::Network& network, TickRecord& record) noexcept {
   const auto* lever = network.find<network::TorqueArm>();
   record.lever_torque = lever != nullptr ? lever->felt() : 0.0;
-  record.grip = {};
+  record.grip = record.second_grip = {};
   for (const network::Node& node : network.nodes()) {
     const auto* handle = node.module.as<network::SixAxes>();
-    if (handle == nullptr || handle->hand() != network::Hand::first) continue;
-    record.grip = network::to_wrench(handle->grip());
-    return;
+    if (handle == nullptr) continue;
+    const bool is_first = handle->hand() == network::Hand::first;
+    (is_first ? record.grip : record.second_grip) = network::to_wrench(handle->grip());
   }
 }
 

@@ -12,25 +12,13 @@
 #include <repel/base/layout.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/schedule/deadline.hpp>
+#include <repel/visual/arm_info.hpp>
 
 namespace repel::visual {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
-
-/// One arm of a world, for display.
-struct ArmInfo {
-  std::string name;  ///< empty if there is only one
-  BodyId tool;
-  std::vector<BodyId> links;         ///< those with parts
-  std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
-  std::vector<std::string> modules;  ///< of its network, in the same order
-  std::vector<std::string> phases;   ///< names of the phases of its script
-  double max_speed = 0.25;           ///< [m/s] maximum command of its master
-  double max_turn = 1.0;             ///< [rad/s] likewise
-  double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
-};
 
 /// Where the surface of a mesh is in none of its convex parts.
 struct GapsInfo {

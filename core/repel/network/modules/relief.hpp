@@ -54,13 +54,16 @@ class Relief {
     detail::checked_gain("damping", options.damping, 0.0, 1e6, "N s/m");
     checked("angular stiffness", options.angular_stiffness, 0.0, 1e6, "N m/rad");
     detail::checked_gain("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
-    const auto& dof = options.compliant;
-    const bool slack = options.stiffness == 0.0 && options.damping <= 0.0;
-    const bool angular_slack = options.angular_stiffness == 0.0 && options.angular_damping <= 0.0;
-    if ((slack && (dof[0] || dof[1] || dof[2])) ||
-        (angular_slack && (dof[3] || dof[4] || dof[5]))) {
+    for (std::size_t i = 0; i < options.compliant.size(); ++i) {
+      if (!options.compliant[i] || may_give(options, i)) continue;
       throw SetupError("a compliant direction has neither stiffness nor damping");
     }
+  }
+
+  /// Whether the i-th direction has a spring or a damper, so that it can be made compliant.
+  [[nodiscard]] static bool may_give(const ReliefOptions& options, std::size_t i) noexcept {
+    return i < 3 ? options.stiffness != 0.0 || options.damping > 0.0
+                 : options.angular_stiffness != 0.0 || options.angular_damping > 0.0;
   }
 
   /// Chooses the dampings that are `automatic`; those of the defaults for an arm without a known

@@ -1,0 +1,53 @@
+/// @file
+/// What the page that drives has asked for, out of its messages.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <repel/visual/arm_info.hpp>
+
+#include "controls.hpp"
+
+namespace repel::teleop {
+
+/// Each message says a part: the rates of one hand, or what is switched. The control loop reads the
+/// newest input only, so each one has all that was said before: what was switched stays so, also
+/// from page to page, and the rates of a hand last as long as OperatorInput::rest_after.
+class PageInput {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// @param arm the one that is driven
+  explicit PageInput(const visual::ArmInfo& arm) : arm_(arm) {}
+
+  /// Whether messages of this type belong here.
+  [[nodiscard]] static bool knows(const std::string& type);
+
+  /// Empty; or why the message is refused, which then changes nothing.
+  [[nodiscard]] std::string take(const std::string& type, const nlohmann::json& message, Time now);
+
+  /// The hands are at rest, and those of another driver.
+  void rest(Driver driver);
+
+  /// Nothing was switched: a run begins.
+  void forget();
+
+  /// For the control loop.
+  [[nodiscard]] DriverInput of(Time now) const;
+
+ private:
+  [[nodiscard]] std::string move(const nlohmann::json& message, Time now);
+  [[nodiscard]] std::string lead_lever(const nlohmann::json& message, Time now);
+  [[nodiscard]] std::string set_scale(const nlohmann::json& message);
+  [[nodiscard]] std::string set_guides(const nlohmann::json& message);
+  [[nodiscard]] std::string set_compliant(const nlohmann::json& message);
+
+  visual::ArmInfo arm_;
+  DriverInput input_;
+  Time first_said_, second_said_;  ///< when the rates of each hand were
+};
+
+}  // namespace repel::teleop

@@ -1,0 +1,34 @@
+/// @file
+/// What a page is told of an arm.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <repel/network/elements/fixture.hpp>
+#include <repel/network/modules/relief.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel::visual {
+
+/// One arm of a world, for display.
+struct ArmInfo {
+  std::string name;  ///< empty if there is only one
+  BodyId tool;
+  std::vector<BodyId> links;         ///< those with parts
+  std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
+  std::vector<std::string> modules;  ///< of its network, in the same order
+  std::vector<std::string> phases;   ///< names of the phases of its script
+  double max_speed = 0.25;           ///< [m/s] maximum command of its master
+  double max_turn = 1.0;             ///< [rad/s] likewise
+  double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
+  // What a hand can switch in its network.
+  std::vector<network::FixtureOptions> fixtures;  ///< of GUIDE, in its order
+  std::optional<network::ReliefOptions> relief;
+  bool has_scale = false;          ///< a master that is felt: HandInput::scale applies
+  bool has_handle = false;         ///< SIX AXES in the first hand
+  bool has_second_handle = false;  ///< and in a second one
+};
+
+}  // namespace repel::visual
