@@ -73,7 +73,7 @@ class OperatorInput {
   /// Keeps the direction of the lever, so that the force of its spring does not change direction.
   void rest(double period) noexcept {
     command_.hand.ball = command_.second.ball = {};
-    command_.hand.lever_rate = 0.0;
+    command_.hand.lever_rate = command_.second.lever_rate = 0.0;
     command_.sound = true;
     command_.silent_for = std::max(silent_after, command_.silent_for + period);
   }
@@ -94,6 +94,7 @@ class OperatorInput {
     command_.hand.ball = input.in_tool ? rotated(R_WT, input.rates) : input.rates;
     command_.second.ball = input.second_in_tool ? rotated(R_WT, input.second) : input.second;
     command_.hand.lever_rate = input.lever_rate;
+    command_.second.lever_rate = 0.0;
     switch_over(input);
     command_.sound = is_finite(input.rates) && is_finite(input.second) &&
                      is_finite(input.direction_W) && input.lever_rate - input.lever_rate == 0.0;
@@ -123,6 +124,7 @@ class OperatorInput {
     if (taken) return follower_.rest();
     driver_ = Driver::device;
     command_.second.ball = {};
+    command_.second.lever_rate = 0.0;
     command_.sound = true;
     command_.hand.ball = follower_.step(m, period);
     command_.hand.lever_rate = m.lever_rate;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/network/elements/one_ports.hpp>
+#include <repel/network/modules/torque_arm.hpp>
 #include <repel/network/plan.hpp>
 
 namespace repel {
@@ -60,6 +61,26 @@ TEST(TickRecord, NotesWhatTheMasterDoesToTheHand) {
   EXPECT_LT(record.grip.force.y(), -0.1) << "it resists";
   EXPECT_EQ(record.grip.force.x(), 0.0);
   EXPECT_EQ(record.lever_torque, 0.0) << "there is no lever";
+}
+
+TEST(TickRecord, TheLeverIsThatOfTheFirstHand) {
+  constexpr double period = 0.0025;
+  const auto damper = [] {
+    return network::Damper<network::any_size>(5.0 *
+                                              network::Mat<network::any_size>::Identity(1, 1));
+  };
+  network::Network levers = network::Plan()
+                                .add("second", network::TorqueArm({.hand = network::Hand::second}))
+                                .add("slow", damper())
+                                .build(period);
+  network::Signals signals = network::detail::neutral_signals(0, period);
+  signals.second.lever_rate = 1.0;
+  ASSERT_TRUE(levers.run(signals));
+  TickRecord record;
+  record.lever_torque = 1.0;
+  note_masters(levers, record);
+  EXPECT_EQ(record.lever_torque, 0.0);
+  EXPECT_NE(levers.find<network::TorqueArm>()->felt(), 0.0);
 }
 
 TEST(RunTotals, AddUpAndKeepTheExtremes) {

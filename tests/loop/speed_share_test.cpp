@@ -4,6 +4,9 @@
 
 #include <limits>
 
+#include <repel/network/modules.hpp>
+#include <repel/network/plan.hpp>
+
 namespace repel {
 namespace speed_share_test {
 
@@ -72,6 +75,31 @@ TEST(SpeedShare, NoHandLeadsFasterThanTheToolMayBe) {
   hand.scale = std::numeric_limits<double>::quiet_NaN();
   (void)cut_to_speed(hand, 0.25, 0.1);
   EXPECT_EQ(hand.scale, 1.0);
+}
+
+TEST(CutToSpeed, EachHandByTheScaleOfItsLever) {
+  using namespace network;
+  const Network levers =
+      Plan()
+          .add("left", TorqueArm())
+          .add("across", Multiplex({.velocity_scale = 0.1, .force_scale = 0.1}))
+          .add("left_grip", Relief({.compliant = {true, true, true, true, true, true}}), "tool")
+          .add("right", TorqueArm({.hand = Hand::second}))
+          .add("down", Multiplex({.velocity_scale = 0.5, .force_scale = 0.5, .hand = Hand::second}))
+          .add("right_grip", Relief({.compliant = {true, true, true, true, true, true}}), "tool")
+          .add("tool", Junction())
+          .add("ground", Ground())
+          .build(0.0025);
+  const LeverScales scales = lever_scales(levers);
+  EXPECT_EQ(scales.first, 0.1);
+  EXPECT_EQ(scales.second, 0.5);
+  Signals signals;
+  signals.hand.lever_rate = signals.second.lever_rate = 1.0;
+  EXPECT_TRUE(cut_to_speed(signals, 0.25, scales));
+  EXPECT_EQ(signals.hand.lever_rate, 1.0);
+  EXPECT_EQ(signals.second.lever_rate, 0.5);
+  const Network without = Plan().add("hand", SixAxes()).add("ground", Ground()).build(0.0025);
+  EXPECT_EQ(lever_scales(without).second, 1.0);
 }
 
 }  // namespace speed_share_test

@@ -41,7 +41,7 @@ struct TickRecord {
   Vec3 v_WT{0, 0, 0};         ///< [m/s]
   Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
   Wrench coupling;            ///< [N, N m] from the operator's side on the tool
-  double lever_torque = 0.0;  ///< [N m] reflected to the torque arm
+  double lever_torque = 0.0;  ///< [N m] reflected to the torque arm of the first hand
   Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
   Wrench second_grip;         ///< [N, N m] and on a second one; likewise
   double gain = 1.0;          ///< of the fail-safe
@@ -57,10 +57,13 @@ struct TickRecord {
 
 /// Notes what the masters of the network do to the hands that hold them; zero where there is none.
 inline void note_masters(const network::Network& network, TickRecord& record) noexcept {
-  const auto* lever = network.find<network::TorqueArm>();
-  record.lever_torque = lever != nullptr ? lever->felt() : 0.0;
+  record.lever_torque = 0.0;
   record.grip = record.second_grip = {};
   for (const network::Node& node : network.nodes()) {
+    const auto* lever = node.module.as<network::TorqueArm>();
+    if (lever != nullptr && lever->hand() == network::Hand::first) {
+      record.lever_torque = lever->felt();
+    }
     const auto* handle = node.module.as<network::SixAxes>();
     if (handle == nullptr) continue;
     const bool is_first = handle->hand() == network::Hand::first;

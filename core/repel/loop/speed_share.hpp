@@ -7,6 +7,8 @@
 
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/signals.hpp>
+#include <repel/network/modules/multiplex.hpp>
+#include <repel/network/network.hpp>
 
 namespace repel {
 
@@ -66,6 +68,30 @@ namespace detail {
   const bool is_fast = ball > limit || std::abs(hand.lever_rate) > most;
   hand.lever_rate = std::clamp(hand.lever_rate, -most, most);
   return is_fast;
+}
+
+/// [m/rad] Tool motion per motion of the lever that a hand holds; 1 where it holds none.
+struct LeverScales {
+  double first = 1.0;
+  double second = 1.0;
+};
+
+[[nodiscard]] inline LeverScales lever_scales(const network::Network& network) noexcept {
+  LeverScales scales;
+  for (const network::Node& node : network.nodes()) {
+    const auto* lever = node.module.as<network::Multiplex>();
+    if (lever == nullptr) continue;
+    const bool is_first = lever->hand() == network::Hand::first;
+    (is_first ? scales.first : scales.second) = lever->velocity_scale();
+  }
+  return scales;
+}
+
+/// The same for both hands.
+[[nodiscard]] inline bool cut_to_speed(network::Signals& signals, double limit,
+                                       const LeverScales& scales) noexcept {
+  const bool is_cut = cut_to_speed(signals.hand, limit, scales.first);
+  return cut_to_speed(signals.second, limit, scales.second) || is_cut;
 }
 
 }  // namespace repel

@@ -65,8 +65,7 @@ class Teleoperator {
     const network::Node* at = network_.node_of<network::Obstacle>();
     if (at == nullptr) at = network_.node_of<network::PumaKin>();
     before_walls_ = at == nullptr ? -1 : at->left;
-    const auto* lever = network_.find<network::Multiplex>();
-    lever_scale_ = lever == nullptr ? 1.0 : lever->velocity_scale();
+    lever_scales_ = lever_scales(network_);
     signals_.period = signals_.elapsed = period_;
     inertia_.update(kinematics_);
   }
@@ -194,10 +193,8 @@ class Teleoperator {
     if (command.silent_for > patience) record_.status |= status::silent_device;
     signals_.hand = record_.command.hand;
     signals_.second = record_.command.second;
-    for (network::HandInput* hand : {&signals_.hand, &signals_.second}) {
-      if (cut_to_speed(*hand, options_.tool_speed, lever_scale_)) {
-        record_.status |= status::saturated;
-      }
+    if (cut_to_speed(signals_, options_.tool_speed, lever_scales_)) {
+      record_.status |= status::saturated;
     }
   }
 
@@ -286,8 +283,8 @@ class Teleoperator {
   ArmState drive_state_ = ArmState::enabled;
   network::MeasuredFlow flow_;
   network::Signals signals_;
-  int before_walls_ = -1;     // connection over which the operator's side acts on the tool
-  double lever_scale_ = 1.0;  ///< [m/rad]
+  int before_walls_ = -1;  // connection over which the operator's side acts on the tool
+  LeverScales lever_scales_;
   bool pushing_out_;
   TickRecord record_;
   std::int64_t next_tick_ = 0;

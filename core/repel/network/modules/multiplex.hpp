@@ -92,6 +92,7 @@ class Multiplex {
   }
   /// Weight of the left port's power in the ledger.
   [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
+  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
   [[nodiscard]] double velocity_scale() const noexcept {  ///< s_v [m/rad]
     return options_.velocity_scale;
   }

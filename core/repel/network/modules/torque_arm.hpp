@@ -49,7 +49,8 @@ class TorqueArm {
 
   [[nodiscard]] double angle() const noexcept { return axis_.position(); }  ///< [rad]
   [[nodiscard]] double rate() const noexcept { return axis_.rate(); }       ///< [rad/s]
-  [[nodiscard]] double felt() const noexcept { return axis_.felt(); }       ///< [N m] of the motor
+  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
+  [[nodiscard]] double felt() const noexcept { return axis_.felt(); }  ///< [N m] of the motor
   [[nodiscard]] double supplied() const noexcept { return axis_.supplied(); }  ///< [W] by the hand
   [[nodiscard]] bool saturated() const noexcept { return axis_.saturated(); }
 
