@@ -1,5 +1,5 @@
-// figures FOLDER: computes the figures of docs/reduction.md, control.md and walls.md. Writes the
-// curves to FOLDER as CSV and prints the tables.
+// figures FOLDER: computes the figures of docs/reduction.md, control.md, walls.md and
+// network/guide.md. Writes the curves to FOLDER as CSV and prints the tables.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -12,6 +12,7 @@
 #include "motions.hpp"
 #include "passages.hpp"
 #include "plates.hpp"
+#include "pulls.hpp"
 #include "pushed_walls.hpp"
 #include "settled.hpp"
 
@@ -166,6 +167,20 @@ void write_walls(const std::filesystem::path& folder) {
   }
 }
 
+void write_pulls(const std::filesystem::path& folder) {
+  std::ofstream file = csv(folder / "pulls.csv", "what,fixture,distance_mm,force_n,energy_j");
+  const auto write = [&](const char* what, const std::vector<Pulled>& all) {
+    for (const Pulled& each : all) {
+      for (const Pull& at : pull_out(each)) {
+        file << what << ",\"" << each.name << "\"," << 1e3 * at.distance << ',' << at.force << ','
+             << at.energy << '\n';
+      }
+    }
+  };
+  write("limit", pulled_by_limit());
+  write("shape", pulled_by_shape());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -180,6 +195,7 @@ int main(int argc, char** argv) try {
   write_plates(folder);
   write_passages(folder);
   write_walls(folder);
+  write_pulls(folder);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "figures: %s\n", error.what());

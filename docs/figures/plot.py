@@ -12,6 +12,10 @@ SERIES = {"2 levels": "#e69f00", "8 levels": "#009e73", "32 levels": "#0072b2",
 WITNESSES = {"filtered": "#e69f00", "plain": "#0072b2", "averaged": "#d55e00"}
 LAWS = {"ceiling only": "#e69f00", "passable": "#0072b2"}
 WALLS = {"spring": "#e69f00", "hard wall": "#0072b2", "membrane": "#d55e00"}
+LIMITS = {"limited by its force, 30 N": "#e69f00", "limited by its energy, 0.8 J": "#0072b2",
+          "soft, 150 N/m": "#d55e00"}
+SHAPES = {"point, line, plane, path": "#e69f00", "tube of 20 mm": "#0072b2",
+          "cone, 80 mm above its tip": "#d55e00"}
 LEGENDS = {"plain": "plain witness point", "filtered": "filtered over 5 ms",
            "averaged": "averaged over four tilts"}
 
@@ -237,11 +241,29 @@ def walls(folder):
     yield from legend(670, 50, WALLS)
 
 
+def fixtures(folder):
+    keys = ("what", "fixture")
+    forces = curves(folder, "pulls.csv", keys, "distance_mm", "force_n")
+    energies = curves(folder, "pulls.csv", keys, "distance_mm", "energy_j")
+    for i, (what, found, colours, most, step, words) in enumerate((
+            ("limit", forces, LIMITS, 32, 8, "force [N]"),
+            ("limit", energies, LIMITS, 2, 0.5, "energy stored [J]"),
+            ("shape", forces, SHAPES, 32, 8, "force [N]"))):
+        panel = Panel((70 + 290 * i, 85, 220, 190), (0, 150), (0, most))
+        yield from panel.axes(range(0, 151, 50), [step * k for k in range(int(most / step) + 1)],
+                              "distance [mm]" if what == "limit" else "way aside [mm]", words)
+        for name, colour in colours.items():
+            yield panel.curve(found[what, name], colour, list)
+        if i != 1:
+            yield from legend(panel.left, 25, colours)
+
+
 PICTURES = {"into_a_box": (into_a_box, 880, 430),
             "through_a_rectangle": (through_a_rectangle, 840, 510),
             "parallel_plates": (parallel_plates, 950, 500),
             "passages": (passages, 700, 530),
-            "walls": (walls, 770, 300)}
+            "walls": (walls, 770, 300),
+            "fixtures": (fixtures, 900, 320)}
 
 
 def main():
