@@ -11,6 +11,8 @@
 #include <repel/base/setup_error.hpp>
 #include <system_error>
 
+#include "commit.hpp"
+
 namespace repel::host {
 namespace {
 
@@ -99,6 +101,10 @@ bool has_printed() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
   struct stat out {};
   return fstat(STDOUT_FILENO, &out) == 0 && (S_ISFIFO(out.st_mode) || S_ISSOCK(out.st_mode));
+}
+
+std::string version_of(const char* name) {
+  return std::string(name) + " " + REPEL_VERSION + ", commit " + commit;
 }
 
 }  // namespace repel::host

@@ -50,9 +50,12 @@ class Output {
 /// reader has exited.
 [[nodiscard]] bool has_printed();
 
+/// The program's name, the version of the library, and the commit it was built from.
+[[nodiscard]] std::string version_of(const char* name);
+
 /// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so that a reader
-/// that exits does not end the program. Returns the exit status: that of `run`, 0 for --help, 2 for
-/// bad usage, `failure` after printing the message of an exception.
+/// that exits does not end the program. Returns the exit status: that of `run`, 0 for --help and
+/// --version, 2 for bad usage, `failure` after printing the message of an exception.
 /// @param describe declares the options, which write to the arguments
 template <class Arguments>
 [[nodiscard]] int start(int argc, char** argv, const char* name, const char* about, int failure,
@@ -61,6 +64,7 @@ template <class Arguments>
   try {
     Arguments arguments;
     CLI::App app(about, name);
+    app.set_version_flag("--version", version_of(name));
     describe(app, arguments);
     try {
       app.parse(argc, argv);

@@ -35,6 +35,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace repel;
 
+constexpr double until_stopped = 1e6;  ///< [s]
+
 struct Arguments {
   std::string scene = "anderson_4x8";
   bool has_seconds = false;   ///< --seconds was given
@@ -48,6 +50,7 @@ struct Arguments {
   std::string report;
   std::string html;
   std::string log;
+  bool is_quiet = false;
 };
 
 /// Folders in the source tree this was built in, and in the installation.
@@ -253,6 +256,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->check(host::between(0.0, 1e6));
   app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
       ->check(host::between(1.0, 1e5));
+  app.add_flag("--quiet", a.is_quiet, "No progress and no report on the terminal");
   app.add_flag(
       "--fast", a.run.fast,
       "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
@@ -315,22 +319,6 @@ void describe(CLI::App& app, Arguments& a) {
   app.footer(footer());
 }
 
-/// One status line, overwritten in place on a terminal; elsewhere a line every five seconds.
-/// @param after text shown while no phase of the script is played
-void show(const scene::Scene& scene, const teleop::Progress& p, const char* after, bool fast,
-          bool terminal) {
-  static double next = 0.0;
-  if (!terminal && p.time < next) return;
-  next = p.time + 5.0;
-  const auto phase = static_cast<std::size_t>(p.phase);
-  const std::string name = phase < scene.script.size() ? scene.script[phase].name : after;
-  std::string misses;
-  if (!fast) misses.append("misses ").append(std::to_string(p.misses)).append("  ");
-  std::fprintf(stderr, "%s%7.2f s  %-28.28s force %7s N  %s%-12s%s", terminal ? "\r" : "", p.time,
-               name.c_str(), host::figure(p.force, 2).c_str(), misses.c_str(),
-               to_text(p.status).c_str(), terminal ? "\033[K" : "\n");
-}
-
 /// The scene or recording to run, and how to run it.
 struct Work {
   scene::Scene scene;
@@ -355,12 +343,51 @@ Work work_of(const Arguments& arguments) {
     work.options.threads = arguments.threads >= 0 ? arguments.threads : threads;
     const bool is_driven = arguments.session.view || !arguments.session.device.empty() ||
                            arguments.session.link.side == link::Side::site;
-    if (is_driven && !arguments.has_seconds) work.options.seconds = 1e6;
+    if (is_driven && !arguments.has_seconds) work.options.seconds = until_stopped;
   }
   work.options.keep_records = !arguments.html.empty();
   work.options.log = arguments.log;
   return work;
 }
+
+/// One line of progress, overwritten in place on a terminal; elsewhere a line every five seconds.
+class StatusLine {
+ public:
+  StatusLine(const Arguments& arguments, const Work& work)
+      : work_(work), is_quiet_(arguments.is_quiet) {
+    if (arguments.session.view || !arguments.session.device.empty()) after_ = "by hand, or at rest";
+  }
+
+  void show(const teleop::Progress& p) {
+    if (is_quiet_ || (!is_terminal_ && p.time < next_)) return;
+    next_ = p.time + 5.0;
+    const network::Script& script = work_.scene.script;
+    const auto phase = static_cast<std::size_t>(p.phase);
+    const std::string name = phase < script.size() ? script[phase].name : after_;
+    std::string misses;
+    if (!work_.options.fast) misses.append("misses ").append(std::to_string(p.misses)).append("  ");
+    std::fprintf(stderr, "%s%s%7.2f s  %-28.28s force %7s N  %s%-12s%s", is_terminal_ ? "\r" : "",
+                 share(p.time).c_str(), p.time, name.c_str(), host::figure(p.force, 2).c_str(),
+                 misses.c_str(), to_text(p.status).c_str(), is_terminal_ ? "\033[K" : "\n");
+  }
+  void clear() const {
+    if (is_terminal_ && !is_quiet_) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  /// How much of the run is done; empty for one that lasts until it is stopped.
+  [[nodiscard]] std::string share(double time) const {
+    if (work_.options.seconds >= until_stopped) return {};
+    const double percent = std::min(100.0, 100.0 * time / std::max(1e-3, work_.options.seconds));
+    return host::figure(percent, 0) + " % ";
+  }
+
+  const Work& work_;
+  bool is_quiet_;
+  const char* after_ = "script over";  ///< while no phase of the script is played
+  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+  double next_ = 0.0;  ///< [s]
+};
 
 /// @throws SetupError if a file to write is also read, or written twice
 void require_files_apart(const Arguments& arguments, const Work& work) {
@@ -396,16 +423,14 @@ bool wrote(host::Output& file, const Result& result, Write&& write) {
 /// The operator's side alone.
 int run_station(const Arguments& arguments, const Work& work) {
   host::Output report(arguments.report);
-  const bool terminal = isatty(STDERR_FILENO) != 0;
   teleop::SessionOptions session = arguments.session;
   session.page = page_folder();
-  const bool by_hand = session.view || !session.device.empty();
-  const char* after = by_hand ? "by hand, or at rest" : "script over";
-  const teleop::StationResult result = teleop::run_station(
-      work.scene, work.options, session, host::interruption(),
-      [&](const teleop::Progress& p) { show(work.scene, p, after, false, terminal); });
-  if (terminal) std::fputs("\r\033[K", stderr);
-  teleop::print_station(result, stdout);
+  StatusLine status(arguments, work);
+  const teleop::StationResult result =
+      teleop::run_station(work.scene, work.options, session, host::interruption(),
+                          [&](const teleop::Progress& p) { status.show(p); });
+  status.clear();
+  if (!arguments.is_quiet) teleop::print_station(result, stdout);
   const bool is_printed = host::has_printed();
   if (!is_printed) std::fputs("teleop: the report could not be printed whole\n", stderr);
   return wrote(report, result, teleop::write_station_json) && is_printed ? 0 : 4;
@@ -455,9 +480,7 @@ int run(const Arguments& arguments) {
   session.page = page_folder();
   host::Output report(arguments.report);
   host::Output html(arguments.html);
-  const bool by_hand = session.view || !session.device.empty();
-  const char* after = by_hand ? "by hand, or at rest" : "script over";
-  const bool terminal = isatty(STDERR_FILENO) != 0;
+  StatusLine status(arguments, work);
   std::unique_ptr<teleop::StationProgram> station;
   if (is_apart(arguments, work)) station = station_beside(work, session);
   teleop::RunResult result =
@@ -466,16 +489,18 @@ int run(const Arguments& arguments) {
                             // The robot would only hold. What went wrong with the other program is
                             // printed at the end.
                             if (station && station->has_ended()) (void)std::raise(SIGTERM);
-                            show(work.scene, p, after, work.options.fast, terminal);
+                            status.show(p);
                           });
   if (station) result.station = station->stop();
-  if (terminal) std::fputs("\r\033[K", stderr);
-  teleop::print_report(result, stdout);
-  if (result.station) {
-    std::fputs(result.station->printed.c_str(), stdout);
-    if (result.station->status != 0) std::fputs(result.station->complaints.c_str(), stderr);
+  status.clear();
+  if (!arguments.is_quiet) {
+    teleop::print_report(result, stdout);
+    if (result.station) std::fputs(result.station->printed.c_str(), stdout);
+    if (recording != nullptr) teleop::print_replay(*recording, result, stdout);
   }
-  if (recording != nullptr) teleop::print_replay(*recording, result, stdout);
+  if (result.station && result.station->status != 0) {
+    std::fputs(result.station->complaints.c_str(), stderr);
+  }
   bool is_whole = result.log_trouble.empty();
   if (!host::has_printed()) {
     std::fputs("teleop: the report could not be printed whole\n", stderr);

@@ -16,6 +16,31 @@ TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
   }
 }
 
+TEST(CommandLine, VersionIsThatOfTheLibrary) {
+  const Ending ending = teleop("--version");
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_EQ(ending.out.rfind("teleop " REPEL_VERSION ", commit ", 0), 0U) << ending;
+}
+
+TEST(CommandLine, ProgressSaysHowMuchIsDone) {
+  const Ending ending = teleop("empty --fast --seconds 11");
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_NE(ending.err.find("0 %    0.00 s"), std::string::npos) << ending;
+  EXPECT_EQ(ending.err.find("nan"), std::string::npos) << ending;
+}
+
+TEST(CommandLine, QuietSaysNothingButWhatWentWrong) {
+  const Folder folder;
+  const Ending ending =
+      teleop("empty --fast --seconds 1 --quiet --report " + quoted(folder / "report.json"));
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_EQ(ending.out + ending.err, "");
+  EXPECT_EQ(report_of(folder / "report.json").at("ticks"), 400);
+  const Ending refused = teleop("no_such_scene --quiet");
+  EXPECT_EQ(refused.status, 1) << refused;
+  EXPECT_FALSE(refused.err.empty());
+}
+
 TEST(CommandLine, BadUsageEndsWithTwoAndSaysWhy) {
   for (const char* arguments :
        {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1", "--backend clay",
