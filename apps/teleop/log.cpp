@@ -69,7 +69,7 @@ void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file
   for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.q[i]);
   for (std::size_t i = 0; i < arm.modules.size(); ++i)
     file << ',' << or_nothing(double{k.energy[i]});
-  file << ',' << or_nothing(k.stop) << ',' << (k.brakes ? 1 : 0);
+  file << ',' << to_text(k.stop) << ',' << (k.brakes ? 1 : 0);
   for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.torques[i]);
   for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.v[i]);
   file << ',' << or_nothing(k.held_force);
