@@ -375,7 +375,7 @@ TEST(Remote, EveryNumberOfACommandArrives) {
     hand->guides = static_cast<std::int32_t>(8.0 * (next += 0.125));
     hand->compliant = static_cast<std::int32_t>(8.0 * (next += 0.125));
   }
-  told.silent_for = next += 0.125;
+  told.silent_for = next + 0.125;
   told.phase = 1000;
   network::RemoteLink station({.session = 1});
   network::RemoteLink site({.session = 2});

@@ -54,6 +54,11 @@ double speed_of(const Json& frame) {
   return Vec3(v[0].get<double>(), v[1].get<double>(), v[2].get<double>()).norm();
 }
 
+/// The script is over, and the tool has come to rest.
+bool rests(const Json& frame) {
+  return frame.at("phase").get<std::string>().empty() && speed_of(frame) < 1e-3;
+}
+
 /// What a page at the site shows just after the moment that one at the station shows.
 Json at_the_site(
     LivePage& page, const Json& frame, const std::function<void()>& meanwhile = [] {}) {
@@ -76,8 +81,7 @@ TEST(StationView, ShowsWhatThePageAtTheSiteShows) {
     return f.at("phase") == "aside" && !has_status(f, "silent_site") && speed_of(f) > 0.02;
   });
   ASSERT_FALSE(moving.is_null());
-  const Json resting =
-      here.await("frame", [&](const Json& f) { return f.at("phase") == "" && speed_of(f) < 1e-3; });
+  const Json resting = here.await("frame", rests);
   ASSERT_FALSE(resting.is_null());
   EXPECT_NE(resting.at("arms")[0].at("q"), moving.at("arms")[0].at("q"));
   EXPECT_GT((tool_of(resting, scene) - tool_of(moving, scene)).norm(), 5e-3);
@@ -159,9 +163,7 @@ TEST(StationView, WithoutTheSiteThePageIsServedAndSaysSo) {
   const Json scene = here.await("scene");
   ASSERT_FALSE(scene.is_null());
   const auto is_heard = [](const Json& f) { return !has_status(f, "silent_site"); };
-  const Json heard = here.await("frame", [&](const Json& f) {
-    return is_heard(f) && f.at("phase") == "" && speed_of(f) < 1e-3;
-  });
+  const Json heard = here.await("frame", [&](const Json& f) { return is_heard(f) && rests(f); });
   ASSERT_FALSE(heard.is_null());
   both.kill_site();
   const Json silent =
