@@ -53,7 +53,7 @@ void write_names(const ArmHeading& arm, std::ostream& file) {
     write("tau", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_nm" : "_n");
   }
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    write("dq", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad_s" : "_m_s");
+    write("v", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad_s" : "_m_s");
   }
   write("held_n");
 }

@@ -118,7 +118,7 @@ TEST(Recording, ATableHasRatesAndTimesAndNoNumberThatIsNone) {
     double fastest = 0.0;
     for (std::size_t i = 1; i < log.at("tick").size(); ++i) {
       const double moved = log.at("q2_rad")[i] - log.at("q2_rad")[i - 1];
-      const double rate = log.at("dq2_rad_s")[i];
+      const double rate = log.at("v2_rad_s")[i];
       fastest = std::max(fastest, std::abs(rate));
       if (log.at("tick")[i] == log.at("tick")[i - 1] + 1.0) {
         EXPECT_NEAR(moved, 0.0025 * rate, 2e-4);
