@@ -21,8 +21,13 @@ export class Hand {
       this.#say({ type: "scale", factor: factorOf(Number(at("hand-scale").value)) });
     });
     at("guide-strength").addEventListener("input", () => this.#guides());
-    at("hand-choice").addEventListener("change", () => {
-      this.second = at("hand-choice").value === "second";
+    const choice = at("hand-choice");
+    let pointed = false;
+    choice.addEventListener("pointerdown", () => (pointed = true));
+    choice.addEventListener("keydown", () => (pointed = false));
+    choice.addEventListener("change", () => {
+      this.second = choice.value === "second";
+      if (pointed) choice.blur();  // the next key drives
     });
   }
 

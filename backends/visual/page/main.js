@@ -241,7 +241,7 @@ addEventListener("keydown", onKey);
 addEventListener("keyup", (event) => keyboard.up(event));
 // What was clicked must not take the next press of the space bar.
 addEventListener("click", (event) => {
-  if (event.detail > 0) event.target.closest?.("button, summary")?.blur();
+  if (event.detail > 0) event.target.closest?.("button, summary, [type=checkbox]")?.blur();
 });
 startSecret(() => connection.reopen());
 connection.open();
