@@ -1,0 +1,242 @@
+"""Reads what a run has logged: recordings and CSV files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from . import _repel
+from ._errors import SetupError
+
+_AXES = "xyz"
+
+
+class Recording(Mapping):
+    """The columns of a run by name, each an array with an entry for each tick.
+
+    Names and units are those of the columns of `--log FILE.csv` (docs/recording.md): `time_s`,
+    `tau1_nm`, ... `metadata` and `attachments` (bytes) are those of a recording; `trouble` says why
+    the file is incomplete, and is empty if it is not.
+    """
+
+    def __init__(self, columns: dict[str, np.ndarray], *, file: str = "",
+                 metadata: dict[str, dict[str, str]] | None = None,
+                 attachments: dict[str, bytes] | None = None, trouble: str = ""):
+        self._columns = columns
+        self.file = file
+        self.metadata = metadata or {}
+        self.attachments = attachments or {}
+        self.trouble = trouble
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def ticks(self) -> int:
+        """The number of ticks."""
+        return len(self["tick"])
+
+    def to_numpy(self) -> np.ndarray:
+        """One structured array, with a field for each column."""
+        table = np.empty(self.ticks, [(name, column.dtype) for name, column in self.items()])
+        for name, column in self.items():
+            table[name] = column
+        return table
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame."""
+        pandas = _needed("pandas")
+        return pandas.DataFrame(self._columns)
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Writes a Parquet file with a column for each."""
+        arrow = _needed("pyarrow")
+        parquet = _needed("pyarrow.parquet", "pyarrow")
+        parquet.write_table(arrow.table(self._columns), os.fspath(path))
+
+    def __repr__(self) -> str:
+        return f"<repel.Recording of {self.ticks} ticks, {len(self)} columns>"
+
+
+def _needed(module: str, package: str | None = None) -> Any:
+    import importlib
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        package = package or module
+        raise SetupError(f"{package} is not installed; to have it: pip install {package}, or "
+                         "pip install 'repel[tables]'") from error
+
+
+def read_recording(path: str | os.PathLike[str]) -> Recording:
+    """Reads the file that `--log` wrote: a recording if its name ends in .mcap, else CSV.
+
+    Of a truncated recording, every complete tick. Raises SetupError for a file that is neither.
+    """
+    file = os.fspath(path)
+    return _from_mcap(file) if file.endswith((".mcap", ".mcap.part")) else _from_csv(file)
+
+
+def _from_csv(file: str) -> Recording:
+    try:
+        with open(file, newline="", encoding="utf-8") as lines:
+            rows = csv.reader(lines)
+            names = next(rows, [])
+            if names[:2] != ["tick", "time_s"]:
+                raise SetupError(f"{file}: expected the columns tick, time_s, ... of a log, "
+                                 f"found {', '.join(names[:2]) or 'nothing'}", file, 1)
+            values = [row for row in rows if len(row) == len(names)]
+    except (OSError, UnicodeDecodeError) as error:
+        raise SetupError(f"{file}: cannot be read: {error}", file) from error
+    texts = zip(*values) if values else [() for _ in names]
+    return Recording({name: _column(name, text) for name, text in zip(names, texts)}, file=file)
+
+
+_WHOLE = ("tick", "phase", "status", "brakes", "pairs_near", "pairs_evaluated", "pairs_stale",
+          "oldest_age_ticks")
+_TEXT = ("hardest_pair", "stop")
+
+
+def _column(name: str, values: Any) -> np.ndarray:
+    """With the type that its name tells."""
+    last = name.rpartition("/")[2]
+    if last in _TEXT:
+        return np.array(values, dtype=str)
+    return np.array(values, dtype=np.int64 if last in _WHOLE else np.float64)
+
+
+def _from_mcap(file: str) -> Recording:
+    if not hasattr(_repel, "_read_mcap"):
+        raise SetupError("repel was built without its part record")
+    contents = _repel._read_mcap(file)
+    messages = {topic: [json.loads(data) for _, data in rows]
+                for topic, rows in contents["messages"].items()}
+    if not messages.get("/inputs"):
+        raise SetupError(f"{file}: no messages of the topic /inputs: this is not a run of repel",
+                         file)
+    # Of a file that is cut off, the last tick may lack some of its messages.
+    topics = [messages.get(topic, []) for topic in ("/inputs", "/forces", "/separations")]
+    ticks = min(len(topic) for topic in topics)
+    inputs, forces, separations = (topic[:ticks] for topic in topics)
+    columns = _of_ticks(inputs, separations)
+    timing = messages.get("/timing", [])[:ticks]
+    if len(timing) == ticks:
+        for name in ("compute_us", "late_us"):
+            columns[name] = np.array([row[name] for row in timing], float)
+    for arm, prefix in enumerate(_arm_names(messages, len(inputs[0]["arms"]) if inputs else 0)):
+        kinds = _joint_types(contents["attachments"].get(f"robot {arm}.urdf"),
+                             len(inputs[0]["arms"][arm]["q"]))
+        columns.update(_of_arm([row["arms"][arm] for row in inputs],
+                               [row["arms"][arm] for row in forces], prefix, kinds))
+    columns.update(_of_energy(messages.get("/energy", [])[:ticks], ticks))
+    return Recording(columns, file=file, metadata=contents["metadata"],
+                     attachments=contents["attachments"], trouble=contents["trouble"])
+
+
+def _of_ticks(inputs: list, separations: list) -> dict[str, np.ndarray]:
+    nearest = [row["nearest_m"] for row in separations]
+    hardest = [max(row["pairs"], key=lambda pair: (pair["force"], -pair["index"]), default=None)
+               for row in separations]
+    pushed = [pair if pair and pair["force"] > 0.0 else None for pair in hardest]
+    return {
+        "tick": np.array([row["tick"] for row in inputs], np.int64),
+        "time_s": np.array([row["time_s"] for row in inputs], float),
+        "nearest_m": np.array([np.inf if n is None else n for n in nearest], float),
+        "hardest_pair": np.array([pair["pair"] if pair else "" for pair in pushed], str),
+        "hardest_n": np.array([pair["force"] if pair else 0.0 for pair in pushed], float),
+        "pairs_near": np.array([row["near"] for row in separations], np.int64),
+        "pairs_evaluated": np.array([row["evaluated"] for row in separations], np.int64),
+    }
+
+
+def _arm_names(messages: dict[str, list], arms: int) -> list[str]:
+    """The prefixes of the columns of the arms, in their order; that of the first is empty."""
+    energy, poses = messages.get("/energy"), messages.get("/poses")
+    modules = energy[0]["energy_j"] if energy else {}
+    found = {name.rpartition("/")[0] for name in modules} - {""}
+    if len(found) != arms - 1:
+        return ["", *(f"arm{i}/" for i in range(1, arms))]
+    # The ledgers are sorted by name; bodies stand in the order of the arms.
+    bodies = [each["child_frame_id"] for each in poses[0]["transforms"]] if poses else []
+    order = [body.rpartition("/")[0] for body in bodies]
+    partners = sorted(found, key=lambda name: order.index(name) if name in order else len(order))
+    return ["", *(name + "/" for name in partners)]
+
+
+def _joint_types(urdf: bytes | None, joints: int) -> list[str] | None:
+    """Of the chain of so many joints in a robot description, base outward; none if it cannot be
+    told, as for joints that the scene holds."""
+    if urdf is None:
+        return None
+    children: dict[str, list[tuple[str, str]]] = {}
+    for joint in ElementTree.fromstring(urdf).iter("joint"):
+        parent, child = joint.find("parent"), joint.find("child")
+        if parent is not None and child is not None:
+            step = (joint.get("type", ""), child.get("link", ""))
+            children.setdefault(parent.get("link", ""), []).append(step)
+    tips = {link for steps in children.values() for _, link in steps}
+    chains, open_ends = set(), [(root, ()) for root in children if root not in tips]
+    while open_ends:
+        link, chain = open_ends.pop()
+        if link not in children:
+            chains.add(chain)
+        for kind, child in children.get(link, []):
+            moves = () if kind == "fixed" else ("prismatic" if kind == "prismatic" else "revolute",)
+            open_ends.append((child, chain + moves))
+    fitting = [chain for chain in chains if len(chain) == joints]
+    return list(fitting[0]) if len(fitting) == 1 else None
+
+
+def _of_arm(inputs: list, forces: list, prefix: str,
+            kinds: list[str] | None) -> dict[str, np.ndarray]:
+    columns: dict[str, np.ndarray] = {}
+
+    def unit(joint: int, revolute: str, prismatic: str) -> str:
+        return "" if kinds is None else revolute if kinds[joint] == "revolute" else prismatic
+
+    def add(name: str, rows: list, get: Callable[[Any], Any], kind: Any = float) -> None:
+        columns[prefix + name] = np.array([get(row) for row in rows], kind)
+
+    add("phase", inputs, lambda row: row["phase"], np.int64)
+    add("status", inputs, lambda row: row["status"], np.int64)
+    for k, axis in enumerate(_AXES):
+        add(f"virtual_f{axis}_n", forces, lambda row, k=k: row["force"][k])
+    for k, axis in enumerate(_AXES):
+        add(f"virtual_t{axis}_nm", forces, lambda row, k=k: row["torque"][k])
+    for k, axis in enumerate(_AXES):
+        add(f"coupling_f{axis}_n", forces, lambda row, k=k: row["coupling_force"][k])
+    add("lever_torque_nm", forces, lambda row: row["lever_torque"])
+    add("gain", forces, lambda row: row["gain"])
+    joints = len(inputs[0]["q"]) if inputs else 0
+    for i in range(joints):
+        add(f"q{i + 1}{unit(i, '_rad', '_m')}", inputs, lambda row, i=i: row["q"][i])
+    for i in range(joints):
+        add(f"v{i + 1}{unit(i, '_rad_s', '_m_s')}", inputs, lambda row, i=i: row["v"][i])
+    add("stop", forces, lambda row: row["stop"], str)
+    add("brakes", forces, lambda row: row["brakes"], np.int64)
+    for i in range(joints):
+        add(f"tau{i + 1}{unit(i, '_nm', '_n')}", forces, lambda row, i=i: row["torques"][i])
+    return columns
+
+
+def _of_energy(rows: list, ticks: int) -> dict[str, np.ndarray]:
+    if len(rows) != ticks or not rows:
+        return {}
+    columns = {}
+    for key in rows[0]["energy_j"]:
+        arm, _, module = key.rpartition("/")
+        name = f"{arm}/energy_{module}_j" if arm else f"energy_{module}_j"
+        columns[name] = np.array([row["energy_j"][key] for row in rows], float)
+    return columns
