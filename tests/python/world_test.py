@@ -2,7 +2,10 @@
 
 import gc
 import math
+import pathlib
 import resource
+import subprocess
+import sys
 import weakref
 
 import numpy as np
@@ -253,3 +256,10 @@ def test_nothing_leaks():
     # Each round makes megabytes; a leak of one of ten would show.
     assert resident() - before < 8000
     assert len(gc.get_objects()) - objects < 200
+
+
+def test_the_module_leaves_nothing_behind_at_the_end():
+    code = "import world_test; world_test.use_everything(); world_test.Holder()"
+    done = subprocess.run([sys.executable, "-c", code], cwd=pathlib.Path(__file__).parent,
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and done.stderr == ""  # nanobind says what was left
