@@ -17,7 +17,12 @@ from .program import program, run, view
 from .recording import Recording, read_recording
 
 if TYPE_CHECKING:
-    from ._repel import Cover, Scene, ScriptedOperator, SimulatedArm, cover, load_scene
+    from ._repel import Cover as Cover
+    from ._repel import Scene as Scene
+    from ._repel import ScriptedOperator as ScriptedOperator
+    from ._repel import SimulatedArm as SimulatedArm
+    from ._repel import cover as cover
+    from ._repel import load_scene as load_scene
 
 __version__ = "0.1.0"
 

@@ -40,7 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
             report = run(chosen.scene, seconds=chosen.seconds, fast=not chosen.by_the_clock,
                          log=chosen.log, arguments=chosen.rest)
             print(json.dumps(report, indent=2))
-            return report["exit_status"]
+            return int(report["exit_status"])
         if chosen.command == "view":
             return view(chosen.scene, chosen.rest, browser=not chosen.no_browser)
         if chosen.command == "columns":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
@@ -14,10 +14,11 @@ import numpy as np
 from . import _repel
 from ._errors import SetupError
 
-_AXES = "xyz"
+#: The messages of a topic, in their order.
+_Rows = list[dict[str, Any]]
 
 
-class Recording(Mapping):
+class Recording(Mapping[str, np.ndarray]):
     """The columns of a run by name, each an array with an entry for each tick.
 
     Names and units are those of the columns of `--log FILE.csv` (docs/recording.md): `time_s`,
@@ -145,7 +146,7 @@ def _from_mcap(file: str) -> Recording:
                      attachments=contents["attachments"], trouble=contents["trouble"])
 
 
-def _of_ticks(inputs: list, separations: list) -> dict[str, np.ndarray]:
+def _of_ticks(inputs: _Rows, separations: _Rows) -> dict[str, np.ndarray]:
     nearest = [row["nearest_m"] for row in separations]
     hardest = [max(row["pairs"], key=lambda pair: (pair["force"], -pair["index"]), default=None)
                for row in separations]
@@ -161,7 +162,7 @@ def _of_ticks(inputs: list, separations: list) -> dict[str, np.ndarray]:
     }
 
 
-def _arm_names(messages: dict[str, list], arms: int) -> list[str]:
+def _arm_names(messages: dict[str, _Rows], arms: int) -> list[str]:
     """The prefixes of the columns of the arms, in their order; that of the first is empty."""
     energy, poses = messages.get("/energy"), messages.get("/poses")
     modules = energy[0]["energy_j"] if energy else {}
@@ -187,51 +188,52 @@ def _joint_types(urdf: bytes | None, joints: int) -> list[str] | None:
             step = (joint.get("type", ""), child.get("link", ""))
             children.setdefault(parent.get("link", ""), []).append(step)
     tips = {link for steps in children.values() for _, link in steps}
-    chains, open_ends = set(), [(root, ()) for root in children if root not in tips]
-    while open_ends:
-        link, chain = open_ends.pop()
+    chains: set[tuple[str, ...]] = set()
+    ends: list[tuple[str, tuple[str, ...]]] = [(root, ()) for root in children if root not in tips]
+    while ends:
+        link, chain = ends.pop()
         if link not in children:
             chains.add(chain)
-        for kind, child in children.get(link, []):
+        for kind, tip in children.get(link, []):
             moves = () if kind == "fixed" else ("prismatic" if kind == "prismatic" else "revolute",)
-            open_ends.append((child, chain + moves))
+            ends.append((tip, chain + moves))
     fitting = [chain for chain in chains if len(chain) == joints]
     return list(fitting[0]) if len(fitting) == 1 else None
 
 
-def _of_arm(inputs: list, forces: list, prefix: str,
+def _of_arm(inputs: _Rows, forces: _Rows, prefix: str,
             kinds: list[str] | None) -> dict[str, np.ndarray]:
     columns: dict[str, np.ndarray] = {}
 
-    def unit(joint: int, revolute: str, prismatic: str) -> str:
-        return "" if kinds is None else revolute if kinds[joint] == "revolute" else prismatic
+    def add(name: str, rows: _Rows, key: str, kind: Any = float) -> None:
+        columns[prefix + name] = np.array([row[key] for row in rows], kind)
 
-    def add(name: str, rows: list, get: Callable[[Any], Any], kind: Any = float) -> None:
-        columns[prefix + name] = np.array([get(row) for row in rows], kind)
+    def add_each(names: Sequence[str], rows: _Rows, key: str) -> None:
+        table = np.array([row[key] for row in rows], float).reshape(len(rows), len(names))
+        columns.update({prefix + name: table[:, i].copy() for i, name in enumerate(names)})
 
-    add("phase", inputs, lambda row: row["phase"], np.int64)
-    add("status", inputs, lambda row: row["status"], np.int64)
-    for k, axis in enumerate(_AXES):
-        add(f"virtual_f{axis}_n", forces, lambda row, k=k: row["force"][k])
-    for k, axis in enumerate(_AXES):
-        add(f"virtual_t{axis}_nm", forces, lambda row, k=k: row["torque"][k])
-    for k, axis in enumerate(_AXES):
-        add(f"coupling_f{axis}_n", forces, lambda row, k=k: row["coupling_force"][k])
-    add("lever_torque_nm", forces, lambda row: row["lever_torque"])
-    add("gain", forces, lambda row: row["gain"])
-    joints = len(inputs[0]["q"]) if inputs else 0
-    for i in range(joints):
-        add(f"q{i + 1}{unit(i, '_rad', '_m')}", inputs, lambda row, i=i: row["q"][i])
-    for i in range(joints):
-        add(f"v{i + 1}{unit(i, '_rad_s', '_m_s')}", inputs, lambda row, i=i: row["v"][i])
-    add("stop", forces, lambda row: row["stop"], str)
-    add("brakes", forces, lambda row: row["brakes"], np.int64)
-    for i in range(joints):
-        add(f"tau{i + 1}{unit(i, '_nm', '_n')}", forces, lambda row, i=i: row["torques"][i])
+    def of_joints(name: str, revolute: str, prismatic: str) -> list[str]:
+        count = len(inputs[0]["q"]) if inputs else 0
+        units = [""] * count if kinds is None else [
+            revolute if kind == "revolute" else prismatic for kind in kinds]
+        return [f"{name}{i + 1}{unit}" for i, unit in enumerate(units)]
+
+    add("phase", inputs, "phase", np.int64)
+    add("status", inputs, "status", np.int64)
+    add_each([f"virtual_f{axis}_n" for axis in "xyz"], forces, "force")
+    add_each([f"virtual_t{axis}_nm" for axis in "xyz"], forces, "torque")
+    add_each([f"coupling_f{axis}_n" for axis in "xyz"], forces, "coupling_force")
+    add("lever_torque_nm", forces, "lever_torque")
+    add("gain", forces, "gain")
+    add_each(of_joints("q", "_rad", "_m"), inputs, "q")
+    add_each(of_joints("v", "_rad_s", "_m_s"), inputs, "v")
+    add("stop", forces, "stop", str)
+    add("brakes", forces, "brakes", np.int64)
+    add_each(of_joints("tau", "_nm", "_n"), forces, "torques")
     return columns
 
 
-def _of_energy(rows: list, ticks: int) -> dict[str, np.ndarray]:
+def _of_energy(rows: _Rows, ticks: int) -> dict[str, np.ndarray]:
     if len(rows) != ticks or not rows:
         return {}
     columns = {}

@@ -135,44 +135,9 @@ int clear(PyObject* self) {
   return 0;
 }
 
-}  // namespace
-
-void bind_cell(nb::module_& m) {
-  // The collector finds cells that their own kinematics refer to.
-  PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
-                         {Py_tp_clear, reinterpret_cast<void*>(clear)},
-                         {0, nullptr}};
-  nb::class_<OwnCell>(m, "Cell", nb::type_slots(slots),
-                      "Everything between the joint readings of arms and the torques sent to "
-                      "them, with all checks. Not for two threads at once.")
-      .def(
-          "__init__",
-          [](OwnCell* cell, double rate_hz, nb::handle arms, nb::handle obstacles) {
-            const Trouble trouble = std::make_shared<std::optional<nb::python_error>>();
-            new (cell) OwnCell(described(rate_hz, arms, obstacles, trouble), trouble);
-          },
-          nb::kw_only(), nb::arg("rate_hz"), nb::arg("arms"),
-          nb::arg("obstacles") = nb::make_tuple(),
-          nb::sig("def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
-                  "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = ()) -> None"),
-          "rate_hz [Hz] of the tick, 1 to 1e5. Runs every check; raises SetupError.")
-      .def("step", &OwnCell::step, nb::arg("q"), nb::arg("v"), nb::arg("command"),
-           nb::arg("now") = nb::none(),
-           nb::sig("def step(self, q: numpy.typing.ArrayLike, v: numpy.typing.ArrayLike, command: "
-                   "Command, now: int | None = None) -> Tick"),
-           "One tick of a cell with one arm: joint positions q [rad] or [m] and rates v (joints,), "
-           "the command of the operator, and the due time `now` [ns], above 0 and growing from "
-           "tick to "
-           "tick; without it, one period after the last. What is not finite is a fault of the "
-           "tick, not "
-           "an error.")
-      .def("sense", &OwnCell::sense, nb::arg("readings"), nb::arg("now") = nb::none(),
-           nb::sig("def sense(self, readings: collections.abc.Sequence[tuple[numpy.typing."
-                   "ArrayLike, numpy.typing.ArrayLike]], now: int | None = None) -> None"),
-           "The first half of a tick: a pair (q, v) for each arm.")
-      .def("act", &OwnCell::act, nb::arg("commands"),
-           "The second half of a tick: a command for each arm. Returns a Tick for each.")
-      .def(
+/// What may be asked of a cell between ticks.
+void bind_questions(nb::class_<OwnCell>& cell) {
+  cell.def(
           "X_WT", [](OwnCell& c, int arm) { return to_array(c.cell().X_WT(c.checked_arm(arm))); },
           nb::arg("arm") = 0, nb::sig("def X_WT(self, arm: int = 0) -> numpy.ndarray"),
           "[m] (4, 4) the tool of an arm, as of the last `sense` or `step`.")
@@ -209,6 +174,46 @@ void bind_cell(nb::module_& m) {
       .def_prop_ro(
           "warnings", [](OwnCell& c) { return c.cell().warnings(); },
           "What the description was forgiven.");
+}
+
+}  // namespace
+
+void bind_cell(nb::module_& m) {
+  // The collector finds cells that their own kinematics refer to.
+  PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
+                         {Py_tp_clear, reinterpret_cast<void*>(clear)},
+                         {0, nullptr}};
+  nb::class_<OwnCell> cell(m, "Cell", nb::type_slots(slots),
+                           "Everything between the joint readings of arms and the torques sent to "
+                           "them, with all checks. Not for two threads at once.");
+  cell.def(
+          "__init__",
+          [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles) {
+            const Trouble trouble = std::make_shared<std::optional<nb::python_error>>();
+            new (self) OwnCell(described(rate_hz, arms, obstacles, trouble), trouble);
+          },
+          nb::kw_only(), nb::arg("rate_hz"), nb::arg("arms"),
+          nb::arg("obstacles") = nb::make_tuple(),
+          nb::sig("def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
+                  "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = ()) -> None"),
+          "rate_hz [Hz] of the tick, 1 to 1e5. Runs every check; raises SetupError.")
+      .def("step", &OwnCell::step, nb::arg("q"), nb::arg("v"), nb::arg("command"),
+           nb::arg("now") = nb::none(),
+           nb::sig("def step(self, q: numpy.typing.ArrayLike, v: numpy.typing.ArrayLike, command: "
+                   "Command, now: int | None = None) -> Tick"),
+           "One tick of a cell with one arm: joint positions q [rad] or [m] and rates v (joints,), "
+           "the command of the operator, and the due time `now` [ns], above 0 and growing from "
+           "tick to "
+           "tick; without it, one period after the last. What is not finite is a fault of the "
+           "tick, not "
+           "an error.")
+      .def("sense", &OwnCell::sense, nb::arg("readings"), nb::arg("now") = nb::none(),
+           nb::sig("def sense(self, readings: collections.abc.Sequence[tuple[numpy.typing."
+                   "ArrayLike, numpy.typing.ArrayLike]], now: int | None = None) -> None"),
+           "The first half of a tick: a pair (q, v) for each arm.")
+      .def("act", &OwnCell::act, nb::arg("commands"),
+           "The second half of a tick: a command for each arm. Returns a Tick for each.");
+  bind_questions(cell);
 }
 
 }  // namespace repel::python
