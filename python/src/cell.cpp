@@ -63,6 +63,7 @@ Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
   if (cell_->arms() != 1) {
     throw SetupError("step is for a cell with one arm; allowed: sense, then act");
   }
+  const InUse in_use(is_in_use_);
   const OwnReadings own(q, v);
   const TickRecord* record = nullptr;
   {
@@ -75,6 +76,7 @@ Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
 }
 
 void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> now) {
+  const InUse in_use(is_in_use_);
   std::vector<OwnReadings> own;
   for (nb::handle each : readings) {
     if (!nb::isinstance<nb::sequence>(each) || nb::len(each) != 2) {
@@ -99,6 +101,7 @@ void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> no
 }
 
 std::vector<Tick> OwnCell::act(const std::vector<network::Command>& hands) {
+  const InUse in_use(is_in_use_);
   if (!has_sensed_) throw SetupError("act comes after sense, once");
   if (hands.size() != cell_->arms()) {
     throw nb::value_error(("commands: expected " + std::to_string(cell_->arms()) +

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,23 @@
 #include "tick.hpp"
 
 namespace repel::python {
+
+/// Refuses a second call of an object while one goes on, in another thread or from its own
+/// kinematics: others run while the interpreter is let go.
+class InUse {
+ public:
+  /// @throws std::runtime_error
+  explicit InUse(bool& flag) : flag_(flag) {
+    if (flag_) throw std::runtime_error("this object is in use: allowed is one call at a time");
+    flag_ = true;
+  }
+  ~InUse() { flag_ = false; }
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+ private:
+  bool& flag_;  ///< read and written with the GIL only
+};
 
 /// A cell, with the kinematics that are written in Python and the names of its records.
 class OwnCell {
@@ -45,6 +64,7 @@ class OwnCell {
   std::vector<std::shared_ptr<const TickNames>> names_;
   std::chrono::nanoseconds last_{0};
   bool has_sensed_ = false;
+  bool is_in_use_ = false;
 };
 
 }  // namespace repel::python

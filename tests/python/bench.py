@@ -2,7 +2,8 @@
 """bench.py [--pairs N] [--shapes N] [--rounds N]: what a pair costs from Python and in C++.
 
 Checks first that the answers have the same bits. Then it times both by turns, keeps the least time
-of each, and prints it with the ratio. Needs the package, a C++ compiler and Eigen.
+of each, and prints it with the ratio; then what single calls and ticks cost from Python. Needs the
+package, a C++ compiler and Eigen.
 """
 
 import argparse
@@ -12,8 +13,11 @@ import sys
 import tempfile
 import time
 
+import numpy as np
+
 import repel
-from problem import COLUMNS, Problem, answers_of_loop, built_loop
+from gantry import gantry_cell
+from problem import COLUMNS, ROOT, Problem, answers_of_loop, built_loop
 
 
 def time_from_python(problem, repeats):
@@ -49,6 +53,29 @@ def time_of_single_calls(problem):
     return (time.perf_counter_ns() - begin) / len(pairs)
 
 
+def time_of_a_tick():
+    """[us] of a tick of the default scene from Python, with a simulated arm and the operator, and
+    of the `step` alone of an arm with kinematics in Python; medians."""
+    scene = repel.load_scene(ROOT / "scenes/anderson_4x8.yaml")
+    cell = repel.Cell.from_scene(scene, gravity=False)
+    arm, operator = repel.SimulatedArm(cell, kind="ideal"), scene.operator()
+    whole, own = [], []
+    for _ in range(2000):
+        begin = time.perf_counter_ns()
+        cell.sense([(arm.q, arm.v)])
+        (tick,) = cell.act([operator.step(cell.X_WT(), cell.elapsed)])
+        arm.apply(tick)
+        arm.step(cell.period)
+        whole.append(time.perf_counter_ns() - begin)
+    cell, command = gantry_cell(), repel.Command()
+    rest = np.zeros(3)
+    for _ in range(2000):
+        begin = time.perf_counter_ns()
+        cell.step(rest, rest, command)
+        own.append(time.perf_counter_ns() - begin)
+    return np.median(whole) / 1e3, np.median(own) / 1e3
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pairs", type=int, default=10_000)
@@ -68,6 +95,10 @@ def main():
             python, cpp = compared(program, problem, pathlib.Path(folder), chosen.rounds)
             print(f"{shapes:6d}   {python:16.0f}   {cpp:13.0f}   {python / cpp:5.2f}")
         print(f"a single call of separation: {time_of_single_calls(problem):.0f} ns")
+    if hasattr(repel, "load_scene"):
+        whole, own = time_of_a_tick()
+        print(f"a tick of anderson_4x8 with its arm and operator: {whole:.0f} us; "
+              f"of a gantry with kinematics in Python: {own:.0f} us")
     return 0
 
 

@@ -160,6 +160,24 @@ def test_errors_of_own_kinematics_come_out_of_the_tick():
         gantry_cell(kinematics)
 
 
+def test_a_cell_takes_one_call_at_a_time():
+    class Eager(Gantry):
+        cell = None
+
+        def X_WT(self):
+            if self.cell is not None:
+                self.cell.step(np.zeros(3), np.zeros(3), repel.Command())
+            return super().X_WT()
+
+    eager = Eager()
+    cell = gantry_cell(eager)
+    eager.cell = cell
+    with pytest.raises(RuntimeError, match="allowed is one call at a time"):
+        cell.step(np.zeros(3), np.zeros(3), repel.Command())
+    eager.cell = None
+    assert cell.step(np.zeros(3), np.zeros(3), repel.Command()).torques.shape == (3,)
+
+
 def test_kinematics_that_are_none_are_refused_by_name():
     class Flat(Gantry):
         def tool_jacobian(self):
