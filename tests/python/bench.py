@@ -97,8 +97,8 @@ def main():
         print(f"a single call of separation: {time_of_single_calls(problem):.0f} ns")
     if hasattr(repel, "load_scene"):
         whole, own = time_of_a_tick()
-        print(f"a tick of anderson_4x8 with its arm and operator: {whole:.0f} us; "
-              f"of a gantry with kinematics in Python: {own:.0f} us")
+        print(f"a tick of anderson_4x8 with its arm and operator: {whole:.1f} us; "
+              f"of a gantry with kinematics in Python: {own:.1f} us")
     return 0
 
 
