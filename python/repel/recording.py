@@ -14,6 +14,7 @@ import numpy as np
 from . import _repel
 from ._errors import SetupError
 
+_TOPICS = ("/inputs", "/forces", "/separations", "/energy", "/timing", "/poses")
 #: The messages of a topic, in their order.
 _Rows = list[dict[str, Any]]
 
@@ -102,7 +103,11 @@ def _from_csv(file: str) -> Recording:
     except (OSError, UnicodeDecodeError) as error:
         raise SetupError(f"{file}: cannot be read: {error}", file) from error
     texts = zip(*values) if values else [() for _ in names]
-    return Recording({name: _column(name, text) for name, text in zip(names, texts)}, file=file)
+    try:
+        columns = {name: _column(name, text) for name, text in zip(names, texts)}
+    except ValueError as error:
+        raise SetupError(f"{file}: a column is not of numbers: {error}", file) from error
+    return Recording(columns, file=file)
 
 
 _WHOLE = ("tick", "phase", "status", "brakes", "pairs_near", "pairs_evaluated", "pairs_stale",
@@ -122,28 +127,35 @@ def _from_mcap(file: str) -> Recording:
     if not hasattr(_repel, "_read_mcap"):
         raise SetupError("repel was built without its part record")
     contents = _repel._read_mcap(file)
-    messages = {topic: [json.loads(data) for _, data in rows]
-                for topic, rows in contents["messages"].items()}
-    if not messages.get("/inputs"):
-        raise SetupError(f"{file}: no messages of the topic /inputs: this is not a run of repel",
-                         file)
+    try:
+        columns = _from_contents(contents)
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
+        raise SetupError(f"{file}: this is not a run of repel: {error}", file) from error
+    return Recording(columns, file=file, metadata=contents["metadata"],
+                     attachments=contents["attachments"], trouble=contents["trouble"])
+
+
+def _from_contents(contents: dict[str, Any]) -> dict[str, np.ndarray]:
+    messages = {topic: [json.loads(data) for _, data in contents["messages"].get(topic, [])]
+                for topic in _TOPICS}
     # Of a file that is cut off, the last tick may lack some of its messages.
-    topics = [messages.get(topic, []) for topic in ("/inputs", "/forces", "/separations")]
+    topics = [messages[topic] for topic in ("/inputs", "/forces", "/separations")]
     ticks = min(len(topic) for topic in topics)
+    if ticks == 0:
+        raise ValueError("there is no whole tick in the topics /inputs, /forces and /separations")
     inputs, forces, separations = (topic[:ticks] for topic in topics)
     columns = _of_ticks(inputs, separations)
-    timing = messages.get("/timing", [])[:ticks]
+    timing = messages["/timing"][:ticks]
     if len(timing) == ticks:
         for name in ("compute_us", "late_us"):
             columns[name] = np.array([row[name] for row in timing], float)
-    for arm, prefix in enumerate(_arm_names(messages, len(inputs[0]["arms"]) if inputs else 0)):
+    for arm, prefix in enumerate(_arm_names(messages, len(inputs[0]["arms"]))):
         kinds = _joint_types(contents["attachments"].get(f"robot {arm}.urdf"),
                              len(inputs[0]["arms"][arm]["q"]))
         columns.update(_of_arm([row["arms"][arm] for row in inputs],
                                [row["arms"][arm] for row in forces], prefix, kinds))
-    columns.update(_of_energy(messages.get("/energy", [])[:ticks], ticks))
-    return Recording(columns, file=file, metadata=contents["metadata"],
-                     attachments=contents["attachments"], trouble=contents["trouble"])
+    columns.update(_of_energy(messages["/energy"][:ticks], ticks))
+    return columns
 
 
 def _of_ticks(inputs: _Rows, separations: _Rows) -> dict[str, np.ndarray]:
@@ -164,7 +176,7 @@ def _of_ticks(inputs: _Rows, separations: _Rows) -> dict[str, np.ndarray]:
 
 def _arm_names(messages: dict[str, _Rows], arms: int) -> list[str]:
     """The prefixes of the columns of the arms, in their order; that of the first is empty."""
-    energy, poses = messages.get("/energy"), messages.get("/poses")
+    energy, poses = messages["/energy"], messages["/poses"]
     modules = energy[0]["energy_j"] if energy else {}
     found = {name.rpartition("/")[0] for name in modules} - {""}
     if len(found) != arms - 1:
@@ -179,22 +191,25 @@ def _arm_names(messages: dict[str, _Rows], arms: int) -> list[str]:
 def _joint_types(urdf: bytes | None, joints: int) -> list[str] | None:
     """Of the chain of so many joints in a robot description, base outward; none if it cannot be
     told, as for joints that the scene holds."""
-    if urdf is None:
+    try:
+        robot = ElementTree.fromstring(urdf or b"")
+    except ElementTree.ParseError:
         return None
     children: dict[str, list[tuple[str, str]]] = {}
-    for joint in ElementTree.fromstring(urdf).iter("joint"):
+    for joint in robot.iter("joint"):
         parent, child = joint.find("parent"), joint.find("child")
         if parent is not None and child is not None:
             step = (joint.get("type", ""), child.get("link", ""))
             children.setdefault(parent.get("link", ""), []).append(step)
     tips = {link for steps in children.values() for _, link in steps}
     chains: set[tuple[str, ...]] = set()
-    ends: list[tuple[str, tuple[str, ...]]] = [(root, ()) for root in children if root not in tips]
+    ends: list[tuple[str, tuple[str, ...]]] = [(link, ()) for link in children if link not in tips]
     while ends:
         link, chain = ends.pop()
-        if link not in children:
+        steps = children.pop(link, [])  # each once, should they form a circle
+        if not steps:
             chains.add(chain)
-        for kind, tip in children.get(link, []):
+        for kind, tip in steps:
             moves = () if kind == "fixed" else ("prismatic" if kind == "prismatic" else "revolute",)
             ends.append((tip, chain + moves))
     fitting = [chain for chain in chains if len(chain) == joints]
@@ -213,7 +228,7 @@ def _of_arm(inputs: _Rows, forces: _Rows, prefix: str,
         columns.update({prefix + name: table[:, i].copy() for i, name in enumerate(names)})
 
     def of_joints(name: str, revolute: str, prismatic: str) -> list[str]:
-        count = len(inputs[0]["q"]) if inputs else 0
+        count = len(inputs[0]["q"])
         units = [""] * count if kinds is None else [
             revolute if kind == "revolute" else prismatic for kind in kinds]
         return [f"{name}{i + 1}{unit}" for i, unit in enumerate(units)]

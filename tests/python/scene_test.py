@@ -158,10 +158,21 @@ def test_what_is_no_recording_is_refused(tmp_path):
     for name in ("none.csv", "none.mcap"):
         with pytest.raises(repel.SetupError, match=name):
             repel.read_recording(tmp_path / name)
+    (tmp_path / "odd.csv").write_text("tick,time_s,status\n0,soon,0\n")
+    with pytest.raises(repel.SetupError, match="odd.csv: a column is not of numbers"):
+        repel.read_recording(tmp_path / "odd.csv")
     for name in ("bad.csv", "bad.mcap"):
         (tmp_path / name).write_bytes(b"a,b\n1,2\n")
         with pytest.raises(repel.SetupError, match=name):
             repel.read_recording(tmp_path / name)
+
+
+def test_a_recording_without_a_whole_tick_is_refused(logs, tmp_path):
+    data = logs[1].read_bytes()
+    cut = tmp_path / "early.mcap"
+    cut.write_bytes(data[:data.index(b"/inputs") + 200])
+    with pytest.raises(repel.SetupError, match="early.mcap: .*no whole tick"):
+        repel.read_recording(cut)
 
 
 def said_by(*arguments, status=0):

@@ -82,7 +82,8 @@ def driven(cell, ticks, speed=0.1):
 def test_an_own_controller_stops_before_the_wall():
     ticks, places = zip(*driven(gantry_cell(), 4001))
     # 03_own_controller of C++ is the same cell: these are the lines that it prints.
-    said = [f"x {places[k][0]:.3f} m, wall {ticks[k].peak_force:.1f} N" for k in range(0, 4001, 500)]
+    said = [f"x {places[k][0]:.3f} m, wall {ticks[k].peak_force:.1f} N"
+            for k in range(0, 4001, 500)]
     assert said == [f"x {x:.3f} m, wall {force:.1f} N" for x, force in
                     [(0.0, 0.0), (0.022, 0.0), (0.065, 0.0), (0.113, 0.0), (0.162, 0.0),
                      (0.194, 46.4), (0.197, 71.4), (0.197, 71.9), (0.197, 71.9)]]
