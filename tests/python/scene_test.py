@@ -64,6 +64,16 @@ def test_a_cell_runs_as_the_program_does_bit_for_bit(teleop, scenes, tmp_path, b
     assert (run["hardest_n"] > 1.0).any()  # it touches something
 
 
+def test_every_scene_makes_a_cell(scenes):
+    files = sorted(scenes.glob("*.yaml"))
+    assert len(files) > 10
+    for file in files:
+        cell = repel.Cell.from_scene(file)
+        cell.sense([(cell.start(i), 0 * cell.start(i)) for i in range(cell.arm_count)])
+        ticks = cell.act([repel.Command()] * cell.arm_count)
+        assert [tick.stop for tick in ticks] == ["running"] * cell.arm_count, file.name
+
+
 def test_a_cell_of_a_scene_takes_another_rate(scenes):
     cell = repel.Cell.from_scene(scenes / "empty.yaml", 1000.0)
     assert cell.period == pytest.approx(0.001)
@@ -99,7 +109,7 @@ def test_what_the_program_refuses_is_an_error(teleop, tmp_path, monkeypatch):
         repel.program()
 
 
-@pytest.fixture(scope="module", params=["anderson_4x8", "two_arms"])
+@pytest.fixture(scope="module", params=["anderson_4x8", "two_arms", "storage_tank"])
 def logs(request, teleop, tmp_path_factory):
     """The same run as CSV and as a recording."""
     folder = tmp_path_factory.mktemp(request.param)
@@ -182,14 +192,16 @@ def said_by(*arguments, status=0):
     return done.stdout if status == 0 else done.stderr
 
 
-def test_the_command_line(teleop, logs):
+def test_the_command_line(teleop, tmp_path):
     assert "SCENE" in said_by("run", "--help") and "view" in said_by("--help")
     assert said_by("--version").strip() == repel.__version__
     assert said_by("program").strip() == teleop
-    report = json.loads(said_by("run", "--seconds", "0.1", "empty", "--", "--threads", "0"))
+    log = tmp_path / "run.csv"
+    report = json.loads(said_by("run", "--seconds", "0.1", "--log", log, "empty", "--",
+                                "--threads", "0"))
     assert report["ticks"] == 40
     assert "no such scene" in said_by("run", "nonesuch", status=1)
-    assert "tau1_nm" in said_by("columns", logs[0]).split()
+    assert "tau1_nm" in said_by("columns", log).split()
 
 
 def test_the_view_shows_its_page(teleop, monkeypatch, capsys):
