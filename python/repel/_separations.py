@@ -1,0 +1,42 @@
+"""The signed distances of many pairs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _repel
+
+#: One row of what `separations` returns. Lengths in [m]; `end` is an index into `QUERY_ENDS`.
+SEPARATION = np.dtype([("distance", "f8"), ("lower", "f8"), ("upper", "f8"), ("p_WA", "f8", 3),
+                       ("p_WB", "f8", 3), ("extraction_W", "f8", 3), ("level", "i4"),
+                       ("iterations", "i4"), ("end", "u1")], align=True)
+
+
+def separations(shapes: Sequence[_repel.Shape], X_W: Any, pairs: Any, *,
+                options: _repel.QueryOptions | None = None,
+                warm: _repel.WarmStarts | None = None,
+                out: np.ndarray | None = None) -> np.ndarray:
+    """The signed distance of each pair, as one structured array of dtype `SEPARATION`.
+
+    shapes: N of them. X_W [m]: their poses, (N, 4, 4), or positions (N, 3) and unit quaternions
+    w x y z (N, 4). pairs: (M, 2) indices of shapes, A and B of each pair. warm: WarmStarts(M), kept
+    by the caller from call to call. out: the array of an earlier call, to be used again.
+
+    Row i has the same bits as `separation` gives for that pair. Other threads run meanwhile.
+    """
+    index = np.asarray(pairs)
+    if index.ndim != 2 or index.shape[1] != 2:
+        raise ValueError(f"pairs: expected indices of shapes (M, 2), got shape {index.shape}")
+    if index.dtype.kind not in "iu":
+        raise TypeError(f"pairs: expected whole numbers, got {index.dtype}")
+    if out is None:
+        out = np.empty(len(index), SEPARATION)
+    elif out.dtype != SEPARATION or out.shape != (len(index),) or not out.flags.c_contiguous:
+        raise ValueError(f"out: expected {len(index)} rows of repel.SEPARATION, "
+                         f"got {out.dtype} of shape {out.shape}")
+    _repel._fill_separations(list(shapes), X_W, np.ascontiguousarray(index, np.int64),
+                             options or _repel.QueryOptions(), warm, out.view(np.uint8))
+    return out

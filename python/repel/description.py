@@ -1,0 +1,94 @@
+"""What a Cell is made of: plain classes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from ._repel import ForceLaw, Shape
+
+
+class Kinematics(Protocol):
+    """What the loop asks of an arm, in this order; all answers belong to the last `update`.
+
+    An arm with parts on its links also needs `X_WL(link)`, (4, 4) [m], and `jacobian(link, p_WQ)`,
+    (6, joints), of the point Q of the link that is now at p_WQ [m]. One without masses in its links
+    needs `mass_matrix()`, (joints, joints) [kg m^2] or [kg].
+    """
+
+    def update(self, q: np.ndarray) -> None:
+        """Joint positions (joints,) [rad] or [m]."""
+
+    def X_WT(self) -> np.ndarray:
+        """The tool frame in the world, (4, 4) [m]."""
+
+    def tool_jacobian(self) -> np.ndarray:
+        """Of the origin of the tool, (6, joints): linear rows first, world axes."""
+
+    def gravity_torques(self) -> np.ndarray:
+        """That hold the arm, (joints,) [N m] or [N]; zeros if its drive does that by itself."""
+
+
+@dataclass
+class Link:
+    """A moving link and its joint. Angles [rad] and torques [N m]; of a prismatic one [m], [N]."""
+
+    name: str
+    type: str = "revolute"  #: or prismatic
+    X_PJ: Any = None  #: pose at zero in the parent link [m]; none: the same
+    axis_J: Any = (0.0, 0.0, 1.0)  #: unit
+    lower: float = -math.inf
+    upper: float = math.inf
+    velocity_limit: float = 0.0  #: 0: unknown
+    effort_limit: float = 0.0  #: 0: unknown
+    mass: float = 0.0  #: [kg]
+    p_LC: Any = (0.0, 0.0, 0.0)  #: centre of mass [m]
+    I_C_L: Any = None  #: (3, 3) [kg m^2] about it; none: zeros
+    viscous_friction: float = 0.0  #: [N m s/rad] or [N s/m]
+    coulomb_friction: float = 0.0  #: [N m] or [N]
+    rotor_inertia: float = 0.0  #: [kg m^2] or [kg], seen at the joint
+    brake_torque: float = 0.0  #: that its brake holds; 0: unknown
+
+
+@dataclass
+class Part:
+    """A convex part of an arm."""
+
+    name: str
+    shape: Shape
+    X_FP: Any = None  #: pose [m] in the tool frame or in that of its link; none: the same
+    link: int | None = None  #: index of its link; none: it is on the tool
+
+
+@dataclass
+class Arm:
+    """An arm, with the default network between operator and joints."""
+
+    links: Sequence[Link]
+    kinematics: Kinematics | None = None  #: none: computed from the links
+    parts: Sequence[Part] = field(default_factory=list)
+    start: Any = None  #: (joints,) [rad] or [m]; none: zeros
+    name: str = ""  #: before the names of its parts
+    X_WB: Any = None  #: pose of the base [m]; none: the world
+    X_LT: Any = None  #: pose of the tool frame in the last link [m]; none: the same
+    gravity_W: Any = (0.0, 0.0, -9.81)  #: [m/s^2]
+    self_law: ForceLaw | None = None  #: between parts that are two or more joints apart
+    tool_speed: float = 0.25  #: [m/s] up to which the operator may drive the tool
+    drive_delay: float = 0.0  #: [ticks] from a torque to its effect
+    has_brakes: bool = False
+
+
+@dataclass
+class Obstacle:
+    """A convex part of the environment."""
+
+    name: str
+    shape: Shape
+    X_WP: Any = None  #: pose [m]; none: the world
+    law: ForceLaw | None = None  #: none: ForceLaw()
+    along_W: Any = None  #: (3,) [m] to the far end of its motion to and fro; none: it is fixed
+    duration: float = 1.0  #: [s] of that motion, there and back

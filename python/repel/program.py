@@ -1,0 +1,94 @@
+"""Runs scenes by the program `teleop`."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ._errors import SetupError
+
+#: What the exit codes of the program say beside "it ran".
+_REFUSED = (1, 2)
+
+
+def program() -> str:
+    """The path of the program `teleop`: what the environment variable REPEL_TELEOP names, or the
+    one in this package, or the first on PATH."""
+    named = os.environ.get("REPEL_TELEOP")
+    if named:
+        if not os.access(named, os.X_OK):
+            raise SetupError(f"REPEL_TELEOP is {named}, which is no program")
+        return named
+    packaged = Path(__file__).with_name("bin") / "teleop"
+    if os.access(packaged, os.X_OK):
+        return str(packaged)
+    found = shutil.which("teleop")
+    if found:
+        return found
+    raise SetupError("the program teleop is not here; allowed: its path in REPEL_TELEOP (./run in "
+                     "the sources builds build/release/bin/teleop), or teleop on PATH")
+
+
+def _path_of(scene: Any) -> str:
+    """Of a Scene, a path, or the name of a scene that the program knows."""
+    return str(getattr(scene, "file", scene))
+
+
+def _refusal(text: str, status: int) -> SetupError:
+    message = text.strip().removeprefix("teleop: ") or f"teleop ended with status {status}"
+    place = re.match(r"(.+?):(\d+): ", message)
+    return SetupError(message, place[1] if place else "", int(place[2]) if place else 0)
+
+
+def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float | None = None,
+        backend: str | None = None, log: str | os.PathLike[str] | None = None,
+        arguments: Sequence[str] = ()) -> dict[str, Any]:
+    """Runs a scene and returns its report, the object that `teleop --report` writes.
+
+    scene: a Scene, the path of a scene file, or the name of one that comes with the program.
+    seconds [s] of scene time. fast: not by the clock, bitwise repeatable. log: a file for every
+    tick, a recording if its name ends in .mcap, else CSV; see read_recording. arguments: further
+    ones of `teleop --help`.
+
+    The report has the key `exit_status`: 0, or 3 to 5 where docs/recording.md says what happened.
+    Raises SetupError with the text of the program if it refuses.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.json"
+        command = [program(), _path_of(scene), "--seconds", repr(float(seconds)), "--report",
+                   str(report)]
+        command += ["--fast"] if fast else []
+        command += ["--rate", repr(float(rate_hz))] if rate_hz is not None else []
+        command += ["--backend", backend] if backend is not None else []
+        command += ["--log", os.fspath(log)] if log is not None else []
+        done = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
+        if done.returncode < 0 or done.returncode in _REFUSED or not report.exists():
+            raise _refusal(done.stderr or done.stdout, done.returncode)
+        return {**json.loads(report.read_text()), "exit_status": done.returncode}
+
+
+def view(scene: Any, arguments: Sequence[str] = (), browser: bool = True) -> int:
+    """Runs a scene in the live view until it is stopped, with the page in the browser. Returns the
+    exit status of the program."""
+    command = [program(), _path_of(scene), "--view", *arguments]
+    shown = not browser
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True) as running:
+        assert running.stdout is not None
+        try:
+            for line in running.stdout:
+                print(line, end="", flush=True)
+                address = re.search(r"https?://\S+", line)
+                if address and not shown:
+                    shown = webbrowser.open(address[0])
+        except KeyboardInterrupt:
+            print(running.communicate()[0], end="")  # it fades its forces and ends by itself
+        return running.wait()

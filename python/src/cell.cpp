@@ -1,0 +1,222 @@
+#include <repel/cell/cell.hpp>
+
+#include <cstdint>
+#include <utility>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/vector.h>
+
+#include <repel/base/setup_error.hpp>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "own_cell.hpp"
+
+namespace repel::python {
+namespace {
+
+std::unique_ptr<Cell> built(CellDescription description, Trouble& trouble) {
+  try {
+    std::unique_ptr<Cell> cell;
+    {
+      const nb::gil_scoped_release others_go_on;
+      cell = std::make_unique<Cell>(std::move(description));
+    }
+    raise(trouble);
+    return cell;
+  } catch (const SetupError&) {
+    raise(trouble);  // which is why
+    throw;
+  }
+}
+
+/// What an arm reports; the numbers live here.
+struct OwnReadings {
+  std::vector<double> q, v;
+
+  OwnReadings(nb::handle positions, nb::handle rates)
+      : q(numbers_of(positions, "q")), v(numbers_of(rates, "v")) {}
+  [[nodiscard]] ArmReadings readings() const { return {q, v}; }
+};
+
+}  // namespace
+
+OwnCell::OwnCell(OwnDescription description, Trouble trouble)
+    : trouble_(std::move(trouble)),
+      kinematics_(std::move(description.kinematics)),
+      cell_(built(std::move(description.cell), trouble_)),
+      names_(names_of(*cell_)) {}
+
+std::chrono::nanoseconds OwnCell::time_of(std::optional<std::int64_t> now) {
+  last_ = now ? std::chrono::nanoseconds(*now) : last_ + cell_->period();
+  return last_;
+}
+
+std::size_t OwnCell::checked_arm(int arm) const {
+  return static_cast<std::size_t>(
+      checked("arm", arm, 0.0, static_cast<double>(cell_->arms()) - 1.0, ""));
+}
+
+Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
+                   std::optional<std::int64_t> now) {
+  if (cell_->arms() != 1) {
+    throw SetupError("step is for a cell with one arm; allowed: sense, then act");
+  }
+  const InUse in_use(is_in_use_);
+  const OwnReadings own(q, v);
+  const TickRecord* record = nullptr;
+  {
+    const auto time = time_of(now);
+    const nb::gil_scoped_release others_go_on;
+    record = &cell_->step(own.readings(), hands, time);
+  }
+  raise(trouble_);
+  return {*record, names_.front()};
+}
+
+void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> now) {
+  const InUse in_use(is_in_use_);
+  std::vector<OwnReadings> own;
+  for (nb::handle each : readings) {
+    if (!nb::isinstance<nb::sequence>(each) || nb::len(each) != 2) {
+      throw nb::type_error("readings: expected a pair (q, v) for each arm");
+    }
+    own.emplace_back(each[0], each[1]);
+  }
+  if (own.size() != cell_->arms()) {
+    throw nb::value_error(("readings: expected " + std::to_string(cell_->arms()) +
+                           " pairs (q, v), got " + std::to_string(own.size()))
+                              .c_str());
+  }
+  std::vector<ArmReadings> all;
+  for (const OwnReadings& each : own) all.push_back(each.readings());
+  {
+    const auto time = time_of(now);
+    const nb::gil_scoped_release others_go_on;
+    cell_->sense(all, time);
+  }
+  has_sensed_ = true;
+  raise(trouble_);
+}
+
+std::vector<Tick> OwnCell::act(const std::vector<network::Command>& hands) {
+  const InUse in_use(is_in_use_);
+  if (!has_sensed_) throw SetupError("act comes after sense, once");
+  if (hands.size() != cell_->arms()) {
+    throw nb::value_error(("commands: expected " + std::to_string(cell_->arms()) +
+                           ", one for each arm, got " + std::to_string(hands.size()))
+                              .c_str());
+  }
+  has_sensed_ = false;
+  std::vector<Tick> ticks;
+  {
+    std::span<const TickRecord* const> records;
+    {
+      const nb::gil_scoped_release others_go_on;
+      records = cell_->act(hands);
+    }
+    for (std::size_t i = 0; i < records.size(); ++i) ticks.push_back({*records[i], names_[i]});
+  }
+  raise(trouble_);
+  return ticks;
+}
+
+namespace {
+
+int traverse(PyObject* self, visitproc visit, void* arg) {
+  Py_VISIT(Py_TYPE(self));
+  if (!nb::inst_ready(self)) return 0;
+  for (const OwnKinematics* own : nb::inst_ptr<OwnCell>(self)->kinematics()) {
+    Py_VISIT(own->object().ptr());
+  }
+  return 0;
+}
+
+int clear(PyObject* self) {
+  for (OwnKinematics* own : nb::inst_ptr<OwnCell>(self)->kinematics()) own->clear();
+  return 0;
+}
+
+/// What may be asked of a cell between ticks.
+void bind_questions(nb::class_<OwnCell>& cell) {
+  cell.def(
+          "X_WT", [](OwnCell& c, int arm) { return to_array(c.cell().X_WT(c.checked_arm(arm))); },
+          nb::arg("arm") = 0, nb::sig("def X_WT(self, arm: int = 0) -> numpy.ndarray"),
+          "[m] (4, 4) the tool of an arm, as of the last `sense` or `step`.")
+      .def_prop_ro(
+          "elapsed", [](OwnCell& c) { return c.cell().elapsed(); },
+          "[s] since the last tick, as of the last `sense`.")
+      .def_prop_ro(
+          "period",
+          [](OwnCell& c) { return std::chrono::duration<double>(c.cell().period()).count(); },
+          "[s]")
+      .def_prop_ro("arm_count", [](OwnCell& c) { return c.cell().arms(); })
+      .def(
+          "joints",
+          [](OwnCell& c, int arm) {
+            std::vector<std::string> names;
+            const CellDescription& d = c.cell().description();
+            for (const ArmLink& link : d.arms[c.checked_arm(arm)].model.links) {
+              names.push_back(link.joint_name);
+            }
+            return names;
+          },
+          nb::arg("arm") = 0, "The names of the joints of an arm, base outward.")
+      .def(
+          "start",
+          [](OwnCell& c, int arm) {
+            const auto& start = c.cell().description().arms[c.checked_arm(arm)].start;
+            return to_array(start.data(), {start.size()});
+          },
+          nb::arg("arm") = 0, nb::sig("def start(self, arm: int = 0) -> numpy.ndarray"),
+          "[rad] or [m] (joints,) where an arm starts.")
+      .def_prop_ro(
+          "pairs", [](OwnCell& c) { return names_of(c.cell()).front()->pairs; },
+          "The names of the pairs.")
+      .def_prop_ro(
+          "warnings", [](OwnCell& c) { return c.cell().warnings(); },
+          "What the description was forgiven.");
+}
+
+}  // namespace
+
+void bind_cell(nb::module_& m) {
+  // The collector finds cells that their own kinematics refer to.
+  PyType_Slot slots[] = {{Py_tp_traverse, reinterpret_cast<void*>(traverse)},
+                         {Py_tp_clear, reinterpret_cast<void*>(clear)},
+                         {0, nullptr}};
+  nb::class_<OwnCell> cell(m, "Cell", nb::type_slots(slots),
+                           "Everything between the joint readings of arms and the torques sent to "
+                           "them, with all checks. Not for two threads at once.");
+  cell.def(
+          "__init__",
+          [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles) {
+            const Trouble trouble = std::make_shared<std::optional<nb::python_error>>();
+            new (self) OwnCell(described(rate_hz, arms, obstacles, trouble), trouble);
+          },
+          nb::kw_only(), nb::arg("rate_hz"), nb::arg("arms"),
+          nb::arg("obstacles") = nb::make_tuple(),
+          nb::sig("def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
+                  "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = ()) -> None"),
+          "rate_hz [Hz] of the tick, 1 to 1e5. Runs every check; raises SetupError.")
+      .def("step", &OwnCell::step, nb::arg("q"), nb::arg("v"), nb::arg("command"),
+           nb::arg("now") = nb::none(),
+           nb::sig("def step(self, q: numpy.typing.ArrayLike, v: numpy.typing.ArrayLike, command: "
+                   "Command, now: int | None = None) -> Tick"),
+           "One tick of a cell with one arm: joint positions q [rad] or [m] and rates v (joints,), "
+           "the command of the operator, and the due time `now` [ns], above 0 and growing from "
+           "tick to "
+           "tick; without it, one period after the last. What is not finite is a fault of the "
+           "tick, not "
+           "an error.")
+      .def("sense", &OwnCell::sense, nb::arg("readings"), nb::arg("now") = nb::none(),
+           nb::sig("def sense(self, readings: collections.abc.Sequence[tuple[numpy.typing."
+                   "ArrayLike, numpy.typing.ArrayLike]], now: int | None = None) -> None"),
+           "The first half of a tick: a pair (q, v) for each arm.")
+      .def("act", &OwnCell::act, nb::arg("commands"),
+           "The second half of a tick: a command for each arm. Returns a Tick for each.");
+  bind_questions(cell);
+}
+
+}  // namespace repel::python

@@ -1,0 +1,132 @@
+#include "description.hpp"
+
+#include <string>
+#include <utility>
+
+#include <repel/base/setup_error.hpp>
+#ifdef REPEL_PYTHON_SCENES
+#include <repel/robots/kinematics.hpp>
+#endif
+
+#include "arrays.hpp"
+
+namespace repel::python {
+namespace {
+
+double number(nb::handle from, const char* name) {
+  return nb::cast<double>(from.attr(name));
+}
+
+Pose optional_pose(nb::handle from, const char* name) {
+  const nb::object value = from.attr(name);
+  return value.is_none() ? Pose::Identity() : pose_of(value, name);
+}
+
+Mat3 inertia_of(nb::handle from) {
+  constexpr const char* expected = "three by three numbers (3, 3)";
+  const nb::object value = from.attr("I_C_L");
+  if (value.is_none()) return Mat3::Zero();
+  const Array I = array_of(value, "I_C_L", expected);
+  if (I.ndim() != 2 || I.shape(0) != 3 || I.shape(1) != 3) refuse_shape(I, "I_C_L", expected);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(I.data());
+}
+
+ArmLink link_of(nb::handle from) {
+  const std::string type = nb::cast<std::string>(from.attr("type"));
+  if (type != "revolute" && type != "prismatic") {
+    throw SetupError("the type of a link is '" + type + "'; allowed: revolute, prismatic");
+  }
+  ArmLink link;
+  link.name = nb::cast<std::string>(from.attr("name"));
+  link.joint_name = link.name;
+  link.type = type == "revolute" ? JointType::revolute : JointType::prismatic;
+  link.X_PJ = optional_pose(from, "X_PJ");
+  link.axis_J = vector_of(from.attr("axis_J"), "axis_J");
+  link.mass = number(from, "mass");
+  link.p_LC = vector_of(from.attr("p_LC"), "p_LC");
+  link.I_C_L = inertia_of(from);
+  link.lower = number(from, "lower");
+  link.upper = number(from, "upper");
+  link.velocity_limit = number(from, "velocity_limit");
+  link.effort_limit = number(from, "effort_limit");
+  link.viscous_friction = number(from, "viscous_friction");
+  link.coulomb_friction = number(from, "coulomb_friction");
+  link.rotor_inertia = number(from, "rotor_inertia");
+  link.brake_torque = number(from, "brake_torque");
+  return link;
+}
+
+ArmPart part_of(nb::handle from) {
+  const nb::object link = from.attr("link");
+  return {.name = nb::cast<std::string>(from.attr("name")),
+          .shape = nb::cast<Shape>(from.attr("shape")),
+          .X_FP = optional_pose(from, "X_FP"),
+          .link = link.is_none() ? ArmPart::on_tool : nb::cast<int>(link)};
+}
+
+/// @param own to which kinematics written in Python are added
+std::unique_ptr<ArmKinematics> kinematics_of(nb::handle from, const ArmModel& model,
+                                             const Trouble& trouble,
+                                             std::vector<OwnKinematics*>& own) {
+  nb::object kinematics = from.attr("kinematics");
+  if (!kinematics.is_none()) {
+    auto made = std::make_unique<OwnKinematics>(std::move(kinematics), model.links.size(), trouble);
+    own.push_back(made.get());
+    return made;
+  }
+#ifdef REPEL_PYTHON_SCENES
+  return std::make_unique<Kinematics>(model);
+#else
+  throw SetupError("an arm without kinematics needs repel built with the part robots");
+#endif
+}
+
+ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKinematics*>& own) {
+  ArmDescription arm;
+  arm.name = nb::cast<std::string>(from.attr("name"));
+  arm.model.name = arm.name;
+  arm.model.X_WB = optional_pose(from, "X_WB");
+  arm.model.X_LT = optional_pose(from, "X_LT");
+  arm.model.gravity_W = vector_of(from.attr("gravity_W"), "gravity_W");
+  for (nb::handle link : from.attr("links")) arm.model.links.push_back(link_of(link));
+  for (nb::handle part : from.attr("parts")) arm.parts.push_back(part_of(part));
+  if (const nb::object start = from.attr("start"); !start.is_none()) {
+    arm.start = numbers_of(start, "start");
+  }
+  if (const nb::object law = from.attr("self_law"); !law.is_none()) {
+    arm.self_law = nb::cast<ForceLaw>(law);
+  }
+  arm.options.tool_speed = number(from, "tool_speed");
+  arm.options.drive_delay = number(from, "drive_delay");
+  arm.options.has_brakes = nb::cast<bool>(from.attr("has_brakes"));
+  arm.kinematics = kinematics_of(from, arm.model, trouble, own);
+  return arm;
+}
+
+ObstacleDescription obstacle_of(nb::handle from) {
+  ObstacleDescription obstacle{.name = nb::cast<std::string>(from.attr("name")),
+                               .shape = nb::cast<Shape>(from.attr("shape"))};
+  obstacle.X_WP = optional_pose(from, "X_WP");
+  if (const nb::object law = from.attr("law"); !law.is_none()) {
+    obstacle.law = nb::cast<ForceLaw>(law);
+  }
+  const nb::object along = from.attr("along_W");
+  if (!along.is_none()) {
+    const double duration = number(from, "duration");
+    obstacle.motion = ReciprocatingMotion{vector_of(along, "along_W"), duration};
+  }
+  return obstacle;
+}
+
+}  // namespace
+
+OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles,
+                         const Trouble& trouble) {
+  OwnDescription own;
+  own.cell.rate_hz = rate_hz;
+  for (nb::handle arm : arms) own.cell.arms.push_back(arm_of(arm, trouble, own.kinematics));
+  for (nb::handle each : obstacles) own.cell.obstacles.push_back(obstacle_of(each));
+  return own;
+}
+
+}  // namespace repel::python

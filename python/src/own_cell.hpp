@@ -1,0 +1,70 @@
+/// @file
+/// A cell as Python holds it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+
+#include <repel/cell/cell.hpp>
+
+#include "description.hpp"
+#include "own_kinematics.hpp"
+#include "tick.hpp"
+
+namespace repel::python {
+
+/// Refuses a second call of an object while one goes on, in another thread or from its own
+/// kinematics: others run while the interpreter is let go.
+class InUse {
+ public:
+  /// @throws std::runtime_error
+  explicit InUse(bool& flag) : flag_(flag) {
+    if (flag_) throw std::runtime_error("this object is in use: allowed is one call at a time");
+    flag_ = true;
+  }
+  ~InUse() { flag_ = false; }
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+ private:
+  bool& flag_;  ///< read and written with the GIL only
+};
+
+/// A cell, with the kinematics that are written in Python and the names of its records.
+class OwnCell {
+ public:
+  /// @throws the error of the kinematics, or SetupError
+  OwnCell(OwnDescription description, Trouble trouble);
+
+  /// One tick of a cell with one arm. @param now [ns] above 0; none: one period after the last
+  [[nodiscard]] Tick step(nb::handle q, nb::handle v, const network::Command& hands,
+                          std::optional<std::int64_t> now);
+  /// The two halves of a tick. @param readings a pair (q, v) for each arm
+  void sense(const nb::sequence& readings, std::optional<std::int64_t> now);
+  [[nodiscard]] std::vector<Tick> act(const std::vector<network::Command>& hands);
+
+  [[nodiscard]] Cell& cell() noexcept { return *cell_; }
+  /// @throws SetupError if there is no such arm
+  [[nodiscard]] std::size_t checked_arm(int arm) const;
+  [[nodiscard]] const std::vector<OwnKinematics*>& kinematics() const { return kinematics_; }
+
+ private:
+  [[nodiscard]] std::chrono::nanoseconds time_of(std::optional<std::int64_t> now);
+
+  Trouble trouble_;
+  std::vector<OwnKinematics*> kinematics_;
+  std::unique_ptr<Cell> cell_;
+  std::vector<std::shared_ptr<const TickNames>> names_;
+  std::chrono::nanoseconds last_{0};
+  bool has_sensed_ = false;
+  bool is_in_use_ = false;
+};
+
+}  // namespace repel::python

@@ -1,0 +1,80 @@
+"""The examples run, and say what the documentation says that they say."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+import pytest
+
+import repel
+from problem import ROOT
+
+EXAMPLES = ROOT / "examples/python"
+
+
+def said_by(name, *arguments, folder):
+    return subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)], cwd=folder,
+                          capture_output=True, text=True, check=True).stdout
+
+
+def test_the_first_program_is_that_of_the_page(tmp_path):
+    page = (ROOT / "docs/python.md").read_text()
+    code = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
+    assert code in (EXAMPLES / "01_two_boxes.py").read_text()
+    printed = re.search(r"\nprints\n\n((?:    .*\n)+)", page)[1]
+    said = said_by("01_two_boxes.py", folder=tmp_path)
+    assert said.splitlines() == [line.strip() for line in printed.splitlines()]
+
+
+def test_a_thousand_pairs(tmp_path):
+    said = said_by("02_thousand_pairs.py", folder=tmp_path)
+    cold, warm = map(int, re.search(r"support pairs: (\d+), then (\d+)", said).groups())
+    assert warm < cold and float(re.search(r"apart: (\S+) m", said)[1]) < 1e-6
+
+
+def test_a_run_is_plotted(teleop, tmp_path):
+    pytest.importorskip("matplotlib")
+    said = said_by("03_plot_a_run.py", "anderson_4x8", "plot.png", folder=tmp_path)
+    assert re.match(r"2000 ticks, at most \d+\.\d N: plot\.png", said)
+    assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_own_controller(tmp_path):
+    lines = said_by("04_own_controller.py", folder=tmp_path).splitlines()
+    assert lines[0].startswith("x 0.000 m, wall 0.0 N")
+    assert lines[-1] == "x 0.197 m, wall 71.9 N, saturated"  # as 03_own_controller.cpp
+
+
+def test_the_notebook_runs():
+    notebook = json.loads((EXAMPLES / "first_steps.ipynb").read_text())
+    names = {}
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            assert cell["outputs"] == []
+            exec("".join(cell["source"]), names)
+    assert names["s"].distance == pytest.approx(0.01)
+    assert names["world"].pair_count == 1
+
+
+def test_every_public_name_is_on_the_page():
+    page = (ROOT / "docs/python.md").read_text()
+    missing = [name for name in repel.__all__ if not re.search(rf"`[^`\n]*\b{name}\b", page)]
+    assert missing == []
+
+
+def test_every_public_name_has_its_documentation():
+    for name in repel.__all__:
+        thing = getattr(repel, name)
+        assert thing.__doc__, name
+
+
+def test_stubs_come_with_the_package():
+    package = pathlib.Path(repel.__file__).parent
+    assert (package / "py.typed").exists()
+    stub = (package / "_repel.pyi").read_text()
+    compile(stub, "_repel.pyi", "exec")
+    for name in ("Shape", "Cell", "World", "Tick"):
+        assert f"class {name}:" in stub
+    assert "def separation(a: Shape, X_WA: numpy.typing.ArrayLike" in stub
