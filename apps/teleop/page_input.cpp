@@ -136,7 +136,7 @@ std::string PageInput::lead_lever(const Json& message, Time now) {
   if (!direction || !rate || direction->norm() < 1e-6) return out_of_range;
   const auto hand = hand_of(message);
   if (!hand) return no_hand;
-  if (*hand == network::Hand::second) return "the network has no lever in a second hand";
+  if (*hand == network::Hand::second) return "a page leads the lever of the first hand only";
   input_.rates = {};
   input_.in_tool = false;
   input_.direction_W = direction->normalized();

@@ -205,7 +205,7 @@ TEST(LiveInputs, WhatIsWrongIsRefusedWithAReason) {
         {"frame", "world"}},
        "a hand is first or second"},
       {{{"type", "servo_lever"}, {"hand", "second"}, {"direction", {1, 0, 0}}, {"rate", 0}},
-       "no lever in a second hand"},
+       "the lever of the first hand only"},
   };
   for (const auto& [message, why] : cases) {
     EXPECT_NE(page.refusal_of(message).find(why), std::string::npos) << message;
