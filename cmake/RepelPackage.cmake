@@ -16,12 +16,14 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/papers/doc/ DESTINATION ${CMAKE_INSTALL_
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME repel)
 set(CPACK_PACKAGE_VENDOR "repel developers")
-set(CPACK_PACKAGE_CONTACT "repel developers <repel@localhost.localdomain>")
+set(REPEL_PACKAGER "repel developers <repel@example.org>" CACHE STRING
+    "Who makes the Debian package, and answers for it")
+set(CPACK_PACKAGE_CONTACT ${REPEL_PACKAGER})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "virtual force feedback in hard real time")
 string(CONCAT CPACK_PACKAGE_DESCRIPTION
-       "Distances between convex parts, the way out where they overlap, and the forces that come\n"
-       "of it, in every tick of a teleoperated robot. A header library, and programs that\n"
-       "simulate an arm.")
+       "Distances between convex parts, the way out where they overlap, and the\n"
+       "forces that come of it, in every tick of a teleoperated robot. A header\n"
+       "library, and programs that simulate an arm.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
