@@ -128,6 +128,24 @@ step "add_subdirectory" works add_subdirectory "-DREPEL=$root"
 [ ! -e "$prefix/bin/teleop" ] ||
   step "the installed program" "$prefix/bin/teleop" --seconds 0.1 --fast
 
+# completes WANTED WORDS...: what bash offers for the last word.
+completes() {
+  # shellcheck disable=SC2016  # the dollars are the inner shell's
+  bash -c '
+    . "$1/share/bash-completion/completions/teleop"
+    wanted=$2 program=$1/bin/teleop
+    shift 2
+    COMP_WORDS=("$program" "$@") COMP_CWORD=$# COMPREPLY=()
+    _repel
+    echo "${COMPREPLY[*]}"
+    [ "${COMPREPLY[*]}" = "$wanted" ]' completes "$prefix" "$@"
+}
+if [ -e "$prefix/bin/teleop" ]; then
+  step "completion of an option" completes --backend --back
+  step "completion of its words" completes ode --backend o
+  step "completion of a scene" completes anderson_4x8 anderson
+fi
+
 sources="$here/main.cpp $here/elsewhere.cpp"
 PKG_CONFIG_PATH=$prefix/share/pkgconfig
 export PKG_CONFIG_PATH

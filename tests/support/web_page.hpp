@@ -216,10 +216,10 @@ class WebPage {
   bool say(const std::string& text) { return send({Frame::text, text}); }
   bool send(const Frame& frame) { return line_.send(frame.bytes()); }
 
-  /// The next message, if one arrives in time. Answers pings; ends with the connection.
+  /// The next message, if one arrives in time; of one that has not come whole, the rest is awaited
+  /// by the next call. Answers pings; ends with the connection.
   std::optional<std::string> next(std::chrono::milliseconds wait = patience) {
     const auto until = std::chrono::steady_clock::now() + wait;
-    std::string message;
     for (;;) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
           until - std::chrono::steady_clock::now());
@@ -229,8 +229,8 @@ class WebPage {
       if (frame->kind == Frame::ping) (void)send({Frame::pong, frame->payload});
       if (frame->kind == Frame::close) hear_close(frame->payload);
       if (frame->kind > Frame::binary) continue;
-      message += frame->payload;
-      if (frame->last) return message;
+      message_ += frame->payload;
+      if (frame->last) return std::exchange(message_, {});
     }
   }
   /// Reads all data until the server closes the connection. Returns the close code, 0 without one.
@@ -280,6 +280,7 @@ class WebPage {
 
   Line line_;
   std::string come_;
+  std::string message_;  ///< the frames that have come of one that has more
   int status_ = 0;
   int close_code_ = 0;
 };

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
+#include <string>
 
 #include "visual/fake_page_handler.hpp"
 
@@ -62,6 +64,26 @@ TEST(ServerPages, AShowThatThrowsInTheThreadOfTheServerEndsNeitherTheProgramNorT
   }
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(said, "The live view has failed and goes on: the show fails\n");  // once
+}
+
+// A large message is sent in several frames. The client here once forgot those that had come when
+// its patience was over, and took the rest for a message.
+TEST(ServerPages, AMessageInPiecesArrivesWholeWhoeverReadsImpatiently) {
+  Stage stage;
+  stage.show.shows = false;
+  stage.show.answer_size = 4000000;
+  WebPage page(stage.port, "/live", 4096);
+  EXPECT_EQ(page.next(), "welcome");
+  ASSERT_TRUE(page.say("ask"));
+  std::optional<std::string> message;
+  int waits = 0;
+  while (!message && !page.ended()) {
+    message = page.next(std::chrono::milliseconds(0));
+    ++waits;
+  }
+  ASSERT_TRUE(message.has_value());
+  EXPECT_EQ(message->size(), 4000000U);
+  EXPECT_GT(waits, 1) << "it came at once, so this has shown nothing";
 }
 
 TEST(ServerPages, EachHasANumberOfItsOwn) {
