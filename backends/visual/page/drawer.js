@@ -1,0 +1,48 @@
+// On a small screen, and where one points with a finger: the readings are folded away behind a
+// button, what is needed while driving lies on the scene, and what is not goes to the readings.
+
+import { at } from "./words.js";
+
+const FOLDED = matchMedia("(max-width: 900px), (pointer: coarse)");
+
+// What stands elsewhere while the page is folded, and where.
+const MOVES = [["numbers", "top"], ["drive-body", "panel"], ["legend", "panel"]];
+
+const ROW_PX = 60;
+const homes = new Map();
+
+function fold() {
+  const folded = FOLDED.matches;
+  document.documentElement.classList.toggle("folded", folded);
+  for (const [name, place] of MOVES) {
+    const element = at(name);
+    if (!homes.has(name)) {
+      homes.set(name, document.createComment(name));
+      element.before(homes.get(name));
+    }
+    if (folded) at(place).append(element);
+    else homes.get(name).after(element);
+  }
+  open(false);
+}
+
+function open(yes) {
+  document.documentElement.classList.toggle("opened", yes);
+  at("panel-open").setAttribute("aria-expanded", String(yes));
+}
+
+// How much of the height of the scene lies below the rows of buttons, where they are large.
+export const covered = () => (FOLDED.matches ? 2 * ROW_PX : 0);
+
+export const drawerOpen = () => at("panel-open").getAttribute("aria-expanded") === "true";
+
+export function startDrawer() {
+  at("panel-open").addEventListener("click", () => open(!drawerOpen()));
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !drawerOpen() || at("help").open) return;
+    open(false);
+    at("panel-open").focus();
+  });
+  FOLDED.addEventListener("change", fold);
+  fold();
+}
