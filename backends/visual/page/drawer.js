@@ -1,12 +1,14 @@
 // On a small screen, and where one points with a finger: the readings are folded away behind a
 // button, what is needed while driving lies on the scene, and what is not goes to the readings.
 
+import { toast } from "./messages.js";
 import { at } from "./words.js";
 
 const FOLDED = matchMedia("(max-width: 900px), (pointer: coarse)");
 
-// What stands elsewhere while the page is folded, and where.
-const MOVES = [["numbers", "top"], ["drive-body", "panel"], ["legend", "panel"]];
+// What stands elsewhere while the page is folded: at the end or the beginning of what.
+const MOVES = [["numbers", "append", "top"], ["drive-body", "prepend", "panel"],
+               ["legend", "append", "panel"]];
 
 const ROW_PX = 60;
 const homes = new Map();
@@ -14,13 +16,13 @@ const homes = new Map();
 function fold() {
   const folded = FOLDED.matches;
   document.documentElement.classList.toggle("folded", folded);
-  for (const [name, place] of MOVES) {
+  for (const [name, adds, place] of MOVES) {
     const element = at(name);
     if (!homes.has(name)) {
       homes.set(name, document.createComment(name));
       element.before(homes.get(name));
     }
-    if (folded) at(place).append(element);
+    if (folded) at(place)[adds](element);
     else homes.get(name).after(element);
   }
   open(false);
@@ -43,6 +45,8 @@ export function startDrawer() {
     open(false);
     at("panel-open").focus();
   });
+  // What is cut off there has no pointer to rest on it.
+  at("status").addEventListener("click", () => FOLDED.matches && toast(at("status").title));
   FOLDED.addEventListener("change", fold);
   fold();
 }
