@@ -88,8 +88,10 @@ export class Cameras {
     return distance;
   }
 
-  // How far what the views show reaches towards the rim of the picture, 1: sideways and upwards.
+  // How far what the views show reaches towards the rim of the picture, 1: sideways and upwards;
+  // null before the first frame.
   extent() {
+    if (!this.cornersNow) return null;
     const seen = this.cornersNow().map((corner) => corner.project(this.stage.camera));
     return ["x", "y"].map((k) => Math.max(...seen.map((point) => Math.abs(point[k]))));
   }
