@@ -18,6 +18,7 @@ export class Boxes {
   #target = new Vector3();
   #grabbed = null;  // index of a part
   #last = null;  // the one that was grabbed last
+  #pointerId = null;  // of what drags it
   #level = true;
   #bringing = false;
   #sentAt = 0;
@@ -28,10 +29,12 @@ export class Boxes {
     // Before the tool and the orbit camera hear of it.
     stage.canvas.parentElement.addEventListener("pointerdown", (e) => this.#down(e), true);
     addEventListener("pointermove", (e) => this.#move(e));
-    addEventListener("pointerup", (e) => this.#up(e));
-    for (const end of ["pointercancel", "blur"]) addEventListener(end, () => this.#let());
+    addEventListener("pointerup", (e) => e.pointerId === this.#pointerId && this.#up(e));
+    addEventListener("pointercancel", (e) => e.pointerId === this.#pointerId && this.#let());
+    addEventListener("blur", () => this.#let());
     at("add-box").addEventListener("pointerdown", (e) => {
       this.#bringing = true;
+      this.#pointerId = e.pointerId;
       // Else a finger's drag would end on the button where it began.
       e.target.releasePointerCapture?.(e.pointerId);
     });
@@ -77,7 +80,7 @@ export class Boxes {
 
   #down(event) {
     if (event.target !== this.stage.canvas || event.button !== 0 || event.shiftKey) return;
-    if (this.spare.length === 0) return;
+    if (this.spare.length === 0 || this.#grabbed !== null) return;
     this.#aim(event);
     const seen = this.#seen();
     const part = this.spare.find((k) => seen && this.parts.parts[k]?.solid === seen.object);
@@ -91,11 +94,12 @@ export class Boxes {
     this.#offset.subVectors(position, seen.point);
     this.#target.copy(position);
     this.#grabbed = this.#last = part;
+    this.#pointerId = event.pointerId;
     this.stage.canvas.parentElement.classList.add("dragging");
   }
 
   #move(event) {
-    if (this.#grabbed === null) return;
+    if (this.#grabbed === null || event.pointerId !== this.#pointerId) return;
     this.#aim(event);
     if (!this.#ray.ray.intersectPlane(this.#plane, this.#hit)) return;
     this.#hit.add(this.#offset);

@@ -30,26 +30,28 @@ export class Cameras {
     this.controls.addEventListener("change", () => stage.invalidate());
     this.controls.addEventListener("start", () => (this.mode = "free"));
     stage.target = this.controls.target;
+    stage.onResize = (before) => this.#resized(before);
     for (const name of Object.keys(VIEWS)) {
       at(`view-${name}`).addEventListener("click", () => this.view(name));
     }
     at("follow").addEventListener("click", () => this.follow(!this.following));
   }
 
-  // What the views show: these points; and, while following, this much around the tool.
+  // What the views show: the points that `corners()` gives; and, while following, this much around
+  // the tool.
   frame(corners, nearby) {
-    this.corners = corners;
+    this.cornersNow = corners;
     this.nearby = nearby;
     this.view("home");
   }
 
   view(name) {
-    if (!this.corners) return;
+    if (!this.cornersNow) return;
     this.mode = name;
     const { camera } = this.stage;
     const away = new Vector3(...VIEWS[name]).normalize();
     const middle = this.controls.target;
-    let distance = FOLLOWED * this.nearby;
+    let distance = this.#followed();
     if (this.following) middle.copy(this.#tool);
     else distance = this.#fit(away, middle);
     camera.position.copy(away).multiplyScalar(distance).add(middle);
@@ -60,21 +62,23 @@ export class Cameras {
   // Finds the point to look at, and the distance, for all corners to be seen from a direction.
   #fit(away, middle) {
     const { camera } = this.stage;
-    const high = Math.tan((camera.fov * Math.PI) / 360) / MARGIN;
-    const wide = high * camera.aspect;
+    const free = Math.max(0.3, 1 - this.stage.covered() / this.stage.canvas.clientHeight);
+    const high = (Math.tan((camera.fov * Math.PI) / 360) / MARGIN) * free;
+    const corners = this.cornersNow();
+    const wide = (high / free) * camera.aspect;
     const right = new Vector3().crossVectors(camera.up, away).normalize();
     const up = new Vector3().crossVectors(away, right);
     const q = this.#step;
     middle.set(0, 0, 0);
-    for (const corner of this.corners) middle.addScaledVector(corner, 1 / this.corners.length);
+    for (const corner of corners) middle.addScaledVector(corner, 1 / corners.length);
     let distance = 1;
     for (let round = 0; round < 4; ++round) {
-      distance = Math.max(...this.corners.map((corner) => {
+      distance = Math.max(...corners.map((corner) => {
         q.subVectors(corner, middle);
         return Math.max(Math.abs(q.dot(right)) / wide, Math.abs(q.dot(up)) / high) + q.dot(away);
       }));
       for (const side of [right, up]) {
-        const seen = this.corners.map((corner) => {
+        const seen = corners.map((corner) => {
           q.subVectors(corner, middle);
           return q.dot(side) / (distance - q.dot(away));
         });
@@ -82,6 +86,14 @@ export class Cameras {
       }
     }
     return distance;
+  }
+
+  // How far what the views show reaches towards the rim of the picture, 1: sideways and upwards;
+  // null before the first frame.
+  extent() {
+    if (!this.cornersNow) return null;
+    const seen = this.cornersNow().map((corner) => corner.project(this.stage.camera));
+    return ["x", "y"].map((k) => Math.max(...seen.map((point) => Math.abs(point[k]))));
   }
 
   look(position, target) {
@@ -101,11 +113,28 @@ export class Cameras {
       const { position } = this.stage.camera;
       const away = position.clone().sub(this.controls.target).normalize();
       this.controls.target.copy(this.#tool);
-      position.copy(this.#tool).addScaledVector(away, FOLLOWED * this.nearby);
+      position.copy(this.#tool).addScaledVector(away, this.#followed());
       this.stage.invalidate();
     } else {
       this.view(this.mode in VIEWS ? this.mode : "home");
     }
+  }
+
+  // A picture that is taller than wide sees less from the same place.
+  #followed() {
+    return (FOLLOWED * this.nearby) / Math.min(1, this.stage.camera.aspect);
+  }
+
+  // The picture has another shape, `before` was its width over its height: a fixed view is fitted
+  // again, from elsewhere as much is seen as before.
+  #resized(before) {
+    if (!this.cornersNow) return;
+    if (this.mode in VIEWS && !this.following) return this.view(this.mode);
+    const { camera } = this.stage;
+    const { target } = this.controls;
+    const farther = Math.min(1, before) / Math.min(1, camera.aspect);
+    camera.position.sub(target).multiplyScalar(farther).add(target);
+    this.controls.update();
   }
 
   // Where the tool is now.

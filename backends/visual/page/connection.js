@@ -4,8 +4,8 @@
 import { secret } from "./secret.js";
 import * as wire from "./wire.js";
 
-const READ = { scene: wire.scene, part: wire.shape, parts: wire.shapes, frame: wire.frame, timing: wire.timing,
-               operator: wire.operator, refused: wire.refused };
+const READ = { scene: wire.scene, part: wire.shape, parts: wire.shapes, frame: wire.frame,
+               timing: wire.timing, operator: wire.operator, refused: wire.refused };
 const LONGEST_WAIT_MS = 5000;
 const NO_SECRET = 4401;
 const TOO_MANY_SECRETS = 4429;
@@ -15,6 +15,7 @@ export class Connection {
   #socket = null;
   #wait = 250;
   #retry = 0;
+  resting = false;
   #onState;
 
   // `onState(connected, missing)` is told of every change; `missing` is what the program wants:
@@ -34,6 +35,7 @@ export class Connection {
 
   open() {
     clearTimeout(this.#retry);
+    this.resting = false;
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     const socket = new WebSocket(`${scheme}//${location.host}/live`);
     this.#socket = socket;
@@ -53,6 +55,15 @@ export class Connection {
   reopen() {
     this.#socket?.close();
     this.open();
+  }
+
+  // Lets the line go until it is opened again: nobody looks.
+  rest() {
+    clearTimeout(this.#retry);
+    const socket = this.#socket;
+    this.#socket = null;
+    socket?.close();
+    this.resting = true;
   }
 
   // Whether it was sent. A page whose messages queue up must not drive with old ones.

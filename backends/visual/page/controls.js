@@ -4,7 +4,7 @@
 import { banner, toast } from "./messages.js";
 import { bind, settings } from "./settings.js";
 import { state } from "./state.js";
-import { at, finite, write } from "./words.js";
+import { at, finite, SCRIPT_OVER, scriptOver, write } from "./words.js";
 
 const PERIOD_MS = 20;
 
@@ -56,15 +56,8 @@ export class Controls {
   }
 
   operator(message) {
-    const { by, you, name, silent, looksOn, whyNot } = message;
-    const words = {
-      script: "The script drives",
-      page: you ? "You drive" : "Another page drives",
-      device: `${name || "A device"} drives`,
-      recording: "A recording plays",
-      nobody: "Nobody drives",
-    };
-    write(at("who"), words[by] ?? by);
+    const { by, you, silent, looksOn, whyNot } = message;
+    this.#who(message);
     write(at("take"), you ? "Release" : "Take the controls");
     at("take").hidden = looksOn || by === "recording";
     at("onlooker").hidden = !looksOn;
@@ -72,6 +65,21 @@ export class Controls {
     at("drive-body").hidden = !you;
     at("view").classList.toggle("driving", you);
     banner("silent", silent ? "The device is silent: the operator is let go" : "");
+  }
+
+  frame() {
+    if (state.operator?.by === "script") this.#who(state.operator);
+  }
+
+  #who({ by, you, name }) {
+    const words = {
+      script: scriptOver(state.frame?.phase, by) ? SCRIPT_OVER : "The script drives",
+      page: you ? "You drive" : "Another page drives",
+      device: `${name || "A device"} drives`,
+      recording: "A recording plays",
+      nobody: "Nobody drives",
+    };
+    write(at("who"), words[by] ?? by);
   }
 
   refused({ what, why }) {

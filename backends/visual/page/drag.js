@@ -10,10 +10,12 @@ import { colour, onTheme } from "./theme.js";
 
 const GAIN = 4;  // [1/s]: the rate for a metre of rubber band
 const REACH_PX = 26;  // of the handle
+const FINGER_PX = 38;
 
 export class Drag {
   name = "mouse";
   #grabbed = false;
+  #pointerId = null;  // of what grabbed it: other fingers do other things
   #target = new Vector3();
   #offset = new Vector3();
   #plane = new Plane();
@@ -36,9 +38,10 @@ export class Drag {
     // Before the orbit camera hears of it.
     stage.canvas.parentElement.addEventListener("pointerdown", (e) => this.#down(e), true);
     addEventListener("pointermove", (e) => this.#move(e));
-    for (const end of ["pointerup", "pointercancel", "blur"]) {
-      addEventListener(end, () => this.#let());
+    for (const end of ["pointerup", "pointercancel"]) {
+      addEventListener(end, (e) => e.pointerId === this.#pointerId && this.#let());
     }
+    addEventListener("blur", () => this.#let());
   }
 
   // The body that is dragged; the copy is made again with every scene.
@@ -63,11 +66,13 @@ export class Drag {
     const seen = this.#hit.copy(this.tool.position).project(this.stage.camera);
     const off = Math.hypot(((seen.x - this.#pointer.x) * box.width) / 2,
                            ((seen.y - this.#pointer.y) * box.height) / 2);
-    return off < REACH_PX || this.#ray.intersectObjects(this.parts.solidsOf(this.body)).length > 0;
+    const reach = event.pointerType === "touch" ? FINGER_PX : REACH_PX;
+    return off < reach || this.#ray.intersectObjects(this.parts.solidsOf(this.body)).length > 0;
   }
 
   #down(event) {
     if (event.target !== this.stage.canvas || event.button !== 0 || !this.tool) return;
+    if (this.#grabbed) return;
     if (!event.shiftKey && !(this.mayDrive() && this.#onTool(event))) return;
     if (!this.mayDrive()) this.take();
     event.stopPropagation();
@@ -78,11 +83,12 @@ export class Drag {
     this.#offset.subVectors(this.tool.position, this.#hit);
     this.#target.copy(this.tool.position);
     this.#grabbed = true;
+    this.#pointerId = event.pointerId;
     this.stage.canvas.parentElement.classList.add("dragging");
   }
 
   #move(event) {
-    if (!this.#grabbed) return;
+    if (!this.#grabbed || event.pointerId !== this.#pointerId) return;
     this.#aim(event);
     if (this.#ray.ray.intersectPlane(this.#plane, this.#hit)) {
       this.#target.addVectors(this.#hit, this.#offset);
@@ -92,6 +98,7 @@ export class Drag {
 
   #let() {
     this.#grabbed = false;
+    this.#pointerId = null;
     this.stage.canvas.parentElement.classList.remove("dragging");
     this.stage.invalidate();
   }

@@ -29,6 +29,12 @@ const GROUPS = [
     ["drag a box", "move it; with Alt up and down"],
     ["Delete", "take a box away"],
   ]],
+  ["Fingers", [
+    ["left stick", "along"],
+    ["right stick", "up, down, round; or tip, roll"],
+    ["one finger", "orbit; on the ring: lead the tool"],
+    ["two fingers", "closer, farther, shift"],
+  ]],
   ["Camera and page", [
     ["1 2 3 4", "home, front, side, top"],
     ["5", "follow the tool"],
@@ -57,7 +63,7 @@ export function startHelp() {
     const list = element("dl", "", group);
     for (const [key, meaning] of keys) {
       const term = element("dt", "", list);
-      const one = key.includes("drag") || key === "wheel" ? [key] : key.split(" ");
+      const one = /drag|wheel|stick|finger/.test(key) ? [key] : key.split(" ");
       for (const cap of one) element("kbd", cap, term);
       element("dd", meaning, list);
     }

@@ -6,6 +6,7 @@ import { Cameras } from "./cameras.js";
 import { Connection } from "./connection.js";
 import { Controls } from "./controls.js";
 import { Drag } from "./drag.js";
+import { covered, startDrawer } from "./drawer.js";
 import { Gamepad } from "./gamepad.js";
 import { Gaps } from "./gaps.js";
 import { Fixtures } from "./fixtures.js";
@@ -25,6 +26,7 @@ import { askForSecret, secret, startSecret } from "./secret.js";
 import { settings } from "./settings.js";
 import { startShowMenu } from "./show_menu.js";
 import { SpaceMouse } from "./spacemouse.js";
+import { Sticks } from "./sticks.js";
 import { state, thisArmNow, toolPose } from "./state.js";
 import { Strip } from "./strips.js";
 import { startTheme } from "./theme.js";
@@ -34,10 +36,12 @@ import { Triad } from "./triad.js";
 import { at, norm, write } from "./words.js";
 
 const CLEAR_MS = 120;  // between two looks at what hides the tool
+const REST_MS = 5000;  // from when the page is hidden to when it lets its line go
 const PANELS_MS = 60;  // between two drawings of numbers and charts: faster cannot be read
 
 startTheme();
 startHelp();
+startDrawer();
 let stage;
 try {
   stage = new Stage(at("canvas"));
@@ -45,6 +49,7 @@ try {
   banner("webgl", "This browser gives no WebGL: the scene cannot be drawn");
   throw error;
 }
+stage.covered = covered;
 const parts = new Parts(stage);
 const cameras = new Cameras(stage);
 const labels = new Labels(at("labels"), stage);
@@ -73,8 +78,9 @@ const hand = new Hand(connection);
 const boxes = new Boxes(connection, stage, parts);
 const drag = new Drag(stage, parts,
                       { mayDrive: () => controls.ours, take: () => controls.take() });
-const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag], lever,
-                              hand, heading);
+const sticks = new Sticks(() => controls.take());
+const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks],
+                              lever, hand, heading);
 startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras });
 
 const toolAt = new Vector3();
@@ -84,6 +90,8 @@ let framed = "";  // the scene that the camera was set up for
 let clearedAt = 0;
 let panelsAt = 0;
 let panelsDue = true;
+let turn = 0;  // of the browser, at which it is drawn next
+let rest = 0;
 
 const MISSING = { "": "No connection to the program. Trying again.",
                   secret: "",
@@ -97,6 +105,7 @@ function connected(yes, missing = "") {
   if (!yes) {
     state.operator = null;
     controls.operator({ by: "nobody", you: false, silent: false });
+    sticks.operator({ by: "recording" });
     write(at("status"), "not connected");
     at("status").className = "status bad";
   }
@@ -127,6 +136,7 @@ connection.on("frame", (frame) => {
     history.clear();
   }
   state.frame = frame;
+  controls.frame();
   history.add(frame.recent);
   fresh = true;
 });
@@ -137,6 +147,7 @@ connection.on("timing", (timing) => (state.timing = timing));
 connection.on("operator", (operator) => {
   state.operator = operator;
   controls.operator(operator);
+  sticks.operator(operator);
   transport.operator(operator);
   stage.invalidate();
 });
@@ -158,7 +169,7 @@ function move(frame) {
     state.radius = radius;
     stage.fit(center, radius, Math.min(0, ...corners.map((corner) => corner.z)));
     const tool = parts.corners(state.scene?.arms[0]?.tool_body);
-    cameras.frame(corners, new Sphere().setFromPoints(tool).radius || radius / 4);
+    cameras.frame(() => parts.corners(), new Sphere().setFromPoints(tool).radius || radius / 4);
     showMenu.scale();
   }
   near.clear();
@@ -186,7 +197,7 @@ function clearView(now) {
 }
 
 function draw(now) {
-  requestAnimationFrame(draw);
+  turn = document.hidden ? 0 : requestAnimationFrame(draw);
   if (fresh && state.frame) move(state.frame);
   fresh = false;
   cameras.update();
@@ -200,7 +211,7 @@ function draw(now) {
     drag.draw();
     triad.draw();
   }
-  stage.render();
+  stage.quality.frame(now, stage.render());
   if (now - panelsAt > PANELS_MS) {
     panelsAt = now;
     if (panelsDue && state.frame) {
@@ -211,6 +222,18 @@ function draw(now) {
     for (const strip of strips) strip.draw();
     histogram.draw();
   }
+}
+
+// A hidden page draws nothing, and when it stays hidden it gets nothing either, unless it drives:
+// then it is for the program to find it silent.
+function showOrHide() {
+  clearTimeout(rest);
+  if (document.hidden) {
+    rest = setTimeout(() => (controls.ours ? showOrHide() : connection.rest()), REST_MS);
+    return;
+  }
+  if (connection.resting) connection.open();
+  if (turn === 0) turn = requestAnimationFrame(draw);
 }
 
 function onKey(event) {
@@ -244,5 +267,6 @@ addEventListener("click", (event) => {
   if (event.detail > 0) event.target.closest?.("button, summary, [type=checkbox]")?.blur();
 });
 startSecret(() => connection.reopen());
+document.addEventListener("visibilitychange", showOrHide);
 connection.open();
-requestAnimationFrame(draw);
+showOrHide();

@@ -1,5 +1,5 @@
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// pixels(), tinted(), look(), send().
+// pixels(), tinted(), extent(), look(), adapt(), send().
 
 import { settings } from "./settings.js";
 import { state } from "./state.js";
@@ -32,6 +32,9 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         camera: { mode: cameras.mode, following: cameras.following,
                   position: stage.camera.position.toArray() },
         theme: theme(),
+        quality: stage.quality.level,
+        aspect: stage.camera.aspect,
+        resting: connection.resting,
         settings: { ...settings },
         framesRendered: stage.rendered,
         historyLength: state.history.length,
@@ -39,6 +42,9 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
     },
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),
+    extent: () => cameras.extent(),
+    // Whether the scene may be drawn coarser on a slow machine.
+    adapt: (yes) => stage.quality.adapt(yes),
     send: (message) => connection.send(message),
     // From elsewhere than the fixed views: where the camera is, and what it looks at.
     look(position, target) {

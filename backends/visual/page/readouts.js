@@ -1,7 +1,9 @@
 // The words and numbers: status, phase, the big numbers, the nearest pairs, the energies.
 
 import { partName, sides, state, thisArm, thisArmNow } from "./state.js";
-import { at, brief, describe, finite, fixed, Held, mm, norm, write } from "./words.js";
+import {
+  at, brief, describe, finite, fixed, Held, mm, norm, SCRIPT_OVER, scriptOver, write,
+} from "./words.js";
 
 const ROWS = 5;
 const FADED = 0.995;  // gain of the forces below which it is said that they are faded
@@ -60,7 +62,8 @@ export class Readouts {
 
   frame(frame, now) {
     write(at("time"), `${fixed(frame.time_s, 2)} s`);
-    write(at("phase"), frame.phase);
+    const over = scriptOver(frame.phase, state.operator?.by);
+    write(at("phase"), over ? SCRIPT_OVER : frame.phase);
     this.#showStatus(frame, now);
     this.#showNumbers(frame.pairs);
     this.#showPairs(frame);

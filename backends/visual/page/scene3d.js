@@ -5,18 +5,21 @@ import {
   LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene, ShadowMaterial,
   WebGLRenderer,
 } from "./vendor/three.min.js";
+import { LEVELS, Quality } from "./quality.js";
 import { colour, onTheme } from "./theme.js";
 
 export class Stage {
   rendered = 0;
+  covered = () => 0;  // pixels of its height that lie below buttons
+  onResize = () => {};  // hears of the width over the height that the picture had
   #dirty = true;
 
   constructor(canvas) {
     this.canvas = canvas;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene = new Scene();
+    this.quality = new Quality(() => this.#refine());
     this.camera = new PerspectiveCamera(35, 1, 0.01, 50);
     this.camera.up.set(0, 0, 1);
     this.#light();
@@ -44,10 +47,8 @@ export class Stage {
   }
 
   setShadows(on) {
-    this.renderer.shadowMap.enabled = on;
-    this.sun.castShadow = on;
-    this.ground.visible = on;
-    this.invalidate();
+    this.shadows = on;
+    this.#refine();
   }
 
   // Lays the floor and its grid under what there is: a sphere that holds it, and its lowest point.
@@ -99,21 +100,43 @@ export class Stage {
     this.invalidate();
   }
 
-  #resize() {
-    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (width === 0 || height === 0) return;
-    this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+  // As finely as the quality says, at any density of the screen.
+  #refine(level = LEVELS[this.quality.level]) {
+    const { shadowMap } = this.renderer;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * level.pixels);
+    const cast = this.shadows && level.shadow > 0;
+    shadowMap.enabled = cast;
+    this.sun.castShadow = cast;
+    this.ground.visible = cast;
+    if (cast && this.sun.shadow.mapSize.x !== level.shadow) {
+      this.sun.shadow.mapSize.setScalar(level.shadow);
+      this.sun.shadow.map?.dispose();
+      this.sun.shadow.map = null;
+    }
     this.invalidate();
   }
 
+  #resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * LEVELS[this.quality.level].pixels);
+    this.renderer.setSize(width, height, false);
+    const before = this.camera.aspect;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (before !== this.camera.aspect) this.onResize(before);
+    this.invalidate();
+  }
+
+  // Of the finest drawing, whatever the machine manages.
   #bytes() {
+    this.#refine(LEVELS[0]);
     this.renderer.render(this.scene, this.camera);
     const gl = this.renderer.getContext();
     const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
     const bytes = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    this.#refine();
     return { width, height, bytes };
   }
 

@@ -27,6 +27,13 @@ export function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
+export const SCRIPT_OVER = "The script is over";
+
+// Whether the script has come to its end: behind its last phase there is none to name. While
+// somebody else drives that says nothing new.
+export const scriptOver = (phase, by) =>
+  phase === "" && ["script", "nobody", "recording"].includes(by);
+
 // The bits of core/repel/base/status.hpp: how bad, and what they mean. `bad` ones ramp the force to
 // zero.
 const BITS = {

@@ -1,0 +1,72 @@
+// How finely the scene is drawn: as finely as the machine manages. Slow frames make it coarser at
+// once, quick ones make it finer after a while, and later each time that this was too much.
+
+// The finest first: share of the screen's pixels along a side, and the pixels of the shadow map.
+export const LEVELS = [
+  { pixels: 1, shadow: 1024 },
+  { pixels: 0.75, shadow: 512 },
+  { pixels: 0.5, shadow: 512 },
+  { pixels: 0.5, shadow: 0 },
+];
+
+const SLOW_MS = 45;
+const QUICK_MS = 20;
+const LEAST_PATIENCE = 4;  // quick means in a row before it gets finer
+const MOST_PATIENCE = 64;
+const FRAMES = 15;  // to a mean
+const PAUSE_MS = 2000;  // a longer gap is no frame: the machine slept, or nothing was to be drawn
+
+export const finest = () => ({ level: 0, quick: 0, patience: LEAST_PATIENCE, raised: false });
+
+// What follows on a mean time of a frame: { level, quick means in a row, patience, whether the last
+// change was to a finer level }.
+export function decide({ level, quick, patience, raised }, meanMs) {
+  if (meanMs > SLOW_MS && level < LEVELS.length - 1) {
+    const longer = raised ? Math.min(2 * patience, MOST_PATIENCE) : patience;
+    return { level: level + 1, quick: 0, patience: longer, raised: false };
+  }
+  if (!(meanMs < QUICK_MS) || level === 0) return { level, quick: 0, patience, raised };
+  if (quick + 1 < patience) return { level, quick: quick + 1, patience, raised };
+  return { level: level - 1, quick: 0, patience, raised: true };
+}
+
+export class Quality {
+  #now = finest();
+  #sum = 0;
+  #count = 0;
+  #last = null;
+
+  // `apply(level of LEVELS)` hears of every change.
+  constructor(apply) {
+    this.apply = apply;
+    this.adapts = true;
+  }
+
+  get level() {
+    return this.#now.level;
+  }
+
+  // Stays as fine as it can be, or adapts.
+  adapt(yes) {
+    this.adapts = yes;
+    this.#set(finest());
+  }
+
+  // At every turn of the browser, with whether the scene was drawn at it.
+  frame(now, drawn) {
+    const took = this.#last === null ? Infinity : now - this.#last;
+    this.#last = drawn ? now : null;
+    if (!this.adapts || took > PAUSE_MS) return;
+    this.#sum += took;
+    if (++this.#count < FRAMES) return;
+    const mean = this.#sum / this.#count;
+    this.#sum = this.#count = 0;
+    this.#set(decide(this.#now, mean));
+  }
+
+  #set(next) {
+    const changed = next.level !== this.#now.level;
+    this.#now = next;
+    if (changed) this.apply(LEVELS[next.level]);
+  }
+}
