@@ -112,7 +112,7 @@ Pose drawn_pose(std::mt19937& random) {
 }
 
 // Rounding may differ because the compiler may use fused multiply-add.
-#ifndef __FMA__
+#if !defined(__FMA__) && !defined(__ARM_FEATURE_FMA)
 TEST(Types, SumsAndProductsHaveTheBitsOfEigens) {
   std::mt19937 random(17);
   for (int i = 0; i < 2000; ++i) {

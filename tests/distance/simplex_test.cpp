@@ -44,7 +44,7 @@ TYPED_TEST(SimplexOf, ProjectsTheOriginOntoItsNearestFeature) {
   Rng rng(seed);
   int enclosing = 0;
   int by_size[4] = {};
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < 8000; ++i) {
     SCOPED_TRACE(families::of_seed(seed, "simplex", i));
     const std::vector<Vec3> points = random_points(rng, 1 + i % 4);
     const auto truth = oracle::distance(points, Pose::Identity(), {Vec3::Zero()}, Pose::Identity());
