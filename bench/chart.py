@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What the plots of measured results have in common: SVG, logarithmic times, a legend."""
 
 import json

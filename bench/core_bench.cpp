@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Cost of one query and one tick: pairs of boxes and hulls, cold and warm, and the tick of 4 tool
 /// parts against 8 obstacles, with every pair near and with most of them skipped; and what the

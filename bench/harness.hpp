@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What the benchmark programs share: the description of machine and build, and for those of Google
 /// Benchmark the way from their arguments to `--json FILE` with that description in it.

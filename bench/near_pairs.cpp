@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a near pair costs in a tick, against a warm query of the same pair in the same run.
 ///

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """bench/near_pairs_table.py JSON: prints what near_pairs has written as a table in Markdown."""
 
 import argparse

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A benchmark made of parts: each measures, checks its measurements and makes a table.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """plot_distance.py RESULTS.json PLOT.svg: time against error of every library, tolerance by
 tolerance."""
 

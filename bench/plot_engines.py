@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """plot_engines.py RESULTS.json PLOT.svg: error of a motion against the run time of a step, engine
 by engine, in more and more sub-steps."""
 

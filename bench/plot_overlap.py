@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """plot_overlap.py RESULTS.json PLOT.svg: time against error of every way to measure an overlap."""
 
 import math

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """plot_scale.py RESULTS.json PLOT.svg: time of a tick against the number of pairs, way by way, and
 the memory of a pair."""
 

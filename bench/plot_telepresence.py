@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """plot_telepresence.py RESULTS.json FOLDER: delay.svg, force against time over a line of waves and a
 plain one; transparency.svg, what the operator feels against frequency; zwidth.svg, the stiffest
 wall against its damping; align.svg, the torque of the walls on a plate that is pressed flat, and its

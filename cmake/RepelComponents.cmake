@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Decides which parts can be built here. A part whose packages are missing is left out, and the line
 # that installs them is printed.
 include(RepelDependencies)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What each part needs beyond the standard library. Included by the build and by the installed
 # package alike: a static library still needs its private dependencies where it is linked.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Flags and folders for what is built in this tree; nothing here reaches a consumer. A static
 # library links them as $<BUILD_INTERFACE:repel_house>: they stay out of the installed package.
 if(PROJECT_IS_TOP_LEVEL)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs every part that was built, the package file and the pkg-config file of the core. A build
 # may be of some targets only, as that of ./run: what it left out is named and not installed.
 include(CMakePackageConfigHelpers)

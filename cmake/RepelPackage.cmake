@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # A Debian package of what is installed, with what Debian wants of one: `cmake/package/debian BUILD`
 # makes and checks it.
 include(GNUInstallDirs)

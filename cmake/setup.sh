@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Sourced by scripts, which set `root` to the folder of this repository.
 # shellcheck shell=sh disable=SC2154
 

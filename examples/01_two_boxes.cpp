@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two boxes: how far apart they are, and the force that keeps them there.
 #include <cstdio>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A lever drives a slider into a wall 20 mm away through a channel with 50 ms delay. Prints the
 // torque that the operator feels at the lever.
 #include <cstdio>

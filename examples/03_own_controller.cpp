@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Your own arm, controlled by the library at 1 kHz: a gantry whose tool is driven into a wall.
 #include <cstdio>
 #include <thread>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A custom network module: viscous drag on the tool below z = 0.5 m, as in a pool of honey. It is
 // used in a network built here, and in one that a scene file describes by module name.
 #include <cstdio>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Stands in for the Haply Inverse Service: an Inverse3 that a simulated hand leads in a circle.
 
     examples/fake_inverse.py &

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Stands in for spacenavd: plays a slow circle of a six-axis mouse on a socket.
 
     examples/fake_spacenavd.py /tmp/spnav.sock &

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Chooses the serial chain of a robot, and its tool, by the rules of docs/robots.md.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Runs work on untrusted files in a child process, since libraries may crash on them or never end.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "held_joints.hpp"
 
 #include <algorithm>

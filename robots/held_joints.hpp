@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Where the joints of a robot stand that are not joints of its arm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Converts an ArmModel to an Orocos KDL chain, in the frame of its base.
 #pragma once

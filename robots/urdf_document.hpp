@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The XML behind a URDF file. Checks, with line numbers, what urdfdom drops, accepts unchecked or
 /// does not support.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """draw.py SCENE.yaml LOG.csv PICTURE.svg: a scene from the side and from above: its obstacles, the
 way of each tool with a number where a phase of the script ends, and the arms at the start (pale)
 and where they were pushed hardest. What can come and go is yellow, dashed if it comes later; what

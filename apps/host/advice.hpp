@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What would improve the real-time behaviour of a machine, each with the command to run.
 #pragma once

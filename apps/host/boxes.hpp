@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A synthetic tick with the load of a scene: the paper's number of pairs, all within range.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Counts the heap allocations of the tick. The count must be zero.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Measures the interruptions that the machine inflicts on a thread that only reads the clock.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Describes the machine of a run and requests real-time scheduling from it.
 #pragma once

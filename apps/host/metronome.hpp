@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Wakes a loop periodically by the steady clock.
 #pragma once

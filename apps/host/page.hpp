@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Builds self-contained HTML pages (reports).
 #pragma once

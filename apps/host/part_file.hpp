@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Output files that replace their target only when they are complete.
 #pragma once

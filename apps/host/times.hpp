@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Shared parts of the reports, as text and JSON.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Runs periodic ticks in real time and measures how well the machine keeps up.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Shows the content of a robot description: joints, links, convex parts and tips.
 

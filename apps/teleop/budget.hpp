@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The evaluation budgets of `--budget`, which replace the scene's own.
 #pragma once

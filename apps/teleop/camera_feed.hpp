@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A depth camera that looks at a running cell, simulated or recorded, and the parts that are made
 /// of its images.

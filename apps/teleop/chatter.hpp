@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Chatter: how rough the forces and torques of a run are, measured while it runs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// User control of a run: drive the arm, pause, step, restart, seek.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The covers of the meshes of robot descriptions, from the lists of parts beside them.
 #pragma once

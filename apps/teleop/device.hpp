@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Opens the input device of the operator, by its name on the command line.
 #pragma once

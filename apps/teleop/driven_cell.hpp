@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A cell together with the arms and operators of a run.
 #pragma once

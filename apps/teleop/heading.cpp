@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "heading.hpp"
 
 #include <repel/cell/layout.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Names of the parts of a run, for logs and displays.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The link between the two programs of a scene: how it is chosen on the command line, and opened.
 #pragma once

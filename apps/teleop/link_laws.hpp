@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What the force laws at the links of the arms amount to at the tools.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The network address of the live view, and the secret that guards it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Sends the state of a run, or of several in a row, to the pages of the live view, and receives
 /// their commands.

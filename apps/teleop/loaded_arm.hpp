@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated arm that carries what its tool holds in the world model.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Logs of every tick, written by a separate thread.
 #pragma once

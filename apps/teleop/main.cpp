@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Runs a scene: an operator drives a simulated arm among virtual walls.
 

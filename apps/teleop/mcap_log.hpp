@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Runs as MCAP files, written tick by tick; recording.hpp reads them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Names and message schemas of the channels of a recording.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reports on the networks of a run: energy ledgers and computing time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The operator of an arm: a script, a page, a device, or a recording.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Waits for the start of the next tick: by the clock, at once, or as the user controls it.
 #pragma once

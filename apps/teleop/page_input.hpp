@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What the page that drives has asked for, out of its messages.
 #pragma once

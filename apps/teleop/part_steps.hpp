@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The steps of a scene's scripts in which parts come, are gripped, put down and go.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "prepared_run.hpp"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Shows the progress of a run from a thread of its own.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A recorded run: the inputs and outputs of each tick, read from a file for replay.
 #pragma once

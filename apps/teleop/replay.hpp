@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Support for replays: comparison with the recording, and the clock of the ticks.
 #pragma once

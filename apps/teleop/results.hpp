@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The results of a run, and how they are collected at its end.
 #pragma once

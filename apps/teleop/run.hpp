@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Runs a scene, in real time or as fast as possible.
 #pragma once

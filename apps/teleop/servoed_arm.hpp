@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated arm whose controller takes joint positions, as those of industrial arms do.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A run with its live view and log, repeated when a page requests a restart.
 #pragma once

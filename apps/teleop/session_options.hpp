@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// How a run is watched and driven: its live view and its input device.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a station shows of its site: the scene, placed as the site told it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The obstacles that a robot description or an SDF file is made into.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The operator's side of a scene that is divided between two programs.
 #pragma once

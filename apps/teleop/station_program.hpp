@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The station of a scene as a program of its own, started by that of the site.
 #pragma once

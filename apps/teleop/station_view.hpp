@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The live view at the operator's side of a divided scene.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "tick_usage.hpp"
 
 #include <sys/mman.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Counts the page faults and context switches of the tick. Both counts should be zero.
 #pragma once

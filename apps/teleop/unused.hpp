@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Lists the parts of the program that a run does not use.
 #pragma once

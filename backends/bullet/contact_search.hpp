@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Finds contacts between the links of an arm and obstacles, using Bullet.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Contact forces of an arm, solved together with its joints.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Rotor inertia, friction and stops at the joints of an arm, solved together with its inertia.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Converts an ArmModel to Bullet's articulated body.
 #pragma once

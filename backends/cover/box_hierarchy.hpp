@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Triangles in a tree of boxes. Set-up only: it allocates.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Which points of a surface lie in none of the parts: by cutting, not by sampling.
 #pragma once

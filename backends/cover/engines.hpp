@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What divides a mesh into convex parts. Set-up only: it allocates.
 #pragma once

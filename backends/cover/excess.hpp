@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// How far convex parts reach out of a solid: a bound that is proven.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Convex polytopes that are cut by planes. Set-up only: they allocate.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Parts that reach into each other, and how far. Set-up only: it allocates.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The solid that a mesh bounds. Set-up only: it allocates.
 #pragma once

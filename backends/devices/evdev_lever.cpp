@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/devices/evdev_lever.hpp>
 
 #include <time.h>

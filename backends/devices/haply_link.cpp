@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "haply_link.hpp"
 
 #include <stdexcept>

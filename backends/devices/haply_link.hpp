@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A WebSocket client that one thread runs for bounded times.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/octrees/grid.hpp>
 
 #include <algorithm>

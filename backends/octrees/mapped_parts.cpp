@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/octrees/mapped_parts.hpp>
 
 #include <algorithm>

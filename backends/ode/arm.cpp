@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "repel/ode/arm.hpp"
 
 #include <ode/ode.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Contacts between the links of an arm and obstacles, as contact joints of the Open Dynamics
 /// Engine.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/percepts/depth_memory.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/percepts/own_body.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The CRC32 of MCAP, zlib and Ethernet: polynomial 0x04c11db7, bits reflected.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads the fields of one record in order. Checks every length against the remaining bytes first.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Shared by writer and reader of MCAP files: record types, limits, and serialisation. The format:
 /// https://mcap.dev/spec

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/record/mcap_writer.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads where cameras are, and what is known of recorded depth images.
 #pragma once

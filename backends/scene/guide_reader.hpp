@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads the fixtures of a module `guide`, and the directions of a module `relief`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads what a phase of a script changes in the modules `guide` and `relief`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Strict access to YAML: every value knows its name and line; nothing is guessed or ignored.
 #pragma once

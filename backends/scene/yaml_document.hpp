@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Parses YAML text to a tree, within the limits of input_limits.hpp for any input.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a hand can switch in the network of an arm, in the messages to the page.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Checks the Host and Origin headers of requests.
 #pragma once

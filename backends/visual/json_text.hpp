@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Writes JSON directly into a string. A picture is made sixty times a second in parallel with the
 /// ticks, and its use of processor time and cache would slow them down.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Limits the number of connections that have not been answered yet.
 #pragma once

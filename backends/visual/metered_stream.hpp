@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A connection that counts the incoming WebSocket frames.
 #pragma once

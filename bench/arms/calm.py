@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Tries the default network on arms that people have: calm.py TELEOP [--write FILE] [--quick].
 
 TELEOP is the path of that program. Every arm moves freely, goes down to a floor, slides into a

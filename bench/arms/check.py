@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Checks the arms of this folder: check.py ROBOT_INFO, the path of that program.
 
 Each file must load, and at its ready pose the tool must be where the table says, pointing down, with

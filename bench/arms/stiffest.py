@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Finds the stiffest wall that the default network holds on arms that people have:
 stiffest.py TELEOP [--write FILE].
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """compare.py COVER [--write FILE] [--fetch] [--patience S] [MESH...]: covers meshes with each engine
 and writes a table of parts, time and proven bounds, as Markdown.
 

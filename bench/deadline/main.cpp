@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// How well ticks meet their deadlines on this machine, at several rates, compared with the jitter
 /// of a thread that only reads the clock.

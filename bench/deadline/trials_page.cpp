@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "trials_page.hpp"
 
 #include "chart.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Distance queries of repel and of other libraries compared on the same tasks; times count only if
 /// the answers agree with the exact ones.

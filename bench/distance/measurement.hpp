@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One line of the table: a library on a task, checked first, then timed.
 #pragma once

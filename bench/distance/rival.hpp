@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The interface of a measured library, and the list of the libraries in this build.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # What every program needs that measures libraries side by side: repel_bench_compare, and in
 # repel_bench_rivals the libraries beside ours that this machine has. measured_in_tests are ours
 # and those from Debian, so that the tests are the same everywhere.

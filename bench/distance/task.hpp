@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The tasks given to every library: solids, their poses tick by tick, and the exact answers.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Exact distances and penetration depths of polytopes, computed by the oracles of the tests.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The engines behind a common interface, and the arms they simulate.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Energy drift of arms without friction and torques, whose energy should be constant.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The torques that hold a PUMA still, for each engine, compared with the gravity constants that
 // Armstrong, Khatib and Burdick published (ICRA 1986).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Speed and accuracy of the simulated arms, engine by engine.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Period of a pendulum compared with the complete elliptic integral.
 
 #include <cmath>

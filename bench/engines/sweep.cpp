@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The same motion simulated by every engine with an increasing number of sub-steps: time per step
 // and error of the joint positions.
 

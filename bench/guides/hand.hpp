@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated operator: a hand that trembles and strays, and eyes that see late.
 #pragma once

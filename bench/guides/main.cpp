@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What virtual fixtures do for a hand that trembles: time and error of two tasks.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A task on the simulated PUMA 560, with the simulated operator and fixtures.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How deep hands that push at random get into the walls of the shipped scenes, what holds them off,
 // and what it costs.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a link between two programs costs, on one machine, over each transport: the round trip of a
 /// packet, and the time in the tick.

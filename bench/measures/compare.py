@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Compares the measures of overlap in the loop: compare.py TELEOP [--write FOLDER] [--quick].
 
 TELEOP is the path of that program. By every measure it runs three scenes of the repository, and

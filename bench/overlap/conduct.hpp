@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Continuity of the answers of a library while one solid moves into and through the other.
 #pragma once

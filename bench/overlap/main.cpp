@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Overlap queries of several libraries compared: cost of a depth query, its error against the
 /// exact depth, and its continuity while one solid moves through the other.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Motion sequences of pairs of solids into and through each other.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The settings of repel: every method by which `separation` measures an overlap.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reference answer by brute force: every pair is tested at every tick.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// How close the obstacles of a scene are to its tool.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Cost of a tick of the world from 32 to 1 000 000 pairs, with its results checked against brute
 /// force.

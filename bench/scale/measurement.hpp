@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A method measured on a scene: timed first, tick by tick, then checked.
 #pragma once

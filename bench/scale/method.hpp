@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The methods measured: each computes from a motion the pairs within range and data about them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The forces of a pair by one query and one contact patch: what a tick has to give.
 #pragma once

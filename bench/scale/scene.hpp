@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The benchmark scene: a tool of many convex parts moving among many obstacles.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The broad phase of another library, followed by repel's query on the pairs it reports.
 #pragma once

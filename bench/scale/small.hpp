@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The small scene: 4 tool parts and 8 obstacles, the task `tick` of distance_bench.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A tilted tool is pressed against a plate and into a corner: the wall forces alone align it.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Chatter of the simulated arm: of the walls, of its joints and of the lever.
 #pragma once

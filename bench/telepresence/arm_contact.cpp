@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arm is driven into a table at various angles and presses on it.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The arm is led through free space against the dry friction of its joints.
 
 #include <algorithm>

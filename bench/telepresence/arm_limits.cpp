@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The operator drives the arm to a joint limit and keeps pushing.
 
 #include <algorithm>

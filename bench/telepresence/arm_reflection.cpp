@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Wave reflections on a line after the hand stops, with and without the shunt of KBB2.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Compliance along chosen directions: the stiffness between the command and a wall.
 
 #include <cmath>

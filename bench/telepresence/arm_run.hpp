@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The PUMA 560, simulated by Bullet, in a scene: tick after tick, not in real time.
 #pragma once

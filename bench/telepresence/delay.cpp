@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Over a delayed line, a hand drives the slider into a hard wall, three strokes, and then holds it
 // there.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hand presses on a hard wall without moving; the remaining motion is the limit cycle.
 
 #include <algorithm>

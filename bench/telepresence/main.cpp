@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Transparency of the network, and the limits of wall stiffness and delay.
 

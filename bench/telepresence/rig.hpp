@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The test rig of the parts: a hand, a network, and a slider in front of a wall.
 #pragma once

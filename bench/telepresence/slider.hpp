@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A slider simulated exactly: the device of all parts.
 #pragma once

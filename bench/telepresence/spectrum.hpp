@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// How rough a signal is: its RMS above a frequency, and its jumps.
 #pragma once

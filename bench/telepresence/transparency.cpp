@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Transparency: the hand excites the lever with a sine, in free motion or while pressing on the
 // wall; the displayed impedance is the ratio of effort and flow at the port of the lever.
 

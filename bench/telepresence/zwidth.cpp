@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Z-width: a hand drives a device into a sampled wall, whose stiffness is increased until the
 // device no longer comes to rest.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Where the instructions of a tick go: split.py TELEOP [SCENE...] [--write FILE] [--json FILE].
 
 TELEOP is the path of that program. Runs the scenes (default: anderson_4x8 and two_arms) without

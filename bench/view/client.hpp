@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A headless client of the live view: receives every frame and reads its tick.
 #pragma once

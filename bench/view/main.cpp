@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Cost of an open live-view page for the tick: one real-time run with the page alternately open
 /// and closed.

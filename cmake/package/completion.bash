@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 # Completion of the programs of repel in bash, from what their --help says: options, the words that
 # an option takes, and names of scenes.
 _repel() {

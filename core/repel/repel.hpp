@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The core in one include. With `REPEL_COMPILED` without what a cell links then: the rooms `loop`,
 /// `pairs` and `schedule`.

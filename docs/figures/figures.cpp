@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // figures FOLDER: computes the figures of docs/reduction.md, control.md, walls.md and
 // network/guide.md. Writes the curves to FOLDER as CSV and prints the tables.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The straight motions of Figures 3, 5 and 6 of Anderson 1993, as pairs of long prisms: the
 /// figures are their cross sections.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A finger right through a body that may be entered, slowly and straight down.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Figure 8 of Anderson 1993 in a closed loop: a free plate is pressed onto a fixed one, and
 /// nothing but virtual forces, computed once a period, keeps the two apart and parallel.

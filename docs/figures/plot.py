@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """plot.py CSV_FOLDER SVG_FOLDER: draws the curves that `figures` wrote."""
 
 import csv

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A tool that is led slowly out of a virtual fixture, and what it feels.
 #pragma once

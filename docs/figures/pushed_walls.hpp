@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A hand that pushes a ball on a rail against a wall, slowly and ever harder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// How still the plates are: what a run shows after the push at the corner is over.
 #pragma once

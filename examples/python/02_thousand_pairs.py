@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """A thousand pairs in one call: which of many things are near, and how sure that is."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """03_plot_a_run.py [SCENE] [PLOT.png]: runs a scene and plots its forces and its nearest wall."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Your own arm, simulated in Python: a gantry whose tool is driven into a wall at 1 kHz."""
 
 import numpy as np

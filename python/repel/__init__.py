@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Certified distances between convex shapes, and virtual force feedback on robot arms.
 
 Lengths in [m], angles in [rad], forces in [N], torques in [N m], times in [s] unless a name says

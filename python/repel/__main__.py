@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """python -m repel: runs scenes by the program `teleop`, and shows them in the browser."""
 
 import argparse

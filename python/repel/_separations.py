@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The signed distances of many pairs at once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a Cell is made of: plain classes."""
 
 from __future__ import annotations

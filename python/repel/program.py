@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Runs scenes by the program `teleop`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Reads what a run has logged: recordings and CSV files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Conversions between what Python passes and the types of the library. Each names what it refuses.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The parts of the module, each defined by a file of its own.
 #pragma once

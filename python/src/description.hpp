@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The description of a cell from the plain classes of Python (repel/description.py).
 #pragma once

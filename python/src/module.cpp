@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <exception>
 
 #include <repel/base/setup_error.hpp>

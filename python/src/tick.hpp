@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The record of a tick with the names of what it counts.
 #pragma once

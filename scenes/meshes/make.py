@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """scenes/meshes/make.py: writes the meshes of this folder, as a CAD program would export them.
 
 Binary STL in metres. Bodies may pass through each other. Their convex parts, NAME.stl.parts.yaml,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Measures the accuracy for every pair of shape kinds against 113-bit references, compares it with
 // the guaranteed limits, and writes or checks the page that states it.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Search for worst-case pairs of the distance query: random restarts and hill climbing on shapes
 /// and poses.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One cell of the accuracy table: many poses of one pair of kinds at one gap.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Command-line parsing of the programs in this folder: options with a number, and --help.
 #pragma once

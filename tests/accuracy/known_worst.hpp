@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Hard pairs found by `worst_case --seconds 20 --seed 2`: two for each pair of kinds, the first
 /// for a cold start, the second for a warm start.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Random pairs of polytopes, apart and in overlap, family by family, each compared with the exact
 // answer. Exit status 1 if any invariant was violated.
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One shape of each kind with its 113-bit support map, and reference values of a posed pair of
 /// them: the distance between proven bounds, and in overlap the separating translation along a

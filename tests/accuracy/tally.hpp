@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Statistics of the long comparison: for every invariant, how often it was checked and violated.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One pair of posed polytopes, its exact answer, and all invariants that an answer must satisfy.
 #pragma once

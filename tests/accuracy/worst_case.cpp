@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Searches for the pair of shapes that needs the most iterations, and publishes it.
 #include <array>
 #include <chrono>

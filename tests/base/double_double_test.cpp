@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every operation compared with 113-bit arithmetic, which has 7 bits more than the guaranteed
 // precision.
 #include <repel/base/double_double.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The limits of input files are consistent with the capacities of what is built from them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // package/check.sh tests that a program does not link with a library of a different memory layout.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One writer thread and one reader thread, as in the tick. The payload is not atomic, so that the
 // thread sanitizer also verifies the memory ordering of the exchange.
 #include <repel/base/mailbox.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One writer thread and one reader thread. The payload is not atomic, so that the thread sanitizer
 // verifies the memory ordering of the exchange.
 #include <repel/base/ring.hpp>

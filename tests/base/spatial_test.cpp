@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Identities of twists and wrenches on random samples.
 #include <repel/base/spatial.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A file is read completely or refused, and never beyond the allowed size.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Properties of the simulated arm other than its mechanics: the concept, determinism, faults,
 // set-up errors, and no allocation in a step.
 #include <gtest/gtest.h>

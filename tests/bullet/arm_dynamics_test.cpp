@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The free motion of the simulated arm compared with analytical mechanics: closed forms for one and
 // two links, and conservation of energy, which holds for any chain.
 #include <gtest/gtest.h>

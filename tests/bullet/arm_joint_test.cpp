@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Friction and stops at the joints of the simulated arm.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The Bullet arm with another inertia than its model, and with a payload.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Physical contact in the Bullet arm: obstacles stop it.
 #include "simulated/contacts.hpp"
 

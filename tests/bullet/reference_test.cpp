@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The Bullet arm compared with a high-order solution of the equations of motion.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a cell refuses, through its C++ interface.
 #include <repel/cell/assembly.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A cell through its C++ interface: its behaviour.
 #include <repel/cell/cell.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/cell/layout.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The leverage of a tool over the parts of links, beside answers computed by hand.
 #include <repel/cell/leverage.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The least masses of an arm over its workspace.
 #include <repel/cell/robot_end.hpp>
 

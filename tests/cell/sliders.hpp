@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A cell that most tests of this folder change a little.
 #pragma once

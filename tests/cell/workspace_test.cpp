@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Poses all over the workspace.
 #include <repel/cell/workspace.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is proven of parts: which of the surface they miss, how far they reach out, how deep seams
 // are. Against figures that are known.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Covers as a whole, checked by means that have no part in making them: GJK of the core, and
 // distances that are known.
 #include <gtest/gtest.h>

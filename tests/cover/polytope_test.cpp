@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Convex polytopes that are cut by planes.
 #include "backends/cover/polytope.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The solid that a mesh bounds, and what is said of meshes that bound none.
 #include "backends/cover/solid.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/dds/dds.hpp>
 
 #include <gtest/gtest.h>

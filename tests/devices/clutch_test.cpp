@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The clutch: semantics of the button.
 #include <repel/devices/clutch.hpp>
 

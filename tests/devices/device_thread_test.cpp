@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The thread between a device and the tick. Times in real seconds are only timeouts against hangs.
 #include <repel/devices/device_thread.hpp>
 

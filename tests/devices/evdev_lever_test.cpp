@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lever with a fake evdev device: rates from angles, effect levels from torques, and no force
 // when it is not allowed.
 #include <repel/devices/evdev_lever.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Parsing of kernel events from fragments of any size.
 #include <repel/devices/evdev_parser.hpp>
 

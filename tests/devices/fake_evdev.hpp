@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A fake evdev device: answers the ioctls of the lever and records what is written to it.
 #pragma once

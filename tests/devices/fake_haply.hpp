@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A fake Haply Inverse Service whose handle and messages the test controls.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/devices/hand_follower.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The driver of the Haply Inverse Service against a stand-in. Times in real seconds are only
 // timeouts against hangs.
 #include <repel/devices/haply_inverse.hpp>

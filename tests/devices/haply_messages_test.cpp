@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/devices/haply_messages.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The rate of a lever from counts and time stamps.
 #include <repel/devices/lever_motion.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Properties of the shaping curve for random options, and the options refused at set-up.
 #include <repel/devices/shaping.hpp>
 

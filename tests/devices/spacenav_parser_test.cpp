@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Parsing of spacenavd events from fragments of any size, and of invalid data.
 #include <repel/devices/spacenav_parser.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The six-axis mouse with a fake daemon: only complete events cause motion, and every failure
 // results in rest.
 #include <repel/devices/spacenav.hpp>

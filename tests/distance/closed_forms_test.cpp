@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Shapes whose distance has a closed form: one table of guaranteed accuracies, one list of
 // placements per pair of kinds.
 #include <repel/reduction/separation.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Defects that users of other libraries reported for distance and overlap of two convex shapes, one
 // test each, named after the public tracker and the number of the report. The situations are
 // rebuilt from the reports; reference values are from closed forms, the 113-bit oracle or the 15

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/distance/feature_search.hpp>
 
 #include <gtest/gtest.h>

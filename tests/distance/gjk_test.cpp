@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The distance compared with a self-certifying 113-bit oracle, over families of pairs that are
 // difficult for such algorithms, and properties that need no reference.
 #include <repel/distance/gjk.hpp>

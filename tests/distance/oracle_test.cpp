@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The oracles compared with each other: pairs of features, Wolfe's algorithm and separating axes
 // share only the 113-bit arithmetic. Their common results are the references of the other tests.
 #include <support/oracle.hpp>

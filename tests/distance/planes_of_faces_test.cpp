@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/distance/planes_of_faces.hpp>
 
 #include <gtest/gtest.h>

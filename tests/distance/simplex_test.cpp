@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The projection of the origin onto a simplex, compared with 113-bit arithmetic.
 #include <repel/distance/simplex.hpp>
 

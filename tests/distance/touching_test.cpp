@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Contacts that are exact in doubles: coordinates are dyadic and rotations are the 24 of the cube,
 // so the distance is exactly 0.
 #include <repel/reduction/separation.hpp>

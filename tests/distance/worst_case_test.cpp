@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hardest pairs found by a search: the iteration limit holds, and a query stopped at any
 // iteration returns valid bounds.
 #include <gtest/gtest.h>

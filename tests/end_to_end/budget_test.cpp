@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forces and reports when there are more near pairs than the budget covers.
 #include "end_to_end/teleop.hpp"
 

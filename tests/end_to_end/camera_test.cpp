@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What only a depth camera sees keeps its distance from the arm, whatever the camera is like.
 #include "end_to_end/teleop.hpp"
 #include "support/draws.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The chatter of walls, joints and lever in every report, against the log of the same run.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Physical walls of the engines behind the virtual walls: which of them acts first.
 #include "end_to_end/teleop.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Operations that are forbidden in the tick, counted in every tick of every scene.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program that covers meshes, as run by a user.
 #include "program.hpp"
 

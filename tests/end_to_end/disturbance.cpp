@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Loaded into teleop with LD_PRELOAD, this replaces a function called by every tick with one that
 // performs an operation forbidden in a tick. REPEL_DISTURBANCE selects the operation.
 #include <sys/mman.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How a run ends under external errors: a full disk, a reader that disconnects, a signal, a kill, a
 // file name that is already used.
 #include <sys/mount.h>

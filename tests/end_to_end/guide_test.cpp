@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Virtual fixtures on arms of six and more joints, as a user has them from a scene.
 #include "end_to_end/teleop.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // In place of CoACD: covers the half of every mesh where x is least, and leaves the other.
 #include <algorithm>
 #include <cstdint>

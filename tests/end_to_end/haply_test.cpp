@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program led by a hand at a force-reflecting handle, whose service is a stand-in with a device
 // and a hand of its own. By the clock.
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A link that is not convex: the Puma with a hook, an L, on its hand.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The HTML page of a run: well-formed, self-contained, and with the data of the run.
 #include <regex>
 

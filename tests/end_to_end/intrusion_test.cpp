@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // No part of an arm is deeper in an obstacle than the report states: every scene is recomputed from
 // the joints in its log by Wolfe's algorithm with 113 bits, not by the library's own distance.
 #include <describe.hpp>

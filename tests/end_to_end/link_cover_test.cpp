@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Links of a robot whose meshes have convex parts.
 #include <algorithm>
 #include <fstream>

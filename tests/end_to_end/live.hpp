@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The program with its live view, and a page that controls it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a page can switch while it drives: fixtures, compliant directions, the scale, the hand.
 #include <algorithm>
 

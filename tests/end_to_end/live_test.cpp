@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program as a browser sees it.
 #include "end_to_end/live.hpp"
 

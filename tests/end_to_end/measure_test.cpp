@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How overlaps are measured: by the scene, by the command line, in the report and in a replay.
 #include <algorithm>
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Simulated arms that are not as their model says: another inertia, a payload.
 #include "end_to_end/teleop.hpp"
 

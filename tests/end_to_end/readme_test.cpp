@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The first program of README.md is the first example, byte for byte, and prints the output given
 // there. Links of all pages are checked by tests/style/check.sh.
 #include <gtest/gtest.h>

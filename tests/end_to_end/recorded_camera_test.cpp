@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Depth images that were recorded, in place of those of a simulated camera.
 #include <cmath>
 

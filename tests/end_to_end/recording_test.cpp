@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Recording and replay of runs, as done by a user.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A scene in two programs, in step: the real ones, but for the clock and a path that is simulated.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The program that prints the contents of a robot description, as run by a user.
 #include "hook.hpp"
 #include "program.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every scene of the repository agrees with its reference report, and has a page that shows it.
 #include "end_to_end/teleop.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Motion through the singularities of a PUMA while walls act on tool and arm.
 #include "end_to_end/teleop.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A robot description whose collision parts are obstacles.
 #include <algorithm>
 #include <fstream>

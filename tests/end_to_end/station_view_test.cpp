@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The live view at the operator's side of a divided scene, with the site as another program.
 #include <unistd.h>
 

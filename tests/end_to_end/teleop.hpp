@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Runs the program teleop as a user would, and reads its output.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Conditions that every report of real-time trials must satisfy on any machine.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Site and station as two programs, by the clock, as a user runs them.
 #include <unistd.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Walls act on the links of the arm as on the tool.
 #include "end_to_end/teleop.hpp"
 

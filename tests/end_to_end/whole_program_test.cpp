@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // All threads of the program at once: workers, view, log and progress. The thread sanitizer makes a
 // data race an exit status of its own.
 #include "end_to_end/live.hpp"

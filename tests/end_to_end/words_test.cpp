@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The text of reports, also of unusual runs: every number is finite and of readable length, nothing
 // is reported that was not measured, and names are unchanged.
 #include <figure.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "examples/heap.hpp"
 
 #include "support/heap_counter.hpp"

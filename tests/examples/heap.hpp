@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Counts what the calling thread takes from the heap in a scope; support/heap_counter.hpp is in
 /// one of the sources of the suite.

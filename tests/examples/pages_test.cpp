@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Code that the pages of the adapters show is that of the adapters.
 #include <gtest/gtest.h>
 

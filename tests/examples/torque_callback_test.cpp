@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The adapter to a torque callback, with a stand-in for robot and library.
 #include <gtest/gtest.h>
 

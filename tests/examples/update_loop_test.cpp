@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The adapter to an update loop, with a stand-in for controller manager and hardware.
 #include <gtest/gtest.h>
 

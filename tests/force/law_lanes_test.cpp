@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/force/law_lanes.hpp>
 
 #include <gtest/gtest.h>

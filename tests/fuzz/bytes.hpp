@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Converts arbitrary bytes to numbers, with an increased share of dangerous values.
 #pragma once

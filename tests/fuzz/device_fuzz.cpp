@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary bytes in fragments of any size: both device parsers give the same events as without
 // fragmentation, only plausible ones, and none after an error; all values derived from them stay in
 // range.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary points: the result is a hull that contains them and whose levels are inside it by their
 // stated depths, or SetupError exactly if a point or an option is not allowed.
 #include <repel/reduction/shape.hpp>

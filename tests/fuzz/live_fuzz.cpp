@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary messages from three pages, valid and invalid: at most one page has control, all input
 // to the loop is finite and in range, and every answer is JSON.
 #include <live_view.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary bytes as an MCAP file, and records with a valid beginning: read to the end safely, or
 // refused by SetupError. Reading terminates, uses no byte twice, and loses nothing when repeated.
 #include <repel/record/mcap_reader.hpp>

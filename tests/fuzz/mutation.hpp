@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Mutates a text as a hostile or careless author might: keywords in wrong places, pieces omitted,
 /// duplicated or swapped.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary text as the contents of a recording, or arbitrary bytes as its file: loaded, or refused
 // by a SetupError that names a file. A text is divided by lines of %%: metadata of the run, the
 // scene, then messages that begin with the letter of their channel.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Runs a fuzz target without a fuzzer: on the given files, and on a number of random inputs, which
 // are mutations of those files if there are any.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary text as a scene: read, or refused by a SetupError that names the file; its networks are
 // built or refused likewise. Seeds are the scenes of the repository, from whose folder it is run.
 #include <repel/scene/scene.hpp>

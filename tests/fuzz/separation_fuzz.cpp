@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary shapes, poses, options and warm starts: every answer is finite with an ordered bracket,
 // or bad_input that bounds nothing; answers to the same query do not contradict each other.
 #include <repel/reduction/separation.hpp>

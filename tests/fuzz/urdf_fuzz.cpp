@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary text as a robot description, as the file of a mesh it names, or as its SRDF file: read,
 // or refused by a SetupError that names the file; a robot that was read can be moved. The role of a
 // text is chosen by its contents.

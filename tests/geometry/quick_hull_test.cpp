@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/geometry/quick_hull.hpp>
 
 #include <gtest/gtest.h>

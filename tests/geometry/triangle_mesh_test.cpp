@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/geometry/triangle_mesh.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Two sides of a link in one program, each with its transport and thread.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The links as bodies: their poses and twists, and the work of the forces on them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// Penetration of the tool into a wall when a fault occurs while it moves towards it: not more than
 /// without the fault, at several speeds and frictions, with and without brakes.
 #include <gtest/gtest.h>

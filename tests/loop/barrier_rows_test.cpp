@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/loop/barrier_rows.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A hard wall: what no hand can push an arm into.
 #include <repel/loop/entry_barrier.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// An arm of three prismatic joints with a chosen fault while it moves towards a wall.
 #pragma once

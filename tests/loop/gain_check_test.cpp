@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/loop/gain_check.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Virtual fixtures in the whole loop: on three rails, at several rates, masses and delays.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/loop/held_weight.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/loop/joint_speed.hpp>
 
 #include <gtest/gtest.h>

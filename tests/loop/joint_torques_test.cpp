@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/loop/joint_torques.hpp>
 
 #include <gtest/gtest.h>

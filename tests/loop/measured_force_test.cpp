@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A force that is measured, in the whole loop: contacts and virtual walls are felt once each.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Moving obstacles: their position, and the reaction of an arm in their path.
 #include <repel/loop/reciprocating_motion.hpp>
 

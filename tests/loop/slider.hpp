@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The smallest possible cell: an arm of three prismatic joints, a ball as the tool, boxes as
 /// walls.

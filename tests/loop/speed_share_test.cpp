@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/loop/speed_share.hpp>
 
 #include <gtest/gtest.h>

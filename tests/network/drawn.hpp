@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Random gains and signals, and a network of one module, for the tests of networks.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// From waves back to effort and flow, for tests of wave ports.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/octrees/depth_map.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ODE arm: its mechanics, its joints and its other properties.
 #include <gtest/gtest.h>
 

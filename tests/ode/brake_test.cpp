@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The drive and the brakes of the ODE arm.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Physical contact in the ODE arm: obstacles stop it.
 #include <gtest/gtest.h>
 

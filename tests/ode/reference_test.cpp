@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The ODE arm compared with a high-order solution of the equations of motion.
 #include <gtest/gtest.h>
 

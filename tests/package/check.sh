@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # check.sh BUILD: installs the finished build folder BUILD into a scratch folder, moves what it
 # installed, and uses the library in every way a stranger would.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # debian_packages.sh ROOT BUILD: every library that the build folder BUILD links by the name of its
 # file must come with a package of cmake/debian-packages.txt. What a machine happens to have besides
 # hides that one is missing: assimp names zlib, and its package does not ask for zlib1g-dev.

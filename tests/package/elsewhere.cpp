@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/repel.hpp>
 
 double power_elsewhere(const repel::Wrench& F, const repel::Twist& V);

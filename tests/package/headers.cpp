@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The headers of the parts selected by PARTS. Including them is enough for the linker to check that
 // program and parts were built with compatible options.
 #ifdef PART_robots

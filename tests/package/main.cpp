@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An external program: all of the core in two translation units that are linked together.
 #include <cstdio>
 

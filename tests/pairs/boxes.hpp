@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A world of boxes, a random motion through it, and its forces by brute force.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/pairs/candidates.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/pairs/forces_and_totals.hpp>
 
 #include <gtest/gtest.h>

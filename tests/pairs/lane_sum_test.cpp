@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/pairs/lane_sum.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Close pairs whose nearest features are known, and a small motion of their bodies.
 #pragma once

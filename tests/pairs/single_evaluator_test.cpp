@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/pairs/single_evaluator.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Pairs of shapes whose nearest features are nearly parallel, of every kind that meets.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/patch/flat.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/percepts/perceived_parts.hpp>
 
 #include <optional>

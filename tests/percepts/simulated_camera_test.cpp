@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/percepts/simulated_camera.hpp>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """bench.py [--pairs N] [--shapes N] [--rounds N]: what a pair costs from Python and in C++.
 
 Checks first that the answers have the same bits. Then it times both by turns, keeps the least time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """What a batch costs beside the same calls in C++."""
 
 from bench import compared

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Convex parts of meshes."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The examples run, and say what the documentation says that they say."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """The gantry of examples/03_own_controller.cpp: three rails, 4 kg on each, and a wall."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The signed distances of many pairs in a loop of C++: what the Python package is compared with.
 //
 //     loop PROBLEM ANSWERS REPEATS

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Random pairs of shapes, and the program of C++ that answers them as well."""
 
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Distances: the figures of C++, the same bits one by one and together, and what is refused."""
 
 import threading

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
 """Worlds and cells that are described in Python."""
 
 import gc

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Performs every operation forbidden in a tick; symbols.sh must reject this object for each of
 // them.
 #include <unistd.h>

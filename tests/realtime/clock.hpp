@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Whether reading the clock is a system call on this machine: then a tick that reads it makes
 /// some.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A deterministic sequence of ticks for the instruction count of instructions.sh: the gripper of
 // four parts among the eight obstacles of scenes/anderson_4x8.yaml, pressed on the table, slid into
 // the corner, through the membrane and against the box. Each tick writes one profile. Without

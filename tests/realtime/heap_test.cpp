@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Counts every heap call in this program. A separate program, since it defines its own malloc.
 #include <gtest/gtest.h>
 

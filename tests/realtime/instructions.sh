@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # instructions.sh PROGRAM FILE [--renew]: counts the instructions of every tick of fixed_scenario
 # under callgrind and fails if their median or the worst has grown by more than 3 % over FILE. With
 # --renew they become the file's. Counts are those of one compiler: another one is not judged.

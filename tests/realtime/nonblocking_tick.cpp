@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The tick called from a function declared nonblocking: RealtimeSanitizer aborts this program at
 // the first call in it that might block. Built and run by realtime_sanitizer.sh.
 #include <cstdio>

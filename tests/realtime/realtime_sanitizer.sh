@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # realtime_sanitizer.sh ROOT EIGEN: builds nonblocking_tick.cpp with RealtimeSanitizer and runs it,
 # where there is clang 20 or newer. The program must end well, and its canary must not. What
 # -Wfunction-effects cannot prove is shown and not judged: Eigen and the clock make no such promise.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # realtime_scenes.sh PROGRAM DISTURBANCE SCENES: every tick of every scene under RealtimeSanitizer,
 # with 0 and 2 threads, whole scripts in lock step and a while by the clock. PROGRAM is teleop with
 # the sanitizer's runtime. It must end well, and for each thing that DISTURBANCE does in a tick not.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // In teleop_rtsan this replaces the guard that counts heap calls of the tick: in the guarded
 // sections RealtimeSanitizer aborts the program at the first call that might block.
 #include <time.h>

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # symbols.sh TICK CANARY: the object file of the tick must not lead to the heap, to a throw, to a
 # lock, to output or into the kernel; the canary must be refused for each kind.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // One tick only: objects are passed by reference, so that this object file contains no set-up code.
 // symbols.sh reads its undefined symbols.
 #include <repel/cell/cell.hpp>

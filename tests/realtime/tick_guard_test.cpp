@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The counters around the tick: they detect the forbidden operations, and they stay at zero for the
 // tick and for the work of the coprocessor's threads.
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
 """Holds MCAP files to the package `mcap` from PyPI, which shares nothing with the library.
 
 Reads each file by its summary and from front to back, with every CRC checked, compares the two with

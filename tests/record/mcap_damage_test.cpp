@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A truncated file yields everything that is complete; damage is detected or harmless.
 #include <algorithm>
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What was written is read back, field by field; files of other writers can be read if they are not
 // compressed; what is not an MCAP file is refused with a message.
 #include <repel/record/mcap_reader.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The output conforms to the format: every index points to what it names, every CRC is that of its
 // bytes, every count is right; and no failure is silent.
 #include <repel/record/mcap_writer.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Small recordings, their contents, and a parser of their records that is independent of the
 /// library.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The deepest common point compared with a different linear programming solver in 113 bits, with
 // finite differences, and with exact results for boxes.
 #include <repel/reduction/deepest_point.hpp>

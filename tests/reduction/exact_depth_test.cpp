@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The penetration depth measure compared with the least overlap over all axes in 113 bits.
 #include <gtest/gtest.h>
 

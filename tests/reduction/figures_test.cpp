@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Quantitative checks of Figures 3, 5, 6 and 8 of Anderson 1993; docs/reduction.md has the plots.
 #include <gtest/gtest.h>
 

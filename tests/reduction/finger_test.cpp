@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A thin finger pressed deep into a block: at any depth, further motion increases the measured
 // depth, with every measure.
 #include <repel/reduction/separation.hpp>

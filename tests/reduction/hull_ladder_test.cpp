@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/reduction/hull_ladder.hpp>
 
 #include <gtest/gtest.h>

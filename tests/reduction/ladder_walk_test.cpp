@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Properties of the signed distance in overlap. References: for boxes the 15 axes in 113-bit
 // arithmetic, which are exact; for cylinders dense directions, an upper bound of the depth.
 #include <repel/reduction/ladder_walk.hpp>

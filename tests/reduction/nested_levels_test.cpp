@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every level lies inside its shape by its depth, and inside its parent by its step, as the ladder
 // states: proven with 113 bits and independently computed planes.
 #include <repel/reduction/shape.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Two boxes at random poses, their shapes, and their exact distance and depth.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Two shapes at their poses, and invariants of their signed distance along a path.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The deepest common point for round sides, compared with the exact depths of cylinders and cones,
 // with prisms solved by another solver, and with finite differences.
 #include <gtest/gtest.h>

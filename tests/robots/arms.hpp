@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The arms used by these tests, and random joint positions for them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The drive and the brakes of the reference arm.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Which joints of a robot are those of its arm, and which link is its tool, if nobody says so.
 #include "robot_text.hpp"
 

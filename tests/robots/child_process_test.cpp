@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Work in a child process: its result is returned, its crash or endless loop is contained.
 #include "../../robots/child_process.hpp"
 

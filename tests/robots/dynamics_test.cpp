@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The equations of motion of the arms compared with independently known results.
 #include <gtest/gtest.h>
 

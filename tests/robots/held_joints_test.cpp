@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the joints stand that do not move: at a chosen value, at zero, or where what they mimic
 // puts them.
 #include <cmath>

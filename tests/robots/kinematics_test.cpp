@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Identities that hold for every arm: derivatives compared with finite differences.
 #include <gtest/gtest.h>
 

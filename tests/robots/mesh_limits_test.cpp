@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes and descriptions that would exhaust memory or time are refused with their size and the
 // limit.
 #include <gtest/gtest.h>

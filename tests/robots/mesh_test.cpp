@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Collision meshes: their search paths and their conversion.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Counts every malloc of this program, including those in Eigen.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The two PUMA 560 files compared with the published tables and with results published by others.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Writes robot descriptions for tests, one element a line.
 #pragma once

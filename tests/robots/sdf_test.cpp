@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Models and worlds from SDF files, as parts that stand still.
 #include <repel/robots/sdf.hpp>
 

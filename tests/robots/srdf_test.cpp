@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The pairs of links for which a semantic description disables collisions.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Robot descriptions that stand still.
 #include <gtest/gtest.h>
 

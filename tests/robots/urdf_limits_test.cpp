@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Files far larger than any robot: refused by number, at a cost linear in the file size, not
 // quadratic. Regression: a chain of 16000 links overflowed the stack after half a minute.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the loader reads, and above all what it refuses: nothing of a file may be ignored silently.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The cameras of a scene, and the phases in which they are blind.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Virtual fixtures of a scene file, and the phases that switch them and the compliance.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Parts of a scene that can come, be gripped and go, and the steps of scripts that change them.
 #include <gtest/gtest.h>
 

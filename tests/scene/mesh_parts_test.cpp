@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Meshes in a scene, and the files with their convex parts.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Every error in a scene file is reported with its line, the value found and the allowed values.
 #include <filesystem>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The scenes of the repository and the page on their format.
 #include <filesystem>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Input that would exhaust memory or time is refused by SetupError with its size, the limit and its
 // line.
 #include <algorithm>

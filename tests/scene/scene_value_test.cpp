@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The values of a scene in SI units, and the defaults of what it omits.
 #include <clocale>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Robot descriptions among the obstacles of a scene.
 #include <gtest/gtest.h>
 

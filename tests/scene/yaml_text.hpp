@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A small scene as lines of text, to be modified one line at a time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/schedule/beside_worker.hpp>
 
 #include <gtest/gtest.h>

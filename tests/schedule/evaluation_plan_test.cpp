@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/schedule/evaluation_plan.hpp>
 
 #include <gtest/gtest.h>

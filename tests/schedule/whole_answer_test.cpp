@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/schedule/whole_answer.hpp>
 
 #include <gtest/gtest.h>

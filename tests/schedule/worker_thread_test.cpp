@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/schedule/worker_thread.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The arms on which engines are tested, and their reference values computed without an engine.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Tests of the drive of every simulated arm: brakes, stop, watchdog.
 ///

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Tests of any simulated arm whose model was changed: another inertia, a payload.
 ///

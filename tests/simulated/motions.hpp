@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A motion of a PUMA that can be run on any engine, and the difference of two such motions.
 #pragma once

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Proves that the rules are alive: each tree in canaries/rules breaks the rule it is named after
 # (up to a dot), the one named `none` breaks none, and every rule has a tree.
 set -eu

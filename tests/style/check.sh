@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # check.sh [ROOT]: keeps the rules of the house in every file below ROOT. Prints one line for each
 # breach, as file:line: [its rule] and what is wrong, and fails if there is one.
 set -eu

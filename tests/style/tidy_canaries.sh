@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Proves that .clang-tidy is alive: every pattern in it names checks that exist, and every file in
 # canaries/tidy is rejected by the check its first line names.
 set -eu

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The exact penetration depth of two small polytopes: the least overlap over all candidate
 /// separating axes - the face normals and the cross products of edges (Gottschalk, Lin, Manocha

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Seeded families of pairs of polytopes that are difficult for distance algorithms, and common
 /// code of all randomized tests.

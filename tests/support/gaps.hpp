@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Pairs with a chosen gap, and the distance of the core next to the exact one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Counts every heap call of the program. Include it in exactly one of its files: it defines its
 /// own malloc. While `repel::test::watched` is set, it counts the calls of some threads, and of all

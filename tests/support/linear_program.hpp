@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simple linear programming solver as a test reference: simplex tableau with Bland's rule.
 #pragma once

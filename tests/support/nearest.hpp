@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The point nearest to the origin on a segment, a triangle and a parallelogram, in double or with
 /// 113 bits. The result is always a convex combination of the corners, regardless of rounding.

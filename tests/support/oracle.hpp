@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The exact distance of two small polytopes, by algorithms that share no code and no method with
 /// the one under test: all pairs of features are ranked in double and the best are recomputed with

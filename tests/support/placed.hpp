@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Two sets of vertices in world axes, relative to the origin of the first: in double, and with 113
 /// bits on demand.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The features of a small polytope: its faces and edges, found by testing all triples of vertices
 /// with an orientation test decided in 113 bits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// 113-bit arithmetic for reference values of tests.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A client of the live-view server that behaves like a browser or violates the protocol: HTTP and
 /// WebSocket over plain sockets, so that arbitrary bytes can be sent.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The point of a convex set nearest to the origin by Wolfe's algorithm (1976) in 113-bit
 /// arithmetic: from support points alone, with a self-certifying bracket.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// A PUMA whose operator, readings or loop fail while its tool moves towards a table: how far the
 /// tool gets, for faults at several heights, compared with the same motion without a fault.
 #include <gtest/gtest.h>

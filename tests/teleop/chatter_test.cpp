@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Chatter that is measured tick by tick, against the same from all samples at once.
 #include "chatter.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A run that is asked to stop continues until the forces have faded out, and no longer.
 #include "fade_out.hpp"
 

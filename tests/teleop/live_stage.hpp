@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A live view without a server: the test sends and receives its messages directly.
 #pragma once

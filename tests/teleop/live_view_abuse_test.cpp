@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Messages that the project's own page never sends.
 #include "teleop/live_stage.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include "operator_input.hpp"
 
 #include <gtest/gtest.h>

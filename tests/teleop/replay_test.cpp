@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A replay is compared with its recording bit for bit.
 #include "replay.hpp"
 

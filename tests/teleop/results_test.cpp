@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a report says of walls and of passable bodies, and the modules that claim to be passive.
 #include "results.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Observers do not change the run they observe.
 #include "run.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Failing threads beside the loop: it continues without them.
 #include <gtest/gtest.h>
 

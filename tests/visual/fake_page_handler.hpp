@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A page handler that records its events, and a server that uses it.
 #pragma once

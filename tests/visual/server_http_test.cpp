@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Responses of the server to valid and invalid requests.
 #include <repel/base/setup_error.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Open pages must not affect each other.
 #include <filesystem>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A server reachable from other machines: who may watch, and who may control.
 #include "visual/fake_page_handler.hpp"
 

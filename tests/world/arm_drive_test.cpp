@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The drive of a simulated arm, and the holding torque of its brakes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/world/body_state.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The models of arms with another inertia and with a payload.
 #include <repel/world/changed_arm.hpp>
 

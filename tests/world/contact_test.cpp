@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a simulated arm can touch, and what is refused.
 #include <repel/world/contact.hpp>
 

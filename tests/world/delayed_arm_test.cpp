@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/world/delayed_arm.hpp>
 
 #include <gtest/gtest.h>

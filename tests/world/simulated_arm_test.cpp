@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Arms that an engine refuses to simulate, and the error messages.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Rods, arrows and beads in any number, drawn in a call for each kind. Nothing is allocated while
 // they move.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Boxes that the user brings into the scene: dragged from their button to where they are to stand,
 // moved by hand, level or, with Alt, up and down, and taken away.
 

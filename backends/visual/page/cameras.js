@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the scene is looked at from: orbit with the mouse, four fixed views, and keeping the tool
 // in the middle.
 

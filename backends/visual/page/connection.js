@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The WebSocket to the program: hands each message to whoever wants its type, and comes back by
 // itself when the program does. Presents the secret where the program asks for one.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Who drives. While the controls are ours, what the devices say is added up and sent fifty times a
 // second, at rest too: the program takes a driver who says nothing for gone.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The mouse as a device: the tool is dragged by its handle, in the plane of the picture. A pale
 // copy of the tool stands where it is wanted, a rubber band joins both; the tool follows as fast as
 // it may and as far as the walls let it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // On a small screen, and where one points with a finger: the readings are folded away behind a
 // button, what is needed while driving lies on the scene, and what is not goes to the readings.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Virtual fixtures, which attract the tool: thin marks that one sees through, fainter while off.
 
 import {

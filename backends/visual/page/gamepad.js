@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A gamepad as a device: the left stick moves along, the right one up and round, the cross tilts.
 // It rumbles with the force, where it can.
 

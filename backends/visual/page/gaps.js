@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where a mesh is in none of its convex parts: bright dots, and what the legend says of them.
 
 import { Color, Vector3 } from "./vendor/three.min.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // From the vertices and triangles of a convex part to what is drawn: faces that are flat where the
 // part is and smooth where it is round, its edges, its zone of influence, its reduction levels.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The hand at the master: what it feels, and what it can switch in the network. Hidden where there
 // is nothing of it; it can be switched by whoever drives, and is shown to all.
 

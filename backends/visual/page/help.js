@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The keys, and what one sees, in an overlay.
 
 import { at } from "./words.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How long ticks computed and how late they woke, as histograms on a logarithmic axis, with the
 // deadline. Counts are logarithmic too: the rare late tick is what one looks for.
 

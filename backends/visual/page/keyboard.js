@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The keyboard as a device: held keys are rates, seen from where one looks.
 
 const SLOW = 0.25;  // with shift

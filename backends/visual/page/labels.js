@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Names in the scene: elements that lie over the canvas where a point of the scene is seen. They
 // move apart where they would lie on each other.
 

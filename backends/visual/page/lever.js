@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The lever of the torque arm: a slider that springs back leads it, a bar shows what it would give
 // the hand. A force is shown here where it cannot be felt.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Joins everything: messages come in, become state, and are drawn when the browser draws.
 
 import { Sphere, Vector3 } from "./vendor/three.min.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is between the parts: threads to what is near, and arrows of forces, with names on them.
 
 import { Color, Vector3 } from "./vendor/three.min.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What is said on top of the scene: banners as long as something holds, toasts that go by
 // themselves.
 

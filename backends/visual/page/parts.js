@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The parts of the scene: solids on bodies that move, their edges, zones of influence, levels.
 
 import {

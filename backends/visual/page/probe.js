@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
 // pixels(), tinted(), extent(), look(), adapt(), send().
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // How finely the scene is drawn: as finely as the machine manages. Slow frames make it coarser at
 // once, quick ones make it finer after a while, and later each time that this was too much.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The words and numbers: status, phase, the big numbers, the nearest pairs, the energies.
 
 import { partName, sides, state, thisArm, thisArmNow } from "./state.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The stage: renderer, light, and the floor with its grid. z is up.
 
 import {

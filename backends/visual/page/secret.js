@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What a program that others can reach asks for. It comes behind the address, as #secret=..., which
 // a browser tells nobody; this tab keeps it, and it is taken out of the address again.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the user chose, kept in the browser where it lets us keep something.
 
 const KEY = "repel.settings";

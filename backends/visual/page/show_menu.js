@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What of the scene is shown: the menu above it, and what the legend says of the scale.
 
 import { bind, set, settings } from "./settings.js";

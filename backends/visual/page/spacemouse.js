@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A SpaceMouse as a device, through WebHID: six axes, the first button engages and disengages it.
 
 import { shaped } from "./gamepad.js";

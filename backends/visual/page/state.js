@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What the program said last, and the last seconds of every tick.
 
 import { settings } from "./settings.js";

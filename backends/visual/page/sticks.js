@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Two sticks on the glass as a device, where one drives with the fingers: the left one moves along,
 // the right one up and round, as on a gamepad; a button makes the right one tilt.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Strip charts: a quantity over the last ten seconds, with what it was where the pointer is.
 
 import { colour } from "./theme.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Light and dark: follows the system until the button says otherwise. Colours stand in page.css
 // alone; what is drawn on canvases asks for them here.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Where the tool has been: a line of its last positions.
 
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial } from "./vendor/three.min.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Pause, steps, restart; of a replay also time and speed.
 
 import { state } from "./state.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The axes of the world, in the corner of the picture, as the camera sees them.
 
 import { Vector3 } from "./vendor/three.min.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // What comes over the wire, made whole: what is missing or no number becomes null or an empty list
 // here, so that the rest of the page need not ask. See docs/live_view.md for the messages.
 

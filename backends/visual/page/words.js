@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Numbers and status bits as people read them.
 
 export const at = (id) => document.getElementById(id);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <coal/narrowphase/narrowphase.h>
 #include <coal/shape/convex.h>
 #include <coal/config.hh>

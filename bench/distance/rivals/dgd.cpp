@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <dgd/geometry/3d/cuboid.h>
 #include <dgd/geometry/3d/mesh.h>
 #include <dgd/geometry/3d/polytope.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <mujoco/mujoco.h>
 
 #include <algorithm>

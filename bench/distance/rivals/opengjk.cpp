@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <openGJK/openGJK.h>
 
 #undef restrict  // a keyword of C, which the header defines away in C++

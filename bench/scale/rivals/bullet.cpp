@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include "../sieve.hpp"

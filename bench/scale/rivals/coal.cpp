@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <coal/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <coal/shape/geometric_shapes.h>
 

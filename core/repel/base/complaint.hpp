@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Exceptions as text, for threads beside the loop: their errors must not end it.
 #pragma once

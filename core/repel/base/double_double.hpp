@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A number stored as the unevaluated sum of two doubles: about 32 digits, for decisions that
 /// double cannot make.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// SIMD: several numbers in one register of the target, for code that works on several vertices or
 /// pairs at once.

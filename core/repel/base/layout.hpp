@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// ABI settings that a program must share with the compiled parts of this library that it links.
 ///

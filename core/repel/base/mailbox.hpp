@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A wait-free mailbox (triple buffer) that passes the newest value from one writer thread to one
 /// reader thread.

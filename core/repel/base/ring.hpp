@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A wait-free single-producer, single-consumer ring buffer: delivers every value in order and
 /// counts those dropped for lack of space.

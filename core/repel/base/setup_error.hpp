@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The only exception of the library. Thrown at set-up only, never by the tick.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Twist and wrench as named linear and angular parts, and their transformation between points and
 /// frames.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Faults and limits that occurred during a tick, as bits. Each bit states the reaction and the
 /// remedy.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads a whole file into memory, up to a size limit.
 #pragma once

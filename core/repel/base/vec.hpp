@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A 3-vector of a chosen precision: the vector type of code that runs both in double and in
 /// DoubleDouble.

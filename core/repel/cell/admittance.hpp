@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Arms that take joint rates or positions, not torques: the end of the network that turns its
 /// efforts into such commands.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Adapter between a cell and an in-process arm, e.g. a simulation or a recording.
 #pragma once

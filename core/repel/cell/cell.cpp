@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // The functions of the cell, compiled once.
 #ifndef REPEL_COMPILED
 #error "compile this file, and every other one of the program, with -DREPEL_COMPILED"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The complete control loop: arms, operators and obstacles in one world, from joint readings to
 /// torques.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The description a cell is built from: plain structs, no file format.
 #pragma once

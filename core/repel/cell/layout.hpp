@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Adds arms and obstacles to a world, as bodies, parts and pairs.
 #pragma once

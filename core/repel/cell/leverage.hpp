@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The leverage of the operator: by how much a push at the tool outweighs a force on a link, and
 /// force laws that allow for it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a cell adds to the laws of its walls: damping for its rate and delays, and how far ahead
 /// hard walls are watched.

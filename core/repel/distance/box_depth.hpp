@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The penetration depth of two boxes by the separating axis test: the least overlap along fifteen
 /// axes.

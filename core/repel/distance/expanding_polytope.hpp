@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The penetration depth of two polytopes by the expanding polytope algorithm (EPA, van den Bergen
 /// 2001): the point nearest to the origin on the boundary of their Minkowski difference.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A feature (vertex, edge or face) of the Minkowski difference A - B, its point nearest to the
 /// origin, and the proof that no point of A - B is nearer.

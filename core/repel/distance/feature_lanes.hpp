@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// SIMD proof for several pairs at once that the features of the last tick still contain the
 /// nearest points.

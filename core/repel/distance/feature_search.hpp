@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The fast search for the nearest features of two convex sets.
 #pragma once

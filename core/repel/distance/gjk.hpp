@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The distance of two convex sets by the algorithm of Gilbert, Johnson and Keerthi (GJK, 1988),
 /// with a certificate.

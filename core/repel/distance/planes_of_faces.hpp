@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The planes of the faces of a polytope, in SIMD lanes.
 #pragma once

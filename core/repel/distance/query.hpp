@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Options, warm start and end conditions of a distance query.
 #pragma once

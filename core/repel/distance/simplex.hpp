@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The simplex of GJK and the projection of the origin onto it.
 #pragma once

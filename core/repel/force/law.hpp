@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The force law: force as a function of a signed distance and its rate. Change this file to change
 /// how walls feel.

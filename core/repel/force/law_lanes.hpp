@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The force law of several pairs at once, in SIMD lanes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Bounding volume hierarchy of static boxes: finds those near another box.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A convex set given by its support map: the farthest point of the set along a direction.
 #pragma once

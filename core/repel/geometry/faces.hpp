@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The faces of a polytope, and which of them meet at a vertex.
 #pragma once

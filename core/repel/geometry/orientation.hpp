@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Orientation predicate: on which side of the plane through three points a fourth one lies,
 /// decided exactly. Set-up only: it allocates.

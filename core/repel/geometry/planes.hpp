@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The face planes of a polytope, and the depth of a point below them.
 #pragma once

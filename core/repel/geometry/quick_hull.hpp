@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The surface of the convex hull of a set of points, as triangles. Set-up only: it allocates.
 #pragma once

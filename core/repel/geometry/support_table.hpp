@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Lookup table from directions to the vertices of a large polytope that can be the farthest along
 /// them, for a support map whose cost does not grow with the number of vertices.

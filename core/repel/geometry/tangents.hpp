@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The tangent planes of the curved side of a cylinder or a cone.
 #pragma once

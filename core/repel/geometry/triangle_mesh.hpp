@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Triangle meshes: surfaces that need not be convex. Set-up only: they allocate.
 #pragma once

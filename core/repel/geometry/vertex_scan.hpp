@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Vertices stored in three padded arrays, and the scan for the one farthest along a direction.
 #pragma once

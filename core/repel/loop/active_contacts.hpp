@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The contacts that push in a tick, with their directions and damping: what the implicit solution
 /// of the network needs to know about the walls.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The links of the arm as bodies of the world: their poses, and the forces on them as joint
 /// torques.

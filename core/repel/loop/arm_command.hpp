@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// From the output of the network and the faults of a tick to the command of the arm.
 #pragma once

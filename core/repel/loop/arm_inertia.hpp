@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The joint-space inertia of an arm, from its links at their present poses.
 #pragma once

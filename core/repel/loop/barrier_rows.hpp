@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The gaps of one arm that must not close: of its hard contacts, and to the ends of its joints.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Watches the energy that an arm gains because its torques are held while it moves on.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Keeps an arm from entering hard walls: changes its joint torques as little as possible, so that
 /// it can always stop before them.

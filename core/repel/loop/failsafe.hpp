@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Removes the operator's force when an input cannot be trusted.
 #pragma once

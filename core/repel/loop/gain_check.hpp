@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Checks whether walls are too stiff for the tick rate.
 #pragma once

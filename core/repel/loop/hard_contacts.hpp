@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Where the hard walls of a world could be entered: the points of their near pairs that matter,
 /// with their gaps.

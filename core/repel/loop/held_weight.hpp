@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The weight of what a tool holds, at the joints of its arm.
 #pragma once

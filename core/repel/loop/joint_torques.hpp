@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Composes the joint torques from their contributions, within the limits.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Plausibility check of joint readings, and prediction of the motion while they fail it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The principle of least constraint: torques within their limits that keep some rates above their
 /// bounds and change the acceleration of an arm as little as possible.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Options of the loop: reactions to faults, and speed limits.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The readings of an arm, as a tick takes them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Bodies with a prescribed motion: a box on a conveyor, a sliding door.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The record of every tick, and the totals of a run.
 #pragma once

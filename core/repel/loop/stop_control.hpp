@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The stop of each tick, and whether the brakes of the arm are requested.
 #pragma once

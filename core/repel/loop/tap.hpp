@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The tap: copies of every tick for displays and logs, without blocking the loop.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The parts of the control of one arm, and the check that the walls of the world act on the arm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The control of one arm: everything that happens in one tick, in the order it happens.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Type-erased holder of a network module of any type.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A network of modules: solved once per tick, leaves to root and back.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A scripted operator: a repeatable substitute for a person at the master.
 #pragma once

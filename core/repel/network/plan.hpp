@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The description of a network, and the checks before it runs.
 #pragma once

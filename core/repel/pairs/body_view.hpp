@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Conservative transform of body-fixed boxes into the frame of another body.
 #pragma once

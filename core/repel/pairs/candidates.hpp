@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The list of the pairs of a world that can soon come within range: the broad-phase result.
 #pragma once

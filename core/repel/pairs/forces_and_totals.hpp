@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Sums over pairs: forces and totals at one tick, and per-pair extremes since set-up.
 #pragma once

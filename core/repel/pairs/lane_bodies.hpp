@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The parts and bodies of one side of several pairs, one per SIMD lane.
 #pragma once

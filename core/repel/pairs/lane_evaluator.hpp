@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// SIMD evaluation of those pairs of a world that are in range and whose nearest features are
 /// known.

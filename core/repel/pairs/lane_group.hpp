@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Pairs within range whose nearest features are known, one per SIMD lane: their answers and forces
 /// are computed together.

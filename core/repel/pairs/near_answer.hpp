@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The answer of a near pair in a form from which another thread can compute its force later.
 #pragma once

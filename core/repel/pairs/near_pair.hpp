@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One near pair as the last tick evaluated it: for displays and logs.
 #pragma once

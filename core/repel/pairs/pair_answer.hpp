@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The result of the last evaluation of a pair, and the distance bound it gives at a later tick.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The geometry from which the force of a pair is computed, shared by the single-pair code (double,
 /// Vec<double>) and the SIMD code with one pair per lane (Lanes, LaneVec).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The pairs of a world, indexed for the search: bounding-volume trees, built once.
 #pragma once

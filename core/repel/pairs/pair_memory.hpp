@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The state of the pairs of a world that is kept from tick to tick.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Broad phase: the search for pairs that can soon come within range. It is repeated only when the
 /// bodies have moved far enough.

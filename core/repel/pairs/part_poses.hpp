@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The poses of parts at one tick, computed lazily.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Evaluates pairs one by one, and computes forces from their answers, fresh or stale.
 #pragma once

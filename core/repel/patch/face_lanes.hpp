@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Faces of polytopes that are known from tick to tick, one per SIMD lane.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The flat features of a convex set that face a direction.
 #pragma once

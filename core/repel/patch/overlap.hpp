@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The overlap of two flat features, seen along their common normal.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The contact patch of a pair: where nearly parallel features meet, in place of one point.
 #pragma once

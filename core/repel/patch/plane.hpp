@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Vectors and convex polygons in the tangent plane of a contact.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Directions that a set faces with a single corner or edge: where no contact patch can be.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What is known of the features of a pair from tick to tick: mostly that it has no contact patch.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Vectors and polygons in the tangent planes of several contacts, one per SIMD lane.
 #pragma once

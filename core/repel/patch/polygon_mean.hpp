@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// TiltMean over the overlaps of several pairs of polygons at once, one pair per SIMD lane.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The contact patches of several pairs at once that show a polygon to each other.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The mean over a disc of small tilts of the nearest point of two flat features.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The angle of a direction in a plane, of several at once.
 #pragma once

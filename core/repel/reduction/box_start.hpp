@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Where the search for the deepest common point of two boxes starts.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The deepest common point of two polytopes: a linear program with five variables.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The ladder of an arbitrary convex hull. Set-up only: it allocates.
 #pragma once

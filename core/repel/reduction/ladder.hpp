@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The ladder of nested sub-shapes by which overlap is measured (Anderson 1993, section 2.1).
 #pragma once

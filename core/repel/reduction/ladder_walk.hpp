@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The signed distance of two shapes that overlap, from the levels of their reductions.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A basis of the linear program of the deepest common point.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The signed distance of two shapes: the result for one pair.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Triangle meshes of shapes, for displays and simulated cameras. Set-up only: they allocate.
 #pragma once

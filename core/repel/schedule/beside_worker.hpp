@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The threads that evaluate the newest motion beside the caller, as the attached processor of the
 /// paper does (Anderson 1993, section 4).

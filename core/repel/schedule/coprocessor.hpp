@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The coprocessor: evaluates the pairs of a world, with threads beside or together with the
 /// caller. It is the counterpart of the attached processor of the paper (Anderson 1993, section 4).

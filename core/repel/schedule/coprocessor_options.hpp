@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The budget of the coprocessor per tick, and its options.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Deadline accounting: compute time, wake-up latency and deadline misses of ticks.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The order in which near pairs are evaluated when there may not be time for all.
 #pragma once

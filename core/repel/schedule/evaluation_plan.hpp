@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Which near pairs are evaluated in a tick that may be too short for all, in which order, and by
 /// which thread.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The results of an exchange of the coprocessor: forces and totals of the pairs, and the state of
 /// its threads.

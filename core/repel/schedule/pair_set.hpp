@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The pairs of a world: selects the near ones, divides their evaluation into batches that several
 /// threads can share, and sums their forces.

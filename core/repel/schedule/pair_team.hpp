@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A leader and its threads: together they evaluate the pairs of a motion.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One tick of the pairs of a world that several threads evaluate together.
 #pragma once

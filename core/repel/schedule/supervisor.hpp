@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The thread that looks after the threads of the coprocessor.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What the operating system has done to a thread: page faults and involuntary switches.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The answer of all near pairs at one motion, and the forces it gives at a later one.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A thread of the coprocessor, and how it passes the time between ticks.
 #pragma once

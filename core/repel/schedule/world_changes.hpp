@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Changes of a running world from another thread: parts that come, move, are held and go.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The model of a serial arm, and the interface of a torque-controlled arm.
 ///

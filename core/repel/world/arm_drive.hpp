@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The drive of a simulated arm: enabled or stopped, brakes on or off, and a watchdog.
 #pragma once

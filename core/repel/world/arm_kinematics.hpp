@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Interface of the kinematics and dynamics of an arm that the loop needs, for KDL, a formula of
 /// your own, or a manufacturer's model.

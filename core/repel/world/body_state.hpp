@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The state of the bodies of a world at one instant, and how much of a force acts between two.
 #pragma once

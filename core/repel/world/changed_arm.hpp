@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Arms that are a little different from their model: with another inertia, or with a payload. To
 /// simulate an arm that its controller does not know exactly.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Physical contact in simulated arms: which shapes can touch.
 #pragma once

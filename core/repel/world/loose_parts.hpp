@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Parts that come and go, move and are held while the world runs: what happens to them over time.
 #pragma once

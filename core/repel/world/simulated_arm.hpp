@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Options, faults and set-up checks that all simulated arms share, whatever their engine.
 #pragma once

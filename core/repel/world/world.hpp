@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The world model: bodies, their convex parts, and the pairs of parts to be kept apart.
 #pragma once

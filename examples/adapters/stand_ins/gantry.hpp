@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Stand-in for a controller manager with its hardware: three rails along x, y and z, 4 kg on each,
 /// with brakes that are off while a controller is active. Time is simulated.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The arm of libfranka as repel sees it: kinematics and limits.
 #pragma once

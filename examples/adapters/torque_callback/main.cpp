@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // An arm with a torque callback of 1 kHz, driven into a wall that exists only in the model.
 #include <cstdio>
 #include <vector>

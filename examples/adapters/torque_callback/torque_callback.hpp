@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// repel as the torque callback of libfranka: to copy, with franka_arm.hpp.
 /// docs/own_controller/torque_callback.md explains it.

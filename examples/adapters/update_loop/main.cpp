@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A controller in an update loop drives three rails into a wall that exists only in the model, is
 // deactivated there, and activated again.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// repel as a controller of ros2_control: a header to copy. docs/own_controller/update_loop.md
 /// explains it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Prevents linking with a program that was compiled with another type layout.
 #pragma once

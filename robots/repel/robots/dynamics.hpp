@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The equations of motion of an arm, and a reference simulation with which simulated arms are
 /// compared.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Forward kinematics, Jacobians, gravity compensation and inertia of an arm.
 #pragma once

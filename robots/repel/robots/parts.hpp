@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Converts the convex parts of a robot to shapes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Triangle meshes from files: STL, OBJ, glTF, DAE and what else the reader knows.
 #pragma once

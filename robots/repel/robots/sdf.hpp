@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads models and worlds from SDF files, as parts that stand still.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads a robot from a URDF file: its kinematic and dynamic parameters, and the convex parts of
 /// its links.

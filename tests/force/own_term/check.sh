@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # Gives the force law one more term, in the one place that docs/architecture.md names, and sees
 # every path follow. The law once stood in two places: a box got 140.6 N in its first tick and
 # 56.3 N from then on.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A box above a table, with a law to which check.sh has added a term: prints the force of every
 // tick, for single and for lane evaluation of the pair.
 #include <cmath>

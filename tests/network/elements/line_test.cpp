@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/elements/line.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Gains that are chosen for an arm.
 #include <repel/network/elements/robot_end.hpp>
 

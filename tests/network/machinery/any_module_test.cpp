@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/machinery/any_module.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Included first: the to_text of a space must not hide that of a number.
 #include <repel/network/elements/port.hpp>
 

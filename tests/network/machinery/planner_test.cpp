@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/machinery/planner.hpp>
 
 #include <gtest/gtest.h>

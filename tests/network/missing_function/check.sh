@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
 # What the compiler says of a module that lacks a function: one error, in words.
 #   check.sh COMPILER INCLUDE_FLAGS...
 compiler=$1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A matched one-port without a function that receives its wave.
 #include <repel/network/module.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A type with none of the functions of a module.
 #include <repel/network/module.hpp>
 

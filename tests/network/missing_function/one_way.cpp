@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // A two-port without a function that propagates the state of the root to the leaf.
 #include <repel/network/module.hpp>
 

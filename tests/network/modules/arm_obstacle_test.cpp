@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // Forces on the links become torques on the joints, without generating energy.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/force_sensor.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/kbb2.hpp>
 
 #include <gtest/gtest.h>

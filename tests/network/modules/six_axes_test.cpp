@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/six_axes.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/visual.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/remote/playout.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A seeded path between two sides of a link, with delay, jitter, loss and copies.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/remote/wave_player.hpp>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated arm: an ArmModel as an articulated body in the Bullet engine, in double precision.
 #pragma once

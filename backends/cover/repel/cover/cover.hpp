@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Covers a mesh by overlapping convex parts, and proves what it says of them.
 #pragma once

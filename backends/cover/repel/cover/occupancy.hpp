@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Boxes of a map whose cubes are solid or not.
 #pragma once

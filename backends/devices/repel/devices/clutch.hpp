@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The clutch: decides when the motion of a device counts.
 #pragma once

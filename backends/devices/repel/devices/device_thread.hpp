@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A thread that reads a device and sends it forces, so that the tick need not wait for it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A motorised lever or steering wheel under /dev/input as TORQUE ARM: one angle in, one torque
 /// out. Tested only against a simulated kernel interface, never on a device.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Parses the events of a Linux input device from the bytes of /dev/input/eventN. Does no I/O.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The interface to the system calls on an input device; tests replace it.
 #pragma once

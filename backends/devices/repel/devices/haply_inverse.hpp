@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A force-reflecting handle of three axes, the Haply Inverse3, with the orientation of a
 /// VerseGrip, through the Haply Inverse Service. Tested only against a stand-in, never on a device.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The messages of the Haply Inverse Service. Does no I/O.
 #pragma once

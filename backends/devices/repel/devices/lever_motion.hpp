@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Estimates angle and rate of a lever from the counts of its axis.
 #pragma once

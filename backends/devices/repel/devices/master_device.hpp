@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The interface of the native input devices, in the terms of the collaborative robotics toolkit
 /// (CRTK): operating_state, measured_cv, servo_cf.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Splits a stream that is read in pieces into records of fixed size.
 #pragma once

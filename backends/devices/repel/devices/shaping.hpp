@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Maps the deflection of a six-axis device to commanded rates.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A six-axis mouse (SpaceMouse, SpaceNavigator, Spaceball) through the socket of spacenavd.
 #pragma once

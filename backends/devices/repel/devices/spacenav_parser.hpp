@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Parses the events of spacenavd from the bytes of its socket. Does no I/O.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated arm without a physics engine: decoupled joints without gravity.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A transport made worse, to try a far link nearby.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The thread that sends and receives the packets of a link, so that the tick need not.
 #pragma once

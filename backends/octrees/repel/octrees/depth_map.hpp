@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A map of cubes that is kept up to date by depth images.
 #pragma once

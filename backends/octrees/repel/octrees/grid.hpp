@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What an octree of OctoMap says of a region, as cubes that are solid or not.
 #pragma once

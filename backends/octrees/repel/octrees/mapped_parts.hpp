@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Keeps the parts of a running world in step with an octree.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated arm: an ArmModel as rigid bodies and joints in the Open Dynamics Engine, in double
 /// precision.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Divides depth images into few convex cells that contain everything that was seen.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A depth camera that is computed: for tests, and to try a cell without one.
 #pragma once

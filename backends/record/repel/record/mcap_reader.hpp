@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads recordings: uncompressed MCAP files (https://mcap.dev/spec), complete or truncated.
 #pragma once

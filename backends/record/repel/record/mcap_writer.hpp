@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Writes recordings as MCAP files (https://mcap.dev/spec) that stay readable after a crash.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// From the network that a scene file lists to one that runs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The module kinds that a scene file can name: those of the library, and those of a program.
 #pragma once

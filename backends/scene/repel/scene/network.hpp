@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The network of an arm, as a scene file lists it.
 #pragma once

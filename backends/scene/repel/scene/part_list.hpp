@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Files with the convex parts of a mesh: the program `cover` writes them, scenes read them.
 #pragma once

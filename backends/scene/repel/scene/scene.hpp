@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Reads a scene file: robots with their tools, obstacles, operator scripts. scenes/README.md
 /// describes the format.

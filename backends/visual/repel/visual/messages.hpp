@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The messages to the page, as JSON text; docs/live_view.md describes the format.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Serves the live view: HTTP and WebSocket on one port, in its own thread.
 #pragma once

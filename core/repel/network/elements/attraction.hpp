@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The force towards a virtual fixture as a function of the distance from it, with its potential.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The scale between a hand and the tool, changed while both move.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A simulated channel with delay, jitter, packet loss and reordering.
 #pragma once

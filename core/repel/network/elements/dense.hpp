@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Products of small matrices of sizes known at set-up, in plain loops: Eigen expressions of such
 /// sizes add seconds to the compile time of every source that includes a network.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Thevenin or Norton equivalent of everything behind a port.
 #pragma once

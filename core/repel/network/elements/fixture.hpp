@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The geometry of virtual fixtures: how far the tool is from one, and which way it lies.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A path through points in space, and a point that follows it.
 #pragma once

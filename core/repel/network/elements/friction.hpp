@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Compensation of dry friction in the joints of a geared arm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One axis of a force-reflecting master, with the hand that holds it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// JUNCTION: connects more than two ports.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// LINE: connects two sides through a delayed channel, by wave variables.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The linear one-ports: damper, spring, mass, sources; bilinear (trapezoidal) rule.
 ///

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Passivity observer and controller for an element that is not passive by itself.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What a network ends in, for gains that are chosen for an arm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Building blocks of two-ports: transformers and series sources.
 #pragma once

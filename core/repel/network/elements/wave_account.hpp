@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What has passed along a line in one direction: the sum of the waves and their energy.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The type-erased interface of a network module, and its adaptor for any type.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The largest stiffness at which a sampled wall is passive.
 #pragma once

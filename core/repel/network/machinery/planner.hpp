@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Arranges a list of modules into trees that can be solved, or reports why it cannot.
 #pragma once

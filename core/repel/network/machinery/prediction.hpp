@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// PREDICTION: the motion of the arm in the next ticks, between the operator's side of a network
 /// and its walls.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// ARM_OBSTACLE: the virtual forces of the world model on the links of the arm.
 #pragma once

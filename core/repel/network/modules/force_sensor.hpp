@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// FORCE SENSOR: a measured force, in a loop at the joints that makes an arm lighter.
 #pragma once

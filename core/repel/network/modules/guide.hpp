@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// GUIDE: virtual fixtures that attract the tool.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// KBB2: a virtual coupling, spring K parallel to damper B, with a shunt damper B2.
 #pragma once

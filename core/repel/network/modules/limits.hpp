@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// LIMITS: virtual springs and dampers ahead of the joint stops.
 #pragma once

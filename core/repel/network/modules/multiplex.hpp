@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// MULTIPLEX: couples a one-degree-of-freedom device to the six degrees of freedom of the tool.
 #pragma once

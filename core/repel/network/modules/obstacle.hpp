@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// OBSTACLE: the virtual forces of the world model, as an element of the network.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// PUMA_JOINTS: the robot at the end of the network, for any arm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// PUMA_KIN: from tool space to joint space, for any arm.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// RELIEF: compliance along chosen degrees of freedom.
 #pragma once

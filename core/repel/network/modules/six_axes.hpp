@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// SIX AXES: a simulated force-reflecting master of six degrees of freedom, with the hand that
 /// holds it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// SPACEBALL: a six-degree-of-freedom rate source without force feedback.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// TORQUE ARM: a simulated force-reflecting lever of one degree of freedom, with the hand that
 /// holds it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// VISUAL: a pass-through tap for displays and logs.
 #pragma once

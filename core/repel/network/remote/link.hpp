@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// One side of a link between two machines, as a tick sees it.
 #pragma once

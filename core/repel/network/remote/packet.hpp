@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// What one side of a remote line tells the other in each tick.
 #pragma once

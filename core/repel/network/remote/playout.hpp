@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// When to output what another machine sent: a buffer against jitter and loss, by two clocks that
 /// drift.

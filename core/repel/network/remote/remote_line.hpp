@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// REMOTE LINE: one end of a line whose other end is in another program.
 #pragma once

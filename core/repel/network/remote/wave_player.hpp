@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Outputs the waves that another machine sent, in time and never more energy than was sent.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Stand-in for the header of this name of ros2_control, with the published signatures of what the
 /// adapter uses, in the newer form: reading and writing an interface may fail.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Stand-in for <franka/exception.h> of libfranka: the exceptions that the adapter meets.
 #pragma once

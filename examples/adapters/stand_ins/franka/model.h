@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Stand-in for <franka/model.h> of libfranka, with the published signatures of what the adapter
 /// uses. The joints stand as in the maker's table of Denavit-Hartenberg parameters; the masses are

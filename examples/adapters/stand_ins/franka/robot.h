@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Stand-in for <franka/robot.h> of libfranka, with the published signatures of what the adapter
 /// uses, and a simulated arm in place of the robot. Time is simulated: `control` runs as fast as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Stand-in for <rclcpp/logging.hpp> of ROS 2.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // rejected by clang-analyzer-deadcode.DeadStores
 int next(int a) {
   int b = a + 1;

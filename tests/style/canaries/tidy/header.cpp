@@ -1,2 +1,3 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // rejected by bugprone-integer-division
 #include "core/header.hpp"

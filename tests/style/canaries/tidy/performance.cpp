@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // rejected by performance-for-range-copy
 #include <string>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: BSD-3-Clause
 // rejected by readability-function-size
 int sum(int a) {
   a += 1;
