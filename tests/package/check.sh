@@ -126,6 +126,16 @@ step "find_package, a part that was not built" \
   find_package -DPARTS=bullet
 step "add_subdirectory" works add_subdirectory "-DREPEL=$root"
 
+install_the_parent() {
+  configure parent "-DREPEL=$root" && cmake --build "$scratch/build" &&
+    cmake --install "$scratch/build" --prefix "$scratch/of_parent" &&
+    rm -r "$scratch/build"
+}
+step "add_subdirectory in a project that exports a library" install_the_parent
+prefix=$scratch/of_parent
+step "a program that links that library" works of_parent
+prefix=$scratch/moved
+
 [ ! -e "$prefix/bin/teleop" ] ||
   step "the installed program" "$prefix/bin/teleop" --seconds 0.1 --fast
 

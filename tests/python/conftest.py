@@ -18,14 +18,15 @@ def loop(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def teleop():
-    """The program, found as the package finds it, or where the build of the sources puts it."""
-    built = pathlib.Path(ROOT) / "build/release/bin/teleop"
-    if "REPEL_TELEOP" not in os.environ and built.exists():
-        os.environ["REPEL_TELEOP"] = str(built)
+    """The program in the package, or where the build of the sources puts it."""
     try:
         return repel.program()
     except repel.SetupError:
-        pytest.skip("the program teleop is not here")
+        built = pathlib.Path(ROOT) / "build/release/bin/teleop"
+        if not built.exists():
+            pytest.skip("the program teleop is not here")
+        os.environ["REPEL_TELEOP"] = str(built)
+        return repel.program()
 
 
 @pytest.fixture(scope="session")
