@@ -22,8 +22,8 @@ endfunction()
 
 option(REPEL_WITH_PARTS "What REPEL_WITH_PART is by default, for every part but the core" ON)
 
-# repel_switch(PART OUT): whether the part is wanted. What is not is as if its packages were missing,
-# but nothing is looked for, and nothing is said about it.
+# repel_switch(PART OUT): whether the part is wanted. What is not is as if its packages were
+# missing, but nothing is looked for, and nothing is said about it.
 function(repel_switch part out)
   string(TOUPPER ${part} upper)
   if(part STREQUAL core)

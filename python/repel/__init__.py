@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ._repel import cover as cover
     from ._repel import load_scene as load_scene
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = ["Arm", "Cell", "Command", "ForceLaw", "Kinematics", "Link", "Obstacle", "Part",
            "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Separation", "SetupError",
