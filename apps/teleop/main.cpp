@@ -293,7 +293,17 @@ void describe(CLI::App& app, Arguments& a) {
                  "hard: no wall may be entered, whoever pushes; soft: walls are springs (default: "
                  "as the laws of the scene say)")
       ->check(CLI::IsMember({"hard", "soft"}));
-  app.add_option("--report", a.report, "Write the report as JSON to FILE");
+  app.add_option("--report", a.report,
+                 "Write the report as JSON to FILE; -: print it, in place of the text")
+      ->transform(CLI::Validator(
+          [&a](std::string& file) {
+            if (file == "-") {
+              file = "/dev/stdout";
+              a.is_quiet = true;
+            }
+            return std::string();
+          },
+          ""));
   app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
   app.add_option("--log", a.log,
                  "Write every tick to FILE: a recording if its name ends in .mcap, else CSV");

@@ -47,6 +47,14 @@ TEST(CommandLine, QuietSaysNothingButWhatWentWrong) {
   EXPECT_FALSE(refused.err.empty());
 }
 
+TEST(CommandLine, ADashPrintsTheReportForAnotherProgram) {
+  const Ending ending = teleop("empty --fast --seconds 1 --report -");
+  EXPECT_EQ(ending.status, 0) << ending;
+  const nlohmann::json report = nlohmann::json::parse(ending.out, nullptr, false);
+  ASSERT_TRUE(report.is_object()) << ending;
+  EXPECT_EQ(report.at("ticks"), 400);
+}
+
 TEST(CommandLine, BadUsageEndsWithTwoAndSaysWhy) {
   for (const char* arguments :
        {"--no-such-option", "--rate 0", "--rate fast", "--seconds -1", "--backend clay",
