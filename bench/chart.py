@@ -15,7 +15,7 @@ except ImportError:
              "apt-get install python3-matplotlib")
 
 matplotlib.use("svg")
-MATPLOTLIB = f"Matplotlib v{matplotlib.__version__},"  # as it names itself in what it writes
+MATPLOTLIB = f"Matplotlib v{matplotlib.__version__}"  # as it names itself in what it writes
 from matplotlib import pyplot, ticker  # noqa: E402  after the choice of what draws
 
 # Okabe and Ito: told apart with any colour vision.
