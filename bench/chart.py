@@ -24,7 +24,7 @@ RED, BLUE, ORANGE, GREEN, PINK, SKY = ("#d55e00", "#0072b2", "#e69f00", "#009e73
 GREY, BLACK = "#777777", "#000000"
 
 pyplot.rcParams.update({
-    "svg.fonttype": "none", "svg.hashsalt": "repel",
+    "svg.fonttype": "none", "svg.hashsalt": "repel", "font.sans-serif": "DejaVu Sans",
     "font.size": 8, "axes.titlesize": 8, "axes.titleweight": "bold", "axes.titlelocation": "left",
     "axes.grid": True, "grid.color": "#e0e0e0", "grid.linewidth": 0.6, "axes.axisbelow": True,
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#999999",
