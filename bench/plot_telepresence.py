@@ -3,7 +3,7 @@
 
 import chart
 
-PALETTE = (chart.RED, chart.BLUE, chart.ORANGE, chart.GREEN, chart.PINK)
+PALETTE = (chart.RED, chart.BLUE, chart.GREEN, chart.ORANGE, chart.PINK)
 MOST_FORCE = 150  # [N]; more is drawn at the end of the axis
 
 
