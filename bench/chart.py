@@ -1,63 +1,98 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the plots of measured results have in common: SVG, logarithmic times, a legend."""
+"""What all charts have in common: their style, and SVG files that are the same for the same data.
 
-import json
+Needs matplotlib: apt-get install python3-matplotlib"""
+
+import io
 import math
+import pathlib
 import sys
 
+try:
+    import matplotlib
+except ImportError:
+    sys.exit(f"{pathlib.Path(sys.argv[0]).name}: charts need matplotlib: "
+             "apt-get install python3-matplotlib")
 
-def text(x, y, words, style=""):
-    return f"<text x='{x:.1f}' y='{y:.1f}' {style}>{words}</text>"
+matplotlib.use("svg")
+MATPLOTLIB = f"Matplotlib v{matplotlib.__version__}"  # as it names itself in what it writes
+from matplotlib import pyplot, ticker  # noqa: E402  after the choice of what draws
 
+# Okabe and Ito: told apart with any colour vision.
+RED, BLUE, ORANGE, GREEN, PINK, SKY = ("#d55e00", "#0072b2", "#e69f00", "#009e73", "#cc79a7",
+                                       "#56b4e9")
+GREY, BLACK = "#777777", "#000000"
 
-def runs(path):
-    with open(path, encoding="utf-8") as file:
-        return json.load(file)["benchmarks"]
-
-
-class Panel:
-    """Times from left to right, logarithmic, the same for all panels of a plot; what goes from top
-    to bottom is its user's."""
-
-    def __init__(self, left, right, top, bottom, times):
-        self.left, self.right, self.top, self.bottom = left, right, top, bottom
-        self.low, self.high = math.log10(min(times) / 1.2), math.log10(max(times) * 1.2)
-
-    def x(self, time):
-        share = (math.log10(time) - self.low) / (self.high - self.low)
-        return self.left + share * (self.right - self.left)
-
-    def title(self, words):
-        yield text(self.left, 25, words, "font-weight='bold'")
-
-    def level(self, y, label):
-        yield f"<path d='M{self.left} {y:.1f}H{self.right}' stroke='#ddd'/>"
-        yield text(self.left - 5, y + 4, label, "text-anchor='end'")
-
-    def times(self):
-        for time in (100, 200, 500, 1000, 2000, 5000, 10000, 20000):
-            if self.low < math.log10(time) < self.high:
-                x = self.x(time)
-                yield f"<path d='M{x:.1f} {self.top}V{self.bottom}' stroke='#ddd'/>"
-                yield text(x, self.bottom + 15, time, "text-anchor='middle'")
+pyplot.rcParams.update({
+    "svg.fonttype": "none", "svg.hashsalt": "repel", "font.sans-serif": "DejaVu Sans",
+    "font.size": 8, "axes.titlesize": 8, "axes.titleweight": "bold", "axes.titlelocation": "left",
+    "axes.grid": True, "grid.color": "#e0e0e0", "grid.linewidth": 0.6, "axes.axisbelow": True,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#999999",
+    "xtick.color": "#999999", "ytick.color": "#999999", "xtick.labelcolor": BLACK,
+    "ytick.labelcolor": BLACK, "lines.linewidth": 1.1, "lines.markersize": 4,
+    "legend.frameon": False, "legend.handlelength": 1.4})
 
 
-def picture(width, height, names, colours, body):
-    """`body` with a legend of `names` at its right edge."""
-    yield (f"<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='{height}' "
-           "font-family='sans-serif' font-size='11'>")
-    yield "<rect width='100%' height='100%' fill='white'/>"
-    yield from body
-    for i, name in enumerate(names):
-        style = f"fill='{colours.get(name, '#000')}' font-weight='bold'"
-        yield text(width - 100, 50 + 18 * i, name, style)
-    yield "</svg>"
+def panels(columns, rows=1, width=9.0, height=3.2, **how):
+    """A figure [inch] and its panels, a matrix."""
+    return pyplot.subplots(rows, columns, figsize=(width, height), squeeze=False,
+                           layout="constrained", **how)
 
 
-def main(doc, draw):
-    """The whole program: `draw` makes the lines of the plot from the runs of the results."""
-    if len(sys.argv) != 3 or "--help" in sys.argv:
-        print(doc)
-        sys.exit(0 if "--help" in sys.argv else 2)
-    with open(sys.argv[2], "w", encoding="utf-8") as file:
-        file.write("\n".join(draw(runs(sys.argv[1]))) + "\n")
+def named(names, styles):
+    """{name: how to plot it}: a colour and a marker; what has no style is black."""
+    return {name: dict(zip(("color", "marker"), styles.get(name, (BLACK, "x")))) for name in names}
+
+
+def magnitude(value, _=None):
+    """A number, in full where that is short, or else as a power of ten."""
+    if 0.01 <= value < 1000:
+        return f"{value:g}"
+    if 1000 <= value < 1e6:
+        return f"{value:,.0f}".replace(",", "\N{THIN SPACE}")
+    power = str(round(math.log10(value)))
+    return "10" + power.translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def logarithmic(panel, way, steps=(1,), every=1):
+    """Makes `way`, x or y, logarithmic, with a number at `steps` times every `every`-th power."""
+    getattr(panel, f"set_{way}scale")("log")
+    axis = getattr(panel, f"{way}axis")
+    axis.set_major_locator(ticker.FixedLocator(
+        [step * 10.0**power for power in range(-18, 13, every) for step in steps]))
+    axis.set_major_formatter(magnitude)
+    axis.set_minor_locator(ticker.NullLocator())
+
+
+def legend(panel):
+    """What the lines of all panels are, at the right of the last one."""
+    panel.legend(loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0)
+
+
+def name_ends(panel, lines, gap=9.5):
+    """The name of each line at its right end; names that would overlap move apart [points]."""
+    panel.figure.draw_without_rendering()
+    ends = []
+    for line in lines:
+        x, y = line.get_xydata()[-1]
+        ends.append((panel.transData.transform((x, y))[1] * 72 / panel.figure.dpi, (x, y), line))
+    ends.sort(key=lambda end: end[0])
+    heights = [end[0] for end in ends]
+    for _ in range(100):
+        for i in range(1, len(heights)):
+            lack = gap - (heights[i] - heights[i - 1])
+            if lack > 0:
+                heights[i - 1] -= lack / 2
+                heights[i] += lack / 2
+    for height, (own, point, line) in zip(heights, ends):
+        panel.annotate(line.get_label(), point, (6, height - own), textcoords="offset points",
+                       color=line.get_color(), va="center", annotation_clip=False)
+
+
+def save(figure, path, title, words):
+    """Writes the figure as SVG with a title and a description for those who do not see it."""
+    file = io.StringIO()
+    figure.savefig(file, format="svg", metadata={"Date": None, "Title": title})
+    pyplot.close(figure)
+    described = file.getvalue().replace("</title>", f"</title>\n <desc>{words}</desc>", 1)
+    pathlib.Path(path).write_text(described, encoding="utf-8")

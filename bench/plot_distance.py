@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""plot_distance.py RESULTS.json PLOT.svg: time against error of every library, tolerance by
-tolerance."""
-
-import math
+"""Time against error of every library, tolerance by tolerance."""
 
 import chart
 
-COLOURS = {"repel": "#c1121f", "bullet": "#7f7f7f", "coal": "#2a6f97", "fcl": "#e09f3e",
-           "mujoco": "#588157", "opengjk": "#8b5e34", "dgd": "#8e6bbf"}
-WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 360, 320, 60, 40, 50
+STYLES = {"repel": (chart.RED, "o"), "bullet": (chart.GREY, "^"), "coal": (chart.BLUE, "s"),
+          "fcl": (chart.ORANGE, "D"), "mujoco": (chart.GREEN, "P"), "opengjk": (chart.PINK, "v"),
+          "dgd": (chart.SKY, "X")}
 LOWEST = 1e-17  # an error of exactly 0 is drawn here
 
 
@@ -27,42 +23,19 @@ def curves(runs):
     return tasks
 
 
-def height_of(error):
-    return TOP + (HEIGHT - TOP - BOTTOM) * -math.log10(error) / 17
-
-
-def axes(panel, task):
-    yield from panel.title(f"{task}, cold")
-    for digits in range(0, 18, 4):
-        yield from panel.level(height_of(10.0**-digits), f"1e-{digits}" if digits else "1")
-    yield from panel.times()
-    yield chart.text(panel.left, HEIGHT - 12, "median time [ns] against worst relative error")
-
-
-def curve(panel, library, points):
-    colour = COLOURS.get(library, "#000")
-    places = [(panel.x(time), height_of(error)) for time, error in points]
-    path = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in places)
-    yield f"<path d='{path}' fill='none' stroke='{colour}'/>"
-    for x, y in places:
-        yield f"<circle cx='{x:.1f}' cy='{y:.1f}' r='3' fill='{colour}'/>"
-
-
-def panels(tasks):
-    times = [time for task in tasks.values() for line in task.values() for time, _ in line]
-    for i, (task, lines) in enumerate(tasks.items()):
-        left = WIDTH * i
-        panel = chart.Panel(left + LEFT, left + WIDTH - 20, TOP, HEIGHT - BOTTOM, times)
-        yield from axes(panel, task)
-        for library, points in lines.items():
-            yield from curve(panel, library, points)
-
-
-def draw(runs):
-    tasks = curves(runs)
-    libraries = sorted({library for task in tasks.values() for library in task})
-    return chart.picture(WIDTH * len(tasks) + 110, HEIGHT, libraries, COLOURS, panels(tasks))
-
-
-if __name__ == "__main__":
-    chart.main(__doc__, draw)
+def draw(results, path):
+    tasks = curves(results["benchmarks"])
+    names = [name for name in STYLES if any(name in task for task in tasks.values())]
+    names += sorted({name for task in tasks.values() for name in task} - set(names))
+    figure, ((*panels,),) = chart.panels(len(tasks), sharex=True, sharey=True)
+    for panel, (task, lines) in zip(panels, tasks.items()):
+        for name, style in chart.named(names, STYLES).items():
+            panel.plot(*zip(*lines.get(name, [(float("nan"),) * 2])), label=name, **style)
+        chart.logarithmic(panel, "x", (1, 2, 5))
+        chart.logarithmic(panel, "y", every=3)
+        panel.set(title=f"{task}, cold", xlabel="median time of a query [ns]")
+    panels[0].set(ylabel="worst relative error", ylim=(LOWEST, 10))
+    chart.legend(panels[-1])
+    chart.save(figure, path, "Distance: time against error",
+               "Median time of a cold query against the worst relative error, a curve for each "
+               "library and a point for each tolerance, for boxes and hulls of 8 and 32 vertices.")

@@ -1,52 +1,38 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""plot_engines.py RESULTS.json PLOT.svg: error of a motion against the run time of a step, engine
-by engine, in more and more sub-steps."""
-
-import json
-import sys
+"""Error of a motion against the run time of a step, engine by engine, in more and more
+sub-steps."""
 
 import chart
-from plot_telepresence import WIDTH, Axes, decades, picture
 
-COLOURS = {"bullet": "#7f7f7f", "ode": "#2a6f97", "reference": "#c1121f"}
-BELOW = 13  # where the sub-steps of bullet stand, whose curve runs beside that of ode
+STYLES = {"bullet": (chart.GREY, "^"), "ode": (chart.BLUE, "s"), "reference": (chart.RED, "o")}
+BELOW = {"bullet"}  # its sub-steps stand there, since its curve runs beside that of ode
 LEAST_ERROR = 1e-10  # [mrad]; the truth is hardly better known
 
 
-def curve(axes, rows, colour, drop):
+def curve(panel, rows, name, style):
     """What is wrong has earned no time and no point."""
-    points = [(r["step [us]"], r["error [mrad]"], r["sub-steps"]) for r in rows if r["step [us]"]]
-    yield from axes.curve([point[:2] for point in points], colour)
+    points = [(r["step [us]"], max(LEAST_ERROR, r["error [mrad]"]), r["sub-steps"])
+              for r in rows if r["engine"] == name and r["step [us]"]]
+    panel.plot(*zip(*[point[:2] for point in points]), label=name, **style)
+    away, across, up = (-3, "right", "top") if name in BELOW else (3, "left", "bottom")
     for time, error, substeps in points:
-        x, y = axes.x(time), axes.y(error)
-        yield f"<circle cx='{x:.1f}' cy='{y:.1f}' r='3' fill='{colour}'/>"
-        yield chart.text(x + 5, y + drop, substeps, f"fill='{colour}' font-size='9'")
+        panel.annotate(substeps, (time, error), (away, away), textcoords="offset points",
+                       ha=across, va=up, color=style["color"], fontsize=7)
 
 
-def draw(rows):
-    panels = []
-    for arm in dict.fromkeys(row["arm"] for row in rows):
-        ours = [row for row in rows if row["arm"] == arm]
-        axes = Axes(WIDTH * len(panels), decades(0.3, 1000, (1, 3)), decades(LEAST_ERROR, 10))
-        panel = list(axes.lines(f"{arm}: error of a second of motion [mrad]",
-                                "time of a step of 2.5 ms [us]; at the points: sub-steps"))
-        for engine, colour in COLOURS.items():
-            drop = BELOW if engine == "bullet" else -4
-            panel += curve(axes, [row for row in ours if row["engine"] == engine], colour, drop)
-        panels.append(panel)
-    return picture(panels, COLOURS)
-
-
-def main():
-    if len(sys.argv) != 3 or "--help" in sys.argv:
-        print(__doc__)
-        sys.exit(0 if "--help" in sys.argv else 2)
-    with open(sys.argv[1], encoding="utf-8") as file:
-        rows = json.load(file)["parts"]["sweep"]["rows"]
-    with open(sys.argv[2], "w", encoding="utf-8") as file:
-        file.write("\n".join(draw(rows)) + "\n")
-
-
-if __name__ == "__main__":
-    main()
+def draw(part, path):
+    rows = part["rows"]
+    arms = list(dict.fromkeys(row["arm"] for row in rows))
+    figure, ((*panels,),) = chart.panels(len(arms), sharex=True, sharey=True)
+    for panel, arm in zip(panels, arms):
+        for name, style in chart.named(STYLES, STYLES).items():
+            curve(panel, [row for row in rows if row["arm"] == arm], name, style)
+        chart.logarithmic(panel, "x", (1, 3))
+        chart.logarithmic(panel, "y", every=2)
+        panel.set(title=arm, xlim=(0.3, 1000), ylim=(LEAST_ERROR / 3, 30),
+                  xlabel="time of a step of 2.5 ms [µs]; numbers: sub-steps")
+    panels[0].set(ylabel="error of a second of motion [mrad]")
+    chart.legend(panels[-1])
+    chart.save(figure, path, "Engines: error against time",
+               "Error of a second of motion against the time of a step, a curve for each engine "
+               "and a point for each number of sub-steps, for each arm.")

@@ -1,16 +1,13 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""plot_overlap.py RESULTS.json PLOT.svg: time against error of every way to measure an overlap."""
-
-import math
+"""Time against error of every way to measure an overlap."""
 
 import chart
 
-COLOURS = {"reduction": "#c1121f", "deepest point": "#780000", "exact": "#f77f00",
-           "bullet": "#7f7f7f", "coal": "#2a6f97", "fcl": "#e09f3e", "libccd": "#8e6bbf",
-           "libccd_mpr": "#c8a2e0", "mujoco": "#588157", "ode": "#8b5e34"}
-WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 435, 340, 75, 40, 60
-DIGITS = 5  # what is right to more is drawn at the foot
+STYLES = {"reduction": (chart.RED, "o"), "deepest point": (chart.BLACK, "s"),
+          "exact": (chart.ORANGE, "D"), "bullet": (chart.GREY, "^"), "coal": (chart.BLUE, "s"),
+          "fcl": (chart.ORANGE, "v"), "libccd": (chart.SKY, "<"), "libccd_mpr": (chart.SKY, ">"),
+          "mujoco": (chart.GREEN, "P"), "ode": (chart.PINK, "X")}
+LEAST = 1e-5  # what is right to more is drawn at the foot
 
 
 def settings_of(runs):
@@ -18,27 +15,9 @@ def settings_of(runs):
     inputs = {name: {} for name in ("box", "16v")}
     for run in runs:
         name, start, setting, *_ = run["name"].split("/")
-        point = (run["p50_ns"], run["p95_relative_error"])
+        point = (run["p50_ns"], max(LEAST, run["p95_relative_error"]))
         inputs[name].setdefault(setting, {})[start] = point
     return inputs
-
-
-def height_of(error):
-    digits = min(DIGITS, -math.log10(max(error, 1e-300)))
-    return TOP + (HEIGHT - TOP - BOTTOM) * digits / DIGITS
-
-
-def axes(panel, name):
-    yield from panel.title(name)
-    for digits in range(DIGITS + 1):
-        label = "1" if digits == 0 else f"1e-{digits}"
-        yield from panel.level(height_of(10.0**-digits),
-                               f"below {label}" if digits == DIGITS else label)
-    yield from panel.times()
-    yield chart.text(panel.left, HEIGHT - 22,
-                     "median time [ns] against the error that 5 % exceed;")
-    yield chart.text(panel.left, HEIGHT - 8,
-                     "filled warm, hollow cold; numbers: levels of the ladder")
 
 
 def family(setting):
@@ -46,34 +25,35 @@ def family(setting):
     return setting.rsplit(" ", 1)[0] if setting[-1].isdigit() else setting
 
 
-def mark(panel, setting, points):
-    colour = COLOURS.get(family(setting), "#000")
-    places = {start: (panel.x(time), height_of(error)) for start, (time, error) in points.items()}
-    (x, y), (cold_x, cold_y) = places["warm"], places["cold"]
-    yield f"<path d='M{cold_x:.1f} {cold_y:.1f}L{x:.1f} {y:.1f}' stroke='{colour}' opacity='0.4'/>"
-    yield f"<circle cx='{cold_x:.1f}' cy='{cold_y:.1f}' r='3' fill='white' stroke='{colour}'/>"
-    yield f"<circle cx='{x:.1f}' cy='{y:.1f}' r='3.5' fill='{colour}'/>"
+def mark(panel, setting, points, style):
+    hollow = {**style, "markerfacecolor": "white"}
+    panel.plot(*zip(points["cold"], points["warm"]), color=style["color"], alpha=0.4)
+    panel.plot(*points["cold"], **hollow)
+    panel.plot(*points["warm"], **style)
     if family(setting) != setting:
-        yield chart.text(cold_x + 5, cold_y - 3, setting.rsplit(" ", 1)[1], f"fill='{colour}'")
+        panel.annotate(setting.rsplit(" ", 1)[1], points["cold"], (4, 2),
+                       textcoords="offset points", color=style["color"])
 
 
-def panels(inputs):
-    times = [time for settings in inputs.values() for points in settings.values()
-             for time, _ in points.values()]
-    for i, (name, settings) in enumerate(inputs.items()):
-        left = WIDTH * i
-        panel = chart.Panel(left + LEFT, left + WIDTH - 20, TOP, HEIGHT - BOTTOM, times)
-        yield from axes(panel, name)
-        for setting, points in settings.items():
-            yield from mark(panel, setting, points)
-
-
-def draw(runs):
-    inputs = settings_of(runs)
+def draw(results, path):
+    inputs = settings_of(results["benchmarks"])
     drawn = {family(name) for settings in inputs.values() for name in settings}
-    families = [name for name in COLOURS if name in drawn] + sorted(drawn - COLOURS.keys())
-    return chart.picture(WIDTH * len(inputs) + 110, HEIGHT, families, COLOURS, panels(inputs))
-
-
-if __name__ == "__main__":
-    chart.main(__doc__, draw)
+    names = [name for name in STYLES if name in drawn] + sorted(drawn - STYLES.keys())
+    styles = chart.named(names, STYLES)
+    _, ((*panels,),) = chart.panels(len(inputs), height=3.4, sharex=True, sharey=True)
+    for panel, (name, settings) in zip(panels, inputs.items()):
+        for setting, points in settings.items():
+            mark(panel, setting, points, styles[family(setting)])
+        for label, style in styles.items():
+            panel.plot([], label=label, linestyle="none", **style)
+        chart.logarithmic(panel, "x", (1, 2, 5))
+        chart.logarithmic(panel, "y")
+        panel.set(title=name, ylim=(LEAST / 1.6, 2),
+                  xlabel="median time of a query [ns]; filled: warm, hollow: cold")
+    panels[0].set(ylabel="relative error that 5 % exceed;\nat the foot: 10⁻⁵ or less")
+    panels[0].annotate("numbers: levels of the ladder", (1, 0.74), xycoords="axes fraction",
+                       ha="right", color=chart.RED)
+    chart.legend(panels[-1])
+    chart.save(panels[0].figure, path, "Overlap: time against error",
+               "Median time of a query, warm and cold, against the relative error that 5 percent "
+               "exceed, for every measure of overlap, of boxes and of hulls of 16 vertices.")

@@ -1,13 +1,17 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """draw.py SCENE.yaml LOG.csv PICTURE.svg: a scene from the side and from above: its obstacles, the
 way of each tool with a number where a phase of the script ends, and the arms at the start (pale)
 and where they were pushed hardest. What can come and go is yellow, dashed if it comes later; what
-only a camera sees is violet, virtual fixtures that attract are dashed and green."""
+only a camera sees is violet, virtual fixtures that attract are dashed and green.
 
+Needs python3-yaml, python3-matplotlib and python3-scipy."""
+
+import argparse
 import csv
 import math
 import os
+import pathlib
 import re
 import sys
 import xml.etree.ElementTree as xml
@@ -15,10 +19,19 @@ from types import SimpleNamespace
 
 import yaml
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bench"))
+import chart  # noqa: E402  after the folder where it is; with it come numpy and scipy
+import numpy as np  # noqa: E402
+from matplotlib.colors import to_rgba  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.patches import Polygon  # noqa: E402
+from scipy.spatial import ConvexHull  # noqa: E402
+from scipy.spatial.transform import Rotation  # noqa: E402
+
 UNITS = {"m": 1, "cm": 0.01, "mm": 0.001, "rad": 1, "deg": math.pi / 180, "s": 1, "ms": 0.001}
-ROUND = [2 * math.pi * i / 24 for i in range(24)]
-HEIGHT, GAP, MARGIN = 430, 40, 30  # of a panel, between panels, around all [px]
-MOST_WIDTH = 480  # of a panel [px]
+ROUND = np.array([(math.cos(a), math.sin(a)) for a in np.arange(24) * math.pi / 12])
+HEIGHT, GAP, MARGIN = 322, 30, 22  # of a panel, between panels, around all [pt]
+MOST_WIDTH = 360  # of a panel [pt]
 WAYS = ("#c1121f", "#7b2cbf")  # colours of the tools' ways
 VIEWS = (("from the side", 0, 2), ("from above", 0, 1))
 
@@ -29,43 +42,23 @@ def value(words):
     return [float(number) * UNITS[unit] for number in numbers]
 
 
-# --- Poses: a rotation by rows and a translation.
+# --- Poses: homogeneous matrices.
 
 
-def rotation(axis, angle):
-    """About a unit axis (Rodrigues)."""
-    x, y, z = axis
-    c, s, t = math.cos(angle), math.sin(angle), 1 - math.cos(angle)
-    return [[c + t * x * x, t * x * y - s * z, t * x * z + s * y],
-            [t * x * y + s * z, c + t * y * y, t * y * z - s * x],
-            [t * x * z - s * y, t * y * z + s * x, c + t * z * z]]
+def pose_of(position, rotation):
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = rotation.as_matrix(), position
+    return pose
 
 
-def product(a, b):
-    return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
-
-
-def turned(matrix, vector):
-    return [sum(row[k] * vector[k] for k in range(3)) for row in matrix]
-
-
-def moved(pose, point):
-    return [a + b for a, b in zip(turned(pose[0], point), pose[1])]
-
-
-def chained(a, b):
-    return product(a[0], b[0]), moved(a, b[1])
-
-
-def pose_of(position, rpy):
-    x, y, z = (rotation(axis, angle)
-               for axis, angle in zip(([1, 0, 0], [0, 1, 0], [0, 0, 1]), rpy))
-    return product(z, product(y, x)), list(position)
+def moved(pose, points):
+    return np.asarray(points) @ pose[:3, :3].T + pose[:3, 3]
 
 
 def pose_in(entry):
     """Of a part or a robot in a scene file."""
-    return pose_of(value(entry.get("position", "0 0 0 m")), value(entry.get("rpy", "0 0 0 rad")))
+    return pose_of(value(entry.get("position", "0 0 0 m")),
+                   Rotation.from_euler("xyz", value(entry.get("rpy", "0 0 0 rad"))))
 
 
 # --- Shapes: points whose convex hull is what is seen, and a radius around them.
@@ -92,28 +85,15 @@ def box(size):
 
 
 def rim(radius, height):
-    return [[radius * math.cos(a), radius * math.sin(a), height] for a in ROUND]
+    return [[radius * x, radius * y, height] for x, y in ROUND]
 
 
-def outline(points, radius, pose, across, up):
-    """What a shape covers in a view: the convex hull of its points there (Andrew)."""
-    seen = [moved(pose, point) for point in points]
-    seen = [(p[across], p[up]) for p in seen]
+def outline(points, radius, pose, axes):
+    """What a shape covers in a view: the convex hull of its points there."""
+    seen = moved(pose, points)[:, axes]
     if radius > 0.0:
-        seen = [(x + radius * math.cos(a), y + radius * math.sin(a)) for x, y in seen for a in ROUND]
-    seen = sorted(set(seen))
-
-    def half(ordered):
-        chain = []
-        for p in ordered:
-            while len(chain) > 1 and (
-                    (chain[-1][0] - chain[-2][0]) * (p[1] - chain[-2][1]) <=
-                    (chain[-1][1] - chain[-2][1]) * (p[0] - chain[-2][0])):
-                chain.pop()
-            chain.append(p)
-        return chain[:-1]
-
-    return half(seen) + half(reversed(seen))
+        seen = (seen[:, None] + radius * ROUND).reshape(-1, 2)
+    return seen[ConvexHull(seen).vertices]
 
 
 # --- The arm: its links where the joints put them.
@@ -126,7 +106,8 @@ def numbers(element, name, default):
 
 def origin_of(element):
     origin = element.find("origin")
-    return pose_of(numbers(origin, "xyz", [0, 0, 0]), numbers(origin, "rpy", [0, 0, 0]))
+    return pose_of(numbers(origin, "xyz", [0, 0, 0]),
+                   Rotation.from_euler("xyz", numbers(origin, "rpy", [0, 0, 0])))
 
 
 def link_shapes(link):
@@ -152,25 +133,25 @@ def arm_shapes(arm, joints):
     joints = list(joints)
     while True:
         for points, radius, X_LP in link_shapes(links[name]):
-            yield points, radius, chained(pose, X_LP)
+            yield points, radius, pose @ X_LP
         joint = children.get(name)
         if joint is None or name == arm.entry["robot"].get("tip_link"):
             break
-        pose = chained(pose, origin_of(joint))
+        pose = pose @ origin_of(joint)
         if joint.get("type") != "fixed":
-            pose = chained(pose, motion_of(joint, joints.pop(0)))
+            pose = pose @ motion_of(joint, joints.pop(0))
         name = joint.find("child").get("link")
-    pose = chained(pose, pose_in(arm.entry["robot"].get("tool_frame", {})))
+    pose = pose @ pose_in(arm.entry["robot"].get("tool_frame", {}))
     for part in arm.entry["tool"]:
         points, radius = shape_of(part)
-        yield points, radius, chained(pose, pose_in(part))
+        yield points, radius, pose @ pose_in(part)
 
 
 def motion_of(joint, position):
-    axis = numbers(joint.find("axis"), "xyz", [1, 0, 0])
+    motion = position * np.array(numbers(joint.find("axis"), "xyz", [1, 0, 0]))
     if joint.get("type") == "prismatic":
-        return rotation([0, 0, 1], 0), [a * position for a in axis]
-    return rotation(axis, position), [0, 0, 0]
+        return pose_of(motion, Rotation.identity())
+    return pose_of((0, 0, 0), Rotation.from_rotvec(motion))
 
 
 # --- What a run was: the scene and its log.
@@ -219,27 +200,10 @@ def hardest_tick(log, arms):
 # --- The picture.
 
 
-class Panel:
-    """One view: metres to pixels."""
-
-    def __init__(self, left, scale, across, up, low, high):
-        self.left, self.scale, self.axes, self.low, self.high = left, scale, (across, up), low, high
-
-    def at(self, x, y):
-        return (self.left + (x - self.low[0]) * self.scale,
-                MARGIN + (self.high[1] - y) * self.scale)
-
-    def area(self, shape, style):
-        path = " ".join("%.1f,%.1f" % self.at(*p) for p in outline(*shape, *self.axes))
-        return f"<polygon points='{path}' {style}/>"
-
-    def way(self, points, style):
-        path = " ".join("%.1f,%.1f" % self.at(*p) for p in points)
-        return f"<polyline points='{path}' fill='none' {style}/>"
-
-
-def words(x, y, content, style=""):
-    return f"<text x='{x:.1f}' y='{y:.1f}' {style}>{content}</text>"
+def style_of(colour, opacity, edge=None, width=0.6, dashes="-"):
+    """Of what is filled."""
+    return {"facecolor": to_rgba(colour, opacity), "edgecolor": edge or colour, "linewidth": width,
+            "linestyle": dashes, "clip_on": False}
 
 
 def with_parts(entries, folder):
@@ -260,21 +224,19 @@ def with_parts(entries, folder):
 def obstacles_of(scene):
     """Each with its shape, its style, and where it goes if it moves."""
     for part in scene.get("loose", []):
-        style = "fill='#e9c46a' fill-opacity='0.4' stroke='#9c6644' stroke-width='0.8'"
-        dashes = "" if part.get("at_start", True) else " stroke-dasharray='2 2'"
-        yield part, (*shape_of(part), pose_in(part)), style + dashes
+        dashes = "-" if part.get("at_start", True) else (0, (2, 2))
+        yield part, (*shape_of(part), pose_in(part)), style_of("#e9c46a", 0.4, "#9c6644",
+                                                               dashes=dashes)
     for part in scene.get("hidden", []):
-        yield from with_way(part, "fill='#9d4edd' fill-opacity='0.18' stroke='#7b2cbf' "
-                                  "stroke-width='0.8'")
+        yield from with_way(part, style_of("#9d4edd", 0.18, "#7b2cbf"))
     only = [{"name": "camera", **scene["camera"]}] if "camera" in scene else []
     for each in only + scene.get("cameras", []):
         camera = {"name": each["name"], "position": each["position"]}
-        yield camera, (box([0.05, 0.05, 0.05]), 0.0, pose_in(camera)), "fill='#333' fill-opacity='0.3'"
+        yield camera, (box([0.05, 0.05, 0.05]), 0.0, pose_in(camera)), style_of("#333333", 0.3,
+                                                                                "none")
     for part in scene["obstacles"]:
         law = scene.get("laws", {}).get(part.get("law", "default"), {})
-        colour = "#2a9d8f" if law.get("passable") else "#457b9d"
-        style = f"fill='{colour}' fill-opacity='0.13' stroke='{colour}' stroke-width='0.8'"
-        yield from with_way(part, style)
+        yield from with_way(part, style_of("#2a9d8f" if law.get("passable") else "#457b9d", 0.13))
 
 
 def with_way(part, style):
@@ -282,8 +244,9 @@ def with_way(part, style):
     pose = pose_in(part)
     yield part, (*shape_of(part), pose), style
     if "motion" in part:
-        there = [a + b for a, b in zip(pose[1], value(part["motion"]["along"]))]
-        yield None, (*shape_of(part), (pose[0], there)), style + " stroke-dasharray='4 3'"
+        there = pose.copy()
+        there[:3, 3] += value(part["motion"]["along"])
+        yield None, (*shape_of(part), there), {**style, "linestyle": (0, (4, 3))}
 
 
 def fixtures_of(scene):
@@ -296,98 +259,96 @@ def fixtures_of(scene):
             elif fixture["shape"] == "cone":
                 side = reach * math.tan(value(fixture["half_angle"])[0])
                 for x, y in ((side, 0), (0, side)):
-                    yield [moved(pose, p) for p in ([-x, -y, reach], [0, 0, 0], [x, y, reach])]
+                    yield moved(pose, ([-x, -y, reach], [0, 0, 0], [x, y, reach]))
             elif fixture["shape"] in ("line", "axis", "tube"):
-                yield [moved(pose, [0, 0, z]) for z in (-reach, reach)]
+                yield moved(pose, ([0, 0, -reach], [0, 0, reach]))
 
 
-def names_of(panel, scene):
+def write_names(panel, scene, axes, scale):
     """The name of each obstacle at its top or a little below, of each numbered row once; none where
     others leave no room for it."""
-    taken = {}
+    taken = {}  # [pt]
     for part, shape, _ in obstacles_of(scene):
         name = re.sub(r"[_/]\d+$", "", part["name"]) if part else None
         if name is None or name in taken:
             continue
-        seen = outline(*shape, *panel.axes)
-        x = (min(p[0] for p in seen) + max(p[0] for p in seen)) / 2
-        px, py = panel.at(x, max(p[1] for p in seen))
-        for y in (py + 9, py + 18, py + 27):
-            if all(abs(px - qx) >= 2.6 * (len(name) + len(other)) or abs(y - qy) >= 9
+        low, high = np.min(seen := outline(*shape, axes), axis=0), np.max(seen, axis=0)
+        x = scale * (low[0] + high[0]) / 2
+        for y in scale * high[1] - np.array((7, 14, 21)):
+            if all(abs(x - qx) >= 2.2 * (len(name) + len(other)) or abs(y - qy) >= 7
                    for other, (qx, qy) in taken.items()):
-                taken[name] = px, y
+                taken[name] = x, y
                 break
     for name, (x, y) in taken.items():
-        yield words(x, y, name.replace("_", " "), "fill='#1d3557' text-anchor='middle'")
+        panel.text(x / scale, y / scale, name.replace("_", " "), color="#1d3557", ha="center",
+                   fontsize=7)
 
 
-def way_of(arm, panel, log, colour):
+def draw_way(panel, arm, axes, log, colour):
     def at(row):
-        point = [float(row[f"{arm.prefix}{axis}_m"]) for axis in "xyz"]
-        return [point[axis] for axis in panel.axes]
+        return np.array([float(row[f"{arm.prefix}{axis}_m"]) for axis in "xyz"])[axes]
 
-    yield panel.way([at(row) for row in log[::20]], f"stroke='{colour}' stroke-width='1.3'")
+    panel.plot(*np.transpose([at(row) for row in log[::20]]), color=colour, linewidth=1)
     for number, _, ticks in phases_of(arm.entry, log):
-        x, y = panel.at(*at(ticks[-1]))
-        yield f"<circle cx='{x:.1f}' cy='{y:.1f}' r='2' fill='{colour}'/>"
-        yield words(x + 3, y - 3, number, f"fill='{colour}' font-weight='bold'")
+        panel.plot(*at(ticks[-1]), "o", color=colour, markersize=3)
+        panel.annotate(number, at(ticks[-1]), (2, 2), textcoords="offset points", color=colour,
+                       weight="bold", fontsize=7)
 
 
-def view(panel, scene, arms, log):
+def draw_view(panel, scene, arms, log, axes, scale):
     for arm in arms:
-        for row, style in ((log[0], "fill='#ddd' fill-opacity='0.3' stroke='#ccc'"),
-                           (hardest_tick(log, arms), "fill='#f4a261' fill-opacity='0.25' "
-                                                     "stroke='#b5651d' stroke-width='0.7'")):
+        for row, style in ((log[0], style_of("#dddddd", 0.3, "#cccccc")),
+                           (hardest_tick(log, arms), style_of("#f4a261", 0.25, "#b5651d"))):
             for shape in arm_shapes(arm, joints_at(arm, row)):
-                yield panel.area(shape, style)
+                panel.add_patch(Polygon(outline(*shape, axes), **style))
     for _, shape, style in obstacles_of(scene):
-        yield panel.area(shape, style)
-    yield from names_of(panel, scene)
+        panel.add_patch(Polygon(outline(*shape, axes), **style))
+    write_names(panel, scene, axes, scale)
     for points in fixtures_of(scene):
-        yield panel.way([[p[axis] for axis in panel.axes] for p in points],
-                        "stroke='#2a9d8f' stroke-width='1.6' stroke-dasharray='4 2'")
+        panel.plot(*np.asarray(points)[:, axes].T, color="#2a9d8f", linewidth=1.2,
+                   dashes=(4, 2))
     for arm, colour in zip(arms, WAYS):
-        yield from way_of(arm, panel, log, colour)
+        draw_way(panel, arm, axes, log, colour)
 
 
-def extent(scene, arms, log, axis):
+def extent(scene, arms, log):
+    """The lowest and the highest corner of all that is drawn."""
     shapes = [shape for _, shape, _ in obstacles_of(scene)]
     for arm in arms:
         for row in (log[0], hardest_tick(log, arms)):
             shapes += arm_shapes(arm, joints_at(arm, row))
-    reach = [moved(pose, p)[axis] + side * radius
-             for points, radius, pose in shapes for p in points for side in (-1, 1)]
-    return min(reach), max(reach)
+    reach = np.concatenate([moved(pose, points) + side * radius
+                            for points, radius, pose in shapes for side in (-1, 1)])
+    return reach.min(axis=0), reach.max(axis=0)
 
 
-def ruler(x, y, scale):
-    """A bar of a round length."""
-    length = 1.0 if scale < 150 else 0.2
-    yield f"<path d='M{x} {y}h{length * scale:.1f}' stroke='#000' stroke-width='2'/>"
-    yield words(x, y - 4, f"{length:g} m")
-
-
-def picture(scene, arms, log):
-    low, high = zip(*(extent(scene, arms, log, axis) for axis in range(3)))
-    spans = [b - a for a, b in zip(low, high)]
-    scale = min(HEIGHT / max(spans[1], spans[2]), MOST_WIDTH / spans[0])
+def picture(scene, arms, log, path):
+    low, high = extent(scene, arms, log)
+    spans = high - low
+    scale = min(HEIGHT / max(spans[1:]), MOST_WIDTH / spans[0])  # [pt/m]
     width = 2 * MARGIN + GAP + 2 * spans[0] * scale
-    height = 2 * MARGIN + max(spans[1], spans[2]) * scale + 20
-    yield (f"<svg xmlns='http://www.w3.org/2000/svg' width='{width:.0f}' height='{height:.0f}' "
-           "font-family='sans-serif' font-size='9'>")
-    yield "<rect width='100%' height='100%' fill='white'/>"
-    for i, (title, across, up) in enumerate(VIEWS):
-        left = MARGIN + i * (spans[0] * scale + GAP)
-        panel = Panel(left, scale, across, up, (low[across], low[up]), (high[across], high[up]))
-        yield words(left, 15, title, "font-weight='bold' font-size='12'")
-        yield from view(panel, scene, arms, log)
-    yield from ruler(MARGIN, height - 12, scale)
+    height = 2 * MARGIN + max(spans[1:]) * scale + 15
+    figure = chart.pyplot.figure(figsize=(width / 72, height / 72))
+    for i, (title, *axes) in enumerate(VIEWS):
+        across, up = spans[axes] * scale
+        panel = figure.add_axes(((MARGIN + i * (across + GAP)) / width,
+                                 1 - (MARGIN + up) / height, across / width, up / height))
+        panel.set(title=title, xlim=(low[axes[0]], high[axes[0]]),
+                  ylim=(low[axes[1]], high[axes[1]]))
+        panel.set_axis_off()
+        draw_view(panel, scene, arms, log, axes, scale)
+    length = 1.0 if scale < 112 else 0.2
+    figure.add_artist(Line2D(np.array((MARGIN, MARGIN + length * scale)) / width,
+                             (9 / height, 9 / height), color=chart.BLACK, linewidth=1.5))
+    figure.text(MARGIN / width, 12 / height, f"{length:g} m")
     row = hardest_tick(log, arms)
     if float(row["hardest_n"] or 0) > 0:
-        yield words(MARGIN + 120, height - 12,
+        figure.text((MARGIN + 90) / width, 9 / height,
                     f"arm pale: at the start; orange: after {float(row['time_s']):.1f} s, "
-                    f"{row['hardest_pair']} {float(row['hardest_n']):.0f} N", "font-size='11'")
-    yield "</svg>"
+                    f"{row['hardest_pair']} {float(row['hardest_n']):.0f} N")
+    chart.save(figure, path, scene["name"].replace("_", " "),
+               "The scene from the side and from above: its obstacles, the arms at the start and "
+               "where they were pushed hardest, and the way of each tool.")
 
 
 def read_run(scene_path, log_path):
@@ -404,12 +365,11 @@ def read_run(scene_path, log_path):
 
 
 def main():
-    if len(sys.argv) != 4 or "--help" in sys.argv:
-        print(__doc__)
-        sys.exit(0 if "--help" in sys.argv else 2)
-    lines = picture(*read_run(sys.argv[1], sys.argv[2]))
-    with open(sys.argv[3], "w", encoding="utf-8") as file:
-        file.write("\n".join(lines) + "\n")
+    parser = argparse.ArgumentParser(description=__doc__)
+    for name in ("scene", "log", "picture"):
+        parser.add_argument(name)
+    arguments = parser.parse_args()
+    picture(*read_run(arguments.scene, arguments.log), arguments.picture)
 
 
 if __name__ == "__main__":

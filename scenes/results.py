@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """results.py SCENE.yaml LOG.csv REPORT.json RESULT.json PAGE.md: writes the part of the report that
 is the same in every run to RESULT, and as tables into PAGE, between its two marks."""

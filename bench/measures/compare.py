@@ -7,8 +7,9 @@ four tools that are pressed into a table which is too soft for them: what the fo
 how deep the tools go, and the time of a tick as a multiple of that by the default measure, in the
 same run of this script.
 Then the same tools enter a table without a force, straight down: which depth is measured at which
-true depth, and from which on. Prints the tables; with --write they become measures.md and
-measures.svg of that folder. --quick leaves out the repetitions that the times need.
+true depth, and from which on. Prints the tables; with --write they become measures.md of that
+folder, and the depths measures.json, for bench/draw. --quick leaves out the repetitions that
+the times need.
 """
 
 import argparse
@@ -32,7 +33,6 @@ settings = {
 }
 default = next(iter(settings))
 no_patch = "deepest point, no patch"  # the force acts at one point, as it does by the reduction
-colours = dict(zip(settings, ("#780000", "#f4a261", "#c1121f", "#e76f51", "#2a6f97")))
 
 # Shape, height of its origin above its lowest point [mm].
 tools = {
@@ -139,7 +139,7 @@ def sunk(program, tool, measure):
     rows = list(csv.DictReader(log.splitlines()))
     start = float(rows[0]["z_m"])
     points = [(1e3 * (start - float(row["z_m"])) - gap, -1e3 * float(row["nearest_m"]))
-              for row in rows if row["nearest_m"] != "inf"]
+              for row in rows if row["nearest_m"]]
     return [point for point in points if 0.0 <= point[0] <= deepest_sink]
 
 
@@ -173,36 +173,12 @@ def dead_zones(curves):
                f"| {depths} |")
 
 
-def picture(curves):
-    """Measured against true depth: a panel for each tool, in SVG."""
-    width, high, left, top = 260, 260, 45, 40
-    scale = (width - 65) / deepest_sink
-    side = scale * deepest_sink
-    yield (f"<svg xmlns='http://www.w3.org/2000/svg' width='{width * len(tools) + 130}' "
-           f"height='{high + 30}' font-family='sans-serif' font-size='11'>")
-    yield "<rect width='100%' height='100%' fill='white'/>"
-    for i, tool in enumerate(tools):
-        x0, y0 = i * width + left, top
-        yield f"<text x='{x0}' y='22' font-weight='bold'>{tool}</text>"
-        for true in (0, 10, 20, 30, 40):
-            x, y = x0 + scale * true, y0 + side - scale * true
-            yield (f"<path d='M{x:.1f} {y0}V{y0 + side:.1f}M{x0} {y:.1f}H{x0 + side:.1f}' "
-                   "stroke='#ddd'/>")
-            yield (f"<text x='{x:.1f}' y='{y0 + side + 15:.1f}' text-anchor='middle'>"
-                   f"{true}</text>")
-            yield f"<text x='{x0 - 5}' y='{y + 4:.1f}' text-anchor='end'>{true}</text>"
-        yield f"<text x='{x0}' y='{high + 22}'>true depth [mm]; upward: measured</text>"
-        for name in [*list(settings)[1:-1], default, "exact"]:
-            line = "L".join(f"{x0 + scale * true:.1f} {y0 + side - scale * max(0.0, measured):.1f}"
-                            for true, measured in curves[tool, name][::4])
-            dash = " stroke-dasharray='5 4'" if name == "exact" else ""
-            thick = 2.2 if name == default else 1.3
-            yield (f"<path d='M{line}' fill='none' stroke='{colours[name]}' "
-                   f"stroke-width='{thick}'{dash}/>")
-    for i, name in enumerate(settings):
-        yield (f"<text x='{width * len(tools) + 5}' y='{50 + 18 * i}' fill='{colours[name]}' "
-               f"font-weight='bold'>{name}</text>")
-    yield "</svg>"
+def drawn(curves):
+    """What bench/draw draws: every fourth point [mm], to a micrometre."""
+    return {"curves": [{"tool": tool, "measure": name,
+                        "true [mm]": [round(true, 3) for true, _ in curve[::4]],
+                        "measured [mm]": [round(max(0.0, depth), 3) for _, depth in curve[::4]]}
+                       for (tool, name), curve in curves.items()]}
 
 
 def heading():
@@ -220,7 +196,7 @@ def heading():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("teleop", help="path of the program")
-    parser.add_argument("--write", metavar="FOLDER", help="write measures.md and measures.svg")
+    parser.add_argument("--write", metavar="FOLDER", help="write measures.md and measures.json")
     parser.add_argument("--quick", action="store_true", help="one run of each")
     arguments = parser.parse_args()
     repetitions = 1 if arguments.quick else 5
@@ -251,7 +227,7 @@ def main():
         target = pathlib.Path(arguments.write)
         (target / "measures.md").write_text("\n".join(
             heading() + lines + ["", "![measured against true depth](measures.svg)"]) + "\n")
-        (target / "measures.svg").write_text("\n".join(picture(curves)) + "\n")
+        (target / "measures.json").write_text(json.dumps(drawn(curves)) + "\n")
     return 0
 
 
