@@ -7,6 +7,7 @@
 
 The handle has a mass and gives way to the force that the program sends; the hand draws it to the
 circle by a spring. One program at a time. Ends by Ctrl-C, or after --seconds.
+Its WebSocket is by hand, so that the example needs nothing but Python.
 """
 
 import argparse

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// By hand: Boost.Process sets no limits on what a child may use.
 #include "child_process.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// By hand: it takes a few calls of linux/input.h, for which libevdev would be one package more.
 #include <repel/devices/evdev_lever.hpp>
 
 #include <time.h>

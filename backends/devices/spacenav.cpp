@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// By hand: libspnav keeps one connection for all of a process; here each device has its own.
 #include <repel/devices/spacenav.hpp>
 
 #include <poll.h>

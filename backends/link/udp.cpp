@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// By hand: a link needs no library, and what it does with memory can be seen.
 #include <repel/link/udp.hpp>
 
 #include <netdb.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// By hand: OpenSSL has this too, and would be needed for these few lines alone.
 #include "secret.hpp"
 
 #include <algorithm>

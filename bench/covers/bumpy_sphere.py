@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """bumpy_sphere.py N FILE: a sphere of 0.1 m with bumps of 5 mm as a binary STL file of 4 N (N - 1)
-triangles: a million for N = 500."""
+triangles: a million for N = 500. By hand: a facet is one line of struct."""
 
 import math
 import struct

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// By hand: it sums the few lines below a bound, for which a fast transform computes all.
 #include "spectrum.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """scenes/meshes/make.py: writes the meshes of this folder, as a CAD program would export them.
 
-Binary STL in metres. Bodies may pass through each other. Their convex parts, NAME.stl.parts.yaml,
+Binary STL in metres, by hand: a facet is one line of struct. Bodies may pass through each other. Their convex parts, NAME.stl.parts.yaml,
 are made by `cover`; scenes/meshes/README.md has the lines.
 """
 
