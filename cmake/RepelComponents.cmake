@@ -41,9 +41,10 @@ endif()
 repel_all_found(MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
 repel_all_found(SDF REPEL_HAS_ROBOTS SDFORMAT_FOUND)
 repel_all_found(PNGS PNG_FOUND)
+repel_all_found(ZSTD ZSTD_FOUND)
 # The driver of Haply is part of the devices, with the packages of the live view.
 repel_all_found(HAPLY REPEL_HAS_DEVICES REPEL_HAS_VISUAL)
-foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs haply)
+foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs zstd haply)
   repel_say_if_left_out(${part})
 endforeach()
 
