@@ -57,17 +57,18 @@ if(REPEL_HAS_DDS)
   enable_language(C)  # of what idlc writes
 endif()
 # What belongs to a part, and can be left out of it.
-foreach(extra meshes sdf hacd pngs haply)
+foreach(extra meshes sdf hacd pngs zstd haply)
   repel_switch(${extra} wanted)
 endforeach()
 repel_all_found(MESHES REPEL_WITH_MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
 repel_all_found(SDF REPEL_WITH_SDF REPEL_HAS_ROBOTS SDFORMAT_FOUND)
 repel_all_found(HACD REPEL_WITH_HACD REPEL_HAS_COVER REPEL_HAS_HACD)
 repel_all_found(PNGS REPEL_WITH_PNGS REPEL_HAS_PERCEPTS PNG_FOUND)
+repel_all_found(ZSTD REPEL_WITH_ZSTD REPEL_HAS_RECORD ZSTD_FOUND)
 # The driver of Haply is part of the devices, with the packages of the live view.
 repel_all_found(HAPLY REPEL_WITH_HAPLY REPEL_HAS_DEVICES REPEL_HAS_VISUAL)
 repel_all_found(OCTREES REPEL_HAS_OCTREES REPEL_HAS_COVER REPEL_HAS_PERCEPTS)
-foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs haply)
+foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs zstd haply)
   repel_say_if_left_out(${part})
 endforeach()
 

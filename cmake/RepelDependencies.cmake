@@ -91,6 +91,15 @@ macro(repel_find_percepts)
   repel_all_found(PERCEPTS ${repel_for_pngs})
 endmacro()
 
+macro(repel_find_record)
+  # Only for compressed recordings; where it was built in, it is needed.
+  repel_pkg_config(ZSTD libzstd)
+  if(REPEL_RECORD_USES_ZSTD)
+    set(repel_for_zstd ZSTD_FOUND)
+  endif()
+  repel_all_found(RECORD ${repel_for_zstd})
+endmacro()
+
 macro(repel_find_octrees)
   repel_pkg_config(OCTOMAP octomap)
   repel_all_found(OCTREES OCTOMAP_FOUND)

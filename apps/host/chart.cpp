@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include <nlohmann/json.hpp>
+
 #include <repel/base/setup_error.hpp>
 
 #include "page.hpp"
@@ -20,7 +22,8 @@ constexpr double height = 180.0;
 constexpr double left = 64.0;
 constexpr double bottom = 24.0;
 constexpr double top = 8.0;
-constexpr std::size_t columns = 690;
+constexpr std::size_t columns = 230;     // of the drawing without scripts
+constexpr std::size_t intervals = 2000;  // of the data
 
 /// Linear map from values to coordinates in the drawing.
 struct Axis {
@@ -89,11 +92,126 @@ std::string legend(const std::vector<std::string>& names) {
   return html + "</p>";
 }
 
-std::string figure(const std::string& title, const std::string& legend_html,
-                   const std::string& drawing) {
-  return "<figure><figcaption>" + escaped(title) + "</figcaption>" + legend_html +
-         "<svg role='img' aria-label='" + escaped(title) + "' viewBox='0 0 " + number(width) + " " +
-         number(height) + "'>" + drawing + "</svg></figure>\n";
+/// @param data as JSON, for chart.js
+std::string figure(const std::string& title, const std::string& data,
+                   const std::string& legend_html, const std::string& drawing) {
+  return "<figure data-chart=''><figcaption>" + escaped(title) +
+         "</figcaption><div class='plot'></div><script type='application/json'>" + data +
+         "</script><noscript>" + legend_html + "<svg role='img' aria-label='" + escaped(title) +
+         "' viewBox='0 0 " + number(width) + " " + number(height) + "'>" + drawing +
+         "</svg></noscript></figure>\n";
+}
+
+/// A number in JSON: null if it is none or too large for an axis.
+std::string json_of(double value) {
+  return std::abs(value) < 1e300 ? repel::to_text(value, 5) : "null";
+}
+
+std::string json_of(const std::vector<double>& values) {
+  std::string json = "[";
+  for (const double value : values) {
+    if (json.size() > 1) json += ',';
+    json += json_of(value);
+  }
+  return json + "]";
+}
+
+/// A text in JSON, within a <script> element.
+std::string json_of(const std::string& text) {
+  std::string json =
+      nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  for (auto at = json.find('<'); at != std::string::npos; at = json.find('<', at)) {
+    json.replace(at, 1, "\\u003c");
+  }
+  return json;
+}
+
+/// What both kinds of charts have, without the braces.
+template <class Curves, class ValuesOf>
+std::string common_json(const char* kind, const std::string& unit, const Curves& curves,
+                        const ValuesOf& values_of, const std::vector<double>& lines,
+                        const std::vector<double>& marks) {
+  std::string names;
+  std::string values;
+  for (const auto& curve : curves) {
+    names += (names.empty() ? "" : ",") + json_of(curve.name);
+    values += (values.empty() ? "" : ",") + json_of(values_of(curve));
+  }
+  std::string json = "\"kind\":\"";
+  json += kind;
+  json += "\",\"unit\":" + json_of(unit) + ",\"names\":[" + names + "],\"values\":[" + values +
+          "],\"lines\":" + json_of(lines) + ",\"marks\":" + json_of(marks);
+  return json;
+}
+
+/// All samples, or of each interval minimum and maximum in the order in which they came.
+std::vector<double> thinned(const Curve& curve, std::size_t samples) {
+  std::vector<double> values;
+  if (samples <= 2 * intervals) {
+    for (std::size_t i = 0; i < samples; ++i) values.push_back(curve.value(i));
+    return values;
+  }
+  for (std::size_t k = 0; k < intervals; ++k) {
+    double first = std::nan("");
+    double second = first;
+    bool rises = true;  // the minimum came first
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    const std::size_t end = (k + 1) * samples / intervals;
+    for (std::size_t i = k * samples / intervals; i < end; ++i) {
+      const double value = curve.value(i);
+      if (!(std::abs(value) < 1e300)) continue;
+      if (value < least) rises = false;
+      if (value > most) rises = true;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    if (least <= most) {
+      first = rises ? least : most;
+      second = rises ? most : least;
+    }
+    values.push_back(first);
+    values.push_back(second);
+  }
+  return values;
+}
+
+std::string data_of(const Chart& chart) {
+  std::string meanings;
+  for (const Curve& curve : chart.curves) {
+    meanings += (meanings.empty() ? "" : ",") + json_of(std::string(curve.meaning));
+  }
+  const bool is_thinned = chart.samples > 2 * intervals;
+  const auto points = static_cast<double>(is_thinned ? 2 * intervals : chart.samples);
+  const double step = chart.duration / std::max(1.0, is_thinned ? points : points - 1.0);
+  return "{\"from\":" + json_of(is_thinned ? 0.5 * step : 0.0) +
+         ",\"step\":" + repel::to_text(step, 9) + "," +
+         common_json(
+             "time", chart.unit, chart.curves,
+             [&](const Curve& curve) { return thinned(curve, chart.samples); }, chart.lines,
+             chart.marks) +
+         ",\"meanings\":[" + meanings + "]}";
+}
+
+/// All lines have the shares of the first.
+std::string data_of(const PercentileChart& chart) {
+  std::vector<double> shares;
+  if (!chart.lines.empty()) {
+    for (const Percentile& point : chart.lines.front().points) shares.push_back(point.share);
+  }
+  const auto values_of = [](const PercentileChart::Line& line) {
+    std::vector<double> values;
+    for (const Percentile& point : line.points) {
+      values.push_back(point.us > 0.0 ? point.us : std::nan(""));
+    }
+    return values;
+  };
+  std::vector<double> lines;
+  if (chart.deadline_us > 0.0) lines.push_back(chart.deadline_us);
+  std::string text;
+  for (const double share : shares) text += (text.empty() ? "" : ",") + repel::to_text(share, 7);
+  return "{\"shares\":[" + text + "]," +
+         common_json("share", "us", chart.lines, values_of, lines, {}) + "}";
 }
 
 /// Minimum and maximum of a curve in each column; not finite for columns without a sample.
@@ -186,7 +304,7 @@ std::string to_html(const Chart& chart) {
                      repel::to_text(time, 4) + (is_last ? " s" : ""));
   }
   for (std::size_t i = 0; i < bands.size(); ++i) drawing += bands[i].path(y, i);
-  return figure(chart.title, names.size() > 1 ? legend(names) : "", drawing);
+  return figure(chart.title, data_of(chart), names.size() > 1 ? legend(names) : "", drawing);
 }
 
 std::vector<Percentile> percentile_points(const DurationHistogram& times) {
@@ -236,7 +354,7 @@ std::string to_html(const PercentileChart& chart) {
     drawing += path_of(i, d);
     names.push_back(chart.lines[i].name);
   }
-  return figure(chart.title, legend(names), drawing);
+  return figure(chart.title, data_of(chart), legend(names), drawing);
 }
 
 }  // namespace repel::host

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Curves as SVG for HTML pages.
+/// Curves for HTML pages: drawn by uPlot, to point at and to zoom; by SVG where no script runs, as
+/// in mail programs and previews.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <repel/schedule/deadline.hpp>
@@ -16,6 +18,7 @@ namespace repel::host {
 struct Curve {
   std::string name;
   std::function<double(std::size_t)> value;
+  std::string_view meaning{};  ///< of the name, shown at the pointer; empty: nothing
 };
 
 /// The content of a chart. The horizontal axis is time, shared by all curves.
@@ -29,9 +32,11 @@ struct Chart {
   std::vector<double> marks{};  ///< [s] times marked by a vertical line, such as phase starts
 };
 
-/// The chart as a <figure> element with title and legend. Each curve is drawn as the band between
-/// its minimum and maximum in each column, so that no peak is lost however many samples there are.
-/// The colours are the CSS classes c0, c1, ... of the page.
+/// The chart as a <figure> element with title, data and legend, drawn by the scripts of
+/// page::end(). Up to 4000 samples are there as they are. Of more, each of 2000 intervals has the
+/// minimum and the maximum of each curve, so that no peak is lost however many samples there are,
+/// and the page stays small. Five significant digits. The colours are the CSS classes c0, c1, ...
+/// of the page.
 [[nodiscard]] std::string to_html(const Chart& chart);
 
 /// A duration that a share of all samples does not exceed.
@@ -44,7 +49,7 @@ struct Percentile {
 [[nodiscard]] std::vector<Percentile> percentile_points(const DurationHistogram& times);
 
 /// Percentile curves, from the median to the share 1 - 10^-5, against the duration on a logarithmic
-/// axis.
+/// axis. All lines have points at the same shares.
 struct PercentileChart {
   std::string title;
   struct Line {

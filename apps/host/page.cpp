@@ -2,9 +2,11 @@
 #include "page.hpp"
 
 #include <cmath>
+#include <string_view>
 
 #include <repel/base/setup_error.hpp>
 
+#include "page_script.hpp"
 #include "page_style.hpp"
 
 namespace repel::host::page {
@@ -43,13 +45,27 @@ std::string with_unit(double value, const char* unit) {
   return std::isfinite(value) ? number(value) + " " + unit : "-";
 }
 
-std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t names) {
+namespace {
+
+/// As an attribute with a space before it; nothing if there is no text.
+std::string title_of(std::string_view text) {
+  if (text.empty()) return {};
+  std::string attribute = " title='";
+  return attribute.append(escaped(std::string(text))).append("'");
+}
+
+}  // namespace
+
+std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t names,
+                  std::string_view (*meaning_of)(std::string_view)) {
   std::string html = "<table>";
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const char* cell = row == 0 ? "th" : "td";
     html += "<tr>";
     for (std::size_t i = 0; i < rows[row].size(); ++i) {
-      html += std::string("<") + cell + (i < names ? " class='name'>" : ">") +
+      const bool is_explained = row == 0 && meaning_of != nullptr;
+      html += std::string("<") + cell + (i < names ? " class='name'" : "") +
+              (is_explained ? title_of(meaning_of(rows[row][i])) : std::string()) + ">" +
               escaped(rows[row][i]) + "</" + cell + ">";
     }
     html += "</tr>\n";
@@ -57,8 +73,9 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
   return html + "</table>\n";
 }
 
-std::string tile(const std::string& name, const std::string& value) {
-  return "<div><dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd></div>\n";
+std::string tile(const std::string& name, const std::string& value, std::string_view meaning) {
+  return "<div><dt" + title_of(meaning) + ">" + escaped(name) + "</dt><dd>" + escaped(value) +
+         "</dd></div>\n";
 }
 
 std::string where(const Machine& machine) {
@@ -78,7 +95,11 @@ void begin(const std::string& title, std::ostream& out) {
 }
 
 void end(std::ostream& out) {
-  out << "</body>\n</html>\n";
+  out << "<!-- Of uPlot, the first of the scripts:\n";
+  for (const std::string_view piece : script_licence) out << piece;
+  out << "-->\n<script>\n";
+  for (const std::string_view piece : script) out << piece;
+  out << "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace repel::host::page

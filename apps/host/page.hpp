@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "machine.hpp"
@@ -23,17 +24,20 @@ namespace repel::host::page {
 
 /// An HTML table; cells are escaped, the first row is the header, the first `names` columns are
 /// text.
+/// @param meaning_of what a word of the header means, shown at the pointer; null or empty: nothing
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows,
-                                std::size_t names);
+                                std::size_t names,
+                                std::string_view (*meaning_of)(std::string_view) = nullptr);
 
-/// A name and its value, as an entry of <dl class='tiles'>.
-[[nodiscard]] std::string tile(const std::string& name, const std::string& value);
+/// A name and its value, as an entry of <dl class='tiles'>, with what the name means.
+[[nodiscard]] std::string tile(const std::string& name, const std::string& value,
+                               std::string_view meaning = {});
 
 /// The machine, as a paragraph.
 [[nodiscard]] std::string where(const Machine& machine);
 
 /// begin() writes everything before the content, with the title as the first heading; end()
-/// everything after it.
+/// everything after it, with the scripts that draw charts.
 void begin(const std::string& title, std::ostream& out);
 void end(std::ostream& out);
 

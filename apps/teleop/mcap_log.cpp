@@ -11,6 +11,7 @@
 #include <repel/record/mcap_writer.hpp>
 
 #include "mcap_names.hpp"
+#include "mcap_scene.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -77,6 +78,7 @@ Json forces_of(const TickRecord& k, std::size_t joints) {
           {"coupling_torque", to_json(k.coupling.torque)},
           {"force_n", k.virtual_force.force.norm()},
           {"lever_torque", k.lever_torque},
+          {"held_n", k.held_force},
           {"gain", k.gain},
           {"stop", to_text(k.stop)},
           {"brakes", k.brakes},
@@ -86,8 +88,16 @@ Json forces_of(const TickRecord& k, std::size_t joints) {
 class McapLog final : public TickLog {
  public:
   McapLog(const std::string& path, const Heading& heading, const scene::Scene& scene,
-          const RunOptions& options)
-      : path_(path), heading_(heading), writer_(path, {.profile = mcap::profile}) {
+          const RunOptions& options, const World& world, DatedShapes& shapes)
+      : path_(path),
+        heading_(heading),
+        frames_(mcap::told_apart(heading.bodies)),
+        parts_(world, heading),
+        pushes_(world, heading),
+        shapes_(shapes),
+        writer_(path, {.profile = mcap::profile,
+                       .chunk_bytes = 1 << 20,
+                       .compression = record::McapCompression::zstd}) {
     using std::chrono::system_clock;
     // Without a start time, repetitions of a run that is not in real time give identical files.
     if (!options.fast) {
@@ -111,7 +121,14 @@ class McapLog final : public TickLog {
     energy_ = add(mcap::energy);
     timing_ = add(mcap::timing);
     poses_ = add(mcap::poses);
+    // One schema for both of them.
+    const std::uint16_t scene_update =
+        writer_.add_schema(mcap::bodies.schema, "jsonschema", mcap::bodies.text);
+    bodies_ = writer_.add_channel(mcap::bodies.topic, scene_update, "json");
+    contacts_ = writer_.add_channel(mcap::contacts.topic, scene_update, "json");
     every_ = std::max<std::int64_t>(1, std::llround(options.rate_hz / poses_per_second));
+    every_scene_ =
+        std::max<std::int64_t>(1, std::llround(std::ceil(options.rate_hz / scenes_per_second)));
     writer_.flush();
     if (writer_.failed()) throw SetupError(writer_.error());
   }
@@ -139,6 +156,10 @@ class McapLog final : public TickLog {
                   {"compute_us", static_cast<double>(tick.times.compute.count()) / 1e3},
                   {"late_us", static_cast<double>(tick.times.late.count()) / 1e3}});
     if (k.tick % every_ == 0) put(poses_, transforms_of(tick));
+    parts_.follow(tick, shapes_.take(k.tick));
+    if (k.tick % every_scene_ != 0) return;
+    if (const auto bodies = parts_.update(tick, now_ns_)) put(bodies_, *bodies);
+    put(contacts_, pushes_.update(tick, now_ns_));
   }
   void flush() override { writer_.flush(); }
   void close(std::int64_t dropped) override {
@@ -149,6 +170,7 @@ class McapLog final : public TickLog {
 
  private:
   static constexpr double poses_per_second = 100.0;
+  static constexpr double scenes_per_second = 50.0;  // at most
 
   static std::map<std::string, std::string> metadata_of(const scene::Scene& scene,
                                                         const RunOptions& options) {
@@ -219,8 +241,8 @@ class McapLog final : public TickLog {
       const Eigen::Quaterniond q(tick.X_WB[i].linear());
       transforms.push_back(
           {{"timestamp", {{"sec", now_ns_ / 1000000000U}, {"nsec", now_ns_ % 1000000000U}}},
-           {"parent_frame_id", heading_.bodies.front()},
-           {"child_frame_id", heading_.bodies[i]},
+           {"parent_frame_id", frames_.front()},
+           {"child_frame_id", frames_[i]},
            {"translation", {{"x", p.x()}, {"y", p.y()}, {"z", p.z()}}},
            {"rotation", {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}}});
     }
@@ -229,19 +251,26 @@ class McapLog final : public TickLog {
 
   std::string path_;
   Heading heading_;
+  std::vector<std::string> frames_;  // names of the bodies, by BodyId
+  mcap::Bodies parts_;
+  mcap::Contacts pushes_;
+  DatedShapes& shapes_;
   record::McapWriter writer_;
   std::uint64_t begin_ns_ = 0;
   std::uint64_t now_ns_ = 0;
   std::uint32_t sequence_ = 0;
-  std::int64_t every_ = 1;
-  std::uint16_t inputs_ = 0, forces_ = 0, separations_ = 0, energy_ = 0, timing_ = 0, poses_ = 0;
+  std::int64_t every_ = 1;  // ticks between two messages of poses, and of what is drawn
+  std::int64_t every_scene_ = 1;
+  std::uint16_t inputs_ = 0, forces_ = 0, separations_ = 0, energy_ = 0, timing_ = 0, poses_ = 0,
+                bodies_ = 0, contacts_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
-                                  const scene::Scene& scene, const RunOptions& options) {
-  return std::make_unique<McapLog>(path, heading, scene, options);
+                                  const scene::Scene& scene, const RunOptions& options,
+                                  const World& world, DatedShapes& shapes) {
+  return std::make_unique<McapLog>(path, heading, scene, options, world, shapes);
 }
 
 }  // namespace repel::teleop

@@ -8,6 +8,7 @@
 
 #include <repel/scene/scene.hpp>
 
+#include "dated_shapes.hpp"
 #include "heading.hpp"
 #include "log.hpp"
 #include "run_options.hpp"
@@ -15,10 +16,13 @@
 namespace repel::teleop {
 
 /// A file for `load_recording`, Foxglove and the `mcap` package; docs/recording.md has its
-/// channels. It contains the scene and the robots too.
+/// channels. It contains the scene and the robots too. Compressed if that was built in.
+/// @param world as it is at the start
+/// @param shapes those that parts get while the run lasts; must outlive the log
 /// @throws SetupError if the file cannot be written
 [[nodiscard]] std::unique_ptr<TickLog> mcap_log(const std::string& path, const Heading& heading,
                                                 const scene::Scene& scene,
-                                                const RunOptions& options);
+                                                const RunOptions& options, const World& world,
+                                                DatedShapes& shapes);
 
 }  // namespace repel::teleop

@@ -80,6 +80,7 @@ inline constexpr Channel forces{"/forces", "repel.Forces", R"({
       "coupling_torque": {"type": "array", "items": {"type": "number"}, "description": "[N m]"},
       "force_n": {"type": "number", "description": "size of the virtual force [N]"},
       "lever_torque": {"type": "number", "description": "[N m]"},
+      "held_n": {"type": "number", "description": "with which hard walls held the arm [N]"},
       "gain": {"type": "number", "description": "of the fail-safe, 0 to 1"},
       "stop": {"type": "string", "description": "running, holding, braking or released"},
       "brakes": {"type": "boolean", "description": "the brakes of the arm are asked for"},
@@ -130,5 +131,64 @@ inline constexpr Channel poses{"/poses", "foxglove.FrameTransforms", R"({
       "rotation": {"type": "object", "title": "foxglove.Quaternion", "properties": {
         "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
         "w": {"type": "number"}}}}}}}})"};
+
+/// Likewise. Of two channels, since a viewer that jumps to a moment knows only the last message of
+/// each.
+inline constexpr const char* scene_update = R"({
+  "title": "foxglove.SceneUpdate", "type": "object",
+  "description": "What is to be drawn from now on. Each message replaces all of its channel.",
+  "properties": {
+    "deletions": {"type": "array", "items": {"type": "object",
+      "title": "foxglove.SceneEntityDeletion", "properties": {
+        "timestamp": {"$ref": "#/$defs/time"},
+        "type": {"type": "integer", "description": "1: all of this channel"},
+        "id": {"type": "string"}}}},
+    "entities": {"type": "array", "items": {"type": "object", "title": "foxglove.SceneEntity",
+      "properties": {
+        "timestamp": {"$ref": "#/$defs/time"},
+        "frame_id": {"type": "string", "description": "a body of /poses, or the world"},
+        "id": {"type": "string", "description": "name of the part or pair"},
+        "lifetime": {"$ref": "#/$defs/time", "description": "0: until it is deleted"},
+        "frame_locked": {"type": "boolean", "description": "it moves with its frame"},
+        "metadata": {"type": "array", "items": {"type": "object", "properties": {
+          "key": {"type": "string", "description": "group, passable, distance_m, force_n"},
+          "value": {"type": "string", "description": "numbers in metres and newtons"}}}},
+        "arrows": {"type": "array", "description": "2 mm/N; metres", "items": {"type": "object",
+          "properties": {"pose": {"$ref": "#/$defs/pose"}, "shaft_length": {"type": "number"},
+            "shaft_diameter": {"type": "number"}, "head_length": {"type": "number"},
+            "head_diameter": {"type": "number"}, "color": {"$ref": "#/$defs/color"}}}},
+        "cubes": {"type": "array"}, "spheres": {"type": "array"}, "cylinders": {"type": "array"},
+        "lines": {"type": "array", "items": {"type": "object", "properties": {
+          "type": {"type": "integer", "description": "2: segments"},
+          "pose": {"$ref": "#/$defs/pose"},
+          "thickness": {"type": "number", "description": "pixels"},
+          "scale_invariant": {"type": "boolean"},
+          "points": {"type": "array", "items": {"$ref": "#/$defs/vector"},
+                     "description": "the witness points [m]"},
+          "color": {"$ref": "#/$defs/color"}, "colors": {"type": "array"},
+          "indices": {"type": "array", "items": {"type": "integer"}}}}},
+        "triangles": {"type": "array", "items": {"type": "object", "properties": {
+          "pose": {"$ref": "#/$defs/pose"},
+          "points": {"type": "array", "items": {"$ref": "#/$defs/vector"},
+                     "description": "[m], to 1 um"},
+          "color": {"$ref": "#/$defs/color"}, "colors": {"type": "array"},
+          "indices": {"type": "array", "items": {"type": "integer"}}}}},
+        "texts": {"type": "array"}, "models": {"type": "array"}}}}},
+  "$defs": {
+    "time": {"type": "object", "properties": {
+      "sec": {"type": "integer", "minimum": 0},
+      "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
+    "vector": {"type": "object", "properties": {
+      "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}}},
+    "color": {"type": "object", "description": "0 to 1", "properties": {
+      "r": {"type": "number"}, "g": {"type": "number"}, "b": {"type": "number"},
+      "a": {"type": "number"}}},
+    "pose": {"type": "object", "properties": {
+      "position": {"$ref": "#/$defs/vector"},
+      "orientation": {"type": "object", "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
+        "w": {"type": "number"}}}}}}})";
+inline constexpr Channel bodies{"/bodies", "foxglove.SceneUpdate", scene_update};
+inline constexpr Channel contacts{"/contacts", "foxglove.SceneUpdate", scene_update};
 
 }  // namespace repel::teleop::mcap

@@ -123,6 +123,7 @@ void show_tick(const Attachments& attached, const Coprocessor& coprocessor, bool
   while (fast && attached.tap->has_log() && attached.tap->log().full()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  if (attached.shapes != nullptr) attached.shapes->date(records.front()->tick);
   attached.tap->note(coprocessor, records, times);
 }
 
@@ -134,11 +135,16 @@ nanoseconds due_before(nanoseconds late) noexcept {
 /// The cameras of a scene; null without.
 std::unique_ptr<CameraFeeds> make_cameras(PreparedRun& prepared, const Attachments& attached) {
   if (prepared.scene.cameras.empty()) return nullptr;
-  std::function<void(PartId, const Shape&)> on_add;
-  if (Controls* const controls = attached.controls) {
-    on_add = [controls](PartId part, const Shape& shape) { controls->shapes.note(part, shape); };
-  }
   const bool in_step = prepared.options.fast || attached.recording != nullptr;
+  Controls* const controls = attached.controls;
+  DatedShapes* const shapes = in_step ? attached.shapes : nullptr;
+  std::function<void(PartId, const Shape&)> on_add;
+  if (controls != nullptr || shapes != nullptr) {
+    on_add = [controls, shapes](PartId part, const Shape& shape) {
+      if (controls != nullptr) controls->shapes.note(part, shape);
+      if (shapes != nullptr) shapes->note(part, shape);
+    };
+  }
   return std::make_unique<CameraFeeds>(prepared.scene, prepared.robots, prepared.cell, in_step,
                                        on_add);
 }

@@ -10,6 +10,7 @@
 #include <repel/network/remote/link.hpp>
 
 #include "controls.hpp"
+#include "dated_shapes.hpp"
 #include "device.hpp"
 #include "prepared_run.hpp"
 #include "progress_thread.hpp"
@@ -26,6 +27,7 @@ struct Attachments {
   const Recording* recording = nullptr;   ///< to replay, instead of simulated arms and operators
   network::RemoteLink* remote = nullptr;  ///< over which the operator of the arm is
   const std::atomic<bool>* at_once = nullptr;  ///< request to end without fading the forces
+  DatedShapes* shapes = nullptr;  ///< receives those of new parts, if a recording shows them
 };
 
 /// Runs a prepared scene, once. `show` is called from a separate thread, a few times a second. When

@@ -14,6 +14,7 @@
 #include "mcap_fields.hpp"
 #include "mcap_format.hpp"
 #include "mcap_source.hpp"
+#include "packing.hpp"
 
 namespace repel::record {
 
@@ -103,12 +104,16 @@ struct McapReader::State {
   void open_chunk(const Record& record);
   void open_cut_chunk();
   void check_compression(const ChunkHead& head, std::uint64_t offset) const;
+  [[nodiscard]] std::string_view unpacked_chunk(const ChunkHead& head, std::string_view stored,
+                                                const Record& record);
   bool next_of_chunk(McapMessage& message);
   void take_message(Fields content, McapMessage& message) const;
   void finish();
 
   Source source;
-  std::string buffer;  // the current record
+  std::string buffer;    // the current record
+  std::string unpacked;  // the records of the current chunk, if it is compressed
+  detail::Unpacker unpacker;
 
   std::string profile;
   std::string library;
@@ -127,7 +132,8 @@ struct McapReader::State {
   std::uint64_t at = detail::magic.size();  // position of the next record
   std::uint32_t crc = 0;                    // of everything before it
   std::string_view chunk;                   // remaining records of the current chunk
-  std::uint64_t chunk_at = 0;               // their position in the file
+  std::uint64_t chunk_at = 0;               // their position in the file, or in `unpacked`
+  std::optional<std::uint64_t> packed_at;   // of the current chunk in the file, if compressed
   bool chunk_is_cut = false;
   bool finished = false;
 };
@@ -421,24 +427,50 @@ void McapReader::State::check_compression(const ChunkHead& head, std::uint64_t o
   if (head.compression.empty()) return;
   std::string what = "a chunk compressed with '";
   what += head.compression;
-  what += "'; allowed: chunks without compression";
+  if (head.compression != detail::zstd_name) {
+    source.fail(offset, what + "'; allowed: 'zstd', or chunks without compression");
+  }
+  const std::string_view remedy = detail::how_to_have_zstd();
+  if (remedy.empty()) return;
+  what += "', which was not built in; to have it: ";
+  what += remedy;
   source.fail(offset, what);
+}
+
+/// The records of a compressed chunk; of a truncated one those that can be decompressed.
+std::string_view McapReader::State::unpacked_chunk(const ChunkHead& head, std::string_view stored,
+                                                   const Record& record) {
+  // A short chunk cannot make it decompress for long, whatever size it claims.
+  const std::uint64_t most = std::min(detail::largest_record, detail::most_unpacked(head.length));
+  if (head.size > most) {
+    source.fail(record.offset, "a compressed chunk of " + std::to_string(head.length) +
+                                   " bytes that is said to have " + std::to_string(head.size) +
+                                   "; allowed: up to " + std::to_string(most));
+  }
+  using Outcome = detail::Unpacker::Outcome;
+  const Outcome outcome = unpacker.unpack(stored, head.size, unpacked);
+  if (outcome == Outcome::whole || chunk_is_cut) return unpacked;
+  source.fail(record.offset, "a compressed chunk that does not decompress to the " +
+                                 std::to_string(head.size) + " bytes it is said to have");
 }
 
 void McapReader::State::open_chunk(const Record& record) {
   Fields content(source, buffer, record.content());
   const ChunkHead head = chunk_head(content);
   check_compression(head, record.offset);
-  const std::uint64_t records_at = content.offset();
-  const std::string_view records = content.take(head.length);
-  if (head.size != head.length) {
+  const std::uint64_t stored_at = content.offset();
+  const std::string_view stored = content.take(head.length);
+  const bool is_packed = !head.compression.empty();
+  chunk_is_cut = false;
+  if (!is_packed && head.size != head.length) {
     source.fail(record.offset, "a chunk of " + std::to_string(head.length) +
                                    " bytes that is said to have " + std::to_string(head.size));
   }
+  const std::string_view records = is_packed ? unpacked_chunk(head, stored, record) : stored;
   check_crc(source, record.offset, "the chunk", head.crc, detail::crc32(records));
   chunk = records;
-  chunk_at = records_at;
-  chunk_is_cut = false;
+  packed_at = is_packed ? std::optional(record.offset) : std::nullopt;
+  chunk_at = is_packed ? 0 : stored_at;
 }
 
 /// Opens what is left of the truncated last chunk.
@@ -454,9 +486,11 @@ void McapReader::State::open_cut_chunk() {
     return;  // even the chunk header is truncated
   }
   check_compression(head, record.offset);
-  chunk = content.left();
-  chunk_at = content.offset();
+  const bool is_packed = !head.compression.empty();
   chunk_is_cut = true;
+  chunk = is_packed ? unpacked_chunk(head, content.left(), record) : content.left();
+  packed_at = is_packed ? std::optional(record.offset) : std::nullopt;
+  chunk_at = is_packed ? 0 : content.offset();
 }
 
 /// Advances in the chunk; true if it reaches a message.
@@ -477,9 +511,12 @@ bool McapReader::State::next_of_chunk(McapMessage& message) {
         return true;
       }
     }
-  } catch (const SetupError&) {
+  } catch (const SetupError& error) {
     chunk = {};
-    if (!chunk_is_cut) throw;  // expected at the end of a truncated chunk
+    if (chunk_is_cut) return false;  // expected at the end of a truncated chunk
+    if (!packed_at) throw;
+    // The file has no byte to name but that of the chunk.
+    source.fail(*packed_at, std::string("in the compressed chunk, decompressed: ") + error.what());
   }
   return false;
 }

@@ -11,6 +11,7 @@
 
 #include "crc32.hpp"
 #include "mcap_format.hpp"
+#include "packing.hpp"
 
 namespace repel::record {
 namespace {
@@ -75,6 +76,10 @@ struct SummaryGroup {
 
 }  // namespace
 
+bool has_zstd() noexcept {
+  return detail::how_to_have_zstd().empty();
+}
+
 McapWriter::McapWriter(const std::string& path, const McapOptions& options)
     : path_(path), options_(options) {
   check_options(options, path);
@@ -82,6 +87,9 @@ McapWriter::McapWriter(const std::string& path, const McapOptions& options)
   if (!file_) throw SetupError("cannot be opened for writing: " + system_words(), path);
   // Chunks are buffered here; a second buffer would only delay them.
   (void)std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+  if (options.compression == McapCompression::zstd && has_zstd()) {
+    packer_ = std::make_unique<detail::Packer>();
+  }
   push(header_record(options));
   if (failed()) throw SetupError(std::exchange(error_, {}));
 }
@@ -256,16 +264,19 @@ void McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint6
 
 void McapWriter::finish_chunk() {
   if (chunk_.empty()) return;
+  const bool is_packed = packer_ && packer_->pack(chunk_, packed_);
+  const std::string& stored = is_packed ? packed_ : chunk_;
+  const std::string_view compression = is_packed ? detail::zstd_name : std::string_view();
   buffer_.clear();
   buffer_.push_back(static_cast<char>(Op::chunk));
-  put(buffer_, std::uint64_t{8 + 8 + 8 + 4 + 4 + 8 + chunk_.size()});
+  put(buffer_, std::uint64_t{8 + 8 + 8 + 4 + 4 + compression.size() + 8 + stored.size()});
   put(buffer_, chunk_first_ns_);
   put(buffer_, chunk_last_ns_);
   put(buffer_, std::uint64_t{chunk_.size()});
   put(buffer_, detail::crc32(chunk_));
-  put_text(buffer_, "");  // no compression
-  put(buffer_, std::uint64_t{chunk_.size()});
-  buffer_ += chunk_;
+  put_text(buffer_, compression);
+  put(buffer_, std::uint64_t{stored.size()});
+  buffer_ += stored;
   const std::uint64_t chunk_length = buffer_.size();
 
   std::string places;  // positions of the message indices by channel
@@ -289,8 +300,8 @@ void McapWriter::finish_chunk() {
   put(content, chunk_length);
   put_text(content, places);
   put(content, std::uint64_t{buffer_.size() - chunk_length});
-  put_text(content, "");
-  put(content, std::uint64_t{chunk_.size()});
+  put_text(content, compression);
+  put(content, std::uint64_t{stored.size()});
   put(content, std::uint64_t{chunk_.size()});
   put_record(chunk_indices_, Op::chunk_index, content);
   ++chunks_;

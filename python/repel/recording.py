@@ -248,6 +248,8 @@ def _of_arm(inputs: _Rows, forces: _Rows, prefix: str,
     add("stop", forces, "stop", str)
     add("brakes", forces, "brakes", np.int64)
     add_each(of_joints("tau", "_nm", "_n"), forces, "torques")
+    if "held_n" in forces[0]:  # older recordings do not have it
+        add("held_n", forces, "held_n")
     return columns
 
 

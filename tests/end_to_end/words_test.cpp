@@ -77,7 +77,7 @@ TEST(Words, WithNothingNearTheNearestIsNone) {
   const Reported run(quoted(folder.with("scene.yaml", bare(""))) + " --fast --seconds 0.1");
   expect_readable(run);
   EXPECT_TRUE(std::regex_search(run.ending.out, std::regex("\n  nearest +none\n"))) << run.ending;
-  EXPECT_NE(run.page.find("<dt>nearest</dt><dd>none</dd>"), std::string::npos);
+  EXPECT_NE(run.page.find(">nearest of all pairs</dt><dd>none</dd>"), std::string::npos);
   EXPECT_TRUE(run.report.at("nearest_m").is_null());
   EXPECT_EQ(run.report.at("nearest_pair"), "");
 }

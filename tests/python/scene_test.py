@@ -131,8 +131,7 @@ def test_a_recording_has_the_columns_of_the_csv(logs):
     assert recording.ticks == table.ticks == 800 and recording.trouble == ""
     place = re.compile(r"(.*/)?v?[xyz]_m(_s)?$")  # a recording has no tool, but the joints
     missing = [name for name in table if name not in recording and not place.match(name)]
-    assert {name.rpartition("/")[2] for name in missing} == {"pairs_stale", "oldest_age_ticks",
-                                                              "held_n"}
+    assert {name.rpartition("/")[2] for name in missing} == {"pairs_stale", "oldest_age_ticks"}
     for name in table:
         if name in ("compute_us", "late_us"):  # not of a run that is not by the clock
             assert np.isnan(table[name]).all() and np.isfinite(recording[name]).all(), name

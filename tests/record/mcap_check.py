@@ -15,6 +15,7 @@ import sys
 import zlib
 
 try:
+    import zstandard  # which mcap needs as well
     from mcap.exceptions import McapError
     from mcap.reader import NonSeekingReader, SeekingReader
     from mcap.records import Attachment, Footer, Message, Metadata
@@ -85,25 +86,34 @@ def check_message_indices(data, summary):
     """Every place that a message index gives holds a message of that channel and time."""
     for chunk in summary.chunk_indexes:
         places = set()
+        records = records_of(data, chunk)
         for channel, offset in chunk.message_index_offsets.items():
             require(data[offset] == 0x07, f"no message index at byte {offset}")
             found, size = struct.unpack_from("<HI", data, offset + 9)
             require(found == channel, f"the index at byte {offset} is that of another channel")
             for time_ns, at in struct.iter_unpack("<QQ", data[offset + 15:offset + 15 + size]):
-                at += chunk.chunk_start_offset + chunk.chunk_length - chunk.uncompressed_size
-                op, _, of, _, log_time = struct.unpack_from("<BQHIQ", data, at)
+                op, _, of, _, log_time = struct.unpack_from("<BQHIQ", records, at)
                 require((op, of, log_time) == (0x05, channel, time_ns), f"no message at byte {at}")
                 places.add(at)
-        start = chunk.chunk_start_offset + chunk.chunk_length - chunk.uncompressed_size
-        require(len(places) == messages_in(data, start, chunk.uncompressed_size),
+        require(len(places) == messages_in(records),
                 f"messages of the chunk at byte {chunk.chunk_start_offset} have no index")
 
 
-def messages_in(data, at, size):
-    """Messages among the records in `size` bytes from `at` on."""
-    count, end = 0, at + size
-    while at < end:
-        op, length = struct.unpack_from("<BQ", data, at)
+def records_of(data, chunk):
+    """The records of a chunk, decompressed."""
+    end = chunk.chunk_start_offset + chunk.chunk_length
+    stored = data[end - chunk.compressed_size:end]
+    if chunk.compression == "":
+        return stored
+    require(chunk.compression == "zstd", f"the compression is {chunk.compression!r}")
+    return zstandard.ZstdDecompressor().decompress(stored, chunk.uncompressed_size)
+
+
+def messages_in(records):
+    """How many of them are messages."""
+    count, at = 0, 0
+    while at < len(records):
+        op, length = struct.unpack_from("<BQ", records, at)
         count += op == 0x05
         at += 9 + length
     return count
@@ -127,8 +137,7 @@ def readable(data):
 
 def check_cuts(data, summary, cuts):
     in_chunks = [(chunk.chunk_start_offset + chunk.chunk_length,
-                  messages_in(data, chunk.chunk_start_offset + chunk.chunk_length -
-                              chunk.uncompressed_size, chunk.uncompressed_size))
+                  messages_in(records_of(data, chunk)))
                  for chunk in summary.chunk_indexes]
     for k in range(cuts):
         length = len(data) * k // cuts

@@ -91,10 +91,12 @@ struct Recording {
   std::vector<Taken> messages;
 };
 
-inline Recording small_recording(std::uint64_t seed, int count = 40) {
+inline Recording small_recording(std::uint64_t seed, int count = 40,
+                                 McapCompression compression = McapCompression::none) {
   const Scratch scratch;
   Recording result;
-  McapWriter writer(scratch.path(), {.profile = "x-repel", .chunk_bytes = 400});
+  McapWriter writer(scratch.path(),
+                    {.profile = "x-repel", .chunk_bytes = 400, .compression = compression});
   result.messages = write_recording(writer, count, seed);
   writer.close();
   result.bytes = scratch.bytes();

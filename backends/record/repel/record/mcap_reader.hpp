@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reads recordings: uncompressed MCAP files (https://mcap.dev/spec), complete or truncated.
+/// Reads recordings: MCAP files (https://mcap.dev/spec), uncompressed or, if the library was built
+/// with zstd, compressed by it; complete or truncated.
 #pragma once
 
 #include <cstdint>
@@ -89,8 +90,10 @@ class McapReader {
 
   /// Reads the next message in file order. At the end returns false and leaves `message` unchanged.
   /// Cost: at the start of a chunk, reads and checks all of it.
-  /// @throws SetupError naming the byte, for a compressed or damaged chunk (it is skipped, and the
-  ///   next call continues after it), and once at the end if anything else is damaged
+  /// @throws SetupError naming the byte, for a damaged chunk or one whose compression was not built
+  /// in
+  ///   (it is skipped, and the next call continues after it), and once at the end if anything else
+  ///   is damaged
   bool next(McapMessage& message);
 
   /// Restarts next() from the beginning. Keeps the schemas and channels found.

@@ -14,6 +14,19 @@
 
 namespace repel::record {
 
+namespace detail {
+class Packer;
+}
+
+/// How the content of chunks is stored.
+enum class McapCompression : std::uint8_t {
+  none,
+  zstd,  ///< as `none` where the library was built without zstd
+};
+
+/// Whether this library was built with zstd.
+[[nodiscard]] bool has_zstd() noexcept;
+
 struct McapOptions {
   std::string profile{};             ///< of the header; empty: none
   std::string library = "repel";     ///< of the header: name of the writing software
@@ -21,10 +34,11 @@ struct McapOptions {
   /// [ns] a chunk is finished before a message whose time differs this much from its first; 0: one
   /// chunk per message. Bounds what a crash can lose.
   std::uint64_t chunk_ns = 500'000'000;
+  McapCompression compression = McapCompression::none;
 };
 
-/// Writes one MCAP file: uncompressed chunks, each with its index and passed to the operating
-/// system when it is finished; attachments and metadata immediately; the summary at the end. A
+/// Writes one MCAP file: chunks, each with its index and passed to the operating system when it is
+/// finished; attachments and metadata immediately; the summary at the end. A
 /// truncated file is readable up to its last finished chunk. What reaches the disk in a power
 /// failure depends on the operating system.
 ///
@@ -127,7 +141,9 @@ class McapWriter {
   std::string chunk_;  // the records of the current chunk
   std::uint64_t chunk_first_ns_ = 0;
   std::uint64_t chunk_last_ns_ = 0;
-  std::string buffer_;  // member, to reuse its memory
+  std::string buffer_;                      // member, to reuse its memory
+  std::string packed_;                      // likewise
+  std::unique_ptr<detail::Packer> packer_;  // null: chunks are not compressed
 };
 
 }  // namespace repel::record
