@@ -14,6 +14,7 @@
 
 namespace repel::record {
 
+/// Header and chunks of a file.
 struct McapOptions {
   std::string profile{};             ///< of the header; empty: none
   std::string library = "repel";     ///< of the header: name of the writing software
