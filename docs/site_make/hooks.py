@@ -88,8 +88,20 @@ def on_files(files, config):
             bring(target, files, config)
     files.append(File.generated(config, "reference.md", content=reference()))
     for path in sorted(API.iterdir()):
-        files.append(File.generated(config, f"api/{path.name}", abs_src_path=str(path)))
+        if path.suffix == ".html":
+            files.append(File.generated(config, f"api/{path.name}", content=mended(path)))
+        else:
+            files.append(File.generated(config, f"api/{path.name}", abs_src_path=str(path)))
     return files
+
+
+def mended(path):
+    """A page of Doxygen without the links to what it has left out: its summaries name sections of
+    private classes, and its lists of names link concepts, which have no pages."""
+    text = path.read_text(encoding="utf-8")
+    text = re.sub(r'<a href="#([^"]+)">[^<]*</a> &#124;\n',
+                  lambda link: link[0] if f'name="{link[1]}"' in text else "", text)
+    return re.sub(r'<a class="el" href="concept[^"]*"[^>]*>([^<]*)</a>', r"\1", text)
 
 
 def targets_of(page):
@@ -236,6 +248,8 @@ def reference():
 @event_priority(-50)  # after the plugin that writes the index, before the one that copies it
 def on_post_build(config):
     """Adds the classes and functions of the reference to what the search finds."""
+    # Only a server can show it, and only at its top.
+    (Path(config.site_dir) / "404.html").unlink()
     path = Path(config.site_dir) / "search/search_index.json"
     index = json.loads(path.read_text())
     for compound in compounds():
