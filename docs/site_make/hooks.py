@@ -168,6 +168,8 @@ def notebook(book):
 
 def on_page_markdown(markdown, page, config, files):
     here = page.file.src_uri
+    # A title is looked for at the beginning only.
+    markdown = re.sub(r"\A\s*<!--.*?-->\s*", "", markdown, flags=re.DOTALL)
     lines = markdown.split("\n")
     for number, line in enumerate(prose(markdown)):
         if "](" in line:
@@ -277,6 +279,6 @@ def members(compound, of):
         page, _, anchor = member.get("id").rpartition("_1")
         title = f"{of}::{plain(member.find('name'))}"
         entry = entries.setdefault(title, {"location": f"api/{page}.html#{anchor}", "title": title,
-                                           "text": "", "boost": 0.5})
+                                           "text": "", "boost": 0.7})
         entry["text"] = (entry["text"] + " " + said_of(member)).strip()
     return entries.values()

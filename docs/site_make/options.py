@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """options.py [--check] [FOLDER]: writes docs/options.md from what the programs in FOLDER,
-build/release/bin by default, say with --help. With --check, compares it instead."""
+build/release/bin by default, say with --help. With --check, compares it instead, for the programs
+that are there; exit code 77 if none is."""
 
 import re
 import subprocess
@@ -87,14 +88,18 @@ def section(program, said):
 
 def main(arguments):
     check = "--check" in arguments
-    folder = ([a for a in arguments if a != "--check"] or [ROOT / "build/release/bin"])[0]
-    page = HEAD + "".join("\n" + section(p, help_of(folder, p)) for p in PROGRAMS)
+    folder = Path(([a for a in arguments if a != "--check"] or [ROOT / "build/release/bin"])[0])
+    programs = [p for p in PROGRAMS if not check or (folder / p).is_file()]
+    sections = [section(p, help_of(folder, p)) for p in programs]
     if not check:
-        PAGE.write_text(page)
-    elif not PAGE.is_file() or PAGE.read_text() != page:
-        print("docs/options.md is not what the programs say: docs/site --options writes it")
-        return 1
-    return 0
+        PAGE.write_text("\n".join([HEAD, *sections]))
+        return 0
+    page = PAGE.read_text()
+    for text in sections:
+        if f"\n{text}" not in page:
+            print(f"docs/options.md is not what {text.split()[1]} says: docs/site --options writes it")
+            return 1
+    return 0 if sections else 77
 
 
 if __name__ == "__main__":
