@@ -171,7 +171,12 @@ def on_page_markdown(markdown, page, config, files):
     # A title is looked for at the beginning only.
     markdown = re.sub(r"\A\s*<!--.*?-->\s*", "", markdown, flags=re.DOTALL)
     lines = markdown.split("\n")
+    titles = 0
     for number, line in enumerate(prose(markdown)):
+        titles += line.startswith("# ")
+        # A page has one title: what stands below another one is a level lower.
+        if titles > 1 and re.match(r"#{1,5} ", line):
+            line = lines[number] = "#" + line
         if "](" in line:
             lines[number] = LINK.sub(lambda link: link[1] + redirected(link[2], here) + link[3],
                                      line)
@@ -255,7 +260,7 @@ def on_post_build(config):
     path = Path(config.site_dir) / "search/search_index.json"
     index = json.loads(path.read_text())
     for compound in compounds():
-        if compound.get("kind") == "file":
+        if compound.get("kind") == "file" or compound.get("prot") == "private":
             continue
         name = plain(compound.find("compoundname"))
         if compound.get("kind") != "namespace":
