@@ -25,6 +25,9 @@ LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".py": "python", ".sh": "sh", ".yaml"
 FENCE = re.compile(r"^( *)(```|~~~)")
 LINK = re.compile(r"(\]\()([^()\s]+)(\))")
 
+SKIPPED = r"<pre.*?</pre>|<a .*?</a>|<h\d.*?</h\d>"  # of a page, where no names become links
+
+names = {}  # what inline code may name, and its place in the reference
 sources = {}  # path of a header in the repository: its page of the reference
 shown = {}  # other files that pages link to, by their path: the page that shows the file
 
@@ -51,6 +54,7 @@ def on_config(config):
     named = set(leaves(config.nav))
     config.nav = [entry for entry in expanded(config.nav, pages, named)]
     sources.update((path, f"api/{file.get('id')}_source.html") for path, file in headers())
+    names.update(named_places())
     return config
 
 
@@ -192,6 +196,38 @@ def redirected(target, here):
     full = posixpath.normpath(posixpath.join(posixpath.dirname(here), path))
     page = sources.get(full) or shown.get(full)
     return posixpath.relpath(page, posixpath.dirname(here) or ".") if page else target
+
+
+def on_page_content(html, page, config, files):
+    """Inline code that names a class, a member or a header leads to the reference."""
+    if page.file.src_uri.startswith("files/"):
+        return html
+    here = posixpath.dirname(page.file.dest_uri) or "."
+
+    def linked(match):
+        place = names.get(match[1])
+        return (f'<a class="api" href="{posixpath.relpath(place, here)}">{match[0]}</a>'
+                if place else match[0])
+
+    return re.sub(rf"(?s:{SKIPPED})|<code>([\w:/.]+?)(?:\(\))?</code>", linked, html)
+
+
+def named_places():
+    """The places of headers, and of classes and their members that only one class can be meant by.
+    """
+    places = {}
+    for path, file in headers():
+        for name in (path, re.sub(r"^.*?(?=repel/)", "", path)):
+            places.setdefault(name, set()).add(f"api/{file.get('id')}.html")
+    for compound in compounds():
+        name = plain(compound.find("compoundname"))
+        if compound.get("kind") not in {"class", "struct"} or compound.get("prot") == "private":
+            continue
+        short = "::".join(part for part in name.split("::") if part[0].isupper())
+        places.setdefault(short, set()).add(f"api/{compound.get('id')}.html")
+        for entry in members(compound, short):
+            places.setdefault(entry["title"], set()).add(entry["location"])
+    return ((name, *place) for name, place in places.items() if len(place) == 1)
 
 
 def front(text):

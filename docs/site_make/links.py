@@ -3,6 +3,7 @@
 """links.py FOLDER: checks every link of the pages in a folder: its file is there, its anchor too,
 and nothing is fetched from elsewhere to show a page. Prints what is wrong, and counts."""
 
+import re
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -31,7 +32,10 @@ class Page(HTMLParser):
 def main(folder):
     folder = Path(folder).resolve()
     pages = {path: Page(path) for path in sorted(folder.rglob("*.html"))}
-    wrong, local, anchors, outward = [], 0, 0, set()
+    wrong = [f"{path.relative_to(folder)}: {target} is fetched from elsewhere"
+             for path in sorted(folder.rglob("*.css"))
+             for target in re.findall(r"url\([\"']?((?:https?:)?//[^)]*)", path.read_text())]
+    local, anchors, outward = 0, 0, set()
     for path, page in pages.items():
         for line, target in page.links + page.fetched:
             here = f"{path.relative_to(folder)}:{line}: {target}"
