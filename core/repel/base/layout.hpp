@@ -22,6 +22,7 @@ struct VectorRegister {};
 
 /// Those of the translation unit that names them.
 using EigenAlignmentHere = EigenAlignment<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MAX_ALIGN_BYTES>;
+/// The registers of the code that includes this header.
 using VectorRegisterHere = VectorRegister<detail::lane_bytes>;
 
 }  // namespace repel

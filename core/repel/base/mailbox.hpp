@@ -16,6 +16,7 @@ namespace repel {
 template <class T>
 class Mailbox {
  public:
+  /// Three copies of `prototype`, the memory of all values to come. Allocates if its copy does.
   explicit Mailbox(const T& prototype)
       : slots_{Slot{prototype}, Slot{prototype}, Slot{prototype}} {}
 

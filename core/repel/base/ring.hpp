@@ -51,6 +51,7 @@ class Ring {
   [[nodiscard]] T* front() noexcept {
     return const_cast<T*>(std::as_const(*this).front());  // NOLINT(*-const-cast): it is ours
   }
+  /// The oldest value that waits, for the consumer; null when there is none.
   [[nodiscard]] const T* front() const noexcept {
     if (reading_ == head_.load(std::memory_order_acquire)) return nullptr;
     return &slots_[reading_];

@@ -21,7 +21,9 @@ class SetupError : public std::runtime_error {
         file_(std::move(file)),
         line_(line) {}
 
+  /// The file that was read; empty without one.
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
+  /// The line in it, from 1; 0 without one.
   [[nodiscard]] int line() const noexcept { return line_; }
 
  private:

@@ -14,6 +14,7 @@ struct Twist {
   Vec3 linear{0, 0, 0};   ///< [m/s] velocity of the reference point
   Vec3 angular{0, 0, 0};  ///< [rad/s]
 
+  /// Adds in place, part by part.
   Twist& operator+=(const Twist& other) noexcept {
     linear += other.linear;
     angular += other.angular;
@@ -26,6 +27,7 @@ struct Wrench {
   Vec3 force{0, 0, 0};   ///< [N]
   Vec3 torque{0, 0, 0};  ///< [N m] about the reference point
 
+  /// Adds in place, part by part; about the same point.
   Wrench& operator+=(const Wrench& other) noexcept {
     force += other.force;
     torque += other.torque;
@@ -33,16 +35,20 @@ struct Wrench {
   }
 };
 
+/// Sum of two twists of one point.
 [[nodiscard]] inline Twist operator+(Twist a, const Twist& b) noexcept {
   return a += b;
 }
+/// Sum of two wrenches about one point.
 [[nodiscard]] inline Wrench operator+(Wrench a, const Wrench& b) noexcept {
   return a += b;
 }
 
+/// Both parts times `scale`.
 [[nodiscard]] inline Twist operator*(double scale, const Twist& V) noexcept {
   return {scale * V.linear, scale * V.angular};
 }
+/// Both parts times `scale`.
 [[nodiscard]] inline Wrench operator*(double scale, const Wrench& F) noexcept {
   return {scale * F.force, scale * F.torque};
 }
@@ -78,9 +84,11 @@ struct Wrench {
   return {R_AB * V_B.linear, R_AB * V_B.angular};
 }
 
+/// No entry is infinite or not a number.
 [[nodiscard]] inline bool is_finite(const Wrench& F) noexcept {
   return is_finite(F.force) && is_finite(F.torque);
 }
+/// No entry is infinite or not a number.
 [[nodiscard]] inline bool is_finite(const Twist& V) noexcept {
   return is_finite(V.linear) && is_finite(V.angular);
 }

@@ -15,45 +15,53 @@
 
 namespace repel {
 
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
-using Pose = Eigen::Isometry3d;
+using Vec3 = Eigen::Vector3d;    ///< a point, vector or force; world axes where its name ends in _W
+using Mat3 = Eigen::Matrix3d;    ///< a rotation R_AB or a matrix of inertia; by columns
+using Pose = Eigen::Isometry3d;  ///< a pose X_AB of B in A: rotation and position [m]
 
 // Sums and multiples of vectors, evaluated at once: Eigen creates a type for each expression, and
 // these types dominate the compile time. A template allows no conversions, so that all other
 // expressions remain those of Eigen.
+/// Sum, entry by entry.
 template <std::same_as<Vec3> V>
 [[nodiscard]] V operator+(const V& a, const V& b) noexcept {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
+/// Difference, entry by entry.
 template <std::same_as<Vec3> V>
 [[nodiscard]] V operator-(const V& a, const V& b) noexcept {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+/// Negative, entry by entry.
 template <std::same_as<Vec3> V>
 [[nodiscard]] V operator-(const V& a) noexcept {
   return {-a[0], -a[1], -a[2]};
 }
+/// Multiple, entry by entry.
 template <std::same_as<double> S, std::same_as<Vec3> V>
 [[nodiscard]] V operator*(S s, const V& a) noexcept {
   return {s * a[0], s * a[1], s * a[2]};
 }
+/// Multiple, entry by entry.
 template <std::same_as<double> S, std::same_as<Vec3> V>
 [[nodiscard]] V operator*(const V& a, S s) noexcept {
   return {a[0] * s, a[1] * s, a[2] * s};
 }
+/// Quotient, entry by entry.
 template <std::same_as<double> S, std::same_as<Vec3> V>
 [[nodiscard]] V operator/(const V& a, S s) noexcept {
   return {a[0] / s, a[1] / s, a[2] / s};
 }
 
 // The third row is summed from its end, as Eigen does: the results are bitwise the same.
+/// Product of a 3 x 3 matrix and a vector.
 template <std::same_as<Mat3> M, std::same_as<Vec3> V>
 [[nodiscard]] V operator*(const M& R, const V& v) noexcept {
   const double* r = R.data();
   return {r[0] * v[0] + r[3] * v[1] + r[6] * v[2], r[1] * v[0] + r[4] * v[1] + r[7] * v[2],
           r[2] * v[0] + (r[5] * v[1] + r[8] * v[2])};
 }
+/// Product of two 3 x 3 matrices.
 template <std::same_as<Mat3> M>
 [[nodiscard]] M operator*(const M& a, const M& b) noexcept {
   M product;
@@ -67,6 +75,7 @@ template <std::same_as<Mat3> M>
   }
   return product;
 }
+/// The point p of B in A.
 template <std::same_as<Pose> X, std::same_as<Vec3> V>
 [[nodiscard]] V operator*(const X& X_AB, const V& p) noexcept {
   const double* r = X_AB.data();
@@ -80,10 +89,12 @@ template <std::same_as<Vec3> V>
 [[nodiscard]] double dot(const V& a, const V& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+/// Sum of squares.
 template <std::same_as<Vec3> V>
 [[nodiscard]] double squared_norm(const V& v) noexcept {
   return dot(v, v);
 }
+/// Euclidean length.
 template <std::same_as<Vec3> V>
 [[nodiscard]] double norm(const V& v) noexcept {
   return std::sqrt(dot(v, v));
@@ -130,6 +141,7 @@ template <std::same_as<Vec3> V>
   return R;
 }
 
+/// The transpose; of a rotation, its inverse.
 [[nodiscard]] inline Mat3 transposed(const Mat3& R) noexcept {
   Mat3 turned;
   for (int k = 0; k < 9; ++k) turned.data()[k] = R.data()[k / 3 + 3 * (k % 3)];

@@ -21,28 +21,37 @@ template <class T>
 class Vec {
  public:
   Vec() = default;
+  /// By entries.
   Vec(T x, T y, T z) noexcept : x_(x), y_(y), z_(z) {}
+  /// Exact.
   explicit Vec(const Vec3& v) noexcept : x_(v.x()), y_(v.y()), z_(v.z()) {}
+  /// Converts entry by entry; rounds where T is narrower.
   template <class U>
   requires(!std::same_as<U, T>) explicit Vec(const Vec<U>& v) noexcept
       : x_(static_cast<T>(v.x())), y_(static_cast<T>(v.y())), z_(static_cast<T>(v.z())) {}
 
-  [[nodiscard]] T x() const noexcept { return x_; }
-  [[nodiscard]] T y() const noexcept { return y_; }
-  [[nodiscard]] T z() const noexcept { return z_; }
+  [[nodiscard]] T x() const noexcept { return x_; }  ///< first entry
+  [[nodiscard]] T y() const noexcept { return y_; }  ///< second entry
+  [[nodiscard]] T z() const noexcept { return z_; }  ///< third entry
 
+  /// Sum.
   friend Vec operator+(const Vec& a, const Vec& b) noexcept {
     return {a.x_ + b.x_, a.y_ + b.y_, a.z_ + b.z_};
   }
+  /// Difference.
   friend Vec operator-(const Vec& a, const Vec& b) noexcept {
     return {a.x_ - b.x_, a.y_ - b.y_, a.z_ - b.z_};
   }
+  /// Negative.
   friend Vec operator-(const Vec& a) noexcept { return {-a.x_, -a.y_, -a.z_}; }
+  /// Multiple.
   friend Vec operator*(T s, const Vec& a) noexcept { return {s * a.x_, s * a.y_, s * a.z_}; }
 
+  /// Scalar product.
   friend T dot(const Vec& a, const Vec& b) noexcept {
     return a.x_ * b.x_ + a.y_ * b.y_ + a.z_ * b.z_;
   }
+  /// Vector product.
   friend Vec cross(const Vec& a, const Vec& b) noexcept {
     return {a.y_ * b.z_ - a.z_ * b.y_, a.z_ * b.x_ - a.x_ * b.z_, a.x_ * b.y_ - a.y_ * b.x_};
   }
@@ -50,9 +59,11 @@ class Vec {
   friend Vec dots(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
     return {dot(a, d), dot(b, d), dot(c, d)};
   }
+  /// The absolute value of each entry.
   friend Vec magnitudes(const Vec& a) noexcept {
     return {std::abs(a.x_), std::abs(a.y_), std::abs(a.z_)};
   }
+  /// Sum of the entries.
   friend T sum(const Vec& a) noexcept { return a.x_ + a.y_ + a.z_; }
   /// The elementwise product.
   friend Vec product(const Vec& a, const Vec& b) noexcept {
@@ -151,9 +162,11 @@ class Vec<double> {
 };
 #endif
 
+/// The same entries.
 [[nodiscard]] inline Vec3 to_vec3(const Vec<double>& v) noexcept {
   return {v.x(), v.y(), v.z()};
 }
+/// Each entry rounded to double.
 [[nodiscard]] inline Vec3 to_vec3(const Vec<DoubleDouble>& v) noexcept {
   return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
 }

@@ -176,6 +176,7 @@ class JointAdmittance {
 
   /// Commands to the arm [rad/s] or [m/s], and [rad] or [m]: it takes one or the other.
   [[nodiscard]] std::span<const double> rates() const noexcept { return rates_; }
+  /// [rad] or [m] that the joints are to be at, one for each.
   [[nodiscard]] std::span<const double> positions() const noexcept { return positions_; }
 
  private:

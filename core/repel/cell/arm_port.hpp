@@ -25,6 +25,7 @@ class ArmPort {
     return {q_, v_, arm_->state(), arm_->read_wrench()};
   }
 
+  /// Sends the torques of a tick to the arm, and what it asks of drive and brakes.
   void apply(const TickRecord& record) noexcept {
     if (record.enable) arm_->enable();
     arm_->set_torques(std::span(record.torques).first(q_.size()));

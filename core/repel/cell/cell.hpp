@@ -80,8 +80,11 @@ class Cell {
   /// Joins the threads of the coprocessor, as the destructor does. Not real-time safe.
   void stop();
 
+  /// What it was built from.
   [[nodiscard]] const CellDescription& description() const noexcept;
+  /// Between two ticks.
   [[nodiscard]] std::chrono::nanoseconds period() const noexcept;
+  /// Bodies, parts and pairs: what was described, and the arms.
   [[nodiscard]] const World& world() const noexcept;
   /// For the thread of the tick, between two ticks: World::add, move, attach, release and remove.
   [[nodiscard]] World& world() noexcept;
@@ -91,6 +94,7 @@ class Cell {
   [[nodiscard]] std::span<const PartId> loose() const noexcept;
   /// Forces and answers of the pairs (schedule/coprocessor.hpp).
   [[nodiscard]] const Coprocessor& coprocessor() const noexcept;
+  /// Number of arms.
   [[nodiscard]] std::size_t arms() const noexcept;
   /// The bodies and parts of an arm (cell/layout.hpp).
   [[nodiscard]] const ArmLayout& layout(std::size_t arm) const noexcept;
@@ -137,6 +141,7 @@ void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 #ifdef REPEL_COMPILED
 #define REPEL_DEFINITION
 #else
+/// `inline` in a header that is not compiled apart, nothing in the file that is.
 #define REPEL_DEFINITION inline
 #endif
 

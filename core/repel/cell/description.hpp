@@ -25,10 +25,10 @@ namespace repel {
 
 /// A convex part P of an arm.
 struct ArmPart {
-  static constexpr int on_tool = -1;
+  static constexpr int on_tool = -1;  ///< `link` of a part that the tool has
 
-  std::string name;
-  Shape shape;
+  std::string name;              ///< in reports and messages
+  Shape shape;                   ///< convex, in the frame P
   Pose X_FP = Pose::Identity();  ///< [m] in the tool frame, or in the frame of its link
   int link = on_tool;            ///< index in ArmModel::links
 };
@@ -37,21 +37,21 @@ struct ArmPart {
 struct ArmDescription {
   std::string name;  ///< prefix of the names of its bodies and parts: "left" gives "left/tool"
   ArmModel model;    ///< limits, efforts and friction of the joints; masses of the links
-  std::unique_ptr<ArmKinematics> kinematics;
-  std::vector<double> start;             ///< [rad] or [m]; empty: all at zero
-  std::vector<ArmPart> parts;            ///< of tool and links
-  std::optional<network::Plan> network;  ///< without one: `default_network`
-  std::optional<ForceLaw> self_law;      ///< between own parts that are two or more joints apart
+  std::unique_ptr<ArmKinematics> kinematics;  ///< of this arm alone; the cell uses it in its ticks
+  std::vector<double> start;                  ///< [rad] or [m]; empty: all at zero
+  std::vector<ArmPart> parts;                 ///< of tool and links
+  std::optional<network::Plan> network;       ///< without one: `default_network`
+  std::optional<ForceLaw> self_law;  ///< between own parts that are two or more joints apart
   std::vector<std::pair<int, int>> may_touch;  ///< indices of parts, excluded from `self_law`
-  ForceLaw law;  ///< between its parts and those of the arms before it in the list
-  TeleoperatorOptions options;
-  bool takes_motion = false;  ///< it takes rates or positions: set by `admitted`
+  ForceLaw law;                 ///< between its parts and those of the arms before it in the list
+  TeleoperatorOptions options;  ///< of fail-safe, stop, torques, readings and hard walls
+  bool takes_motion = false;    ///< it takes rates or positions: set by `admitted`
 };
 
 /// A convex part P of the environment.
 struct ObstacleDescription {
-  std::string name;
-  Shape shape;
+  std::string name;                             ///< in reports and messages
+  Shape shape;                                  ///< convex, in the frame P
   Pose X_WP = Pose::Identity();                 ///< [m]
   ForceLaw law{};                               ///< between it and every part of every arm
   std::optional<ReciprocatingMotion> motion{};  ///< without one it is fixed
@@ -60,7 +60,7 @@ struct ObstacleDescription {
 /// A convex part P of the environment that can come and go, be moved and be held by a tool while
 /// the cell runs (Cell::changes, docs/changing_cell.md).
 struct LooseDescription {
-  std::string name;
+  std::string name;              ///< in reports and messages, and to find it by
   Shape shape;                   ///< that it comes with, unless it gets another one
   Pose X_WP = Pose::Identity();  ///< [m] where it comes, unless it is said
   ForceLaw law{};                ///< between it and every part of every arm
@@ -82,14 +82,14 @@ enum class StartInside {
 
 /// Arms, operators and obstacles in one world.
 struct CellDescription {
-  double rate_hz = 400.0;  ///< [Hz] of the tick, 1 to 1e5
-  std::vector<ArmDescription> arms{};
-  std::vector<ObstacleDescription> obstacles{};
-  std::vector<LooseDescription> loose{};
+  double rate_hz = 400.0;                                     ///< [Hz] of the tick, 1 to 1e5
+  std::vector<ArmDescription> arms{};                         ///< at least one
+  std::vector<ObstacleDescription> obstacles{};               ///< none: a free room
+  std::vector<LooseDescription> loose{};                      ///< all absent unless `at_start`
   Capacities limits{};                                        ///< capacities of the world
   CoprocessorOptions coprocessor{};                           ///< its `period` is overwritten
   network::GainCheck gain_check = network::GainCheck::error;  ///< for walls that are too stiff
-  StartInside start_inside = StartInside::refuse;
+  StartInside start_inside = StartInside::refuse;             ///< for every arm
   /// How the depth of an overlap is measured: the deepest common point, Anderson's reduction or the
   /// penetration depth (docs/reduction.md, also for what each costs).
   Measure measure = QueryOptions{}.measure;

@@ -23,7 +23,7 @@ namespace repel {
 
 /// The bodies and parts that represent an arm in a world.
 struct ArmLayout {
-  BodyId tool;
+  BodyId tool;                  ///< the body of the tool
   std::vector<LinkBody> links;  ///< only those that have parts
   std::vector<PartId> parts;    ///< in the order of the description, one after the other
   ArmLevers levers;             ///< of the tool and the parts of the links

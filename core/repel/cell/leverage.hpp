@@ -109,7 +109,7 @@ void for_each_side(const Shape& shape, const Pose& X_WP, const Vec3& axis, const
 /// spread evenly over the ranges of the joints.
 class ArmLevers {
  public:
-  static constexpr int poses = 256;
+  static constexpr int poses = 256;  ///< in which an arm is looked at
 
   ArmLevers() = default;
   /// Leaves the kinematics of the arm at its `start`. Nothing is computed for an arm without link

@@ -34,6 +34,7 @@ enum class Measure : std::uint8_t {
           ///< back to `reduction`
 };
 
+/// Its name, as scene files and options spell it.
 [[nodiscard]] inline std::string to_text(Measure measure) {
   switch (measure) {
     case Measure::reduction:
@@ -58,6 +59,7 @@ inline constexpr std::array<Measure, 3> all_measures{Measure::deepest_point, Mea
   return {};
 }
 
+/// What a query is asked for. Values out of range end it as `QueryEnd::bad_input`.
 struct QueryOptions {
   double tolerance = 1e-14;  ///< largest (v.v - v.w) / v.v, the relative duality gap
   int iterations = 256;      ///< limit of support-map pairs in each precision; at least 1
@@ -67,7 +69,7 @@ struct QueryOptions {
   /// right to that many digits down to a nanometre, at some microseconds for each gap below a
   /// centimetre.
   double relative_width = 1e-7;
-  Measure measure = Measure::deepest_point;
+  Measure measure = Measure::deepest_point;  ///< of an overlap; apart it plays no part
 };
 
 /// State that a query leaves for the next one on the same pair: the names of up to four point pairs
@@ -81,13 +83,13 @@ struct WarmStart {
 
   std::array<std::uint32_t, 4> a{};  ///< Convex::Point::name on A
   std::array<std::uint32_t, 4> b{};  ///< Convex::Point::name on B
-  std::uint8_t size = 0;
-  std::uint8_t level_a = 0;
-  std::uint8_t level_b = 0;
+  std::uint8_t size = 0;             ///< how many entries of `a` and `b` are valid
+  std::uint8_t level_a = 0;          ///< of A, or one of the values above
+  std::uint8_t level_b = 0;          ///< of B, likewise
   /// The pair of levels before that one, which intersects: point pairs around a common point.
   std::array<std::uint32_t, 4> met_a{};
-  std::array<std::uint32_t, 4> met_b{};
-  std::uint8_t met_size = 0;  ///< 4 when they are known
+  std::array<std::uint32_t, 4> met_b{};  ///< likewise, on B
+  std::uint8_t met_size = 0;             ///< 4 when they are known
   /// Of the polytope of an exact depth, whose `size` corners are named in `a`, `b`, `met_a` and
   /// `met_b`, each by its point of A in the lower half and its point of B in the upper half: the
   /// corners of each face, five bits each.

@@ -94,8 +94,8 @@ struct ForceLaw {
   /// passable bodies. 0: the force acts at the nearest point, which jumps between the corners of
   /// parallel faces.
   double tilt = 0.005;
-  bool damping_may_rise = false;  ///< a cell raises c0 to what keeps the wall stable at its rate
-  HoldKind hold = HoldKind::soft;
+  bool damping_may_rise = false;   ///< a cell raises c0 to what keeps the wall stable at its rate
+  HoldKind hold = HoldKind::soft;  ///< whether a hand can get in, see docs/walls.md
   double watched = 0.0;  ///< [m] beyond the range, where the approach to a hard wall is watched; a
                          ///< cell raises it to what its arms need to stop
 
@@ -105,6 +105,7 @@ struct ForceLaw {
   /// [m] The distance within which a pair with this law is evaluated.
   [[nodiscard]] double reach() const noexcept { return range + watched; }
 
+  /// The law as a formula of doubles.
   [[nodiscard]] LawFormula<double> formula() const noexcept {
     return {range, surface_force, damping, ceiling};
   }

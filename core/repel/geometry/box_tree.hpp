@@ -91,6 +91,7 @@ class BoxTree {
     return others;
   }
 
+  /// [bytes] of heap that the nodes take.
   [[nodiscard]] std::size_t bytes() const noexcept { return nodes_.capacity() * sizeof(Node); }
 
  private:
@@ -110,14 +111,17 @@ class BoxTree {
 
   /// Boxes in single precision, rounded outward.
   struct alignas(64) Node {
+    /// A box against which the boxes of a node are compared, copied to every lane.
     struct Probe {
+      /// Rounded outwards to float.
       explicit Probe(const Box& box) {
         for (int axis = 0; axis < 3; ++axis) {
           lower[axis] = below(box.min()[axis]) - Floats{};
           upper[axis] = -below(-box.max()[axis]) - Floats{};
         }
       }
-      std::array<Floats, 3> lower, upper;
+      std::array<Floats, 3> lower;  ///< [m] of each axis, the same in every lane
+      std::array<Floats, 3> upper;  ///< likewise
     };
 
     void set(int lane, const Box& box, std::int32_t link) {

@@ -27,12 +27,14 @@ class Convex {
   /// Up to so many vertices, a scan of all of them is as fast as a SupportTable.
   static constexpr std::size_t largest_scan = 32;
 
+  /// What the set is.
   enum class Kind : std::uint8_t { box, cylinder, cone, polytope };
 
+  /// A point of the set that is farthest in some direction.
   template <class T>
   struct Point {
-    std::uint32_t name = 0;
-    Vec<T> p;  ///< [m] in the frame of the set
+    std::uint32_t name = 0;  ///< tells the points of a set apart, see Convex
+    Vec<T> p;                ///< [m] in the frame of the set
   };
 
   /// A box with corners at +-`half_extents` [m], each at least 0.
@@ -75,11 +77,12 @@ class Convex {
   [[nodiscard]] std::size_t bytes() const noexcept {
     return vertices_.bytes() + table_.bytes() + faces_.bytes();
   }
+  /// [bytes] Upper bound of the heap that a polytope of so many vertices takes.
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     return VertexScan::bytes_of(vertices) +
            (vertices > largest_scan ? SupportTable::most_bytes(vertices) : 0);
   }
-  [[nodiscard]] Kind kind() const noexcept { return kind_; }
+  [[nodiscard]] Kind kind() const noexcept { return kind_; }  ///< what the set is
   /// [m] distance of the farthest point from the origin of the frame.
   [[nodiscard]] double reach() const noexcept { return reach_; }
   /// True when the set has finitely many vertices.

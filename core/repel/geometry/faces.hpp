@@ -24,8 +24,9 @@ class Faces {
  public:
   /// A corner of a face, at a vertex.
   struct Corner {
-    std::uint32_t face;
-    std::uint32_t next, previous;  ///< the vertices beside it, around the face
+    std::uint32_t face;      ///< index of the face
+    std::uint32_t next;      ///< the vertex after it, around the face
+    std::uint32_t previous;  ///< and that before it
   };
 
   Faces() = default;
@@ -57,6 +58,7 @@ class Faces {
     find_room(vertices);
   }
 
+  /// There are no faces: a set without thickness, or one that is not a polytope.
   [[nodiscard]] bool empty() const noexcept { return normals_.empty(); }
   /// [byte] Heap memory held, and the most for a hull of so many vertices.
   [[nodiscard]] std::size_t bytes() const noexcept {
@@ -66,11 +68,13 @@ class Faces {
            at_.capacity() * sizeof(Corner) +
            (face_room_.capacity() + vertex_room_.capacity()) * sizeof(float);
   }
+  /// [bytes] Upper bound of the heap that the faces of so many vertices take.
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     // A closed surface of triangles has twice as many of them as vertices.
     return 8 * vertices * sizeof(Vec<double>) + (9 * vertices + 2) * sizeof(std::uint32_t) +
            6 * vertices * sizeof(Corner) + 3 * vertices * sizeof(float);
   }
+  /// Number of faces.
   [[nodiscard]] std::size_t count() const noexcept { return normals_.size(); }
   /// The unit normal of face `i`, outward.
   [[nodiscard]] const Vec<double>& normal(std::uint32_t i) const noexcept { return normals_[i]; }

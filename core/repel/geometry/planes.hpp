@@ -72,6 +72,7 @@ class Planes {
                   {length / side, radius / side, half_length * radius / side});
   }
 
+  /// There is none.
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   /// [m] Largest distance from the set of a point below all planes: by rounding, and by the sagitta
   /// of a curved side.
@@ -79,9 +80,11 @@ class Planes {
   /// [-] A point at most d above each plane is at most margin() + d sharpness() outside the set: at
   /// the tip of a sliver, far.
   [[nodiscard]] double sharpness() const noexcept { return sharpness_; }
+  /// Number of planes.
   [[nodiscard]] std::uint32_t size() const noexcept { return listed() + side_.size(); }
   /// [byte] Heap memory held, and the heap memory of so many planes.
   [[nodiscard]] std::size_t bytes() const noexcept { return numbers_.capacity() * sizeof(double); }
+  /// [bytes] Of heap that so many planes take.
   [[nodiscard]] static std::size_t bytes_of(std::size_t planes) noexcept {
     return 4 * stride_of(planes) * sizeof(double);
   }
@@ -107,10 +110,11 @@ class Planes {
     return {listed() + names[0], listed() + names[1]};
   }
 
+  /// The plane nearest to a point.
   template <class T>
   struct Nearest {
-    std::uint32_t plane;
-    T depth;  ///< [m] of the point below the plane; negative above
+    std::uint32_t plane;  ///< its index
+    T depth;              ///< [m] of the point below the plane; negative above
   };
   /// The plane below which `x` has the least depth, the first of several; for a point of the
   /// polytope, its depth. Must not be empty. Cost: one pass over the planes.

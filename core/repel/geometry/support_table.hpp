@@ -36,12 +36,14 @@ class SupportTable {
   /// For at least one vertex [m]. Set-up: it allocates. Cost: a few passes over the vertices.
   explicit SupportTable(std::span<const Vec3> vertices);
 
+  /// There are no vertices: made by default.
   [[nodiscard]] bool empty() const noexcept { return first_.empty(); }
 
   /// [byte] Heap memory held, and the most that a table of so many vertices holds.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (first_.capacity() + candidates_.capacity()) * sizeof(std::uint32_t);
   }
+  /// [bytes] Upper bound of the heap that the table of so many vertices takes.
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     const std::size_t width = finest_width(vertices);
     return (6 * width * width + 1 + most_candidates * vertices) * sizeof(std::uint32_t);

@@ -29,7 +29,9 @@ class Tangents {
     return 0.501 / (static_cast<double>(steps) * steps) * radius;
   }
 
+  /// Number of tangent planes.
   [[nodiscard]] std::uint32_t size() const noexcept { return count_; }
+  /// [m] of each plane from the centre.
   [[nodiscard]] double offset() const noexcept { return offset_; }
 
   /// Unit, outward; `i` less than size().

@@ -25,7 +25,7 @@ struct VertexBlock {
   static constexpr std::size_t lanes = 8;  ///< `stride` is a multiple of this
 
   const double* numbers = nullptr;  ///< [m]
-  std::size_t stride = 0;
+  std::size_t stride = 0;           ///< from one coordinate to the next, in numbers
 
   /// Vertex i [m]; i must be valid.
   [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {
@@ -58,6 +58,7 @@ struct VertexBlock {
 class VertexScan {
  public:
   VertexScan() = default;
+  /// Copies the vertices [m] in the order of lanes. Allocates.
   explicit VertexScan(std::span<const Vec3> vertices)
       : size_(static_cast<int>(vertices.size())),
         stride_(stride_of(vertices.size())),
@@ -69,14 +70,16 @@ class VertexScan {
     }
   }
 
-  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] int size() const noexcept { return size_; }  ///< number of vertices
   /// [byte] Heap memory held, and the heap memory of so many vertices.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return numbers_.capacity() * sizeof(double) + rows_.capacity() * sizeof(Vec<double>);
   }
+  /// [bytes] Of heap that so many vertices take.
   [[nodiscard]] static std::size_t bytes_of(std::size_t vertices) noexcept {
     return 3 * stride_of(vertices) * sizeof(double) + vertices * sizeof(Vec<double>);
   }
+  /// The copy, valid as long as this object.
   [[nodiscard]] VertexBlock block() const noexcept { return {numbers_.data(), stride_}; }
   /// Vertex i [m]; an invalid index gives vertex 0.
   [[nodiscard]] Vec<double> vertex(std::uint32_t i) const noexcept {

@@ -20,9 +20,11 @@ namespace repel {
 
 /// A pair that exerts a force in this tick.
 struct ActiveContact {
-  PairId pair;
-  BodyId a, b;
-  Wrench on_a, on_b;     ///< [1, m] of a unit force that parts them, about each body's origin
+  PairId pair;  ///< that exerts a force
+  BodyId a;     ///< the body that moves
+  BodyId b;     ///< likewise, of the other part
+  Wrench on_a;  ///< [1, m] on A of a unit force that parts them, about the origin of its body
+  Wrench on_b;  ///< on B, likewise
   double damping = 0.0;  ///< [N s/m] how much its force falls with the speed along that force
 };
 
@@ -48,6 +50,7 @@ class ActiveContacts {
               [](const auto& x, const auto& y) { return x.pair.index < y.pair.index; });
   }
 
+  /// The contacts of the last `collect`.
   [[nodiscard]] std::span<const ActiveContact> all() const noexcept {
     return std::span(contacts_).first(count_);
   }

@@ -46,11 +46,13 @@ namespace repel {
 /// only. Cost: one Jacobian for each body.
 class ArmBodies {
  public:
+  /// The links that have bodies, of an arm of so many joints.
   ArmBodies(std::vector<LinkBody> links, int joints)
       : links_(std::move(links)),
         drawn_(Jacobian::Zero(6, joints)),
         jacobians_(links_.size(), drawn_) {}
 
+  /// The links that have bodies.
   [[nodiscard]] std::span<const LinkBody> bodies() const noexcept { return links_; }
 
   /// Places every body at its pose from `kinematics`, moving with the joint rates `v`. False when a

@@ -68,6 +68,7 @@ class ArmCommand {
 
   /// The barrier before hard walls: takes its contacts before `drive`.
   [[nodiscard]] EntryBarrier& barrier() noexcept { return barrier_; }
+  /// What keeps the arm out of hard walls.
   [[nodiscard]] const EntryBarrier& barrier() const noexcept { return barrier_; }
 
   /// Buffer for the gravity torques, to be filled before `drive` [N m].

@@ -48,9 +48,10 @@ namespace repel {
 /// (m/s^2). Allocates at construction only.
 class ArmInertia {
  public:
-  using Vector = network::Vec<network::any_size>;
-  using Matrix = network::Mat<network::any_size>;
+  using Vector = network::Vec<network::any_size>;  ///< one entry for each joint
+  using Matrix = network::Mat<network::any_size>;  ///< square, one row for each joint
 
+  /// Allocates for the joints of `model`.
   explicit ArmInertia(const ArmModel& model)
       : model_(model), drawn_(Jacobian::Zero(6, size())), given_(size(), size()) {
     M_.setZero(size(), size());

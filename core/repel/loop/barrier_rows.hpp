@@ -18,7 +18,7 @@ namespace repel {
 
 /// One gap of an arm, or the speed of a joint, as a row of the constraints on its motion.
 struct BarrierRow {
-  using Vector = ArmInertia::Vector;
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
 
   PairId pair;             ///< invalid: of a joint
   Vector h;                ///< [m] torques on the joints of 1 N that opens the gap
@@ -33,7 +33,7 @@ struct BarrierRow {
 /// those are kept that will close first.
 class BarrierRows {
  public:
-  static constexpr std::size_t most = 64;
+  static constexpr std::size_t most = 64;  ///< rows in one tick
 
   /// @param margin [m] by which the gaps of walls count as smaller
   BarrierRows(const ArmModel& model, double margin) : model_(model), margin_(margin), rows_(most) {
@@ -50,8 +50,9 @@ class BarrierRows {
     for (const HardContact& contact : contacts) add(contact, tool, jacobian, links, v);
     for (std::size_t joint = 0; joint < q.size(); ++joint) add_joint(joint, q[joint], v[joint]);
   }
-  void clear() noexcept { used_ = 0; }
+  void clear() noexcept { used_ = 0; }  ///< forgets all rows
 
+  /// The rows of this tick.
   [[nodiscard]] std::span<const BarrierRow> all() const noexcept {
     return std::span(rows_).first(used_);
   }

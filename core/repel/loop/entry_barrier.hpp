@@ -49,7 +49,7 @@ struct BarrierTotals {
 /// them binds, else a solution with the mass matrix for each.
 class EntryBarrier {
  public:
-  using Vector = ArmInertia::Vector;
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
 
   /// @param period [s] @param drive_delay [ticks] of the arm @param slew_time [s] of its torques
   /// @param pairs of the world; 0: none is hard, and nothing is changed
@@ -119,12 +119,13 @@ class EntryBarrier {
 
   /// [N] With which it pushed at the last tick on the pair on which it did so hardest.
   [[nodiscard]] double force() const noexcept { return force_; }
+  /// The pair of the hardest contact; invalid where none held.
   [[nodiscard]] PairId pushed() const noexcept { return pushed_; }
   /// [N] Hardest push that the wall of this pair withstood since set-up.
   [[nodiscard]] double withstood(PairId pair) const noexcept {
     return is_on() ? withstood_[static_cast<std::size_t>(pair.index)] : 0.0;
   }
-  [[nodiscard]] const BarrierTotals& totals() const noexcept { return totals_; }
+  [[nodiscard]] const BarrierTotals& totals() const noexcept { return totals_; }  ///< since set-up
 
  private:
   static constexpr double least_speed = 1e-6;  // [m/s]

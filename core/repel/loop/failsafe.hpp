@@ -14,6 +14,7 @@ namespace repel {
 /// `status::failsafe`, held there until inputs have been valid for a while, then ramped back.
 class Failsafe {
  public:
+  /// Begins with the full gain.
   explicit Failsafe(const FailsafeOptions& options = {}) noexcept : options_(options) {}
 
   /// The gain for this tick, 0 to 1.

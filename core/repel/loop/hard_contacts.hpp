@@ -22,9 +22,11 @@ namespace repel {
 
 /// A point at which two bodies of a hard pair may meet.
 struct HardContact {
-  PairId pair;
-  BodyId a, b;        ///< the bodies that move: a body that a tool holds is the tool
-  Wrench on_a, on_b;  ///< [1, m] of a unit force that parts them, about each body's origin
+  PairId pair;        ///< whose wall is hard
+  BodyId a;           ///< the body that moves: a body that a tool holds is the tool
+  BodyId b;           ///< likewise, of the other part
+  Wrench on_a;        ///< [1, m] on A of a unit force that parts them, about the origin of its body
+  Wrench on_b;        ///< on B, likewise
   double gap = 0.0;   ///< [m] there, along that force; of the pair, not larger than its distance
   double rate = 0.0;  ///< [m/s] of the gap, positive on retreat
   bool is_between_arms = false;  ///< two arms can close the gap
@@ -33,8 +35,8 @@ struct HardContact {
 
 /// What the tick of an arm needs to know of the contacts of all arms.
 struct Contacts {
-  std::span<const ActiveContact> active;
-  std::span<const HardContact> hard{};
+  std::span<const ActiveContact> active;  ///< that exert a force
+  std::span<const HardContact> hard{};    ///< that must not be entered
 };
 
 /// Some pair of the world is hard.
@@ -89,6 +91,7 @@ class HardContacts {
               });
   }
 
+  /// The contacts of the last `collect`.
   [[nodiscard]] std::span<const HardContact> all() const noexcept {
     return std::span(contacts_).first(count_);
   }

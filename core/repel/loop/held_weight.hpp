@@ -13,6 +13,7 @@
 
 namespace repel {
 
+/// Which masses of held parts count.
 enum class Masses {
   known,  ///< to the controller
   all,

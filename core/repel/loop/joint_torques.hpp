@@ -39,7 +39,7 @@ struct TorqueShares {
 /// arm along, braking is reduced. Allocates at construction only.
 class JointTorques {
  public:
-  using Vector = ArmInertia::Vector;
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
 
   /// @param period [s]; @throws SetupError for an option out of range
   JointTorques(const ArmModel& model, double period, const JointTorqueOptions& options)

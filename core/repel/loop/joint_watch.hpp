@@ -33,7 +33,7 @@ namespace repel {
 /// Allocates at construction only; a tick costs a few operations for each pair of joints.
 class JointWatch {
  public:
-  using Vector = ArmInertia::Vector;
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
 
   /// @param period [s] from reading to reading
   /// @throws SetupError for an option out of range

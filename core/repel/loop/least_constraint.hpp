@@ -24,7 +24,7 @@ namespace repel {
 /// leave no solution, the result is what they allow. Allocates at construction only.
 class LeastConstraint {
  public:
-  using Vector = ArmInertia::Vector;
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
 
   /// One bound.
   struct Row {
@@ -36,6 +36,7 @@ class LeastConstraint {
     double force = 0.0;       ///< [N] f, found by `solve`
   };
 
+  /// Allocates for so many joints and rows.
   LeastConstraint(std::size_t joints, std::size_t most_rows) : rows_(most_rows) {
     asked_.setZero(static_cast<Eigen::Index>(joints));
     change_ = asked_;
@@ -63,6 +64,7 @@ class LeastConstraint {
     for (Eigen::Index i = 0; i < h.size(); ++i) row.mobility += h.coeff(i) * row.moved.coeff(i);
     return &row;
   }
+  /// The rows added since `begin`.
   [[nodiscard]] std::span<const Row> rows() const noexcept { return std::span(rows_).first(used_); }
 
   /// @param asked [N m], may be beyond the limits @param weight [N m] the part of it that carries

@@ -73,12 +73,12 @@ struct TeleoperatorOptions {
                              ///< tick; 0 to 100: the longer, the softer the arm follows
   bool prediction = true;    ///< false: the network is solved for the measured rates, without the
                              ///< mass of the arm, to compare with
-  EnergyWatchOptions energy;
-  FailsafeOptions failsafe;
-  StopOptions stop;
-  JointTorqueOptions torques;
-  JointWatchOptions joints;
-  EntryBarrierOptions barrier;
+  EnergyWatchOptions energy;    ///< of the energy that sampling adds
+  FailsafeOptions failsafe;     ///< of the operator's force
+  StopOptions stop;             ///< of braking
+  JointTorqueOptions torques;   ///< of what is sent to the joints
+  JointWatchOptions joints;     ///< of which readings are believed
+  EntryBarrierOptions barrier;  ///< of hard walls
 };
 
 /// Returns `options`. @throws SetupError naming the one that is out of range

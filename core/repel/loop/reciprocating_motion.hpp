@@ -30,9 +30,9 @@ struct ReciprocatingMotion {
 
 /// A body with a prescribed motion, whatever forces act on it.
 struct MovingBody {
-  BodyId body;
+  BodyId body;                   ///< that moves
   Pose X_WB = Pose::Identity();  ///< [m] where it starts
-  ReciprocatingMotion motion;
+  ReciprocatingMotion motion;    ///< of its frame
 
   /// Places the body where it is `time` [s] after the start. False when the pose is invalid: the
   /// body stays where it was.

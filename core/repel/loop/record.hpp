@@ -22,10 +22,10 @@ namespace repel {
 
 /// One tick, as logged.
 struct TickRecord {
-  std::int64_t tick = 0;
-  double time = 0.0;       ///< [s] since the first tick
-  std::int32_t phase = 0;  ///< of the operator's script
-  Status status = 0;
+  std::int64_t tick = 0;      ///< its number, from 0
+  double time = 0.0;          ///< [s] since the first tick
+  std::int32_t phase = 0;     ///< of the operator's script
+  Status status = 0;          ///< the bits of what was noticed, 0 without a fault
   Stop stop = Stop::running;  ///< what was done about faults
   bool brakes = false;        ///< the brakes of the arm are requested
   bool enable = false;        ///< the stopped drive of the arm is to be enabled again
@@ -34,7 +34,7 @@ struct TickRecord {
   std::array<double, network::most_joints> q{};
   std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] their rates
   std::array<double, network::most_joints> q_read{};  ///< as read, believed or not
-  std::array<double, network::most_joints> v_read{};
+  std::array<double, network::most_joints> v_read{};  ///< likewise
   /// [N, N m] of the force sensor, as read; empty without a reading or a module for it.
   std::optional<Wrench> wrench_read{};
   network::Command command;   ///< of the operator
@@ -52,8 +52,8 @@ struct TickRecord {
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_nodes> energy{};
   std::chrono::nanoseconds network_time{0};  ///< compute time of the network; not reproducible
-  PairTotals pairs;
-  WorkerReport workers;
+  PairTotals pairs;                          ///< of all pairs of the world
+  WorkerReport workers;                      ///< the coprocessor's threads
 };
 
 /// Notes what the masters of the network do to the hands that hold them; zero where there is none.
@@ -75,8 +75,10 @@ inline void note_masters(const network::Network& network, TickRecord& record) no
 /// Keeps the ticks of a run in memory reserved at set-up; ticks beyond it are dropped and counted.
 class Recorder {
  public:
+  /// Reserves the memory of `capacity` ticks.
   explicit Recorder(std::size_t capacity) { records_.reserve(capacity); }
 
+  /// Keeps a tick if there is room. Does not allocate.
   void add(const TickRecord& record) noexcept {
     if (records_.size() < records_.capacity()) {
       records_.push_back(record);
@@ -84,7 +86,9 @@ class Recorder {
       ++dropped_;
     }
   }
+  /// Those kept, in their order.
   [[nodiscard]] const std::vector<TickRecord>& records() const noexcept { return records_; }
+  /// Ticks for which there was no room.
   [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_; }
 
  private:
@@ -94,7 +98,7 @@ class Recorder {
 
 /// Sums and extremes of a run.
 struct RunTotals {
-  std::int64_t ticks = 0;
+  std::int64_t ticks = 0;       ///< run
   std::int64_t near = 0;        ///< pair evaluations that were due, summed over ticks
   std::int64_t evaluated = 0;   ///< pair evaluations made
   std::int64_t iterations = 0;  ///< support-map pairs
@@ -104,7 +108,7 @@ struct RunTotals {
   double refresh_energy = 0.0;  ///< [J] PairTotals::refresh_energy, summed over ticks
   /// [m] Least signed distance by the measure of the overlap; of all pairs, passable ones included.
   double nearest = std::numeric_limits<double>::infinity();
-  PairId nearest_pair;
+  PairId nearest_pair;      ///< that of `nearest`
   double deepest = 0.0;     ///< [m] proven bound: none of these pairs was deeper when evaluated
   double peak_force = 0.0;  ///< [N] greatest virtual force on the tool
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
@@ -113,6 +117,7 @@ struct RunTotals {
   std::int64_t missing = 0;                     ///< missed ticks
   WorkerReport workers;                         ///< as of the last tick
 
+  /// Adds a tick.
   void add(const TickRecord& r) noexcept {
     ++ticks;
     near += r.pairs.near;

@@ -73,10 +73,11 @@ namespace detail {
 
 /// [m/rad] Tool motion per motion of the lever that a hand holds; 1 where it holds none.
 struct LeverScales {
-  double first = 1.0;
-  double second = 1.0;
+  double first = 1.0;   ///< of the first hand
+  double second = 1.0;  ///< of the second hand
 };
 
+/// The velocity scales of the levers of a network, by hand; 1 where there is none.
 [[nodiscard]] inline LeverScales lever_scales(const network::Network& network) noexcept {
   LeverScales scales;
   for (const network::Node& node : network.nodes()) {

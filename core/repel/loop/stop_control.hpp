@@ -13,6 +13,7 @@ namespace repel {
 /// State machine from faults to the stop of a tick.
 class StopControl {
  public:
+  /// The arm runs. @param period [s].
   StopControl(double period, const StopOptions& options) noexcept
       : options_(options), predicted_(std::max(options.predicted, 3.0 * period)) {}
 

@@ -19,8 +19,8 @@ namespace repel {
 
 /// How long a tick took, and how late it began.
 struct TickTimes {
-  std::chrono::nanoseconds late{0};  ///< after it was due
-  std::chrono::nanoseconds compute{0};
+  std::chrono::nanoseconds late{0};     ///< after it was due
+  std::chrono::nanoseconds compute{0};  ///< of the tick alone
 };
 
 /// All data of one tick. Its vectors have their size from set-up on.
@@ -29,11 +29,12 @@ struct Snapshot {
   std::vector<Pose> X_WB;              ///< [m] by BodyId
   std::vector<std::uint8_t> is_there;  ///< by BodyId: 0 while it is absent
   std::vector<NearPair> pairs;  ///< fixed size; the first `pair_count` are valid, nearest first
-  int pair_count = 0;
-  int pairs_omitted = 0;  ///< further near pairs, farther than all of these
-  TickTimes times;
+  int pair_count = 0;           ///< valid entries of `pairs`
+  int pairs_omitted = 0;        ///< further near pairs, farther than all of these
+  TickTimes times;              ///< of the tick
   std::chrono::steady_clock::time_point made;  ///< time of this copy, after the tick
 
+  /// The valid pairs, nearest first.
   [[nodiscard]] std::span<const NearPair> near() const noexcept {
     return {pairs.data(), static_cast<std::size_t>(pair_count)};
   }
@@ -41,14 +42,15 @@ struct Snapshot {
 
 /// A few numbers of one tick.
 struct TickSample {
-  std::int64_t tick = 0;
+  std::int64_t tick = 0;                                     ///< its number, from 0
   double nearest = std::numeric_limits<double>::infinity();  ///< [m] least signed distance
   double force = 0.0;                                        ///< [N] on the tool of the first arm
-  TickTimes times;
+  TickTimes times;                                           ///< of the tick
 };
 
+/// Capacities of a tap.
 struct TapOptions {
-  int arms = 1;
+  int arms = 1;    ///< that share the world
   int pairs = 64;  ///< most in a snapshot
   /// Period of the pictures.
   std::chrono::nanoseconds picture_period{1000000000 / 60};
@@ -96,9 +98,13 @@ class Tap {
     pictures_.post();
   }
 
+  /// For the thread that draws.
   [[nodiscard]] Mailbox<Snapshot>& pictures() noexcept { return pictures_; }
+  /// For the thread that plots.
   [[nodiscard]] Ring<TickSample>& samples() noexcept { return samples_; }
+  /// For the thread that writes every tick.
   [[nodiscard]] Ring<Snapshot>& log() noexcept { return log_; }
+  /// Something is written to `log`.
   [[nodiscard]] bool has_log() const noexcept { return has_log_; }
 
  private:

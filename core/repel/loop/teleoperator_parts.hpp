@@ -20,9 +20,9 @@ namespace repel {
 /// What couples one arm of a world to its operator. Referenced objects must outlive the
 /// teleoperator.
 struct TeleoperatorParts {
-  const ArmModel& model;
-  ArmKinematics& kinematics;  ///< at the start pose of the arm
-  World& world;
+  const ArmModel& model;        ///< of the arm
+  ArmKinematics& kinematics;    ///< at the start pose of the arm
+  World& world;                 ///< shared by all arms
   BodyId tool;                  ///< moves with the tool frame
   std::vector<LinkBody> links;  ///< bodies whose forces act through the module ARM_OBSTACLE
   network::Network network;     ///< built for the period

@@ -97,7 +97,9 @@ class Teleoperator {
     return record_;
   }
 
+  /// The network, as of the last tick.
   [[nodiscard]] const network::Network& network() const noexcept { return network_; }
+  /// What keeps the arm out of hard walls.
   [[nodiscard]] const EntryBarrier& barrier() const noexcept { return command_.barrier(); }
   /// Pose of the tool in the world [m], as of the last `sense`.
   [[nodiscard]] const Pose& X_WT() const noexcept { return X_WT_; }

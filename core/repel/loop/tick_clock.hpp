@@ -21,7 +21,7 @@ namespace repel {
 /// period late counts as one period; a later one also stands for those that were missed.
 class TickClock {
  public:
-  using nanoseconds = std::chrono::nanoseconds;
+  using nanoseconds = std::chrono::nanoseconds;  ///< of any clock that grows
 
   /// @param longest_gap longest time without a tick that is not a fault
   TickClock(nanoseconds period, nanoseconds longest_gap) noexcept

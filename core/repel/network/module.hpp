@@ -57,6 +57,7 @@ namespace repel::network {
 /// missing function is reported at compile time. Cost: a virtual call for each.
 class Module {
  public:
+  /// Holds a copy of any module; a missing function is a compile-time error.
   template <class M>
   requires(!std::same_as<std::remove_cvref_t<M>, Module>)
       // NOLINTNEXTLINE(google-explicit-constructor): any module can stand for itself
@@ -66,13 +67,17 @@ class Module {
         held_(std::make_unique<detail::ModuleOf<M>>(std::move(module))) {
     detail::require_module<M>();
   }
+  /// Copies the module with its state. Allocates.
   Module(const Module& other)
       : ports_(other.ports_), type_(other.type_), held_(other.held_->copy()) {}
+  /// The other then holds none.
   Module(Module&&) noexcept = default;
+  /// Copies the module with its state. Allocates.
   Module& operator=(const Module& other) {
     if (this != &other) *this = Module(other);
     return *this;
   }
+  /// The other then holds none.
   Module& operator=(Module&&) noexcept = default;
   ~Module() = default;
 
@@ -83,11 +88,15 @@ class Module {
     return &static_cast<const detail::ModuleOf<M>&>(*held_).module();
   }
 
-  [[nodiscard]] Ports ports() const noexcept { return ports_; }
+  [[nodiscard]] Ports ports() const noexcept { return ports_; }  ///< which of the kinds it is
 
+  /// What it holds, by its functions.
   [[nodiscard]] detail::AnyModule& operator*() noexcept { return *held_; }
+  /// What it holds, by its functions.
   [[nodiscard]] const detail::AnyModule& operator*() const noexcept { return *held_; }
+  /// What it holds, by its functions.
   [[nodiscard]] detail::AnyModule* operator->() noexcept { return held_.get(); }
+  /// What it holds, by its functions.
   [[nodiscard]] const detail::AnyModule* operator->() const noexcept { return held_.get(); }
 
  private:

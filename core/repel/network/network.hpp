@@ -16,19 +16,22 @@ namespace repel::network {
 /// A connection of two ports. `shown` and `state` belong to the side away from the root, with
 /// effort into that side.
 struct Connection {
-  std::string left, right;  ///< names of the modules
-  Space space = Space::any;
-  int size = 0;
-  int left_node = -1, right_node = -1;
-  bool root_on_right = true;
-  Equivalent<any_size> shown;
-  PortState<any_size> state;
-  double entering = 0.0;  ///< [W] into the side away from the root, as of the last `run`
+  std::string left;            ///< name of the module on the left
+  std::string right;           ///< and of that on the right
+  Space space = Space::any;    ///< of both ports
+  int size = 0;                ///< of both ports
+  int left_node = -1;          ///< index of the module on the left
+  int right_node = -1;         ///< and of that on the right
+  bool root_on_right = true;   ///< the module on the right is nearer to the robot
+  Equivalent<any_size> shown;  ///< all behind, seen from the root, in this tick
+  PortState<any_size> state;   ///< of this tick
+  double entering = 0.0;       ///< [W] into the side away from the root, as of the last `run`
 
   /// Effort that the left side exerts on the right [N], [N m].
   [[nodiscard]] Vec<any_size> effort() const noexcept {
     return root_on_right ? Vec<any_size>(-state.effort) : state.effort;
   }
+  /// Flow from left to right, the same on both sides [m/s], [rad/s].
   [[nodiscard]] const Vec<any_size>& flow() const noexcept { return state.flow; }
   /// Power from left to right [W].
   [[nodiscard]] double power() const noexcept {
@@ -38,13 +41,13 @@ struct Connection {
 
 /// A module and its connections, by index; -1: none.
 struct Node {
-  std::string name;
-  Module module;
-  Traits traits;
+  std::string name;           ///< as in the plan
+  Module module;              ///< with its state
+  Traits traits;              ///< of the module
   int toward_root = -1;       ///< -1 for the root
   std::vector<int> branches;  ///< away from the root; for a line: both its ends
   int left = -1;              ///< of its left port, for two-ports and lines
-  Ledger ledger;
+  Ledger ledger;              ///< the energy of the module since the start
 };
 
 /// Built by a Plan (plan.hpp), run once per tick. The power balance of every tick is exact: at
@@ -75,7 +78,9 @@ class Network {
   /// Prediction::given_up of the torques `total` [N m]; zero without a prediction.
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept;
 
+  /// The modules, in the order of the plan.
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
+  /// The connections; a Node names them by index.
   [[nodiscard]] std::span<const Connection> connections() const noexcept { return connections_; }
 
   /// The node of the first module of type `M`; null when there is none.
@@ -86,6 +91,7 @@ class Network {
     }
     return nullptr;
   }
+  /// The first module of type `M`; null when there is none.
   template <class M>
   [[nodiscard]] const M* find() const noexcept {
     const Node* node = node_of<M>();
@@ -102,6 +108,7 @@ class Network {
   [[nodiscard]] const std::string& stuck_at() const noexcept {
     return nodes_[static_cast<std::size_t>(stuck_)].name;
   }
+  /// One of `connections`, by its index in a Node.
   [[nodiscard]] const Connection& connection(int index) const noexcept {
     return connections_[static_cast<std::size_t>(index)];
   }

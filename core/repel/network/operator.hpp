@@ -15,6 +15,7 @@
 
 namespace repel::network {
 
+/// The device in the operator's hand.
 enum class Master {
   spaceball,   ///< six rates, no force feedback
   torque_arm,  ///< one lever with force feedback
@@ -73,7 +74,7 @@ struct Phase {
   bool silent = false;                 ///< the device does not respond: its last sample is held
 };
 
-using Script = std::vector<Phase>;
+using Script = std::vector<Phase>;  ///< played one after the other
 
 /// The operator's input of one period.
 struct Command {
@@ -88,6 +89,7 @@ struct Command {
 /// lever still unless a torque-arm phase moves it.
 class ScriptedOperator {
  public:
+  /// At the beginning of the script.
   explicit ScriptedOperator(Script script) : script_(std::move(script)) {}
 
   /// Advances by one period and returns its input.
@@ -111,10 +113,11 @@ class ScriptedOperator {
     return command_;
   }
 
+  /// The last phase has ended.
   [[nodiscard]] bool over() const noexcept { return phase_ >= script_.size(); }
   /// Index of the phase being played; the number of phases when the script is over.
   [[nodiscard]] std::size_t phase() const noexcept { return phase_; }
-  [[nodiscard]] const Script& script() const noexcept { return script_; }
+  [[nodiscard]] const Script& script() const noexcept { return script_; }  ///< as it was given
 
  private:
   // What stays from phase to phase.

@@ -21,13 +21,17 @@ namespace repel::network {
 struct To {
   To() = default;
   // NOLINTBEGIN(google-explicit-constructor): a name stands for itself.
+  /// The module of that name.
   To(const char* name) : names{name}, next(false) {}
+  /// The module of that name.
   To(std::string name) : names{std::move(name)}, next(false) {}
+  /// The modules of these names; empty: none.
   To(std::initializer_list<std::string> list) : names(list), next(false) {}
+  /// The modules of these names; empty: none.
   To(std::vector<std::string> list) : names(std::move(list)), next(false) {}
   // NOLINTEND(google-explicit-constructor)
-  std::vector<std::string> names;
-  bool next = true;
+  std::vector<std::string> names;  ///< of modules of the plan
+  bool next = true;                ///< the next module, whatever `names` holds
 };
 
 /// A list of modules from the operator to the robot. Each is connected to the next, or to the one
@@ -45,7 +49,7 @@ struct To {
 /// `.add("junction", Junction(), {"left_arm", "right_arm"})` continues to both.
 class Plan {
  public:
-  static constexpr std::size_t most_modules = 32;
+  static constexpr std::size_t most_modules = 32;  ///< modules of one plan
   /// Nodes of a network: its modules and a prediction.
   static constexpr std::size_t most_nodes = most_modules + 1;
 
@@ -54,6 +58,7 @@ class Plan {
     entries_.push_back({std::move(name), std::move(module), std::move(to)});
     return *this;
   }
+  /// The same for a plan without a name, so that calls can follow each other.
   Plan&& add(std::string name, Module module, To to = {}) && {
     return std::move(add(std::move(name), std::move(module), std::move(to)));
   }

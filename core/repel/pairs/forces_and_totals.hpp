@@ -24,7 +24,7 @@ struct PairTotals {
   std::int64_t iterations = 0;  ///< support-map pairs evaluated
   double nearest =
       std::numeric_limits<double>::infinity();  ///< [m] least signed distance evaluated
-  PairId nearest_pair;
+  PairId nearest_pair;                          ///< that of `nearest`
   double deepest = 0.0;     ///< [m] proven upper bound of the penetration of all evaluated pairs
   double peak_force = 0.0;  ///< [N] largest of one pair
   PairId hardest_pair;      ///< the pair of `peak_force`; invalid while no pair exerts a force
@@ -41,6 +41,7 @@ struct PairTotals {
     hardest_pair = pair;
   }
 
+  /// Adds those of other pairs at the same tick.
   void add(const PairTotals& other) noexcept {
     near += other.near;
     evaluated += other.evaluated;
@@ -72,11 +73,13 @@ struct PairForces {
   /// of the same arm, the sum of f.v at the contact points, v of the other body. Bodies at rest add
   /// nothing.
   std::vector<double> carried;
-  PairTotals totals;
+  PairTotals totals;  ///< of all pairs
 
   PairForces() = default;
+  /// No forces. Allocates for so many bodies.
   explicit PairForces(int bodies) : on_body(bodies), from_own(bodies), carried(bodies, 0.0) {}
 
+  /// Back to no forces. Does not allocate.
   void clear() noexcept {
     std::fill(on_body.begin(), on_body.end(), Wrench{});
     std::fill(carried.begin(), carried.end(), 0.0);
@@ -149,6 +152,7 @@ struct PairExtremes {
   double peak_force = 0.0;                      ///< [N]
   double deepest = 0.0;  ///< [m] proven upper bound of the penetration at all evaluations
 
+  /// Takes the extremes of both.
   void add(const PairExtremes& other) noexcept {
     nearest = std::min(nearest, other.nearest);
     peak_force = std::max(peak_force, other.peak_force);

@@ -12,7 +12,7 @@ namespace repel {
 
 /// A pair that may be within the range of its law, its last answer and its force.
 struct NearPair {
-  PairId pair;
+  PairId pair;            ///< which of the world
   Separation separation;  ///< the last answer; of an older tick if the pair is stale
   double force = 0.0;     ///< [N] on A along the extraction direction, the opposite on B
   bool stale = false;     ///< not evaluated at this tick: the force is computed from the old

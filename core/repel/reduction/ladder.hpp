@@ -18,7 +18,7 @@ namespace repel {
 
 /// How a shape is reduced.
 struct ReductionOptions {
-  static constexpr int most_levels = 64;
+  static constexpr int most_levels = 64;  ///< of one shape
 
   int levels = 8;  ///< steps until the shape has lost its thickness; 1 to `most_levels`
   /// The first i of n steps take (i/n)^spacing of the thickness: 1 makes the steps even, a larger
@@ -28,7 +28,7 @@ struct ReductionOptions {
 
 /// One sub-shape: every point of `core` lies at least `depth` inside the shape.
 struct Level {
-  Convex core;
+  Convex core;         ///< the sub-shape
   double depth = 0.0;  ///< [m]
   double order = 0.0;  ///< position among the levels of another shape, see Ladder
 };

@@ -21,13 +21,13 @@ struct Separation {
   /// compared, moved outward by their depth. (p_WA - p_WB).extraction_W is the distance, or more
   /// where an intersecting pair of levels decides it.
   Vec3 p_WA{0, 0, 0};
-  Vec3 p_WB{0, 0, 0};
-  Vec3 extraction_W{0, 0, 0};  ///< unit; moving A along it separates A from B
-  int level = 0;               ///< 0: the shapes themselves; k: k-th step of the reduction
-  int iterations = 0;          ///< support-map pairs evaluated
-  QueryEnd end = QueryEnd::bad_input;
-  int level_a = 0, level_b = 0;  ///< of the shapes, on which the witness points are; `level` is
-                                 ///< the larger
+  Vec3 p_WB{0, 0, 0};                  ///< [m] on B, likewise
+  Vec3 extraction_W{0, 0, 0};          ///< unit; moving A along it separates A from B
+  int level = 0;                       ///< 0: the shapes themselves; k: k-th step of the reduction
+  int iterations = 0;                  ///< support-map pairs evaluated
+  QueryEnd end = QueryEnd::bad_input;  ///< why the query stopped
+  int level_a = 0;  ///< of A, on which its witness point is; `level` is the larger of both
+  int level_b = 0;  ///< of B
 };
 
 namespace detail {

@@ -101,7 +101,9 @@ class Shape {
   [[nodiscard]] std::size_t bytes() const noexcept {
     return sizeof(Data) + counters + detail::bytes_of(data_->ladder) + data_->planes.bytes();
   }
+  /// Number of levels, at least one.
   [[nodiscard]] int levels() const noexcept { return static_cast<int>(data_->ladder.size()); }
+  /// A level, 0: the shape itself; `i` less than levels().
   [[nodiscard]] const Level& level(int i) const noexcept { return first_[i]; }
   /// The planes around the core of the first level; empty for hulls without thickness.
   [[nodiscard]] const Planes& planes() const noexcept { return data_->planes; }
@@ -115,6 +117,7 @@ class Shape {
   /// [m] How deep a point of the shape can be below its surface, however the shape is reduced; of a
   /// hull, the radius of the largest ball found in it. At least `deepest()`.
   [[nodiscard]] double inscribed_radius() const noexcept { return data_->inscribed_radius; }
+  /// How the levels were made.
   [[nodiscard]] const ReductionOptions& reduction() const noexcept { return data_->reduction; }
 
  private:
@@ -163,8 +166,8 @@ class Shape {
 
 /// A shape at its pose, for the length of a call: it owns neither.
 struct PosedShape {
-  const Shape& shape;
-  const Pose& X_W;
+  const Shape& shape;  ///< must outlive the call
+  const Pose& X_W;     ///< [m] likewise
 };
 
 }  // namespace repel

@@ -115,7 +115,7 @@ class Coprocessor {
   }
   /// Number of threads at work: those asked for that have a processor, and enough pairs.
   [[nodiscard]] int threads() const noexcept { return threads_; }
-  [[nodiscard]] CoprocessorMode mode() const noexcept { return options_.mode; }
+  [[nodiscard]] CoprocessorMode mode() const noexcept { return options_.mode; }  ///< as asked for
 
   /// Beside: waits until the last motion has been answered; true at once in the other mode. For
   /// programs that do not run by the clock, between ticks. False on timeout.

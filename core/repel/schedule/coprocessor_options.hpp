@@ -29,8 +29,10 @@ enum class CoprocessorMode : std::uint8_t {
   beside,    ///< they evaluate the newest motion while the caller uses their last whole answer
 };
 
+/// The names of the modes, by value.
 inline constexpr std::array<std::string_view, 2> coprocessor_mode_names{"together", "beside"};
 
+/// Its name, as scene files and options spell it.
 [[nodiscard]] constexpr std::string_view to_text(CoprocessorMode mode) noexcept {
   return coprocessor_mode_names[static_cast<std::size_t>(mode)];
 }
@@ -47,8 +49,8 @@ inline constexpr std::array<std::string_view, 2> coprocessor_mode_names{"togethe
 /// How a coprocessor works.
 struct CoprocessorOptions {
   int threads = 0;  ///< besides the caller; 0: it evaluates all pairs itself, in either mode
-  CoprocessorMode mode = CoprocessorMode::together;
-  Budget budget;                              ///< per tick
+  CoprocessorMode mode = CoprocessorMode::together;  ///< of the threads, if there are any
+  Budget budget;                                     ///< per tick
   std::chrono::nanoseconds period{2500000};   ///< between ticks, so that idle threads can sleep
   std::chrono::nanoseconds patience{500000};  ///< how long the caller waits for a thread that has
                                               ///< begun some work; this and the period are clamped

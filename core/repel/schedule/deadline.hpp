@@ -14,6 +14,7 @@ namespace repel {
 /// 1.6 % from 64 ns to 4 s, in 16 kB and without storing the samples. The maximum is exact.
 class DurationHistogram {
  public:
+  /// Adds a sample; one below zero counts as zero.
   void record(std::chrono::nanoseconds duration) noexcept {
     const std::int64_t ns = duration.count() > 0 ? duration.count() : 0;
     ++bins_[bin_of(static_cast<std::uint64_t>(ns))];
@@ -42,8 +43,9 @@ class DurationHistogram {
     }
     return max_us();
   }
+  /// [us] The longest; 0 without samples.
   [[nodiscard]] double max_us() const noexcept { return 1e-3 * static_cast<double>(max_); }
-  [[nodiscard]] std::int64_t count() const noexcept { return count_; }
+  [[nodiscard]] std::int64_t count() const noexcept { return count_; }  ///< number of samples
 
  private:
   static constexpr int fine_bits = 6;
@@ -72,6 +74,7 @@ class DurationHistogram {
 /// was due.
 class DeadlineMonitor {
  public:
+  /// No ticks yet. @param period between two ticks.
   explicit DeadlineMonitor(std::chrono::nanoseconds period) noexcept : period_(period) {}
 
   /// Counts `ticks` that were due but skipped: each is a deadline miss.
@@ -91,6 +94,7 @@ class DeadlineMonitor {
 
   /// Executed plus skipped ticks.
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
+  /// Ticks that finished late, and skipped ones.
   [[nodiscard]] std::int64_t misses() const noexcept { return misses_; }
   /// Fraction of the last 100 ticks (of all ticks while there are fewer) that met their deadline.
   [[nodiscard]] double success_rate() const noexcept {
@@ -103,7 +107,9 @@ class DeadlineMonitor {
   [[nodiscard]] std::chrono::nanoseconds longest_response() const noexcept {
     return longest_response_;
   }
+  /// Of executed ticks.
   [[nodiscard]] const DurationHistogram& compute() const noexcept { return compute_; }
+  /// Lateness of executed ticks.
   [[nodiscard]] const DurationHistogram& wakeup() const noexcept { return wakeup_; }
 
  private:

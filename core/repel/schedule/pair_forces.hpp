@@ -32,9 +32,9 @@ struct WorkerReport {
 
 /// What the operating system has done to the threads since set-up, and how many were replaced.
 struct WorkerUsage {
-  std::int64_t page_faults = 0;
-  std::int64_t switches = 0;  ///< a thread was taken off its processor while it had work to do
-  std::int64_t restarts = 0;  ///< threads started in place of one that did not go on
+  std::int64_t page_faults = 0;  ///< minor and major
+  std::int64_t switches = 0;     ///< a thread was taken off its processor while it had work to do
+  std::int64_t restarts = 0;     ///< threads started in place of one that did not go on
 };
 
 }  // namespace repel

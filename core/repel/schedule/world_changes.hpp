@@ -18,7 +18,7 @@ namespace repel {
 
 /// What has become of the changes of a `WorldChanges` so far.
 struct ChangeCounts {
-  std::int64_t applied = 0;
+  std::int64_t applied = 0;  ///< done by the tick
   std::int64_t refused = 0;  ///< the state of the part did not allow it: World::move, attach, ...
   std::int64_t waited = 0;   ///< ticks in which a change waited for threads to let go of a shape
 };
@@ -26,8 +26,8 @@ struct ChangeCounts {
 /// Some of the reserved parts of a world, one after the other in the order of World::loose. By
 /// default all.
 struct ReservedShare {
-  std::size_t first = 0;
-  std::size_t count = static_cast<std::size_t>(-1);
+  std::size_t first = 0;                             ///< index in World::loose
+  std::size_t count = static_cast<std::size_t>(-1);  ///< at most; fewer if there are not so many
 };
 
 /// A wait-free queue of changes between one thread that asks for them and the thread of the tick,

@@ -17,6 +17,7 @@
 
 namespace repel {
 
+/// How a link moves against the one before it: about or along its axis.
 enum class JointType { revolute, prismatic };
 
 /// One moving link and the joint that carries it. Angles [rad] for a revolute joint, [m] for a
@@ -43,7 +44,7 @@ struct ArmLink {
 /// A serial chain from a fixed base. Fixed joints of the robot description are merged into the
 /// parents.
 struct ArmModel {
-  std::string name;
+  std::string name;                 ///< in reports and messages
   Pose X_WB = Pose::Identity();     ///< [m] base in the world
   std::vector<ArmLink> links;       ///< from the base outward; one degree of freedom each
   Pose X_LT = Pose::Identity();     ///< [m] tool frame in the last link
@@ -85,6 +86,7 @@ class TorqueDrivenArm {
   virtual void stop() noexcept {}
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
   virtual void engage_brakes(bool /*on*/) noexcept {}
+  /// Whether torques act; an arm that cannot tell is enabled.
   [[nodiscard]] virtual ArmState state() const noexcept { return ArmState::enabled; }
   /// Contacts, for an arm that simulates physical contact.
   [[nodiscard]] virtual ContactReport contact() const noexcept { return {}; }
@@ -94,10 +96,10 @@ class TorqueDrivenArm {
 
  protected:
   TorqueDrivenArm() = default;
-  TorqueDrivenArm(const TorqueDrivenArm&) = default;
-  TorqueDrivenArm(TorqueDrivenArm&&) = default;
-  TorqueDrivenArm& operator=(const TorqueDrivenArm&) = default;
-  TorqueDrivenArm& operator=(TorqueDrivenArm&&) = default;
+  TorqueDrivenArm(const TorqueDrivenArm&) = default;             ///< for the arms derived from it
+  TorqueDrivenArm(TorqueDrivenArm&&) = default;                  ///< for the arms derived from it
+  TorqueDrivenArm& operator=(const TorqueDrivenArm&) = default;  ///< for the arms derived from it
+  TorqueDrivenArm& operator=(TorqueDrivenArm&&) = default;       ///< for the arms derived from it
 };
 
 /// What an arm reports at the start of a tick. One entry per link, base outward; a missing entry

@@ -58,7 +58,7 @@ class ArmDrive {
   /// True when the brakes hold the joints; no motor torque acts then.
   [[nodiscard]] bool braked() const noexcept { return state_ != ArmState::enabled || brakes_on_; }
 
-  [[nodiscard]] ArmState state() const noexcept { return state_; }
+  [[nodiscard]] ArmState state() const noexcept { return state_; }  ///< whether torques can act
 
  private:
   static constexpr double never = std::numeric_limits<double>::infinity();

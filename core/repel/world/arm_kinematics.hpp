@@ -53,10 +53,10 @@ class ArmKinematics {
 
  protected:
   ArmKinematics() = default;
-  ArmKinematics(const ArmKinematics&) = default;
-  ArmKinematics(ArmKinematics&&) = default;
-  ArmKinematics& operator=(const ArmKinematics&) = default;
-  ArmKinematics& operator=(ArmKinematics&&) = default;
+  ArmKinematics(const ArmKinematics&) = default;             ///< for what is derived from it
+  ArmKinematics(ArmKinematics&&) = default;                  ///< for what is derived from it
+  ArmKinematics& operator=(const ArmKinematics&) = default;  ///< for what is derived from it
+  ArmKinematics& operator=(ArmKinematics&&) = default;       ///< for what is derived from it
 };
 
 }  // namespace repel

@@ -17,7 +17,7 @@ namespace repel {
 
 /// A number that changes from tick to tick.
 struct Ramp {
-  double now = 0.0;
+  double now = 0.0;     ///< at this tick
   double before = 0.0;  ///< at the last tick
   double rate = 0.0;    ///< [1/s] at which it goes on
 };
@@ -45,7 +45,7 @@ struct BodyState {
   double reach = 0.0;        ///< [m] of its farthest point from its origin
   bool spares_held = false;  ///< a body of an arm that what its tool holds may touch
   bool is_loose = false;     ///< it can come and go: `presence` counts
-  Presence presence{};
+  Presence presence{};       ///< of a loose body; others are always there
 };
 
 /// Moves a body. False, with nothing changed, when the pose or twist is not finite or not rigid.
@@ -84,10 +84,12 @@ struct Motion {
 
 /// A share of a force, 0 to 1, now and at the last tick.
 struct Share {
-  double now = 1.0;
-  double before = 1.0;
+  double now = 1.0;     ///< at this tick
+  double before = 1.0;  ///< at the tick before
 
+  /// There is a force, or there was one.
   [[nodiscard]] bool acts() const noexcept { return now > 0.0 || before > 0.0; }
+  /// The share of two that both apply.
   friend Share operator*(const Share& a, const Share& b) noexcept {
     return {a.now * b.now, a.before * b.before};
   }

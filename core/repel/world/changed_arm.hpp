@@ -26,7 +26,7 @@ struct Payload {
 
 /// Range of the factor of `with_inertia`.
 inline constexpr double least_inertia_factor = 0.3;
-inline constexpr double most_inertia_factor = 3.0;
+inline constexpr double most_inertia_factor = 3.0;  ///< the greatest
 
 namespace detail {
 

@@ -42,6 +42,7 @@ class DelayedArm final : public TorqueDrivenArm {
   void enable() noexcept override { arm_->enable(); }
   void stop() noexcept override { arm_->stop(); }
   void engage_brakes(bool on) noexcept override { arm_->engage_brakes(on); }
+  /// That of the arm, not delayed.
   [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
   [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
   [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {

@@ -22,7 +22,7 @@ struct SensorErrors {
   double force_noise = 0.0;   ///< [N] along each axis at most, uniform and new in every step
   double torque_noise = 0.0;  ///< [N m] likewise
   Wrench bias{};              ///< [N, N m] constant
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;     ///< of the noise: the same seed gives the same noise
 
   /// There are none.
   [[nodiscard]] bool none() const noexcept {
@@ -59,6 +59,7 @@ class SensedArm final : public TorqueDrivenArm {
   void enable() noexcept override { arm_->enable(); }
   void stop() noexcept override { arm_->stop(); }
   void engage_brakes(bool on) noexcept override { arm_->engage_brakes(on); }
+  /// That of the arm.
   [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
   [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
   [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {

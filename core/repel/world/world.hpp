@@ -24,9 +24,9 @@ namespace repel {
 
 /// A convex part of a body.
 struct Part {
-  std::string name;
-  BodyId body;
-  Shape shape;
+  std::string name;              ///< in reports and messages
+  BodyId body;                   ///< to which it is fixed
+  Shape shape;                   ///< convex, in the frame P
   Pose X_BP = Pose::Identity();  ///< [m] in its body
   double room = 0.0;  ///< [m] largest reach that its shape can get while running; 0: it stays
 };
@@ -41,7 +41,7 @@ struct Pair {
 
 /// A body that is attached to a link of an arm; its frame is that of the link.
 struct LinkBody {
-  BodyId body;
+  BodyId body;   ///< in the world
   int link = 0;  ///< index in ArmModel::links
 };
 
@@ -60,6 +60,7 @@ class World {
   /// The body that never moves: walls, tables, everything bolted down.
   static constexpr BodyId fixed{0};
 
+  /// Adds a body that moves by `place`. @throws SetupError for one too many, or a pose not rigid.
   BodyId add_body(const std::string& name, const Pose& X_WB = Pose::Identity()) {
     const std::size_t lasting = motion_.bodies.size() - loose_.all().size();
     if (static_cast<int>(lasting) >= limits_.bodies) over("bodies", limits_.bodies);
@@ -67,6 +68,7 @@ class World {
     return push_body(name, X_WB);
   }
 
+  /// Adds a part to a body. @throws SetupError for one too many, no such body, or a pose not rigid.
   PartId add_part(BodyId body, const std::string& name, const Shape& shape,
                   const Pose& X_BP = Pose::Identity()) {
     if (static_cast<int>(parts_.size()) >= limits_.parts) over("parts", limits_.parts);
@@ -106,6 +108,8 @@ class World {
     }
   }
 
+  /// Lets two parts repel each other. @throws SetupError for one too many, parts of one body or a
+  /// law.
   PairId add_pair(PartId a, PartId b, const ForceLaw& law) {
     if (static_cast<int>(pairs_.size()) >= limits_.pairs) over("pairs", limits_.pairs);
     for (const PartId id : {a, b}) {
@@ -209,7 +213,9 @@ class World {
 
   /// The present state of all bodies; the caller counts the tick number.
   [[nodiscard]] Motion& motion() noexcept { return motion_; }
+  /// The present state of all bodies.
   [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
+  /// The capacities, as given.
   [[nodiscard]] const Capacities& limits() const noexcept { return limits_; }
   /// The options of every query of a pair.
   [[nodiscard]] QueryOptions query_options() const noexcept { return {.measure = measure_}; }
@@ -218,13 +224,19 @@ class World {
     if (measure_ != Measure::exact) return deepest_point(part(pair.a).shape, part(pair.b).shape);
     return part(pair.a).shape.reach() + part(pair.b).shape.reach();
   }
+  /// Number of bodies, with the fixed one and those of parts that can come and go.
   [[nodiscard]] int body_count() const noexcept { return static_cast<int>(motion_.bodies.size()); }
+  /// The name of a body, as given; "world" for the fixed one.
   [[nodiscard]] const std::string& body_name(BodyId id) const noexcept {
     return body_names_[id.index];
   }
+  /// All parts, by PartId.
   [[nodiscard]] const std::vector<Part>& parts() const noexcept { return parts_; }
+  /// All pairs, by PairId.
   [[nodiscard]] const std::vector<Pair>& pairs() const noexcept { return pairs_; }
+  /// The part of an id that exists.
   [[nodiscard]] const Part& part(PartId id) const noexcept { return parts_[id.index]; }
+  /// The pair of an id that exists.
   [[nodiscard]] const Pair& pair(PairId id) const noexcept { return pairs_[id.index]; }
 
  private:

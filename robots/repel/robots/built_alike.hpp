@@ -9,6 +9,7 @@ namespace repel::robots {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+/// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 }  // namespace repel::robots

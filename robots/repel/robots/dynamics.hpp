@@ -20,11 +20,13 @@ namespace repel {
 /// Not thread-safe: use one instance per thread. Spans have one entry per link, base outward.
 class Dynamics {
  public:
-  using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
+  using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;  ///< square, by columns
 
   /// @throws SetupError if `arm` has no link or a value is not finite
   explicit Dynamics(const ArmModel& arm);
+  /// Moves; the other may then only be assigned to or destroyed.
   Dynamics(Dynamics&&) noexcept;
+  /// Moves; the other may then only be assigned to or destroyed.
   Dynamics& operator=(Dynamics&&) noexcept;
   ~Dynamics();
 
@@ -62,10 +64,13 @@ class ReferenceArm final : public TorqueDrivenArm {
   /// @throws SetupError if a number of `model` or `options` is out of range, or a joint moves no
   ///   mass
   explicit ReferenceArm(const ArmModel& model, const ReferenceOptions& options = {});
+  /// Moves; the other may then only be assigned to or destroyed.
   ReferenceArm(ReferenceArm&&) noexcept;
+  /// Moves; the other may then only be assigned to or destroyed.
   ReferenceArm& operator=(ReferenceArm&&) noexcept;
   ~ReferenceArm() override;
 
+  /// The number of moving links.
   [[nodiscard]] int links() const noexcept;
 
   /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest if empty), enabled,
@@ -91,6 +96,7 @@ class ReferenceArm final : public TorqueDrivenArm {
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
   void engage_brakes(bool on) noexcept override;
 
+  /// Whether torques act, or it has been stopped.
   [[nodiscard]] ArmState state() const noexcept override;
 
   /// Zero: the arm touches nothing.

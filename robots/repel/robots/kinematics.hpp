@@ -24,7 +24,9 @@ class Kinematics final : public ArmKinematics {
   /// All joints start at zero.
   /// @throws SetupError if `arm` has no link or a value is not finite
   explicit Kinematics(const ArmModel& arm);
+  /// Moves; the other may then only be assigned to or destroyed.
   Kinematics(Kinematics&&) noexcept;
+  /// Moves; the other may then only be assigned to or destroyed.
   Kinematics& operator=(Kinematics&&) noexcept;
   ~Kinematics() override;
 

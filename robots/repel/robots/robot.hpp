@@ -14,6 +14,7 @@
 
 namespace repel {
 
+/// The form of a part.
 enum class PartKind { box, sphere, capsule, cylinder, hull };
 
 /// The name of `kind`.
@@ -38,7 +39,7 @@ struct RobotPart {
   std::string name;     ///< of the collision element; if it has none, made from link and index
   std::string in_link;  ///< its link in the file
   int link = -1;        ///< index in ArmModel::links; -1 for the base
-  PartKind kind = PartKind::box;
+  PartKind kind = PartKind::box;  ///< its form
   /// [m] box: half extents; sphere: radius, 0, 0; capsule and cylinder, along z: radius, half
   /// length (of a capsule without its caps), 0; hull: unused.
   Vec3 size = Vec3::Zero();
@@ -54,7 +55,7 @@ struct RobotPart {
 
 /// One link of the file. A link behind a fixed or held joint moves with a link of the arm.
 struct RobotLink {
-  std::string name;
+  std::string name;   ///< as in the file
   double mass = 0.0;  ///< [kg] of this link alone; 0 if the file gives none
   int link = -1;      ///< index in ArmModel::links of the link it moves with; -1: the base
   Pose X_LN = Pose::Identity();  ///< [m] pose of its frame in that link
@@ -62,7 +63,7 @@ struct RobotLink {
 
 /// A joint that could move and is held, because it is beside the arm or was chosen to be held.
 struct HeldJoint {
-  std::string name;
+  std::string name;       ///< as in the file
   std::string type;       ///< revolute, continuous, prismatic, planar or floating
   double position = 0.0;  ///< where: [rad], or [m] if prismatic
   std::string reason;     ///< why it is held, and why there
@@ -70,7 +71,7 @@ struct HeldJoint {
 
 /// The content of a robot description.
 struct Robot {
-  ArmModel arm;
+  ArmModel arm;                   ///< what controls and simulates it
   std::vector<RobotLink> links;   ///< every link of the file, parents first
   std::vector<std::string> tips;  ///< moving links without children, in the same order
   std::vector<RobotPart> parts;   ///< one or more for each collision element
@@ -83,13 +84,17 @@ struct Robot {
 
 /// A joint to hold still.
 struct Hold {
+  /// The joint of that name, where the file puts it.
   Hold(const char* name) : joint(name) {}
+  /// The joint of that name, where the file puts it.
   Hold(std::string name) : joint(std::move(name)) {}
+  /// The joint of that name at `at`, in the unit of its type [rad], [m].
   Hold(std::string name, double at) : joint(std::move(name)), position(at) {}
+  /// The same, whose type must be `kind`.
   Hold(std::string name, double at, JointType kind)
       : joint(std::move(name)), position(at), type(kind) {}
 
-  std::string joint;
+  std::string joint;  ///< its name in the file
   /// [rad] or [m] where. Without: where the joint that it mimics puts it, if that one does not move
   /// either, else at zero, or at its limit nearest to zero.
   std::optional<double> position;

@@ -34,11 +34,12 @@ namespace repel {
 
 /// Two links of a robot between which collisions are ignored.
 struct DisabledCollision {
-  std::string first, second;  ///< links of the file
-  std::string reason;         ///< given in the file: Adjacent, Never, ...
+  std::string first;   ///< a link of the file
+  std::string second;  ///< another one
+  std::string reason;  ///< given in the file: Adjacent, Never, ...
 };
 
-/// The <disable_collisions> of the SRDF file at `path`, in its order.
+/// The entries `disable_collisions` of the SRDF file at `path`, in its order.
 /// @throws SetupError naming file and line, if it is no SRDF file or names a link that `robot` does
 ///   not have
 [[nodiscard]] std::vector<DisabledCollision> load_disabled_collisions(const std::string& path,

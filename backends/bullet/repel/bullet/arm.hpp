@@ -15,10 +15,11 @@ namespace repel::bullet {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+/// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
-using ArmOptions = SimulationOptions;
-using ArmFaults = SimulationFaults;
+using ArmOptions = SimulationOptions;  ///< as of every simulated arm
+using ArmFaults = SimulationFaults;    ///< as of every simulated arm
 
 /// A simulated arm with brakes. Deterministic: the same calls give bitwise the same motion. One
 /// thread at a time.
@@ -32,7 +33,9 @@ class Arm final : public TorqueDrivenArm {
   explicit Arm(const ArmModel& model, const ArmOptions& options = {},
                std::span<const ContactPart> parts = {});
   ~Arm() override;
+  /// Moves; the other may then only be assigned to or destroyed.
   Arm(Arm&&) noexcept;
+  /// Moves; the other may then only be assigned to or destroyed.
   Arm& operator=(Arm&&) noexcept;
 
   /// Number of links, equal to the number of joints.
@@ -60,6 +63,7 @@ class Arm final : public TorqueDrivenArm {
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
   void engage_brakes(bool on) noexcept override;
 
+  /// Whether torques act, or it has been stopped.
   [[nodiscard]] ArmState state() const noexcept override;
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
@@ -75,7 +79,9 @@ class Arm final : public TorqueDrivenArm {
   /// step; zero without parts. The weight of the tool is not part of it.
   [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override;
 
+  /// What it has rejected since construction or `clear_faults`.
   [[nodiscard]] ArmFaults faults() const noexcept;
+  /// Forgets these faults.
   void clear_faults() noexcept;
 
  private:

@@ -16,6 +16,7 @@ namespace repel::cover {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+/// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// What divides the mesh.
@@ -27,13 +28,14 @@ enum class Engine : std::uint8_t {
   hull        ///< one convex hull
 };
 
+/// How a mesh is divided.
 struct CoverOptions {
   int parts = 32;         ///< at most; 1 to 1000
   double error = 2e-3;    ///< [m] that parts may reach out of the mesh; 1e-6 to 1
   double overlap = 5e-3;  ///< [m] that parts reach into their neighbours; 0 to 1
   double close = -1.0;    ///< [m] holes whose points are this near to their rim are closed; below
                           ///< 0: as `error`
-  Engine engine = Engine::automatic;
+  Engine engine = Engine::automatic;  ///< what divides it
   /// Is told what is being done, for people; may be empty.
   std::function<void(const std::string&)> progress{};
 };

@@ -22,6 +22,7 @@ struct OccupancyGrid {
   std::array<int, 3> size{0, 0, 0};  ///< cubes along x, y, z
   std::vector<std::uint8_t> solid;   ///< 1 or 0 for each, x fastest, then y
 
+  /// Index of a cube in `solid`.
   [[nodiscard]] std::size_t place(int x, int y, int z) const noexcept {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
             static_cast<std::size_t>(y)) *
@@ -32,8 +33,10 @@ struct OccupancyGrid {
 
 /// Cubes from `low` to `high`, both included.
 struct CubeRange {
-  std::array<int, 3> low{0, 0, 0}, high{0, 0, 0};
+  std::array<int, 3> low{0, 0, 0};   ///< the first cube along x, y, z
+  std::array<int, 3> high{0, 0, 0};  ///< the last one
 
+  /// The same cubes.
   friend bool operator==(const CubeRange&, const CubeRange&) = default;
 };
 

@@ -11,8 +11,9 @@
 
 namespace repel::dds {
 
+/// Where the other side is.
 struct DdsOptions {
-  link::Side side = link::Side::site;
+  link::Side side = link::Side::site;  ///< which side this is
   /// Network interface on which the other side is searched. Who can reach it can drive the robot,
   /// and read what it does: see docs/two_machines.md
   std::string interface = "lo";

@@ -15,6 +15,7 @@ enum class ClutchPolicy {
 /// The clutch between hand and tool. It starts released, unless the policy is `always`.
 class Clutch {
  public:
+  /// Released, unless the policy is `always`.
   explicit Clutch(ClutchPolicy policy = ClutchPolicy::always) noexcept : policy_(policy) {}
 
   /// Reports that the button is down or up. Repeating the same state has no effect.
@@ -25,6 +26,7 @@ class Clutch {
   /// Back to the initial state, after a fault during which button events may have been missed.
   void reset() noexcept { down_ = toggled_ = false; }
 
+  /// The hand moves the tool.
   [[nodiscard]] bool engaged() const noexcept {
     if (policy_ == ClutchPolicy::hold) return down_;
     return policy_ == ClutchPolicy::always || toggled_;

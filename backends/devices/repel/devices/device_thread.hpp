@@ -64,14 +64,15 @@ class DeviceLink {
  protected:
   ~DeviceLink() = default;
 
-  Mailbox<Measured> measured_{Measured{}};  // thread to tick
-  Mailbox<Felt> felt_;                      // tick to thread
+  Mailbox<Measured> measured_{Measured{}};  ///< thread to tick
+  Mailbox<Felt> felt_;                      ///< tick to thread
 
  private:
   Measured now_;
   double silent_for_ = 0.0;  // [s]
 };
 
+/// Times of the thread, and what it does first.
 struct DeviceThreadOptions {
   std::chrono::milliseconds wait{10};        ///< longest time between two readings
   std::chrono::milliseconds felt_for{100};   ///< a force not renewed for this long is removed
@@ -93,6 +94,7 @@ class DeviceThread : public DeviceLink {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
+  /// As the device calls itself.
   [[nodiscard]] std::string_view name() const noexcept { return device_->name(); }
 
   /// Ends the thread within `wait`. After that the device shows no force and is not read.

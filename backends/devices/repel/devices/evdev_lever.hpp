@@ -20,6 +20,7 @@
 
 namespace repel::devices {
 
+/// Which axis is the lever, and its scales.
 struct EvdevLeverOptions {
   int axis = ABS_X;         ///< as in linux/input-event-codes.h
   double full_range = 4.7;  ///< [rad] between the two ends of the axis that the kernel reports
@@ -29,9 +30,9 @@ struct EvdevLeverOptions {
   double torque_at_full_level = 2.0;  ///< [N m] of the motor at the largest effect level
   double gain = 1.0;                  ///< fraction of its strength that the device may use, FF_GAIN
   bool reverse_torque = false;        ///< for a device with inverted torque
-  ClutchPolicy clutch = ClutchPolicy::always;
-  int clutch_button = BTN_TRIGGER;  ///< key code; unused for ClutchPolicy::always
-  Clock now = &steady_now;          ///< the clock of the kernel's time stamps, CLOCK_MONOTONIC
+  ClutchPolicy clutch = ClutchPolicy::always;  ///< what its button does
+  int clutch_button = BTN_TRIGGER;             ///< key code; unused for ClutchPolicy::always
+  Clock now = &steady_now;  ///< the clock of the kernel's time stamps, CLOCK_MONOTONIC
 };
 
 /// Reads the angle of an axis and its rate, and plays one constant-force effect whose level follows

@@ -18,16 +18,17 @@ namespace repel::devices {
 /// One event of the kernel, with the numbers of linux/input.h.
 struct EvdevEvent {
   std::chrono::nanoseconds time{0};  ///< by the clock that was selected for the device
+  /// EV_ABS, EV_KEY, ...
   std::uint16_t type = 0;
-  std::uint16_t code = 0;
-  std::int32_t value = 0;
+  std::uint16_t code = 0;  ///< of the axis or key
+  std::int32_t value = 0;  ///< position of an axis; 1 or 0 of a key
 };
 
 /// Splits the bytes into `input_event`s. An impossible time stamp invalidates the stream until
 /// `reset`.
 class EvdevParser {
  public:
-  static constexpr std::size_t event_size = sizeof(input_event);
+  static constexpr std::size_t event_size = sizeof(input_event);  ///< [bytes] of one event
 
   /// Passes every complete event to `use(const EvdevEvent&)`; keeps an incomplete one.
   /// @return false if the stream is invalid
@@ -48,9 +49,11 @@ class EvdevParser {
     return !broken_;
   }
 
+  /// The stream is invalid, until `reset`.
   [[nodiscard]] bool broken() const noexcept { return broken_; }
   /// Bytes received of an incomplete event.
   [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
+  /// For a new stream.
   void reset() noexcept {
     records_.clear();
     broken_ = false;

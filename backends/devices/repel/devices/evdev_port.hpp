@@ -27,6 +27,7 @@ class EvdevPort {
   virtual int control_number(unsigned long request, long argument) noexcept = 0;
   /// Non-blocking; -EAGAIN if there is nothing to read.
   virtual long read(std::span<std::byte> bytes) noexcept = 0;
+  /// As write(2): the bytes written; below 0 an error.
   virtual long write(std::span<const std::byte> bytes) noexcept = 0;
   /// Returns once there is something to read, after `wait`, or soon if the device has been removed.
   virtual void wait(std::chrono::milliseconds wait) noexcept = 0;

@@ -11,6 +11,7 @@
 
 namespace repel::devices {
 
+/// How readings are followed.
 struct HandFollowerOptions {
   double time = 0.01;               ///< [s] in which what is missing of the pose is caught up with
   double most_rate = 2.0;           ///< [m/s] of the rates that result, in length

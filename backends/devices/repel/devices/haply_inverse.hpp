@@ -21,6 +21,7 @@ namespace repel::devices {
 
 class HaplyLink;
 
+/// Where the service is, and what the device may do.
 struct HaplyInverseOptions {
   std::string url = "ws://localhost:10001";  ///< of the service
   /// From the axes of the device (x right, y away from the operator, z up) to those of W. The
@@ -31,7 +32,7 @@ struct HaplyInverseOptions {
   /// The account of the energy at the handle; its damping is shown beside the force, within the
   /// limit.
   network::PassivityOptions guard{.most_energy = 0.1, .most_damping = 15.0};
-  ClutchPolicy clutch = ClutchPolicy::always;
+  ClutchPolicy clutch = ClutchPolicy::always;  ///< what its button does
   int clutch_button = 0;      ///< of the grip: 0, 1, 2 for a, b, c; unused for ClutchPolicy::always
   double period = 0.001;      ///< [s] between two commands, at least
   double silent_after = 0.1;  ///< [s] a command that is not answered for this long ends it
@@ -39,7 +40,7 @@ struct HaplyInverseOptions {
   double retry_at_most =
       8.0;                  ///< [s] each attempt that fails doubles the time to the next, to this
   double most_speed = 3.0;  ///< [m/s] a position farther from the last is no motion of a hand
-  Clock now = &steady_now;
+  Clock now = &steady_now;  ///< any clock that grows
 };
 
 /// Sends a force and receives a state, in turn: the service answers every command once. The reading

@@ -62,8 +62,8 @@ enum class HaplyTurn { first, later };
 
 /// Where the service listens.
 struct HaplyAddress {
-  std::string host = "localhost";
-  std::string port = "10001";
+  std::string host = "localhost";  ///< name or address
+  std::string port = "10001";      ///< its number
 };
 
 /// Of "ws://HOST[:PORT]"; empty if it is none. IPv6 addresses in brackets.

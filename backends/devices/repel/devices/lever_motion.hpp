@@ -29,6 +29,7 @@ class LeverMotion {
  public:
   static constexpr double report_interval = 0.02;  ///< [s] longer than that of common devices
 
+  /// At rest, before the first reading.
   explicit LeverMotion(const LeverScale& scale) noexcept : scale_(scale) {}
 
   /// Sets the current position when the motion up to it is unknown: rate zero.

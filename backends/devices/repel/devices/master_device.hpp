@@ -39,18 +39,18 @@ enum class OperatingState {
 
 /// One reading. All numbers are finite; all motion is zero unless the state is enabled.
 struct Measured {
-  OperatingState operating_state = OperatingState::disabled;
+  OperatingState operating_state = OperatingState::disabled;  ///< the rest holds only if enabled
   Twist measured_cv;                       ///< [m/s, rad/s] shaped, in the axes of `Shaping`
   Vec3 lever_direction_W = Vec3::UnitX();  ///< unit: direction in which a lever drives the tool
   double lever_rate = 0.0;                 ///< [rad/s] of a device with one degree of freedom
   /// Pose of a handle that measures it, in the axes of W from an origin of its own: measured_cp.
   /// Also while paused. `HandFollower` makes rates of it.
-  Vec3 position_W{0, 0, 0};  ///< [m]
-  Eigen::Quaterniond R_WH = Eigen::Quaterniond::Identity();
-  bool has_position = false;
-  bool has_orientation = false;
-  bool clutch = false;                 ///< engaged: the motion counts
-  bool silent = false;                 ///< sends nothing although it should
+  Vec3 position_W{0, 0, 0};                                  ///< [m]
+  Eigen::Quaterniond R_WH = Eigen::Quaterniond::Identity();  ///< orientation of the handle
+  bool has_position = false;                                 ///< `p_WH` is measured
+  bool has_orientation = false;                              ///< `R_WH` is measured
+  bool clutch = false;                                       ///< engaged: the motion counts
+  bool silent = false;                                       ///< sends nothing although it should
   const char* why = "no reading yet";  ///< static text, for the user; "" if all is well
   std::uint64_t count = 0;             ///< number of the reading; set by `DeviceThread`
 };

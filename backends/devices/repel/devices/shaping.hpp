@@ -66,7 +66,7 @@ class Shaping {
     return result;
   }
 
-  [[nodiscard]] const ShapingOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const ShapingOptions& options() const noexcept { return options_; }  ///< as given
 
  private:
   [[nodiscard]] double driven(int i, std::span<const double, 6> counts) const noexcept {

@@ -18,15 +18,16 @@
 
 namespace repel::devices {
 
+/// Where the daemon is, and how its counts become rates.
 struct SpacenavOptions {
   /// Of the socket; empty: that of SPNAV_SOCKET, else /run/spnav.sock, then /var/run/spnav.sock.
   std::string path;
-  ShapingOptions shaping;
-  ClutchPolicy clutch = ClutchPolicy::always;
-  int clutch_button = 0;     ///< from 0; unused for ClutchPolicy::always
+  ShapingOptions shaping;                      ///< of the counts
+  ClutchPolicy clutch = ClutchPolicy::always;  ///< what its button does
+  int clutch_button = 0;                       ///< from 0; unused for ClutchPolicy::always
   double stale_after = 0.5;  ///< [s] motion that is not renewed for this long counts as silence
   double retry_after = 1.0;  ///< [s] between attempts to reconnect to the daemon
-  Clock now = &steady_now;
+  Clock now = &steady_now;   ///< any clock that grows
 };
 
 /// Reads complete events from the daemon and holds the last motion until the next.

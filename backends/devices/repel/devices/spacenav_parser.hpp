@@ -16,13 +16,14 @@ namespace repel::devices {
 
 /// An event that the daemon sends.
 struct SpacenavEvent {
+  /// What happened.
   enum class Kind {
     motion,   ///< `axes` hold from now on; all zero: at rest
     press,    ///< of `button`
     release,  ///< of `button`
     other,    ///< valid, but no input
   };
-  Kind kind = Kind::other;
+  Kind kind = Kind::other;             ///< which of these
   std::array<std::int32_t, 6> axes{};  ///< [counts] x, y, z, rx, ry, rz
   std::int32_t button = 0;             ///< from 0
 };
@@ -44,9 +45,9 @@ struct SpacenavEvent {
 /// `reset`, because what follows may be misaligned by some bytes and look like motion.
 class SpacenavParser {
  public:
-  static constexpr std::size_t event_size = 8 * sizeof(std::int32_t);
+  static constexpr std::size_t event_size = 8 * sizeof(std::int32_t);  ///< [bytes] of one event
   static constexpr std::int32_t most_counts = 100000;  ///< largest plausible magnitude of an axis
-  static constexpr std::int32_t most_buttons = 256;
+  static constexpr std::int32_t most_buttons = 256;    ///< of one device
 
   /// Passes every complete event to `use(const SpacenavEvent&)`; keeps an incomplete one.
   /// @return false if the stream is invalid
@@ -62,6 +63,7 @@ class SpacenavParser {
     return !broken_;
   }
 
+  /// The stream is invalid, until `reset`.
   [[nodiscard]] bool broken() const noexcept { return broken_; }
   /// Bytes received of an incomplete event.
   [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }

@@ -98,6 +98,7 @@ class IdealArm final : public TorqueDrivenArm {
   /// Brakes on or off while the arm is enabled; no torque acts while they are on.
   void engage_brakes(bool on) noexcept override { drive_.engage_brakes(on); }
 
+  /// Whether torques act, or it has been stopped.
   [[nodiscard]] ArmState state() const noexcept override { return drive_.state(); }
 
   /// Joint positions [rad] or [m]; fills as many as `out` holds.
@@ -117,7 +118,7 @@ class IdealArm final : public TorqueDrivenArm {
 
   /// True once an entry passed to `set_torques` was unusable.
   [[nodiscard]] bool torque_fault() const noexcept { return torque_fault_; }
-  void clear_fault() noexcept { torque_fault_ = false; }
+  void clear_fault() noexcept { torque_fault_ = false; }  ///< forgets that one was not finite
 
  private:
   struct Joint {

@@ -17,6 +17,7 @@
 
 namespace repel::link {
 
+/// Times of the thread of a link, and what it does first.
 struct LinkThreadOptions {
   std::chrono::microseconds wait{200};     ///< longest time that a packet of the tick waits
   const char* thread_name = "repel link";  ///< as shown by `ps -L`, up to 15 characters
@@ -37,6 +38,7 @@ class LinkThread {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
+  /// Of the transport, for people.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
   /// Ends the thread; after that the link is silent.
@@ -46,6 +48,7 @@ class LinkThread {
   }
   /// After `stop`: messages that were no packets, and packets that could not be sent.
   [[nodiscard]] std::int64_t foreign() const noexcept { return transport_->foreign(); }
+  /// Packets that the transport did not take.
   [[nodiscard]] std::int64_t unsent() const noexcept { return unsent_; }
 
  private:

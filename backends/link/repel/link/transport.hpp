@@ -39,6 +39,7 @@ class Transport {
   [[nodiscard]] virtual std::int64_t foreign() const noexcept { return foreign_; }
 
  protected:
+  /// Counts a message that was no packet.
   void count_foreign() noexcept { ++foreign_; }
 
  private:

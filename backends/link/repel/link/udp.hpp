@@ -11,12 +11,13 @@
 
 namespace repel::link {
 
+/// Where the site listens.
 struct UdpOptions {
-  Side side = Side::site;
+  Side side = Side::site;  ///< which side this is
   /// Of the site, as numbers: the site listens there, the station sends there and is answered where
   /// it sent from. Who can reach it can drive the robot: see docs/two_machines.md
   std::string address = "127.0.0.1";
-  std::uint16_t port = 7411;
+  std::uint16_t port = 7411;  ///< at which the site listens
 };
 
 /// The site answers the station it heard last; a second one it answers only when the first has been

@@ -16,6 +16,7 @@
 
 namespace repel::octrees {
 
+/// What is entered in a map, and how.
 struct DepthMapOptions {
   double cube = 0.05;  ///< [m] edge of a cube, 0.001 to 10
   double slack = 0.0;  ///< [m] a point that is so near to an occupied cube is counted as in it, so
@@ -43,8 +44,9 @@ class DepthMap {
   /// where they end
   int insert(std::span<const float> depth, const Pose& X_WC, double time);
 
+  /// The map, as of the last image.
   [[nodiscard]] const octomap::OcTree& tree() const noexcept { return tree_; }
-  [[nodiscard]] const DepthMapOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const DepthMapOptions& options() const noexcept { return options_; }  ///< as given
 
  private:
   enum class State : std::uint8_t { unknown, free, occupied };

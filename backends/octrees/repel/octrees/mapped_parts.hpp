@@ -13,6 +13,7 @@
 
 namespace repel::octrees {
 
+/// Which region becomes parts, and how.
 struct MappedOptions {
   int most = 200;                ///< boxes, 1 to 100000
   bool is_unseen_solid = false;  ///< what the tree does not know, within the region
@@ -61,7 +62,7 @@ class MappedParts {
 
   /// The boxes that are parts, in cubes of the trees, counted from the origin of the map.
   [[nodiscard]] std::vector<cover::CubeRange> boxes() const;
-  [[nodiscard]] std::size_t size() const noexcept { return parts_.size(); }
+  [[nodiscard]] std::size_t size() const noexcept { return parts_.size(); }  ///< number of parts
 
  private:
   struct Mapped {

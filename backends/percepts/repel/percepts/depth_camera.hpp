@@ -15,6 +15,7 @@ namespace repel::percepts {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+/// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// A pinhole camera without distortion. Its frame C, as in ROS: x to the right of the image, y
@@ -22,13 +23,16 @@ void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 /// depth is the coordinate z [m] of what is seen; zero, negative or not finite: nothing was
 /// measured. An image has its rows one after the other.
 struct DepthCamera {
-  int width = 320;                ///< [px]
-  int height = 240;               ///< [px]
-  double fx = 280.0, fy = 280.0;  ///< [px] focal lengths
-  double cx = 159.5, cy = 119.5;  ///< [px] where the optical axis meets the image
-  double nearest = 0.1;           ///< [m] nearer depths are no measurements
-  double farthest = 5.0;          ///< [m] nor are farther ones
+  int width = 320;        ///< [px]
+  int height = 240;       ///< [px]
+  double fx = 280.0;      ///< [px] focal length across
+  double fy = 280.0;      ///< [px] focal length down
+  double cx = 159.5;      ///< [px] column where the optical axis meets the image
+  double cy = 119.5;      ///< [px] row, likewise
+  double nearest = 0.1;   ///< [m] nearer depths are no measurements
+  double farthest = 5.0;  ///< [m] nor are farther ones
 
+  /// Number of pixels of an image.
   [[nodiscard]] std::size_t pixels() const noexcept {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
@@ -41,6 +45,7 @@ struct DepthCamera {
   [[nodiscard]] Vec3 ray(double u, double v) const noexcept {
     return {(u - cx) / fx, (v - cy) / fy, 1.0};
   }
+  /// A depth within the range; false for one that is not a number.
   [[nodiscard]] bool measures(float depth) const noexcept {
     return depth >= static_cast<float>(nearest) && depth <= static_cast<float>(farthest);
   }

@@ -13,6 +13,7 @@
 
 namespace repel::percepts {
 
+/// How images are divided.
 struct CellOptions {
   int most = 200;    ///< cells of an image; at least twice the blocks of `largest`
   int largest = 64;  ///< [px] edge of the blocks to begin with; `smallest` times a power of 2
@@ -25,11 +26,13 @@ struct CellOptions {
 /// What was seen in a rectangle of pixels, as the convex hull of eight corners: those of the
 /// rectangle, half a pixel around it, at two depths.
 struct Cell {
-  std::int16_t u = 0, v = 0;           ///< [px] its first column and row
-  std::int16_t width = 0, height = 0;  ///< [px]
-  std::int16_t layer = 0;              ///< number of cells of the same rectangle before it
-  std::array<float, 4> front{};        ///< [m] depth of the near corners, row by row
-  std::array<float, 4> back{};         ///< [m] of the far ones
+  std::int16_t u = 0;            ///< [px] its first column
+  std::int16_t v = 0;            ///< [px] its first row
+  std::int16_t width = 0;        ///< [px]
+  std::int16_t height = 0;       ///< [px]
+  std::int16_t layer = 0;        ///< number of cells of the same rectangle before it
+  std::array<float, 4> front{};  ///< [m] depth of the near corners, row by row
+  std::array<float, 4> back{};   ///< [m] of the far ones
 
   /// The corners [m] in the frame of the camera: four near ones, then the four behind them.
   [[nodiscard]] std::array<Vec3, 8> corners(const DepthCamera& camera) const noexcept;
@@ -62,9 +65,10 @@ class DepthCells {
 
   /// Whether the image last divided has a depth in some pixel of the rectangle of `cell`.
   [[nodiscard]] bool measures_in(const Cell& cell) const noexcept;
+  /// What is known of the last division.
   [[nodiscard]] const DivisionReport& report() const noexcept { return report_; }
-  [[nodiscard]] const DepthCamera& camera() const noexcept { return camera_; }
-  [[nodiscard]] const CellOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const DepthCamera& camera() const noexcept { return camera_; }    ///< as given
+  [[nodiscard]] const CellOptions& options() const noexcept { return options_; }  ///< as given
 
  private:
   struct Block {

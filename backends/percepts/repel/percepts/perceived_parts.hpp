@@ -13,6 +13,7 @@
 
 namespace repel::percepts {
 
+/// How cells become parts.
 struct PerceivedOptions {
   double slack = 0.01;    ///< [m] by which parts are grown at the front and back, so that noise of
                           ///< the camera changes none

@@ -16,9 +16,9 @@ namespace repel::percepts {
 
 /// What is wrong with a depth camera.
 struct CameraFaults {
-  double noise = 0.0;  ///< [m] standard deviation at 1 m, growing with the square of the depth
-  double lost = 0.0;   ///< share of the pixels without a depth, 0 to 1
-  std::uint64_t seed = 1;
+  double noise = 0.0;      ///< [m] standard deviation at 1 m, growing with the square of the depth
+  double lost = 0.0;       ///< share of the pixels without a depth, 0 to 1
+  std::uint64_t seed = 1;  ///< the same seed gives the same faults
 };
 
 /// Draws what a depth camera sees of triangle meshes. A pixel shows the nearest triangle that its

@@ -15,43 +15,45 @@ namespace repel::record {
 
 /// A description of the messages of a channel.
 struct McapSchema {
-  std::string name;
+  std::string name;      ///< of the type of the messages
   std::string encoding;  ///< of `data`: "jsonschema", "ros2msg", ...
-  std::string data;
+  std::string data;      ///< the description itself
+  /// Equal in all members.
   bool operator==(const McapSchema&) const = default;
 };
 
 /// A stream of messages.
 struct McapChannel {
-  std::string topic;
-  std::uint16_t schema = 0;  ///< its id; 0: none
-  std::string encoding;      ///< of the messages: "json", "cdr", ...
-  std::map<std::string, std::string> metadata;
+  std::string topic;                            ///< of the messages
+  std::uint16_t schema = 0;                     ///< its id; 0: none
+  std::string encoding;                         ///< of the messages: "json", "cdr", ...
+  std::map<std::string, std::string> metadata;  ///< of the channel, for whoever knows its keys
+  /// Equal in all members.
   bool operator==(const McapChannel&) const = default;
 };
 
 /// One message. Times are [ns] since an epoch that the writer chose.
 struct McapMessage {
-  std::uint16_t channel = 0;  ///< its id, see channels()
-  std::uint32_t sequence = 0;
-  std::uint64_t log_time_ns = 0;
-  std::uint64_t publish_time_ns = 0;
-  std::string_view data;  ///< valid until the next call of the reader
+  std::uint16_t channel = 0;          ///< its id, see channels()
+  std::uint32_t sequence = 0;         ///< as the writer counts
+  std::uint64_t log_time_ns = 0;      ///< when it was recorded
+  std::uint64_t publish_time_ns = 0;  ///< when it was sent
+  std::string_view data;              ///< valid until the next call of the reader
 };
 
 /// A file embedded in the MCAP file.
 struct McapAttachment {
-  std::string name;
-  std::string media_type;
-  std::uint64_t log_time_ns = 0;
+  std::string name;                  ///< name of the file
+  std::string media_type;            ///< as "text/plain"
+  std::uint64_t log_time_ns = 0;     ///< when it was recorded
   std::uint64_t create_time_ns = 0;  ///< 0: unknown
-  std::string data;
+  std::string data;                  ///< its content
 };
 
 /// Key-value data about the recording.
 struct McapMetadata {
-  std::string name;
-  std::map<std::string, std::string> entries;
+  std::string name;                            ///< of these data
+  std::map<std::string, std::string> entries;  ///< by their keys
 };
 
 /// One MCAP file, read sequentially, with one chunk at a time in memory. Indices are not used.
@@ -71,21 +73,26 @@ class McapReader {
   [[nodiscard]] static McapReader from_bytes(std::string bytes, const std::string& name = "memory");
 
   ~McapReader();
+  /// Moves; the other may then only be assigned to or destroyed.
   McapReader(McapReader&&) noexcept;
+  /// Moves; the other may then only be assigned to or destroyed.
   McapReader& operator=(McapReader&&) noexcept;
   McapReader(const McapReader&) = delete;
   McapReader& operator=(const McapReader&) = delete;
 
   /// From the header; empty: none, or the file is truncated before it.
   [[nodiscard]] const std::string& profile() const noexcept;
+  /// The software that wrote it, from the header.
   [[nodiscard]] const std::string& library() const noexcept;
 
   /// By id. Those that are only in chunks, in a file without summary, are found by next().
   [[nodiscard]] const std::map<std::uint16_t, McapSchema>& schemas() const noexcept;
+  /// Channels by id, likewise.
   [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const noexcept;
 
   /// In file order.
   [[nodiscard]] const std::vector<McapAttachment>& attachments() const noexcept;
+  /// Likewise in file order.
   [[nodiscard]] const std::vector<McapMetadata>& metadata() const noexcept;
 
   /// Reads the next message in file order. At the end returns false and leaves `message` unchanged.

@@ -20,13 +20,14 @@ class Packer;
 
 /// How the content of chunks is stored.
 enum class McapCompression : std::uint8_t {
-  none,
+  none,  ///< as they are
   zstd,  ///< as `none` where the library was built without zstd
 };
 
 /// Whether this library was built with zstd.
 [[nodiscard]] bool has_zstd() noexcept;
 
+/// Header and chunks of a file.
 struct McapOptions {
   std::string profile{};             ///< of the header; empty: none
   std::string library = "repel";     ///< of the header: name of the writing software

@@ -22,8 +22,9 @@ class Map;
 
 /// A spring, damper or mass between a junction and the ground.
 struct Element {
+  /// What it is.
   enum class Kind { spring, damper, mass };
-  Kind kind = Kind::damper;
+  Kind kind = Kind::damper;                     ///< which of the three
   network::Space space = network::Space::tool;  ///< tool or lever
   double linear = 0.0;                          ///< [N/m], [N s/m] or [kg]; for a tool only
   double angular = 0.0;                         ///< [N m/rad], [N m s/rad] or [kg m^2]
@@ -34,6 +35,7 @@ struct Element {
 /// if a value is invalid.
 class ModuleEntry {
  public:
+  /// Of this entry of the file, which must outlive it.
   explicit ModuleEntry(const Map& map) : map_(map) {}
 
   /// The number under `key` in the SI unit `unit`, for example "N s/m"; the file may use another
@@ -61,8 +63,8 @@ using MakeModule = std::function<network::Module(const ArmModel&)>;
 
 /// A module as read from a file: its options and its factory.
 struct ReadModule {
-  std::any options;  ///< of the type that its constructor takes
-  MakeModule make;
+  std::any options;                             ///< of the type that its constructor takes
+  MakeModule make;                              ///< makes it when the arm is known
   network::Walls walls = network::Walls::none;  ///< that it applies to the arm, as in its traits
 };
 
@@ -76,7 +78,7 @@ struct ReadModule {
 ///     const scene::Scene scene = scene::load("mine.yaml", kinds);
 class ModuleKinds {
  public:
-  using Read = std::function<ReadModule(const ModuleEntry&)>;
+  using Read = std::function<ReadModule(const ModuleEntry&)>;  ///< reads the options of one kind
 
   ModuleKinds();
 

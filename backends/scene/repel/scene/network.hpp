@@ -14,12 +14,13 @@ namespace repel::scene {
 
 /// One entry of the network.
 struct Module : ReadModule {
-  std::string name;
+  std::string name;  ///< unique in the network
   std::string kind;  ///< the word after `module:`
   network::To to;    ///< where it is connected; by default to the next module
   int line = 0;      ///< of the file
 };
 
+/// The network of one arm.
 struct Network {
   std::vector<Module> modules;                                ///< from the operator to the robot
   network::GainCheck gain_check = network::GainCheck::error;  ///< of the obstacle module

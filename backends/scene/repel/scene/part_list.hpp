@@ -21,7 +21,7 @@ struct Gap {
 
 /// Such pieces.
 struct Gaps {
-  static constexpr std::size_t most_kept = 100;
+  static constexpr std::size_t most_kept = 100;  ///< of one mesh
 
   std::size_t count = 0;     ///< of all
   std::vector<Gap> deepest;  ///< the deepest ones, the deepest first, at most `most_kept`

@@ -33,12 +33,13 @@ namespace repel::scene {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+/// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// One convex part P of the tool.
 struct Part {
-  std::string name;
-  Shape shape;
+  std::string name;              ///< unique among the parts of the tool
+  Shape shape;                   ///< in the frame P
   std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
   Pose X_BP = Pose::Identity();  ///< [m] pose in the tool frame
   Gaps gaps{};                   ///< of the mesh, in the frame P; only of its first part
@@ -46,11 +47,11 @@ struct Part {
 
 /// One convex part P of the world.
 struct Obstacle {
-  std::string name;
-  Shape shape;
-  std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
-  Pose X_WP = Pose::Identity();  ///< [m] pose; initial pose if it moves
-  ForceLaw law;
+  std::string name;                           ///< unique in the scene
+  Shape shape;                                ///< in the frame P
+  std::string kind;                           ///< box, sphere, capsule, cylinder, cone or hull
+  Pose X_WP = Pose::Identity();               ///< [m] pose; initial pose if it moves
+  ForceLaw law;                               ///< between it and every part of every arm
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
   Gaps gaps{};                                ///< of the mesh, as those of a Part
 };
@@ -64,45 +65,46 @@ struct StaticModel {
   std::vector<std::string> packages;  ///< folders where package:// leads
   bool covers = true;                 ///< meshes become the parts in the lists beside them
   Pose X_WM = Pose::Identity();       ///< [m] pose of its root link, or of the SDF world
-  ForceLaw law;
+  ForceLaw law;                       ///< of every part
 };
 
 /// One convex part P of the world that can come, be held by a tool, and go while the scene runs.
 struct LoosePart {
-  std::string name;
-  Shape shape = Shape::sphere(0.0);
-  std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
-  Pose X_WP = Pose::Identity();  ///< [m] where it is at the start, and where it comes
-  ForceLaw law;
-  bool at_start = true;       ///< it is there at the start
-  double mass = 0.0;          ///< [kg]
-  bool is_mass_known = true;  ///< to the controller, not only to the simulated arm
-  Gaps gaps{};                ///< of the mesh, as those of a Part
+  std::string name;                  ///< unique in the scene
+  Shape shape = Shape::sphere(0.0);  ///< in the frame P
+  std::string kind;                  ///< box, sphere, capsule, cylinder, cone or hull
+  Pose X_WP = Pose::Identity();      ///< [m] where it is at the start, and where it comes
+  ForceLaw law;                      ///< between it and every part of every arm
+  bool at_start = true;              ///< it is there at the start
+  double mass = 0.0;                 ///< [kg]
+  bool is_mass_known = true;         ///< to the controller, not only to the simulated arm
+  Gaps gaps{};                       ///< of the mesh, as those of a Part
 };
 
 /// Parts reserved for what is not known before: boxes from the page of the live view.
 struct SpareParts {
-  int count = 0;
+  int count = 0;      ///< parts to reserve
   double room = 0.3;  ///< [m] largest reach from their centres
-  ForceLaw law;
+  ForceLaw law;       ///< of every such part
 };
 
 /// One convex part P that cameras see and the world model does not know.
 struct HiddenPart {
-  std::string name;
-  Shape shape = Shape::sphere(0.0);
+  std::string name;                           ///< unique in the scene
+  Shape shape = Shape::sphere(0.0);           ///< in the frame P
   Pose X_WP = Pose::Identity();               ///< [m] where it starts
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
 };
 
 /// What happens to a part of `Scene::loose` when a phase of a script begins.
 struct PartStep {
+  /// What happens to the part.
   enum class What : std::uint8_t { spawn, grip, release, remove };
 
-  What what = What::spawn;
-  std::size_t phase = 0;  ///< index in the script
-  std::size_t part = 0;   ///< index in `Scene::loose`
-  double over = 0.2;      ///< [s] see World::add, attach, release and remove
+  What what = What::spawn;  ///< which of these
+  std::size_t phase = 0;    ///< index in the script
+  std::size_t part = 0;     ///< index in `Scene::loose`
+  double over = 0.2;        ///< [s] see World::add, attach, release and remove
 };
 
 /// The word of a scene file for a step: `spawn`, `grip`, `release` or `remove`.
@@ -110,7 +112,7 @@ struct PartStep {
 
 /// A joint that does not move.
 struct JointHold {
-  std::string joint;
+  std::string joint;                     ///< its name in the robot file
   std::optional<double> position{};      ///< [rad] or [m]; none: left to the robot file
   JointType type = JointType::revolute;  ///< which of the two units the position has
 };
@@ -151,10 +153,10 @@ struct Budget {
 
 /// An arm with its tool, its operator and the network between the two.
 struct ArmSetup {
-  RobotChoice robot;
-  std::vector<Part> tool;
-  Network network;
-  network::Script script;
+  RobotChoice robot;            ///< the arm
+  std::vector<Part> tool;       ///< parts of its tool
+  Network network;              ///< between operator and arm
+  network::Script script;       ///< of its operator
   std::vector<PartStep> steps;  ///< in the order of the script
   /// By phase, then by camera in their order, the last ones left out or all: it is silent.
   std::vector<std::vector<bool>> blind;
@@ -162,30 +164,32 @@ struct ArmSetup {
 
 /// A further arm in the cell. Its forces from obstacles follow the obstacles' laws.
 struct OtherArm : ArmSetup {
-  std::string name;
-  ForceLaw law;  ///< between its parts and those of all arms before it
+  std::string name;  ///< unique in the scene
+  ForceLaw law;      ///< between its parts and those of all arms before it
 };
 
+/// All that a scene file says.
 struct Scene : ArmSetup {
-  std::string name;
-  std::string file;
-  double rate_hz = 400.0;    ///< [Hz] of the tick
-  double tool_speed = 0.25;  ///< [m/s] speed limit of a tool
-  StartInside start_inside = StartInside::refuse;
-  Measure measure = QueryOptions{}.measure;  ///< of overlaps
+  std::string name;                                ///< of the file, without folder and extension
+  std::string file;                                ///< path of the file
+  double rate_hz = 400.0;                          ///< [Hz] of the tick
+  double tool_speed = 0.25;                        ///< [m/s] speed limit of a tool
+  StartInside start_inside = StartInside::refuse;  ///< what if an arm starts in an obstacle
+  Measure measure = QueryOptions{}.measure;        ///< of overlaps
   /// Of every shape, where the measure needs them: see CellDescription. The shapes read have one.
   int levels = ReductionOptions{}.levels;
-  std::vector<Obstacle> obstacles;
+  std::vector<Obstacle> obstacles;  ///< in the order of the file
   std::vector<StaticModel> models;  ///< further obstacles, for whoever can read robot descriptions
-  std::vector<LoosePart> loose;
-  SpareParts spare;
+  std::vector<LoosePart> loose;     ///< parts that come and go
+  SpareParts spare;                 ///< for what the page of the live view adds
   std::vector<CameraChoice> cameras;  ///< each with a name of its own
   std::vector<HiddenPart> hidden;     ///< for the cameras to see
-  std::vector<OtherArm> partners;
+  std::vector<OtherArm> partners;     ///< further arms
   bool apart = false;  ///< to be run as two programs, divided at the line of the network
   /// Paths of the files that the parts of meshes are from, those in URDF files excepted.
   std::vector<std::string> part_lists;
-  Budget budget;
+  Budget budget;  ///< of the distance queries
+  /// What the threads of the coprocessor do.
   CoprocessorMode coprocessor = CoprocessorMode::together;
 
   /// The scene's own setup for 0, then those of the partners.

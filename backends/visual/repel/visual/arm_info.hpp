@@ -15,8 +15,8 @@ namespace repel::visual {
 
 /// One arm of a world, for display.
 struct ArmInfo {
-  std::string name;  ///< empty if there is only one
-  BodyId tool;
+  std::string name;                  ///< empty if there is only one
+  BodyId tool;                       ///< moves with its tool frame
   std::vector<BodyId> links;         ///< those with parts
   std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
   std::vector<std::string> modules;  ///< of its network, in the same order
@@ -26,7 +26,7 @@ struct ArmInfo {
   double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
   // What a hand can switch in its network.
   std::vector<network::FixtureOptions> fixtures;  ///< of GUIDE, in its order
-  std::optional<network::ReliefOptions> relief;
+  std::optional<network::ReliefOptions> relief;   ///< of RELIEF; none: it has no such module
   bool has_scale = false;          ///< a master that is felt: HandInput::scale applies
   bool has_handle = false;         ///< SIX AXES in the first hand
   bool has_second_handle = false;  ///< and in a second one

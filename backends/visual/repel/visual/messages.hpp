@@ -19,10 +19,12 @@ namespace repel::visual {
 
 /// Defined for the compiler flags of this library: a program with incompatible flags does not link.
 void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
+/// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
 /// Where the surface of a mesh is in none of its convex parts.
 struct GapsInfo {
+  /// One such place.
   struct Gap {
     Vec3 p_P{0, 0, 0};   ///< [m] a point of it
     double depth = 0.0;  ///< [m] no point of it is farther from the parts
@@ -35,11 +37,11 @@ struct GapsInfo {
 
 /// Properties that are constant while a scene runs.
 struct SceneInfo {
-  std::string scene;
-  double rate_hz = 400.0;  ///< [Hz]
-  bool replay = false;     ///< replay of a recording
-  double duration = 0.0;   ///< [s] 0: until it is stopped
-  std::vector<ArmInfo> arms;
+  std::string scene;           ///< its name
+  double rate_hz = 400.0;      ///< [Hz]
+  bool replay = false;         ///< replay of a recording
+  double duration = 0.0;       ///< [s] 0: until it is stopped
+  std::vector<ArmInfo> arms;   ///< in the order of the cell
   std::vector<PartId> spare;   ///< reserved for boxes from a page
   std::vector<GapsInfo> gaps;  ///< of the meshes that are not covered as a whole
 };
@@ -60,11 +62,11 @@ struct SceneInfo {
 
 /// Histograms and counts over all ticks.
 struct Timing {
-  DurationHistogram compute;
-  DurationHistogram late;
+  DurationHistogram compute;               ///< of the ticks alone
+  DurationHistogram late;                  ///< how late they began
   std::vector<std::int64_t> compute_bins;  ///< one for each interval between edges
-  std::vector<std::int64_t> late_bins;
-  std::int64_t ticks = 0;
+  std::vector<std::int64_t> late_bins;     ///< likewise, of the lateness
+  std::int64_t ticks = 0;                  ///< number of ticks
   std::int64_t misses = 0;   ///< ticks not finished within one period of their due time
   std::int64_t dropped = 0;  ///< ticks without data
 
@@ -72,6 +74,7 @@ struct Timing {
   [[nodiscard]] static const std::vector<double>& edges();
 
   Timing();
+  /// Adds a tick. @param period between two ticks.
   void add(const TickTimes& times, std::chrono::nanoseconds period);
 };
 

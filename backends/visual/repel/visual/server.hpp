@@ -17,13 +17,14 @@ namespace repel::visual {
 struct Asset {
   std::string target;      ///< path of the request: "/page.css"
   std::string media_type;  ///< "text/css"
-  std::string body;
+  std::string body;        ///< its content
 };
 
 /// All files below `folder`; index.html also as "/".
 /// @throws SetupError naming the folder if it has no index.html
 [[nodiscard]] std::vector<Asset> load_assets(const std::string& folder);
 
+/// Where the server listens, and its limits.
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< of the interface to listen on
   std::uint16_t port = 8448;          ///< 0: any free port
@@ -51,6 +52,7 @@ class Pages {
   virtual void send_all(std::string text) = 0;
   /// Sends a picture to every page that has received its last one; the others skip it.
   virtual void show(std::string text) = 0;
+  /// Number of open pages.
   [[nodiscard]] virtual int count() const = 0;
 
   Pages() = default;
@@ -63,9 +65,13 @@ class Pages {
 /// printed on stderr, and the server continues.
 class PageHandler {
  public:
+  /// A page has opened.
   virtual void opened(int page, Role role, Pages& pages) = 0;
+  /// A page has sent a message.
   virtual void heard(int page, std::string_view text, Pages& pages) = 0;
+  /// A page has closed.
   virtual void closed(int page, Pages& pages) = 0;
+  /// It is time for a picture.
   virtual void refresh(Pages& pages) = 0;
   /// Called after a refresh: the time of the next one; none: at the server's rate.
   [[nodiscard]] virtual std::optional<std::chrono::steady_clock::time_point> next_refresh() const {

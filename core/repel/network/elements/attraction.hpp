@@ -80,6 +80,7 @@ class Attraction {
   [[nodiscard]] double border() const noexcept { return range_ + 0.5 * start_; }
   /// U beyond the border [J]: what it takes to leave.
   [[nodiscard]] double depth() const noexcept { return energy(border()); }
+  /// [N/m], [N m/rad] at the centre.
   [[nodiscard]] double stiffness() const noexcept { return stiffness_; }
 
  private:

@@ -13,8 +13,9 @@ namespace repel::network {
 /// size.
 class ChangingScale {
  public:
-  static constexpr double time = 0.3;  ///< [s] in which 63 % of a change are made
-  static constexpr double least = 1e-3, most = 1e3;
+  static constexpr double time = 0.3;    ///< [s] in which 63 % of a change are made
+  static constexpr double least = 1e-3;  ///< of a scale
+  static constexpr double most = 1e3;    ///< of a scale
 
   /// @param period [s]
   void prepare(double period) noexcept { share_ = -std::expm1(-period / time); }
@@ -24,7 +25,7 @@ class ChangingScale {
     value_ = begun_ ? value_ + share_ * (wanted - value_) : wanted;
     begun_ = true;
   }
-  [[nodiscard]] double value() const noexcept { return value_; }
+  [[nodiscard]] double value() const noexcept { return value_; }  ///< in this tick
 
  private:
   double share_ = 1.0;

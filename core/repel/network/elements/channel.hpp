@@ -12,6 +12,7 @@
 
 namespace repel::network {
 
+/// Properties of a channel. A number out of range is a SetupError of the channel.
 struct ChannelOptions {
   double delay = 0.0;      ///< [s] of every packet, 0 to 10; at least one tick
   double jitter = 0.0;     ///< [s] greatest additional delay, uniformly distributed
@@ -26,8 +27,8 @@ class Channel {
  public:
   /// Packet counts since construction.
   struct Counts {
-    std::int64_t sent = 0;
-    std::int64_t lost = 0;
+    std::int64_t sent = 0;       ///< packets handed over
+    std::int64_t lost = 0;       ///< of them, that will never arrive
     std::int64_t overtaken = 0;  ///< arrived with or after a newer one
   };
 
@@ -80,6 +81,7 @@ class Channel {
     const Packet& packet = packets_[static_cast<std::size_t>(tick) % packets_.size()];
     return packet.sent == tick && packet.arrives <= tick_ ? &packet.payload : nullptr;
   }
+  /// The packet sent last of those that have arrived.
   [[nodiscard]] const Payload& newest() const noexcept { return newest_.payload; }
   /// Ticks since `prepare`.
   [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
@@ -87,6 +89,7 @@ class Channel {
   [[nodiscard]] std::int64_t age() const noexcept { return tick_ - newest_.sent; }
   [[nodiscard]] std::int64_t delay() const noexcept { return delay_; }    ///< [ticks]
   [[nodiscard]] std::int64_t jitter() const noexcept { return jitter_; }  ///< [ticks]
+  /// Packet counts since construction.
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
 
  private:

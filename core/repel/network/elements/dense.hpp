@@ -19,6 +19,7 @@ class Six {
   Six() = default;
   /// The six from `p` on.
   explicit Six(const double* p) noexcept : a_(two(p)), b_(two(p + 2)), c_(two(p + 4)) {}
+  /// Writes the six numbers to p.
   void store(double* p) const noexcept {
     std::memcpy(p, &a_, sizeof a_);
     std::memcpy(p + 2, &b_, sizeof b_);
@@ -30,10 +31,12 @@ class Six {
     b_ += scale * other.b_;
     c_ += scale * other.c_;
   }
+  /// Scalar product.
   [[nodiscard]] double dot(const Six& other) const noexcept {
     const Two sum = a_ * other.a_ + b_ * other.b_ + c_ * other.c_;
     return sum[0] + sum[1];
   }
+  /// Multiple.
   [[nodiscard]] Six times(double scale) const noexcept {
     Six multiple = *this;
     multiple.a_ *= scale;
@@ -157,6 +160,7 @@ template <int fixed>
   }
   return true;
 }
+/// The inverse of a symmetric positive definite n x n matrix, in place. False when it is singular.
 [[nodiscard]] inline bool invert_positive(double* A, Eigen::Index n) noexcept {
   switch (n) {
     case 1:
@@ -183,6 +187,7 @@ class Factored {
     return factor_positive(L_.data(), inverse_.data(), static_cast<int>(n));
   }
 
+  /// Number of rows.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(inverse_.size()); }
   /// Entry i, k of L, below the diagonal.
   [[nodiscard]] double lower(int i, int k) const noexcept { return L_.data()[size() * k + i]; }

@@ -27,9 +27,9 @@ enum class Form {
 /// exact power balance of each tick: no term is neglected or delayed.
 template <int N>
 struct Equivalent {
-  Form form = Form::impedance;
-  Mat<N> matrix;  ///< R [N s/m], [N m s/rad] or G, its inverse
-  Vec<N> offset;  ///< b [N], [N m] or w [m/s], [rad/s]
+  Form form = Form::impedance;  ///< which of effort and flow depends on the other
+  Mat<N> matrix;                ///< R [N s/m], [N m s/rad] or G, its inverse
+  Vec<N> offset;                ///< b [N], [N m] or w [m/s], [rad/s]
 
   /// An element with resistance `R` that reflects `b`.
   void set_impedance(const Mat<N>& R, const Vec<N>& b) noexcept {
@@ -37,6 +37,7 @@ struct Equivalent {
     matrix = R;
     offset = b;
   }
+  /// Sets flow = G effort + w.
   void set_admittance(const Mat<N>& G, const Vec<N>& w) noexcept {
     form = Form::admittance;
     matrix = G;

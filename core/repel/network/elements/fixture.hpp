@@ -36,29 +36,31 @@ enum class Alignment {
 /// One virtual fixture. Stiffness and damping may be `automatic`: as stiff as the arm allows, and
 /// critical (see `suited`).
 struct FixtureOptions {
-  std::string name{};
-  FixtureKind kind = FixtureKind::point;
-  Pose X_WF = Pose::Identity();    ///< [m] not of a path
-  std::vector<Vec3> points{};      ///< [m] of a path, world
-  std::vector<Mat3> frames{};      ///< of a path: none, or R_WF at each point
-  Course course = Course::spline;  ///< of a path
-  double radius = 0.0;             ///< [m] within which there is no force; not of a cone
-  double half_angle = 0.5;         ///< [rad] of a cone
-  double stiffness = 1000.0;       ///< [N/m]
-  double damping = automatic;      ///< [N s/m]
-  double most_force = 30.0;        ///< [N] of spring and damper together
-  double range = 0.1;              ///< [m] from its surface, within which it attracts
-  double most_energy = 2.0;        ///< [J] stored in its position, and as much in its orientation
-  Alignment alignment = Alignment::free;
-  double angular_stiffness = 20.0;     ///< [N m/rad]
-  double angular_damping = automatic;  ///< [N m s/rad]
-  double most_torque = 3.0;            ///< [N m]
-  double angular_range = 1.0;          ///< [rad] up to 2
-  bool is_on = true;                   ///< unless HandInput::guides says otherwise
+  std::string name{};                     ///< in reports and the log
+  FixtureKind kind = FixtureKind::point;  ///< what attracts
+  Pose X_WF = Pose::Identity();           ///< [m] not of a path
+  std::vector<Vec3> points{};             ///< [m] of a path, world
+  std::vector<Mat3> frames{};             ///< of a path: none, or R_WF at each point
+  Course course = Course::spline;         ///< of a path
+  double radius = 0.0;                    ///< [m] within which there is no force; not of a cone
+  double half_angle = 0.5;                ///< [rad] of a cone
+  double stiffness = 1000.0;              ///< [N/m]
+  double damping = automatic;             ///< [N s/m]
+  double most_force = 30.0;               ///< [N] of spring and damper together
+  double range = 0.1;                     ///< [m] from its surface, within which it attracts
+  double most_energy = 2.0;  ///< [J] stored in its position, and as much in its orientation
+  Alignment alignment = Alignment::free;  ///< of turning, held by a spring of its own
+  double angular_stiffness = 20.0;        ///< [N m/rad]
+  double angular_damping = automatic;     ///< [N m s/rad]
+  double most_torque = 3.0;               ///< [N m]
+  double angular_range = 1.0;             ///< [rad] up to 2
+  bool is_on = true;                      ///< unless HandInput::guides says otherwise
 
+  /// Of the force along the way to the fixture, for the stiffness `k` [N/m].
   [[nodiscard]] AttractionLimits along(double k) const noexcept {
     return {k, most_force, range, most_energy};
   }
+  /// Of the torque, for the stiffness `k` [N m/rad].
   [[nodiscard]] AttractionLimits about(double k) const noexcept {
     return {k, most_torque, angular_range, most_energy};
   }
@@ -107,6 +109,7 @@ struct FixtureView {
 /// while that stands still. So where the nearest place jumps, the force does not.
 class FixtureGeometry {
  public:
+  /// How far the place on a path may go per motion of the tool.
   static constexpr double most_ahead = 2.0;
 
   FixtureGeometry() = default;
@@ -132,8 +135,10 @@ class FixtureGeometry {
   void follow(const Vec3& x, double motion) noexcept {
     if (kind_ == FixtureKind::path) place_ = path_.followed(place_, x, most_ahead * motion);
   }
+  /// There is a place that follows the tool: on a path.
   [[nodiscard]] bool has_place() const noexcept { return kind_ == FixtureKind::path; }
-  [[nodiscard]] const PathPlace& place() const noexcept { return place_; }
+  [[nodiscard]] const PathPlace& place() const noexcept { return place_; }  ///< where on the path
+  /// The path; empty for another kind.
   [[nodiscard]] const FixturePath& path() const noexcept { return path_; }
 
   /// @param X_WT pose of the tool

@@ -23,9 +23,10 @@ enum class Course {
 
 /// A point of a path: that of the local parameter `along` [m] of a piece.
 struct PathPlace {
-  std::size_t piece = 0;
-  double along = 0.0;  ///< [m] 0 to the length of its chord
+  std::size_t piece = 0;  ///< its index: between two points
+  double along = 0.0;     ///< [m] 0 to the length of its chord
 
+  /// The same piece and parameter.
   friend bool operator==(const PathPlace&, const PathPlace&) = default;
 };
 
@@ -40,7 +41,7 @@ struct PathPoint {
 /// at construction.
 class FixturePath {
  public:
-  static constexpr std::size_t most_points = 256;
+  static constexpr std::size_t most_points = 256;  ///< of one path
 
   FixturePath() = default;
   /// @param points [m] at least two, each at least 0.1 mm from the one before
@@ -67,12 +68,15 @@ class FixturePath {
     has_frames_ = !frames.empty();
   }
 
+  /// It has a frame at each point.
   [[nodiscard]] bool has_frames() const noexcept { return has_frames_; }
+  /// One fewer than points.
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_.size(); }
 
   /// Of the chord of a piece [m].
   [[nodiscard]] double length(std::size_t piece) const noexcept { return pieces_[piece].length; }
 
+  /// The path at a place. Cost: a polynomial of the third degree.
   [[nodiscard]] PathPoint at(const PathPlace& place) const noexcept {
     const Piece& c = pieces_[place.piece];
     const double u = place.along;

@@ -13,11 +13,11 @@ namespace repel::network {
 /// Gains of a sliding axis [kg, N s/m, N/m, N s/m, N], or of a turning one [kg m^2, N m s/rad,
 /// N m/rad, N m s/rad, N m].
 struct HeldAxisGains {
-  double inertia = 0.0;
-  double friction = 0.0;
-  double hand_stiffness = 0.0;
-  double hand_damping = 0.0;
-  double limit = 0.0;  ///< of the motor
+  double inertia = 0.0;         ///< of the handle
+  double friction = 0.0;        ///< of its bearing
+  double hand_stiffness = 0.0;  ///< of the spring between hand and handle
+  double hand_damping = 0.0;    ///< of the damper beside that spring
+  double limit = 0.0;           ///< of the motor
 };
 
 /// Inertia, bearing and a hand that follows its own trajectory through a spring and a damper, by
@@ -49,10 +49,13 @@ class HeldAxis {
     if (at_rest) mass_wave_ = spring_wave_ = rate_ = 0.0;
   }
 
+  /// [N s/m, N m s/rad] of its port.
   [[nodiscard]] double resistance() const noexcept { return resistance_; }
+  /// The wave of this tick.
   [[nodiscard]] double reflected() const noexcept {
     return -mass_wave_ + spring_wave_ - hand_resistance_ * hand_rate_;
   }
+  /// Takes the wave `a` that arrives, as far as the motor can; advances by one tick.
   void incident(double a) noexcept {
     const double b = reflected();
     saturated_ = std::abs(a + b) > 2.0 * limit_;
@@ -95,6 +98,7 @@ class HeldAxis {
     return spring_resistance_ * (1.0 + late / period_);
   }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the hand
+  /// The motor was at its limit in this tick.
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 
  private:

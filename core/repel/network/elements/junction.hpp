@@ -18,8 +18,11 @@ enum class Common {
 /// others.
 class Junction {
  public:
+  /// With this quantity common to all its ports.
   explicit Junction(Common common = Common::flow) noexcept : common_(common) {}
+  /// It keeps the flow where the flow is common.
   [[nodiscard]] Traits traits() const noexcept { return {.keeps_flow = common_ == Common::flow}; }
+  /// What is the same at all ports.
   [[nodiscard]] Common common() const noexcept { return common_; }
 
   /// Starts `sum` with the first branch.

@@ -20,11 +20,12 @@ enum class LineKind {
   force_velocity,  ///< velocity one way, force the other; not passive, for comparison
 };
 
+/// Properties of a line.
 struct LineOptions {
-  LineKind kind = LineKind::waves;
-  double impedance = 20.0;         ///< Z [N s/m]
-  double angular_impedance = 0.5;  ///< [N m s/rad]; of a tool port
-  ChannelOptions channel;          ///< of both directions, with different seeds
+  LineKind kind = LineKind::waves;  ///< what is sent
+  double impedance = 20.0;          ///< Z [N s/m]
+  double angular_impedance = 0.5;   ///< [N m s/rad]; of a tool port
+  ChannelOptions channel;           ///< of both directions, with different seeds
   /// [s] that the receiver waits beyond the channel delay, so that late packets are in time and
   /// lost ones can be interpolated from the next; negative: the jitter plus as many ticks as
   /// packets are lost in a row with probability 1e-6, clamped to 2 to 50
@@ -60,6 +61,7 @@ class Line {
   void fit(Space space, int size) {
     impedance_ = LineImpedance(space, size, options_.impedance, options_.angular_impedance);
   }
+  /// Empties the channels. @param period [s] of the network. Allocates.
   void prepare(double period) {
     period_ = detail::checked_period(period);
     Packet nothing;
@@ -79,10 +81,12 @@ class Line {
     }
   }
 
+  /// Passive for waves only.
   [[nodiscard]] Traits traits() const noexcept {
     return {.passive = options_.kind == LineKind::waves};
   }
 
+  /// Receives what arrives in this tick.
   void read(const Signals& signals) noexcept {
     for (int i = 0; i < 2; ++i) {
       ends_[1 - i].outgoing.advance();

@@ -31,9 +31,13 @@ class Damper {
  public:
   /// @param D [N s/m], [N m s/rad] symmetric positive definite; else SetupError
   explicit Damper(const Mat<N>& D) : R_(detail::checked_gain<N>("damping", D)) {}
-  [[nodiscard]] int size() const noexcept { return static_cast<int>(R_.rows()); }
+  [[nodiscard]] int size() const noexcept {
+    return static_cast<int>(R_.rows());
+  }  ///< number of entries of its port
+  /// Port resistance R = D.
   [[nodiscard]] const Mat<N>& resistance() const noexcept { return R_; }
-  [[nodiscard]] Vec<N> reflected() const noexcept { return Vec<N>::Zero(R_.rows()); }
+  [[nodiscard]] Vec<N> reflected() const noexcept { return Vec<N>::Zero(R_.rows()); }  ///< nothing
+  /// Absorbs the wave.
   void incident(const Vec<N>& /*a*/) noexcept {}
   [[nodiscard]] double stored() const noexcept { return 0.0; }  ///< [J]
 
@@ -48,14 +52,20 @@ class Spring {
   /// @param K [N/m], [N m/rad] symmetric positive definite; else SetupError
   explicit Spring(const Mat<N>& K)
       : K_(detail::checked_gain<N>("stiffness", K)), R_(K), last_(Vec<N>::Zero(K.rows())) {}
+  /// Sets R = K T / 2. @param period T [s].
   void prepare(double period) { R_ = 0.5 * detail::checked_period(period) * K_; }
   /// Discharges the spring when the operator's force has been removed (`at_rest`).
   void read(const Signals& signals) noexcept {
     if (signals.at_rest) last_.setZero();
   }
-  [[nodiscard]] int size() const noexcept { return static_cast<int>(R_.rows()); }
+  [[nodiscard]] int size() const noexcept {
+    return static_cast<int>(R_.rows());
+  }  ///< number of entries of its port
+  /// Port resistance R = K T / 2.
   [[nodiscard]] const Mat<N>& resistance() const noexcept { return R_; }
+  /// The last incident wave.
   [[nodiscard]] const Vec<N>& reflected() const noexcept { return last_; }
+  /// Takes the wave that arrives.
   void incident(const Vec<N>& a) noexcept { last_ = a; }
   /// Stored energy a' K^-1 a / 2 [J]: the wave a is the force at the end of the tick.
   [[nodiscard]] double stored() const noexcept {
@@ -75,6 +85,7 @@ class Mass {
   /// @param M [kg], [kg m^2] symmetric positive definite; else SetupError
   explicit Mass(const Mat<N>& M)
       : M_(detail::checked_gain<N>("mass", M)), R_(M), last_(Vec<N>::Zero(M.rows())) {}
+  /// Sets R = 2 M / T. @param period T [s].
   void prepare(double period) {
     period_ = detail::checked_period(period);
     R_ = 2.0 / period * M_;
@@ -83,9 +94,14 @@ class Mass {
   void read(const Signals& signals) noexcept {
     if (signals.at_rest) last_.setZero();
   }
-  [[nodiscard]] int size() const noexcept { return static_cast<int>(R_.rows()); }
+  [[nodiscard]] int size() const noexcept {
+    return static_cast<int>(R_.rows());
+  }  ///< number of entries of its port
+  /// Port resistance R = 2 M / T.
   [[nodiscard]] const Mat<N>& resistance() const noexcept { return R_; }
+  /// Minus the last incident wave.
   [[nodiscard]] Vec<N> reflected() const noexcept { return -last_; }
+  /// Takes the wave that arrives.
   void incident(const Vec<N>& a) noexcept { last_ = a; }
   /// Stored energy [J]: the wave is 2 M v / T at the end of the tick.
   [[nodiscard]] double stored() const noexcept {
@@ -104,11 +120,14 @@ class Mass {
 template <int N>
 class EffortSource {
  public:
-  static constexpr Traits traits{.passive = false};
+  static constexpr Traits traits{.passive = false};  ///< its energy is not from the network
 
+  /// @param effort [N], [N m] until `set` gives another.
   explicit EffortSource(const Vec<N>& effort) : effort_(effort) {}
+  /// Number of entries of its port.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(effort_.size()); }
   void set(const Vec<N>& effort) noexcept { effort_ = effort; }  ///< [N], [N m] of this tick
+  /// The effort, whatever the flow.
   void equivalent(Equivalent<N>& shown) const noexcept {
     shown.form = Form::impedance;
     shown.matrix.setZero(effort_.size(), effort_.size());
@@ -124,11 +143,14 @@ class EffortSource {
 template <int N>
 class FlowSource {
  public:
-  static constexpr Traits traits{.passive = false};
+  static constexpr Traits traits{.passive = false};  ///< its energy is not from the network
 
+  /// @param flow [m/s], [rad/s] until `set` gives another.
   explicit FlowSource(const Vec<N>& flow) : flow_(flow) {}
+  /// Number of entries of its port.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
   void set(const Vec<N>& flow) noexcept { flow_ = flow; }  ///< [m/s], [rad/s] of this tick
+  /// The flow, whatever the effort.
   void equivalent(Equivalent<N>& shown) const noexcept {
     shown.form = Form::admittance;
     shown.matrix.setZero(flow_.size(), flow_.size());
@@ -142,10 +164,12 @@ class FlowSource {
 /// The fixed frame: v = 0, whatever the effort. No power passes.
 class Ground {
  public:
-  /// @param size of its port, 1 to `most_joints`; 6 at the tool @throws SetupError
+  /// @param size number of entries of its port, 1 to `most_joints`; 6 at the tool @throws
+  /// SetupError
   explicit Ground(int size = 6)
       : size_(static_cast<int>(checked("size", size, 1, most_joints, ""))) {}
-  [[nodiscard]] int size() const noexcept { return size_; }
+  [[nodiscard]] int size() const noexcept { return size_; }  ///< number of entries of its port
+  /// No flow, whatever the effort.
   void equivalent(Equivalent<any_size>& shown) const noexcept {
     shown.form = Form::admittance;
     shown.matrix.setZero(size_, size_);

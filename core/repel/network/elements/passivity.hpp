@@ -10,6 +10,7 @@
 
 namespace repel::network {
 
+/// Limits of a passivity controller.
 struct PassivityOptions {
   double most_energy = 5.0;  ///< [J] cap on the stored energy of the element; what it dissipated in
                              ///< a long contact beyond this cannot be returned later
@@ -101,7 +102,9 @@ class PassivityController {
 
   /// Port energy [J], never negative.
   [[nodiscard]] double energy() const noexcept { return energy_; }
+  /// Weight of each direction in the damping.
   [[nodiscard]] const Vec<N>& weight() const noexcept { return weight_; }
+  /// Energy balance since the start.
   [[nodiscard]] const PassivityReport& report() const noexcept { return report_; }
 
  private:

@@ -26,6 +26,7 @@ namespace repel::network {
 inline constexpr int any_size = Eigen::Dynamic;
 /// Maximum number of joints, and so the largest port. Storage has this capacity: nothing allocates.
 inline constexpr int most_joints = 16;
+/// Numbers that a vector of size N has room for.
 template <int N>
 inline constexpr int room_for = N == any_size ? most_joints : N;
 
@@ -41,38 +42,45 @@ using repel::operator+;
 using repel::operator-;
 using repel::operator*;
 using repel::operator/;
+/// The vectors that these operators take.
 template <class V>
 concept PortVector =
     std::same_as<V, Vec<any_size>> || std::same_as<V, Vec<1>> || std::same_as<V, Vec<6>>;
 
+/// Sum, entry by entry.
 template <PortVector V>
 [[nodiscard]] V operator+(const V& a, const V& b) noexcept {
   V sum(a.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) sum.coeffRef(i) = a.coeff(i) + b.coeff(i);
   return sum;
 }
+/// Difference, entry by entry.
 template <PortVector V>
 [[nodiscard]] V operator-(const V& a, const V& b) noexcept {
   V rest(a.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) rest.coeffRef(i) = a.coeff(i) - b.coeff(i);
   return rest;
 }
+/// Negative, entry by entry.
 template <PortVector V>
 [[nodiscard]] V operator-(const V& a) noexcept {
   V turned(a.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) turned.coeffRef(i) = -a.coeff(i);
   return turned;
 }
+/// Multiple, entry by entry.
 template <std::same_as<double> S, PortVector V>
 [[nodiscard]] V operator*(S s, const V& a) noexcept {
   V multiple(a.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) multiple.coeffRef(i) = s * a.coeff(i);
   return multiple;
 }
+/// Multiple, entry by entry.
 template <std::same_as<double> S, PortVector V>
 [[nodiscard]] V operator*(const V& a, S s) noexcept {
   return s * a;
 }
+/// Quotient, entry by entry.
 template <std::same_as<double> S, PortVector V>
 [[nodiscard]] V operator/(const V& a, S s) noexcept {
   V part(a.size());
@@ -156,6 +164,7 @@ struct PortState {
   }
 };
 
+/// The three entries of `first`, then those of `last`.
 [[nodiscard]] inline Vec<any_size> to_vec(const Vec3& first, const Vec3& last) noexcept {
   Vec<any_size> six(6);
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -173,9 +182,11 @@ template <PortVector V>
 [[nodiscard]] inline Vec<any_size> to_vec(const Twist& V) noexcept {
   return to_vec(V.linear, V.angular);
 }
+/// As six numbers: force [N], then torque [N m].
 [[nodiscard]] inline Vec<any_size> to_vec(const Wrench& F) noexcept {
   return to_vec(F.force, F.torque);
 }
+/// From six numbers: force [N], then torque [N m].
 [[nodiscard]] inline Wrench to_wrench(const Vec<any_size>& six) noexcept {
   return {three(six, 0), three(six, 3)};
 }

@@ -61,13 +61,14 @@ struct Signals {
   Wrench measured;           ///< [N, N m] reading of a sensor at the tool: of all that is beyond it
                              ///< on the tool, about its origin, in axes of the tool
   bool is_measured = false;  ///< there is such a reading
-  HandInput hand;
-  HandInput second;        ///< of a second hand at the same tool, for the modules that name it
-  double period = 0.0025;  ///< [s]
-  double elapsed = 0.0;    ///< [s] since the last tick, more after missed ticks; 0: one period
-  bool at_rest = false;    ///< no force of the operator: states of the operator side are reset
-  bool released = false;   ///< nothing can be trusted: states of the walls are reset, too
+  HandInput hand;            ///< what the operator does
+  HandInput second;          ///< of a second hand at the same tool, for the modules that name it
+  double period = 0.0025;    ///< [s]
+  double elapsed = 0.0;      ///< [s] since the last tick, more after missed ticks; 0: one period
+  bool at_rest = false;      ///< no force of the operator: states of the operator side are reset
+  bool released = false;     ///< nothing can be trusted: states of the walls are reset, too
 
+  /// What the first or the second hand does.
   [[nodiscard]] const HandInput& of(Hand which) const noexcept {
     return which == Hand::first ? hand : second;
   }
@@ -77,6 +78,7 @@ struct Signals {
   [[nodiscard]] Vec<any_size> tool_flow() const noexcept {
     return dense::product<Vec<any_size>>(jacobian, rates);
   }
+  /// [m/s, rad/s] Mean motion of the tool over the last period, by the Jacobian of this tick.
   [[nodiscard]] Vec<any_size> mean_tool_flow() const noexcept {
     return dense::product<Vec<any_size>>(jacobian, mean_rates);
   }

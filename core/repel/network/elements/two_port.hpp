@@ -62,12 +62,14 @@ void to_b(const PortState<any_size>& at_a, const Equivalent<any_size>& at_b, con
 /// An effort in series, at the same flow of both ports: f_root = f_leaf + effort.
 namespace series {
 
+/// Equivalent of what is behind together with an effort source in series. Always true.
 [[nodiscard]] inline bool shown(const Equivalent<any_size>& behind, const Vec<any_size>& effort,
                                 Equivalent<any_size>& shown) noexcept {
   shown = behind;
   shown.add_effort(effort);
   return true;
 }
+/// State behind the source from that at the root: the same flow, less the effort of the source.
 inline void pass(const PortState<any_size>& at_root, const Vec<any_size>& effort,
                  PortState<any_size>& at_leaf) noexcept {
   at_leaf.flow = at_root.flow;

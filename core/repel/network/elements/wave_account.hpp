@@ -16,6 +16,7 @@ struct WaveAccount {
   Vec<any_size> sum;    ///< of all waves, times their period [sqrt(J s)]
   double energy = 0.0;  ///< of all waves [J]
 
+  /// Empties it, for waves of so many entries.
   void clear(int size) noexcept {
     sum.setZero(size);
     energy = 0.0;
@@ -57,7 +58,9 @@ class LineImpedance {
     }
   }
 
+  /// Number of entries of its port.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(impedance_.size()); }
+  /// [N s/m], [N m s/rad] of each direction.
   [[nodiscard]] const Vec<any_size>& diagonal() const noexcept { return impedance_; }
   /// The wave into the line of an end in that state [sqrt(W)].
   [[nodiscard]] Vec<any_size> wave_of(const PortState<any_size>& state) const noexcept {

@@ -8,6 +8,7 @@
 
 namespace repel::network {
 
+/// What is known of the drive of the arm.
 struct PredictionOptions {
   double drive_delay = 0.0;  ///< [ticks] between a torque and its effect, beyond its being held for
                              ///< one tick; 0 to 10
@@ -61,11 +62,13 @@ class Prediction {
     return 1.5 + 2.5 * drive_delay;
   }
 
+  /// For an arm of `size` joints, or the tool.
   void fit(Space space, int size) {
     in_joints_ = space == Space::joints;
     offset_.setZero(size);
     sum_.setZero(size);
   }
+  /// Sets the horizon. @param period [s] of the network.
   void prepare(double period) { horizon_ = horizon(delay_) * detail::checked_period(period); }
 
   /// Second call of a tick, after all modules have read their signals. Cost: one factorization of
@@ -105,6 +108,7 @@ class Prediction {
     both.solve(shown.offset);
     return true;
   }
+  /// The same effort; the flow at the operator's side is that which the arm will have.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     at_leaf = at_root;

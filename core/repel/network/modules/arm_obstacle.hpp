@@ -8,6 +8,7 @@
 
 namespace repel::network {
 
+/// Of the passivity controller of an ArmObstacle.
 struct ArmObstacleOptions {
   double most_energy = 5.0;     ///< [J] see PassivityOptions
   double most_damping = 300.0;  ///< [N m s/rad] limit of the damping against energy from sampling
@@ -21,12 +22,14 @@ struct ArmObstacleOptions {
 /// return energy that another has absorbed.
 class ArmObstacle {
  public:
+  /// For the planner.
   static constexpr Traits traits{.left = Space::joints,
                                  .right = Space::joints,
                                  .needs_flow = true,
                                  .keeps_flow = true,
                                  .walls = Walls::links};
 
+  /// @throws SetupError for a number out of range.
   explicit ArmObstacle(const ArmObstacleOptions& options = {})
       : options_(options), controller_(passivity_of(options), Vec<any_size>::Ones(1)) {
     checked("most energy", options.most_energy, 0.0, 1e6, "J");
@@ -39,6 +42,7 @@ class ArmObstacle {
     effort_.setZero(size);
   }
 
+  /// Takes the torques of the walls on the links, corrected by the passivity controller.
   void read(const Signals& signals) noexcept {
     effort_ = -signals.arm_torques;
     if (signals.released) {
@@ -53,10 +57,12 @@ class ArmObstacle {
     if (damping_ > 0.0) effort_ += damping_ * signals.rates;
   }
 
+  /// What is behind, and the torques in series. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     return series::shown(behind, effort_, shown);
   }
+  /// The same rates; the torques of the walls have been taken off.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) const noexcept {
     series::pass(at_root, effort_, at_leaf);
@@ -64,6 +70,7 @@ class ArmObstacle {
 
   /// Torques of the walls on the joints, after the passivity controller [N m].
   [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
+  /// Adds the torques of the walls [N m].
   void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
     torques += this->torques();
   }
@@ -71,6 +78,7 @@ class ArmObstacle {
   void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept {
     for (Eigen::Index i = 0; i < damping.rows(); ++i) damping.coeffRef(i, i) += damping_;
   }
+  /// Energy balance of all joints together.
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by moving obstacles
 

@@ -12,6 +12,7 @@
 
 namespace repel::network {
 
+/// Gain, filter and ranges of a ForceSensor.
 struct ForceSensorOptions {
   double gain = 0.5;            ///< g, 0 to `ForceSensor::most_gain`
   double cutoff = 5.0;          ///< [Hz] of the low pass, first order; 0: none
@@ -45,7 +46,7 @@ struct ForceSensorOptions {
 /// power g (tau_left + J^T F) . v that it supplies.
 class ForceSensor {
  public:
-  static constexpr double most_gain = 0.7;
+  static constexpr double most_gain = 0.7;      ///< greatest g
   static constexpr double fall = 0.05;          ///< [s] in which g falls to zero
   static constexpr double hold = 0.25;          ///< [s] of sound readings before it returns
   static constexpr double rise = 0.5;           ///< [s] in which it returns
@@ -65,6 +66,7 @@ class ForceSensor {
     checked("gravity", options.gravity_W.norm(), 0.0, 100.0, "m/s^2");
   }
 
+  /// For the planner; they tell by how much the arm gets lighter.
   [[nodiscard]] Traits traits() const noexcept {
     return {.left = Space::joints,
             .right = Space::joints,
@@ -76,11 +78,13 @@ class ForceSensor {
 
   /// For an arm of `size` joints.
   void fit(Space /*space*/, int size) { torque_.setZero(size); }
+  /// @param period [s] of the network.
   void prepare(double period) {
     const double turned = 2.0 * std::numbers::pi * options_.cutoff * detail::checked_period(period);
     follows_ = options_.cutoff > 0.0 ? 1.0 - std::exp(-turned) : 1.0;
   }
 
+  /// Takes a reading, and the wrench that acts in this tick.
   void read(const Signals& signals) noexcept {
     const bool is_sound = take(signals);
     lost_ticks_ += is_sound ? 0 : 1;
@@ -101,6 +105,7 @@ class ForceSensor {
     torque_ *= gain();
   }
 
+  /// What is behind, 1 + g times, and the torques of the contact. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
@@ -114,6 +119,7 @@ class ForceSensor {
     shown.add_effort(-torque_);
     return true;
   }
+  /// The same rates; the effort before it was amplified.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     const double share = 1.0 / (1.0 + gain());
@@ -130,8 +136,11 @@ class ForceSensor {
   /// The bias is known, or there is none.
   [[nodiscard]] bool is_tared() const noexcept { return tared_for_ >= options_.tare; }
   [[nodiscard]] bool is_lost() const noexcept { return is_lost_; }  ///< no sound reading
+  /// The reading was clipped in this tick.
   [[nodiscard]] bool saturated() const noexcept { return is_saturated_; }
+  /// With a clipped reading, since set-up.
   [[nodiscard]] std::int64_t saturated_ticks() const noexcept { return saturated_ticks_; }
+  /// Without a sound reading, since set-up.
   [[nodiscard]] std::int64_t lost_ticks() const noexcept { return lost_ticks_; }
   [[nodiscard]] double peak_force() const noexcept { return peak_; }    ///< [N] since set-up
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W]

@@ -17,11 +17,12 @@
 
 namespace repel::network {
 
+/// The fixtures, and how they come and go.
 struct GuideOptions {
-  std::vector<FixtureOptions> fixtures{};
+  std::vector<FixtureOptions> fixtures{};  ///< in the order of HandInput::guides
   double ramp = 0.25;         ///< [s] in which a fixture that is switched comes or goes
   double entry_energy = 1.0;  ///< [J] that coming may take from the module itself: EntryEnergy
-  PassivityOptions passivity{.keeps_energy = true};
+  PassivityOptions passivity{.keeps_energy = true};  ///< over all of them
 };
 
 /// A series source of effort, as OBSTACLE: f_left = f_right - F at the same flow, with F the sum
@@ -36,45 +37,48 @@ struct GuideOptions {
 /// the cost. A passivity controller watches the port.
 class Guide {
  public:
+  /// For the planner.
   static constexpr Traits traits{
       .left = Space::tool, .right = Space::tool, .needs_flow = true, .keeps_flow = true};
-  static constexpr std::size_t most_fixtures = 30;
-  static constexpr double turning_time = 0.02;  ///< [s] of the damper behind a bend or corner
+  static constexpr std::size_t most_fixtures = 30;  ///< one bit of HandInput::guides each
+  static constexpr double turning_time = 0.02;      ///< [s] of the damper behind a bend or corner
 
   /// One fixture as of the last tick.
   struct Held {
-    FixtureOptions options;
-    FixtureGeometry geometry{};
-    Attraction along{}, about{};
-    double damping = 0.0, angular_damping = 0.0;  ///< [N s/m], [N m s/rad] in use
-    FixtureView view{};                           ///< while it acts
-    double clear = 0.0;                           ///< [m] no place of the fixture is nearer
-    Mat3 across = Mat3::Zero();                   ///< of the damper
-    double gain = 0.0, angular_gain = 0.0;        ///< 0 to 1
-    double most_force = 0.0;                      ///< [N] exerted since set-up
-
+    FixtureOptions options;        ///< with the gains in use
+    FixtureGeometry geometry{};    ///< where it attracts
+    Attraction along{};            ///< the law of its force
+    Attraction about{};            ///< and of its torque
+    double damping = 0.0;          ///< [N s/m] in use
+    double angular_damping = 0.0;  ///< [N m s/rad] in use
+    FixtureView view{};            ///< while it acts
+    double clear = 0.0;            ///< [m] no place of the fixture is nearer
+    Mat3 across = Mat3::Zero();    ///< of the damper
+    double gain = 0.0;             ///< of the force, 0 to 1
+    double angular_gain = 0.0;     ///< of the torque, 0 to 1
+    double most_force = 0.0;       ///< [N] exerted since set-up
+    /// It exerts something.
     [[nodiscard]] bool acts() const noexcept { return gain > 0.0 || angular_gain > 0.0; }
     /// Where it holds the orientation, too.
     [[nodiscard]] bool is_near() const noexcept { return view.distance < options.range; }
+    /// Energy in its springs [J].
     [[nodiscard]] double stored() const noexcept {
       return gain * along.energy(view.distance) + angular_gain * about.energy(view.angle);
     }
   };
-
   /// @throws SetupError, naming the fixture, for a number out of range
   explicit Guide(const GuideOptions& options = {})
       : ramp_(checked("ramp", options.ramp, 1e-3, 100.0, "s")),
         entry_(checked("entry energy", options.entry_energy, 1e-3, 1e3, "J")),
         controller_(with_room(options), weight_of(options.passivity)) {
-    checked("number of fixtures", static_cast<double>(options.fixtures.size()), 0, most_fixtures,
-            "");
+    const auto count = static_cast<double>(options.fixtures.size());
+    checked("number of fixtures", count, 0, most_fixtures, "");
     for (const FixtureOptions& fixture : options.fixtures) {
       Held& held = held_.emplace_back();
       held.options = fixture;
       held.geometry = FixtureGeometry(fixture);
     }
   }
-
   /// Chooses the gains that are `automatic`.
   void suit(const RobotEnd& robot) noexcept { robot_ = robot; }
   /// @throws SetupError for a damping that does not keep its spring stable at this period
@@ -92,7 +96,7 @@ class Guide {
     }
     turn_share_ = -std::expm1(-period / turning_time);
   }
-
+  /// Takes pose and motion of the tool, and what the hand has switched.
   void read(const Signals& signals) noexcept {
     const Vec<any_size> flow = signals.tool_flow();
     effort_.setZero(6);
@@ -108,18 +112,19 @@ class Guide {
                                 signals.since_last());
     if (damping_ > 0.0) effort_ += damping_ * product(Vec<any_size>(controller_.weight()), flow);
   }
-
+  /// What is behind, and the wrench in series. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     return series::shown(behind, effort_, shown);
   }
+  /// The same flow, less the wrench.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) const noexcept {
     series::pass(at_root, effort_, at_leaf);
   }
-
   /// Wrench of all fixtures on the tool, after the passivity controller [N, N m].
   [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
+  /// The fixtures, in the order of the options.
   [[nodiscard]] std::span<const Held> fixtures() const noexcept { return held_; }
   /// Energy in the springs [J].
   [[nodiscard]] double stored() const noexcept {
@@ -127,7 +132,7 @@ class Guide {
     for (const Held& held : held_) sum += held.stored();
     return sum;
   }
-
+  /// Adds the torques of the wrench [N m].
   void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept {
     Vec<any_size> at_joints;
     dense::transposed_product(jacobian, effort_, at_joints);
@@ -149,6 +154,7 @@ class Guide {
       }
     }
   }
+  /// Energy balance of the whole wrench.
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] of entry energy
 
@@ -172,7 +178,6 @@ class Guide {
     }
     return passivity;
   }
-
   // As of a wall: B >= wall_ticks T K.
   [[nodiscard]] Gains settled(const FixtureOptions& fixture, const Gains& asked, const Gains& usual,
                               double mass, double least) const {
@@ -187,13 +192,11 @@ class Guide {
     }
     return gains;
   }
-
   void release() noexcept {
     controller_.reset();
     for (Held& held : held_) held.gain = held.angular_gain = 0.0;
     has_position_ = false;
   }
-
   [[nodiscard]] static double wanted(const HandInput& hand, const Held& held,
                                      std::size_t index) noexcept {
     const bool is_on =
@@ -202,7 +205,6 @@ class Guide {
     if (!is_on || !(strength >= 0.0)) return is_on ? 1.0 : 0.0;
     return std::min(strength, 1.0);
   }
-
   void settle_gains(const Signals& signals) noexcept {
     const Vec3 x = origin(signals.X_WT);
     const double motion = has_position_ ? norm(Vec3(x - x_)) : 0.0;
@@ -234,7 +236,6 @@ class Guide {
     }
     supplied_ = entry_.spent() / signals.period;
   }
-
   // A place that attracts nothing may be left for a nearer one; if that would attract, as something
   // that is switched on. It is looked for where the tool may have come within range of it.
   static void search(Held& held, const Pose& X_WT) noexcept {
@@ -261,7 +262,6 @@ class Guide {
     const double share = is_new ? 1.0 : turn_share_;
     held.across += share * (held.view.across - held.across);
   }
-
   void push(Held& held, const Vec<any_size>& flow) noexcept {
     const FixtureView& view = held.view;
     const double pull = held.gain * held.along.force(view.distance);

@@ -32,7 +32,7 @@ struct Kbb2Options {
 /// the spring.
 class Kbb2 {
  public:
-  static constexpr Traits traits{};
+  static constexpr Traits traits{};  ///< any space on both sides
 
   /// @throws SetupError for a number out of range
   explicit Kbb2(const Kbb2Options& options = {}) : options_(options) {
@@ -76,17 +76,21 @@ class Kbb2 {
     fill(shunt_, options_.shunt, options_.angular_shunt);
     wave_.setZero(size);
   }
+  /// @param period [s] of the network.
   void prepare(double period) {
     spring_resistance_ = 0.5 * detail::checked_period(period) * stiffness_;
     conductance_ = inverse(spring_resistance_ + damping_);
     has_shunt_ = !shunt_.isZero(0.0);
     none_.setZero(shunt_.size());
   }
+  /// On which side the robot is.
   void face(Side root) noexcept { root_ = root; }
+  /// Releases the spring where no force of the operator is to act.
   void read(const Signals& signals) noexcept {
     if (signals.at_rest) wave_.setZero();
   }
 
+  /// What is behind, with shunt and spring-damper. False where it cannot be formed.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
@@ -97,6 +101,7 @@ class Kbb2 {
     add_shunt(shown);
     return true;
   }
+  /// Effort and flow behind; advances the spring.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     at_leaf = at_root;

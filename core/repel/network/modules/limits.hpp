@@ -35,8 +35,8 @@ struct JointLimits {
 
 /// Range of one joint [rad] or [m]; infinite for a continuous joint.
 struct JointRange {
-  double lower = 0.0;
-  double upper = 0.0;
+  double lower = 0.0;  ///< [rad] or [m]
+  double upper = 0.0;  ///< [rad] or [m]
   /// [rad] or [m] replaces JointLimits::range for this joint: joints that turn and joints that
   /// slide cannot share one number
   std::optional<double> zone{};
@@ -47,6 +47,7 @@ struct JointRange {
 /// lower limit acts.
 class Limits {
  public:
+  /// For the planner.
   static constexpr Traits traits{
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
 
@@ -66,6 +67,7 @@ class Limits {
     effort_.setZero(static_cast<Eigen::Index>(ranges.size()));
   }
 
+  /// Number of joints.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(joints_.size()); }
   /// Chooses the gains that are `automatic`; those of the defaults for an arm without known masses.
   void suit(const RobotEnd& robot) noexcept {
@@ -89,6 +91,7 @@ class Limits {
     }
   }
 
+  /// Takes the torques of the limits, corrected by the passivity controllers.
   void read(const Signals& signals) noexcept {
     active_ = false;
     for (Eigen::Index i = 0; i < effort_.size(); ++i) {
@@ -107,10 +110,12 @@ class Limits {
     }
   }
 
+  /// What is behind, and the torques in series. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     return series::shown(behind, effort_, shown);
   }
+  /// The same rates, less the torques.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) const noexcept {
     series::pass(at_root, effort_, at_leaf);
@@ -118,9 +123,11 @@ class Limits {
 
   /// Torques of the limits on the joints [N m].
   [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
+  /// Adds the torques of the limits [N m].
   void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
     torques += this->torques();
   }
+  /// Adds the damping of laws and passivity controllers [N m s/rad], on the diagonal.
   void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept {
     for (Eigen::Index i = 0; i < damping.rows(); ++i) {
       damping.coeffRef(i, i) += joints_[static_cast<std::size_t>(i)].damping;

@@ -11,6 +11,7 @@
 
 namespace repel::network {
 
+/// Scales of a lever, and how it turns.
 struct MultiplexOptions {
   double velocity_scale = 0.1;  ///< s_v [m/rad] tool motion per lever motion
   double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
@@ -30,6 +31,7 @@ struct MultiplexOptions {
 /// weights the power at the lever by s_v / s_f.
 class Multiplex {
  public:
+  /// A lever on the left, a tool on the right.
   static constexpr Traits traits{.left = Space::lever, .right = Space::tool};
 
   /// @throws SetupError for a number out of range
@@ -39,13 +41,16 @@ class Multiplex {
     checked("turning time", options.turning_time, 0.0, 100.0, "s");
   }
 
+  /// @param period [s] of the network.
   void prepare(double period) {
     const double time = options_.turning_time;
     share_ = time > 0.0 ? -std::expm1(-detail::checked_period(period) / time) : 1.0;
     scale_.prepare(period);
   }
+  /// On which side the robot is.
   void face(Side root) noexcept { root_ = root; }
 
+  /// Follows the direction and the scale of the hand.
   void read(const Signals& signals) noexcept {
     const HandInput& hand = signals.of(options_.hand);
     direction_ = begun_ ? direction_ + share_ * (hand.direction_W - direction_) : hand.direction_W;
@@ -60,6 +65,7 @@ class Multiplex {
     }
   }
 
+  /// What is behind, through the transformer. False where it cannot be formed.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     if (root_ != Side::right) {
@@ -78,6 +84,7 @@ class Multiplex {
     flow.times(lever.offset.coeff(0)).store(shown.offset.data());
     return true;
   }
+  /// State behind, through the transformer.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
                 PortState<any_size>& at_leaf) const noexcept {
     if (root_ == Side::right) {
@@ -93,6 +100,7 @@ class Multiplex {
   }
   /// Weight of the left port's power in the ledger.
   [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
+  /// The hand whose lever it is.
   [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
   [[nodiscard]] double velocity_scale() const noexcept {  ///< s_v [m/rad]
     return options_.velocity_scale;

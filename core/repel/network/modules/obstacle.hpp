@@ -10,8 +10,9 @@
 
 namespace repel::network {
 
+/// Of the passivity controller of an Obstacle.
 struct ObstacleOptions {
-  PassivityOptions passivity;
+  PassivityOptions passivity;  ///< of all six directions together
 };
 
 /// A series source of effort: f_left = f_right - F_walls at the same flow. The walls are nonlinear
@@ -26,12 +27,14 @@ struct ObstacleOptions {
 /// motion counts as supplied and may be passed on; a wall that recedes takes energy back.
 class Obstacle {
  public:
+  /// For the planner.
   static constexpr Traits traits{.left = Space::tool,
                                  .right = Space::tool,
                                  .needs_flow = true,
                                  .keeps_flow = true,
                                  .walls = Walls::tool};
 
+  /// @throws SetupError for a number out of range.
   explicit Obstacle(const ObstacleOptions& options = {})
       : controller_(options.passivity, weight_of(options.passivity)) {
     const PassivityOptions& p = options.passivity;
@@ -40,6 +43,7 @@ class Obstacle {
     checked("lever", p.lever, 1e-6, 100.0, "m");
   }
 
+  /// Takes the wrench of the walls on the tool, corrected by the passivity controller.
   void read(const Signals& signals) noexcept {
     const Vec<any_size> flow = signals.tool_flow();
     effort_ = -to_vec(signals.walls);
@@ -56,10 +60,12 @@ class Obstacle {
     if (damping_ > 0.0) effort_ += damping_ * product(Vec<any_size>(controller_.weight()), flow);
   }
 
+  /// What is behind, and the wrench in series. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     return series::shown(behind, effort_, shown);
   }
+  /// The same flow, less the wrench.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) const noexcept {
     series::pass(at_root, effort_, at_leaf);
@@ -86,6 +92,7 @@ class Obstacle {
       }
     }
   }
+  /// Energy balance of all six directions together.
   [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by moving obstacles
 

@@ -16,6 +16,7 @@ class MeasuredFlow {
   /// [s] in which a position error is corrected, at any tick rate.
   static constexpr double trim_time = 0.0225;
 
+  /// At zero and at rest. @param joints their number, up to `most_joints`.
   explicit MeasuredFlow(int joints)
       : position_(Vec<any_size>::Zero(joints)),
         mean_(position_),
@@ -69,19 +70,23 @@ class PumaJoints {
             static_cast<int>(checked("number of joints", joints, 1, most_joints, "")))),
         effort_(flow_) {}
 
+  /// Number of joints.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
 
+  /// Takes the measured rates, and notes what sampling has added in the period before.
   void read(const Signals& signals) noexcept {
     const double gained = signals.period * effort_.dot(signals.mean_rates - flow_) +
                           (signals.since_last() - signals.period) * effort_.dot(signals.mean_rates);
     if (gained - gained == 0.0) sampling_energy_ += gained;  // finite: a fault does not spoil it
     flow_ = signals.rates;
   }
+  /// The measured rates, whatever the effort.
   void equivalent(Equivalent<any_size>& shown) const noexcept {
     shown.form = Form::admittance;
     shown.matrix.setZero(flow_.size(), flow_.size());
     shown.offset = flow_;
   }
+  /// Takes the torques.
   void incident(const PortState<any_size>& state) noexcept { effort_ = state.effort; }
 
   /// Torques on the joints [N m].

@@ -14,11 +14,15 @@ namespace repel::network {
 /// it and no torque answers a force along it. Nothing is inverted, so no value grows without bound.
 class PumaKin {
  public:
+  /// A tool on the left, joints on the right.
   static constexpr Traits traits{.left = Space::tool, .right = Space::joints, .keeps_flow = true};
 
+  /// On which side the robot is.
   void face(Side root) noexcept { root_ = root; }
+  /// Takes the Jacobian of this tick.
   void read(const Signals& signals) noexcept { jacobian_ = signals.jacobian; }
 
+  /// What is behind, through the Jacobian. False where it cannot be formed.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     if (root_ == Side::left) return transformer::shown_at_a(behind, jacobian_, jacobian_, shown);
@@ -34,6 +38,7 @@ class PumaKin {
     dense::transposed_product(jacobian_, behind.offset, shown.offset);
     return true;
   }
+  /// State behind, through the Jacobian.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& behind,
                 PortState<any_size>& at_leaf) const noexcept {
     if (root_ == Side::right) {

@@ -20,7 +20,7 @@ enum class ReliefFrame { world, tool };
 struct ReliefOptions {
   /// Which of x, y, z, and rotation about x, y, z, are compliant.
   std::array<bool, 6> compliant{};
-  ReliefFrame frame = ReliefFrame::tool;
+  ReliefFrame frame = ReliefFrame::tool;  ///< of `compliant`
   double stiffness = 500.0;        ///< [N/m]; 0: a pure damper, which creeps and does not return
   double damping = 50.0;           ///< [N s/m]
   double angular_stiffness = 5.0;  ///< [N m/rad]; 0: a pure damper
@@ -44,8 +44,10 @@ struct ReliefOptions {
 /// time.
 class Relief {
  public:
+  /// A tool on both sides.
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
   static constexpr double switching_time = 0.2;  ///< [s] of a direction; of a frame twice as long
+  /// Of HandInput::compliant: in the axes of the world.
   static constexpr std::int32_t world_bit = 1 << 6;
 
   /// @throws SetupError for a number out of range, or when a direction would have neither spring
@@ -78,6 +80,7 @@ class Relief {
                robot.response, {0.0, ReliefOptions{}.angular_damping})
             .damping;
   }
+  /// @param period [s] of the network.
   void prepare(double period) {
     step_ = std::min(1.0, detail::checked_period(period) / switching_time);
     frame_ = options_.frame;
@@ -93,12 +96,14 @@ class Relief {
       inverse_stiffness_[i] = k > 0.0 ? 1.0 / k : 0.0;
     }
   }
+  /// Takes the orientation of the tool, and what the hand has switched.
   void read(const Signals& signals) noexcept {
     switch_over(signals.hand.compliant);
     turn_ = frame_ == ReliefFrame::tool ? rotation(signals.X_WT) : Mat3(Mat3::Identity());
     if (signals.at_rest) wave_.setZero();
   }
 
+  /// What is behind, with the compliant directions in series. False where it cannot be formed.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     Mat<any_size> G = Mat<any_size>::Zero(6, 6);
@@ -117,6 +122,7 @@ class Relief {
     shown.add_admittance(G, -in_world(product(conductance_, wave_)));
     return true;
   }
+  /// The same effort; the flow without that of the springs, which advance.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     const Six effort = in_task(at_root.effort);

@@ -37,7 +37,7 @@ struct SixAxesOptions {
 /// paper, whose spaceball feels nothing.
 class SixAxes {
  public:
-  static constexpr Traits traits{.right = Space::tool};
+  static constexpr Traits traits{.right = Space::tool};  ///< a tool on the right
 
   /// @throws SetupError for a number out of range
   explicit SixAxes(const SixAxesOptions& options = {}) : options_(options) {
@@ -54,6 +54,7 @@ class SixAxes {
     checked("motion scale", options.motion_scale, 1e-3, 1e3, "");
   }
 
+  /// At rest at zero. @param period [s] of the network.
   void prepare(double period) {
     detail::checked_period(period);
     const HeldAxisGains along{options_.mass, options_.friction, options_.hand_stiffness,
@@ -66,6 +67,7 @@ class SixAxes {
     show_resistance();
   }
 
+  /// Moves the hand by the rates of HandInput::ball, and follows its scale.
   void read(const Signals& signals) noexcept {
     const HandInput& input = signals.of(options_.hand);
     scale_.step(input.scale);
@@ -76,18 +78,21 @@ class SixAxes {
     }
   }
 
+  /// [N s/m, N m s/rad] of its port, diagonal.
   [[nodiscard]] const Mat<6>& resistance() const noexcept { return resistance_; }
   // Seen from the tool, with v = s v_hand and f_hand = s f, waves are 1 / s of those at the hand.
+  /// The wave of this tick.
   [[nodiscard]] Vec<6> reflected() const noexcept {
     return all([&](const HeldAxis& axis) { return axis.reflected() / scale(); });
   }
+  /// Takes the wave that arrives; every axis advances.
   void incident(const Vec<6>& wave) noexcept {
     for (std::size_t i = 0; i < 6; ++i) {
       axes_[i].incident(scale() * wave.coeff(static_cast<Eigen::Index>(i)));
     }
   }
 
-  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
+  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }  ///< that holds it
   /// Tool motion per hand motion, in this tick.
   [[nodiscard]] double scale() const noexcept { return options_.motion_scale * scale_.value(); }
   /// [m, rad] of the hand, since the start.
@@ -117,6 +122,7 @@ class SixAxes {
     for (const HeldAxis& axis : axes_) sum += axis.supplied();
     return sum;
   }
+  /// Some motor was at its limit in this tick.
   [[nodiscard]] bool saturated() const noexcept {
     bool any = false;
     for (const HeldAxis& axis : axes_) any = any || axis.saturated();

@@ -9,6 +9,7 @@
 
 namespace repel::network {
 
+/// How rates are shaped.
 struct SpaceballOptions {
   double dead_band = 0.002;         ///< [m/s] smaller rates count as zero
   double saturation = 0.25;         ///< [m/s]
@@ -26,6 +27,7 @@ struct SpaceballOptions {
 /// counts the power it supplies, F.v_ball. It returns no more than it absorbed and was supplied.
 class Spaceball {
  public:
+  /// A tool on both sides.
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
 
   /// @throws SetupError for a number out of range
@@ -37,9 +39,12 @@ class Spaceball {
     checked("time constant", options.time_constant, 0.0, 100.0, "s");
   }
 
+  /// @param period [s] of the network.
   void prepare(double period) { period_ = detail::checked_period(period); }
+  /// On which side the robot is.
   void face(Side root) noexcept { sign_ = root == Side::right ? 1.0 : -1.0; }
 
+  /// Takes the rates of the hand, shaped.
   void read(const Signals& signals) noexcept {
     const Twist& raw = signals.hand.ball;
     const double share = period_ / (period_ + options_.time_constant);
@@ -52,12 +57,14 @@ class Spaceball {
     if (signals.at_rest) twist_ = {};
   }
 
+  /// What is behind, and the rates in addition. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
     shown.add_flow(sign_ * to_vec(twist_));
     return true;
   }
+  /// The same effort; the flow without the rates.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept {
     const Vec<any_size> flow = sign_ * to_vec(twist_);
@@ -68,6 +75,7 @@ class Spaceball {
 
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }  ///< [m/s, rad/s]
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the operator
+  /// A rate was clamped in this tick.
   [[nodiscard]] bool saturated() const noexcept { return saturated_; }
 
  private:

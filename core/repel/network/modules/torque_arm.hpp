@@ -22,7 +22,7 @@ struct TorqueArmOptions {
 /// A one-port: torque in, rate out; a HeldAxis of the lever space.
 class TorqueArm {
  public:
-  static constexpr Traits traits{.right = Space::lever};
+  static constexpr Traits traits{.right = Space::lever};  ///< a lever on the right
 
   /// @throws SetupError for a number out of range
   explicit TorqueArm(const TorqueArmOptions& options = {}) : options_(options) {
@@ -33,6 +33,7 @@ class TorqueArm {
     checked("torque limit", options.torque_limit, 0.0, 1e4, "N m");
   }
 
+  /// At rest at zero. @param period [s] of the network.
   void prepare(double period) {
     axis_ = HeldAxis({options_.inertia, options_.friction, options_.hand_stiffness,
                       options_.hand_damping, options_.torque_limit},
@@ -40,19 +41,24 @@ class TorqueArm {
     resistance_(0) = axis_.resistance();
   }
 
+  /// Moves the hand by HandInput::lever_rate.
   void read(const Signals& signals) noexcept {
     axis_.move(signals.of(options_.hand).lever_rate, signals.at_rest);
   }
 
+  /// [N m s/rad] of its port.
   [[nodiscard]] const Mat<1>& resistance() const noexcept { return resistance_; }
+  /// The wave of this tick.
   [[nodiscard]] Vec<1> reflected() const noexcept { return Vec<1>(axis_.reflected()); }
+  /// Takes the wave that arrives; the lever advances.
   void incident(const Vec<1>& wave) noexcept { axis_.incident(wave(0)); }
 
   [[nodiscard]] double angle() const noexcept { return axis_.position(); }  ///< [rad]
   [[nodiscard]] double rate() const noexcept { return axis_.rate(); }       ///< [rad/s]
-  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
-  [[nodiscard]] double felt() const noexcept { return axis_.felt(); }  ///< [N m] of the motor
+  [[nodiscard]] Hand hand() const noexcept { return options_.hand; }        ///< that holds it
+  [[nodiscard]] double felt() const noexcept { return axis_.felt(); }       ///< [N m] of the motor
   [[nodiscard]] double supplied() const noexcept { return axis_.supplied(); }  ///< [W] by the hand
+  /// The motor was at its limit in this tick.
   [[nodiscard]] bool saturated() const noexcept { return axis_.saturated(); }
 
  private:

@@ -13,13 +13,15 @@ namespace repel::network {
 /// can delay a tick.
 class Visual {
  public:
-  static constexpr Traits traits{.keeps_flow = true};
+  static constexpr Traits traits{.keeps_flow = true};  ///< any space on both sides
 
+  /// What is behind, as it is. Always true.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
     return true;
   }
+  /// The same state.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) const noexcept {
     at_leaf = at_root;

@@ -16,18 +16,19 @@
 
 namespace repel::network {
 
+/// What both sides of a link agree on.
 struct RemoteOptions {
   std::uint64_t session = 1;  ///< of this run, drawn at random, not 0
   /// What both sides must share, such as a hash of the scene and the impedance of the line: packets
   /// with another one are not listened to
   std::uint64_t agreement = 0;
-  PlayoutOptions playout{};
+  PlayoutOptions playout{};  ///< when waves are output
 };
 
 /// What has passed over a link since the run began.
 struct RemoteCounts {
-  std::int64_t sent = 0;
-  std::int64_t received = 0;
+  std::int64_t sent = 0;         ///< packets handed to the thread
+  std::int64_t received = 0;     ///< packets taken from it
   std::int64_t overtaken = 0;    ///< of those received: arrived after a newer one
   std::int64_t lost = 0;         ///< of the sessions heard: never arrived, or not yet
   std::int64_t doubled = 0;      ///< copies of others, or too late to be told from one
@@ -52,7 +53,7 @@ class RemoteLink {
 
   /// For the thread of input and output: the producer of one, the consumer of the other.
   [[nodiscard]] Ring<RemotePacket>& incoming() noexcept { return incoming_; }
-  [[nodiscard]] Ring<RemotePacket>& outgoing() noexcept { return outgoing_; }
+  [[nodiscard]] Ring<RemotePacket>& outgoing() noexcept { return outgoing_; }  ///< likewise
 
   /// Set-up: by RemoteLine, for its port. @param period [s]
   void prepare(int size, double period) {
@@ -108,12 +109,15 @@ class RemoteLink {
     return seconds(now_ - std::chrono::nanoseconds(partner_ == 0 ? began_ : heard_at_));
   }
 
+  /// Counts since the run began.
   [[nodiscard]] const RemoteCounts& counts() const noexcept { return counts_; }
+  /// Outputs the waves that arrive.
   [[nodiscard]] const WavePlayer& player() const noexcept { return player_; }
   /// [J] Of all waves sent.
   [[nodiscard]] double energy_sent() const noexcept { return sent_.energy; }
   /// [J] What the other side says of itself and of this session; 0 before it has heard of it.
   [[nodiscard]] double partner_sent() const noexcept { return partner_sent_; }
+  /// [J] likewise: what it has output of this side's waves.
   [[nodiscard]] double partner_played() const noexcept { return partner_played_; }
   /// From this tick to the other side and back, without the time in between there.
   [[nodiscard]] const DurationHistogram& round_trips() const noexcept { return round_trips_; }

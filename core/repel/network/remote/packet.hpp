@@ -15,7 +15,7 @@ namespace repel::network {
 /// A packet of one tick. Trivially copyable, of fixed size. Every packet says all that has passed
 /// since its session began, so that any of them may be lost, doubled or overtaken.
 struct RemotePacket {
-  static constexpr std::size_t most_values = 64;
+  static constexpr std::size_t most_values = 64;  ///< of what a side tells besides waves
 
   std::uint64_t session = 0;    ///< of the sender: drawn at random by each run, not 0
   std::uint64_t agreement = 0;  ///< what both sides must share: see RemoteOptions

@@ -12,6 +12,7 @@
 
 namespace repel::network {
 
+/// How long what arrives is kept back.
 struct PlayoutOptions {
   /// [s] of what was sent kept back beyond the least delay seen; negative: 1.25 times the longest
   /// time that the newest packet had to last in the last seconds, from one period to `most`

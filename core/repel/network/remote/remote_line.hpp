@@ -9,6 +9,7 @@
 
 namespace repel::network {
 
+/// The impedance of a line between two programs.
 struct RemoteLineOptions {
   double impedance = 20.0;         ///< Z [N s/m], the same at both ends
   double angular_impedance = 0.5;  ///< [N m s/rad]; of a tool port
@@ -34,23 +35,28 @@ class RemoteLine {
     impedance_ = LineImpedance(space, size, options_.impedance, options_.angular_impedance);
     wave_.setZero(size);
   }
+  /// Once, for the link as well. @param period [s] of the network.
   void prepare(double period) {
     period_ = detail::checked_period(period);
     link_->prepare(impedance_.size(), period_);
   }
 
+  /// Takes the wave that is due.
   void read(const Signals& signals) noexcept { wave_ = link_->play(signals.at_rest); }
+  /// Resistance Z with the wave that is due.
   void equivalent(Equivalent<any_size>& shown) const noexcept {
     shown.form = Form::impedance;
     shown.matrix = impedance_.diagonal().asDiagonal();
     shown.offset = impedance_.offset_of(wave_);
   }
+  /// Sends the wave that enters.
   void incident(const PortState<any_size>& state) noexcept {
     link_->send(impedance_.wave_of(state), period_);
   }
   /// [W] That came over the line.
   [[nodiscard]] double supplied() const noexcept { return wave_.squaredNorm(); }
 
+  /// The link that it sends over.
   [[nodiscard]] const RemoteLink& link() const noexcept { return *link_; }
 
  private:

@@ -31,6 +31,7 @@ class WavePlayer {
 
   /// @param size of the port @param period [s] of the receiver
   WavePlayer() = default;
+  /// For a port of `size`. @param period [s] of the network @throws SetupError for an option.
   WavePlayer(int size, double period, const PlayoutOptions& options = {})
       : playout_(period, options), period_(period) {
     for (Entry& entry : entries_) entry.waves.clear(size);

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What the samples of docs/network.md leave out.
+#pragma once
+
+#include <repel/repel.hpp>
+
+using repel::network::JointLimits;
+extern const std::vector<repel::network::JointRange> ranges;
