@@ -165,21 +165,22 @@ class VisualReader {
     const Element* const geometry = child_of(&visual, "geometry");
     const Element* const shape = geometry != nullptr ? geometry->FirstChildElement() : nullptr;
     const std::string kind = shape != nullptr ? shape->Name() : "";
-    const ReductionOptions whole{.levels = 1};
-    if (kind == "box")
-      return mesh_of(Shape::box(0.5 * vector_of(shape, "size", Vec3::Zero()), whole));
-    if (kind == "sphere") return mesh_of(Shape::sphere(number_of(*shape, "radius"), whole));
-    if (kind == "cylinder" || kind == "capsule") {
-      const double radius = number_of(*shape, "radius");
-      const double half = 0.5 * number_of(*shape, "length");
-      return mesh_of(kind == "capsule" ? Shape::capsule(radius, half, whole)
-                                       : Shape::cylinder(radius, half, whole));
+    constexpr std::array kinds{"box", "sphere", "cylinder", "capsule", "mesh"};
+    if (shape == nullptr || std::count(kinds.begin(), kinds.end(), kind) == 0) {
+      throw SetupError("a visual of link '" + link +
+                       "' holds none of box, sphere, cylinder, capsule, mesh; it is left out");
     }
     if (kind == "mesh") {
       return mesh_in_file(attribute(shape, "filename"), vector_of(shape, "scale", Vec3::Ones()));
     }
-    throw SetupError("a visual of link '" + link +
-                     "' holds none of box, sphere, cylinder, capsule, mesh; it is left out");
+    const ReductionOptions whole{.levels = 1};
+    if (kind == "box")
+      return mesh_of(Shape::box(0.5 * vector_of(shape, "size", Vec3::Zero()), whole));
+    const double radius = number_of(*shape, "radius");
+    if (kind == "sphere") return mesh_of(Shape::sphere(radius, whole));
+    const double half = 0.5 * number_of(*shape, "length");
+    return mesh_of(kind == "capsule" ? Shape::capsule(radius, half, whole)
+                                     : Shape::cylinder(radius, half, whole));
   }
 
   /// Each combination of file and scale is read once. Simplified at once: there may be many.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/cell/layout.hpp>
 #include <repel/robots/visuals.hpp>
 
 namespace repel::teleop {

@@ -253,5 +253,20 @@ TEST(Visuals, OfThePumaShowItsBase) {
   EXPECT_NEAR(top, 0.56, 1e-6) << "the column, up to the neck";
 }
 
+TEST(Visuals, OfTheLongReachArmAreItsGantryInItsColour) {
+  const std::string path = "robots/long_reach.urdf";
+  const RobotVisuals read = load_visuals(path, load_arm(path));
+  EXPECT_TRUE(read.warnings.empty());
+  int beams = 0;
+  for (const RobotVisual& each : read.all) {
+    if (each.in_link != "gantry") continue;
+    ++beams;
+    EXPECT_EQ(each.link, -1);
+    EXPECT_EQ(each.collision, "");
+    EXPECT_TRUE(each.color);
+  }
+  EXPECT_EQ(beams, 4);
+}
+
 }  // namespace visuals_test
 }  // namespace repel
