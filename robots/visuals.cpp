@@ -88,6 +88,7 @@ class VisualReader {
   }
 
   RobotVisuals take() {
+    leave_out_empty();  // as the parts that are a line or a point
     share_out();
     return std::move(result_);
   }
@@ -155,8 +156,13 @@ class VisualReader {
       visual.in_link = link.name;
       visual.link = part.link;
       visual.X_LV = part.X_LP;
-      visual.mesh = mesh_of(shape_of(part, {.levels = 1}));
       visual.collision = part.name;
+      try {
+        visual.mesh = mesh_of(shape_of(part, {.levels = 1}));
+      } catch (const SetupError& error) {
+        result_.warnings.push_back("part '" + part.name + "': " + error.what());
+        continue;
+      }
       result_.all.push_back(std::move(visual));
     }
   }
@@ -208,6 +214,10 @@ class VisualReader {
     return meshes_.emplace(key, std::move(mesh)).first->second;
   }
 
+  void leave_out_empty() {
+    std::erase_if(result_.all, [](const RobotVisual& v) { return v.mesh.triangles.empty(); });
+  }
+
   /// Of all visuals together, no more triangles than allowed.
   void share_out() {
     std::size_t total = 0;
@@ -217,7 +227,7 @@ class VisualReader {
       const std::size_t share = each.mesh.triangles.size() * most_visual_triangles / total;
       each.mesh = detail::thinned(std::move(each.mesh), share);
     }
-    std::erase_if(result_.all, [](const RobotVisual& v) { return v.mesh.triangles.empty(); });
+    leave_out_empty();
     result_.warnings.push_back("the visuals have " + std::to_string(total) +
                                " triangles; they are shown by no more than " +
                                std::to_string(most_visual_triangles));
