@@ -65,6 +65,11 @@ foreach(data scenes robots)
 endforeach()
 install(DIRECTORY backends/visual/page/ DESTINATION ${CMAKE_INSTALL_DATADIR}/repel/page
         PATTERN bundle EXCLUDE)
+if(TARGET repel_visual)  # programs that link it are elsewhere, and so may be the package
+  set(page $<INSTALL_PREFIX>/${CMAKE_INSTALL_DATADIR}/repel/page)
+  target_compile_definitions(repel_visual
+                             INTERFACE $<INSTALL_INTERFACE:REPEL_PAGE_FOLDER="${page}">)
+endif()
 install(FILES LICENSE TYPE DOC)
 
 configure_package_config_file(cmake/repel-config.cmake.in repel-config.cmake

@@ -120,6 +120,13 @@ double number_of(const Element* element, double otherwise) {
   return element ? numbers_in(text_of(element, "value"))->front() : otherwise;
 }
 
+/// Removes the children of that name.
+void remove_all(Element& element, const char* name) {
+  for (auto* e = element.FirstChildElement(name); e; e = element.FirstChildElement(name)) {
+    element.DeleteChild(e);
+  }
+}
+
 [[noreturn]] void refuse_size(std::uintmax_t bytes, const std::string& file) {
   throw SetupError("has " + std::to_string(bytes) + " bytes; allowed: up to " +
                        std::to_string(most_description_bytes),
@@ -282,7 +289,7 @@ const Element* UrdfDocument::shape_of(const Element& collision, const std::strin
 // NOLINTNEXTLINE(misc-no-recursion): a file is a tree, read once at set-up
 void UrdfDocument::check_numbers(const Element& element, const std::string& owner) const {
   const std::string_view name = element.Name();
-  if (name == "visual") return;  // not used
+  if (name == "visual") return;  // only looked at: see require_numbers()
   for (const NumberRule& rule : number_rules) {
     if (rule.element != name) continue;
     const std::string attribute(rule.attribute);
@@ -298,6 +305,22 @@ void UrdfDocument::check_numbers(const Element& element, const std::string& owne
        child = child->NextSiblingElement()) {
     check_numbers(*child, owner);
   }
+}
+
+const Element* UrdfDocument::link(const std::string& name) const {
+  const auto found = links_.find(name);
+  return found == links_.end() ? nullptr : found->second;
+}
+
+void UrdfDocument::require_numbers(const Element& element, const std::string& owner) const {
+  for (const auto* child = element.FirstChildElement(); child;
+       child = child->NextSiblingElement()) {
+    check_numbers(*child, owner);
+  }
+}
+
+std::vector<double> UrdfDocument::numbers(const Element& element, const char* attribute) {
+  return numbers_in(text_of(&element, attribute)).value_or(std::vector<double>());
 }
 
 // Limits the number of attributes, because urdfdom compares each one with all before it.
@@ -406,8 +429,10 @@ std::string UrdfDocument::text_for_urdfdom() const {
     const std::string stem = std::filesystem::path(file_).stem().string();
     robot->SetAttribute("name", stem.empty() ? "robot" : stem.c_str());
   }
+  remove_all(*robot, "material");
   for (auto* link = robot->FirstChildElement("link"); link;
        link = link->NextSiblingElement("link")) {
+    remove_all(*link, "visual");
     for (auto* e = link->FirstChildElement("collision"); e;
          e = e->NextSiblingElement("collision")) {
       if (auto* capsule = e->FirstChildElement("geometry")->FirstChildElement("capsule")) {

@@ -35,7 +35,8 @@ class UrdfDocument {
   UrdfDocument(std::string_view text, std::string file);
 
   /// The text for urdfdom, which does not support capsules: each is replaced by a cylinder. A robot
-  /// without a name gets that of its file.
+  /// without a name gets that of its file. Without <visual> and <material>, for which it would
+  /// refuse the file though they are only looked at.
   [[nodiscard]] std::string text_for_urdfdom() const;
 
   /// @throws SetupError naming the first collision element that is missing in `model`
@@ -53,6 +54,17 @@ class UrdfDocument {
   /// Motor and gear inertia reflected to `joint` [kg m^2] or [kg]: the Drake elements rotor_inertia
   /// * gear_ratio^2 of its transmission; 0 without any.
   [[nodiscard]] double rotor_inertia(const std::string& joint) const;
+
+  /// The <robot> of the file, and the link of that name; null: there is none.
+  [[nodiscard]] const Element& robot() const noexcept { return *robot_; }
+  [[nodiscard]] const Element* link(const std::string& name) const;
+
+  /// Checks what is in a <visual>, which is not done on reading.
+  /// @throws SetupError naming line and `owner`
+  void require_numbers(const Element& element, const std::string& owner) const;
+
+  /// The numbers of an attribute that has passed require_numbers(); empty without it.
+  [[nodiscard]] static std::vector<double> numbers(const Element& element, const char* attribute);
 
   /// @throws SetupError at the line of the link or joint called `name`, or of its collision `index`
   [[noreturn]] void fail_at_link(const std::string& name, const std::string& what) const;

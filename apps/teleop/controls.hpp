@@ -1,94 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// User control of a run: drive the arm, pause, step, restart, seek.
+/// User control of a run: that of the live view, whether it is built in or not.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <map>
-#include <mutex>
-#include <string>
-#include <utility>
-
-#include <repel/base/mailbox.hpp>
-#include <repel/base/spatial.hpp>
-#include <repel/network/operator.hpp>
-#include <repel/schedule/world_changes.hpp>
+#include <repel/visual/controls.hpp>
 
 namespace repel::teleop {
 
-/// The source of the operator's commands.
-enum class Driver { script, nobody, page, device };
-
-/// Command of the current driver, in the terms of a rate-controlled master.
-struct DriverInput {
-  Driver driver = Driver::script;
-  Twist rates;                       ///< [m/s, rad/s] of the tool
-  bool in_tool = false;              ///< the rates are in tool axes, not world axes
-  double lever_rate = 0.0;           ///< [rad/s] commanded motion of the lever
-  Vec3 direction_W = Vec3::UnitX();  ///< unit: direction in which the lever drives the tool
-  Twist second;                      ///< [m/s, rad/s] of a second hand with six axes
-  bool second_in_tool = false;       ///< likewise
-  // What is switched stays so. As in a network::Phase:
-  double scale = 0.0;                           ///< HandInput::scale of both hands; 0: as before
-  std::int32_t guides = network::as_before;     ///< HandInput::guides
-  double guide_strength = -1.0;                 ///< HandInput::guide_strength; below 0: as before
-  std::int32_t compliant = network::as_before;  ///< HandInput::compliant
-};
-
-/// Where parts can be asked for while a run lasts. A lock keeps the cell in place, not the tick.
-class ChangesPort {
- public:
-  /// Of the cell that runs now; null: none.
-  void open(WorldChanges* changes) {
-    const std::lock_guard lock(mutex_);
-    changes_ = changes;
-  }
-  /// Calls ask(changes) if there is a cell. Returns what it returns, false otherwise.
-  template <class Ask>
-  bool with(const Ask& ask) {
-    const std::lock_guard lock(mutex_);
-    return changes_ != nullptr && ask(*changes_);
-  }
-
- private:
-  std::mutex mutex_;
-  WorldChanges* changes_ = nullptr;
-};
-
-/// The shapes that parts have got while a run lasts, for displays. Not for the loop.
-class NewShapes {
- public:
-  void note(PartId part, const Shape& shape) {
-    const std::lock_guard lock(mutex_);
-    shapes_.insert_or_assign(part.index, shape);
-  }
-  /// Those noted since the last call, by the index of the part.
-  [[nodiscard]] std::map<std::int32_t, Shape> take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(shapes_, {});
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::int32_t, Shape> shapes_;
-};
-
-/// Lock-free interface between the loop, which reads, and one other thread, which writes.
-struct Controls {
-  Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
-  std::atomic<bool> paused{false};
-  std::atomic<std::int64_t> steps{0};  ///< single ticks to run while paused
-  std::atomic<bool> restart{false};    ///< end this run and start another
-  bool may_restart = true;             ///< false while a log is written; constant after set-up
-  bool over_device = false;            ///< a page may override a device; constant after set-up
-  bool may_change = true;              ///< false while a recording is written; likewise
-  std::string no_driving;              ///< why no page can drive; empty: it may; likewise
-  std::string no_conduct;              ///< why none can pause, step, restart or change parts
-  ChangesPort changes;                 ///< not for the loop
-  NewShapes shapes;                    ///< likewise
-  std::atomic<double> seek{-1.0};      ///< [s] replay: time to jump to; negative: none
-  std::atomic<double> speed{1.0};      ///< replay: factor on real time
-};
+using visual::Controls;
+using visual::Driver;
+using visual::DriverInput;
 
 }  // namespace repel::teleop

@@ -66,16 +66,6 @@ std::vector<fs::path> scene_folders() {
   return folders_of("scenes", "scenes");
 }
 
-/// Where the files of the live view are; the first candidate if none exists.
-std::string page_folder() {
-  const std::vector<fs::path> folders = folders_of("backends/visual/page", "page");
-  std::error_code error;
-  for (const fs::path& folder : folders) {
-    if (fs::exists(folder / "index.html", error)) return fs::weakly_canonical(folder).string();
-  }
-  return folders.front().string();
-}
-
 std::string scene_list() {
   std::vector<std::string> names;
   std::error_code error;
@@ -435,7 +425,6 @@ bool wrote(host::Output& file, const Result& result, Write&& write) {
 int run_station(const Arguments& arguments, const Work& work) {
   host::Output report(arguments.report);
   teleop::SessionOptions session = arguments.session;
-  session.page = page_folder();
   StatusLine status(arguments, work);
   const teleop::StationResult result =
       teleop::run_station(work.scene, work.options, session, host::interruption(),
@@ -488,7 +477,6 @@ int run(const Arguments& arguments) {
   if (arguments.session.link.side == link::Side::station) return run_station(arguments, work);
   const teleop::Recording* recording = work.recording ? &*work.recording : nullptr;
   teleop::SessionOptions session = arguments.session;
-  session.page = page_folder();
   host::Output report(arguments.report);
   host::Output html(arguments.html);
   StatusLine status(arguments, work);

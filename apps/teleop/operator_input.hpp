@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <repel/loop/record.hpp>
 #include <repel/network/operator.hpp>
+#include <repel/visual/page_command.hpp>
 
 #ifdef REPEL_TELEOP_DEVICES
 #include <repel/devices/device_thread.hpp>
@@ -26,17 +28,18 @@ namespace repel::teleop {
 /// override it for a while if the controls allow it.
 class OperatorInput {
  public:
-  /// [s] Timeouts of the driver: without a post for `rest_after` its rates count as zero; after
-  /// `silent_after` it is reported silent, and the fail-safe fades the forces. A driver posts at
-  /// least ten times a second.
-  static constexpr double rest_after = 0.1;
-  static constexpr double silent_after = 0.25;
+  static constexpr double rest_after = visual::PageCommand::rest_after;
+  static constexpr double silent_after = visual::PageCommand::silent_after;
 
   /// @param controls null: no page can drive
   /// @param device null: none
   explicit OperatorInput(network::Script script, Controls* controls = nullptr,
                          devices::DeviceLink* device = nullptr)
-      : script_(std::move(script)), controls_(controls), device_(device) {
+      : script_(std::move(script)), device_(device) {
+    if (controls != nullptr) {
+      page_.emplace(*controls);
+      over_device_ = controls->over_device;
+    }
     if (device_ != nullptr) driver_ = Driver::device;
   }
 
@@ -81,40 +84,15 @@ class OperatorInput {
 
   /// True while the controls, and not the device, determine the command.
   bool hear(double period) noexcept {
-    if (controls_ == nullptr) return false;
-    const bool heard = controls_->input.take();
-    unheard_ = heard ? 0.0 : unheard_ + period;
+    if (!page_) return false;
+    page_->hear(period);
     if (device_ == nullptr) return true;
-    return controls_->over_device && controls_->input.newest().driver == Driver::page;
+    return over_device_ && page_->driver() == Driver::page;
   }
 
   void listen(const Mat3& R_WT) noexcept {
-    const DriverInput& input = controls_->input.newest();
-    driver_ = input.driver;
-    // Rates in tool axes are rotated to the world in every tick.
-    command_.hand.ball = input.in_tool ? rotated(R_WT, input.rates) : input.rates;
-    command_.second.ball = input.second_in_tool ? rotated(R_WT, input.second) : input.second;
-    command_.hand.lever_rate = input.lever_rate;
-    command_.second.lever_rate = 0.0;
-    switch_over(input);
-    command_.sound = is_finite(input.rates) && is_finite(input.second) &&
-                     is_finite(input.direction_W) && input.lever_rate - input.lever_rate == 0.0;
-    if (command_.sound) {
-      command_.hand.direction_W = input.direction_W;
-      command_.hand.turning_W = Vec3::Zero();
-    }
-    if (!command_.sound || unheard_ > rest_after) {
-      command_.hand.ball = command_.second.ball = {};
-      command_.hand.lever_rate = 0.0;
-    }
-    command_.silent_for = driver_ == Driver::page && unheard_ > silent_after ? unheard_ : 0.0;
-  }
-
-  void switch_over(const DriverInput& input) noexcept {
-    if (input.scale > 0.0) command_.hand.scale = command_.second.scale = input.scale;
-    if (input.guides != network::as_before) command_.hand.guides = input.guides;
-    if (input.guide_strength >= 0.0) command_.hand.guide_strength = input.guide_strength;
-    if (input.compliant != network::as_before) command_.hand.compliant = input.compliant;
+    driver_ = page_->driver();
+    page_->write(R_WT, command_);
   }
 
   /// A device reports itself whether it is silent; it then counts as at rest. It is also read while
@@ -141,7 +119,8 @@ class OperatorInput {
   }
 
   network::ScriptedOperator script_;
-  Controls* controls_;
+  std::optional<visual::PageCommand> page_;  ///< none: no page can drive
+  bool over_device_ = false;
   devices::DeviceLink* device_;
 #ifdef REPEL_TELEOP_DEVICES
   devices::HandFollower follower_;
@@ -149,7 +128,6 @@ class OperatorInput {
   const TickRecord* recorded_ = nullptr;
   Driver driver_ = Driver::script;
   network::Command command_;
-  double unheard_ = 0.0;  ///< [s] since the last post
   bool has_let_go_ = false;
   bool awaits_ = false;
 };

@@ -12,7 +12,7 @@ namespace repel::teleop {
 struct SessionOptions {
   bool view = false;
   std::string listen = "127.0.0.1:8448";  ///< ADDRESS:PORT of the live view
-  std::string page;                       ///< folder of the files of the page
+  std::string page;                       ///< folder of the files of the page; empty: found
   std::string device;                     ///< input device; empty: none
   std::string secret_file;   ///< its first line is the secret that a page must present; empty: none
   std::string secret_env;    ///< environment variable with the secret, instead

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include <repel/network/modules/spaceball.hpp>
+#include <repel/visual/live_view.hpp>
 
 #include "arm_inputs_info.hpp"
 #include "listening.hpp"
-#include "live_view.hpp"
+#include "visuals_info.hpp"
 
 namespace repel::teleop {
 namespace {
@@ -36,26 +37,17 @@ visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& head
   const scene::Scene& scene = prepared.scene;
   const Cell& cell = prepared.cell;
   const RunOptions& options = prepared.options;
-  visual::SceneInfo info;
+  visual::SceneInfo info = visual::scene_info_of(cell, scene.name);
   info.gaps = gaps_info_of(prepared.gaps);
-  info.scene = scene.name;
-  info.rate_hz = options.rate_hz;
   info.replay = is_replay;
   info.duration = info.replay ? options.seconds : 0.0;
   const auto spare =
       cell.loose().subspan(scene.loose.size(), static_cast<std::size_t>(scene.spare.count));
   info.spare.assign(spare.begin(), spare.end());
   for (std::size_t i = 0; i < heading.arms.size(); ++i) {
-    const ArmHeading& arm = heading.arms[i];
-    visual::ArmInfo& added = info.arms.emplace_back();
-    added.name = arm.name;
-    added.tool = arm.tool;
-    added.links = arm.links;
-    for (const JointType type : arm.joints) {
-      added.joints.emplace_back(type == JointType::revolute ? "revolute" : "prismatic");
-    }
-    added.modules = arm.modules;
-    added.phases = arm.phases;
+    visual::ArmInfo& added = info.arms[i];
+    added.modules = heading.arms[i].modules;
+    added.phases = heading.arms[i].phases;
     for (const network::Phase& phase : scene.arm_setup(i).script) {
       const double rate = std::abs(phase.lever_rate);
       if (rate > added.max_lever_rate) added.max_lever_rate = rate;
@@ -75,25 +67,26 @@ class ServedView final : public View {
  public:
   ServedView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
              const SessionOptions& session, const std::string& device)
-      : show_(info, world, tap, controls, device,
-              !session.view_only &&
-                  (device.empty() || session.page_drives || !controls.no_driving.empty())),
-        server_(options_of(session), visual::load_assets(session.page), show_) {
-    announce(session, server_.url());
+      : served_(info, world, tap, controls, options_of(session, device, controls)) {
+    announce(session, served_.url());
   }
 
  private:
-  static visual::ServerOptions options_of(const SessionOptions& session) {
+  static visual::ViewOptions options_of(const SessionOptions& session, const std::string& device,
+                                        const Controls& controls) {
     const Place place = place_of(session.listen).value_or(Place{});
-    visual::ServerOptions options;
-    options.address = place.address;
-    options.port = place.port;
-    options.secret = session.secret;
+    visual::ViewOptions options;
+    options.pages_drive = !session.view_only &&
+                          (device.empty() || session.page_drives || !controls.no_driving.empty());
+    options.master = device;
+    options.page = session.page;
+    options.server.address = place.address;
+    options.server.port = place.port;
+    options.server.secret = session.secret;
     return options;
   }
 
-  LiveView show_;
-  visual::Server server_;
+  visual::RunView served_;
 };
 
 }  // namespace
@@ -102,6 +95,7 @@ std::unique_ptr<View> open_view(const PreparedRun& prepared, const Heading& head
                                 Tap& tap, Controls& controls, const SessionOptions& session,
                                 const std::string& device) {
   visual::SceneInfo info = scene_info_of(prepared, heading, is_replay);
+  add_visuals(prepared, info);
   if (!controls.no_conduct.empty()) info.spare.clear();
   return std::make_unique<ServedView>(info, prepared.cell.world(), tap, controls, session, device);
 }

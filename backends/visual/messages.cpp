@@ -35,6 +35,30 @@ Json levels_of(const Shape& shape) {
   return levels;
 }
 
+/// In steps of 1e-5 m: many vertices, and nobody sees more.
+Json vertices_of(const TriangleMesh& mesh) {
+  Json vertices = Json::array();
+  for (const Vec3& p : mesh.vertices) {
+    for (const double x : p) vertices.push_back(std::round(1e5 * x) / 1e5);
+  }
+  return vertices;
+}
+
+Json to_json(const VisualInfo& info) {
+  Json triangles = Json::array();
+  for (const auto& triangle : info.mesh.triangles) {
+    for (const int vertex : triangle) triangles.push_back(vertex);
+  }
+  Json json{{"name", info.name},
+            {"body", info.body.index},
+            {"arm", info.arm},
+            {"pose", visual::to_json(info.X_BV)},
+            {"vertices", vertices_of(info.mesh)},
+            {"triangles", std::move(triangles)}};
+  if (info.color) json["color"] = *info.color;
+  return json;
+}
+
 /// The owner of a body: arm index and "tool" or "link"; for none, -1 and "obstacle".
 std::pair<int, const char*> owner_of(const SceneInfo& info, BodyId body) {
   for (std::size_t i = 0; i < info.arms.size(); ++i) {
@@ -180,6 +204,7 @@ std::string scene_message(const SceneInfo& info, const World& world) {
              {"pairs", std::move(pairs)},
              {"arms", std::move(arms)}};
   for (const PartId id : info.spare) scene["spare"].push_back(id.index);
+  for (const VisualInfo& each : info.visuals) scene["visuals"].push_back(to_json(each));
   return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Code that the pages of the adapters show is that of the adapters.
+// Code that the pages of adapters and examples show is theirs.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -34,9 +34,9 @@ std::vector<std::string> blocks_of(const std::string& page) {
   return blocks;
 }
 
-class Pages : public testing::TestWithParam<std::string> {};
+class PagesOfAdapters : public testing::TestWithParam<std::string> {};
 
-TEST_P(Pages, ShowTheCompiledCode) {
+TEST_P(PagesOfAdapters, ShowTheCompiledCode) {
   std::string sources;
   for (const auto& file : std::filesystem::directory_iterator("examples/adapters/" + GetParam())) {
     std::ifstream source(file.path());
@@ -50,7 +50,19 @@ TEST_P(Pages, ShowTheCompiledCode) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Adapters, Pages, testing::Values("torque_callback", "update_loop"));
+TEST(Pages, ShowTheExampleWithTheLiveView) {
+  std::ifstream source("examples/05_own_view.cpp");
+  const std::string code = flush_left(source);
+  std::ifstream page("docs/own_view.md");
+  const std::vector<std::string> blocks = blocks_of(flush_left(page));
+  EXPECT_EQ(blocks.size(), 3U);
+  for (const std::string& block : blocks) {
+    EXPECT_NE(code.find(block), std::string::npos) << block;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Adapters, PagesOfAdapters,
+                         testing::Values("torque_callback", "update_loop"));
 
 }  // namespace pages_test
 }  // namespace repel::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary messages from three pages, valid and invalid: at most one page has control, all input
 // to the loop is finite and in range, and every answer is JSON.
-#include <live_view.hpp>
+#include <live_pages.hpp>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 #include <fuzz/bytes.hpp>
 
-namespace repel::teleop {
+namespace repel::visual {
 namespace {
 
 using fuzz::Bytes;
@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 constexpr int most_pages = 3;
 
 /// The messages to the pages about the present operator.
-class ToldPages final : public visual::Pages {
+class ToldPages final : public Pages {
  public:
   std::array<bool, most_pages + 1> open{};
   std::array<bool, most_pages + 1> drives{};
@@ -140,11 +140,11 @@ struct Stage {
     world.add_pair(tip, wall, {.range = 0.01});
     return world;
   }
-  [[nodiscard]] visual::SceneInfo info() const {
-    visual::SceneInfo info;
+  [[nodiscard]] SceneInfo info() const {
+    SceneInfo info;
     info.replay = replay;
     info.duration = 10.0;
-    visual::ArmInfo& arm = info.arms.emplace_back();
+    ArmInfo& arm = info.arms.emplace_back();
     arm.tool = tool;
     if (!can_switch) return info;
     arm.fixtures = {{.name = "seam"}, {.name = "way in"}};
@@ -162,7 +162,7 @@ struct Stage {
   Tap tap;
   Controls controls;
   ToldPages pages;
-  LiveView show;
+  LivePages show;
 };
 
 bool moves(const DriverInput& input) {
@@ -195,7 +195,7 @@ void check(Stage& stage, int page) {
     require(is_finite(input.rates) && is_finite(input.second) && is_finite(input.direction_W) &&
                 std::isfinite(input.lever_rate),
             "what is said to the loop is finite");
-    const visual::ArmInfo arm;
+    const ArmInfo arm;
     constexpr double rounding = 1.0 + 1e-12;
     require(input.rates.linear.norm() <= arm.max_speed * rounding &&
                 input.rates.angular.norm() <= arm.max_turn * rounding &&
@@ -233,7 +233,7 @@ void run(Bytes& bytes) {
       open = true;
       const bool looks_on = bytes.take<std::uint8_t>() % 8 == 0;
       pages.looks_on[static_cast<std::size_t>(page)] = looks_on;
-      stage.show.opened(page, looks_on ? visual::Role::looks_on : visual::Role::drives, pages);
+      stage.show.opened(page, looks_on ? Role::looks_on : Role::drives, pages);
     } else if (what < 16) {
       open = false;
       pages.drives[static_cast<std::size_t>(page)] = false;
@@ -252,10 +252,10 @@ void run(Bytes& bytes) {
 }
 
 }  // namespace
-}  // namespace repel::teleop
+}  // namespace repel::visual
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   repel::fuzz::Bytes bytes(data, size);
-  repel::teleop::run(bytes);
+  repel::visual::run(bytes);
   return 0;
 }

@@ -17,6 +17,7 @@
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/robots/urdf.hpp>
+#include <repel/robots/visuals.hpp>
 
 namespace repel {
 namespace {
@@ -51,6 +52,23 @@ void check(const Robot& robot) {
   }
 }
 
+/// What a robot looks like never refuses it, and a page can draw it.
+void check(const RobotVisuals& visuals) {
+  std::size_t triangles = 0;
+  for (const RobotVisual& each : visuals.all) {
+    require(is_finite(each.X_LV), "a visual is somewhere");
+    for (const Vec3& p : each.mesh.vertices) require(is_finite(p), "and so is its corner");
+    for (const auto& triangle : each.mesh.triangles) {
+      for (const int vertex : triangle) {
+        require(vertex >= 0 && static_cast<std::size_t>(vertex) < each.mesh.vertices.size(),
+                "a triangle is of vertices");
+      }
+    }
+    triangles += each.mesh.triangles.size();
+  }
+  require(triangles <= most_visual_triangles, "they are bounded");
+}
+
 std::string robot_with_mesh(const std::string& file) {
   return "<robot name='r'><link name='base'/><link name='arm'><collision><geometry>"
          "<mesh filename='" +
@@ -74,7 +92,9 @@ void check_text(const std::string& text) {
     (void)load_disabled_collisions(folder.with("robot.srdf", text), robot);
   } else if (has(text, "<robot") || has(text, "<link")) {
     (void)folder.with("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n");
-    check(parse_arm(text, {}, folder / "robot.urdf"));
+    const Robot robot = parse_arm(text, {}, folder / "robot.urdf");
+    check(robot);
+    check(parse_visuals(text, robot, {}, folder / "robot.urdf"));
   } else {
     const std::string mesh = "mesh." + ending_of(text);
     (void)folder.with(mesh, text);

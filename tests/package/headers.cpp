@@ -7,6 +7,7 @@
 #include <repel/robots/parts.hpp>
 #include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
+#include <repel/robots/visuals.hpp>
 #endif
 #ifdef PART_link
 #include <repel/link/link_thread.hpp>
@@ -43,5 +44,6 @@
 #include <repel/scene/scene.hpp>
 #endif
 #ifdef PART_visual
+#include <repel/visual/live_view.hpp>
 #include <repel/visual/messages.hpp>
 #endif

@@ -3,14 +3,17 @@
 /// The messages to the page, as JSON text; docs/live_view.md describes the format.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <repel/base/layout.hpp>
+#include <repel/geometry/triangle_mesh.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/visual/arm_info.hpp>
@@ -35,6 +38,16 @@ struct GapsInfo {
   std::vector<Gap> deepest;  ///< some of them, the deepest first
 };
 
+/// What a part of an arm looks like, or what it stands on: only looked at, without any force.
+struct VisualInfo {
+  std::string name;                              ///< as in "base_link"
+  BodyId body;                                   ///< that it moves with; World::fixed: none
+  int arm = -1;                                  ///< that it belongs to
+  Pose X_BV = Pose::Identity();                  ///< [m] in its body
+  std::optional<std::array<double, 4>> color{};  ///< red, green, blue, opacity, 0 to 1
+  TriangleMesh mesh;
+};
+
 /// Properties that are constant while a scene runs.
 struct SceneInfo {
   std::string scene;           ///< its name
@@ -44,6 +57,7 @@ struct SceneInfo {
   std::vector<ArmInfo> arms;   ///< in the order of the cell
   std::vector<PartId> spare;   ///< reserved for boxes from a page
   std::vector<GapsInfo> gaps;  ///< of the meshes that are not covered as a whole
+  std::vector<VisualInfo> visuals;
 };
 
 /// `scene`: bodies, parts with their levels as meshes, pairs, arms. Takes milliseconds.

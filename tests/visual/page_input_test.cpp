@@ -5,15 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
-namespace repel::teleop {
+namespace repel::visual {
 namespace page_input_test {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
 
 /// Two fixtures, compliance, a scale and two hands.
-visual::ArmInfo arm_of_two_hands() {
-  visual::ArmInfo arm;
+ArmInfo arm_of_two_hands() {
+  ArmInfo arm;
   arm.fixtures = {{.name = "seam"}, {.name = "way in"}};
   arm.relief = network::ReliefOptions{.frame = network::ReliefFrame::world};
   arm.has_scale = arm.has_handle = arm.has_second_handle = true;
@@ -27,7 +27,7 @@ json servo(double x, const char* hand) {
 
 /// An input at a time of its own.
 struct Bench {
-  explicit Bench(const visual::ArmInfo& arm = arm_of_two_hands()) : input(arm) {}
+  explicit Bench(const ArmInfo& arm = arm_of_two_hands()) : input(arm) {}
 
   std::string say(const json& message) { return input.take(message.at("type"), message, now); }
 
@@ -78,7 +78,7 @@ TEST(PageInput, EachSwitchLeavesTheOthersAndOutlastsItsPage) {
 }
 
 TEST(PageInput, WithoutTheModulesNothingCanBeSwitched) {
-  Bench bench{visual::ArmInfo{}};
+  Bench bench{ArmInfo{}};
   for (const json& message :
        {json{{"type", "scale"}, {"factor", 1}}, json{{"type", "guides"}, {"on", json::array()}},
         json{{"type", "compliant"}, {"directions", json::array()}}, servo(0.1, "second")}) {
@@ -88,4 +88,4 @@ TEST(PageInput, WithoutTheModulesNothingCanBeSwitched) {
 }
 
 }  // namespace page_input_test
-}  // namespace repel::teleop
+}  // namespace repel::visual

@@ -13,16 +13,16 @@
 #include <utility>
 #include <vector>
 
-#include "live_view.hpp"
+#include "live_pages.hpp"
 #include "pairs/boxes.hpp"
 #include "support/web_page.hpp"
 
-namespace repel::teleop {
+namespace repel::visual {
 
 using Json = nlohmann::json;
 
 /// Records the messages sent to each page.
-class FakePages final : public visual::Pages {
+class FakePages final : public Pages {
  public:
   void send(int page, std::string text) override { said_.emplace_back(page, Json::parse(text)); }
   void send_all(std::string text) override { said_.emplace_back(0, Json::parse(text)); }
@@ -54,13 +54,13 @@ inline const Json* last_of(const std::vector<Json>& messages, const char* type) 
   return last;
 }
 
-inline visual::SceneInfo scene_info_of(BodyId tool, bool replay, std::vector<PartId> spare = {}) {
-  visual::SceneInfo info;
+inline SceneInfo scene_info_of(BodyId tool, bool replay, std::vector<PartId> spare = {}) {
+  SceneInfo info;
   info.scene = "stage";
   info.replay = replay;
   info.spare = std::move(spare);
   info.duration = replay ? 10.0 : 0.0;
-  visual::ArmInfo& arm = info.arms.emplace_back();
+  ArmInfo& arm = info.arms.emplace_back();
   arm.tool = tool;
   arm.joints = {"revolute"};
   return info;
@@ -78,7 +78,7 @@ struct LiveStage {
              device, pages_drive) {
     for (int page = 1; page <= 3; ++page) {
       ++pages.open;
-      show.opened(page, visual::Role::drives, pages);
+      show.opened(page, Role::drives, pages);
     }
     (void)pages.heard_by(1);
   }
@@ -116,7 +116,7 @@ struct LiveStage {
   Tap tap;
   Controls controls;
   FakePages pages;
-  LiveView show;
+  LivePages show;
 };
 
 inline Json servo(double x, double y, double z, bool clutch = true) {
@@ -127,4 +127,4 @@ inline Json servo(double x, double y, double z, bool clutch = true) {
           {"clutch", clutch}};
 }
 
-}  // namespace repel::teleop
+}  // namespace repel::visual

@@ -3,18 +3,18 @@
 
 #include <repel/schedule/world_changes.hpp>
 
-#include "teleop/live_stage.hpp"
+#include "visual/live_stage.hpp"
 
-namespace repel::teleop {
+namespace repel::visual {
 namespace live_view_test {
 
 const Json take{{"type", "take"}};
 const Json release{{"type", "release"}};
 
-TEST(LiveView, WhoComesIsToldAll) {
+TEST(LivePages, WhoComesIsToldAll) {
   LiveStage stage;
   ++stage.pages.open;
-  stage.show.opened(4, visual::Role::drives, stage.pages);
+  stage.show.opened(4, Role::drives, stage.pages);
   const std::vector<Json> heard = stage.pages.heard_by(4);
   ASSERT_GE(heard.size(), 3U);
   EXPECT_EQ(heard.front().at("type"), "scene");
@@ -26,7 +26,7 @@ TEST(LiveView, WhoComesIsToldAll) {
   EXPECT_EQ(last_of(heard, "operator")->at("pages"), 4);
 }
 
-TEST(LiveView, OnePageAtATimeHasTheControls) {
+TEST(LivePages, OnePageAtATimeHasTheControls) {
   LiveStage stage;
   EXPECT_EQ(stage.say(1, servo(0.1, 0, 0)), "take the controls first");
   EXPECT_EQ(stage.say(1, release), "take the controls first");
@@ -53,7 +53,7 @@ TEST(LiveView, OnePageAtATimeHasTheControls) {
   EXPECT_EQ(stage.say(2, take), "");
 }
 
-TEST(LiveView, EveryPageIsToldWhoDrives) {
+TEST(LivePages, EveryPageIsToldWhoDrives) {
   LiveStage stage;
   stage.show.heard(1, take.dump(), stage.pages);
   for (const int page : {1, 2, 3}) {
@@ -69,7 +69,7 @@ TEST(LiveView, EveryPageIsToldWhoDrives) {
   EXPECT_EQ(last_of(heard, "operator")->at("by"), "nobody");
 }
 
-TEST(LiveView, WithoutTheClutchTheHandRests) {
+TEST(LivePages, WithoutTheClutchTheHandRests) {
   LiveStage stage;
   (void)stage.say(1, take);
   Json message = servo(0.1, 0, 0);
@@ -86,7 +86,7 @@ TEST(LiveView, WithoutTheClutchTheHandRests) {
   EXPECT_TRUE(stage.input().rates.linear.isZero(0.0));
 }
 
-TEST(LiveView, FrameAndLeverArePassedOn) {
+TEST(LivePages, FrameAndLeverArePassedOn) {
   LiveStage stage;
   (void)stage.say(1, take);
   Json message = servo(0.1, 0, 0);
@@ -101,7 +101,7 @@ TEST(LiveView, FrameAndLeverArePassedOn) {
   EXPECT_EQ(stage.input().lever_rate, -0.5);
 }
 
-TEST(LiveView, ClosingFreesTheControlsOnlyAfterASilence) {
+TEST(LivePages, ClosingFreesTheControlsOnlyAfterASilence) {
   LiveStage stage;
   (void)stage.say(1, take);
   --stage.pages.open;
@@ -118,7 +118,7 @@ TEST(LiveView, ClosingFreesTheControlsOnlyAfterASilence) {
   EXPECT_EQ(stage.say(2, take), "");
 }
 
-TEST(LiveView, WhoSpeaksAgainIsNoLongerSilent) {
+TEST(LivePages, WhoSpeaksAgainIsNoLongerSilent) {
   LiveStage stage;
   (void)stage.say(1, take);
   EXPECT_TRUE(stage.until_told([](const Json& who) { return who.at("silent") == true; }));
@@ -127,7 +127,7 @@ TEST(LiveView, WhoSpeaksAgainIsNoLongerSilent) {
       [](const Json& who) { return who.at("by") == "page" && who.at("silent") == false; }));
 }
 
-TEST(LiveView, PauseStepAndResume) {
+TEST(LivePages, PauseStepAndResume) {
   LiveStage stage;
   EXPECT_EQ(stage.say(1, Json{{"type", "pause"}}), "");
   EXPECT_TRUE(stage.controls.paused);
@@ -146,7 +146,7 @@ TEST(LiveView, PauseStepAndResume) {
   EXPECT_EQ(stage.controls.steps, 1);
 }
 
-TEST(LiveView, RestartGivesTheControlsBackToTheScript) {
+TEST(LivePages, RestartGivesTheControlsBackToTheScript) {
   LiveStage stage;
   (void)stage.say(1, take);
   (void)stage.say(1, Json{{"type", "pause"}});
@@ -158,14 +158,14 @@ TEST(LiveView, RestartGivesTheControlsBackToTheScript) {
   EXPECT_EQ(stage.say(2, take), "");
 }
 
-TEST(LiveView, ALogIsNotBegunTwice) {
+TEST(LivePages, ALogIsNotBegunTwice) {
   LiveStage stage;
   stage.controls.may_restart = false;
   EXPECT_NE(stage.say(1, Json{{"type", "restart"}}), "");
   EXPECT_FALSE(stage.controls.restart);
 }
 
-TEST(LiveView, ARobotElsewhereIsDrivenAndNothingElse) {
+TEST(LivePages, ARobotElsewhereIsDrivenAndNothingElse) {
   LiveStage stage(false, "", true, {PartId{1}});
   stage.controls.no_conduct = "it is elsewhere";
   for (const Json& message :
@@ -182,7 +182,7 @@ TEST(LiveView, ARobotElsewhereIsDrivenAndNothingElse) {
   EXPECT_EQ(stage.input().driver, Driver::page);
 }
 
-TEST(LiveView, AnOperatorElsewhereKeepsTheControls) {
+TEST(LivePages, AnOperatorElsewhereKeepsTheControls) {
   LiveStage stage;
   stage.controls.no_driving = "the operator is elsewhere";
   for (const Json& message :
@@ -194,7 +194,7 @@ TEST(LiveView, AnOperatorElsewhereKeepsTheControls) {
   EXPECT_TRUE(stage.controls.paused);
 }
 
-TEST(LiveView, OnlyARecordingCanBeWoundOn) {
+TEST(LivePages, OnlyARecordingCanBeWoundOn) {
   const Json seek{{"type", "seek"}, {"time_s", 3.2}};
   const Json speed{{"type", "speed"}, {"factor", 0.25}};
   LiveStage live;
@@ -217,7 +217,7 @@ TEST(LiveView, OnlyARecordingCanBeWoundOn) {
 }
 
 // A time beyond the end is clamped to the last tick.
-TEST(LiveView, ARecordingIsNotWoundBeyondItsLastTick) {
+TEST(LivePages, ARecordingIsNotWoundBeyondItsLastTick) {
   for (const double time : {9.9976, 9.999, 10.0, 1000.0}) {
     LiveStage replay(true);
     EXPECT_EQ(replay.say(1, Json{{"type", "seek"}, {"time_s", time}}), "");
@@ -226,7 +226,7 @@ TEST(LiveView, ARecordingIsNotWoundBeyondItsLastTick) {
 }
 
 /// The message to a newly opened page about the present operator.
-Json operator_of(LiveStage& stage, visual::Role role = visual::Role::drives) {
+Json operator_of(LiveStage& stage, Role role = Role::drives) {
   ++stage.pages.open;
   stage.show.opened(4, role, stage.pages);
   return *last_of(stage.pages.heard_by(4), "operator");
@@ -259,7 +259,7 @@ void expect_onlooker(LiveStage& stage, int number, const std::string& why) {
   EXPECT_EQ(stage.controls.speed, 1.0);
 }
 
-TEST(LiveView, NobodyDrivesARecording) {
+TEST(LivePages, NobodyDrivesARecording) {
   LiveStage replay(true);
   for (const Json& message : {take, release, servo(0.1, 0, 0)}) {
     EXPECT_EQ(replay.say(1, message), "this is a recording");
@@ -268,7 +268,7 @@ TEST(LiveView, NobodyDrivesARecording) {
   EXPECT_EQ(operator_of(replay).at("by"), "recording");
 }
 
-TEST(LiveView, WhileADeviceDrivesPagesLookOn) {
+TEST(LivePages, WhileADeviceDrivesPagesLookOn) {
   LiveStage stage(false, "Spaceball on /run/spnav.sock");
   const std::string why = "Spaceball on /run/spnav.sock has the controls: pages look on only";
   expect_onlooker(stage, 1, why);
@@ -278,7 +278,7 @@ TEST(LiveView, WhileADeviceDrivesPagesLookOn) {
   EXPECT_EQ(who.at("why_not"), why);
 }
 
-TEST(LiveView, APageMayTakeTheControlsFromADeviceWhereThatIsAllowedAndGivesThemBack) {
+TEST(LivePages, APageMayTakeTheControlsFromADeviceWhereThatIsAllowedAndGivesThemBack) {
   LiveStage stage(false, "Spaceball", true);
   EXPECT_EQ(operator_of(stage).at("looks_on"), false);
   EXPECT_EQ(stage.say(1, servo(0.1, 0, 0)), "take the controls first");
@@ -295,7 +295,7 @@ TEST(LiveView, APageMayTakeTheControlsFromADeviceWhereThatIsAllowedAndGivesThemB
   EXPECT_TRUE(stage.controls.restart);
 }
 
-TEST(LiveView, WherePagesLookOnNothingTheyAskForIsDone) {
+TEST(LivePages, WherePagesLookOnNothingTheyAskForIsDone) {
   for (const bool replay : {false, true}) {
     LiveStage stage(replay, "", false);
     expect_onlooker(stage, 1, "pages look on only");
@@ -303,22 +303,22 @@ TEST(LiveView, WherePagesLookOnNothingTheyAskForIsDone) {
   }
 }
 
-TEST(LiveView, AProgramThatIsNoBrowserLooksOnAndThePagesGoOnDriving) {
+TEST(LivePages, AProgramThatIsNoBrowserLooksOnAndThePagesGoOnDriving) {
   LiveStage stage;
-  EXPECT_EQ(operator_of(stage, visual::Role::looks_on).at("looks_on"), true);
+  EXPECT_EQ(operator_of(stage, Role::looks_on).at("looks_on"), true);
   expect_onlooker(stage, 4, "a program without an Origin or a secret looks on only");
   EXPECT_EQ(stage.say(1, take), "");
 }
 
 // The page itself respects these limits; another client need not.
-TEST(LiveView, NobodyIsFasterThanTheMasterOfTheScene) {
+TEST(LivePages, NobodyIsFasterThanTheMasterOfTheScene) {
   LiveStage stage;
   (void)stage.say(1, take);
   Json fast = servo(3, 0, 4);
   fast["angular"] = {0, -50, 0};
   EXPECT_EQ(stage.say(1, fast), "");
   ASSERT_TRUE(stage.posted());
-  const visual::ArmInfo info;
+  const ArmInfo info;
   EXPECT_TRUE(stage.input().rates.linear.isApprox(info.max_speed * Vec3(0.6, 0, 0.8)));
   EXPECT_TRUE(stage.input().rates.angular.isApprox(info.max_turn * Vec3(0, -1, 0)));
   for (const double rate : {1.6, 5.0, -100.0}) {
@@ -329,7 +329,7 @@ TEST(LiveView, NobodyIsFasterThanTheMasterOfTheScene) {
   }
 }
 
-TEST(LiveView, APictureIsShownWhenThereIsOne) {
+TEST(LivePages, APictureIsShownWhenThereIsOne) {
   LiveStage stage;
   Coprocessor coprocessor(stage.boxes.world, {});
   TickRecord record;
@@ -354,7 +354,7 @@ Json box_at(double x, double size = 0.1) {
   return {{"type", "add_box"}, {"size", {size, size, size}}, {"position", {x, 0, 0}}};
 }
 
-TEST(LiveView, BoxesComeMoveAndGoInTheSpareParts) {
+TEST(LivePages, BoxesComeMoveAndGoInTheSpareParts) {
   World world;
   const PartId spare = world.reserve("spare", Shape::sphere(0.01), 0.2);
   WorldChanges changes(world);
@@ -376,7 +376,7 @@ TEST(LiveView, BoxesComeMoveAndGoInTheSpareParts) {
   EXPECT_EQ(changes.counts().applied, 2);
   EXPECT_TRUE(world.is_there(spare));
   // Who comes later is told of its shape.
-  stage.show.opened(4, visual::Role::drives, stage.pages);
+  stage.show.opened(4, Role::drives, stage.pages);
   const std::vector<Json> heard = stage.pages.heard_by(4);
   ASSERT_NE(last_of(heard, "part"), nullptr);
   EXPECT_EQ(last_of(heard, "part")->at("part"), spare.index);
@@ -388,4 +388,4 @@ TEST(LiveView, BoxesComeMoveAndGoInTheSpareParts) {
 }
 
 }  // namespace live_view_test
-}  // namespace repel::teleop
+}  // namespace repel::visual

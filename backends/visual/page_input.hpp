@@ -9,20 +9,19 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <repel/visual/arm_info.hpp>
+#include <repel/visual/controls.hpp>
 
-#include "controls.hpp"
-
-namespace repel::teleop {
+namespace repel::visual {
 
 /// Each message says a part: the rates of one hand, or what is switched. The control loop reads the
 /// newest input only, so each one has all that was said before: what was switched stays so, also
-/// from page to page, and the rates of a hand last as long as OperatorInput::rest_after.
+/// from page to page, and the rates of a hand last as long as PageCommand::rest_after.
 class PageInput {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   /// @param arm the one that is driven
-  explicit PageInput(const visual::ArmInfo& arm) : arm_(arm) {}
+  explicit PageInput(const ArmInfo& arm) : arm_(arm) {}
 
   /// Whether messages of this type belong here.
   [[nodiscard]] static bool knows(const std::string& type);
@@ -46,9 +45,9 @@ class PageInput {
   [[nodiscard]] std::string set_guides(const nlohmann::json& message);
   [[nodiscard]] std::string set_compliant(const nlohmann::json& message);
 
-  visual::ArmInfo arm_;
+  ArmInfo arm_;
   DriverInput input_;
   Time first_said_, second_said_;  ///< when the rates of each hand were
 };
 
-}  // namespace repel::teleop
+}  // namespace repel::visual

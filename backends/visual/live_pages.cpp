@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "live_view.hpp"
+#include "live_pages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "message_fields.hpp"
-#include "operator_input.hpp"
+#include <repel/visual/page_command.hpp>
 
-namespace repel::teleop {
+#include "message_fields.hpp"
+
+namespace repel::visual {
 namespace {
 
 using Json = nlohmann::json;
@@ -36,36 +37,35 @@ const char* to_word(Driver driver, bool replay) {
 
 }  // namespace
 
-LiveView::LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
-                   const std::string& device, bool pages_drive)
+LivePages::LivePages(const SceneInfo& info, const World& world, Tap& tap, Controls& controls,
+                     const std::string& device, bool pages_drive)
     : info_(info),
       world_(world),
       tap_(tap),
       controls_(controls),
       device_(device),
       pages_drive_(pages_drive),
-      greeting_(visual::scene_message(info, world)),
+      greeting_(scene_message(info, world)),
       period_(std::llround(1e9 / info.rate_hz)),
       input_(info_.arms.front()),
       driver_(device.empty() ? Driver::script : Driver::device) {}
 
-void LiveView::opened(int page, visual::Role role, visual::Pages& pages) {
+void LivePages::opened(int page, Role role, Pages& pages) {
   open_pages_[page] = role;
   pages.send(page, greeting_);
-  if (!reshaped_.empty()) pages.send(page, visual::parts_message(reshaped_));
+  if (!reshaped_.empty()) pages.send(page, parts_message(reshaped_));
   say_who_drives(pages);
-  pages.send(page, visual::timing_message(timing_));
+  pages.send(page, timing_message(timing_));
   if (!has_picture_) return;
-  pages.send(page,
-             visual::frame_message(info_, world_, tap_.pictures().newest(), {}, !controls_.paused));
+  pages.send(page, frame_message(info_, world_, tap_.pictures().newest(), {}, !controls_.paused));
 }
 
-void LiveView::closed(int page, visual::Pages& pages) {
+void LivePages::closed(int page, Pages& pages) {
   open_pages_.erase(page);
   say_who_drives(pages);  // if it was driving, watch_driver handles its silence
 }
 
-void LiveView::heard(int page, std::string_view said, visual::Pages& pages) {
+void LivePages::heard(int page, std::string_view said, Pages& pages) {
   const Json message = Json::parse(said, nullptr, false);
   if (message.is_discarded() || !message.is_object()) {
     return pages.send(page,
@@ -83,8 +83,7 @@ void LiveView::heard(int page, std::string_view said, visual::Pages& pages) {
   if (driver != driver_ || driving != page_) say_who_drives(pages);
 }
 
-std::string LiveView::obey(int page, const std::string& type, const Json& message,
-                           visual::Pages& pages) {
+std::string LivePages::obey(int page, const std::string& type, const Json& message, Pages& pages) {
   std::string bar = bar_of(page);
   if (!bar.empty()) return bar;
   if (page_ != nobody && page_ != page) return "another page has the controls";
@@ -95,16 +94,16 @@ std::string LiveView::obey(int page, const std::string& type, const Json& messag
   return conduct(type, message);
 }
 
-std::string LiveView::bar_of(int page) const {
+std::string LivePages::bar_of(int page) const {
   if (!pages_drive_ && !device_.empty()) return device_ + " has the controls: pages look on only";
   if (!pages_drive_) return "pages look on only";
   const auto found = open_pages_.find(page);
-  if (found == open_pages_.end() || found->second == visual::Role::looks_on)
+  if (found == open_pages_.end() || found->second == Role::looks_on)
     return "a program without an Origin or a secret looks on only";
   return {};
 }
 
-std::string LiveView::drive(int page, const std::string& type, const Json& message) {
+std::string LivePages::drive(int page, const std::string& type, const Json& message) {
   if (info_.replay) return "this is a recording";
   if (!controls_.no_driving.empty()) return controls_.no_driving;
   if (type == "take") {
@@ -124,7 +123,7 @@ std::string LiveView::drive(int page, const std::string& type, const Json& messa
 }
 
 /// A box in one of the spare parts of the scene: it comes, moves or goes.
-std::string LiveView::change(const std::string& type, const Json& message, visual::Pages& pages) {
+std::string LivePages::change(const std::string& type, const Json& message, Pages& pages) {
   if (info_.replay) return "this is a recording";
   if (!controls_.no_conduct.empty()) return controls_.no_conduct;
   if (!controls_.may_change) return "a recording is being written, which has no room for this";
@@ -141,7 +140,7 @@ std::string LiveView::change(const std::string& type, const Json& message, visua
     });
     if (!comes) return "no spare part is free, or has room for it";
     reshaped_.insert_or_assign(id.index, box);
-    pages.send_all(visual::part_message(id, box));
+    pages.send_all(part_message(id, box));
     return {};
   }
   const auto named = number(message, "part", 1e6);
@@ -161,7 +160,7 @@ std::string LiveView::change(const std::string& type, const Json& message, visua
   return {};
 }
 
-std::string LiveView::conduct(const std::string& type, const Json& message) {
+std::string LivePages::conduct(const std::string& type, const Json& message) {
   const bool conducts = type == "pause" || type == "resume" || type == "step" || type == "restart";
   if (conducts && !controls_.no_conduct.empty()) return controls_.no_conduct;
   if (type == "pause" || type == "resume") {
@@ -199,7 +198,7 @@ std::string LiveView::conduct(const std::string& type, const Json& message) {
   return {};
 }
 
-void LiveView::hand_over(Driver driver, int page) {
+void LivePages::hand_over(Driver driver, int page) {
   driver_ = driver;
   page_ = page;
   silent_ = false;
@@ -208,12 +207,12 @@ void LiveView::hand_over(Driver driver, int page) {
   post();
 }
 
-void LiveView::post() {
+void LivePages::post() {
   controls_.input.draft() = input_.of(Clock::now());
   controls_.input.post();
 }
 
-void LiveView::say_who_drives(visual::Pages& pages) const {
+void LivePages::say_who_drives(Pages& pages) const {
   for (const auto& [page, role] : open_pages_) {
     const std::string bar = bar_of(page);
     pages.send(page, Json{{"type", "operator"},
@@ -228,7 +227,7 @@ void LiveView::say_who_drives(visual::Pages& pages) const {
   }
 }
 
-void LiveView::read_samples() {
+void LivePages::read_samples() {
   for (const TickSample* sample = tap_.samples().front(); sample != nullptr;
        sample = tap_.samples().front()) {
     timing_.add(sample->times, period_);
@@ -239,7 +238,7 @@ void LiveView::read_samples() {
   timing_.dropped = tap_.samples().dropped();
 }
 
-void LiveView::watch_driver(visual::Pages& pages) {
+void LivePages::watch_driver(Pages& pages) {
   const bool was_silent = silent_;
   if (driver_ == Driver::device) {
     const Status status = tap_.pictures().newest().arms.front().status;
@@ -247,19 +246,19 @@ void LiveView::watch_driver(visual::Pages& pages) {
   }
   if (page_ != nobody) {
     const double unheard = std::chrono::duration<double>(Clock::now() - heard_).count();
-    silent_ = unheard > OperatorInput::silent_after;
-    if (unheard > OperatorInput::silent_after + 2.0)
+    silent_ = unheard > PageCommand::silent_after;
+    if (unheard > PageCommand::silent_after + 2.0)
       hand_over(device_.empty() ? Driver::nobody : Driver::device, nobody);
   }
   if (silent_ != was_silent) say_who_drives(pages);
 }
 
-void LiveView::refresh(visual::Pages& pages) {
+void LivePages::refresh(Pages& pages) {
   read_samples();
   watch_driver(pages);
   const std::map<std::int32_t, Shape> seen = controls_.shapes.take();
   for (const auto& [part, shape] : seen) reshaped_.insert_or_assign(part, shape);
-  if (!seen.empty() && pages.count() > 0) pages.send_all(visual::parts_message(seen));
+  if (!seen.empty() && pages.count() > 0) pages.send_all(parts_message(seen));
   const bool running = !controls_.paused;
   const bool is_new = tap_.pictures().take();
   const auto now = Clock::now();
@@ -270,16 +269,16 @@ void LiveView::refresh(visual::Pages& pages) {
     was_running_ = running;
     shown_ = now;
     if (pages.count() > 0) {
-      pages.show(visual::frame_message(info_, world_, tap_.pictures().newest(), recent_, running));
+      pages.show(frame_message(info_, world_, tap_.pictures().newest(), recent_, running));
     }
     recent_.clear();
   }
   if (now < next_timing_) return;
   next_timing_ = now + std::chrono::milliseconds(500);
-  if (pages.count() > 0) pages.send_all(visual::timing_message(timing_));
+  if (pages.count() > 0) pages.send_all(timing_message(timing_));
 }
 
-std::optional<LiveView::Clock::time_point> LiveView::next_refresh() const {
+std::optional<LivePages::Clock::time_point> LivePages::next_refresh() const {
   using std::chrono::nanoseconds;
   // The tap takes a picture in the first tick that ends at least this long after the last picture.
   const nanoseconds spacing =
@@ -293,4 +292,4 @@ std::optional<LiveView::Clock::time_point> LiveView::next_refresh() const {
   return due + (late / period_ + 1) * period_;
 }
 
-}  // namespace repel::teleop
+}  // namespace repel::visual

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Messages that the project's own page never sends.
-#include "teleop/live_stage.hpp"
+#include "visual/live_stage.hpp"
 
-namespace repel::teleop {
+namespace repel::visual {
 namespace live_view_abuse_test {
 
 std::string repeated(const std::string& text, int count) {
@@ -150,4 +150,4 @@ TEST(LiveShowAbuse, PagesThatAreNotThereHarmNobody) {
 }
 
 }  // namespace live_view_abuse_test
-}  // namespace repel::teleop
+}  // namespace repel::visual

@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include <repel/network/elements/changing_scale.hpp>
+#include <repel/visual/page_command.hpp>
 
 #include "message_fields.hpp"
-#include "operator_input.hpp"
 
-namespace repel::teleop {
+namespace repel::visual {
 namespace {
 
 using Json = nlohmann::json;
@@ -93,7 +93,7 @@ void PageInput::forget() {
 
 DriverInput PageInput::of(Time now) const {
   const auto is_old = [&](Time said) {
-    return std::chrono::duration<double>(now - said).count() > OperatorInput::rest_after;
+    return std::chrono::duration<double>(now - said).count() > PageCommand::rest_after;
   };
   DriverInput input = input_;
   if (is_old(first_said_)) {
@@ -199,4 +199,4 @@ std::string PageInput::set_compliant(const Json& message) {
   return {};
 }
 
-}  // namespace repel::teleop
+}  // namespace repel::visual

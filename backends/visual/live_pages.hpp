@@ -14,28 +14,28 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <repel/loop/tap.hpp>
+#include <repel/visual/controls.hpp>
 #include <repel/visual/messages.hpp>
 #include <repel/visual/server.hpp>
 
-#include "controls.hpp"
 #include "page_input.hpp"
 
-namespace repel::teleop {
+namespace repel::visual {
 
 /// Reads the tap and forwards the commands of the pages to the controls. One page at a time drives.
-class LiveView final : public visual::PageHandler {
+class LivePages final : public PageHandler {
  public:
   using Clock = std::chrono::steady_clock;
 
   /// @param device name of the master that drives whenever no page does; empty: none
   /// @param pages_drive false: pages may only watch
-  LiveView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
-           const std::string& device, bool pages_drive);
+  LivePages(const SceneInfo& info, const World& world, Tap& tap, Controls& controls,
+            const std::string& device, bool pages_drive);
 
-  void opened(int page, visual::Role role, visual::Pages& pages) override;
-  void heard(int page, std::string_view text, visual::Pages& pages) override;
-  void closed(int page, visual::Pages& pages) override;
-  void refresh(visual::Pages& pages) override;
+  void opened(int page, Role role, Pages& pages) override;
+  void heard(int page, std::string_view text, Pages& pages) override;
+  void closed(int page, Pages& pages) override;
+  void refresh(Pages& pages) override;
   /// Just after the tick that takes the next picture: serving a page during a tick would cost that
   /// tick cycles and cache; between two ticks it costs nothing.
   [[nodiscard]] std::optional<Clock::time_point> next_refresh() const override;
@@ -45,20 +45,20 @@ class LiveView final : public visual::PageHandler {
 
   /// Each executes the message; empty, or why it is refused.
   [[nodiscard]] std::string obey(int page, const std::string& type, const nlohmann::json& message,
-                                 visual::Pages& pages);
+                                 Pages& pages);
   [[nodiscard]] std::string drive(int page, const std::string& type, const nlohmann::json& message);
   [[nodiscard]] std::string change(const std::string& type, const nlohmann::json& message,
-                                   visual::Pages& pages);
+                                   Pages& pages);
   [[nodiscard]] std::string conduct(const std::string& type, const nlohmann::json& message);
   /// Why the page may not drive, pause, step or restart; empty: it may.
   [[nodiscard]] std::string bar_of(int page) const;
   void hand_over(Driver driver, int page);
   void post();
-  void say_who_drives(visual::Pages& pages) const;
+  void say_who_drives(Pages& pages) const;
   void read_samples();
-  void watch_driver(visual::Pages& pages);
+  void watch_driver(Pages& pages);
 
-  visual::SceneInfo info_;
+  SceneInfo info_;
   World world_;  ///< the initial world: names and shapes
   Tap& tap_;
   Controls& controls_;
@@ -66,9 +66,9 @@ class LiveView final : public visual::PageHandler {
   bool pages_drive_;
   std::string greeting_;
   std::chrono::nanoseconds period_;
-  visual::Timing timing_;
+  Timing timing_;
   std::vector<TickSample> recent_;  ///< since the last picture was sent
-  std::map<int, visual::Role> open_pages_;
+  std::map<int, Role> open_pages_;
   /// Of the parts that have got another shape: boxes from pages, and what a camera sees.
   std::map<std::int32_t, Shape> reshaped_;
   PageInput input_;
@@ -82,4 +82,4 @@ class LiveView final : public visual::PageHandler {
   Clock::time_point next_timing_;
 };
 
-}  // namespace repel::teleop
+}  // namespace repel::visual

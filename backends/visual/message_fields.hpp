@@ -11,7 +11,7 @@
 
 #include <repel/base/types.hpp>
 
-namespace repel::teleop::fields {
+namespace repel::visual::fields {
 
 inline constexpr const char* out_of_range = "a number is missing or out of range";
 
@@ -44,4 +44,4 @@ inline std::string text(const nlohmann::json& message, const char* name) {
   return found != message.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-}  // namespace repel::teleop::fields
+}  // namespace repel::visual::fields
