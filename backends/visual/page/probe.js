@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// pixels(), tinted(), extent(), look(), adapt(), send().
+// firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send().
 
 import { settings } from "./settings.js";
 import { state } from "./state.js";
@@ -41,6 +41,7 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         historyLength: state.history.length,
       };
     },
+    firstPicture: () => stage.first,
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),
     extent: () => cameras.extent(),

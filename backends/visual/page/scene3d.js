@@ -11,6 +11,7 @@ import { colour, onTheme } from "./theme.js";
 
 export class Stage {
   rendered = 0;
+  first = null;  // when the first picture was drawn, from the navigation on [ms]
   covered = () => 0;  // pixels of its height that lie below buttons
   onResize = () => {};  // hears of the width over the height that the picture had
   #dirty = true;
@@ -44,6 +45,7 @@ export class Stage {
     this.#dirty = false;
     this.renderer.render(this.scene, this.camera);
     this.rendered += 1;
+    this.first ??= performance.now();
     return true;
   }
 
