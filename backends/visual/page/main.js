@@ -38,7 +38,7 @@ import { at, norm, write } from "./words.js";
 
 const CLEAR_MS = 120;  // between two looks at what hides the tool
 const REST_MS = 5000;  // from when the page is hidden to when it lets its line go
-const PANELS_MS = 60;  // between two drawings of numbers and charts: faster cannot be read
+const PANELS_MS = 100;  // between two drawings of numbers and charts: faster cannot be read
 
 startTheme();
 startHelp();
@@ -66,7 +66,7 @@ const strips = [
   new Strip({ canvas: at("force-strip"), value: at("force-at"), history, series: "force",
               scale: 1, unit: "N", tint: "force", least: 10 }),
   new Strip({ canvas: at("distance-strip"), value: at("distance-at"), history,
-              series: "nearest", scale: 1000, unit: "mm", tint: "far", least: 5 }),
+              series: "nearest", scale: 1000, unit: "mm", tint: "far", bends: true }),
 ];
 
 const connection = new Connection(connected);
@@ -82,7 +82,7 @@ const drag = new Drag(stage, parts,
 const sticks = new Sticks(() => controls.take());
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks],
                               lever, hand, heading);
-startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras });
+startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips });
 
 const toolAt = new Vector3();
 const near = new Set();
@@ -116,11 +116,13 @@ function connected(yes, missing = "") {
 connection.on("scene", (scene) => {
   state.scene = scene;
   state.frame = null;
+  state.scripted = false;
   history.reset(scene.rate_hz);
   parts.build(scene);
   at("level").max = parts.mostLevels - 1;
   at("level").value = settings.level;
   readouts.scene(scene);
+  strips[1].zone = 1000 * Math.max(0, ...scene.parts.map((part) => part.range_m));
   gaps.scene(scene);
   fixtures.scene(scene);
   hand.scene();
@@ -137,6 +139,7 @@ connection.on("frame", (frame) => {
     history.clear();
   }
   state.frame = frame;
+  state.scripted ||= frame.phase !== "";
   controls.frame();
   history.add(frame.recent);
   fresh = true;
@@ -152,7 +155,10 @@ connection.on("operator", (operator) => {
   transport.operator(operator);
   stage.invalidate();
 });
-connection.on("refused", (refused) => controls.refused(refused));
+connection.on("refused", (refused) => {
+  controls.refused(refused);
+  transport.refused(refused);
+});
 
 // Where the bodies are now; the first frame of a scene also sets up floor and camera.
 function move(frame) {
@@ -208,7 +214,7 @@ function draw(now) {
     marks.update(state.frame);
     gaps.update(marks.unit);
     fixtures.update(state.frame);
-    labels.show();
+    labels.show(now);
     drag.draw();
     triad.draw();
   }

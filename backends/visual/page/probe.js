@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send().
+// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send().
 
 import { settings } from "./settings.js";
 import { state } from "./state.js";
 import { theme } from "./theme.js";
 
-export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras }) {
+export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -41,6 +41,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         historyLength: state.history.length,
       };
     },
+    // Of the distance strip: what its axis spans [mm].
+    distanceSpan: () => strips[1].span ?? null,
     firstPicture: () => stage.first,
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),

@@ -124,7 +124,8 @@ export function timing(x) {
 
 export function operator(x) {
   return { by: text(x.by), you: x.you === true, name: text(x.name), silent: x.silent === true,
-           pages: number(x.pages) ?? 0, looksOn: x.looks_on === true, whyNot: text(x.why_not) };
+           pages: number(x.pages) ?? 0, looksOn: x.looks_on === true, whyNot: text(x.why_not),
+           noConduct: text(x.no_conduct) };
 }
 
 export function refused(x) {
