@@ -34,6 +34,7 @@ import { startTheme } from "./theme.js";
 import { Trail } from "./trail.js";
 import { Transport } from "./transport.js";
 import { Triad } from "./triad.js";
+import { Visuals } from "./visuals.js";
 import { at, norm, write } from "./words.js";
 
 const CLEAR_MS = 120;  // between two looks at what hides the tool
@@ -52,6 +53,7 @@ try {
 }
 stage.covered = covered;
 const parts = new Parts(stage);
+const visuals = new Visuals(stage, parts);
 const cameras = new Cameras(stage);
 const labels = new Labels(at("labels"), stage);
 const marks = new Marks(stage, labels);
@@ -82,10 +84,12 @@ const drag = new Drag(stage, parts,
 const sticks = new Sticks(() => controls.take());
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks],
                               lever, hand, heading);
-startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips });
+startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals });
 
 const toolAt = new Vector3();
 const near = new Set();
+const pushing = new Set();
+const dress = () => parts.dress(visuals.shown, near, pushing);
 let fresh = false;  // a frame came since the last drawing
 let framed = "";  // the scene that the camera was set up for
 let clearedAt = 0;
@@ -119,6 +123,8 @@ connection.on("scene", (scene) => {
   state.scripted = false;
   history.reset(scene.rate_hz);
   parts.build(scene);
+  visuals.build(scene);
+  at("show-robot-row").hidden = !visuals.any;
   at("level").max = parts.mostLevels - 1;
   at("level").value = settings.level;
   readouts.scene(scene);
@@ -180,10 +186,15 @@ function move(frame) {
     showMenu.scale();
   }
   near.clear();
+  pushing.clear();
   for (const pair of frame.pairs) {
-    for (const part of state.scene?.pairs[pair.i]?.slice(0, 2) ?? []) near.add(part);
+    for (const part of state.scene?.pairs[pair.i]?.slice(0, 2) ?? []) {
+      near.add(part);
+      if (pair.f > 0) pushing.add(part);
+    }
   }
   parts.showZones(near);
+  dress();
   transport.frame(frame);
   lever.frame(frame.arms[0]);
   banner("faded", faded(thisArmNow()), true);
@@ -200,7 +211,7 @@ function clearView(now) {
   for (const { a } of state.frame.pairs.slice(0, 2)) {
     if (a) points.push(new Vector3().fromArray(a));
   }
-  parts.clear(stage.camera.position, points);
+  visuals.clear(parts.clear(stage.camera.position, points));
 }
 
 function draw(now) {
@@ -266,7 +277,8 @@ function handle(event) {
   return true;
 }
 
-const showMenu = startShowMenu({ stage, parts, near, changed: () => (panelsDue = true) });
+const showMenu = startShowMenu({ stage, parts, visuals, near, dress,
+                                 changed: () => (panelsDue = true) });
 addEventListener("keydown", onKey);
 addEventListener("keyup", (event) => keyboard.up(event));
 // What was clicked must not take the next press of the space bar.

@@ -6,7 +6,8 @@ import { settings } from "./settings.js";
 import { state } from "./state.js";
 import { theme } from "./theme.js";
 
-export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips }) {
+export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips,
+                             visuals }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -22,7 +23,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         operator: operator ?? null,
         pairs: frame?.pairs?.length ?? 0,
         partsInScene: scene?.parts?.length ?? 0,
-        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count, ...fixtures.count },
+        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count, ...fixtures.count,
+                 visuals: visuals.count },
         // By body: where each box from the page is, if it is there.
         boxes: (scene?.spare ?? []).map((part) => scene.parts[part].body)
           .filter((each) => !frame?.absent?.includes(each))
