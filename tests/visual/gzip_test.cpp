@@ -12,8 +12,7 @@
 #include <boost/beast/zlib/inflate_stream.hpp>
 #include <boost/crc.hpp>
 
-namespace repel::visual {
-namespace gzip_test {
+namespace repel::visual::gzip_test {
 
 std::uint32_t word_at(const std::string& bytes, std::size_t place) {
   std::uint32_t word = 0;
@@ -79,5 +78,4 @@ TEST(Gzip, OnlyWhoNamesItAcceptsIt) {
   }
 }
 
-}  // namespace gzip_test
-}  // namespace repel::visual
+}  // namespace repel::visual::gzip_test
