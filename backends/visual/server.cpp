@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <optional>
@@ -19,6 +20,7 @@
 #include <repel/visual/server.hpp>
 
 #include "gate.hpp"
+#include "gzip.hpp"
 #include "lobby.hpp"
 #include "page_session.hpp"
 #include "secret.hpp"
@@ -83,7 +85,7 @@ class Server::Impl final : public Pages {
         refreshes_(context_) {
     for (Asset& asset : assets) {
       std::string target = asset.target;
-      assets_.emplace(std::move(target), std::move(asset));
+      assets_.emplace(std::move(target), Served(std::move(asset)));
     }
     accept();
     refresh();
@@ -138,6 +140,26 @@ class Server::Impl final : public Pages {
     std::shared_ptr<PageSession> page;
     std::shared_ptr<Seat> seat;
     Clock::time_point until;
+  };
+
+  /// A file of the page as it is sent, plain and compressed.
+  struct Served {
+    explicit Served(Asset&& file)
+        : asset(std::move(file)), packed(gzipped(asset.body)), tag(tag_of(asset.body)) {}
+
+    /// A hash of the content (FNV-1a): another version of a file has another tag.
+    static std::string tag_of(std::string_view text) {
+      std::uint64_t hash = 0xCBF29CE484222325U;
+      for (const char each : text)
+        hash = (hash ^ static_cast<unsigned char>(each)) * 0x100000001B3U;
+      char digits[17];
+      std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
+      return digits;
+    }
+
+    Asset asset;
+    std::string packed;  ///< the body, gzip
+    std::string tag;
   };
 
   static tcp::acceptor listening(asio::io_context& context, const ServerOptions& options) {
@@ -225,12 +247,26 @@ class Server::Impl final : public Pages {
     const std::string_view target = view(request.target());
     const auto found = assets_.find(std::string(target.substr(0, target.find('?'))));
     if (found == assets_.end()) return refuse(http::status::not_found, "No such file.\n");
-    Response response{http::status::ok, request.version()};
-    response.set(http::field::content_type, found->second.media_type);
+    return file_response(request, found->second);
+  }
+
+  /// The file, compressed for whoever accepts it; only that it is the same for whoever has it. The
+  /// browser asks for each file again at each load (no-cache), so that a page is of one version.
+  static Response file_response(const Request& request, const Served& file) {
+    const bool packs = accepts_gzip(view(request[http::field::accept_encoding]));
+    const std::string tag = '"' + file.tag + (packs ? "-gzip\"" : "\"");
+    const std::string_view known = view(request[http::field::if_none_match]);
+    const bool same = known.find(tag) != std::string_view::npos;
+    Response response{same ? http::status::not_modified : http::status::ok, request.version()};
+    response.set(http::field::etag, tag);
+    response.set(http::field::cache_control, "no-cache");
+    response.set(http::field::vary, "Accept-Encoding");
     response.set("Content-Security-Policy", policy);
     response.set("X-Content-Type-Options", "nosniff");
-    response.set(http::field::cache_control, "no-cache");
-    response.body() = found->second.body;
+    if (same) return response;
+    response.set(http::field::content_type, file.asset.media_type);
+    if (packs) response.set(http::field::content_encoding, "gzip");
+    response.body() = packs ? file.packed : file.asset.body;
     return response;
   }
 
@@ -325,7 +361,7 @@ class Server::Impl final : public Pages {
   tcp::acceptor acceptor_;
   std::string url_;
   PageHandler& show_;
-  std::map<std::string, Asset> assets_;
+  std::map<std::string, Served> assets_;
   std::map<int, std::shared_ptr<PageSession>> pages_;
   std::map<int, Newcomer> newcomers_;
   int next_page_ = 1;

@@ -31,6 +31,44 @@ TEST(ServerHttp, FilesComeWithTheirTypeAndMayLoadNothingFromElsewhere) {
   EXPECT_EQ(style.body, "p {}");
 }
 
+TEST(ServerHttp, FilesAreCompressedForThoseWhoAcceptIt) {
+  const Stage stage;
+  const Answer plain = ask(stage.port, {"GET", "/page.css"});
+  EXPECT_FALSE(plain.has("Content-Encoding: gzip")) << plain.head;
+  EXPECT_TRUE(plain.has("Vary: Accept-Encoding")) << plain.head;
+  const Answer packed = ask(stage.port, {"GET", "/page.css", "", "Accept-Encoding: br, gzip\r\n"});
+  EXPECT_EQ(packed.status, 200);
+  EXPECT_TRUE(packed.has("Content-Encoding: gzip")) << packed.head;
+  EXPECT_TRUE(packed.has("Content-Type: text/css; charset=utf-8")) << packed.head;
+  EXPECT_TRUE(packed.has("Vary: Accept-Encoding")) << packed.head;
+  EXPECT_EQ(packed.body.substr(0, 2), "\x1f\x8b");
+}
+
+TEST(ServerHttp, WhoHasAFileIsToldThatItIsTheSame) {
+  const Stage stage;
+  const auto tag_of = [](const Answer& answer) {
+    const std::size_t from = answer.head.find("ETag: ") + 6;
+    return answer.head.substr(from, answer.head.find("\r\n", from) - from);
+  };
+  const std::string gzip = "Accept-Encoding: gzip\r\n";
+  const std::string plain = tag_of(ask(stage.port, {"GET", "/page.css"}));
+  const std::string packed = tag_of(ask(stage.port, {"GET", "/page.css", "", gzip}));
+  EXPECT_EQ(plain.size(), 18U) << plain;
+  EXPECT_NE(plain, packed);
+  EXPECT_NE(plain, tag_of(ask(stage.port, {"GET", "/"})));
+  const auto known = [&](const std::string& tag, const std::string& more) {
+    return ask(stage.port, {"GET", "/page.css", "", "If-None-Match: " + tag + "\r\n" + more});
+  };
+  const Answer same = known("W/\"0\", " + packed, gzip);
+  EXPECT_EQ(same.status, 304);
+  EXPECT_EQ(same.body, "");
+  EXPECT_EQ(tag_of(same), packed);
+  EXPECT_TRUE(same.has("Cache-Control: no-cache")) << same.head;
+  EXPECT_EQ(known(plain, "").status, 304);
+  EXPECT_EQ(known(packed, "").status, 200);
+  EXPECT_EQ(known("\"0123456789abcdef\"", "").status, 200);
+}
+
 TEST(ServerHttp, WhatIsNotThereIsNotFound) {
   const Stage stage;
   for (const char* target : {"/no.css", "/../page.css", "/%70age.css", "//", "/page.css/", "*",

@@ -5,7 +5,7 @@
 import { banner, toast } from "./messages.js";
 import { bind, settings } from "./settings.js";
 import { state } from "./state.js";
-import { at, finite, SCRIPT_OVER, scriptOver, write } from "./words.js";
+import { at, finite, scriptInWords, write } from "./words.js";
 
 const PERIOD_MS = 20;
 
@@ -42,7 +42,8 @@ export class Controls {
     if (performance.now() - this.#askedAt < 300) return;  // the answer is on its way
     this.#askedAt = performance.now();
     if (state.operator?.looksOn) return toast(`You look on: ${state.operator.whyNot}`);
-    if (this.connection.send({ type: "take" }) && state.operator?.by === "script") {
+    const plays = state.operator?.by === "script" && state.frame?.phase;
+    if (this.connection.send({ type: "take" }) && plays) {
       toast("You take over: the script is over");
     }
   }
@@ -74,7 +75,7 @@ export class Controls {
 
   #who({ by, you, name }) {
     const words = {
-      script: scriptOver(state.frame?.phase, by) ? SCRIPT_OVER : "The script drives",
+      script: scriptInWords(state.frame?.phase, by, state.scripted) || "The script drives",
       page: you ? "You drive" : "Another page drives",
       device: `${name || "A device"} drives`,
       recording: "A recording plays",

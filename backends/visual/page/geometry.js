@@ -167,3 +167,58 @@ function ordered(normals) {
   const y = new Vector3().crossVectors(mean, x);
   return own.sort((a, b) => Math.atan2(a.dot(y), a.dot(x)) - Math.atan2(b.dot(y), b.dot(x)));
 }
+
+// Corners told apart by place, to a micrometre: for each vertex the first one in the same place.
+function places(vertices) {
+  const count = vertices.length / 3;
+  const first = new Int32Array(count);
+  const seen = new Map();
+  const grid = (i) => Math.round(1e6 * vertices[i]);
+  for (let k = 0; k < count; ++k) {
+    const [x, y, z] = [grid(3 * k), grid(3 * k + 1), grid(3 * k + 2)];
+    const key = (x * 73856093) ^ (y * 19349663) ^ (z * 83492791);
+    const others = seen.get(key) ?? [];
+    const same = others.find((o) => grid(3 * o) === x && grid(3 * o + 1) === y &&
+                                    grid(3 * o + 2) === z);
+    first[k] = same ?? k;
+    if (same !== undefined) continue;
+    others.push(k);
+    seen.set(key, others);
+  }
+  return first;
+}
+
+// Any surface, convex or not: { positions, normals } of the three corners of each triangle, smooth
+// where it is round and sharp at its creases. The triangles are taken the way they are told.
+export function creased({ vertices, triangles }) {
+  const first = places(vertices);
+  const faces = [];
+  const around = new Map();
+  const point = (k) => new Vector3().fromArray(vertices, 3 * k);
+  for (let i = 0; i + 2 < triangles.length; i += 3) {
+    const corners = [triangles[i], triangles[i + 1], triangles[i + 2]];
+    if (corners.some((k) => first[k] === undefined)) continue;
+    const [a, b, c] = corners.map(point);
+    const normal = b.sub(a).cross(c.sub(a));
+    const area = normal.length();
+    if (!(area > 0)) continue;
+    const face = { corners, normal: normal.divideScalar(area), area };
+    faces.push(face);
+    for (const k of corners) {
+      if (!around.has(first[k])) around.set(first[k], []);
+      around.get(first[k]).push(face);
+    }
+  }
+  const positions = new Float32Array(9 * faces.length);
+  const normals = new Float32Array(9 * faces.length);
+  const mean = new Vector3();
+  faces.forEach(({ corners, normal }, f) => corners.forEach((k, c) => {
+    mean.set(0, 0, 0);
+    for (const other of around.get(first[k])) {
+      if (other.normal.dot(normal) > CREASE) mean.addScaledVector(other.normal, other.area);
+    }
+    mean.normalize().toArray(normals, 9 * f + 3 * c);
+    positions.set(vertices.slice(3 * k, 3 * k + 3), 9 * f + 3 * c);
+  }));
+  return { positions, normals };
+}

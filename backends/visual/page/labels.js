@@ -5,9 +5,10 @@
 import { Vector3 } from "./vendor/three.min.js";
 
 const HEIGHT = 20;  // of a label, with a gap [px]
+const READ_MS = 200;  // between two texts of a label: faster cannot be read, and each is painted
 
 export class Labels {
-  #spans = [];
+  #shown = new Map();  // by what it is of: its element, and what that says and where
   #wanted = [];
   #point = new Vector3();
 
@@ -20,17 +21,17 @@ export class Labels {
     this.#wanted.length = 0;
   }
 
-  // `tint` names a colour of the page, `kind` a class.
-  put(position, text, tint = "ink", kind = "") {
-    const { clientWidth: width, clientHeight: height } = this.holder;
+  // `of`: what keeps its element while its text changes; `tint` names a colour of the page.
+  put(position, of, text, tint = "ink") {
+    const { clientWidth: width, clientHeight: height } = this.stage.canvas;
     const p = this.#point.copy(position).project(this.stage.camera);
     if (p.z > 1 || Math.abs(p.x) > 1 || Math.abs(p.y) > 1) return;
     const x = ((p.x + 1) / 2) * width;
     const y = ((1 - p.y) / 2) * height;
-    this.#wanted.push({ x: x + 8, y: y - 9, text, tint, kind });
+    this.#wanted.push({ x: x + 8, y: y - 9, of, text, tint });
   }
 
-  show() {
+  show(now) {
     this.#wanted.sort((a, b) => a.y - b.y);
     this.#wanted.forEach((label, k) => {
       for (const above of this.#wanted.slice(0, k)) {
@@ -38,18 +39,29 @@ export class Labels {
         const aside = Math.abs(label.x - above.x) > 7 * longest;
         if (!aside && label.y - above.y < HEIGHT) label.y = above.y + HEIGHT;
       }
-      this.#write(k, label);
     });
-    for (let k = this.#wanted.length; k < this.#spans.length; ++k) this.#spans[k].hidden = true;
+    for (const [of, { span }] of this.#shown) {
+      if (this.#wanted.some((label) => label.of === of)) continue;
+      span.remove();
+      this.#shown.delete(of);
+    }
+    for (const label of this.#wanted) this.#write(label, now);
   }
 
-  #write(k, { x, y, text, tint, kind }) {
-    this.#spans[k] ??= this.holder.appendChild(document.createElement("span"));
-    const span = this.#spans[k];
-    span.hidden = false;
-    if (span.textContent !== text) span.textContent = text;
-    if (span.className !== kind) span.className = kind;
-    span.style.setProperty("--c", `var(--${tint})`);
-    span.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+  // Only what changed: the browser paints again for everything that is set.
+  #write({ x, y, of, text, tint }, now) {
+    let label = this.#shown.get(of);
+    if (!label) {
+      label = { span: this.holder.appendChild(document.createElement("span")), at: -Infinity };
+      this.#shown.set(of, label);
+    }
+    const { span } = label;
+    if (label.text !== text && now - label.at >= READ_MS) {
+      span.textContent = label.text = text;
+      label.at = now;
+    }
+    if (label.tint !== tint) span.style.setProperty("--c", `var(--${(label.tint = tint)})`);
+    const place = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
+    if (label.place !== place) span.style.transform = label.place = place;
   }
 }

@@ -34,11 +34,12 @@ import { startTheme } from "./theme.js";
 import { Trail } from "./trail.js";
 import { Transport } from "./transport.js";
 import { Triad } from "./triad.js";
+import { Visuals } from "./visuals.js";
 import { at, norm, write } from "./words.js";
 
 const CLEAR_MS = 120;  // between two looks at what hides the tool
 const REST_MS = 5000;  // from when the page is hidden to when it lets its line go
-const PANELS_MS = 60;  // between two drawings of numbers and charts: faster cannot be read
+const PANELS_MS = 100;  // between two drawings of numbers and charts: faster cannot be read
 
 startTheme();
 startHelp();
@@ -52,6 +53,7 @@ try {
 }
 stage.covered = covered;
 const parts = new Parts(stage);
+const visuals = new Visuals(stage, parts);
 const cameras = new Cameras(stage);
 const labels = new Labels(at("labels"), stage);
 const marks = new Marks(stage, labels);
@@ -66,7 +68,7 @@ const strips = [
   new Strip({ canvas: at("force-strip"), value: at("force-at"), history, series: "force",
               scale: 1, unit: "N", tint: "force", least: 10 }),
   new Strip({ canvas: at("distance-strip"), value: at("distance-at"), history,
-              series: "nearest", scale: 1000, unit: "mm", tint: "far", least: 5 }),
+              series: "nearest", scale: 1000, unit: "mm", tint: "far", bends: true }),
 ];
 
 const connection = new Connection(connected);
@@ -82,10 +84,12 @@ const drag = new Drag(stage, parts,
 const sticks = new Sticks(() => controls.take());
 const controls = new Controls(connection, [keyboard, gamepad, new SpaceMouse(), drag, sticks],
                               lever, hand, heading);
-startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras });
+startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips, visuals });
 
 const toolAt = new Vector3();
 const near = new Set();
+const pushing = new Set();
+const dress = () => parts.dress(visuals.shown, near, pushing);
 let fresh = false;  // a frame came since the last drawing
 let framed = "";  // the scene that the camera was set up for
 let clearedAt = 0;
@@ -116,11 +120,15 @@ function connected(yes, missing = "") {
 connection.on("scene", (scene) => {
   state.scene = scene;
   state.frame = null;
+  state.scripted = false;
   history.reset(scene.rate_hz);
   parts.build(scene);
+  visuals.build(scene);
+  at("show-robot-row").hidden = !visuals.any;
   at("level").max = parts.mostLevels - 1;
   at("level").value = settings.level;
   readouts.scene(scene);
+  strips[1].zone = 1000 * Math.max(0, ...scene.parts.map((part) => part.range_m));
   gaps.scene(scene);
   fixtures.scene(scene);
   hand.scene();
@@ -137,6 +145,7 @@ connection.on("frame", (frame) => {
     history.clear();
   }
   state.frame = frame;
+  state.scripted ||= frame.phase !== "";
   controls.frame();
   history.add(frame.recent);
   fresh = true;
@@ -152,7 +161,10 @@ connection.on("operator", (operator) => {
   transport.operator(operator);
   stage.invalidate();
 });
-connection.on("refused", (refused) => controls.refused(refused));
+connection.on("refused", (refused) => {
+  controls.refused(refused);
+  transport.refused(refused);
+});
 
 // Where the bodies are now; the first frame of a scene also sets up floor and camera.
 function move(frame) {
@@ -174,10 +186,15 @@ function move(frame) {
     showMenu.scale();
   }
   near.clear();
+  pushing.clear();
   for (const pair of frame.pairs) {
-    for (const part of state.scene?.pairs[pair.i]?.slice(0, 2) ?? []) near.add(part);
+    for (const part of state.scene?.pairs[pair.i]?.slice(0, 2) ?? []) {
+      near.add(part);
+      if (pair.f > 0) pushing.add(part);
+    }
   }
   parts.showZones(near);
+  dress();
   transport.frame(frame);
   lever.frame(frame.arms[0]);
   banner("faded", faded(thisArmNow()), true);
@@ -194,7 +211,7 @@ function clearView(now) {
   for (const { a } of state.frame.pairs.slice(0, 2)) {
     if (a) points.push(new Vector3().fromArray(a));
   }
-  parts.clear(stage.camera.position, points);
+  visuals.clear(parts.clear(stage.camera.position, points));
 }
 
 function draw(now) {
@@ -208,7 +225,7 @@ function draw(now) {
     marks.update(state.frame);
     gaps.update(marks.unit);
     fixtures.update(state.frame);
-    labels.show();
+    labels.show(now);
     drag.draw();
     triad.draw();
   }
@@ -260,7 +277,8 @@ function handle(event) {
   return true;
 }
 
-const showMenu = startShowMenu({ stage, parts, near, changed: () => (panelsDue = true) });
+const showMenu = startShowMenu({ stage, parts, visuals, near, dress,
+                                 changed: () => (panelsDue = true) });
 addEventListener("keydown", onKey);
 addEventListener("keyup", (event) => keyboard.up(event));
 // What was clicked must not take the next press of the space bar.

@@ -111,7 +111,7 @@ export class Marks {
       const forces = pushes.slice(0, 3).map((push) => brief(push.pair.f)).join(" + ");
       const age = pair.stale ? `, ${pair.age} ticks old` : "";
       const text = `${partName(by)} ${forces} N${age}`;
-      this.labels.put(this.#a, text, pair.stale ? "stale" : "force");
+      this.labels.put(this.#a, by, text, pair.stale ? "stale" : "force");
     }
   }
 

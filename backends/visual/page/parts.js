@@ -29,6 +29,7 @@ export class Parts {
     edge: new LineBasicMaterial({ transparent: true, opacity: 0.55 }),
     dashed: new LineDashedMaterial({ dashSize: 0.012, gapSize: 0.008 }),
     level: new LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
+    faint: new MeshLambertMaterial({ transparent: true, opacity: 0.3, depthWrite: false }),
     ghost: new MeshBasicMaterial({ transparent: true, opacity: 0.22, depthTest: false }),
   };
 
@@ -40,6 +41,7 @@ export class Parts {
     this.stage = stage;
     this.bodies = [];
     this.parts = [];
+    this.dressed = new Set();  // the bodies of which it is drawn how they look
     onTheme(() => this.#paint());
   }
 
@@ -98,7 +100,8 @@ export class Parts {
     }
     (this.bodies[part.body] ?? this.stage.scene).add(holder);
     const material = solid.material;
-    return { holder, solid, material, frames, groups, zone, group: part.group, body: part.body };
+    return { holder, solid, border, material, frames, groups, zone, group: part.group,
+             body: part.body, hides: false, faint: false };
   }
 
   // `absent`: the bodies that have not come yet, or have gone.
@@ -115,6 +118,22 @@ export class Parts {
       if (!part.zone) return;
       part.zone.visible = settings.zones === "all" || (settings.zones === "near" && near.has(k));
     });
+  }
+
+  // Under the looks of the robot its parts are not seen, but faintly where they are near something,
+  // and as they are where they push. `looks`: whether these are shown.
+  dress(looks, near, pushing) {
+    this.parts.forEach((part, k) => {
+      const under = looks && this.dressed.has(part.body) && part.group !== "obstacle";
+      part.faint = under && !pushing.has(k);
+      part.solid.visible = part.border.visible = !under || near.has(k) || pushing.has(k);
+      this.#give(part);
+    });
+  }
+
+  #give(part) {
+    const { seeThrough, faint } = this.#materials;
+    part.solid.material = part.faint ? faint : part.hides ? seeThrough : part.material;
   }
 
   showLevels() {
@@ -135,14 +154,17 @@ export class Parts {
   }
 
   // Makes what hides one of these points from the eye see-through. Not the tool, and not what may
-  // be passed, which is so already.
+  // be passed, which is so already. Returns the bodies that are.
   clear(eye, points) {
-    const { seeThrough, tool, passable } = this.#materials;
+    const { tool, passable } = this.#materials;
+    const bodies = new Set();
     for (const part of this.parts) {
       if (part.material === tool || part.material === passable) continue;
-      const hides = points.some((point) => this.#hides(part.solid, eye, point));
-      part.solid.material = hides ? seeThrough : part.material;
+      part.hides = points.some((point) => this.#hides(part.solid, eye, point));
+      if (part.hides && part.group !== "obstacle") bodies.add(part.body);
+      this.#give(part);
     }
+    return bodies;
   }
 
   #hides(solid, eye, point) {
@@ -206,6 +228,7 @@ export class Parts {
       this.#materials[name].color = new Color(colour(name));
     }
     this.#materials.seeThrough.color = new Color(colour("obstacle"));
+    this.#materials.faint.color = new Color(colour("near"));
     this.#materials.zone.color = new Color(colour("near"));
     this.#materials.dashed.color = new Color(colour("passable"));
     this.#materials.ghost.color = new Color(colour("operator"));

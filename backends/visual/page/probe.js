@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the page shows, for tests, for pictures of it and for the console: window.repel.state(),
-// pixels(), tinted(), extent(), look(), adapt(), send().
+// distanceSpan(), firstPicture(), pixels(), tinted(), extent(), look(), adapt(), send().
 
 import { settings } from "./settings.js";
 import { state } from "./state.js";
 import { theme } from "./theme.js";
 
-export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras }) {
+export function startProbe({ connection, stage, parts, marks, gaps, fixtures, cameras, strips,
+                             visuals }) {
   window.repel = {
     state() {
       const { frame, scene, operator } = state;
@@ -22,7 +23,8 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         operator: operator ?? null,
         pairs: frame?.pairs?.length ?? 0,
         partsInScene: scene?.parts?.length ?? 0,
-        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count, ...fixtures.count },
+        drawn: { ...parts.counts(), ...marks.counts, gaps: gaps.count, ...fixtures.count,
+                 visuals: visuals.count },
         // By body: where each box from the page is, if it is there.
         boxes: (scene?.spare ?? []).map((part) => scene.parts[part].body)
           .filter((each) => !frame?.absent?.includes(each))
@@ -41,6 +43,9 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         historyLength: state.history.length,
       };
     },
+    // Of the distance strip: what its axis spans [mm].
+    distanceSpan: () => strips[1].span ?? null,
+    firstPicture: () => stage.first,
     pixels: () => stage.pixels(),
     tinted: (colour, within) => stage.tinted(colour, within),
     extent: () => cameras.extent(),

@@ -2,13 +2,16 @@
 // How finely the scene is drawn: as finely as the machine manages. Slow frames make it coarser at
 // once, quick ones make it finer after a while, and later each time that this was too much.
 
-// The finest first: share of the screen's pixels along a side, and the pixels of the shadow map.
+// The finest first: share of the screen's pixels along a side, and whether shadows are cast. Where
+// the processor draws, these cost more than all the rest, so they go first.
 export const LEVELS = [
-  { pixels: 1, shadow: 1024 },
-  { pixels: 0.75, shadow: 512 },
-  { pixels: 0.5, shadow: 512 },
-  { pixels: 0.5, shadow: 0 },
+  { pixels: 1, shadow: true },
+  { pixels: 1, shadow: false },
+  { pixels: 0.75, shadow: false },
+  { pixels: 0.5, shadow: false },
 ];
+
+const SOFTWARE = 2;  // the level to begin with where the processor draws
 
 const SLOW_MS = 45;
 const QUICK_MS = 20;
@@ -37,10 +40,11 @@ export class Quality {
   #count = 0;
   #last = null;
 
-  // `apply(level of LEVELS)` hears of every change.
-  constructor(apply) {
+  // `apply(level of LEVELS)` hears of every change. `software`: the processor draws.
+  constructor(apply, software) {
     this.apply = apply;
     this.adapts = true;
+    if (software) this.#now.level = SOFTWARE;
   }
 
   get level() {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The words and numbers: status, phase, the big numbers, the nearest pairs, the energies.
 
-import { partName, sides, state, thisArm, thisArmNow } from "./state.js";
+import { moduleWords } from "./module_words.js";
+import { partName, pushes, sides, state, thisArm, thisArmNow } from "./state.js";
 import {
-  at, brief, describe, finite, fixed, Held, mm, norm, SCRIPT_OVER, scriptOver, write,
+  at, brief, describe, finite, fixed, Held, mm, norm, pushesInWords, scriptInWords, write,
 } from "./words.js";
 
 const ROWS = 5;
@@ -52,19 +53,24 @@ export class Readouts {
     this.#energies = (thisArm()?.modules ?? []).map((name) => {
       const row = document.createElement("div");
       const label = row.appendChild(document.createElement("b"));
-      label.textContent = name.replaceAll("_", " ");
-      label.title = name;
+      const words = moduleWords(name);
+      label.textContent = words.name;
+      label.tabIndex = 0;
+      const explain = () => write(at("energy-what"), `${name}: ${words.what}`);
+      for (const kind of ["pointerenter", "focus"]) label.addEventListener(kind, explain);
       const bar = row.appendChild(document.createElement("span"))
         .appendChild(document.createElement("i"));
       return { row, bar, value: row.appendChild(document.createElement("output")) };
     });
+    const ask = this.#energies.length > 0 ? "What a module does is said here: point at one." : "";
+    write(at("energy-what"), ask);
     at("energy").replaceChildren(...this.#energies.map(({ row }) => row));
   }
 
   frame(frame, now) {
     write(at("time"), `${fixed(frame.time_s, 2)} s`);
-    const over = scriptOver(frame.phase, state.operator?.by);
-    write(at("phase"), over ? SCRIPT_OVER : frame.phase);
+    write(at("phase"), frame.phase || scriptInWords(frame.phase, state.operator?.by,
+                                                    state.scripted));
     this.#showStatus(frame, now);
     this.#showNumbers(frame.pairs);
     this.#showPairs(frame);
@@ -86,15 +92,11 @@ export class Readouts {
     at("nearest").classList.toggle("overlap", nearest < 0);
     const force = thisArmNow()?.force;
     write(at("force"), fixed(force ? norm(force) : null, 1));
-    const hardest = pairs.reduce((most, pair) => (pair.f > (most?.f ?? 0.05) ? pair : most), null);
+    const { tool, links, hardest } = pushes(pairs);
+    write(at("pushes"), pushesInWords(tool, links));
     const side = hardest && sides(hardest);
-    if (!side) {
-      write(at("hardest"), "nothing pushes");
-      return;
-    }
-    const size = document.createElement("b");
-    size.textContent = `${brief(hardest.f)} N`;
-    at("hardest").replaceChildren(`${partName(side.pushed)} \u2013 ${partName(side.by)} `, size);
+    write(at("hardest"), side ? `${partName(side.pushed)} \u2013 ${partName(side.by)} ` +
+                                `${brief(hardest.f)} N` : "");
   }
 
   #showPairs(frame) {

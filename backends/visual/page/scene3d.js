@@ -9,18 +9,29 @@ import {
 import { LEVELS, Quality } from "./quality.js";
 import { colour, onTheme } from "./theme.js";
 
+// Browsers say so by refusing a canvas for which a slow one is not good enough.
+function drawsInHardware() {
+  const options = { failIfMajorPerformanceCaveat: true };
+  const gl = document.createElement("canvas").getContext("webgl2", options);
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return gl !== null;
+}
+
 export class Stage {
   rendered = 0;
+  first = null;  // when the first picture was drawn, from the navigation on [ms]
   covered = () => 0;  // pixels of its height that lie below buttons
   onResize = () => {};  // hears of the width over the height that the picture had
   #dirty = true;
 
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    const software = !drawsInHardware();
+    // Smooth edges are four times the pixels.
+    this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true });
     this.renderer.shadowMap.type = PCFShadowMap;
     this.scene = new Scene();
-    this.quality = new Quality(() => this.#refine());
+    this.quality = new Quality(() => this.#refine(), software);
     this.camera = new PerspectiveCamera(35, 1, 0.01, 50);
     this.camera.up.set(0, 0, 1);
     this.#light();
@@ -44,6 +55,7 @@ export class Stage {
     this.#dirty = false;
     this.renderer.render(this.scene, this.camera);
     this.rendered += 1;
+    this.first ??= performance.now();
     return true;
   }
 
@@ -105,15 +117,10 @@ export class Stage {
   #refine(level = LEVELS[this.quality.level]) {
     const { shadowMap } = this.renderer;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * level.pixels);
-    const cast = this.shadows && level.shadow > 0;
+    const cast = this.shadows && level.shadow;
     shadowMap.enabled = cast;
     this.sun.castShadow = cast;
     this.ground.visible = cast;
-    if (cast && this.sun.shadow.mapSize.x !== level.shadow) {
-      this.sun.shadow.mapSize.setScalar(level.shadow);
-      this.sun.shadow.map?.dispose();
-      this.sun.shadow.map = null;
-    }
     this.invalidate();
   }
 

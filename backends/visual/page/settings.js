@@ -12,6 +12,7 @@ const DEFAULTS = {
   trail: false,
   fixtures: true,
   shadows: true,
+  robot: "looks",
   zones: "near",
   levels: "none",
   level: 1,

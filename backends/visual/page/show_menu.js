@@ -7,7 +7,7 @@ import { onTheme } from "./theme.js";
 import { at, finite, write } from "./words.js";
 
 // `near`: the parts of pairs near enough to be asked. `changed` hears of every change.
-export function startShowMenu({ stage, parts, near, changed }) {
+export function startShowMenu({ stage, parts, visuals, near, dress, changed }) {
   const redraw = () => {
     stage.invalidate();
     changed();
@@ -22,6 +22,12 @@ export function startShowMenu({ stage, parts, near, changed }) {
     bind(`show-${key}`, key, redraw);
   }
   bind("show-shadows", "shadows", (on) => stage.setShadows(on));
+  const robot = () => {
+    visuals.show();
+    dress();
+    redraw();
+  };
+  bind("show-robot", "robot", robot);
   bind("show-zones", "zones", () => {
     parts.showZones(near);
     redraw();
@@ -29,6 +35,7 @@ export function startShowMenu({ stage, parts, near, changed }) {
   bind("show-levels", "levels", (mode) => {
     at("level-row").hidden = mode !== "one";
     parts.showLevels();
+    robot();
   });
   bind("level", "level", (level) => {
     write(at("level-out"), String(level));

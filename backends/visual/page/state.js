@@ -81,6 +81,7 @@ export const state = {
   timing: null,
   operator: null,
   connected: false,
+  scripted: false,  // a phase of the script was named since the scene came
   radius: 1,  // of a sphere that holds the scene [m]
   arm: 0,  // the one whose numbers are shown
   history: new History(),
@@ -110,4 +111,27 @@ export function sides(pair) {
   const turned = parts[a].group === "obstacle" && parts[b].group !== "obstacle";
   return turned ? { pushed: b, by: a, point: pair.b, sign: -1 }
                 : { pushed: a, by: b, point: pair.a, sign: 1 };
+}
+
+const LEAST_PUSH = 0.05;  // [N]: less is not called a push
+
+// Who pushes: how many bodies the tools, how many the links, and the pair that pushes hardest. What
+// stands fixed is one body, in which each obstacle counts for itself. Where two parts that can move
+// meet, each is pushed by the other.
+export function pushes(pairs) {
+  const tool = new Set();
+  const links = new Set();
+  let hardest = null;
+  for (const pair of pairs) {
+    if (!(pair.f > LEAST_PUSH)) continue;
+    const [a, b] = state.scene?.pairs[pair.i] ?? [];
+    const parts = state.scene?.parts ?? [];
+    if (!parts[a] || !parts[b]) continue;
+    for (const [pushed, by] of [[a, b], [b, a]]) {
+      const whose = { tool, link: links }[parts[pushed].group];
+      whose?.add(parts[by].body > 0 ? `body ${parts[by].body}` : `part ${by}`);
+    }
+    if (pair.f > (hardest?.f ?? 0)) hardest = pair;
+  }
+  return { tool: tool.size, links: links.size, hardest };
 }

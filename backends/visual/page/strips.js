@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strip charts: a quantity over the last ten seconds, with what it was where the pointer is.
+// Strip charts: a quantity over the last ten seconds, with what it was where the pointer is. On a
+// canvas of their own and not by uPlot: the history is a ring of up to 200000 ticks, of which each
+// column of pixels shows the least and the greatest; uPlot would want it copied in order each time.
 
 import { colour } from "./theme.js";
 import { fixed, write } from "./words.js";
 
-const MARGIN = { left: 34, right: 4, top: 5, bottom: 15 };
+const MARGIN = { left: 34, right: 4, top: 14, bottom: 15 };
+const LABEL = 11;  // height of a number at the axis [px]
+
+// From a distance [mm] to where it is on the axis: even below 2 mm, logarithmic above, so that the
+// last 20 mm keep at least half of the height when something is 300 mm away.
+const SOFT = 2;
+export const bent = (mm) => Math.asinh(mm / SOFT);
+const TICKS = [0, 20, 5, 100, 1, 500, 2000, -5, -20, -1, -100];  // who has room first [mm]
+const LEAST_TOP = 20;
+const LEAST_BOTTOM = -0.7;  // a little below what touches
+
+const minus = (text) => text.replace("-", "\u2212");
 
 // A canvas as large as it is shown, in the pixels of the screen; its size in CSS pixels.
 export function fitted(canvas) {
@@ -31,9 +44,12 @@ function nice(x) {
 let hovered = null;  // how long ago the pointer is, in seconds; shared by all strips
 
 export class Strip {
-  // `series`: of the history; `scale`: from its unit to the one shown; `least`: the smallest span.
-  constructor({ canvas, value, history, series, scale, unit, tint, least }) {
-    Object.assign(this, { canvas, value, history, series, scale, unit, tint, least });
+  zone = 0;  // up to here from zero obstacles push, in the unit shown
+
+  // `series`: of the history; `scale`: from its unit to the one shown; `least`: the smallest span;
+  // `bends`: the axis is that of a distance, see above.
+  constructor({ canvas, value, history, series, scale, unit, tint, least, bends = false }) {
+    Object.assign(this, { canvas, value, history, series, scale, unit, tint, least, bends });
     canvas.addEventListener("pointermove", (event) => {
       const across = canvas.clientWidth - MARGIN.left - MARGIN.right;
       const share = (event.offsetX - MARGIN.left) / across;
@@ -48,9 +64,12 @@ export class Strip {
                   h: height - MARGIN.top - MARGIN.bottom };
     if (box.w < 10 || box.h < 10 || !this.history.rate) return;
     const columns = this.#columns(Math.floor(box.w));
-    const { low, high, step } = this.#span(columns);
-    const y = (value) => box.y + (box.h * (high - value)) / (high - low);
-    this.#grid(context, box, low, high, step, y);
+    const { low, high, ticks } = this.bends ? this.#bentSpan(columns) : this.#span(columns);
+    const on = this.bends ? bent : (value) => value;
+    const y = (value) => box.y + (box.h * (on(high) - on(value))) / (on(high) - on(low));
+    this.span = { low, high };
+    this.#zones(context, box, low, y);
+    this.#grid(context, box, ticks, y);
     this.#curve(context, box, columns, y);
     this.#readout(context, box, y);
   }
@@ -74,34 +93,69 @@ export class Strip {
     return { lows, highs, count };
   }
 
-  #span({ lows, highs, count }) {
-    let low = 0;
-    let high = this.least;
+  #extremes({ lows, highs, count }, low, high) {
     for (let k = 0; k < count; ++k) {
       if (lows[k] < low) low = lows[k];
       if (highs[k] > high) high = highs[k];
     }
-    const step = nice((high - low) / 3);
-    return { low: Math.floor(low / step) * step, high: Math.ceil(high / step) * step, step };
+    return { low, high };
   }
 
-  #grid(context, box, low, high, step, y) {
+  #span(columns) {
+    const { low, high } = this.#extremes(columns, 0, this.least);
+    const step = nice((high - low) / 3);
+    const first = Math.floor(low / step);
+    const last = Math.ceil(high / step);
+    const ticks = Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
+    return { low: first * step, high: last * step, ticks };
+  }
+
+  #bentSpan(columns) {
+    const { low, high } = this.#extremes(columns, LEAST_BOTTOM, LEAST_TOP);
+    return { low, high, ticks: TICKS.filter((tick) => tick >= low && tick <= high) };
+  }
+
+  // Where obstacles push, and where parts overlap.
+  #zones(context, box, low, y) {
+    if (!this.bends) return;
+    const band = (from, to, name) => {
+      context.fillStyle = colour(name);
+      context.globalAlpha = 0.14;
+      context.fillRect(box.x, y(to), box.w, Math.max(0, y(from) - y(to)));
+      context.globalAlpha = 1;
+    };
+    band(0, Math.min(this.zone, this.span.high), "near");
+    band(low, 0, "overlap");
+    if (!(this.zone > 0) || this.zone > this.span.high) return;
+    context.strokeStyle = colour("near");
+    context.setLineDash([4, 3]);
+    context.beginPath();
+    context.moveTo(box.x, Math.round(y(this.zone)) + 0.5);
+    context.lineTo(box.x + box.w, Math.round(y(this.zone)) + 0.5);
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  #grid(context, box, ticks, y) {
     context.strokeStyle = colour("rule");
     context.fillStyle = colour("dim");
     context.lineWidth = 1;
     context.textAlign = "right";
     context.textBaseline = "middle";
-    for (let value = low; value <= high + step / 2; value += step) {
+    const rows = [];
+    for (const value of ticks) {
       const row = Math.round(y(value)) + 0.5;
-      context.strokeStyle = colour(Math.abs(value) < step / 2 ? "dim" : "rule");
+      if (rows.some((other) => Math.abs(other - row) < LABEL)) continue;
+      rows.push(row);
+      context.strokeStyle = colour(value === 0 ? "dim" : "rule");
       context.beginPath();
       context.moveTo(box.x, row);
       context.lineTo(box.x + box.w, row);
       context.stroke();
-      const text = Number(value.toPrecision(6)).toString().replace("-", "\u2212");
-      context.fillText(text, box.x - 5, row);
+      context.fillText(minus(Number(value.toPrecision(6)).toString()), box.x - 5, row);
     }
     context.textBaseline = "alphabetic";
+    context.fillText(this.unit, box.x - 5, 8);
     const { seconds } = this.history;
     context.textAlign = "left";
     context.fillText(`\u2212${seconds} s`, box.x, box.y + box.h + 12);
@@ -133,8 +187,8 @@ export class Strip {
     const slot = history.find(history.now - (hovered ?? 0));
     const value = slot < 0 ? NaN : history[this.series][slot] * this.scale;
     const number = Number.isFinite(value) ? `${fixed(value, 1)} ${this.unit}` : "nothing near";
-    const when = hovered === null ? "" : `${(history.now - hovered).toFixed(2)} s: `;
-    write(this.value, history.length === 0 ? "" : when + number);
+    const when = hovered === null ? "" : `, ${hovered.toFixed(2)} s ago`;
+    write(this.value, history.length === 0 ? "" : number + when);
     if (hovered === null) return;
     const x = box.x + box.w * (1 - hovered / history.seconds);
     context.strokeStyle = colour("ink");

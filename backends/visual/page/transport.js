@@ -4,6 +4,7 @@
 import { state } from "./state.js";
 import { at, finite, fixed, write } from "./words.js";
 
+const ELSEWHERE = "the robot is elsewhere";  // how a station refuses
 const SEEK_PAUSE_MS = 60;  // between two messages while the slider is dragged
 
 export class Transport {
@@ -11,6 +12,8 @@ export class Transport {
   #last = 0;
   #replay = false;
   #looksOn = false;
+  #why = "";  // it may not be paused, stepped and restarted from here; empty: it may
+  #titles = {};  // of what can be pressed, when it can
 
   constructor(connection) {
     this.connection = connection;
@@ -43,11 +46,27 @@ export class Transport {
     this.connection.send({ type: "seek", time_s: time });
   }
 
-  // Who looks on has nothing to press.
-  operator({ looksOn }) {
+  // Who looks on has nothing to press, and at a station only drives: the robot is elsewhere.
+  operator({ looksOn, whyNot, noConduct }) {
     this.#looksOn = looksOn === true;
+    this.#why = (this.#looksOn && whyNot) || noConduct || "";
+    this.#enable();
+  }
+
+  // A program that did not say so before says it now.
+  refused({ what, why }) {
+    if (!["pause", "resume", "step", "restart"].includes(what) || state.operator?.looksOn) return;
+    if (!why.startsWith(ELSEWHERE)) return;
+    this.#why = why;
+    this.#enable();
+  }
+
+  #enable() {
     for (const id of ["restart", "pause", "step-1", "step-10", "seek", "speed"]) {
-      at(id).disabled = this.#looksOn;
+      const button = at(id);
+      this.#titles[id] ??= button.title;
+      button.disabled = this.#looksOn || this.#why !== "";
+      button.title = this.#why ? `Not from here: ${this.#why}` : this.#titles[id];
     }
   }
 

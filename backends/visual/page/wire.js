@@ -38,6 +38,15 @@ function fixture(x) {
            radius_m: number(radius_m) ?? 0, half_angle_rad: number(half_angle_rad) ?? 0.5 };
 }
 
+// A mesh to be looked at; one that is not whole is left out.
+function visual(x) {
+  const { body, pose: where, color, name, vertices, triangles } = object(x);
+  const { vertices: points, triangles: corners } = level({ vertices, triangles });
+  if (!Number.isInteger(body) || points.length === 0 || corners.length === 0) return null;
+  return { body, pose: pose(where), color: vector(color), name: text(name), vertices: points,
+           triangles: corners };
+}
+
 function arm(x) {
   const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s, fixtures,
           compliant, scale, hands } = object(x);
@@ -59,6 +68,7 @@ export function scene(x) {
     parts: list(x.parts).map(part),
     pairs: list(x.pairs).map((pair) => vector(pair) ?? vector(pair, 2)),
     arms: list(x.arms).map(arm),
+    visuals: list(x.visuals).map(visual).filter((each) => each !== null),
     spare: list(x.spare).filter(Number.isInteger),
   };
 }
@@ -124,7 +134,8 @@ export function timing(x) {
 
 export function operator(x) {
   return { by: text(x.by), you: x.you === true, name: text(x.name), silent: x.silent === true,
-           pages: number(x.pages) ?? 0, looksOn: x.looks_on === true, whyNot: text(x.why_not) };
+           pages: number(x.pages) ?? 0, looksOn: x.looks_on === true, whyNot: text(x.why_not),
+           noConduct: text(x.no_conduct) };
 }
 
 export function refused(x) {

@@ -28,12 +28,24 @@ export function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-export const SCRIPT_OVER = "The script is over";
+// What is to be said of the script while no phase of it has a name: behind its last one it is over.
+// Where none was ever `seen`, there may be no script at all. While somebody else drives that says
+// nothing new.
+export function scriptInWords(phase, by, seen) {
+  if (phase !== "" || !["script", "nobody", "recording"].includes(by)) return "";
+  return seen ? "The script is over" : "No script plays";
+}
 
-// Whether the script has come to its end: behind its last phase there is none to name. While
-// somebody else drives that says nothing new.
-export const scriptOver = (phase, by) =>
-  phase === "" && ["script", "nobody", "recording"].includes(by);
+const bodies = (count) => (count === 1 ? "1 body" : `${count} bodies`);
+
+// How many bodies push the tool, and how many push links of the arm.
+export function pushesInWords(tool, links) {
+  const said = [];
+  if (tool > 0) said.push(`the tool is pushed by ${bodies(tool)}`);
+  if (links > 0) said.push(`${said.length > 0 ? "" : "the "}links by ${bodies(links)}`);
+  if (said.length === 0) return "nothing pushes";
+  return tool > 0 ? said.join(", ") : said[0].replace("links by", "links are pushed by");
+}
 
 // The bits of core/repel/base/status.hpp: how bad, and what they mean. `bad` ones ramp the force to
 // zero.

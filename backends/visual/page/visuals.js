@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The robot as it looks: meshes that move with the bodies and exert no force. Those of one body are
+// drawn in one call.
+
+import {
+  BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix4, Mesh, MeshLambertMaterial,
+  Quaternion, Vector3,
+} from "./vendor/three.min.js";
+import { creased } from "./geometry.js";
+import { settings } from "./settings.js";
+import { colour, onTheme } from "./theme.js";
+
+const BASE = 0;  // the body that stands still
+const ONE = new Vector3(1, 1, 1);
+
+export class Visuals {
+  #bodies = new Map();  // by body: its mesh
+  #plain = [];  // [mesh, first corner, number of corners] of what has no colour of its own
+  #materials = {
+    whole: new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
+    seeThrough: new MeshLambertMaterial({ vertexColors: true, side: DoubleSide, transparent: true,
+                                          opacity: 0.22, depthWrite: false }),
+  };
+
+  constructor(stage, parts) {
+    this.stage = stage;
+    this.parts = parts;
+    onTheme(() => this.#paint());
+  }
+
+  get any() {
+    return [...this.#bodies.keys()].some((body) => body !== BASE);
+  }
+
+  // After the parts of the scene, on whose bodies it hangs.
+  build(scene) {
+    for (const mesh of this.#bodies.values()) mesh.geometry.dispose();
+    this.#bodies.clear();
+    this.#plain.length = 0;
+    const byBody = new Map();
+    for (const visual of scene.visuals) {
+      if (!this.parts.bodies[visual.body]) continue;
+      if (!byBody.has(visual.body)) byBody.set(visual.body, []);
+      byBody.get(visual.body).push(visual);
+    }
+    for (const [body, all] of byBody) this.#build(body, all);
+    this.parts.dressed = new Set(this.#bodies.keys());
+    this.#paint();
+  }
+
+  #build(body, visuals) {
+    const surfaces = visuals.map((visual) => creased(visual));
+    const count = surfaces.reduce((sum, { positions }) => sum + positions.length / 3, 0);
+    if (count === 0) return;
+    const attribute = () => new BufferAttribute(new Float32Array(3 * count), 3);
+    const geometry = new BufferGeometry();
+    for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, attribute());
+    const mesh = new Mesh(geometry, this.#materials.whole);
+    let first = 0;
+    visuals.forEach(({ pose, color }, k) => {
+      const { positions, normals } = surfaces[k];
+      const corners = positions.length / 3;
+      const placed = new BufferGeometry();
+      placed.setAttribute("position", new BufferAttribute(positions, 3));
+      placed.setAttribute("normal", new BufferAttribute(normals, 3));
+      if (pose) placed.applyMatrix4(matrixOf(pose));
+      geometry.attributes.position.array.set(placed.attributes.position.array, 3 * first);
+      geometry.attributes.normal.array.set(placed.attributes.normal.array, 3 * first);
+      const range = [mesh, first, corners];
+      if (color) fill(range, new Color().setRGB(color[0], color[1], color[2], "srgb"));
+      else this.#plain.push(range);
+      first += corners;
+    });
+    mesh.castShadow = mesh.receiveShadow = true;
+    this.parts.bodies[body].add(mesh);
+    this.#bodies.set(body, mesh);
+  }
+
+  // Whether the robot is drawn as it looks. With the reduction levels its parts are seen, which
+  // have them.
+  get shown() {
+    return settings.robot === "looks" && settings.levels === "none";
+  }
+
+  // The base has no parts of its own, and stands there either way.
+  show() {
+    for (const [body, mesh] of this.#bodies) mesh.visible = this.shown || body === BASE;
+    this.stage.invalidate();
+  }
+
+  // `hiding`: the bodies that hide the tool.
+  clear(hiding) {
+    const { whole, seeThrough } = this.#materials;
+    for (const [body, mesh] of this.#bodies) {
+      mesh.material = hiding.has(body) ? seeThrough : whole;
+    }
+  }
+
+  get count() {
+    return [...this.#bodies.values()].filter((mesh) => mesh.visible).length;
+  }
+
+  #paint() {
+    const link = new Color(colour("link"));
+    for (const range of this.#plain) fill(range, link);
+    this.show();
+  }
+}
+
+function matrixOf([x, y, z, qx, qy, qz, qw]) {
+  const turn = new Quaternion(qx, qy, qz, qw).normalize();
+  return new Matrix4().compose(new Vector3(x, y, z), turn, ONE);
+}
+
+function fill([mesh, first, count], { r, g, b }) {
+  const { color } = mesh.geometry.attributes;
+  for (let k = first; k < first + count; ++k) color.setXYZ(k, r, g, b);
+  color.needsUpdate = true;
+}
