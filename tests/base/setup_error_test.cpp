@@ -38,6 +38,16 @@ TEST(SetupError, IsCaughtAsARuntimeError) {
   EXPECT_THROW(throw SetupError("no body"), std::runtime_error);
 }
 
+// A number without a unit had two spaces behind it.
+TEST(SetupError, AUnitThatIsNoneLeavesNoSpace) {
+  try {
+    checked("levels", 99.0, 0.0, 8.0, "");
+    FAIL();
+  } catch (const SetupError& error) {
+    EXPECT_STREQ(error.what(), "levels is 99; allowed: 0 to 8");
+  }
+}
+
 TEST(Checked, ReturnsWhatIsInTheRangeBoundsIncluded) {
   EXPECT_EQ(checked("radius", 0.0, 0.0, 2.0, "m"), 0.0);
   EXPECT_EQ(checked("radius", 0.5, 0.0, 2.0, "m"), 0.5);

@@ -58,9 +58,11 @@ class SetupError : public std::runtime_error {
 inline double checked(std::string_view name, double value, double low, double high,
                       std::string_view unit) {
   if (value >= low && value <= high) return value;  // NaN fails both
+  std::string after(unit);
+  if (!after.empty()) after.insert(0, 1, ' ');
   std::string text(name);
-  text += " is " + to_text(value) + " " + std::string(unit) + "; allowed: " + to_text(low) +
-          " to " + to_text(high) + " " + std::string(unit);
+  text += " is " + to_text(value) + after + "; allowed: " + to_text(low) + " to " + to_text(high) +
+          after;
   throw SetupError(text);
 }
 
