@@ -21,7 +21,7 @@ struct RobotVisual {
   int link = -1;                 ///< index in ArmModel::links of what it moves with; -1: the base
   Pose X_LV = Pose::Identity();  ///< [m] in that link
   std::optional<std::array<double, 4>> color{};  ///< red, green, blue, opacity, 0 to 1
-  TriangleMesh mesh;
+  TriangleMesh mesh;                             ///< [m] in its own frame V
   std::string collision{};  ///< name of the RobotPart that it stands for; empty: a `<visual>`
 };
 

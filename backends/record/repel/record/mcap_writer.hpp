@@ -35,7 +35,7 @@ struct McapOptions {
   /// [ns] a chunk is finished before a message whose time differs this much from its first; 0: one
   /// chunk per message. Bounds what a crash can lose.
   std::uint64_t chunk_ns = 500'000'000;
-  McapCompression compression = McapCompression::none;
+  McapCompression compression = McapCompression::none;  ///< of the chunks
 };
 
 /// Writes one MCAP file: chunks, each with its index and passed to the operating system when it is

@@ -22,7 +22,7 @@ enum class Driver { script, nobody, page, device };
 
 /// Command of the current driver, in the terms of a rate-controlled master.
 struct DriverInput {
-  Driver driver = Driver::script;
+  Driver driver = Driver::script;    ///< whose command this is
   Twist rates;                       ///< [m/s, rad/s] of the tool
   bool in_tool = false;              ///< the rates are in tool axes, not world axes
   double lever_rate = 0.0;           ///< [rad/s] commanded motion of the lever
@@ -59,6 +59,7 @@ class ChangesPort {
 /// The shapes that parts have got while a run lasts, for displays. Not for the loop.
 class NewShapes {
  public:
+  /// The shape that a part has from now on. Takes a lock and allocates.
   void note(PartId part, const Shape& shape) {
     const std::lock_guard lock(mutex_);
     shapes_.insert_or_assign(part.index, shape);
@@ -77,18 +78,18 @@ class NewShapes {
 /// Lock-free interface between the loop, which reads, and one other thread, which writes.
 struct Controls {
   Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
-  std::atomic<bool> paused{false};
-  std::atomic<std::int64_t> steps{0};  ///< single ticks to run while paused
-  std::atomic<bool> restart{false};    ///< end this run and start another
-  bool may_restart = true;             ///< false while a log is written; constant after set-up
-  bool over_device = false;            ///< a page may override a device; constant after set-up
-  bool may_change = true;              ///< false while a recording is written; likewise
-  std::string no_driving;              ///< why no page can drive; empty: it may; likewise
-  std::string no_conduct;              ///< why none can pause, step, restart or change parts
-  ChangesPort changes;                 ///< not for the loop
-  NewShapes shapes;                    ///< likewise
-  std::atomic<double> seek{-1.0};      ///< [s] replay: time to jump to; negative: none
-  std::atomic<double> speed{1.0};      ///< replay: factor on real time
+  std::atomic<bool> paused{false};            ///< the loop waits, but for single steps
+  std::atomic<std::int64_t> steps{0};         ///< single ticks to run while paused
+  std::atomic<bool> restart{false};           ///< end this run and start another
+  bool may_restart = true;         ///< false while a log is written; constant after set-up
+  bool over_device = false;        ///< a page may override a device; constant after set-up
+  bool may_change = true;          ///< false while a recording is written; likewise
+  std::string no_driving;          ///< why no page can drive; empty: it may; likewise
+  std::string no_conduct;          ///< why none can pause, step, restart or change parts
+  ChangesPort changes;             ///< not for the loop
+  NewShapes shapes;                ///< likewise
+  std::atomic<double> seek{-1.0};  ///< [s] replay: time to jump to; negative: none
+  std::atomic<double> speed{1.0};  ///< replay: factor on real time
 };
 
 }  // namespace repel::visual

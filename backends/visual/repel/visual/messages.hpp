@@ -45,19 +45,19 @@ struct VisualInfo {
   int arm = -1;                                  ///< that it belongs to
   Pose X_BV = Pose::Identity();                  ///< [m] in its body
   std::optional<std::array<double, 4>> color{};  ///< red, green, blue, opacity, 0 to 1
-  TriangleMesh mesh;
+  TriangleMesh mesh;                             ///< [m] in its own frame V
 };
 
 /// Properties that are constant while a scene runs.
 struct SceneInfo {
-  std::string scene;           ///< its name
-  double rate_hz = 400.0;      ///< [Hz]
-  bool replay = false;         ///< replay of a recording
-  double duration = 0.0;       ///< [s] 0: until it is stopped
-  std::vector<ArmInfo> arms;   ///< in the order of the cell
-  std::vector<PartId> spare;   ///< reserved for boxes from a page
-  std::vector<GapsInfo> gaps;  ///< of the meshes that are not covered as a whole
-  std::vector<VisualInfo> visuals;
+  std::string scene;                ///< its name
+  double rate_hz = 400.0;           ///< [Hz]
+  bool replay = false;              ///< replay of a recording
+  double duration = 0.0;            ///< [s] 0: until it is stopped
+  std::vector<ArmInfo> arms;        ///< in the order of the cell
+  std::vector<PartId> spare;        ///< reserved for boxes from a page
+  std::vector<GapsInfo> gaps;       ///< of the meshes that are not covered as a whole
+  std::vector<VisualInfo> visuals;  ///< what the arms look like
 };
 
 /// `scene`: bodies, parts with their levels as meshes, pairs, arms. Takes milliseconds.

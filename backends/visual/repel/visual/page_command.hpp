@@ -17,7 +17,7 @@ class PageCommand {
   /// `silent_after` a page is reported silent, and the fail-safe fades the forces. A driver posts
   /// at least ten times a second.
   static constexpr double rest_after = 0.1;
-  static constexpr double silent_after = 0.25;
+  static constexpr double silent_after = 0.25;  ///< [s], as `rest_after`
 
   /// @param controls must outlive this object
   explicit PageCommand(Controls& controls) noexcept : controls_(&controls) {}

@@ -14,6 +14,7 @@
 
 namespace repel::visual {
 
+/// How a view is served, and what pages may do.
 struct ViewOptions {
   bool pages_drive = false;            ///< false: pages look on only
   std::string master = "The program";  ///< who drives while no page does; empty: a script
