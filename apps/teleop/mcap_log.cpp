@@ -123,9 +123,9 @@ class McapLog final : public TickLog {
     poses_ = add(mcap::poses);
     // One schema for both of them.
     const std::uint16_t scene_update =
-        writer_.add_schema(mcap::bodies.schema, "jsonschema", mcap::bodies.text);
-    bodies_ = writer_.add_channel(mcap::bodies.topic, scene_update, "json");
-    contacts_ = writer_.add_channel(mcap::contacts.topic, scene_update, "json");
+        writer_.add_schema(mcap::scene_update, "jsonschema", mcap::scene_update_schema());
+    bodies_ = writer_.add_channel(mcap::bodies_topic, scene_update, "json");
+    contacts_ = writer_.add_channel(mcap::contacts_topic, scene_update, "json");
     every_ = std::max<std::int64_t>(1, std::llround(options.rate_hz / poses_per_second));
     every_scene_ =
         std::max<std::int64_t>(1, std::llround(std::ceil(options.rate_hz / scenes_per_second)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Names and message schemas of the channels of a recording.
+/// Names and message schemas of the channels of a recording. Foxglove reads a channel only if every
+/// property of its schema has one type, every array items, and every object properties.
 #pragma once
 
 #include <cstddef>
@@ -48,20 +49,28 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "v": {"type": "array", "items": {"type": "number"}, "description": "their rates"},
       "status": {"type": "integer", "description": "bits of the tick"},
       "elapsed_ticks": {"type": "integer", "description": "since the tick before"},
-      "q_read": {"type": "array", "description": "as read, where that was not believed"},
-      "v_read": {"type": "array", "description": "as read, where that was not believed"},
-      "force_read": {"type": "array", "description": "of a force sensor [N], axes of the tool"},
-      "torque_read": {"type": "array", "description": "likewise [N m], about its origin"},
+      "q_read": {"type": "array", "items": {"type": "number"},
+        "description": "as read, where that was not believed"},
+      "v_read": {"type": "array", "items": {"type": "number"},
+        "description": "as read, where that was not believed"},
+      "force_read": {"type": "array", "items": {"type": "number"},
+        "description": "of a force sensor [N], axes of the tool"},
+      "torque_read": {"type": "array", "items": {"type": "number"},
+        "description": "likewise [N m], about its origin"},
       "phase": {"type": "integer", "description": "of the script"},
       "linear": {"type": "array", "items": {"type": "number"}, "description": "hand [m/s]"},
       "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
       "lever_rate": {"type": "number", "description": "hand at the lever [rad/s]"},
       "direction": {"type": "array", "items": {"type": "number"}, "description": "of the lever"},
-      "turning": {"type": "array", "description": "of a lever that turns the tool [rad/m]"},
-      "second_linear": {"type": "array", "description": "of a second hand, if it moves [m/s]"},
-      "second_angular": {"type": "array", "description": "likewise [rad/s]"},
+      "turning": {"type": "array", "items": {"type": "number"},
+        "description": "of a lever that turns the tool [rad/m]"},
+      "second_linear": {"type": "array", "items": {"type": "number"},
+        "description": "of a second hand, if it moves [m/s]"},
+      "second_angular": {"type": "array", "items": {"type": "number"},
+        "description": "likewise [rad/s]"},
       "second_lever_rate": {"type": "number", "description": "of a second lever [rad/s]"},
-      "second_direction": {"type": "array", "description": "likewise, of that lever"},
+      "second_direction": {"type": "array", "items": {"type": "number"},
+        "description": "likewise, of that lever"},
       "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
       "guides": {"type": "integer", "description": "bits of the fixtures, if not as set up"},
       "guide_strength": {"type": "number", "description": "of the fixtures, if it is not 1"},
@@ -91,13 +100,14 @@ inline constexpr Channel separations{"/separations", "repel.Separations", R"({
   "title": "repel.Separations", "type": "object",
   "description": "The pairs that are near, the nearest first. Metres, newtons, world axes.",
   "properties": {
-    "tick": {"type": "integer"}, "nearest_m": {"type": ["number", "null"]},
+    "tick": {"type": "integer"}, "nearest_m": {"type": "number", "description": "null: none"},
     "near": {"type": "integer"}, "evaluated": {"type": "integer"},
     "omitted": {"type": "integer", "description": "near as well, but farther than those here"},
     "pairs": {"type": "array", "items": {"type": "object", "properties": {
       "pair": {"type": "string"}, "index": {"type": "integer"},
-      "distance": {"type": "number"}, "lower": {"type": ["number", "null"]},
-      "upper": {"type": ["number", "null"]},
+      "distance": {"type": "number"},
+      "lower": {"type": "number", "description": "null: unknown"},
+      "upper": {"type": "number", "description": "null: unknown"},
       "a": {"type": "array", "items": {"type": "number"}, "description": "witness point"},
       "b": {"type": "array", "items": {"type": "number"}, "description": "witness point"},
       "extraction": {"type": "array", "items": {"type": "number"}},
@@ -108,7 +118,8 @@ inline constexpr Channel energy{"/energy", "repel.Energy", R"({
   "title": "repel.Energy", "type": "object",
   "description": "The ledger of each module of the networks [J], by arm/module.",
   "properties": {"tick": {"type": "integer"},
-    "energy_j": {"type": "object", "additionalProperties": {"type": "number"}}}})"};
+    "energy_j": {"type": "object", "properties": {},
+      "additionalProperties": {"type": "number"}}}})"};
 
 inline constexpr Channel timing{"/timing", "repel.Timing", R"({
   "title": "repel.Timing", "type": "object",
@@ -132,63 +143,10 @@ inline constexpr Channel poses{"/poses", "foxglove.FrameTransforms", R"({
         "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
         "w": {"type": "number"}}}}}}}})"};
 
-/// Likewise. Of two channels, since a viewer that jumps to a moment knows only the last message of
-/// each.
-inline constexpr const char* scene_update = R"({
-  "title": "foxglove.SceneUpdate", "type": "object",
-  "description": "What is to be drawn from now on. Each message replaces all of its channel.",
-  "properties": {
-    "deletions": {"type": "array", "items": {"type": "object",
-      "title": "foxglove.SceneEntityDeletion", "properties": {
-        "timestamp": {"$ref": "#/$defs/time"},
-        "type": {"type": "integer", "description": "1: all of this channel"},
-        "id": {"type": "string"}}}},
-    "entities": {"type": "array", "items": {"type": "object", "title": "foxglove.SceneEntity",
-      "properties": {
-        "timestamp": {"$ref": "#/$defs/time"},
-        "frame_id": {"type": "string", "description": "a body of /poses, or the world"},
-        "id": {"type": "string", "description": "name of the part or pair"},
-        "lifetime": {"$ref": "#/$defs/time", "description": "0: until it is deleted"},
-        "frame_locked": {"type": "boolean", "description": "it moves with its frame"},
-        "metadata": {"type": "array", "items": {"type": "object", "properties": {
-          "key": {"type": "string", "description": "group, passable, distance_m, force_n"},
-          "value": {"type": "string", "description": "numbers in metres and newtons"}}}},
-        "arrows": {"type": "array", "description": "2 mm/N; metres", "items": {"type": "object",
-          "properties": {"pose": {"$ref": "#/$defs/pose"}, "shaft_length": {"type": "number"},
-            "shaft_diameter": {"type": "number"}, "head_length": {"type": "number"},
-            "head_diameter": {"type": "number"}, "color": {"$ref": "#/$defs/color"}}}},
-        "cubes": {"type": "array"}, "spheres": {"type": "array"}, "cylinders": {"type": "array"},
-        "lines": {"type": "array", "items": {"type": "object", "properties": {
-          "type": {"type": "integer", "description": "2: segments"},
-          "pose": {"$ref": "#/$defs/pose"},
-          "thickness": {"type": "number", "description": "pixels"},
-          "scale_invariant": {"type": "boolean"},
-          "points": {"type": "array", "items": {"$ref": "#/$defs/vector"},
-                     "description": "the witness points [m]"},
-          "color": {"$ref": "#/$defs/color"}, "colors": {"type": "array"},
-          "indices": {"type": "array", "items": {"type": "integer"}}}}},
-        "triangles": {"type": "array", "items": {"type": "object", "properties": {
-          "pose": {"$ref": "#/$defs/pose"},
-          "points": {"type": "array", "items": {"$ref": "#/$defs/vector"},
-                     "description": "[m], to 1 um"},
-          "color": {"$ref": "#/$defs/color"}, "colors": {"type": "array"},
-          "indices": {"type": "array", "items": {"type": "integer"}}}}},
-        "texts": {"type": "array"}, "models": {"type": "array"}}}}},
-  "$defs": {
-    "time": {"type": "object", "properties": {
-      "sec": {"type": "integer", "minimum": 0},
-      "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
-    "vector": {"type": "object", "properties": {
-      "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}}},
-    "color": {"type": "object", "description": "0 to 1", "properties": {
-      "r": {"type": "number"}, "g": {"type": "number"}, "b": {"type": "number"},
-      "a": {"type": "number"}}},
-    "pose": {"type": "object", "properties": {
-      "position": {"$ref": "#/$defs/vector"},
-      "orientation": {"type": "object", "properties": {
-        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
-        "w": {"type": "number"}}}}}}})";
-inline constexpr Channel bodies{"/bodies", "foxglove.SceneUpdate", scene_update};
-inline constexpr Channel contacts{"/contacts", "foxglove.SceneUpdate", scene_update};
+/// Likewise; its text is scene_update_schema(). Of two channels, since a viewer that jumps to a
+/// moment knows only the last message of each.
+inline constexpr const char* scene_update = "foxglove.SceneUpdate";
+inline constexpr const char* bodies_topic = "/bodies";
+inline constexpr const char* contacts_topic = "/contacts";
 
 }  // namespace repel::teleop::mcap

@@ -14,6 +14,18 @@ namespace {
 
 using Entry = nlohmann::json;
 
+/// A JSON Schema of an object.
+Entry object_of(const std::vector<std::pair<const char*, Entry>>& fields) {
+  Entry properties = Entry::object();
+  for (const auto& [name, schema] : fields) properties[name] = schema;
+  return {{"type", "object"}, {"properties", std::move(properties)}};
+}
+
+/// A JSON Schema of an array.
+Entry list_of(const Entry& items, const char* description) {
+  return {{"type", "array"}, {"items", items}, {"description", description}};
+}
+
 struct Colour {
   double r = 0.0, g = 0.0, b = 0.0, a = 1.0;
 };
@@ -151,6 +163,59 @@ Entry pair_json(const NearPair& near, const std::string& id, const std::string& 
 }
 
 }  // namespace
+
+std::string scene_update_schema() {
+  const Entry number{{"type", "number"}};
+  const Entry integer{{"type", "integer"}};
+  const Entry text{{"type", "string"}};
+  const Entry yes_or_no{{"type", "boolean"}};
+  const Entry time = object_of({{"sec", integer}, {"nsec", integer}});
+  const Entry vector = object_of({{"x", number}, {"y", number}, {"z", number}});
+  const Entry turn = object_of({{"x", number}, {"y", number}, {"z", number}, {"w", number}});
+  const Entry pose = object_of({{"position", vector}, {"orientation", turn}});
+  const Entry colour = object_of({{"r", number}, {"g", number}, {"b", number}, {"a", number}});
+  const Entry nothing = list_of(object_of({}), "none");
+  const Entry arrow = object_of({{"pose", pose},
+                                 {"shaft_length", number},
+                                 {"shaft_diameter", number},
+                                 {"head_length", number},
+                                 {"head_diameter", number},
+                                 {"color", colour}});
+  const Entry line = object_of({{"type", integer},
+                                {"pose", pose},
+                                {"thickness", number},
+                                {"scale_invariant", yes_or_no},
+                                {"points", list_of(vector, "witness points [m]")},
+                                {"color", colour},
+                                {"colors", list_of(colour, "none")},
+                                {"indices", list_of(integer, "none")}});
+  const Entry triangles = object_of({{"pose", pose},
+                                     {"points", list_of(vector, "[m], to 1 um")},
+                                     {"color", colour},
+                                     {"colors", list_of(colour, "none")},
+                                     {"indices", list_of(integer, "three for each triangle")}});
+  const Entry pairs = object_of({{"key", text}, {"value", text}});
+  const Entry entity =
+      object_of({{"timestamp", time},
+                 {"frame_id", text},
+                 {"id", text},
+                 {"lifetime", time},
+                 {"frame_locked", yes_or_no},
+                 {"metadata", list_of(pairs, "group, passable, distance_m [m], force_n [N]")},
+                 {"arrows", list_of(arrow, "forces, 2 mm/N; sizes [m]")},
+                 {"cubes", nothing},
+                 {"spheres", nothing},
+                 {"cylinders", nothing},
+                 {"lines", list_of(line, "separations; thickness [pixels]")},
+                 {"triangles", list_of(triangles, "surfaces")},
+                 {"texts", nothing},
+                 {"models", nothing}});
+  const Entry deletion = object_of({{"timestamp", time}, {"type", integer}, {"id", text}});
+  Entry schema = object_of({{"deletions", list_of(deletion, "of type 1: all of this channel")},
+                            {"entities", list_of(entity, "what is to be drawn from now on")}});
+  schema["title"] = "foxglove.SceneUpdate";
+  return schema.dump();
+}
 
 std::vector<std::string> told_apart(const std::vector<std::string>& names) {
   std::set<std::string> taken(names.begin(), names.end());

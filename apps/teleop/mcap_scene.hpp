@@ -65,6 +65,9 @@ class Contacts {
   std::vector<double> ranges_;      ///< [m] of the laws, by PairId
 };
 
+/// The JSON Schema of the messages.
+[[nodiscard]] std::string scene_update_schema();
+
 /// The names, where each that was there before gets a number: "seen", "seen #2", ... Viewers tell
 /// frames and entities apart by their names alone.
 [[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& names);

@@ -160,6 +160,32 @@ TEST(RecordedScene, ContactsAreThePairsAndForcesOfTheSameTick) {
   EXPECT_GT(sums, 50);
 }
 
+/// Where Foxglove would not read a schema; empty: nowhere. It knows one type for each property,
+/// items for each array, properties for each object, and no references.
+std::string unreadable(const nlohmann::json& schema, const std::string& at) {
+  if (!schema.contains("type") || !schema.at("type").is_string()) return at + ": no type";
+  const std::string type = schema.at("type");
+  if (type == "array" && !schema.contains("items")) return at + ": no items";
+  if (type == "array") return unreadable(schema.at("items"), at + "[]");
+  if (type != "object") return {};
+  if (!schema.contains("properties")) return at + ": no properties";
+  for (const auto& [name, property] : schema.at("properties").items()) {
+    const std::string where = unreadable(property, at + "/" + name);
+    if (!where.empty()) return where;
+  }
+  return {};
+}
+
+TEST(RecordedScene, EverySchemaIsOneThatViewersRead) {
+  const Folder folder;
+  record("anderson_4x8 --fast --seconds 0.1", folder / "run.mcap");
+  const record::McapReader reader(folder / "run.mcap");
+  EXPECT_EQ(reader.schemas().size(), 7U);
+  for (const auto& [id, schema] : reader.schemas()) {
+    EXPECT_EQ(unreadable(nlohmann::json::parse(schema.data), schema.name), "");
+  }
+}
+
 // The bodies are written again when one comes or goes.
 TEST(RecordedScene, PartsThatComeAndGoDoSoInTheRecording) {
   const Folder folder;
