@@ -2,7 +2,7 @@
 // The parts of the scene: solids on bodies that move, their edges, zones of influence, levels.
 
 import {
-  Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
+  BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
   MeshBasicMaterial, MeshLambertMaterial, Raycaster, Vector3,
 } from "./vendor/three.min.js";
 import { edges, levelFrames, shell, surface } from "./geometry.js";
@@ -40,6 +40,7 @@ export class Parts {
   constructor(stage) {
     this.stage = stage;
     this.bodies = [];
+    this.outlines = [];  // by body: the edges of its parts
     this.parts = [];
     this.dressed = new Set();  // the bodies of which it is drawn how they look
     onTheme(() => this.#paint());
@@ -52,6 +53,12 @@ export class Parts {
     this.bodies = scene.bodies.map(() => new Group());
     for (const body of this.bodies) this.stage.scene.add(body);
     this.parts = scene.parts.map((part) => this.#part(part));
+    this.outlines = this.bodies.map((body) => {
+      const lines = new LineSegments(new BufferGeometry(), this.#materials.edge);
+      body.add(lines);
+      return lines;
+    });
+    this.bodies.forEach((_, k) => this.#outline(k));
     this.mostLevels = Math.max(1, ...this.parts.map((part) => part.groups.length));
     this.showLevels();
     this.showZones();
@@ -67,6 +74,7 @@ export class Parts {
       const pose = [...holder.position.toArray(), ...holder.quaternion.toArray()];
       const { passable, range_m } = this.scene.parts[k];
       this.parts[k] = this.#part({ levels, group, body, pose, passable, range_m });
+      this.#outline(body);
     }
     this.showLevels();
     this.showZones();
@@ -86,12 +94,13 @@ export class Parts {
     const solid = new Mesh(surface(levels[0] ?? {}), this.#materials[kind]);
     solid.castShadow = !part.passable;
     solid.receiveShadow = !part.passable;
-    const border = new LineSegments(edges(levels[0] ?? {}),
-                                    this.#materials[part.passable ? "dashed" : "edge"]);
-    if (part.passable) border.computeLineDistances();
+    const border = edges(levels[0] ?? {});
+    if (part.passable) {
+      holder.add(new LineSegments(border, this.#materials.dashed).computeLineDistances());
+    }
     const { geometry, groups } = levelFrames(levels);
     const frames = new LineSegments(geometry, this.#materials.level);
-    holder.add(solid, border, frames);
+    holder.add(solid, frames);
     let zone = null;
     if (part.group === "obstacle" && part.range_m > 0) {
       zone = new Mesh(shell(levels[0] ?? {}, part.range_m), this.#materials.zone);
@@ -100,8 +109,28 @@ export class Parts {
     }
     (this.bodies[part.body] ?? this.stage.scene).add(holder);
     const material = solid.material;
-    return { holder, solid, border, material, frames, groups, zone, group: part.group,
+    return { holder, solid, border: part.passable ? null : border, material, frames, groups, zone, group: part.group,
              body: part.body, hides: false, faint: false };
+  }
+
+  // The edges of all parts of a body that are seen, as one: where the processor draws, each call
+  // counts.
+  #outline(body) {
+    const lines = this.outlines[body];
+    if (!lines) return;
+    const points = [];
+    for (const { body: own, holder, border, solid } of this.parts) {
+      if (own !== body || !border || !solid.visible) continue;
+      holder.updateMatrix();
+      const { array } = border.attributes.position;
+      for (let k = 0; k < array.length; k += 3) {
+        points.push(...this.#along.fromArray(array, k).applyMatrix4(holder.matrix).toArray());
+      }
+    }
+    lines.geometry.dispose();
+    lines.geometry = new BufferGeometry();
+    lines.geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
+    lines.visible = points.length > 0;
   }
 
   // `absent`: the bodies that have not come yet, or have gone.
@@ -123,12 +152,16 @@ export class Parts {
   // Under the looks of the robot its parts are not seen, but faintly where they are near something,
   // and as they are where they push. `looks`: whether these are shown.
   dress(looks, near, pushing) {
+    const changed = new Set();
     this.parts.forEach((part, k) => {
       const under = looks && this.dressed.has(part.body) && part.group !== "obstacle";
       part.faint = under && !pushing.has(k);
-      part.solid.visible = part.border.visible = !under || near.has(k) || pushing.has(k);
+      const seen = !under || near.has(k) || pushing.has(k);
+      if (seen !== part.solid.visible) changed.add(part.body);
+      part.solid.visible = seen;
       this.#give(part);
     });
+    for (const body of changed) this.#outline(body);
   }
 
   #give(part) {

@@ -54,7 +54,8 @@ export class Quality {
   // Stays as fine as it can be, or adapts.
   adapt(yes) {
     this.adapts = yes;
-    this.#set(finest());
+    this.#now = finest();
+    this.apply(LEVELS[0]);
   }
 
   // At every turn of the browser, with whether the scene was drawn at it.

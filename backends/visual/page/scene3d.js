@@ -27,6 +27,7 @@ export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
     const software = !drawsInHardware();
+    this.smooth = !software;
     // Smooth edges are four times the pixels.
     this.renderer = new WebGLRenderer({ canvas, antialias: !software, alpha: true });
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -113,10 +114,17 @@ export class Stage {
     this.invalidate();
   }
 
+  // Pixels drawn along a pixel of the page. Where edges are not smooth by themselves, and the time
+  // does not matter, twice as many make them so.
+  #ratio(level) {
+    const density = Math.min(devicePixelRatio, 2) * level.pixels;
+    return this.smooth || this.quality.adapts ? density : 2 * density;
+  }
+
   // As finely as the quality says, at any density of the screen.
   #refine(level = LEVELS[this.quality.level]) {
     const { shadowMap } = this.renderer;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * level.pixels);
+    this.renderer.setPixelRatio(this.#ratio(level));
     const cast = this.shadows && level.shadow;
     shadowMap.enabled = cast;
     this.sun.castShadow = cast;
@@ -127,7 +135,7 @@ export class Stage {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * LEVELS[this.quality.level].pixels);
+    this.renderer.setPixelRatio(this.#ratio(LEVELS[this.quality.level]));
     this.renderer.setSize(width, height, false);
     const before = this.camera.aspect;
     this.camera.aspect = width / height;
