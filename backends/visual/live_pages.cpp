@@ -222,6 +222,7 @@ void LivePages::say_who_drives(Pages& pages) const {
                           {"silent", silent_},
                           {"looks_on", !bar.empty()},
                           {"why_not", bar},
+                          {"no_conduct", controls_.no_conduct},
                           {"pages", pages.count()}}
                          .dump(-1, ' ', false, Json::error_handler_t::replace));
   }

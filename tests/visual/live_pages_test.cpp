@@ -177,6 +177,7 @@ TEST(LivePages, ARobotElsewhereIsDrivenAndNothingElse) {
   EXPECT_FALSE(stage.controls.restart);
   EXPECT_EQ(stage.controls.steps, 0);
   EXPECT_EQ(stage.say(1, Json{{"type", "take"}}), "");
+  EXPECT_EQ(operator_of(stage).at("no_conduct"), "it is elsewhere");
   EXPECT_EQ(stage.say(1, servo(0.1, 0.0, 0.0)), "");
   ASSERT_TRUE(stage.posted());
   EXPECT_EQ(stage.input().driver, Driver::page);
