@@ -190,7 +190,7 @@ std::string data_of(const Chart& chart) {
              "time", chart.unit, chart.curves,
              [&](const Curve& curve) { return thinned(curve, chart.samples); }, chart.lines,
              chart.marks) +
-         ",\"meanings\":[" + meanings + "]}";
+         ",\"even_to\":" + json_of(chart.even_to) + ",\"meanings\":[" + meanings + "]}";
 }
 
 /// All lines have the shares of the first.

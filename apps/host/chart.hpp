@@ -30,6 +30,8 @@ struct Chart {
   std::vector<Curve> curves{};
   std::vector<double> lines{};  ///< values marked by a horizontal line
   std::vector<double> marks{};  ///< [s] times marked by a vertical line, such as phase starts
+  /// Up to here the vertical axis is even, and ever narrower beyond; 0: it is even everywhere.
+  double even_to = 0.0;
 };
 
 /// The chart as a <figure> element with title, data and legend, drawn by the scripts of

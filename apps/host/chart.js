@@ -12,14 +12,25 @@
   const decades = (share) => -Math.log10(Math.max(1 - share, 1e-5));
   const share = (x) => Number((100 * (1 - 10 ** -x)).toPrecision(7));
 
+  // What is marked on an axis that narrows.
+  const STEPS = [0, ...[10, 20, 50, 100, 200, 500, 1000, 2000].flatMap((y) => [y, -y])]
+    .sort((a, b) => a - b);
+
   const AXES = {
     time: (data) => ({
       x: data.values[0].map((_, i) => data.from + data.step * i),
-      scales: { x: { time: false }, y: { range: (_, low, high) => {
-        const all = [low, high, ...data.lines].filter((value) => value != null);
-        if (all.length === 0) return [0, 1];
-        return uPlot.rangeNum(Math.min(...all), Math.max(...all), 0.05, true);
-      } } },
+      scales: { x: { time: false }, y: {
+        range: (_, low, high) => {
+          const all = [low, high, ...data.lines].filter((value) => value != null);
+          if (all.length === 0) return [0, 1];
+          return uPlot.rangeNum(Math.min(...all), Math.max(...all), 0.05, true);
+        },
+        ...(data.even_to && { distr: 4, asinh: data.even_to }),
+      } },
+      upright: data.even_to && {
+        splits: (u) => STEPS.filter((y) => y >= u.scales.y.min && y <= u.scales.y.max),
+        filter: (_, splits) => splits,  // by default, powers of ten alone have labels
+      },
       axis: { values: (_, at) => at.map((value) => shown(value, "s")) },
       name: "time",
       say: (value) => shown(value, "s"),
@@ -69,7 +80,7 @@
   function draw(figure) {
     const data = JSON.parse(figure.querySelector("script").textContent);
     const place = figure.querySelector(".plot");
-    const { x, scales, axis, name, say } = AXES[data.kind](data);
+    const { x, scales, axis, upright, name, say } = AXES[data.kind](data);
     const line = { stroke: () => tint("--soft"), grid: { stroke: () => tint("--rule"), width: 1 },
                    ticks: { stroke: () => tint("--rule"), width: 1 } };
     const curves = data.names.map((label, i) => ({
@@ -79,7 +90,7 @@
     figure.chart?.destroy();
     figure.chart = new uPlot({
       width: place.clientWidth, height: 220, scales,
-      axes: [{ ...line, ...axis }, { ...line, size: 64, label: data.unit, labelSize: 20 }],
+      axes: [{ ...line, ...axis }, { ...line, ...upright, size: 64, label: data.unit, labelSize: 20 }],
       series: [{ label: name, value: (_, value) => say(value) }, ...curves],
       cursor: { drag: { x: true, y: false }, sync: { key: data.kind } },
       hooks: { draw: [marks(data)] },

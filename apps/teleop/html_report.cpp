@@ -100,6 +100,7 @@ std::string charts_of_the_world(const RunResult& r) {
   const std::vector<TickRecord>& k = r.arms.front().records;
   host::Chart distance = chart_of(r, "Least signed distance of all pairs at a tick", "mm");
   distance.lines = {0.0};
+  distance.even_to = 20.0;  // where forces begin, as a rule
   distance.curves = {
       {"nearest of all pairs", [&k](std::size_t i) { return 1e3 * k[i].pairs.nearest; }}};
   host::Chart pairs = chart_of(
