@@ -158,6 +158,13 @@ TEST(LivePages, RestartGivesTheControlsBackToTheScript) {
   EXPECT_EQ(stage.say(2, take), "");
 }
 
+/// The message to a newly opened page about the present operator.
+Json operator_of(LiveStage& stage, Role role = Role::drives) {
+  ++stage.pages.open;
+  stage.show.opened(4, role, stage.pages);
+  return *last_of(stage.pages.heard_by(4), "operator");
+}
+
 TEST(LivePages, ALogIsNotBegunTwice) {
   LiveStage stage;
   stage.controls.may_restart = false;
@@ -224,13 +231,6 @@ TEST(LivePages, ARecordingIsNotWoundBeyondItsLastTick) {
     EXPECT_EQ(replay.say(1, Json{{"type", "seek"}, {"time_s", time}}), "");
     EXPECT_NEAR(replay.controls.seek, 10.0 - 1.0 / 400.0, 1e-12) << time;
   }
-}
-
-/// The message to a newly opened page about the present operator.
-Json operator_of(LiveStage& stage, Role role = Role::drives) {
-  ++stage.pages.open;
-  stage.show.opened(4, role, stage.pages);
-  return *last_of(stage.pages.heard_by(4), "operator");
 }
 
 /// All requests of a page.
