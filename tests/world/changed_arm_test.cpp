@@ -67,7 +67,7 @@ TEST(WithInertia, RefusesAFactorOutOfRangeAndNamesTheRange) {
     (void)with_inertia(model, 4.0);
     ADD_FAILURE() << "accepted";
   } catch (const SetupError& error) {
-    EXPECT_NE(std::string(error.what()).find("is 4 ; allowed: 0.3 to 3"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("is 4; allowed: 0.3 to 3"), std::string::npos)
         << error.what();
   }
 }
