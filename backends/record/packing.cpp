@@ -40,7 +40,7 @@ std::string_view how_to_have_zstd() noexcept {
 
 struct Packer::State {
   struct Free {
-    void operator()(ZSTD_CCtx* context) const noexcept { (void)ZSTD_freeCCtx(context); }
+    void operator()(ZSTD_CCtx* made) const noexcept { (void)ZSTD_freeCCtx(made); }
   };
   State() {
     if (!context) return;
@@ -64,7 +64,7 @@ bool Packer::pack(std::string_view bytes, std::string& out) {
 
 struct Unpacker::State {
   struct Free {
-    void operator()(ZSTD_DCtx* context) const noexcept { (void)ZSTD_freeDCtx(context); }
+    void operator()(ZSTD_DCtx* made) const noexcept { (void)ZSTD_freeDCtx(made); }
   };
   State() {
     if (context) {
