@@ -36,7 +36,7 @@ def test_a_mesh_is_covered_by_convex_parts():
 
 @pytest.mark.parametrize("change, kind, words", [
     ({"vertices": np.zeros((4, 2))}, ValueError, r"vertices: expected points \(N, 3\)"),
-    ({"triangles": [[0, 1, 99]]}, repel.SetupError, r"triangles\[0\] is 99 ; allowed: 0 to 11"),
+    ({"triangles": [[0, 1, 99]]}, repel.SetupError, r"triangles\[0\] is 99; allowed: 0 to 11"),
     ({"triangles": np.zeros((0, 3))}, repel.SetupError, "triangle"),
     ({"engine": "saw"}, repel.SetupError, "engine is 'saw'; allowed: automatic"),
     ({"error": -1.0}, repel.SetupError, "error"),

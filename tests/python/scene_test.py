@@ -108,6 +108,8 @@ def test_what_the_program_refuses_is_an_error(teleop, tmp_path, monkeypatch):
         repel.program()
     monkeypatch.delenv("REPEL_TELEOP")
     monkeypatch.setenv("PATH", str(tmp_path))
+    # As of a wheel without the program.
+    monkeypatch.setitem(repel.program.__globals__, "__file__", str(tmp_path / "program.py"))
     with pytest.raises(repel.SetupError, match="the program teleop is not here"):
         repel.program()
 

@@ -54,7 +54,7 @@ def test_a_world_answers_for_its_pairs():
     (lambda w: w.add_part(5, "part", repel.Shape.sphere(1)), repel.SetupError, "no such body"),
     (lambda w: w.add_pair(0, 7, repel.ForceLaw()), repel.SetupError, "does not exist"),
     (lambda w: w.add_body("b", np.full((4, 4), np.nan)), repel.SetupError, "X_WB: an entry"),
-    (lambda w: w.place(0, EYE), repel.SetupError, "body is 0 ; allowed: 1 to"),
+    (lambda w: w.place(0, EYE), repel.SetupError, "body is 0; allowed: 1 to"),
     (lambda w: w.place(1, EYE, np.zeros(3)), ValueError, "V_WB: expected six numbers"),
     (lambda w: w.place(1, EYE, np.full(6, np.nan)), repel.SetupError, "V_WB: an entry"),
     (lambda w: w.force_on(2), repel.SetupError, "body is 2"),
