@@ -209,7 +209,7 @@ def test_the_command_line(teleop, tmp_path):
     assert said_by("--version").strip() == repel.__version__
     assert said_by("program").strip() == teleop
     log = tmp_path / "run.csv"
-    report = json.loads(said_by("run", "--seconds", "0.1", "--log", log, "empty", "--",
+    report = json.loads(said_by("run", "--fast", "--seconds", "0.1", "--log", log, "empty", "--",
                                 "--threads", "0"))
     assert report["ticks"] == 40
     assert "no such scene" in said_by("run", "nonesuch", status=1)
