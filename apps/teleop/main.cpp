@@ -238,6 +238,24 @@ void describe_measure(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1, ReductionOptions::most_levels));
 }
 
+/// The files that a run writes.
+void describe_files(CLI::App& app, Arguments& a) {
+  app.add_option("--report", a.report,
+                 "Write the report as JSON to FILE; -: print it, in place of the text")
+      ->transform(CLI::Validator(
+          [&a](std::string& file) {
+            if (file == "-") {
+              file = "/dev/stdout";
+              a.is_quiet = true;
+            }
+            return std::string();
+          },
+          ""));
+  app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
+  app.add_option("--log", a.log,
+                 "Write every tick to FILE: a recording if its name ends in .mcap, else CSV");
+}
+
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("scene", a.scene, "Scene file, or the name of one below")->capture_default_str();
   app.add_option("--seconds", a.run.seconds,
@@ -283,20 +301,7 @@ void describe(CLI::App& app, Arguments& a) {
                  "hard: no wall may be entered, whoever pushes; soft: walls are springs (default: "
                  "as the laws of the scene say)")
       ->check(CLI::IsMember({"hard", "soft"}));
-  app.add_option("--report", a.report,
-                 "Write the report as JSON to FILE; -: print it, in place of the text")
-      ->transform(CLI::Validator(
-          [&a](std::string& file) {
-            if (file == "-") {
-              file = "/dev/stdout";
-              a.is_quiet = true;
-            }
-            return std::string();
-          },
-          ""));
-  app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
-  app.add_option("--log", a.log,
-                 "Write every tick to FILE: a recording if its name ends in .mcap, else CSV");
+  describe_files(app, a);
   CLI::Option* view = app.add_flag("--view", a.session.view,
                                    "Serve the live view: a page to look on and to drive from");
   app.add_option("--listen", a.session.listen, "ADDRESS:PORT of the live view; port 0: any")
