@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 
 #include <repel/distance/gjk.hpp>
@@ -147,6 +148,22 @@ TEST(Feature, FourCornersAroundTheOriginProveThatTheSetsMeet) {
   }
   EXPECT_GT(around, 1000);
   EXPECT_LT(missed, around / 100) << "of those that are not flat hardly one is left unproven";
+}
+
+// Regression: beside a sliver of 1e-309 m the square of the distance underflowed to zero, and the
+// lower bound was infinite.
+TEST(Feature, WhereTheSquareOfTheDistanceUnderflowsNothingIsProven) {
+  const Vec<double> w{7e-310, 5e-310, 0.0};
+  detail::Feature f;
+  f.size = 1;
+  f.w[0] = w;
+  Gap gap;
+  const double everywhere = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(detail::prove(f, {w}, 3.8e-309, 4e-14, {}, everywhere, gap));
+  // As far as this it is proven that nothing is nearer than the margin allows.
+  f.w[0] = {1e-9, 0.0, 0.0};
+  EXPECT_TRUE(detail::prove(f, {f.w[0]}, 1e-18, 1e-20, {}, everywhere, gap));
+  EXPECT_LE(gap.lower, gap.upper);
 }
 
 }  // namespace feature_test

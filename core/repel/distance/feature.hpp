@@ -99,7 +99,8 @@ struct Foot {
       upper - lower <= std::max(options.relative_width, 2.0 * options.tolerance) * upper;
   const bool far = lower > beyond;
   const bool inside = foot.weights.x() >= 0.0 && foot.weights.y() >= 0.0 && foot.weights.z() >= 0.0;
-  if (!(inside && (converged || far) && length <= 1e150)) return false;
+  // Where squares underflow or overflow, the bounds are none.
+  if (!(inside && (converged || far) && length >= 1e-150 && length <= 1e150)) return false;
   gap.distance = std::clamp(length, lower, upper);
   gap.lower = lower;
   gap.upper = upper;

@@ -108,7 +108,7 @@ struct FeatureLanes {
     const LaneMask converged = (vv - least_vw <= larger(options.tolerance * vv, margin * length)) &
                                (off <= margin) & (gap.upper - gap.lower <= width * gap.upper);
     const LaneMask inside = (foot.p >= 0.0) & (foot.q >= 0.0) & (foot.r >= 0.0);
-    gap.proven = inside & converged & (length <= 1e150);
+    gap.proven = inside & converged & (length >= 1e-150) & (length <= 1e150);
     gap.distance = smaller(larger(length, gap.lower), gap.upper);
     gap.n_BA_W = inverse * foot.v + LaneVec{};
     gap.p_AQa_W = mean(A.turned, foot);
