@@ -156,12 +156,12 @@ TEST(Feature, WhereTheSquareOfTheDistanceUnderflowsNothingIsProven) {
   const Vec<double> w{7e-310, 5e-310, 0.0};
   detail::Feature f;
   f.size = 1;
-  f.w[0] = w;
+  f.a[0] = f.w[0] = w;
   Gap gap;
   const double everywhere = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(detail::prove(f, {w}, 3.8e-309, 4e-14, {}, everywhere, gap));
   // As far as this it is proven that nothing is nearer than the margin allows.
-  f.w[0] = {1e-9, 0.0, 0.0};
+  f.a[0] = f.w[0] = {1e-9, 0.0, 0.0};
   EXPECT_TRUE(detail::prove(f, {f.w[0]}, 1e-18, 1e-20, {}, everywhere, gap));
   EXPECT_LE(gap.lower, gap.upper);
 }
