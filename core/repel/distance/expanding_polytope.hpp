@@ -248,8 +248,7 @@ class ExpandingPolytope {
     return true;
   }
 
-  /// Adds an edge of a removed face to the rim; an edge shared by two removed faces is seen from
-  /// both and drops out.
+  /// Adds an edge of a removed face to the rim; shared by two, it is seen twice and drops out.
   bool toggle(Edge e) noexcept {
     for (std::size_t i = 0; i < rim_count_; ++i) {
       if (rim_[i].from != e.to || rim_[i].to != e.from) continue;

@@ -141,8 +141,7 @@ class Convex {
     return vertices_.vertex(name);
   }
 
-  /// The support function: the largest dot product of `d` with a point of the set, [m] for unit
-  /// `d`.
+  /// The support function: the largest product of `d` with a point of the set, [m] for unit `d`.
   [[nodiscard]] double support_value(const Vec<double>& d) const noexcept {
     switch (kind_) {
       case Kind::box:

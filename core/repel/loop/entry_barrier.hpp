@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Keeps an arm from entering hard walls: changes its joint torques as little as possible, so that
-/// it can always stop before them.
+/// Keeps an arm from entering hard walls, by the least change of torques that lets it stop.
 #pragma once
 
 #include <algorithm>

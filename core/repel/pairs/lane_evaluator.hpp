@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// SIMD evaluation of those pairs of a world that are in range and whose nearest features are
-/// known.
+/// SIMD evaluation of those pairs of a world in range whose nearest features are known.
 #pragma once
 
 #include <algorithm>

@@ -15,8 +15,7 @@
 
 namespace repel::detail {
 
-/// Owns the memory and the forces of all pairs. A pair is identified by its slot in the memory. All
-/// memory is allocated at construction.
+/// Owns the memory and forces of all pairs, each known by its slot. Allocates at construction only.
 class SingleEvaluator {
  public:
   /// @param slots largest number of pairs with a slot, at least 0

@@ -231,8 +231,7 @@ class FlatSearch {
     return dot(n_, away) / std::sqrt(dot(away, away));
   }
 
-  /// Lowers the tilt to what a face leaves, and returns the square of how far its normal is off
-  /// [rad^2].
+  /// Lowers the tilt to what a face leaves; the square of how far its normal is off [rad^2].
   double lower_tilt(std::uint32_t face, Flat& flat) const noexcept {
     const Vec<double> between = set_.faces().normal(face) - n_;
     const double square = dot(between, between);

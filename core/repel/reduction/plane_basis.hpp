@@ -60,8 +60,7 @@ class PlaneBasis {
     count_ = 0;
     of_b_ = 0;
   }
-  /// Adds `tilt`.x to the objective: a perturbation against cycling, which separates multipliers
-  /// that would all be 0.
+  /// Adds `tilt`.x to the objective: against cycling, it parts multipliers that would all be 0.
   void tilt(const Vec<T>& tilt) noexcept { tilt_ = tilt; }
   [[nodiscard]] const Vec<T>& tilt() const noexcept { return tilt_; }
   /// The multipliers without it; those of a basis that is optimal with it only may be negative.

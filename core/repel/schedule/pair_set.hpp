@@ -154,8 +154,7 @@ class PairSet {
     for (int k = 0; k < plan_.batches(); ++k) spent += evaluate(k, motion, poses, spent);
   }
 
-  /// Computes and sums the forces of all near pairs, in an order that does not depend on that of
-  /// their evaluation.
+  /// Computes and sums the forces of all near pairs, in an order independent of their evaluation.
   void finish(const Motion& motion, const PartPoses& poses) noexcept {
     plan_.finish(singles_.forces().totals, [&](int k) { return due(k).key(); });
     lanes_.push(motion);

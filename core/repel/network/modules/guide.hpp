@@ -25,8 +25,7 @@ struct GuideOptions {
   PassivityOptions passivity{.keeps_energy = true};  ///< over all of them
 };
 
-/// A series source of effort, as OBSTACLE: f_left = f_right - F at the same flow, with F the sum
-/// over the fixtures of
+/// A series source of effort: f_left = f_right - F at the same flow, F the sum over the fixtures of
 ///
 ///     - a grad U(x) - a B across v
 ///
