@@ -79,6 +79,9 @@ install_and_move() {
   ! grep 'not built' "$scratch/installed"
 }
 
+step "configure without each part, and with each alone" \
+  sh "$here/switches.sh" "$root" "$scratch/switched"
+
 # A build of some targets only, as that of ./run, is installed as far as it goes.
 install_a_part() {
   cmake -S "$root" -B "$scratch/half" -G Ninja -DCMAKE_UNITY_BUILD=ON -DREPEL_BUILD_TESTS=OFF \
