@@ -155,6 +155,21 @@ void write(const ArmInfo& info, const std::set<int>& links, const TickRecord& k,
   out.close('}');
 }
 
+/// Whether an arm has a script.
+bool is_scripted(const SceneInfo& info) {
+  return std::any_of(info.arms.begin(), info.arms.end(),
+                     [](const ArmInfo& arm) { return !arm.phases.empty(); });
+}
+
+/// Whether there is a script, and those of all arms have ended. The name of the phase does not
+/// tell: a phase need not have one.
+bool is_over(const SceneInfo& info, const Snapshot& shot) {
+  for (std::size_t i = 0; i < info.arms.size(); ++i) {
+    if (static_cast<std::size_t>(shot.arms[i].phase) < info.arms[i].phases.size()) return false;
+  }
+  return is_scripted(info);
+}
+
 void write(Status status, JsonText& out) {
   out.open('[');
   for (unsigned bit = 0; bit < 32; ++bit) {
@@ -249,6 +264,7 @@ std::string scene_message(const SceneInfo& info, const World& world) {
              {"parts", std::move(parts)},
              {"pairs", std::move(pairs)},
              {"arms", std::move(arms)}};
+  if (is_scripted(info)) scene["scripted"] = true;
   for (const PartId id : info.spare) scene["spare"].push_back(id.index);
   for (const VisualInfo& each : info.visuals) scene["visuals"].push_back(to_json(each));
   return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -278,6 +294,7 @@ std::string frame_message(const SceneInfo& info, const World& world, const Snaps
   out.open('{').name("type").json("\"frame\"").name("tick").integer(first.tick);
   out.name("time_s").number(first.time).name("running").boolean(running);
   out.name("phase").json(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace));
+  if (is_over(info, shot)) out.name("script_over").boolean(true);
   write(status, out.name("status"));
   out.name("bodies").open('[');
   for (const Pose& X : shot.X_WB) out.pose(X);

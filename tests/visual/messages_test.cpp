@@ -67,7 +67,8 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   const Json scene = Json::parse(scene_message(stage.info, stage.world));
   EXPECT_EQ(keys_of(scene),
             (std::set<std::string>{"type", "version", "name", "rate_hz", "period_us", "mode",
-                                   "duration_s", "bodies", "parts", "pairs", "arms"}));
+                                   "duration_s", "bodies", "parts", "pairs", "arms", "scripted"}));
+  EXPECT_EQ(scene.at("scripted"), true);
   EXPECT_EQ(scene.at("type"), "scene");
   EXPECT_EQ(scene.at("mode"), "live");
   EXPECT_EQ(scene.at("period_us"), 2500.0);
@@ -406,6 +407,29 @@ TEST(Messages, APhaseBeyondTheScriptHasNoName) {
     const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
     EXPECT_EQ(frame.at("phase"), "");
   }
+}
+
+TEST(Messages, AScriptIsOverWhenThatOfEachArmHasEnded) {
+  Stage stage;
+  stage.info.arms.emplace_back(stage.info.arms.front()).phases = {"up", "", ""};
+  stage.shot.arms.resize(2);
+  const auto is_over = [&](std::int32_t first, std::int32_t second) {
+    stage.shot.arms[0].phase = first;
+    stage.shot.arms[1].phase = second;
+    const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
+    return frame.contains("script_over") && frame.at("script_over") == true;
+  };
+  EXPECT_FALSE(is_over(0, 0));
+  EXPECT_FALSE(is_over(2, 2)) << "a phase without a name";
+  EXPECT_FALSE(is_over(1, 3));
+  EXPECT_TRUE(is_over(2, 3));
+  EXPECT_FALSE(is_over(0, 3)) << "again";
+  stage.info.arms[0].phases.clear();
+  EXPECT_FALSE(is_over(0, 2)) << "the other arm has a script";
+  EXPECT_TRUE(is_over(0, 3));
+  stage.info.arms[1].phases.clear();
+  EXPECT_FALSE(is_over(0, 0)) << "there is none";
+  EXPECT_FALSE(Json::parse(scene_message(stage.info, stage.world)).contains("scripted"));
 }
 
 TEST(Messages, TimingCountsEveryTickInOneBin) {

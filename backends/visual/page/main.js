@@ -120,7 +120,6 @@ function connected(yes, missing = "") {
 connection.on("scene", (scene) => {
   state.scene = scene;
   state.frame = null;
-  state.scripted = false;
   history.reset(scene.rate_hz);
   parts.build(scene);
   visuals.build(scene);
@@ -145,7 +144,6 @@ connection.on("frame", (frame) => {
     history.clear();
   }
   state.frame = frame;
-  state.scripted ||= frame.phase !== "";
   controls.frame();
   history.add(frame.recent);
   fresh = true;

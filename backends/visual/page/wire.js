@@ -71,6 +71,7 @@ export function scene(x) {
     arms: list(x.arms).map(arm),
     visuals: list(x.visuals).map(visual).filter((each) => each !== null),
     spare: list(x.spare).filter(Number.isInteger),
+    scripted: x.scripted === true,
   };
 }
 
@@ -110,6 +111,7 @@ export function frame(x) {
     time_s: number(x.time_s),
     running: x.running !== false,
     phase: text(x.phase),
+    scriptOver: x.script_over === true,
     status: list(x.status).map(text).filter(Boolean),
     bodies: list(x.bodies).map(pose),
     absent: list(x.absent).filter(Number.isInteger),
