@@ -14,8 +14,7 @@
 
 #include "end_to_end/live.hpp"
 
-namespace repel::test {
-namespace bare_link_test {
+namespace repel::test::bare_link_test {
 
 void replace(std::string& text, const std::string& old, const std::string& with) {
   const std::size_t at = text.find(old);
@@ -154,5 +153,4 @@ TEST(BareLink, IsShownAtAStation) {
   expect_pose(moved.at("arms")[0].at("links")[0], kinematics.X_WL(1));
 }
 
-}  // namespace bare_link_test
-}  // namespace repel::test
+}  // namespace repel::test::bare_link_test
