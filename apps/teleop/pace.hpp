@@ -43,10 +43,10 @@ class Pace {
 
   /// Before a late tick: skips the missed ticks if the next one is overdue by 50 ms or more, and
   /// returns how many. If less overdue, they are run back to back. The arm keeps moving in skipped
-  /// ticks.
+  /// ticks. In a pause none is missed, as single steps are due when they are asked for.
   std::int64_t catch_up() {
     constexpr std::chrono::milliseconds patience(50);
-    return pacing_ == Pacing::by_the_clock ? metronome_.catch_up(patience) : 0;
+    return pacing_ == Pacing::by_the_clock && !held_ ? metronome_.catch_up(patience) : 0;
   }
 
   /// Total time for which the user has paused the run; does not count as time of the loop.

@@ -3,33 +3,35 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/cell/layout.hpp>
+#include <repel/robots/kinematics.hpp>
 #include <repel/robots/visuals.hpp>
 
 namespace repel::teleop {
 namespace {
 
-/// A frame that moves with a link, in the terms of the world.
+/// A frame that moves with a link: a body of the world, or where it has none the link itself.
 struct Seat {
-  BodyId body;
-  Pose X_BL;  ///< [m] the link in it
+  BodyId body{};
+  Pose X_BL = Pose::Identity();  ///< [m] the link in it
+  int link = -1;                 ///< -1: there is a body
 };
 
-std::optional<Seat> seat_of(const Cell& cell, std::size_t arm, int link) {
+Seat seat_of(const Cell& cell, std::size_t arm, int link) {
   const ArmModel& model = cell.description().arms[arm].model;
-  if (link < 0) return Seat{World::fixed, model.X_WB};
+  if (link < 0) return {.body = World::fixed, .X_BL = model.X_WB};
   for (const LinkBody& body : cell.layout(arm).links) {
-    if (body.link == link) return Seat{body.body, Pose::Identity()};
+    if (body.link == link) return {.body = body.body};
   }
   if (link + 1 == static_cast<int>(model.links.size())) {
-    return Seat{cell.layout(arm).tool, model.X_LT.inverse()};
+    return {.body = cell.layout(arm).tool, .X_BL = model.X_LT.inverse()};
   }
-  return std::nullopt;
+  return {.link = link};
 }
 
 /// Whether it is collision geometry that the page has as a part.
@@ -62,14 +64,18 @@ void add_visuals(const PreparedRun& prepared, visual::SceneInfo& info) {
     }
     warnings.insert(warnings.end(), visuals.warnings.begin(), visuals.warnings.end());
     for (RobotVisual& each : visuals.all) {
-      const auto seat = seat_of(prepared.cell, i, each.link);
-      if (!seat || is_part(each, prepared.cell.description().arms[i])) continue;
+      const ArmDescription& arm = prepared.cell.description().arms[i];
+      if (is_part(each, arm)) continue;
+      const Seat seat = seat_of(prepared.cell, i, each.link);
+      std::shared_ptr<ArmKinematics>& kinematics = info.arms[i].kinematics;
+      if (seat.link >= 0 && !kinematics) kinematics = std::make_shared<Kinematics>(arm.model);
       info.visuals.push_back({.name = each.in_link,
-                              .body = seat->body,
+                              .body = seat.body,
                               .arm = static_cast<int>(i),
-                              .X_BV = seat->X_BL * each.X_LV,
+                              .X_BV = seat.X_BL * each.X_LV,
                               .color = each.color,
-                              .mesh = std::move(each.mesh)});
+                              .mesh = std::move(each.mesh),
+                              .link = seat.link});
     }
   }
   say(warnings);

@@ -9,9 +9,9 @@
 
 namespace repel::teleop {
 
-/// Adds the visuals of the arms, as their URDF files have them. Those of a link without a body in
-/// the world are left out, as nobody says where it is, and so is collision geometry that is a part
-/// of the world. What cannot be read is left out as well, which is said on stderr.
+/// Adds the visuals of the arms, as their URDF files have them, and kinematics for an arm in which
+/// a link that has some has no body in the world. Collision geometry that is a part of the world is
+/// left out, and so is what cannot be read, which is said on stderr.
 void add_visuals(const PreparedRun& prepared, visual::SceneInfo& info);
 
 }  // namespace repel::teleop

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <span>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/visual/messages.hpp>
 
@@ -50,13 +54,40 @@ Json to_json(const VisualInfo& info) {
     for (const int vertex : triangle) triangles.push_back(vertex);
   }
   Json json{{"name", info.name},
-            {"body", info.body.index},
             {"arm", info.arm},
             {"pose", visual::to_json(info.X_BV)},
             {"vertices", vertices_of(info.mesh)},
             {"triangles", std::move(triangles)}};
+  if (info.link < 0) {
+    json["body"] = info.body.index;
+  } else {
+    json["link"] = info.link;
+  }
   if (info.color) json["color"] = *info.color;
   return json;
+}
+
+/// The links of an arm that look like something and have no body, each once, base outward.
+std::set<int> placed_links(const SceneInfo& info, std::size_t arm) {
+  std::set<int> links;
+  for (const VisualInfo& each : info.visuals) {
+    if (each.link >= 0 && each.arm == static_cast<int>(arm)) links.insert(each.link);
+  }
+  return links;
+}
+
+/// @throws SetupError if nobody could say where a visual is
+void check(const SceneInfo& info, const VisualInfo& visual) {
+  if (visual.link < 0) return;
+  const bool has_arm = visual.arm >= 0 && visual.arm < std::ssize(info.arms);
+  const ArmInfo none;
+  const ArmInfo& arm = has_arm ? info.arms[static_cast<std::size_t>(visual.arm)] : none;
+  if (visual.link < std::ssize(arm.joints) && arm.kinematics != nullptr) return;
+  throw SetupError("the visual '" + visual.name + "' moves with link " +
+                   std::to_string(visual.link) + " of arm " + std::to_string(visual.arm) + ", of " +
+                   std::to_string(info.arms.size()) + ", which has " +
+                   std::to_string(arm.joints.size()) + " joints and " +
+                   (arm.kinematics != nullptr ? "" : "no ") + "kinematics");
 }
 
 /// The owner of a body: arm index and "tool" or "link"; for none, -1 and "obstacle".
@@ -101,7 +132,17 @@ void write(const NearPair& near, JsonText& out) {
   out.close('}');
 }
 
-void write(const ArmInfo& info, const TickRecord& k, JsonText& out) {
+/// Where these links of an arm are, if there are any.
+void write_links(const ArmInfo& info, const std::set<int>& links, const TickRecord& k,
+                 JsonText& out) {
+  if (links.empty()) return;
+  info.kinematics->update(std::span(k.q).first(info.joints.size()));
+  out.name("links").open('[');
+  for (const int link : links) out.pose(info.kinematics->X_WL(link));
+  out.close(']');
+}
+
+void write(const ArmInfo& info, const std::set<int>& links, const TickRecord& k, JsonText& out) {
   out.open('{');
   out.name("force").vector(k.virtual_force.force).name("torque").vector(k.virtual_force.torque);
   out.name("coupling").vector(k.coupling.force).name("lever_nm").number(k.lever_torque);
@@ -110,7 +151,23 @@ void write(const ArmInfo& info, const TickRecord& k, JsonText& out) {
   out.close(']').name("energy_j").open('[');
   for (std::size_t i = 0; i < info.modules.size(); ++i) out.number(k.energy[i]);
   write_inputs(info, k, out.close(']'));
+  write_links(info, links, k, out);
   out.close('}');
+}
+
+/// Whether an arm has a script.
+bool is_scripted(const SceneInfo& info) {
+  return std::any_of(info.arms.begin(), info.arms.end(),
+                     [](const ArmInfo& arm) { return !arm.phases.empty(); });
+}
+
+/// Whether there is a script, and those of all arms have ended. The name of the phase does not
+/// tell: a phase need not have one.
+bool is_over(const SceneInfo& info, const Snapshot& shot) {
+  for (std::size_t i = 0; i < info.arms.size(); ++i) {
+    if (static_cast<std::size_t>(shot.arms[i].phase) < info.arms[i].phases.size()) return false;
+  }
+  return is_scripted(info);
 }
 
 void write(Status status, JsonText& out) {
@@ -182,7 +239,9 @@ std::string scene_message(const SceneInfo& info, const World& world) {
     }
   }
   Json arms = Json::array();
-  for (const ArmInfo& arm : info.arms) {
+  for (const VisualInfo& each : info.visuals) check(info, each);
+  for (std::size_t i = 0; i < info.arms.size(); ++i) {
+    const ArmInfo& arm = info.arms[i];
     arms.push_back({{"name", arm.name},
                     {"joints", arm.joints},
                     {"modules", arm.modules},
@@ -191,6 +250,8 @@ std::string scene_message(const SceneInfo& info, const World& world) {
                     {"max_turn_rad_s", arm.max_turn},
                     {"max_lever_rad_s", arm.max_lever_rate}});
     add_inputs(arm, arms.back());
+    const std::set<int> links = placed_links(info, i);
+    if (!links.empty()) arms.back()["links"] = links;
   }
   Json scene{{"type", "scene"},
              {"version", 1},
@@ -203,6 +264,7 @@ std::string scene_message(const SceneInfo& info, const World& world) {
              {"parts", std::move(parts)},
              {"pairs", std::move(pairs)},
              {"arms", std::move(arms)}};
+  if (is_scripted(info)) scene["scripted"] = true;
   for (const PartId id : info.spare) scene["spare"].push_back(id.index);
   for (const VisualInfo& each : info.visuals) scene["visuals"].push_back(to_json(each));
   return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -232,6 +294,7 @@ std::string frame_message(const SceneInfo& info, const World& world, const Snaps
   out.open('{').name("type").json("\"frame\"").name("tick").integer(first.tick);
   out.name("time_s").number(first.time).name("running").boolean(running);
   out.name("phase").json(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace));
+  if (is_over(info, shot)) out.name("script_over").boolean(true);
   write(status, out.name("status"));
   out.name("bodies").open('[');
   for (const Pose& X : shot.X_WB) out.pose(X);
@@ -242,7 +305,9 @@ std::string frame_message(const SceneInfo& info, const World& world, const Snaps
   out.close(']').name("pairs_omitted").integer(shot.pairs_omitted);
   out.name("near").integer(first.pairs.near).name("evaluated").integer(first.pairs.evaluated);
   out.name("of").integer(std::ssize(world.pairs())).name("arms").open('[');
-  for (std::size_t i = 0; i < info.arms.size(); ++i) write(info.arms[i], shot.arms[i], out);
+  for (std::size_t i = 0; i < info.arms.size(); ++i) {
+    write(info.arms[i], placed_links(info, i), shot.arms[i], out);
+  }
   write(recent, out.close(']').name("recent"));
   out.close('}');
   return std::move(out).take();

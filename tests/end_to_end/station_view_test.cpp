@@ -82,8 +82,11 @@ TEST(StationView, ShowsWhatThePageAtTheSiteShows) {
     return f.at("phase") == "aside" && !has_status(f, "silent_site") && speed_of(f) > 0.02;
   });
   ASSERT_FALSE(moving.is_null());
+  EXPECT_EQ(scene.at("scripted"), true);
+  EXPECT_FALSE(moving.contains("script_over"));
   const Json resting = here.await("frame", rests);
   ASSERT_FALSE(resting.is_null());
+  EXPECT_TRUE(resting.contains("script_over"));
   EXPECT_NE(resting.at("arms")[0].at("q"), moving.at("arms")[0].at("q"));
   EXPECT_GT((tool_of(resting, scene) - tool_of(moving, scene)).norm(), 5e-3);
   const Json same = at_the_site(there, resting);

@@ -24,6 +24,7 @@ class Loop {
             if (pace.begins_anew(time)) break;
             (void)pace.wait(
                 time, stop_, [] {}, [this] { shown_ = at_.load(); });
+            lost_ = lost_ + pace.catch_up();
             at_ = k;
             made_ = made_ + 1;
           }
@@ -42,6 +43,7 @@ class Loop {
   }
 
   [[nodiscard]] std::int64_t made() const { return made_; }    ///< number of ticks executed
+  [[nodiscard]] std::int64_t lost() const { return lost_; }    ///< number of ticks skipped
   [[nodiscard]] std::int64_t at() const { return at_; }        ///< number of the last tick
   [[nodiscard]] std::int64_t shown() const { return shown_; }  ///< tick shown by a pause
   [[nodiscard]] bool over() const { return over_; }
@@ -54,6 +56,7 @@ class Loop {
   std::atomic<bool> over_{false};
   std::atomic<bool> anew_{false};
   std::atomic<std::int64_t> made_{0};
+  std::atomic<std::int64_t> lost_{0};
   std::atomic<std::int64_t> at_{-1};
   std::atomic<std::int64_t> shown_{-1};
   std::jthread thread_;
@@ -87,6 +90,7 @@ TEST_P(PaceOfAny, PausedItStandsAndStepsAreCounted) {
   EXPECT_TRUE(eventually([&] { return loop.made() > 5; }));
   loop.controls.paused = true;
   std::int64_t made = still(loop);
+  const std::int64_t lost = loop.lost();
   for (const std::int64_t steps : {1, 1, 7, 300}) {
     loop.controls.steps += steps;
     made += steps;
@@ -94,6 +98,7 @@ TEST_P(PaceOfAny, PausedItStandsAndStepsAreCounted) {
     EXPECT_EQ(still(loop), made);
     EXPECT_EQ(loop.shown(), loop.at()) << "the last of them is to be seen";
     EXPECT_EQ(loop.controls.steps, 0);
+    EXPECT_EQ(loop.lost(), lost) << "none was missed in the pause";
   }
   loop.controls.paused = false;
   EXPECT_TRUE(eventually([&] { return loop.made() > made + 5; }));

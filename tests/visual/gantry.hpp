@@ -16,7 +16,10 @@ namespace repel::test {
 /// Three rails along x, y and z, without weight.
 struct Gantry final : ArmKinematics {
   void update(std::span<const double> q) noexcept override { p = {q[0], q[1], q[2]}; }
-  [[nodiscard]] Pose X_WT() const noexcept override { return Pose(Eigen::Translation3d(p)); }
+  [[nodiscard]] Pose X_WT() const noexcept override { return X_WL(2); }
+  [[nodiscard]] Pose X_WL(int link) const noexcept override {
+    return Pose(Eigen::Translation3d(p.x(), link > 0 ? p.y() : 0.0, link > 1 ? p.z() : 0.0));
+  }
   void tool_jacobian(JacobianRef J) const noexcept override { J.setIdentity(); }
   void gravity_torques(std::span<double> out) noexcept override { out[0] = out[1] = out[2] = 0.0; }
   Vec3 p{0, 0, 0};

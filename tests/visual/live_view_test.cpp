@@ -74,6 +74,9 @@ class Program {
     foot.X_BV.translation() = Vec3(0.0, 0.0, -1.0);
     foot.color = {0.5, 0.25, 0.0, 1.0};
     foot.mesh = {{{0, 0, 0}, {0.123456789, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    visual::VisualInfo carriage{.name = "carriage", .arm = 0, .mesh = foot.mesh, .link = 0};
+    info.visuals.push_back(std::move(carriage));
+    info.arms.front().kinematics = std::make_shared<Gantry>();
     return LiveView(loop.cell, info, options);
   }
 };
@@ -121,6 +124,8 @@ TEST(LiveView, APageIsToldTheCell) {
   EXPECT_EQ(foot.at("color"), Json::parse("[0.5, 0.25, 0.0, 1.0]"));
   EXPECT_EQ(foot.at("vertices").at(3), 0.12346) << "rounded to 1e-5 m";
   EXPECT_EQ(foot.at("triangles"), Json::parse("[0, 1, 2]"));
+  EXPECT_EQ(scene.at("visuals").at(1).at("link"), 0);
+  EXPECT_EQ(arm.at("links"), Json::parse("[0]"));
   const Json who = program.until(page, "operator");
   EXPECT_EQ(who.at("by"), "device");
   EXPECT_EQ(who.at("name"), "The program");
@@ -144,6 +149,7 @@ TEST(LiveView, AFrameIsTheStateOfTheCellAfterThatTick) {
     expect_vector(arm.at("coupling"), record.coupling.force, "coupling");
     expect_vector(arm.at("v"), record.v_WT, "speed");
     expect_vector(frame.at("bodies").at(tool), record.p_WT, "pose of the tool");
+    expect_vector(arm.at("links").at(0), Vec3(record.q[0], 0, 0), "pose of a link without a body");
     for (const Json& pair : frame.at("pairs")) {
       const auto near = found->second.near.find(pair.at("i").get<int>());
       EXPECT_NE(near, found->second.near.end());

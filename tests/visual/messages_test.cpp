@@ -3,10 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
+#include <string>
 #include <vector>
+
+#include <repel/base/setup_error.hpp>
 
 namespace repel::visual {
 namespace messages_test {
@@ -59,7 +67,8 @@ TEST(Messages, TheSceneIsOfTheDocumentedForm) {
   const Json scene = Json::parse(scene_message(stage.info, stage.world));
   EXPECT_EQ(keys_of(scene),
             (std::set<std::string>{"type", "version", "name", "rate_hz", "period_us", "mode",
-                                   "duration_s", "bodies", "parts", "pairs", "arms"}));
+                                   "duration_s", "bodies", "parts", "pairs", "arms", "scripted"}));
+  EXPECT_EQ(scene.at("scripted"), true);
   EXPECT_EQ(scene.at("type"), "scene");
   EXPECT_EQ(scene.at("mode"), "live");
   EXPECT_EQ(scene.at("period_us"), 2500.0);
@@ -227,6 +236,96 @@ TEST(Messages, AFrameIsOfTheDocumentedForm) {
             (std::set<std::string>{"tick", "nearest_m", "force_n", "compute_us", "late_us"}));
 }
 
+/// Turns about z by its first joint, then slides along its own x.
+struct Crane final : ArmKinematics {
+  void update(std::span<const double> q) noexcept override {
+    ASSERT_EQ(q.size(), 2U);
+    turned = Pose(Eigen::AngleAxisd(q[0], Vec3::UnitZ()));
+    reach = q[1];
+  }
+  [[nodiscard]] Pose X_WL(int link) const noexcept override {
+    return link == 0 ? turned : turned * Pose(Eigen::Translation3d(reach, 0.0, 0.0));
+  }
+  [[nodiscard]] Pose X_WT() const noexcept override { return X_WL(1); }
+  void tool_jacobian(JacobianRef J) const noexcept override { J.setZero(); }
+  void gravity_torques(std::span<double> out) noexcept override { out[0] = out[1] = 0.0; }
+  Pose turned = Pose::Identity();
+  double reach = 0.0;
+};
+
+/// What a link of an arm looks like.
+VisualInfo looks(int arm, int link) {
+  return {.name = "cover",
+          .arm = arm,
+          .mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}},
+          .link = link};
+}
+
+/// A second arm, of which both links have looks and no body, the outer one twice.
+void add_crane(Stage& stage) {
+  ArmInfo& crane = stage.info.arms.emplace_back(stage.info.arms.front());
+  crane.kinematics = std::make_shared<Crane>();
+  stage.shot.arms.resize(2);
+  stage.info.visuals = {looks(1, 1), looks(1, 0), looks(1, 1)};
+}
+
+TEST(Messages, LooksOfALinkWithoutABodyMoveWithThatLink) {
+  Stage stage;
+  add_crane(stage);
+  stage.info.visuals.push_back({.name = "foot", .body = World::fixed, .arm = 1});
+  const Json scene = Json::parse(scene_message(stage.info, stage.world));
+  EXPECT_FALSE(scene.at("arms")[0].contains("links"));
+  EXPECT_EQ(scene.at("arms")[1].at("links"), (Json{0, 1}));
+  EXPECT_EQ(scene.at("visuals")[0].at("link"), 1);
+  EXPECT_EQ(scene.at("visuals")[0].at("arm"), 1);
+  EXPECT_FALSE(scene.at("visuals")[0].contains("body"));
+  EXPECT_EQ(scene.at("visuals")[3].at("body"), 0);
+  EXPECT_FALSE(scene.at("visuals")[3].contains("link"));
+  const std::array<double, 2> q{0.7, -1.3};
+  std::copy(q.begin(), q.end(), stage.shot.arms[1].q.begin());
+  const Json arms =
+      Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true)).at("arms");
+  EXPECT_FALSE(arms[0].contains("links"));
+  ASSERT_EQ(arms[1].at("links").size(), 2U);
+  Crane crane;
+  crane.update(q);
+  for (int link = 0; link < 2; ++link) {
+    const Pose X = crane.X_WL(link);
+    const Eigen::Quaterniond turn(X.linear());
+    const double is[] = {X.translation().x(),
+                         X.translation().y(),
+                         X.translation().z(),
+                         turn.x(),
+                         turn.y(),
+                         turn.z(),
+                         turn.w()};
+    const Json& told = arms[1].at("links")[static_cast<std::size_t>(link)];
+    ASSERT_EQ(told.size(), std::size(is));
+    for (std::size_t i = 0; i < std::size(is); ++i) {
+      EXPECT_NEAR(told[i].get<double>(), is[i], 1e-6) << link << ' ' << i;
+    }
+  }
+  stage.shot.arms[1].q.fill(nan);
+  const Json lost = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
+  EXPECT_TRUE(lost.at("arms")[1].at("links")[1][0].is_null());
+}
+
+TEST(Messages, LooksThatNobodyCanPlaceAreRefused) {
+  const VisualInfo wrong[] = {looks(1, 2), looks(0, 0), looks(2, 0), looks(-1, 0)};
+  for (const VisualInfo& each : wrong) {
+    Stage stage;
+    add_crane(stage);
+    EXPECT_NO_THROW((void)scene_message(stage.info, stage.world));
+    stage.info.visuals.push_back(each);
+    try {
+      (void)scene_message(stage.info, stage.world);
+      ADD_FAILURE() << "link " << each.link << " of arm " << each.arm;
+    } catch (const SetupError& error) {
+      EXPECT_NE(std::string(error.what()).find("'cover'"), std::string::npos) << error.what();
+    }
+  }
+}
+
 // A page that cannot parse a message would fail when it is needed most.
 TEST(Messages, AFrameNamesTheBodiesThatAreNotThere) {
   Stage stage;
@@ -308,6 +407,29 @@ TEST(Messages, APhaseBeyondTheScriptHasNoName) {
     const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
     EXPECT_EQ(frame.at("phase"), "");
   }
+}
+
+TEST(Messages, AScriptIsOverWhenThatOfEachArmHasEnded) {
+  Stage stage;
+  stage.info.arms.emplace_back(stage.info.arms.front()).phases = {"up", "", ""};
+  stage.shot.arms.resize(2);
+  const auto is_over = [&](std::int32_t first, std::int32_t second) {
+    stage.shot.arms[0].phase = first;
+    stage.shot.arms[1].phase = second;
+    const Json frame = Json::parse(frame_message(stage.info, stage.world, stage.shot, {}, true));
+    return frame.contains("script_over") && frame.at("script_over") == true;
+  };
+  EXPECT_FALSE(is_over(0, 0));
+  EXPECT_FALSE(is_over(2, 2)) << "a phase without a name";
+  EXPECT_FALSE(is_over(1, 3));
+  EXPECT_TRUE(is_over(2, 3));
+  EXPECT_FALSE(is_over(0, 3)) << "again";
+  stage.info.arms[0].phases.clear();
+  EXPECT_FALSE(is_over(0, 2)) << "the other arm has a script";
+  EXPECT_TRUE(is_over(0, 3));
+  stage.info.arms[1].phases.clear();
+  EXPECT_FALSE(is_over(0, 0)) << "there is none";
+  EXPECT_FALSE(Json::parse(scene_message(stage.info, stage.world)).contains("scripted"));
 }
 
 TEST(Messages, TimingCountsEveryTickInOneBin) {

@@ -42,7 +42,7 @@ export class Controls {
     if (performance.now() - this.#askedAt < 300) return;  // the answer is on its way
     this.#askedAt = performance.now();
     if (state.operator?.looksOn) return toast(`You look on: ${state.operator.whyNot}`);
-    const plays = state.operator?.by === "script" && state.frame?.phase;
+    const plays = state.operator?.by === "script" && scriptInWords(state) === "";
     if (this.connection.send({ type: "take" }) && plays) {
       toast("You take over: the script is over");
     }
@@ -75,7 +75,7 @@ export class Controls {
 
   #who({ by, you, name }) {
     const words = {
-      script: scriptInWords(state.frame?.phase, by, state.scripted) || "The script drives",
+      script: scriptInWords(state) || "The script drives",
       page: you ? "You drive" : "Another page drives",
       device: `${name || "A device"} drives`,
       recording: "A recording plays",

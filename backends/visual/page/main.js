@@ -120,7 +120,6 @@ function connected(yes, missing = "") {
 connection.on("scene", (scene) => {
   state.scene = scene;
   state.frame = null;
-  state.scripted = false;
   history.reset(scene.rate_hz);
   parts.build(scene);
   visuals.build(scene);
@@ -145,7 +144,6 @@ connection.on("frame", (frame) => {
     history.clear();
   }
   state.frame = frame;
-  state.scripted ||= frame.phase !== "";
   controls.frame();
   history.add(frame.recent);
   fresh = true;
@@ -169,6 +167,7 @@ connection.on("refused", (refused) => {
 // Where the bodies are now; the first frame of a scene also sets up floor and camera.
 function move(frame) {
   parts.move(frame.bodies, frame.absent);
+  visuals.move(frame.arms);
   const pose = toolPose(frame);
   if (pose) {
     toolAt.fromArray(pose);
@@ -211,7 +210,8 @@ function clearView(now) {
   for (const { a } of state.frame.pairs.slice(0, 2)) {
     if (a) points.push(new Vector3().fromArray(a));
   }
-  visuals.clear(parts.clear(stage.camera.position, points));
+  const eye = stage.camera.position;
+  visuals.clear(parts.clear(eye, points), eye, points);
 }
 
 function draw(now) {

@@ -12,7 +12,7 @@ import { colour, onTheme } from "./theme.js";
 // Pushed back a little, for the edges to be seen whole.
 const BEHIND_EDGES = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
 
-function place(object, pose) {
+export function place(object, pose) {
   if (!pose) return;
   object.position.set(pose[0], pose[1], pose[2]);
   object.quaternion.set(pose[3], pose[4], pose[5], pose[6]).normalize();
@@ -193,11 +193,16 @@ export class Parts {
     const bodies = new Set();
     for (const part of this.parts) {
       if (part.material === tool || part.material === passable) continue;
-      part.hides = points.some((point) => this.#hides(part.solid, eye, point));
+      part.hides = this.hides(part.solid, eye, points);
       if (part.hides && part.group !== "obstacle") bodies.add(part.body);
       this.#give(part);
     }
     return bodies;
+  }
+
+  // Whether it is between the eye and one of these points.
+  hides(solid, eye, points) {
+    return points.some((point) => this.#hides(solid, eye, point));
   }
 
   #hides(solid, eye, point) {

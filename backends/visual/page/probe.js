@@ -29,6 +29,7 @@ export function startProbe({ connection, stage, parts, marks, gaps, fixtures, ca
         boxes: (scene?.spare ?? []).map((part) => scene.parts[part].body)
           .filter((each) => !frame?.absent?.includes(each))
           .map((each) => frame?.bodies?.[each]?.slice(0, 3)),
+        linkPoses: visuals.linkPoses,  // where the looks of links without a body are drawn
         toolPosition: frame?.bodies?.[body]?.slice(0, 3) ?? null,
         force: frame?.arms?.[0]?.force ?? null,
         hand: frame?.arms?.[0] ? { ...frame.arms[0], energy_j: undefined } : null,

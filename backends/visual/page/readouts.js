@@ -69,8 +69,7 @@ export class Readouts {
 
   frame(frame, now) {
     write(at("time"), `${fixed(frame.time_s, 2)} s`);
-    write(at("phase"), frame.phase || scriptInWords(frame.phase, state.operator?.by,
-                                                    state.scripted));
+    write(at("phase"), frame.phase || scriptInWords(state));
     this.#showStatus(frame, now);
     this.#showNumbers(frame.pairs);
     this.#showPairs(frame);

@@ -81,7 +81,6 @@ export const state = {
   timing: null,
   operator: null,
   connected: false,
-  scripted: false,  // a phase of the script was named since the scene came
   radius: 1,  // of a sphere that holds the scene [m]
   arm: 0,  // the one whose numbers are shown
   history: new History(),

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The robot as it looks: meshes that move with the bodies and exert no force. Those of one body are
-// drawn in one call.
+// drawn in one call, and so are those of one link without a body, of which a frame says where it is.
 
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix4, Mesh, MeshLambertMaterial,
   Quaternion, Vector3,
 } from "./vendor/three.min.js";
 import { creased } from "./geometry.js";
+import { place } from "./parts.js";
 import { settings } from "./settings.js";
 import { colour, onTheme } from "./theme.js";
 
@@ -15,6 +16,7 @@ const ONE = new Vector3(1, 1, 1);
 
 export class Visuals {
   #bodies = new Map();  // by body: its mesh
+  #links = [];  // of those without a body: { mesh, arm, k }, the k-th that a frame tells of that arm
   #plain = [];  // [mesh, first corner, number of corners] of what has no colour of its own
   #materials = {
     whole: new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }),
@@ -29,29 +31,40 @@ export class Visuals {
   }
 
   get any() {
-    return [...this.#bodies.keys()].some((body) => body !== BASE);
+    return this.#links.length > 0 || [...this.#bodies.keys()].some((body) => body !== BASE);
   }
 
   // After the parts of the scene, on whose bodies it hangs.
   build(scene) {
-    for (const mesh of this.#bodies.values()) mesh.geometry.dispose();
-    this.#bodies.clear();
-    this.#plain.length = 0;
-    const byBody = new Map();
-    for (const visual of scene.visuals) {
-      if (!this.parts.bodies[visual.body]) continue;
-      if (!byBody.has(visual.body)) byBody.set(visual.body, []);
-      byBody.get(visual.body).push(visual);
+    for (const mesh of this.#meshes()) {
+      mesh.geometry.dispose();
+      mesh.removeFromParent();
     }
-    for (const [body, all] of byBody) this.#build(body, all);
+    this.#bodies.clear();
+    this.#links.length = 0;
+    this.#plain.length = 0;
+    this.parts.bodies.forEach((group, body) => {
+      const mesh = this.#build(scene.visuals.filter((visual) => visual.body === body), group);
+      if (mesh) this.#bodies.set(body, mesh);
+    });
+    scene.arms.forEach(({ links }, arm) => links.forEach((link, k) => {
+      const own = scene.visuals.filter((visual) => visual.arm === arm && visual.link === link);
+      const mesh = this.#build(own, this.stage.scene);
+      if (mesh) this.#links.push({ mesh, arm, k });
+    }));
     this.parts.dressed = new Set(this.#bodies.keys());
     this.#paint();
   }
 
-  #build(body, visuals) {
+  #meshes() {
+    return [...this.#bodies.values(), ...this.#links.map(({ mesh }) => mesh)];
+  }
+
+  // One mesh of them all, on what they move with; null: there is nothing to be seen.
+  #build(visuals, holder) {
     const surfaces = visuals.map((visual) => creased(visual));
     const count = surfaces.reduce((sum, { positions }) => sum + positions.length / 3, 0);
-    if (count === 0) return;
+    if (count === 0) return null;
     const attribute = () => new BufferAttribute(new Float32Array(3 * count), 3);
     const geometry = new BufferGeometry();
     for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, attribute());
@@ -72,8 +85,13 @@ export class Visuals {
       first += corners;
     });
     mesh.castShadow = mesh.receiveShadow = true;
-    this.parts.bodies[body].add(mesh);
-    this.#bodies.set(body, mesh);
+    holder.add(mesh);
+    return mesh;
+  }
+
+  // Where the links are that have no body. `arms`: of a frame.
+  move(arms) {
+    for (const { mesh, arm, k } of this.#links) place(mesh, arms[arm]?.links[k]);
   }
 
   // Whether the robot is drawn as it looks. With the reduction levels its parts are seen, which
@@ -84,20 +102,31 @@ export class Visuals {
 
   // The base has no parts of its own, and stands there either way.
   show() {
-    for (const [body, mesh] of this.#bodies) mesh.visible = this.shown || body === BASE;
+    for (const mesh of this.#meshes()) {
+      mesh.visible = this.shown || mesh === this.#bodies.get(BASE);
+    }
     this.stage.invalidate();
   }
 
-  // `hiding`: the bodies that hide the tool.
-  clear(hiding) {
+  // Makes what hides the tool see-through. `hiding`: the bodies of which a part does; a link without
+  // a body has no parts that would tell, so its looks are asked whether they hide these points.
+  clear(hiding, eye, points) {
     const { whole, seeThrough } = this.#materials;
     for (const [body, mesh] of this.#bodies) {
       mesh.material = hiding.has(body) ? seeThrough : whole;
     }
+    for (const { mesh } of this.#links) {
+      mesh.material = this.shown && this.parts.hides(mesh, eye, points) ? seeThrough : whole;
+    }
   }
 
   get count() {
-    return [...this.#bodies.values()].filter((mesh) => mesh.visible).length;
+    return this.#meshes().filter((mesh) => mesh.visible).length;
+  }
+
+  get linkPoses() {
+    return this.#links.map(({ mesh }) => [...mesh.position.toArray(),
+                                          ...mesh.quaternion.toArray()]);
   }
 
   #paint() {

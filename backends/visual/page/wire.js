@@ -40,21 +40,22 @@ function fixture(x) {
 
 // A mesh to be looked at; one that is not whole is left out.
 function visual(x) {
-  const { body, pose: where, color, name, vertices, triangles } = object(x);
+  const { body, arm: whose, link, pose: where, color, name, vertices, triangles } = object(x);
   const { vertices: points, triangles: corners } = level({ vertices, triangles });
-  if (!Number.isInteger(body) || points.length === 0 || corners.length === 0) return null;
-  return { body, pose: pose(where), color: vector(color), name: text(name), vertices: points,
-           triangles: corners };
+  const moves = Number.isInteger(body) || Number.isInteger(link);
+  if (!moves || points.length === 0 || corners.length === 0) return null;
+  return { body: number(body), arm: number(whose), link: number(link), pose: pose(where),
+           color: vector(color), name: text(name), vertices: points, triangles: corners };
 }
 
 function arm(x) {
   const { name, modules, tool_body, max_speed_m_s, max_turn_rad_s, max_lever_rad_s, fixtures,
-          compliant, scale, hands } = object(x);
+          compliant, scale, hands, links } = object(x);
   return { name: text(name), modules: list(modules).map(text), tool_body,
            max_speed_m_s: number(max_speed_m_s), max_turn_rad_s: number(max_turn_rad_s),
            max_lever_rad_s: number(max_lever_rad_s), fixtures: list(fixtures).map(fixture),
            compliant: list(compliant).map(text), scales: Array.isArray(scale),
-           hands: number(hands) ?? 1 };
+           hands: number(hands) ?? 1, links: list(links).filter(Number.isInteger) };
 }
 
 export function scene(x) {
@@ -70,6 +71,7 @@ export function scene(x) {
     arms: list(x.arms).map(arm),
     visuals: list(x.visuals).map(visual).filter((each) => each !== null),
     spare: list(x.spare).filter(Number.isInteger),
+    scripted: x.scripted === true,
   };
 }
 
@@ -91,13 +93,15 @@ function pair(x) {
 
 function armNow(x) {
   const { force, torque, coupling, lever_nm, gain, energy_j, guides, guide_strength, compliant,
-          compliant_frame, scale, grip_n, grip_nm, second_grip_n, second_grip_nm } = object(x);
+          compliant_frame, scale, grip_n, grip_nm, second_grip_n, second_grip_nm, links } =
+    object(x);
   return { force: vector(force), torque: vector(torque), coupling: vector(coupling),
            lever_nm: number(lever_nm), gain: number(gain), energy_j: numbers(energy_j),
            guides: list(guides).map(text), guide_strength: number(guide_strength),
            compliant: list(compliant).map(text), compliant_frame: text(compliant_frame),
            scale: number(scale), grip_n: vector(grip_n), grip_nm: vector(grip_nm),
-           second_grip_n: vector(second_grip_n), second_grip_nm: vector(second_grip_nm) };
+           second_grip_n: vector(second_grip_n), second_grip_nm: vector(second_grip_nm),
+           links: list(links).map(pose) };
 }
 
 export function frame(x) {
@@ -107,6 +111,7 @@ export function frame(x) {
     time_s: number(x.time_s),
     running: x.running !== false,
     phase: text(x.phase),
+    scriptOver: x.script_over === true,
     status: list(x.status).map(text).filter(Boolean),
     bodies: list(x.bodies).map(pose),
     absent: list(x.absent).filter(Number.isInteger),

@@ -28,12 +28,12 @@ export function write(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-// What is to be said of the script while no phase of it has a name: behind its last one it is over.
-// Where none was ever `seen`, there may be no script at all. While somebody else drives that says
-// nothing new.
-export function scriptInWords(phase, by, seen) {
-  if (phase !== "" || !["script", "nobody", "recording"].includes(by)) return "";
-  return seen ? "The script is over" : "No script plays";
+// What is to be said of the script: that it is over, or that there is none. While one plays that is
+// nothing, nor while somebody else drives.
+export function scriptInWords({ scene, frame, operator }) {
+  if (!scene || !["script", "nobody", "recording"].includes(operator?.by)) return "";
+  if (!scene.scripted) return "No script plays";
+  return frame?.scriptOver ? "The script is over" : "";
 }
 
 const bodies = (count) => (count === 1 ? "1 body" : `${count} bodies`);

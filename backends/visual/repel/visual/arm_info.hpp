@@ -3,12 +3,14 @@
 /// What a page is told of an arm.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <repel/network/elements/fixture.hpp>
 #include <repel/network/modules/relief.hpp>
+#include <repel/world/arm_kinematics.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::visual {
@@ -20,10 +22,13 @@ struct ArmInfo {
   std::vector<BodyId> links;         ///< those with parts
   std::vector<std::string> joints;   ///< "revolute" or "prismatic", base outward
   std::vector<std::string> modules;  ///< of its network, in the same order
-  std::vector<std::string> phases;   ///< names of the phases of its script
+  std::vector<std::string> phases;   ///< names of the phases of its script; none: it has none
   double max_speed = 0.25;           ///< [m/s] maximum command of its master
   double max_turn = 1.0;             ///< [rad/s] likewise
   double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
+  /// Places the links that VisualInfo::link names, if there are any. It belongs to one view, which
+  /// moves it in a thread of its own: never that of a cell.
+  std::shared_ptr<ArmKinematics> kinematics{};
   // What a hand can switch in its network.
   std::vector<network::FixtureOptions> fixtures;  ///< of GUIDE, in its order
   std::optional<network::ReliefOptions> relief;   ///< of RELIEF; none: it has no such module

@@ -40,12 +40,15 @@ struct GapsInfo {
 
 /// What a part of an arm looks like, or what it stands on: only looked at, without any force.
 struct VisualInfo {
-  std::string name;                              ///< as in "base_link"
-  BodyId body;                                   ///< that it moves with; World::fixed: none
-  int arm = -1;                                  ///< that it belongs to
-  Pose X_BV = Pose::Identity();                  ///< [m] in its body
+  std::string name;  ///< as in "base_link"
+  BodyId body{};     ///< that it moves with; World::fixed: none. Unused where there is a `link`
+  int arm = -1;      ///< that it belongs to
+  Pose X_BV = Pose::Identity();                  ///< [m] in its body or link
   std::optional<std::array<double, 4>> color{};  ///< red, green, blue, opacity, 0 to 1
-  TriangleMesh mesh;                             ///< [m] in its own frame V
+  TriangleMesh mesh{};                           ///< [m] in its own frame V
+  /// Of a moving link without a body in the world: its index, base outward, for which
+  /// ArmInfo::kinematics says where it is; -1: it moves with `body`.
+  int link = -1;
 };
 
 /// Properties that are constant while a scene runs.
@@ -61,6 +64,7 @@ struct SceneInfo {
 };
 
 /// `scene`: bodies, parts with their levels as meshes, pairs, arms. Takes milliseconds.
+/// @throws SetupError for a visual of a link that its arm does not have, or has no kinematics for
 [[nodiscard]] std::string scene_message(const SceneInfo& info, const World& world);
 
 /// `part`: a part that has got another shape.
