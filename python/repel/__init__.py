@@ -18,19 +18,15 @@ from .program import program, run, view
 from .recording import Recording, read_recording
 
 if TYPE_CHECKING:
-    from ._repel import Cover as Cover
-    from ._repel import Scene as Scene
-    from ._repel import ScriptedOperator as ScriptedOperator
-    from ._repel import SimulatedArm as SimulatedArm
-    from ._repel import cover as cover
-    from ._repel import load_scene as load_scene
+    from ._repel import Cover, Scene, ScriptedOperator, SimulatedArm, cover, load_scene
 
 __version__ = "0.2.0"
 
-__all__ = ["Arm", "Cell", "Command", "ForceLaw", "Kinematics", "Link", "Obstacle", "Part",
-           "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Separation", "SetupError",
-           "Shape", "Tick", "WarmStart", "WarmStarts", "World", "program", "read_recording", "run",
-           "separation", "separations", "view"]
+__all__ = ["Arm", "Cell", "Command", "Cover", "ForceLaw", "Kinematics", "Link", "Obstacle", "Part",
+           "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene", "ScriptedOperator",
+           "Separation", "SetupError", "Shape", "SimulatedArm", "Tick", "WarmStart", "WarmStarts",
+           "World", "cover", "load_scene", "program", "read_recording", "run", "separation",
+           "separations", "view"]
 
 #: What a build leaves out when packages are missing, and the part that brings it.
 _PARTS = {"Scene": "scene and robots", "ScriptedOperator": "scene and robots",
@@ -40,7 +36,8 @@ _PARTS = {"Scene": "scene and robots", "ScriptedOperator": "scene and robots",
 for _name in _PARTS:
     if hasattr(_repel, _name):
         globals()[_name] = getattr(_repel, _name)
-        __all__.append(_name)
+    else:
+        __all__.remove(_name)
 
 
 def __getattr__(name: str) -> Any:
