@@ -9,7 +9,7 @@ unit quaternion w x y z (4,). What cannot be used is refused with `SetupError`.
 from typing import TYPE_CHECKING, Any
 
 from . import _repel
-from ._errors import SetupError
+from ._errors import SetupError, how_to_have
 from ._repel import (QUERY_ENDS, Cell, Command, ForceLaw, QueryOptions, Separation, Shape, Tick,
                      WarmStart, WarmStarts, World, separation)
 from ._separations import SEPARATION, separations
@@ -28,10 +28,9 @@ __all__ = ["Arm", "Cell", "Command", "Cover", "ForceLaw", "Kinematics", "Link", 
            "World", "cover", "load_scene", "program", "read_recording", "run", "separation",
            "separations", "view"]
 
-#: What a build leaves out when packages are missing, and the part that brings it.
-_PARTS = {"Scene": "scene and robots", "ScriptedOperator": "scene and robots",
-          "SimulatedArm": "scene and robots", "load_scene": "scene and robots",
-          "Cover": "cover", "cover": "cover"}
+#: What a build leaves out when packages are missing, and the part of it that is left out.
+_PARTS = {"Scene": "scenes", "ScriptedOperator": "scenes", "SimulatedArm": "scenes",
+          "load_scene": "scenes", "Cover": "covers", "cover": "covers"}
 
 for _name in _PARTS:
     if hasattr(_repel, _name):
@@ -42,5 +41,5 @@ for _name in _PARTS:
 
 def __getattr__(name: str) -> Any:
     if name in _PARTS:
-        raise AttributeError(f"repel.{name} needs a build with {_PARTS[name]}: see docs/python.md")
+        raise AttributeError(f"repel.{name} is not in this build: {how_to_have(_PARTS[name])}")
     raise AttributeError(f"module 'repel' has no attribute {name!r}")
