@@ -4,7 +4,6 @@ into one site. docs/site runs Doxygen before."""
 
 import fnmatch
 import json
-import os
 import posixpath
 import re
 import subprocess

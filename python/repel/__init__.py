@@ -9,7 +9,7 @@ unit quaternion w x y z (4,). What cannot be used is refused with `SetupError`.
 from typing import TYPE_CHECKING, Any
 
 from . import _repel
-from ._errors import SetupError
+from ._errors import SetupError, how_to_have
 from ._repel import (QUERY_ENDS, Cell, Command, ForceLaw, QueryOptions, Separation, Shape, Tick,
                      WarmStart, WarmStarts, World, separation)
 from ._separations import SEPARATION, separations
@@ -18,32 +18,28 @@ from .program import program, run, view
 from .recording import Recording, read_recording
 
 if TYPE_CHECKING:
-    from ._repel import Cover as Cover
-    from ._repel import Scene as Scene
-    from ._repel import ScriptedOperator as ScriptedOperator
-    from ._repel import SimulatedArm as SimulatedArm
-    from ._repel import cover as cover
-    from ._repel import load_scene as load_scene
+    from ._repel import Cover, Scene, ScriptedOperator, SimulatedArm, cover, load_scene
 
 __version__ = "0.2.0"
 
-__all__ = ["Arm", "Cell", "Command", "ForceLaw", "Kinematics", "Link", "Obstacle", "Part",
-           "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Separation", "SetupError",
-           "Shape", "Tick", "WarmStart", "WarmStarts", "World", "program", "read_recording", "run",
-           "separation", "separations", "view"]
+__all__ = ["Arm", "Cell", "Command", "Cover", "ForceLaw", "Kinematics", "Link", "Obstacle", "Part",
+           "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene", "ScriptedOperator",
+           "Separation", "SetupError", "Shape", "SimulatedArm", "Tick", "WarmStart", "WarmStarts",
+           "World", "cover", "load_scene", "program", "read_recording", "run", "separation",
+           "separations", "view"]
 
-#: What a build leaves out when packages are missing, and the part that brings it.
-_PARTS = {"Scene": "scene and robots", "ScriptedOperator": "scene and robots",
-          "SimulatedArm": "scene and robots", "load_scene": "scene and robots",
-          "Cover": "cover", "cover": "cover"}
+#: What a build leaves out when packages are missing, and the part of it that is left out.
+_PARTS = {"Scene": "scenes", "ScriptedOperator": "scenes", "SimulatedArm": "scenes",
+          "load_scene": "scenes", "Cover": "covers", "cover": "covers"}
 
 for _name in _PARTS:
     if hasattr(_repel, _name):
         globals()[_name] = getattr(_repel, _name)
-        __all__.append(_name)
+    else:
+        __all__.remove(_name)
 
 
 def __getattr__(name: str) -> Any:
     if name in _PARTS:
-        raise AttributeError(f"repel.{name} needs a build with {_PARTS[name]}: see docs/python.md")
+        raise AttributeError(f"repel.{name} is not in this build: {how_to_have(_PARTS[name])}")
     raise AttributeError(f"module 'repel' has no attribute {name!r}")

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The exception of the package."""
+"""The exception of the package, and what is said of a part that a build goes without."""
+
+from ._left_out import PACKAGES
 
 
 class SetupError(ValueError):
@@ -12,3 +14,10 @@ class SetupError(ValueError):
         super().__init__(message)
         self.file = file
         self.line = line
+
+
+def how_to_have(part: str) -> str:
+    """What to install before the package is built again, for it to have that part."""
+    if part not in PACKAGES:
+        return "its part was switched off when this was built"
+    return f"to have it: apt-get install {PACKAGES[part]}, then pip install . again"

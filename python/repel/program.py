@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ._errors import SetupError
+from ._errors import SetupError, how_to_have
 
 #: What the exit codes of the program say beside "it ran".
 _REFUSED = (1, 2)
@@ -35,7 +35,8 @@ def program() -> str:
     if found:
         return found
     raise SetupError("the program teleop is not here; allowed: its path in REPEL_TELEOP (./run in "
-                     "the sources builds build/release/bin/teleop), or teleop on PATH")
+                     "the sources builds build/release/bin/teleop), or teleop on PATH; or build the "
+                     f"package with it: {how_to_have('teleop')}")
 
 
 def _path_of(scene: Any) -> str:

@@ -149,7 +149,7 @@ Vec3 vector_of(nb::handle value, const char* name) {
   constexpr const char* expected = "three numbers (3,)";
   const Array v = array_of(value, name, expected);
   if (!has_shape(v, {3})) refuse_shape(v, name, expected);
-  const Vec3 vector(v.data()[0], v.data()[1], v.data()[2]);
+  Vec3 vector(v.data()[0], v.data()[1], v.data()[2]);
   if (!is_finite(vector)) throw SetupError(named(name, {}) + ": an entry is not finite");
   return vector;
 }

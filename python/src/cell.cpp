@@ -91,6 +91,7 @@ void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> no
                               .c_str());
   }
   std::vector<ArmReadings> all;
+  all.reserve(own.size());
   for (const OwnReadings& each : own) all.push_back(each.readings());
   {
     const auto time = time_of(now);

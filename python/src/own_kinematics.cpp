@@ -54,9 +54,8 @@ void copy_matrix(nb::handle value, const char* name, std::size_t rows, std::size
 
 void raise(Trouble& trouble) {
   if (!trouble || !trouble->has_value()) return;
-  nb::python_error error = std::move(**trouble);
-  trouble->reset();
-  throw error;
+  std::optional<nb::python_error> raised = std::exchange(*trouble, std::nullopt);
+  throw nb::python_error(std::move(*raised));
 }
 
 OwnKinematics::OwnKinematics(nb::object object, std::size_t joints, Trouble trouble)

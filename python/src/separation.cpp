@@ -67,7 +67,7 @@ Separation ask_one(const Shape& a, nb::handle X_WA, const Shape& b, nb::handle X
   const Pose of_a = pose_of(X_WA, "X_WA");
   const Pose of_b = pose_of(X_WB, "X_WB");
   WarmStart cold;
-  const Separation s = ask(a, of_a, b, of_b, options, warm != nullptr ? *warm : cold);
+  Separation s = ask(a, of_a, b, of_b, options, warm != nullptr ? *warm : cold);
   if (s.end == QueryEnd::bad_input) {
     throw SetupError("X_WA, X_WB: the poses are beyond 1e15 m, where distances lose their meaning");
   }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/world/world.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <nanobind/nanobind.h>
 
@@ -58,8 +60,14 @@ class OwnWorld {
   }
 
   nb::list near() {
+    // Nothing may be thrown while the coprocessor goes through them, as Python does without memory.
+    std::size_t count = 0;
+    evaluated().for_each_near([&count](const NearPair&) { ++count; });
+    std::vector<NearPair> pairs;
+    pairs.reserve(count);
+    coprocessor_->for_each_near([&pairs](const NearPair& near) { pairs.push_back(near); });
     nb::list all;
-    evaluated().for_each_near([&](const NearPair& near) {
+    for (const NearPair& near : pairs) {
       const Pair& pair = world_.pair(near.pair);
       nb::dict each;
       each["pair"] = near.pair.index;
@@ -68,7 +76,7 @@ class OwnWorld {
       each["separation"] = near.separation;
       each["force"] = near.force;
       all.append(each);
-    });
+    }
     return all;
   }
 
