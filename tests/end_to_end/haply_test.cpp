@@ -57,7 +57,7 @@ class Hand {
     return std::clamp(t < 4.0 ? (t - 1.0) / 2.0 : (6.0 - t) / 2.0, 0.0, 1.0);
   }
 
-  const Vec3 at_first_ = FakeHandle{}.position;
+  Vec3 at_first_ = FakeHandle{}.position;
   std::chrono::steady_clock::time_point begin_, last_;
   Vec3 held_{0, 0, 0};
   bool begun_ = false;
@@ -123,21 +123,31 @@ TEST(Haply, AHandFeelsATableInAnotherProgram) {
           "  - {module: puma_kin}\n"
           "  - {module: limits}\n"
           "  - {module: puma_joints}\n");
-  devices::FakeHaply service;
+  const auto run = [&](Hand& hand) {
+    devices::FakeHaply service;
+    service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
+    const Ending ending = teleop(
+        quoted(scene) + " --apart --seconds 8 --backend ideal --device haply:" + service.url() +
+        " --link udp:127.0.0.1:" + std::to_string(22000 + getpid() % 20000) + " --report " +
+        quoted(folder / "report.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    EXPECT_TRUE(service.force().isZero(0.0)) << "and is let go at the end";
+    return report_of(folder / "report.json");
+  };
+  // A machine that stood still for a second while the hand was down has the tool come back before
+  // it touches: such a run says nothing.
   Hand hand;
-  service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
-  const Ending ending = teleop(
-      quoted(scene) + " --apart --seconds 8 --backend ideal --device haply:" + service.url() +
-      " --link udp:127.0.0.1:" + std::to_string(22000 + getpid() % 20000) + " --report " +
-      quoted(folder / "report.json"));
-  ASSERT_EQ(ending.status, 0) << ending;
-  const json site = report_of(folder / "report.json");
+  json site = run(hand);
+  for (int again = 0; again < 2 && site.at("skipped_ticks") > 0; ++again) {
+    hand = Hand();
+    site = run(hand);
+  }
   const json& station = site.at("station");
+  SCOPED_TRACE(site.dump());
   EXPECT_GT(site.at("peak_force_n"), 1.0);
   EXPECT_GT(station.at("peak_hand_force_n"), 1.0);
   EXPECT_GT(hand.most_up_, 0.5);
   EXPECT_LE(hand.most_, 3.0 + 1e-4);
-  EXPECT_TRUE(service.force().isZero(0.0)) << "and is let go at the end";
   for (const json& side : {site, station}) {
     EXPECT_EQ(side.at("allocations_in_tick"), 0);
     for (const json& module : side.at("modules")) {
