@@ -94,7 +94,8 @@ TEST(Haply, AHandLeadsTheToolIntoAWallAndFeelsIt) {
   // Without the table it would sink twice as far as the hand.
   EXPECT_LT(hand.lowest_, -0.01);
   EXPECT_GT(sunk, 0.01);
-  EXPECT_GT(report.at("peak_force_n"), 2.0);
+  // Hand, grip and wall come to rest at 2.011 N; less if the machine stood still on the way there.
+  EXPECT_NEAR(report.at("peak_force_n"), 2.01, 0.1);
   EXPECT_GT(hand.most_up_, 1.0);
   EXPECT_LT(hand.most_at_first_, 0.3);
   EXPECT_LE(hand.most_, 3.0 + 1e-4);
