@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <functional>
 #include <optional>
 #include <unordered_map>
 
@@ -17,6 +16,7 @@
 #include <repel/robots/read_mesh.hpp>
 
 #include "child_process.hpp"
+#include "parcel.hpp"
 
 #ifdef REPEL_HAS_ASSIMP
 #include <assimp/config.h>
@@ -214,8 +214,15 @@ class Gathering {
       const aiFace& face = mesh.mFaces[k];
       if (face.mNumIndices != 3) continue;
       require(triangles_.size() + 1, input_limits.mesh_triangles, "triangles");
-      triangles_.push_back(
-          {index[face.mIndices[0]], index[face.mIndices[1]], index[face.mIndices[2]]});
+      std::array<int, 3>& triangle = triangles_.emplace_back();
+      for (std::size_t i = 0; i < 3; ++i) {
+        const unsigned vertex = face.mIndices[i];
+        if (vertex >= index.size()) {  // not every reader of assimp looks
+          throw SetupError("names vertex " + std::to_string(vertex) + " of " +
+                           std::to_string(index.size()) + "; allowed: from 0, below that");
+        }
+        triangle[i] = index[vertex];
+      }
     }
   }
 
@@ -290,64 +297,50 @@ TriangleMesh read_triangles(const std::string& path, const Vec3& scale) {
   return mesh;
 }
 
-template <class T>
-void append_bytes(std::string& text, const std::vector<T>& values) {
-  text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
-
-template <class T>
-std::vector<T> values_from(const char* bytes, std::size_t size) {
-  std::vector<T> values(size / sizeof(T));
-  if (!values.empty()) std::memcpy(static_cast<void*>(values.data()), bytes, size);
-  return values;
-}
-
-/// Runs `work` on a mesh file in a child process, within the limits of the file's size.
-std::string result_for_file(const fs::path& path, const std::function<std::string()>& work) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  const std::string file = "mesh '" + path.string() + "' ";
-  if (error || bytes > input_limits.mesh_bytes) {
-    throw SetupError(file + "has " + std::to_string(bytes) + " bytes; allowed: up to " +
-                     std::to_string(input_limits.mesh_bytes));
+/// @throws SetupError unless `mesh`, which a child process has sent, has the vertices that its
+/// triangles name
+void require_sound(const TriangleMesh& mesh, const fs::path& path) {
+  const auto is_vertex = [&](int index) {
+    return index >= 0 && static_cast<std::size_t>(index) < mesh.vertices.size();
+  };
+  for (const auto& triangle : mesh.triangles) {
+    if (std::all_of(triangle.begin(), triangle.end(), is_vertex)) continue;
+    throw SetupError("mesh '" + path.string() + "' has a triangle of vertices that it has not");
   }
-  const auto mebibytes = static_cast<int>(bytes >> 20U);
-  const ChildLimits limits{.seconds = std::min(input_limits.mesh_seconds, 1 + 2 * mebibytes),
-                           .memory = std::min<std::size_t>(input_limits.mesh_memory,
-                                                           (std::size_t{256} << 20) + 64 * bytes)};
-  try {
-    return result_of_child(work, limits);
-  } catch (const SetupError& wrong) {
-    throw SetupError(file + wrong.what());
+  for (const Vec3& p : mesh.vertices) {
+    if (!is_finite(p))
+      throw SetupError("mesh '" + path.string() + "' has a corner that is not finite");
   }
 }
+
+/// What each byte of a mesh file may take in memory.
+constexpr std::size_t expansion = 64;
 
 }  // namespace
 
 std::vector<Vec3> hull_of_mesh(const fs::path& path, const Vec3& scale) {
-  const std::string numbers = result_for_file(path, [&] {
-    std::string text;
-    append_bytes(text, read_hull(path.string(), scale));
-    return text;
+  const std::string bytes = result_of_file(path, "mesh", expansion, [&] {
+    Parcel parcel;
+    parcel.put_list(read_hull(path.string(), scale));
+    return parcel.take();
   });
-  return values_from<Vec3>(numbers.data(), numbers.size());
+  return Unpacking(bytes).take_list<std::vector<Vec3>>();
 }
 
 TriangleMesh triangles_of_mesh(const fs::path& path, const Vec3& scale) {
-  const std::string numbers = result_for_file(path, [&] {
+  const std::string bytes = result_of_file(path, "mesh", expansion, [&] {
     const TriangleMesh mesh = read_triangles(path.string(), scale);
-    std::string text;
-    append_bytes(text, std::vector<std::size_t>{mesh.vertices.size()});
-    append_bytes(text, mesh.vertices);
-    append_bytes(text, mesh.triangles);
-    return text;
+    Parcel parcel;
+    parcel.put_list(mesh.vertices);
+    parcel.put_list(mesh.triangles);
+    return parcel.take();
   });
-  const char* const begin = numbers.data() + sizeof(std::size_t);
-  const std::size_t vertices =
-      values_from<std::size_t>(numbers.data(), sizeof(std::size_t))[0] * sizeof(Vec3);
-  return {values_from<Vec3>(begin, vertices),
-          values_from<std::array<int, 3>>(begin + vertices,
-                                          numbers.size() - sizeof(std::size_t) - vertices)};
+  Unpacking parcel(bytes);
+  TriangleMesh mesh;
+  mesh.vertices = parcel.take_list<std::vector<Vec3>>();
+  mesh.triangles = parcel.take_list<std::vector<std::array<int, 3>>>();
+  require_sound(mesh, path);
+  return mesh;
 }
 #else
 namespace {

@@ -10,7 +10,9 @@
 #include <tinyxml2.h>
 #include <sdf/sdf.hh>
 
+#include "child_process.hpp"
 #include "mesh.hpp"
+#include "parcel.hpp"
 #include "urdf_document.hpp"
 #endif
 
@@ -54,25 +56,63 @@ std::string found_uri(const std::string& uri, const std::filesystem::path& file,
   std::error_code error;
   const auto colon = uri.find("://");
   const fs::path rest = colon == std::string::npos ? uri : uri.substr(colon + 3);
+  // A model is a folder or a file; a pipe or a device may have no end.
+  const auto is_there = [&](const fs::path& at) {
+    return fs::is_directory(at, error) || fs::is_regular_file(at, error);
+  };
   for (const std::string& folder : folders) {
-    if (fs::exists(fs::path(folder) / rest, error)) return (fs::path(folder) / rest).string();
+    if (is_there(fs::path(folder) / rest)) return (fs::path(folder) / rest).string();
   }
   const fs::path start = fs::absolute(file, error).lexically_normal().parent_path();
   for (fs::path folder = start;; folder = folder.parent_path()) {
-    if (fs::exists(folder / rest, error)) return (folder / rest).string();
+    if (is_there(folder / rest)) return (folder / rest).string();
     if (folder == folder.parent_path()) return {};
   }
 }
 
-/// Converts the collision elements of models.
-class SdfReader {
- public:
-  SdfReader(const std::string& path, const UrdfOptions& options)
-      : path_(path),
-        packages_(options.package_paths),
-        meshes_({path, options.package_paths}, options.convex_parts) {}
+/// A collision element, as the child process sends it.
+struct Collision {
+  enum class Kind : int { box, sphere, cylinder, capsule, mesh, plane, other };
 
-  /// Appends the parts of `model` and of the models in it.
+  std::string name, in_link;
+  Pose X_WP = Pose::Identity();
+  Kind kind = Kind::other;
+  Vec3 size = Vec3::Zero();             ///< [m] as RobotPart::size; of a mesh its scale
+  std::string mesh, submesh, named_in;  ///< uri, and the file that names it
+  std::string file;                     ///< with the element
+  int line = 0;
+};
+
+void put(const Collision& collision, detail::Parcel& parcel) {
+  for (const std::string* text : {&collision.name, &collision.in_link, &collision.mesh,
+                                  &collision.submesh, &collision.named_in, &collision.file}) {
+    parcel.put_list(*text);
+  }
+  parcel.put(collision.X_WP);
+  parcel.put(collision.kind);
+  parcel.put(collision.size);
+  parcel.put(collision.line);
+}
+
+Collision take_collision(detail::Unpacking& parcel) {
+  Collision collision;
+  for (std::string* text : {&collision.name, &collision.in_link, &collision.mesh,
+                            &collision.submesh, &collision.named_in, &collision.file}) {
+    *text = parcel.take_list<std::string>();
+  }
+  collision.X_WP = parcel.take<Pose>();
+  collision.kind = parcel.take<Collision::Kind>();
+  collision.size = parcel.take<Vec3>();
+  collision.line = parcel.take<int>();
+  return collision;
+}
+
+/// Gathers the collision elements of models.
+class Gathering {
+ public:
+  explicit Gathering(const std::string& path) : path_(path) {}
+
+  /// Adds those of `model` and of the models in it.
   /// @param scope that its name follows
   // NOLINTNEXTLINE(misc-no-recursion): models nest no deeper than the file
   void add(const sdf::Model& model, const std::string& scope, const Pose& X_WO) {
@@ -88,75 +128,127 @@ class SdfReader {
     for (std::uint64_t i = 0; i < model.ModelCount(); ++i) add(*model.ModelByIndex(i), name, X_WM);
   }
 
-  [[nodiscard]] std::vector<RobotPart> take() { return std::move(parts_); }
+  [[nodiscard]] const std::vector<Collision>& all() const { return all_; }
 
  private:
-  void add(const sdf::Collision& collision, const std::string& link, const Pose& X_WL) {
-    if (++collisions_ > input_limits.entries) {
-      fail_at(collision, "more than " + std::to_string(input_limits.entries) + " collisions");
-    }
-    const Pose X_WP = X_WL * pose_of_element(collision, path_);
-    try {
-      for (RobotPart& part : parts_of(*collision.Geom())) {
-        part.name = collision.Name() + part.name;
-        part.in_link = link;
-        part.X_LP = X_WP;
-        parts_.push_back(std::move(part));
-      }
-    } catch (const SetupError& error) {
-      fail_at(collision, error.what());
+  void add(const sdf::Collision& element, const std::string& link, const Pose& X_WL) {
+    Collision& collision = all_.emplace_back();
+    collision.name = element.Name();
+    collision.in_link = link;
+    collision.X_WP = X_WL * pose_of_element(element, path_);
+    const sdf::ElementPtr at = element.Element();
+    collision.file = at && !at->FilePath().empty() ? at->FilePath() : path_;
+    collision.line = at ? at->LineNumber().value_or(0) : 0;
+    describe(*element.Geom(), collision);
+    if (all_.size() > input_limits.entries) {
+      throw SetupError("more than " + std::to_string(input_limits.entries) + " collisions",
+                       collision.file, collision.line);
     }
   }
 
-  [[noreturn]] void fail_at(const sdf::Collision& collision, const std::string& what) const {
-    const sdf::ElementPtr at = collision.Element();
-    const std::string file = at && !at->FilePath().empty() ? at->FilePath() : path_;
-    throw SetupError("collision '" + collision.Name() + "': " + what, file,
-                     at ? at->LineNumber().value_or(0) : 0);
-  }
-
-  /// With the ends of their names.
-  std::vector<RobotPart> parts_of(const sdf::Geometry& geometry) {
-    RobotPart part;
+  void describe(const sdf::Geometry& geometry, Collision& collision) const {
+    using Kind = Collision::Kind;
+    const auto is = [&](Kind kind, double x, double y, double z) {
+      collision.kind = kind;
+      collision.size = {x, y, z};
+    };
     switch (geometry.Type()) {
       case sdf::GeometryType::BOX: {
         const auto size = geometry.BoxShape()->Size();
-        part.kind = PartKind::box;
-        part.size = 0.5 * Vec3(size.X(), size.Y(), size.Z());
-        return {part};
+        return is(Kind::box, 0.5 * size.X(), 0.5 * size.Y(), 0.5 * size.Z());
       }
       case sdf::GeometryType::SPHERE:
-        part.kind = PartKind::sphere;
-        part.size = {geometry.SphereShape()->Radius(), 0.0, 0.0};
-        return {part};
+        return is(Kind::sphere, geometry.SphereShape()->Radius(), 0.0, 0.0);
       case sdf::GeometryType::CYLINDER:
-        part.kind = PartKind::cylinder;
-        part.size = {geometry.CylinderShape()->Radius(), 0.5 * geometry.CylinderShape()->Length(),
-                     0.0};
-        return {part};
+        return is(Kind::cylinder, geometry.CylinderShape()->Radius(),
+                  0.5 * geometry.CylinderShape()->Length(), 0.0);
       case sdf::GeometryType::CAPSULE:
-        part.kind = PartKind::capsule;
-        part.size = {geometry.CapsuleShape()->Radius(), 0.5 * geometry.CapsuleShape()->Length(),
-                     0.0};
-        return {part};
-      case sdf::GeometryType::MESH:
-        return parts_of(*geometry.MeshShape());
+        return is(Kind::capsule, geometry.CapsuleShape()->Radius(),
+                  0.5 * geometry.CapsuleShape()->Length(), 0.0);
+      case sdf::GeometryType::MESH: {
+        const sdf::Mesh& mesh = *geometry.MeshShape();
+        collision.mesh = mesh.Uri();
+        collision.submesh = mesh.Submesh();
+        // Relative to the file that names it, which may be an included one.
+        collision.named_in = mesh.FilePath().empty() ? path_ : mesh.FilePath();
+        return is(Kind::mesh, mesh.Scale().X(), mesh.Scale().Y(), mesh.Scale().Z());
+      }
       case sdf::GeometryType::PLANE:
-        throw SetupError("a plane has no end; allowed: a box in its place");
+        return is(Kind::plane, 0.0, 0.0, 0.0);
       default:
-        throw SetupError("allowed: a box, sphere, cylinder, capsule or mesh");
+        return is(Kind::other, 0.0, 0.0, 0.0);
     }
   }
 
-  std::vector<RobotPart> parts_of(const sdf::Mesh& mesh) {
-    if (!mesh.Submesh().empty()) {
-      throw SetupError("a submesh, '" + mesh.Submesh() + "'; allowed: the whole mesh of a file");
+  const std::string& path_;
+  std::vector<Collision> all_;
+};
+
+/// Makes parts of them.
+class PartMaker {
+ public:
+  PartMaker(const std::string& path, const UrdfOptions& options)
+      : packages_(options.package_paths),
+        meshes_({path, options.package_paths}, options.convex_parts) {}
+
+  void add(const Collision& collision) {
+    try {
+      require_finite(collision);
+      for (RobotPart& part : parts_of(collision)) {
+        part.name = collision.name + part.name;
+        part.in_link = collision.in_link;
+        part.X_LP = collision.X_WP;
+        parts_.push_back(std::move(part));
+      }
+    } catch (const SetupError& error) {
+      throw SetupError("collision '" + collision.name + "': " + error.what(), collision.file,
+                       collision.line);
     }
-    const Vec3 scale(mesh.Scale().X(), mesh.Scale().Y(), mesh.Scale().Z());
-    // Relative to the file that names it, which may be an included one.
-    const std::string file = mesh.FilePath().empty() ? path_ : mesh.FilePath();
-    const auto found = std::filesystem::absolute(detail::find_mesh(mesh.Uri(), {file, packages_}));
-    const detail::MeshParts& read = meshes_.parts("file://" + found.string(), scale);
+  }
+
+  [[nodiscard]] std::vector<RobotPart> take() { return std::move(parts_); }
+
+ private:
+  static void require_finite(const Collision& collision) {
+    if (is_finite(collision.X_WP) && is_finite(collision.size)) return;
+    throw SetupError("its pose or size is not finite; allowed: numbers");
+  }
+
+  /// With the ends of their names.
+  std::vector<RobotPart> parts_of(const Collision& collision) {
+    using Kind = Collision::Kind;
+    RobotPart part;
+    part.size = collision.size;
+    switch (collision.kind) {
+      case Kind::box:
+        part.kind = PartKind::box;
+        return {part};
+      case Kind::sphere:
+        part.kind = PartKind::sphere;
+        return {part};
+      case Kind::cylinder:
+        part.kind = PartKind::cylinder;
+        return {part};
+      case Kind::capsule:
+        part.kind = PartKind::capsule;
+        return {part};
+      case Kind::mesh:
+        return parts_of_mesh(collision);
+      case Kind::plane:
+        throw SetupError("a plane has no end; allowed: a box in its place");
+      case Kind::other:
+        break;
+    }
+    throw SetupError("allowed: a box, sphere, cylinder, capsule or mesh");
+  }
+
+  std::vector<RobotPart> parts_of_mesh(const Collision& collision) {
+    if (!collision.submesh.empty()) {
+      throw SetupError("a submesh, '" + collision.submesh + "'; allowed: the whole mesh of a file");
+    }
+    const auto found = std::filesystem::absolute(
+        detail::find_mesh(collision.mesh, {collision.named_in, packages_}));
+    const detail::MeshParts& read = meshes_.parts("file://" + found.string(), collision.size);
     std::vector<RobotPart> parts;
     for (const std::vector<Vec3>& hull : read.hulls) {
       RobotPart& part = parts.emplace_back();
@@ -165,16 +257,14 @@ class SdfReader {
       part.points = hull;
       part.is_of_cover = read.is_cover;
       part.mesh = read.path;
-      part.mesh_scale = scale;
+      part.mesh_scale = collision.size;
     }
     return parts;
   }
 
-  std::string path_;
   std::vector<std::string> packages_;
   detail::MeshReader meshes_;
   std::vector<RobotPart> parts_;
-  std::size_t collisions_ = 0;
 };
 
 /// libsdformat would take a URDF file too, and change it.
@@ -184,17 +274,15 @@ void require_sdf(const std::string& path) {
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw SetupError(document.ErrorStr(), path, document.ErrorLineNum());
   }
-  const tinyxml2::XMLElement& root = *document.RootElement();
-  if (std::string_view(root.Name()) == "sdf") return;
-  throw SetupError("the file begins with <" + std::string(root.Name()) + ">; allowed: <sdf>", path,
-                   root.GetLineNum());
+  const tinyxml2::XMLElement* const root = document.RootElement();
+  if (root == nullptr) throw SetupError("the file has no element; allowed: <sdf>", path);
+  if (std::string_view(root->Name()) == "sdf") return;
+  throw SetupError("the file begins with <" + std::string(root->Name()) + ">; allowed: <sdf>", path,
+                   root->GetLineNum());
 }
 
-}  // namespace
-
-std::vector<RobotPart> load_sdf_parts(const std::string& path, const UrdfOptions& options) {
-  require_sdf(path);
-  sdf::Console::Instance()->SetQuiet(true);  // what it would print is in the errors it returns
+/// What the child process does: all collisions of the file and those that it includes.
+std::string collisions_in(const std::string& path, const UrdfOptions& options) {
   sdf::ParserConfig config;
   config.SetFindCallback(
       [&](const std::string& uri) { return found_uri(uri, path, options.package_paths); });
@@ -205,15 +293,39 @@ std::vector<RobotPart> load_sdf_parts(const std::string& path, const UrdfOptions
     throw SetupError("the file has " + std::to_string(root.WorldCount()) + " worlds; allowed: 1",
                      path);
   }
-  SdfReader reader(path, options);
-  if (root.Model() != nullptr) reader.add(*root.Model(), "", Pose::Identity());
+  Gathering gathering(path);
+  if (root.Model() != nullptr) gathering.add(*root.Model(), "", Pose::Identity());
   if (root.WorldCount() == 1) {
     const sdf::World& world = *root.WorldByIndex(0);
     for (std::uint64_t i = 0; i < world.ModelCount(); ++i) {
-      reader.add(*world.ModelByIndex(i), "", Pose::Identity());
+      gathering.add(*world.ModelByIndex(i), "", Pose::Identity());
     }
   }
-  return reader.take();
+  detail::Parcel parcel;
+  parcel.put(gathering.all().size());
+  for (const Collision& collision : gathering.all()) put(collision, parcel);
+  return parcel.take();
+}
+
+}  // namespace
+
+std::vector<RobotPart> load_sdf_parts(const std::string& path, const UrdfOptions& options) {
+  require_sdf(path);
+  // libsdformat follows files that include themselves until something ends.
+  constexpr detail::ChildLimits limits{.seconds = 10, .memory = std::size_t{1} << 30};
+  std::string bytes;
+  try {
+    bytes = detail::result_of_child([&] { return collisions_in(path, options); }, limits);
+  } catch (const SetupError& error) {
+    if (!error.file().empty()) throw;
+    throw SetupError("the file, with all that it includes, " + std::string(error.what()), path);
+  }
+  detail::Unpacking parcel(bytes);
+  PartMaker maker(path, options);
+  for (auto count = parcel.take<std::size_t>(); count > 0; --count) {
+    maker.add(take_collision(parcel));
+  }
+  return maker.take();
 }
 
 bool reads_sdf() noexcept {

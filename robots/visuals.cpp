@@ -185,8 +185,9 @@ class VisualReader {
     const double radius = number_of(*shape, "radius");
     if (kind == "sphere") return mesh_of(Shape::sphere(radius, whole));
     const double half = 0.5 * number_of(*shape, "length");
-    return mesh_of(kind == "capsule" ? Shape::capsule(radius, half, whole)
-                                     : Shape::cylinder(radius, half, whole));
+    if (kind == "capsule") return mesh_of(Shape::capsule(radius, half, whole));
+    if (kind == "cylinder") return mesh_of(Shape::cylinder(radius, half, whole));
+    throw SetupError("a visual of link '" + link + "' is of a kind that has no mesh");
   }
 
   /// Each combination of file and scale is read once. Simplified at once: there may be many.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/percepts/depth_image_file.hpp>
@@ -52,7 +51,9 @@ CameraFeed::CameraFeed(const scene::CameraChoice& choice, const Sights& sights,
         percepts::CameraFaults{.noise = choice_.noise, .lost = choice_.lost, .seed = choice_.seed});
     return;
   }
-  for (const scene::RecordedImage& image : choice_.recording->images) {
+  const std::vector<scene::RecordedImage>& images = choice_.recording->images;
+  round_ = images.back().time - images.front().time + 1.0 / choice_.rate_hz;
+  for (const scene::RecordedImage& image : images) {
     percepts::check_depth_image(image.file, camera_);
   }
 }
@@ -69,21 +70,27 @@ void CameraFeed::follow(double time, const std::vector<Pose>& X_W, bool is_blind
 void CameraFeed::follow_recording(double time, const std::vector<Pose>& X_W,
                                   bool is_blind) noexcept {
   const std::size_t first = next_image_;
-  while (due(next_image_) <= time + 0.5 * period_) ++next_image_;
+  next_image_ = std::max(first, due_until(time + 0.5 * period_));
   if (next_image_ == first) return;
   // Of several that have become due since the last tick, the last.
   skipped_ += static_cast<std::int64_t>(next_image_ - first) - 1;
   const std::size_t last = next_image_ - 1;
-  if (!is_blind) post(due(last), last % choice_.recording->images.size(), X_W);
+  const std::vector<scene::RecordedImage>& images = choice_.recording->images;
+  const double begin = round_ * static_cast<double>(last / images.size());
+  const std::size_t image = last % images.size();
+  if (!is_blind) post(begin + images[image].time - images.front().time, image, X_W);
 }
 
-double CameraFeed::due(std::size_t image) const noexcept {
+std::size_t CameraFeed::due_until(double time) const noexcept {
   const std::vector<scene::RecordedImage>& images = choice_.recording->images;
-  const std::size_t rounds = image / images.size();
-  if (rounds > 0 && !choice_.recording->repeats) return std::numeric_limits<double>::infinity();
-  const double first = images.front().time;
-  const double duration = images.back().time - first + 1.0 / choice_.rate_hz;
-  return images[image % images.size()].time - first + duration * static_cast<double>(rounds);
+  // However many there are, and however long ago the last tick was, a search and no count.
+  const double rounds = choice_.recording->repeats ? std::max(0.0, std::floor(time / round_)) : 0.0;
+  const auto due =
+      std::partition_point(images.begin(), images.end(), [&](const scene::RecordedImage& image) {
+        return image.time - images.front().time + round_ * rounds <= time;
+      });
+  return static_cast<std::size_t>(rounds) * images.size() +
+         static_cast<std::size_t>(due - images.begin());
 }
 
 void CameraFeed::post(double time, std::size_t image, const std::vector<Pose>& X_W) noexcept {

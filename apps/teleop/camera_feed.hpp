@@ -67,9 +67,8 @@ class CameraFeed {
 
   void post(double time, std::size_t image, const std::vector<Pose>& X_W) noexcept;
   void follow_recording(double time, const std::vector<Pose>& X_W, bool is_blind) noexcept;
-  /// [s] When an image of the recording is due, counted through all repetitions; infinite after its
-  /// end.
-  [[nodiscard]] double due(std::size_t image) const noexcept;
+  /// How many images of the recording are due until then [s], counted through all repetitions.
+  [[nodiscard]] std::size_t due_until(double time) const noexcept;
   /// False if the image cannot be read.
   [[nodiscard]] bool look(const Scenery& scenery);
 
@@ -84,6 +83,7 @@ class CameraFeed {
   Ring<Scenery> ring_;
   double next_ = 0.0;           ///< [s] when the next image is due
   std::size_t next_image_ = 0;  ///< of a recording, counted through all repetitions
+  double round_ = 0.0;          ///< [s] after which the recording begins again, if it does
   std::atomic<double> now_{0.0};
   std::atomic<double> seen_at_{0.0};     ///< [s] when the last image was taken that was used
   double period_ = 0.0;                  ///< [s] of the tick

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <repel/cell/admittance.hpp>
+#include <repel/cell/layout.hpp>
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
@@ -50,17 +51,22 @@ Robot load_robot(const scene::RobotChoice& choice, bool with_gravity, CoversBesi
   return robot;
 }
 
-/// @throws SetupError if the file gives an angle for a prismatic joint, or a length for a revolute
-///   one
-void require_start_types(const std::string& file, const scene::RobotChoice& choice,
-                         const ArmModel& model) {
+/// @throws SetupError with its line for a start that the arm cannot have, and if the file gives an
+///   angle for a prismatic joint, or a length for a revolute one
+void require_start(const std::string& file, const scene::RobotChoice& choice,
+                   const ArmModel& model) {
   for (std::size_t i = 0; i < std::min(choice.start.size(), model.links.size()); ++i) {
     const ArmLink& link = model.links[i];
     if (choice.start_types[i] == link.type) continue;
     const bool turns = link.type == JointType::revolute;
     throw SetupError("robot start: " + std::string(turns ? "a length" : "an angle") + " for " +
                          link.joint_name + "; allowed: " + (turns ? "an angle" : "a length"),
-                     file);
+                     file, choice.start_line);
+  }
+  try {
+    repel::detail::require_start(model, choice.start);
+  } catch (const SetupError& error) {
+    throw SetupError(error.what(), file, choice.start_line);
   }
 }
 
@@ -111,7 +117,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   arm.model = robot.arm;
   arm.kinematics = std::make_unique<Kinematics>(robot.arm);
   arm.start = setup.robot.start;
-  require_start_types(scene.file, setup.robot, robot.arm);
+  require_start(scene.file, setup.robot, robot.arm);
   require_links(scene.file, setup.robot, robot);
   std::vector<std::string> links;  // link name in the URDF file, for each part
   for (const scene::Part& part : setup.tool) {
@@ -133,6 +139,7 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   arm.network = remote == nullptr ? scene::plan_network(scene, setup, robot.arm)
                                   : scene::plan_half(scene, setup, robot.arm, {false, remote});
   arm.options.tool_speed = scene.tool_speed;
+  arm.options.is_remote = remote != nullptr;
   arm.options.has_brakes = true;
   arm.options.drive_delay = setup.robot.drive_delay;
   return arm;

@@ -51,7 +51,7 @@ class DrivenCell {
     for (std::size_t i = 0; i < operators_.size(); ++i) {
       commands_[i] = operators_[i].step(cell_.X_WT(i).linear(), cell_.elapsed());
       if (i == 0 && remote_ != nullptr && !has_let_go_) commands_[i] = heard_command(*remote_);
-      commands_[i].silent_for = std::max(commands_[i].silent_for, blind_for_);
+      if (!commands_[i].is_silent(blind_for_)) commands_[i].silent_for = blind_for_;
     }
     const auto records = cell_.act(commands_);
     if (remote_ != nullptr) {

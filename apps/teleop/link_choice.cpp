@@ -70,7 +70,8 @@ std::string link_complaint(const std::string& where) {
 
 namespace {
 
-std::unique_ptr<link::Transport> open_place(const LinkChoice& choice) {
+/// @param agreement of both sides
+std::unique_ptr<link::Transport> open_place(const LinkChoice& choice, std::uint64_t agreement) {
   const std::string where = choice.where.empty() ? default_link() : choice.where;
   if (const std::string complaint = link_complaint(where); !complaint.empty()) {
     throw SetupError(complaint);
@@ -78,6 +79,7 @@ std::unique_ptr<link::Transport> open_place(const LinkChoice& choice) {
   if (const auto place = behind(where, "udp")) {
     link::UdpOptions options = *udp_place(*place);
     options.side = *choice.side;
+    options.agreement = agreement;
     return link::open_udp(options);
   }
 #ifdef REPEL_TELEOP_DDS
@@ -92,6 +94,16 @@ std::unique_ptr<link::Transport> open_place(const LinkChoice& choice) {
 #else
   return nullptr;
 #endif
+}
+
+/// FNV-1a of the text of the scene: to tell scenes apart, not to keep anybody out.
+std::uint64_t agreement_of(const scene::Scene& scene) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  std::ifstream file(scene.file, std::ios::binary);
+  for (std::istreambuf_iterator<char> it(file), end; it != end; ++it) {
+    hash = (hash ^ static_cast<unsigned char>(*it)) * 0x100000001b3U;
+  }
+  return hash;
 }
 
 /// Of the scene's line; none if it has none.
@@ -110,7 +122,7 @@ bool has_line(const scene::Scene& scene) {
 }
 
 std::unique_ptr<link::Transport> open_link(const LinkChoice& choice, const scene::Scene& scene) {
-  std::unique_ptr<link::Transport> transport = open_place(choice);
+  std::unique_ptr<link::Transport> transport = open_place(choice, agreement_of(scene));
   const network::LineOptions* const line = line_of(scene);
   if (!choice.is_impaired || line == nullptr) return transport;
   network::ChannelOptions channel = line->channel;
@@ -130,12 +142,7 @@ network::RemoteOptions remote_options(const scene::Scene& scene) {
   do {
     options.session = static_cast<std::uint64_t>(random()) << 32U | random();
   } while (options.session == 0);
-  // FNV-1a: to tell scenes apart, not to keep anybody out.
-  options.agreement = 0xcbf29ce484222325U;
-  std::ifstream file(scene.file, std::ios::binary);
-  for (std::istreambuf_iterator<char> it(file), end; it != end; ++it) {
-    options.agreement = (options.agreement ^ static_cast<unsigned char>(*it)) * 0x100000001b3U;
-  }
+  options.agreement = agreement_of(scene);
   if (const network::LineOptions* line = line_of(scene)) options.playout.buffer = line->buffer;
   return options;
 }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "link_result.hpp"
 
-#include <utility>
+#include <repel/link/link_thread.hpp>
 
 #include "figure.hpp"
 
 namespace repel::teleop {
 
-LinkResult link_result(const network::RemoteLink& link, std::string name, std::int64_t foreign,
-                       std::int64_t unsent) {
+LinkResult link_result(const network::RemoteLink& link, const link::LinkThread& thread) {
   LinkResult result;
-  result.name = std::move(name);
+  result.name = thread.name();
+  result.exposure = thread.exposure();
   result.counts = link.counts();
-  result.foreign = foreign;
-  result.unsent = unsent;
+  result.foreign = thread.foreign();
+  result.unsent = thread.unsent();
   result.buffer = link.player().buffer();
   result.silent = link.silent_for();
   result.round_trips = link.round_trips();
@@ -22,6 +22,11 @@ LinkResult link_result(const network::RemoteLink& link, std::string name, std::i
   result.partner_sent = link.partner_sent();
   result.partner_played = link.partner_played();
   return result;
+}
+
+void say_exposure(const link::LinkThread& thread) {
+  if (thread.exposure().empty()) return;
+  std::fprintf(stderr, "teleop: warning: %s (docs/two_machines.md)\n", thread.exposure().c_str());
 }
 
 void print_link(const LinkResult& r, std::FILE* out) {
@@ -50,6 +55,19 @@ void print_link(const LinkResult& r, std::FILE* out) {
   if (c.sessions > 1) {
     std::fprintf(out, "  the other side         began anew %lld times\n", count(c.sessions - 1));
   }
+  if (c.beyond + c.cut + c.closed > 0) {
+    std::fprintf(out,
+                 "  beyond the bounds      %lld packets; cut to tool speed and force limit in %lld "
+                 "ticks\n",
+                 count(c.beyond), count(c.cut));
+  }
+  if (c.closed > 0) {
+    std::fprintf(
+        out,
+        "  partners closed        %lld, which went on sending what is beyond the bounds or "
+        "not sound: a false station, or another version of this program\n",
+        count(c.closed));
+  }
   if (c.strangers + c.refused + r.foreign > 0) {
     std::fprintf(out,
                  "  not listened to        %lld packets of strangers or another scene, %lld not "
@@ -61,6 +79,7 @@ void print_link(const LinkResult& r, std::FILE* out) {
 nlohmann::ordered_json link_to_json(const LinkResult& r) {
   const network::RemoteCounts& c = r.counts;
   return {{"name", r.name},
+          {"exposure", r.exposure},
           {"packets_sent", c.sent},
           {"packets_received", c.received},
           {"packets_lost", c.lost},
@@ -68,6 +87,9 @@ nlohmann::ordered_json link_to_json(const LinkResult& r) {
           {"packets_doubled", c.doubled},
           {"packets_refused", c.refused},
           {"packets_of_strangers", c.strangers},
+          {"packets_beyond_bounds", c.beyond},
+          {"ticks_cut_to_bounds", c.cut},
+          {"partners_closed", c.closed},
           {"messages_foreign", r.foreign},
           {"packets_unsent", r.unsent},
           {"partner_sessions", c.sessions},

@@ -10,10 +10,15 @@
 
 #include <repel/network/remote/link.hpp>
 
+namespace repel::link {
+class LinkThread;
+}
+
 namespace repel::teleop {
 
 struct LinkResult {
-  std::string name;  ///< of the transport, for people
+  std::string name;      ///< of the transport, for people
+  std::string exposure;  ///< who else can reach it, and what to do; empty: nobody
   network::RemoteCounts counts;
   std::int64_t foreign = 0;  ///< messages that were no packets of this version, or of others
   std::int64_t unsent = 0;   ///< packets that the transport did not take
@@ -25,8 +30,11 @@ struct LinkResult {
 };
 
 /// Once the thread of the link has stopped.
-[[nodiscard]] LinkResult link_result(const network::RemoteLink& link, std::string name,
-                                     std::int64_t foreign, std::int64_t unsent);
+[[nodiscard]] LinkResult link_result(const network::RemoteLink& link,
+                                     const link::LinkThread& thread);
+
+/// Says at the start who else can reach this side of the link; nothing where nobody can.
+void say_exposure(const link::LinkThread& thread);
 
 void print_link(const LinkResult& result, std::FILE* out);
 [[nodiscard]] nlohmann::ordered_json link_to_json(const LinkResult& result);

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
@@ -58,10 +59,11 @@ std::string read_secret(SessionOptions& session) {
   }
   const std::string& path = session.secret_file;
   std::ifstream file(path);
-  std::string line;
-  if (!file || !std::getline(file, line))
-    return "--secret: " + path + " cannot be read, or is empty";
-  session.secret = without_end(line);
+  // No more than can be one, with what may end its line: a device has no end.
+  std::array<char, most_secret + 16> line{};
+  file.get(line.data(), line.size());
+  if (file.gcount() == 0) return "--secret: " + path + " cannot be read, or is empty";
+  session.secret = without_end({line.data(), static_cast<std::size_t>(file.gcount())});
   const std::string complaint = secret_complaint(session.secret);
   if (!complaint.empty()) return "--secret: the first line of " + path + complaint;
   struct stat status {};

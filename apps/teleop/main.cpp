@@ -163,13 +163,16 @@ std::string footer() {
          "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
          "scene):\n"
          "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
+         "  six_axes    six rates of a hand, with force feedback, scripted\n"
          "or, in place of the script, the page of --view and what --device names\n\n"
          "What is written stands beside its place as FILE.part until it is whole. Ctrl-C, SIGTERM "
          "and\n"
          "SIGHUP fade the forces, then the run ends with its report; a second Ctrl-C ends it at "
          "once.\n\n"
          "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
-         "4 it ran, but a file or the output could not be written whole.";
+         "4 it ran, but a file or the output could not be written whole, 5 it ran, but an arm "
+         "gained\n"
+         "energy from its own control, or had a fault in more than a tenth of its ticks.";
 }
 
 /// The names of the simulated arms that satisfy `wanted`.
@@ -516,7 +519,7 @@ int run(const Arguments& arguments) {
   const teleop::ReplayReport& replay = result.replay;
   if (replay.same != replay.ticks) return 3;
   if (!is_whole) return 4;
-  return teleop::gained_energy(result) ? 5 : 0;
+  return teleop::gained_energy(result) || teleop::was_often_at_fault(result) ? 5 : 0;
 }
 
 }  // namespace

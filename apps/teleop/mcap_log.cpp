@@ -3,8 +3,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <type_traits>
 
 #include <nlohmann/json.hpp>
 
@@ -33,34 +35,60 @@ Json first_of(const std::array<double, N>& values, std::size_t count) {
   return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
+/// Enters what a hand does, each number under its name behind `prefix`. What is, to the last bit,
+/// as if there were no hand is left out. @param moves its rates and its direction are there anyway
+void add_hand(const network::HandInput& hand, const std::string& prefix, bool moves, Json& inputs) {
+  const network::HandInput none;
+  const auto add = [&](const char* name, const auto& value, const auto& otherwise, bool anyway) {
+    if (!anyway && std::memcmp(&value, &otherwise, sizeof value) == 0) return;
+    if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+      inputs[prefix + name] = value;
+    } else {
+      inputs[prefix + name] = to_json(value);
+    }
+  };
+  add("linear", hand.ball.linear, none.ball.linear, moves);
+  add("angular", hand.ball.angular, none.ball.angular, moves);
+  add("lever_rate", hand.lever_rate, none.lever_rate, moves);
+  add("direction", hand.direction_W, none.direction_W, moves);
+  add("turning", hand.turning_W, none.turning_W, false);
+  add("scale", hand.scale, none.scale, false);
+  add("guides", hand.guides, none.guides, false);
+  add("guide_strength", hand.guide_strength, none.guide_strength, false);
+  add("compliant", hand.compliant, none.compliant, false);
+}
+
+/// JSON has no number that is not finite: there is 0 in its place, and its name and what it is in
+/// a list of their own.
+void tell_not_finite(Json& values) {
+  Json told = Json::array();
+  const auto look = [&](Json& value, const std::string& name) {
+    if (!value.is_number_float() || std::isfinite(value.get<double>())) return;
+    const auto x = value.get<double>();
+    told.push_back(name + (std::isnan(x) ? " nan" : x > 0.0 ? " inf" : " -inf"));
+    value = 0.0;
+  };
+  for (auto& [name, value] : values.items()) {
+    if (!value.is_array()) {
+      look(value, name);
+      continue;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) look(value[i], name + "/" + std::to_string(i));
+  }
+  if (!told.empty()) values["not_finite"] = std::move(told);
+}
+
 Json inputs_of(const TickRecord& k, std::size_t joints) {
   const network::Command& command = k.command;
-  Json inputs = {{"q", first_of(k.q, joints)},
-                 {"v", first_of(k.v, joints)},
-                 {"status", k.status},
-                 {"elapsed_ticks", k.elapsed},
-                 {"phase", k.phase},
-                 {"linear", to_json(command.hand.ball.linear)},
-                 {"angular", to_json(command.hand.ball.angular)},
-                 {"lever_rate", command.hand.lever_rate},
-                 {"direction", to_json(command.hand.direction_W)},
-                 {"sound", command.sound},
-                 {"silent_for_s", command.silent_for}};
-  if (command.hand.scale != 1.0) inputs["scale"] = command.hand.scale;
-  if (!command.hand.turning_W.isZero(0.0)) inputs["turning"] = to_json(command.hand.turning_W);
-  const network::HandInput& second = command.second;
-  if (second.scale != 1.0 || !second.ball.linear.isZero(0.0) || !second.ball.angular.isZero(0.0)) {
-    inputs["second_linear"] = to_json(second.ball.linear);
-    inputs["second_angular"] = to_json(second.ball.angular);
-  }
-  if (second.lever_rate != 0.0 || second.direction_W != network::HandInput{}.direction_W) {
-    inputs["second_lever_rate"] = second.lever_rate;
-    inputs["second_direction"] = to_json(second.direction_W);
-  }
-  if (command.hand.guides >= 0) inputs["guides"] = command.hand.guides;
-  if (command.hand.guide_strength != 1.0) inputs["guide_strength"] = command.hand.guide_strength;
-  if (command.hand.compliant >= 0) inputs["compliant"] = command.hand.compliant;
-  if ((k.status & status::blind) != 0U) {  // numbers that are not finite become null
+  Json inputs = {
+      {"q", first_of(k.q, joints)},        {"v", first_of(k.v, joints)}, {"status", k.status},
+      {"elapsed_ticks", k.elapsed},        {"phase", k.phase},           {"sound", command.sound},
+      {"silent_for_s", command.silent_for}};
+  add_hand(command.hand, "", true, inputs);
+  add_hand(command.second, "second_", false, inputs);
+  // Where a second hand moves in older recordings, they have none and mean that of the first.
+  if (command.second.scale != command.hand.scale) inputs["second_scale"] = command.second.scale;
+  if ((k.status & status::blind) != 0U) {
     inputs["q_read"] = first_of(k.q_read, joints);
     inputs["v_read"] = first_of(k.v_read, joints);
   }
@@ -68,6 +96,7 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
     inputs["force_read"] = to_json(k.wrench_read->force);
     inputs["torque_read"] = to_json(k.wrench_read->torque);
   }
+  tell_not_finite(inputs);
   return inputs;
 }
 
@@ -208,15 +237,16 @@ class McapLog final : public TickLog {
   }
 
   [[nodiscard]] Json separations_of(const Snapshot& tick) const {
-    const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); };
+    // What there is not is left out.
+    const auto add = [](Json& to, const char* name, double x) {
+      if (std::isfinite(x)) to[name] = x;
+    };
     Json pairs = Json::array();
     for (const NearPair& near : tick.near()) {
       const Separation& s = near.separation;
       pairs.push_back({{"pair", heading_.pairs[static_cast<std::size_t>(near.pair.index)]},
                        {"index", near.pair.index},
                        {"distance", s.distance},
-                       {"lower", number(s.lower)},
-                       {"upper", number(s.upper)},
                        {"a", to_json(s.p_WA)},
                        {"b", to_json(s.p_WB)},
                        {"extraction", to_json(s.extraction_W)},
@@ -224,14 +254,17 @@ class McapLog final : public TickLog {
                        {"force", near.force},
                        {"stale", near.stale},
                        {"age", near.age}});
+      add(pairs.back(), "lower", s.lower);
+      add(pairs.back(), "upper", s.upper);
     }
     const PairTotals& totals = tick.arms.front().pairs;
-    return {{"tick", tick.arms.front().tick},
-            {"nearest_m", number(totals.nearest)},
-            {"near", totals.near},
-            {"evaluated", totals.evaluated},
-            {"omitted", tick.pairs_omitted},
-            {"pairs", std::move(pairs)}};
+    Json message = {{"tick", tick.arms.front().tick},
+                    {"near", totals.near},
+                    {"evaluated", totals.evaluated},
+                    {"omitted", tick.pairs_omitted},
+                    {"pairs", std::move(pairs)}};
+    add(message, "nearest_m", totals.nearest);
+    return message;
   }
 
   [[nodiscard]] Json transforms_of(const Snapshot& tick) const {

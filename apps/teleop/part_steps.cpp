@@ -20,8 +20,10 @@ PartSteps::PartSteps(const scene::Scene& scene, Cell& cell) : cell_(cell) {
 
 void PartSteps::follow(std::size_t arm, std::int32_t phase) noexcept {
   const std::int32_t last = phases_[arm];
-  phases_[arm] = std::max(phase, last);
-  if (phase <= last || phase >= lengths_[arm]) return;
+  // What no phase is of this script comes from a station that is false.
+  if (phase <= last || phase > lengths_[arm]) return;
+  phases_[arm] = phase;
+  if (phase == lengths_[arm]) return;
   for (PartStepResult& result : steps_) {
     const auto of_step = static_cast<std::int32_t>(result.step.phase);
     if (result.arm == arm && of_step > last && of_step <= phase) make(result);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -24,17 +26,17 @@ class Fields {
  public:
   Fields(const Json& json, const std::string& file) : json_(json), file_(file) {}
 
-  [[nodiscard]] Fields at(const char* name) const {
+  [[nodiscard]] Fields at(const std::string& name) const {
     const auto found = json_.find(name);
-    if (!json_.is_object() || found == json_.end()) bad(name);
+    if (!json_.is_object() || found == json_.end()) bad(name.c_str());
     return {*found, file_};
   }
-  [[nodiscard]] bool has(const char* name) const { return json_.contains(name); }
+  [[nodiscard]] bool has(const std::string& name) const { return json_.contains(name); }
   [[nodiscard]] Fields entry(std::size_t i) const {
     if (!json_.is_array() || i >= json_.size()) bad("an entry");
     return {json_[i], file_};
   }
-  /// NaN for null.
+  /// NaN for null, which older recordings have in place of what is not finite.
   [[nodiscard]] double number() const {
     if (json_.is_null()) return std::numeric_limits<double>::quiet_NaN();
     if (!json_.is_number()) bad("a number");
@@ -51,10 +53,35 @@ class Fields {
   [[nodiscard]] Vec3 vector() const {
     return {entry(0).number(), entry(1).number(), entry(2).number()};
   }
+  [[nodiscard]] std::string text() const {
+    if (!json_.is_string()) bad("a text");
+    return json_.get<std::string>();
+  }
   template <std::size_t N>
   void read(std::array<double, N>& values) const {
     if (!json_.is_array() || json_.size() > N) bad("a list of joints");
     for (std::size_t i = 0; i < json_.size(); ++i) values[i] = entry(i).number();
+  }
+
+  /// These values, with those in their places of which `not_finite` tells.
+  [[nodiscard]] Json with_not_finite() const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Json values = json_;
+    const Fields told = at("not_finite");
+    for (std::size_t i = 0; i < told.json_.size(); ++i) {
+      const std::string text = told.entry(i).text();
+      const std::size_t end = std::min(text.size(), text.find_first_of("/ "));
+      const auto value = values.find(text.substr(0, end));
+      if (value == values.end()) continue;
+      const double x = text.ends_with(" inf")    ? infinity
+                       : text.ends_with(" -inf") ? -infinity
+                                                 : std::numeric_limits<double>::quiet_NaN();
+      if (value->is_number()) *value = x;
+      if (!value->is_array() || end == text.size()) continue;
+      const std::size_t index = std::strtoul(text.c_str() + end + 1, nullptr, 10);
+      if (index < value->size()) (*value)[index] = x;
+    }
+    return values;
   }
 
  private:
@@ -67,6 +94,31 @@ class Fields {
   const Json& json_;
   const std::string& file_;
 };
+
+/// Reads those of a hand's numbers that there are, under their names behind `prefix`.
+void read_hand(const Fields& arm, const std::string& prefix, network::HandInput& hand) {
+  const auto read = [&](const char* name, auto take) {
+    if (arm.has(prefix + name)) take(arm.at(prefix + name));
+  };
+  const auto read_number = [&](const char* name, double& x) {
+    read(name, [&](const Fields& value) { x = value.number(); });
+  };
+  const auto read_vector = [&](const char* name, Vec3& v) {
+    read(name, [&](const Fields& value) { v = value.vector(); });
+  };
+  const auto read_bits = [&](const char* name, std::int32_t& bits) {
+    read(name, [&](const Fields& value) { bits = static_cast<std::int32_t>(value.integer()); });
+  };
+  read_vector("linear", hand.ball.linear);
+  read_vector("angular", hand.ball.angular);
+  read_number("lever_rate", hand.lever_rate);
+  read_vector("direction", hand.direction_W);
+  read_vector("turning", hand.turning_W);
+  read_number("scale", hand.scale);
+  read_bits("guides", hand.guides);
+  read_number("guide_strength", hand.guide_strength);
+  read_bits("compliant", hand.compliant);
+}
 
 void read_inputs(const Fields& arm, TickRecord& k) {
   arm.at("q").read(k.q);
@@ -84,25 +136,12 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   }
   k.status = static_cast<Status>(arm.at("status").integer());
   k.phase = static_cast<std::int32_t>(arm.at("phase").integer());
-  k.command.hand.ball = {arm.at("linear").vector(), arm.at("angular").vector()};
-  k.command.hand.lever_rate = arm.at("lever_rate").number();
-  k.command.hand.direction_W = arm.at("direction").vector();
-  network::HandInput& hand = k.command.hand;
-  if (arm.has("scale")) hand.scale = arm.at("scale").number();
-  if (arm.has("turning")) hand.turning_W = arm.at("turning").vector();
-  if (arm.has("second_linear")) {
-    k.command.second.ball = {arm.at("second_linear").vector(), arm.at("second_angular").vector()};
-    k.command.second.scale = hand.scale;
-  }
-  if (arm.has("second_lever_rate")) {
-    k.command.second.lever_rate = arm.at("second_lever_rate").number();
-    k.command.second.direction_W = arm.at("second_direction").vector();
-  }
-  if (arm.has("guides")) hand.guides = static_cast<std::int32_t>(arm.at("guides").integer());
-  if (arm.has("guide_strength")) hand.guide_strength = arm.at("guide_strength").number();
-  if (arm.has("compliant")) {
-    hand.compliant = static_cast<std::int32_t>(arm.at("compliant").integer());
-  }
+  for (const char* const name : {"linear", "angular", "lever_rate", "direction"})
+    (void)arm.at(name);
+  read_hand(arm, "", k.command.hand);
+  // Older recordings have no `second_scale`: a second hand that moved had that of the first.
+  if (arm.has("second_linear")) k.command.second.scale = k.command.hand.scale;
+  read_hand(arm, "second_", k.command.second);
   k.command.sound = arm.at("sound").yes();
   k.command.silent_for = arm.at("silent_for_s").number();
 }
@@ -149,7 +188,13 @@ class Ticks {
     for (std::size_t i = 0; i < records_.size(); ++i) {
       records_[i].tick = tick_;
       records_[i].time = message.at("time_s").number();
-      read_inputs(message.at("arms").entry(i), records_[i]);
+      const Fields arm = message.at("arms").entry(i);
+      if (arm.has("not_finite")) {
+        const Json values = arm.with_not_finite();
+        read_inputs({values, recording_.file}, records_[i]);
+      } else {
+        read_inputs(arm, records_[i]);
+      }
     }
   }
   void end(const Fields& message) {

@@ -75,6 +75,14 @@ class Row {
   return v.allFinite() ? v : Vec3::Zero();
 }
 
+/// The vector, no longer than `most`.
+[[nodiscard]] inline Vec3 within(const Vec3& v, double most) noexcept {
+  const double largest = largest_entry(v);
+  if (!(largest > most)) return v.norm() > most ? Vec3(v * (most / v.norm())) : v;
+  const Vec3 unit = v / largest;  // its square is within the range of numbers
+  return unit * (most / unit.norm());
+}
+
 /// A set of bits as told; -1 for what is none.
 [[nodiscard]] inline std::int32_t bits_of(double told) noexcept {
   return told >= 0.0 && told < 2147483648.0 ? static_cast<std::int32_t>(told) : -1;
@@ -106,6 +114,9 @@ template <class Numbers>
   hand.guides = bits_of(row.next());
   hand.guide_strength = row.next();
   hand.compliant = bits_of(row.next());
+  // What no hand does. Speeds and scales are bounded where they are used.
+  hand.turning_W = within(hand.turning_W, 1.0 / network::Screw::arm);
+  hand.ball.angular = within(hand.ball.angular, 100.0);
   return hand;
 }
 
@@ -157,8 +168,8 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   network::Command command;
   detail::Row row(link.heard());
   command.sound = row.next() == 1.0 || !link.is_linked();
-  command.phase = static_cast<std::int32_t>(row.next());
-  command.silent_for = row.next();
+  command.phase = std::max(0, detail::bits_of(row.next()));
+  command.silent_for = std::max(0.0, row.next());
   command.hand = detail::read_hand(row);
   command.second = detail::read_hand(row);
   if (!link.is_linked()) command.hand = command.second = {};
@@ -203,7 +214,7 @@ inline void tell(const TickRecord& record, const Pose& X_WT, const PartState& pa
   state.is_told = true;
   state.virtual_force.force = row.vec3();
   state.virtual_force.torque = row.vec3();
-  state.gain = row.next();
+  state.gain = std::clamp(row.next(), 0.0, 1.0);
   state.nearest = row.next();
   state.time = row.next();
   const double status = row.next();

@@ -205,6 +205,15 @@ void print_gain(const RunResult& r, std::FILE* out) {
       out);
 }
 
+/// Where an arm had a fault most of the time, or nearly.
+void print_faults(const RunResult& r, std::FILE* out) {
+  if (!was_often_at_fault(r)) return;
+  std::fputs(
+      "  An arm had a fault in more than a tenth of its ticks, and its operator did not drive it.\n"
+      "  The run ends with exit code 5.\n",
+      out);
+}
+
 /// Every obstacle; its nearest distance is null if none of its pairs was ever evaluated.
 ordered_json obstacle_list(const RunResult& r) {
   ordered_json list = ordered_json::array();
@@ -477,6 +486,7 @@ void print_report(const RunResult& r, std::FILE* out) {
     print_status(arm, out);
   }
   print_gain(r, out);
+  print_faults(r, out);
   host::print_machine(r.machine, out);
   print_verdict(r, out);
 }

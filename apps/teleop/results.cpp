@@ -133,4 +133,14 @@ bool gained_energy(const RunResult& result) {
                      [&](const ArmResult& arm) { return arm.totals.status_ticks[bit] > 0; });
 }
 
+bool was_often_at_fault(const RunResult& result) {
+  // A watchdog stops the drive after 0.1 s without ticks, and it is enabled within 0.5 s: five
+  // ticks for each missed one, and as many again for the motion back to the operator.
+  return std::any_of(result.arms.begin(), result.arms.end(), [&](const ArmResult& arm) {
+    // A replay skips none; those of its recording are missing.
+    const std::int64_t excused = 10 * std::max(result.skipped_ticks, arm.totals.missing);
+    return 10 * (arm.totals.unsound - excused) > arm.totals.ticks;
+  });
+}
+
 }  // namespace repel::teleop

@@ -153,6 +153,10 @@ struct RunResult {
 /// True when an arm gained energy from its own control (`status::energy_gain`).
 [[nodiscard]] bool gained_energy(const RunResult& result);
 
+/// True when an arm had a fault in more than a tenth of its ticks (`status::unsound`). Ten ticks
+/// are excused for each that the machine skipped: it held up the loop, and the drive stopped.
+[[nodiscard]] bool was_often_at_fault(const RunResult& result);
+
 /// How many support pairs this machine computes in one period, extrapolated from the support pairs
 /// and the computing time of the run, which includes all other work of the ticks. 0 if unknown.
 [[nodiscard]] double support_pairs_per_period(const RunResult& result);

@@ -123,7 +123,7 @@ class ServoedArm final : public TorqueDrivenArm {
     const std::span<double> torques = std::span(torques_).first(joints_);
     kinematics_.update(std::span(q_).first(joints_));
     kinematics_.gravity_torques(torques);
-    inertia_.update(kinematics_);
+    (void)inertia_.update(kinematics_);
     for (std::size_t i = 0; i < joints_; ++i) {
       for (std::size_t k = 0; k < joints_; ++k) {
         torques[i] +=

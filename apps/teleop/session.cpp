@@ -72,11 +72,12 @@ class RemoteEnd {
   }
   void open(const LinkChoice& choice, const scene::Scene& scene) {
     thread_.emplace(link, open_link(choice, scene));
+    say_exposure(*thread_);
   }
   /// Nothing passes any more. @return what did
   [[nodiscard]] LinkResult close() {
     thread_->stop();
-    return link_result(link, thread_->name(), thread_->foreign(), thread_->unsent());
+    return link_result(link, *thread_);
   }
 
   network::RemoteLink link;
@@ -109,7 +110,9 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   }
   const auto run_once = [&] {
     RunResult result = run(*prepared, attached, stop, show);
-    if (remote) result.link = remote->close();
+    if (!remote) return result;
+    result.link = remote->close();
+    if (!result.link->exposure.empty()) result.warnings.push_back(result.link->exposure);
     return result;
   };
   if (!session.view && options.log.empty()) return run_once();

@@ -120,7 +120,7 @@ StationResult run_station(const scene::Scene& scene, const RunOptions& options,
   if (grant.priority > 0) host::clear_own_processor();
   make_ticks(station, device.link.get(), view.get(), stop, result, progress);
   thread.stop();
-  result.link = link_result(link, thread.name(), thread.foreign(), thread.unsent());
+  result.link = link_result(link, thread);
   result.has_handle = station.has_handle();
   result.modules = module_results(station.network());
   result.interrupted = stop;

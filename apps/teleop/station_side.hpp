@@ -108,7 +108,7 @@ class StationSide {
   [[nodiscard]] Status status() const noexcept {
     Status bits = is_heard() ? site_.status : status::silent_site;
     if (!command_.sound) bits |= status::bad_command;
-    if (command_.silent_for > Teleoperator::patience) bits |= status::silent_device;
+    if (command_.is_silent(Teleoperator::patience)) bits |= status::silent_device;
     return bits;
   }
   [[nodiscard]] const network::Network& network() const noexcept { return network_; }

@@ -27,22 +27,33 @@ std::unique_ptr<btCollisionShape> with_margin(double margin, const Sizes&... siz
   return shape;
 }
 
+void require_thick(const ContactPart& part, const Vec3& size) {
+  if (size.minCoeff() > 2.0 * rounding) return;
+  throw SetupError("part '" + part.name + "' cannot be touched in Bullet; allowed: sizes above " +
+                   to_text(2.0 * rounding) + " m");
+}
+
 std::unique_ptr<btCollisionShape> bullet_shape(const ContactPart& part) {
   const Level& level = part.shape.level(0);
   const Vec3 size = core_extents(part.shape);
-  const Convex::Kind kind = level.core.kind();
-  if (kind == Convex::Kind::polytope) return hull_of(level.core);
-  if (kind == Convex::Kind::box && level.depth > 0.0) {
-    if (size.z() > 0.0) return std::make_unique<btCapsuleShapeZ>(level.depth, 2.0 * size.z());
-    return std::make_unique<btSphereShape>(level.depth);
+  switch (level.core.kind()) {  // a kind that is missing here does not compile
+    case Convex::Kind::polytope:
+      return hull_of(level.core);
+    case Convex::Kind::box:
+      if (level.depth > 0.0) {
+        if (size.z() > 0.0) return std::make_unique<btCapsuleShapeZ>(level.depth, 2.0 * size.z());
+        return std::make_unique<btSphereShape>(level.depth);
+      }
+      require_thick(part, size);
+      return with_margin<btBoxShape>(rounding, to_bullet(size));
+    case Convex::Kind::cone:
+      require_thick(part, size);
+      return with_margin<btConeShapeZ>(0.0, size.x(), 2.0 * size.z());
+    case Convex::Kind::cylinder:
+      require_thick(part, size);
+      return with_margin<btCylinderShapeZ>(rounding, to_bullet(size));
   }
-  if (!(size.minCoeff() > 2.0 * rounding)) {
-    throw SetupError("part '" + part.name + "' cannot be touched in Bullet; allowed: sizes above " +
-                     to_text(2.0 * rounding) + " m");
-  }
-  if (kind == Convex::Kind::box) return with_margin<btBoxShape>(rounding, to_bullet(size));
-  if (kind == Convex::Kind::cone) return with_margin<btConeShapeZ>(0.0, size.x(), 2.0 * size.z());
-  return with_margin<btCylinderShapeZ>(rounding, to_bullet(size));
+  throw SetupError("part '" + part.name + "' is of no kind");
 }
 
 btDefaultCollisionConstructionInfo small_pools() {

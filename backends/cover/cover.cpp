@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/reduction/shape.hpp>
 
 #include "coverage.hpp"
 #include "engines.hpp"
@@ -27,6 +28,20 @@ void check(const CoverOptions& options) {
   (void)checked("overlap", options.overlap, 0.0, 1.0, "m");
   if (options.close >= 0.0) (void)checked("close", options.close, 0.0, 10.0, "m");
   if (std::isnan(options.close)) (void)checked("close", options.close, 0.0, 10.0, "m");
+}
+
+/// Farther away a shape could have no corner, and squares of squares would overflow.
+void check(const TriangleMesh& mesh) {
+  for (const Vec3& p : mesh.vertices) {
+    for (const double x : p) (void)checked("a corner", x, -Shape::largest, Shape::largest, "m");
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const int vertex : triangle) {
+      if (vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size()) continue;
+      throw SetupError("has a triangle of vertex " + std::to_string(vertex) +
+                       "; allowed: from 0, below " + std::to_string(mesh.vertices.size()));
+    }
+  }
 }
 
 void say(const CoverOptions& options, const std::string& text) {
@@ -154,6 +169,7 @@ void prove(const std::vector<ConvexPart>& parts, const Solid& solid, const Cover
 
 Cover cover_of(const TriangleMesh& mesh, const CoverOptions& options) {
   check(options);
+  check(mesh);
   const Solid solid(mesh, closed_up_to(options));
   Cover cover;
   PointSets sets;
@@ -195,6 +211,7 @@ Cover cover_of(const TriangleMesh& mesh, const CoverOptions& options) {
 Cover checked_cover(const TriangleMesh& mesh, const std::vector<std::vector<Vec3>>& parts,
                     const CoverOptions& options) {
   check(options);
+  check(mesh);
   const Solid solid(mesh, closed_up_to(options));
   Cover cover;
   cover.engine = "given";

@@ -65,6 +65,10 @@ std::string configuration(const DdsOptions& options) {
 class Dds final : public link::Transport {
  public:
   explicit Dds(const DdsOptions& options) : name_("DDS, interface " + options.interface) {
+    if (options.interface != "lo" && options.side == link::Side::site) {
+      exposure_ = "the site listens on the interface " + options.interface + ": " +
+                  link::exposed_to("its network", "--link dds:wg0,10.9.0.1");
+    }
     if (options.domain != 0) name_ += ", domain " + std::to_string(options.domain);
     if (!options.peer.empty()) name_ += ", peer " + options.peer;
     // A program with both sides has the domain already.
@@ -112,6 +116,7 @@ class Dds final : public link::Transport {
     (void)dds_waitset_wait(waitset_, arrived, 1, DDS_USECS(longest.count()));
   }
   [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] std::string exposure() const override { return exposure_; }
 
  private:
   dds_entity_t made(const char* what, dds_return_t entity) {
@@ -130,7 +135,7 @@ class Dds final : public link::Transport {
     participant_ = domain_ = 0;
   }
 
-  std::string name_;
+  std::string name_, exposure_;
   dds_entity_t domain_ = 0;  ///< 0: there was one
   dds_entity_t participant_ = 0, reader_ = 0, writer_ = 0, waitset_ = 0;
 };

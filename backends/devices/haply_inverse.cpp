@@ -202,7 +202,8 @@ void HaplyInverse::take(const std::string& message) {
   }
   const std::chrono::nanoseconds now = options_.now();
   const double passed = in_seconds(now - heard_at_);
-  wrong = has_state_ ? complaint(passed) : nullptr;
+  if (!has_state_) moved_ = told_ = Vec3::Zero();
+  wrong = complaint(passed);
   if (wrong != nullptr) return lose(wrong);
   std::swap(state_, read_);
   id_ = state_.device_id;
@@ -217,11 +218,24 @@ void HaplyInverse::take(const std::string& message) {
   has_state_ = true;
 }
 
-/// What is wrong with the state just read, after the last one; nullptr: nothing.
-const char* HaplyInverse::complaint(double passed) const noexcept {
+/// What is wrong with the state just read, after the last one if there is one; nullptr: nothing.
+const char* HaplyInverse::complaint(double passed) noexcept {
+  if (read_.velocity.norm() > options_.most_speed) return "the handle is faster than a hand";
+  if (!has_state_) return nullptr;
   if (read_.device_id != state_.device_id) return "the device was changed for another";
   const double moved = (read_.position - state_.position).norm();
-  return moved > jump + options_.most_speed * passed ? "the handle jumps" : nullptr;
+  if (moved > jump + options_.most_speed * passed) return "the handle jumps";
+  return contradicts(passed) ? "the velocity of the handle contradicts its position" : nullptr;
+}
+
+/// A network follows the velocity, and the position corrects it only later.
+bool HaplyInverse::contradicts(double passed) noexcept {
+  if (!(passed > 0.0)) return false;
+  const double share = passed / (compared_over + passed);
+  const Vec3 mean = (read_.position - state_.position) / passed;
+  moved_ += share * (mean - moved_);
+  told_ += share * (0.5 * (read_.velocity + state_.velocity) - told_);
+  return (told_ - moved_).norm() > most_difference + most_share * moved_.norm();
 }
 
 /// A button that is down from the start does not count as a press.

@@ -47,6 +47,7 @@ class Impaired final : public Transport {
            ms(channel_.delay + channel_.jitter) + " ms, " +
            std::to_string(std::lround(100.0 * channel_.loss)) + " % lost";
   }
+  [[nodiscard]] std::string exposure() const override { return transport_->exposure(); }
   [[nodiscard]] std::int64_t foreign() const noexcept override { return transport_->foreign(); }
 
  private:

@@ -3,10 +3,13 @@
 #include <repel/link/udp.hpp>
 
 #include <netdb.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -48,10 +51,33 @@ Peer resolved(const UdpOptions& options) {
   return peer;
 }
 
+/// Who can send to an address.
+enum class Reach { this_machine, its_network, all_networks };
+
+Reach reach_of(const Peer& peer) {
+  in_addr four{};
+  if (peer.address.ss_family == AF_INET6) {
+    sockaddr_in6 six{};
+    std::memcpy(&six, &peer.address, sizeof six);
+    if (IN6_IS_ADDR_LOOPBACK(&six.sin6_addr)) return Reach::this_machine;
+    if (IN6_IS_ADDR_UNSPECIFIED(&six.sin6_addr)) return Reach::all_networks;
+    if (!IN6_IS_ADDR_V4MAPPED(&six.sin6_addr)) return Reach::its_network;
+    std::memcpy(&four, six.sin6_addr.s6_addr + 12, sizeof four);
+  } else {
+    sockaddr_in all{};
+    std::memcpy(&all, &peer.address, sizeof all);
+    four = all.sin_addr;
+  }
+  const std::uint32_t number = ntohl(four.s_addr);
+  if (number == INADDR_ANY) return Reach::all_networks;
+  return number >> 24U == IN_LOOPBACKNET ? Reach::this_machine : Reach::its_network;
+}
+
 class Udp final : public Transport {
  public:
   explicit Udp(const UdpOptions& options) : options_(options) {
     const Peer site = resolved(options);
+    reach_ = reach_of(site);
     socket_ = ::socket(site.address.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     const auto* address = reinterpret_cast<const sockaddr*>(&site.address);  // NOLINT(*-cast)
     if (socket_ >= 0 && options.side == Side::site && ::bind(socket_, address, site.size) != 0) {
@@ -60,18 +86,19 @@ class Udp final : public Transport {
       throw SetupError("the site cannot listen on " + place() + ": " + why);
     }
     if (socket_ < 0) throw SetupError("no UDP socket: " + std::generic_category().message(errno));
-    if (options.side == Side::station) partner_ = site;
+    if (options.side == Side::station) site_ = site;
   }
   Udp(const Udp&) = delete;
   Udp& operator=(const Udp&) = delete;
   ~Udp() override { ::close(socket_); }
 
   bool send(const network::RemotePacket& packet) noexcept override {
-    if (partner_.size == 0) return false;
+    const Peer* partner = options_.side == Side::station ? &site_ : peer_of(packet.heard);
+    if (partner == nullptr) return false;
     WireBytes bytes;
     encode(packet, bytes);
-    const auto* to = reinterpret_cast<const sockaddr*>(&partner_.address);  // NOLINT(*-cast)
-    return ::sendto(socket_, bytes.data(), bytes.size(), 0, to, partner_.size) ==
+    const auto* to = reinterpret_cast<const sockaddr*>(&partner->address);  // NOLINT(*-cast)
+    return ::sendto(socket_, bytes.data(), bytes.size(), 0, to, partner->size) ==
            static_cast<ssize_t>(bytes.size());
   }
 
@@ -86,7 +113,8 @@ class Udp final : public Transport {
       // Where nobody listens, the station is told so by an error: there is nothing yet.
       if (size < 0 && errno == ECONNREFUSED) continue;
       if (size < 0) return false;
-      if (decode({bytes.data(), static_cast<std::size_t>(size)}, packet) && listens_to(from)) {
+      if (decode({bytes.data(), static_cast<std::size_t>(size)}, packet) &&
+          listens_to(from, packet)) {
         return true;
       }
       count_foreign();
@@ -101,6 +129,13 @@ class Udp final : public Transport {
   }
 
   [[nodiscard]] std::string name() const override { return "UDP " + place(); }
+  [[nodiscard]] std::string exposure() const override {
+    if (options_.side == Side::station || reach_ == Reach::this_machine) return {};
+    const bool everywhere = reach_ == Reach::all_networks;
+    return "the site listens on " + place() + ": " +
+           exposed_to(everywhere ? "any network of this machine" : "the network of this address",
+                      "--link udp:10.9.0.1:7411");
+  }
 
  private:
   [[nodiscard]] std::string place() const {
@@ -108,22 +143,46 @@ class Udp final : public Transport {
     return (six ? "[" + options_.address + "]" : options_.address) + ":" +
            std::to_string(options_.port);
   }
-  [[nodiscard]] bool listens_to(const Peer& from) noexcept {
+  /// A station that shares the agreement, and where it sent from.
+  struct Caller {
+    std::uint64_t session = 0;  // 0: none
+    Peer peer;
+    steady_clock::time_point heard{};
+  };
+
+  [[nodiscard]] const Peer* peer_of(std::uint64_t session) const noexcept {
+    const auto same = [&](const Caller& caller) { return caller.session == session; };
+    const auto* const caller = std::find_if(callers_.begin(), callers_.end(), same);
+    return session == 0 || caller == callers_.end() ? nullptr : &caller->peer;
+  }
+  [[nodiscard]] bool listens_to(const Peer& from, const network::RemotePacket& packet) noexcept {
+    if (options_.side == Side::station) return from == site_;
+    // Counted as a stranger's by the link, and never answered.
+    if (packet.session == 0) return true;
+    if (options_.agreement != 0 && packet.agreement != options_.agreement) return true;
     const auto now = steady_clock::now();
-    if (!(from == partner_)) {
-      const bool is_silent =
-          now - heard_ > std::chrono::duration<double>(network::WavePlayer::silence);
-      if (options_.side == Side::station || (partner_.size > 0 && !is_silent)) return false;
-      partner_ = from;
+    const auto is_free = [&](const Caller& caller) {
+      return caller.session == 0 ||
+             now - caller.heard > std::chrono::duration<double>(network::WavePlayer::silence);
+    };
+    auto* place = std::find_if(callers_.begin(), callers_.end(), [&](const Caller& caller) {
+      return caller.session == packet.session;
+    });
+    if (place == callers_.end()) {
+      place = std::find_if(callers_.begin(), callers_.end(), is_free);
+      if (place == callers_.end()) return false;
+    } else if (!(place->peer == from) && !is_free(*place)) {
+      return false;
     }
-    heard_ = now;
+    *place = {packet.session, from, now};
     return true;
   }
 
   UdpOptions options_;
   int socket_ = -1;
-  Peer partner_;
-  steady_clock::time_point heard_{};
+  Reach reach_ = Reach::this_machine;
+  Peer site_;                       // of a station
+  std::array<Caller, 16> callers_;  // of a site
 };
 
 }  // namespace

@@ -2,9 +2,19 @@
 #include <repel/octrees/grid.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <repel/base/setup_error.hpp>
+
+#include "child_process.hpp"
+#include "parcel.hpp"
 
 namespace repel::octrees {
 namespace {
@@ -26,6 +36,63 @@ struct Overlap {
 };
 Overlap overlap(int begin, int edge, int low, int high) {
   return {std::max(begin, low) - low, std::min(begin + edge - 1, high) - low};
+}
+
+/// What each byte of a file of OctoMap may take in memory: two of them may describe nine nodes.
+constexpr std::size_t expansion = 256;
+constexpr std::size_t most_levels = 16;  // below the root: the bits of a key
+constexpr std::size_t node_bytes = sizeof(float) + 1;
+
+/// Hands on the edge of a cube, and the nodes as a file .ot has them: of each the occupancy and
+/// which children follow. In a child process; errors do not name the file.
+std::string nodes_in(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::unique_ptr<octomap::AbstractOcTree> any;
+  if (path.ends_with(".bt")) {
+    auto tree = std::make_unique<octomap::OcTree>(0.1);
+    if (tree->readBinary(file)) any = std::move(tree);
+  } else {
+    any.reset(octomap::AbstractOcTree::read(file));
+  }
+  const auto* const tree = dynamic_cast<const octomap::OcTree*>(any.get());
+  if (tree == nullptr) {
+    throw SetupError("cannot be read; allowed: a file of OctoMap, of the type OcTree");
+  }
+  if (!file.good()) throw SetupError("is cut off; allowed: a whole file of OctoMap");
+  std::ostringstream nodes;
+  (void)tree->writeData(nodes);
+  detail::Parcel parcel;
+  parcel.put(tree->getResolution());
+  parcel.put_list(std::move(nodes).str());
+  return parcel.take();
+}
+
+/// @throws SetupError unless they are those of one tree that is no deeper than its keys, in which
+/// OctoMap would go astray, and is occupied by numbers
+void require_sound(std::string_view nodes) {
+  if (nodes.empty()) return;
+  std::vector<int> to_come{1};  // nodes of each level, from the root
+  while (!to_come.empty()) {
+    if (to_come.back() == 0) {
+      to_come.pop_back();
+      continue;
+    }
+    --to_come.back();
+    if (nodes.size() < node_bytes) throw SetupError("lacks nodes; allowed: all of them");
+    float log_odds = 0.0F;
+    std::memcpy(&log_odds, nodes.data(), sizeof log_odds);
+    if (!std::isfinite(log_odds)) {
+      throw SetupError("has an occupancy that is not finite; allowed: numbers");
+    }
+    const int children = std::popcount(static_cast<unsigned char>(nodes[sizeof log_odds]));
+    nodes.remove_prefix(node_bytes);
+    if (children > 0 && to_come.size() > most_levels) {
+      throw SetupError("is deeper than " + std::to_string(most_levels) +
+                       " levels; allowed: up to these");
+    }
+    to_come.push_back(children);
+  }
+  if (!nodes.empty()) throw SetupError("has nodes beside its tree; allowed: none");
 }
 
 }  // namespace
@@ -52,17 +119,21 @@ cover::CubeRange cubes_in(const Region& region, double cube) {
 }
 
 std::unique_ptr<octomap::OcTree> read_tree(const std::string& path) {
-  const std::string trouble = "the map '" + path + "' cannot be read; allowed: a file of OctoMap";
-  if (path.ends_with(".bt")) {
-    auto tree = std::make_unique<octomap::OcTree>(0.1);
-    if (!tree->readBinary(path)) throw SetupError(trouble);
+  const std::string bytes =
+      detail::result_of_file(path, "map", expansion, [&] { return nodes_in(path); });
+  try {
+    detail::Unpacking parcel(bytes);
+    const double cube = repel::checked("edge of a cube", parcel.take<double>(), 1e-6, 1e3, "m");
+    auto nodes = parcel.take_list<std::string>();
+    require_sound(nodes);
+    auto tree = std::make_unique<octomap::OcTree>(cube);
+    if (nodes.empty()) return tree;
+    std::istringstream stream(std::move(nodes));
+    (void)tree->readData(stream);
     return tree;
+  } catch (const SetupError& wrong) {
+    throw SetupError("map '" + path + "' " + wrong.what());
   }
-  std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(path));
-  auto* const tree = dynamic_cast<octomap::OcTree*>(any.get());
-  if (tree == nullptr) throw SetupError(trouble + " of the type OcTree");
-  (void)any.release();
-  return std::unique_ptr<octomap::OcTree>(tree);
 }
 
 cover::CubeRange known_range(const octomap::OcTree& tree) {

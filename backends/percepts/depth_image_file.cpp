@@ -5,9 +5,12 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <vector>
 
+#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
 
 #ifdef REPEL_PERCEPTS_PNG
@@ -17,6 +20,9 @@
 namespace repel::percepts {
 #ifdef REPEL_PERCEPTS_PNG
 namespace {
+
+constexpr std::uintmax_t most_file_bytes = input_limits.file_bytes;
+constexpr png_alloc_size_t most_chunk_bytes = std::size_t{1} << 16;
 
 struct Closing {
   void operator()(std::FILE* file) const noexcept { (void)std::fclose(file); }
@@ -67,6 +73,10 @@ void read(std::FILE* file, const DepthCamera& camera, std::uint16_t* pixels, std
     return;
   }
   png_infop info = png_create_info_struct(png);
+  // Only the pixels count: texts, colour profiles and the like are passed over, whatever they would
+  // become when decompressed.
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+  png_set_chunk_malloc_max(png, most_chunk_bytes);
   if (setjmp(png_jmpbuf(png)) == 0) {  // NOLINT(*-err52-cpp): as libpng asks for
     png_init_io(png, file);
     read_rows(png, info, camera, pixels);
@@ -75,10 +85,18 @@ void read(std::FILE* file, const DepthCamera& camera, std::uint16_t* pixels, std
 }
 
 void read_or_throw(const std::string& path, const DepthCamera& camera, std::uint16_t* pixels) {
-  const std::unique_ptr<std::FILE, Closing> file(std::fopen(path.c_str(), "rb"));
+  std::error_code error;
   std::string message;
-  if (file == nullptr) {
+  // To open a pipe would wait for somebody who writes to it.
+  const bool is_file = std::filesystem::is_regular_file(path, error);
+  const std::unique_ptr<std::FILE, Closing> file(is_file ? std::fopen(path.c_str(), "rb")
+                                                         : nullptr);
+  const std::uintmax_t bytes = is_file ? std::filesystem::file_size(path, error) : 0;
+  if (file == nullptr || error) {
     message = "it cannot be opened";
+  } else if (bytes > most_file_bytes) {
+    message = "it has " + std::to_string(bytes) + " bytes; allowed: up to " +
+              std::to_string(most_file_bytes);
   } else {
     read(file.get(), camera, pixels, message);
   }

@@ -9,9 +9,16 @@
 #include <vector>
 
 #include <repel/network/elements/line.hpp>
+#include <repel/network/modules/kbb2.hpp>
+#include <repel/network/modules/multiplex.hpp>
+#include <repel/network/modules/six_axes.hpp>
+#include <repel/network/modules/torque_arm.hpp>
 
 namespace repel::scene {
 namespace {
+
+/// [rad/s] at which a line turns a tool at most: the damper of a coupling is chosen for it.
+constexpr double fastest_turning = 1.0;
 
 /// Line of the module whose name occurs first in `text`; 0 if none does.
 int line_of_named(const std::vector<Module>& modules, const std::string& text) {
@@ -79,6 +86,40 @@ const Module& line_of(const Scene& scene, const ArmSetup& setup) {
   return line;
 }
 
+/// What the operator of the scene can ask of the robot over its line: with the motors of the master
+/// and through the coupling. Where there is no coupling, that of its defaults stands for it.
+network::LineBounds bounds_of(const Scene& scene, const ArmSetup& setup) {
+  network::LineBounds bounds;
+  bounds.speed = scene.tool_speed;
+  bounds.turning = fastest_turning;
+  bounds.force = bounds.torque = 0.0;
+  bool has_coupling = false;
+  const auto couple = [&](const network::Kbb2Options& coupling) {
+    bounds.force = std::max(bounds.force, coupling.force_limit);
+    bounds.torque = std::max(bounds.torque, coupling.torque_limit);
+    has_coupling = true;
+  };
+  for (const Module& module : setup.network.modules) {
+    if (const auto* own = std::any_cast<network::Kbb2Options>(&module.options)) couple(*own);
+    if (const auto* own = std::any_cast<network::TorqueArmOptions>(&module.options)) {
+      bounds.hand_force = own->torque_limit;
+      bounds.hand = own->hand;
+    }
+    if (const auto* own = std::any_cast<network::MultiplexOptions>(&module.options)) {
+      bounds.motion_scale = own->velocity_scale;
+      bounds.force_scale = own->force_scale;
+    }
+    if (const auto* own = std::any_cast<network::SixAxesOptions>(&module.options)) {
+      bounds.hand_force = own->force_limit;
+      bounds.hand_torque = own->torque_limit;
+      bounds.motion_scale = bounds.force_scale = own->motion_scale;
+      bounds.hand = own->hand;
+    }
+  }
+  if (!has_coupling) couple({});
+  return bounds;
+}
+
 void require_modules(const Scene& scene, const ArmSetup& setup) {
   if (!(scene.obstacles.empty() && scene.partners.empty()) &&
       !brings(setup, network::Walls::tool)) {
@@ -127,7 +168,9 @@ network::Plan plan_half(const Scene& scene, const ArmSetup& setup, const ArmMode
   network::Plan plan;
   const auto add_end = [&](const network::To& to) {
     plan.add(line.name,
-             network::RemoteLine(*half.link, {options.impedance, options.angular_impedance}), to);
+             network::RemoteLine(*half.link, {options.impedance, options.angular_impedance,
+                                              bounds_of(scene, setup), half.is_station}),
+             to);
   };
   if (!half.is_station) add_end(beyond);
   for (std::size_t i = 0; i < modules.size(); ++i) {

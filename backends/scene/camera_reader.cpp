@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr Rule camera_position{unit::length, -Shape::largest, Shape::largest};
 constexpr std::size_t most_images = 1'000'000;
+constexpr double most_seconds = 1e10;  // of a time stamp: those of Unix time, to a microsecond
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& what) {
   throw SetupError("the recording '" + path.string() + "' " + what);
@@ -30,6 +31,10 @@ double time_of(const fs::path& image) {
   const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), time);
   if (error != std::errc{} || end != stem.data() + stem.size() || !std::isfinite(time)) {
     refuse(image, "has no time stamp for a name; allowed: seconds, as in 12.345.png");
+  }
+  if (std::abs(time) > most_seconds) {
+    refuse(image, "is of " + to_text(time) + " s; allowed: " + to_text(-most_seconds) + " to " +
+                      to_text(most_seconds) + " s");
   }
   return time;
 }
@@ -87,6 +92,10 @@ Pose pose_of_camera(const Map& map) {
 
 RecordingChoice recording_of(const std::string& folder, CameraChoice& camera) {
   const std::string file = (fs::path(folder) / "camera.yaml").string();
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) {  // a pipe would be waited for
+    throw SetupError("there is no such file; allowed: what the images do not say", file);
+  }
   const Value document = Value::document(text_of_file(file, "a recorded camera"), file);
   const Map map(document);
   map.allow(
@@ -106,6 +115,10 @@ RecordingChoice recording_of(const std::string& folder, CameraChoice& camera) {
   if (count > 1) {
     const double duration = recording.images.back().time - recording.images.front().time;
     camera.rate_hz = static_cast<double>(count - 1) / duration;
+    if (!(camera.rate_hz <= 1.001 * most_camera_rate_hz)) {  // stamps are rounded
+      refuse(folder, "has " + to_text(camera.rate_hz, 3) + " images in a second; allowed: up to " +
+                         to_text(most_camera_rate_hz));
+    }
   }
   return recording;
 }

@@ -93,7 +93,8 @@ Shape shape_of(const Map& map, std::string_view kind, HullPoints& counted) {
   const double half_length = 0.5 * map.at("length").number(extent);
   if (kind == "capsule") return Shape::capsule(radius, half_length, coarse);
   if (kind == "cone") return Shape::cone(radius, half_length, coarse);
-  return Shape::cylinder(radius, half_length, coarse);
+  if (kind == "cylinder") return Shape::cylinder(radius, half_length, coarse);
+  map.at("shape").fail_with_value("a shape that is made of sizes");
 }
 
 /// The path of an existing file, relative to the scene's `file`.
@@ -216,12 +217,13 @@ ForceLaw law_of(const Value& value) {
   map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
   const Value* damping = map.find("damping");
   law.damping_may_rise = damping == nullptr || damping->text() == "auto";
-  if (!law.damping_may_rise) {
+  law.damping_is_meant = !law.damping_may_rise;
+  if (law.damping_is_meant) {
     law.damping = damping->number({.units = unit::damping, .high = 1e6, .may_be_auto = true});
   }
   map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
   map.read("depth", {unit::length, 0.0, 1e6}, law.depth);
-  map.read("tilt", {unit::angle, 0.0, 0.05}, law.tilt);
+  map.read("tilt", {unit::angle, 0.0, ForceLaw::most_tilt}, law.tilt);
   map.read("plateau", {unit::none, 0.0, 1.0}, law.plateau);
   try {
     return checked(law);
@@ -436,14 +438,19 @@ void read_simulated(const Map& map, CameraChoice& camera) {
     camera.height = static_cast<int>(height->integer(16, 1080));
   }
   map.read("view", {unit::angle, 0.1, 2.6}, camera.view);
-  map.read("rate", {unit::frequency, 0.1, 1000.0}, camera.rate_hz);
+  map.read("rate", {unit::frequency, 0.1, most_camera_rate_hz}, camera.rate_hz);
   read_faults(map, camera);
 }
 
 /// The same of recorded images. @param file of the scene
 void read_recorded(const Map& map, const std::string& file, CameraChoice& camera) {
   const Value& value = map.at("recording");
-  camera.recording = detail::recording_of(folder_of(value, file), camera);
+  try {
+    camera.recording = detail::recording_of(folder_of(value, file), camera);
+  } catch (const SetupError& error) {
+    if (!error.file().empty()) throw;
+    value.fail(error.what());
+  }
   if (const Value* repeats = map.find("repeat")) {
     camera.recording->repeats = repeats->word_of({"yes", "no"}) == "yes";
   }
@@ -542,6 +549,7 @@ std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes, boo
 
 /// Angles, or a list of angles and, for prismatic joints, lengths.
 void read_start(const Value& value, RobotChoice& robot) {
+  robot.start_line = value.line();
   const auto add = [&](const Value& entry, const Rule& rule, JointType type) {
     for (const double q : entry.numbers(rule, 1, 64)) {
       robot.start.push_back(q);

@@ -92,7 +92,7 @@ bench::Result round_trip(const bench::Options& options) {
     const auto station = carrier.open(link::Side::station);
     const Echo echo(*site);
     network::RemotePacket packet;
-    packet.session = options.seed;
+    packet.session = packet.heard = options.seed;  // a site answers whom it has heard
     // Both sides must find each other first.
     for (int i = 0; i < 20 && !comes_back(*station, packet); ++i) {
       ++packet.sequence;

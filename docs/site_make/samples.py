@@ -5,8 +5,10 @@
 A ```cpp fence with a main is compiled; where the page says what it prints, it is run and must print
 that. A fragment that stands in a file of examples/ is compiled with it. Any other fragment becomes
 the body of a function, behind what tests/samples/PAGE.hpp declares. A ```python fence must be valid
-and use names that exist. A ```yaml fence that is a whole scene is loaded, where teleop has been
-built. A command of a program of this repository has options of docs/options.md."""
+and use names that exist. A ```yaml fence, or an indented block that begins with a key of scenes, is
+loaded where teleop has been built: as a scene, or in place of the same keys of the scene that
+scenes/README.md shows. There `- ...` stands for the modules that follow. A command of a program of
+this repository has options of docs/options.md."""
 
 import ast
 import os
@@ -133,13 +135,47 @@ def check_python(fence):
     return "".join(f"{fence}: repel.{name} does not exist\n" for name in sorted(used - known))
 
 
+def blocks_of(page):
+    """Indented blocks that begin with a key of scenes, as fences of YAML."""
+    text = (ROOT / page).read_text()
+    begin = r"(?m)^    (?:robot|laws|network|obstacles|script):\n"
+    for found in re.finditer(begin + r"(?:    .*\n)+", text):
+        line = text.count("\n", 0, found.start()) + 1
+        yield Fence(page, line, "yaml", re.sub(r"(?m)^    ", "", found[0]), "")
+
+
+def keys_of(scene):
+    """The top-level keys of a scene, each with its lines."""
+    return {re.match(r"\w+", part)[0]: part for part in re.split(r"(?m)^(?=\w+:)", scene) if part}
+
+
+def whole_scene(text):
+    """A scene, or the frame with the keys of a fragment in it."""
+    if re.search(r"(?m)^ +urdf:", text):
+        return text
+    frame, given = keys_of(next(fences_of("scenes/README.md")).text), keys_of(text)
+    if "network" in given:
+        modules = frame["network"].splitlines(True)
+        kbb2 = next(i for i, line in enumerate(modules) if "kbb2" in line)
+        rest = modules[kbb2 + ("kbb2" in given["network"]):]
+        given["network"] = re.sub(r"(?m)^.*- \.\.\.\n", "".join(rest), given["network"])
+        frame.pop("script")  # of other masters
+    frame["laws"] = re.sub(", damping: [^,}]*", "", frame["laws"])  # as much as its robot needs
+    if "robot" in given:
+        given["robot"] = frame["robot"] + given["robot"].split("\n", 1)[1]
+    return "".join((frame | given).values())
+
+
 def check_scene(fence):
-    """None where it is no whole scene, or where it cannot be loaded here."""
+    """None where it is of other files, or where it cannot be loaded here."""
     teleop = ROOT / "build/release/bin/teleop"
-    if not re.search(r"(?m)^robot:", fence.text) or not teleop.is_file():
+    if not re.match(r"[\w ]+:", fence.text) or not teleop.is_file():
         return None
     path = WORK / f"{fence.page.replace('/', '.')}.{fence.line}.yaml"
-    path.write_text(fence.text.replace("../robots/", f"{ROOT}/robots/"))
+    text = whole_scene(fence.text).replace("../robots/", f"{ROOT}/robots/")
+    # A file that is only named is like one that is there.
+    mesh = ROOT / "scenes/meshes/glove_box_glass.stl"
+    path.write_text(re.sub(r"file: \w+\.stl", f"file: {mesh}", text))
     run = subprocess.run([teleop, path, "--fast", "--seconds", "0", "--quiet"], text=True,
                          capture_output=True)
     return f"{fence}: {run.stderr}" if run.returncode else ""
@@ -199,14 +235,16 @@ def main():
         wrong = [*pool.map(check_program, programs),
                  *pool.map(lambda page: check_fragments(page, fragments[page]), fragments)]
     python = [check_python(fence) for fence in fences if fence.language == "python"]
-    scenes = [check_scene(fence) for fence in fences if fence.language == "yaml"]
+    yaml = [fence for fence in fences if fence.language == "yaml"]
+    yaml += [block for page in pages() for block in blocks_of(page)]
+    scenes = [check_scene(fence) for fence in yaml]
     commands, count = check_commands(known_options())
     wrong = [text for text in wrong + python + scenes + commands if text]
     print("\n".join(wrong), end="\n" if wrong else "")
     run = sum(said_to_print(fence) is not None for fence in programs)
     print(f"{len(cpp)} samples of C++: {len(programs)} programs ({run} run, with the output of the "
           f"page), {len(examples)} from examples/, {sum(map(len, fragments.values()))} fragments; "
-          f"{len(python)} of Python, {sum(s is not None for s in scenes)} scenes; {count} commands; "
+          f"{len(python)} of Python, {sum(s is not None for s in scenes)} of scenes; {count} commands; "
           f"{len(wrong)} wrong")
     return 1 if wrong or not cpp or not count else 0
 

@@ -35,9 +35,13 @@ def separations(shapes: Sequence[_repel.Shape], X_W: Any, pairs: Any, *,
         raise TypeError(f"pairs: expected whole numbers, got {index.dtype}")
     if out is None:
         out = np.empty(len(index), SEPARATION)
-    elif out.dtype != SEPARATION or out.shape != (len(index),) or not out.flags.c_contiguous:
+    elif not isinstance(out, np.ndarray):
+        raise TypeError(f"out: expected an array, got {type(out).__name__}")
+    elif out.dtype != SEPARATION or out.shape != (len(index),):
         raise ValueError(f"out: expected {len(index)} rows of repel.SEPARATION, "
                          f"got {out.dtype} of shape {out.shape}")
+    elif not out.flags.carray:
+        raise ValueError("out: expected rows one after the other that may be written, got others")
     _repel._fill_separations(list(shapes), X_W, np.ascontiguousarray(index, np.int64),
                              options or _repel.QueryOptions(), warm, out.view(np.uint8))
     return out

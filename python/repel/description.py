@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -66,6 +67,27 @@ class Part:
 
 
 @dataclass
+class Capacities:
+    """How much a World or a Cell can hold: it takes its memory once."""
+
+    bodies: int = 64  #: with the fixed one
+    parts: int = 20000  #: of all bodies
+    pairs: int = 1 << 20  #: of parts
+    candidates: int = 1 << 14  #: pairs that can soon come within range, at one time
+
+
+def _check_all(name: str, values: Any, kind: type, instead: str = "") -> None:
+    """Refuses what is no sequence of that kind, before it is taken for one."""
+    if isinstance(values, (str, bytes, os.PathLike)) or not isinstance(values, Sequence):
+        raise TypeError(f"{name}: expected a sequence of repel.{kind.__name__}, got "
+                        f"{values!r}{instead}")
+    for i, value in enumerate(values):
+        if not isinstance(value, kind):
+            raise TypeError(f"{name}[{i}]: expected a repel.{kind.__name__}, got "
+                            f"{type(value).__name__}")
+
+
+@dataclass
 class Arm:
     """An arm, with the default network between operator and joints."""
 
@@ -78,9 +100,15 @@ class Arm:
     X_LT: Any = None  #: pose of the tool frame in the last link [m]; none: the same
     gravity_W: Any = (0.0, 0.0, -9.81)  #: [m/s^2]
     self_law: ForceLaw | None = None  #: between parts that are two or more joints apart
+    may_touch: Sequence[tuple[int, int]] = ()  #: indices of parts that `self_law` leaves out
     tool_speed: float = 0.25  #: [m/s] up to which the operator may drive the tool
     drive_delay: float = 0.0  #: [ticks] from a torque to its effect
     has_brakes: bool = False
+
+    def __post_init__(self) -> None:
+        _check_all("links", self.links, Link,
+                   "; the arm of a URDF file is that of a scene: repel.Cell.from_scene")
+        _check_all("parts", self.parts, Part)
 
 
 @dataclass

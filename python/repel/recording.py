@@ -80,7 +80,7 @@ def _needed(module: str, package: str | None = None) -> Any:
     except ImportError as error:
         package = package or module
         raise SetupError(f"{package} is not installed; to have it: pip install {package}, or "
-                         "pip install 'repel[tables]'") from error
+                         "pip install 'repel-haptics[tables]'") from error
 
 
 def read_recording(path: str | os.PathLike[str]) -> Recording:
@@ -162,7 +162,7 @@ def _from_contents(contents: dict[str, Any]) -> dict[str, np.ndarray]:
 
 
 def _of_ticks(inputs: _Rows, separations: _Rows) -> dict[str, np.ndarray]:
-    nearest = [row["nearest_m"] for row in separations]
+    nearest = [row.get("nearest_m") for row in separations]  # left out, in older ones null: none
     hardest = [max(row["pairs"], key=lambda pair: (pair["force"], -pair["index"]), default=None)
                for row in separations]
     pushed = [pair if pair and pair["force"] > 0.0 else None for pair in hardest]

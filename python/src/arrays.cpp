@@ -10,6 +10,8 @@
 
 #include <repel/base/setup_error.hpp>
 
+#include "interpreter.hpp"
+
 namespace repel::python {
 namespace {
 
@@ -91,15 +93,15 @@ void refuse_shape(const Array& found, const char* name, const char* expected) {
 
 Array array_of(nb::handle value, const char* name, const char* expected) {
   Array array;
-  if (nb::try_cast(value, array, false)) return array;
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  // All else, NumPy reads: nanobind crashes on some of what has a buffer, as a datetime64.
+  if (value.type().is(numpy.attr("ndarray")) && nb::try_cast(value, array, false)) return array;
   std::string type = nb::cast<std::string>(nb::handle(value.type()).attr("__name__"));
   try {
-    const nb::module_ numpy = nb::module_::import_("numpy");
-    const nb::object found = numpy.attr("asarray")(value);
+    const nb::object found = call_method(numpy, "asarray", value);
     const std::string kind = nb::cast<std::string>(found.attr("dtype").attr("kind"));
     if (kind == "f" || kind == "i" || kind == "u") {
-      return nb::cast<Array>(
-          numpy.attr("ascontiguousarray")(found, nb::arg("dtype") = numpy.attr("float64")));
+      return nb::cast<Array>(call_method(numpy, "ascontiguousarray", found, numpy.attr("float64")));
     }
     type += " of " + nb::cast<std::string>(found.attr("dtype").attr("name"));
   } catch (const nb::python_error&) {
@@ -168,10 +170,16 @@ std::vector<Vec3> points_of(nb::handle value, const char* name) {
   return points;
 }
 
-std::vector<double> numbers_of(nb::handle value, const char* name) {
+std::vector<double> numbers_of(nb::handle value, const char* name,
+                               std::optional<std::size_t> joints) {
   constexpr const char* expected = "a number for each joint (N,)";
   const Array numbers = array_of(value, name, expected);
   if (!has_shape(numbers, {-1})) refuse_shape(numbers, name, expected);
+  if (joints && numbers.size() != *joints) {
+    throw nb::value_error((std::string(name) + ": expected " + std::to_string(*joints) +
+                           " numbers, one for each joint, got " + std::to_string(numbers.size()))
+                              .c_str());
+  }
   return {numbers.data(), numbers.data() + numbers.size()};
 }
 

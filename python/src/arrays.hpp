@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,10 @@ using Array = nb::ndarray<const double, nb::numpy, nb::c_contig, nb::device::cpu
 [[nodiscard]] Vec3 vector_of(nb::handle value, const char* name);
 /// N times three numbers.
 [[nodiscard]] std::vector<Vec3> points_of(nb::handle value, const char* name);
-/// N numbers. They may be NaN: readings of an arm may.
-[[nodiscard]] std::vector<double> numbers_of(nb::handle value, const char* name);
+/// N numbers. They may be NaN: readings of an arm may. @param joints how many there must be
+/// @throws nanobind::value_error naming both numbers
+[[nodiscard]] std::vector<double> numbers_of(nb::handle value, const char* name,
+                                             std::optional<std::size_t> joints = {});
 /// Six numbers, linear then angular; they may be NaN.
 [[nodiscard]] Twist twist_of(nb::handle value, const char* name);
 

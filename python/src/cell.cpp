@@ -21,7 +21,7 @@ std::unique_ptr<Cell> built(CellDescription description, Trouble& trouble) {
   try {
     std::unique_ptr<Cell> cell;
     {
-      const nb::gil_scoped_release others_go_on;
+      const Released others_go_on;
       cell = std::make_unique<Cell>(std::move(description));
     }
     raise(trouble);
@@ -36,9 +36,13 @@ std::unique_ptr<Cell> built(CellDescription description, Trouble& trouble) {
 struct OwnReadings {
   std::vector<double> q, v;
 
-  OwnReadings(nb::handle positions, nb::handle rates)
-      : q(numbers_of(positions, "q")), v(numbers_of(rates, "v")) {}
-  [[nodiscard]] ArmReadings readings() const { return {q, v}; }
+  OwnReadings(nb::handle positions, nb::handle rates, std::size_t joints)
+      : q(numbers_of(positions, "q", joints)), v(numbers_of(rates, "v", joints)) {}
+  [[nodiscard]] ArmReadings readings(bool homed) const {
+    ArmReadings all{q, v};
+    all.homed = homed;
+    return all;
+  }
 };
 
 }  // namespace
@@ -60,42 +64,43 @@ std::size_t OwnCell::checked_arm(int arm) const {
 }
 
 Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
-                   std::optional<std::int64_t> now) {
+                   std::optional<std::int64_t> now, bool homed) {
   if (cell_->arms() != 1) {
     throw SetupError("step is for a cell with one arm; allowed: sense, then act");
   }
   const InUse in_use(is_in_use_);
-  const OwnReadings own(q, v);
+  const OwnReadings own(q, v, names_.front()->joints);
   const TickRecord* record = nullptr;
   {
     const auto time = time_of(now);
-    const nb::gil_scoped_release others_go_on;
-    record = &cell_->step(own.readings(), hands, time);
+    const Released others_go_on;
+    record = &cell_->step(own.readings(homed), hands, time);
   }
   raise(trouble_);
   return {*record, names_.front()};
 }
 
-void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> now) {
+void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> now, bool homed) {
   const InUse in_use(is_in_use_);
+  if (nb::len(readings) != cell_->arms()) {
+    throw nb::value_error(("readings: expected " + std::to_string(cell_->arms()) +
+                           " pairs (q, v), got " + std::to_string(nb::len(readings)))
+                              .c_str());
+  }
   std::vector<OwnReadings> own;
-  for (nb::handle each : readings) {
+  for (std::size_t arm = 0; arm < cell_->arms(); ++arm) {
+    const nb::object each = readings[arm];
     if (!nb::isinstance<nb::sequence>(each) || nb::len(each) != 2) {
       throw nb::type_error("readings: expected a pair (q, v) for each arm");
     }
-    own.emplace_back(each[0], each[1]);
-  }
-  if (own.size() != cell_->arms()) {
-    throw nb::value_error(("readings: expected " + std::to_string(cell_->arms()) +
-                           " pairs (q, v), got " + std::to_string(own.size()))
-                              .c_str());
+    own.emplace_back(each[0], each[1], names_[arm]->joints);
   }
   std::vector<ArmReadings> all;
   all.reserve(own.size());
-  for (const OwnReadings& each : own) all.push_back(each.readings());
+  for (const OwnReadings& each : own) all.push_back(each.readings(homed));
   {
     const auto time = time_of(now);
-    const nb::gil_scoped_release others_go_on;
+    const Released others_go_on;
     cell_->sense(all, time);
   }
   has_sensed_ = true;
@@ -115,7 +120,7 @@ std::vector<Tick> OwnCell::act(const std::vector<network::Command>& hands) {
   {
     std::span<const TickRecord* const> records;
     {
-      const nb::gil_scoped_release others_go_on;
+      const Released others_go_on;
       records = cell_->act(hands);
     }
     for (std::size_t i = 0; i < records.size(); ++i) ticks.push_back({*records[i], names_[i]});
@@ -125,6 +130,19 @@ std::vector<Tick> OwnCell::act(const std::vector<network::Command>& hands) {
 }
 
 namespace {
+
+network::GainCheck gain_check_of(const std::string& name) {
+  if (name == "error") return network::GainCheck::error;
+  if (name == "warning") return network::GainCheck::warning;
+  throw SetupError("gain_check is '" + name + "'; allowed: error, warning");
+}
+
+StartInside start_inside_of(const std::string& name) {
+  if (name == "refuse") return StartInside::refuse;
+  if (name == "push_out") return StartInside::push_out;
+  if (name == "allow") return StartInside::allow;
+  throw SetupError("start_inside is '" + name + "'; allowed: refuse, push_out, allow");
+}
 
 int traverse(PyObject* self, visitproc visit, void* arg) {
   Py_VISIT(Py_TYPE(self));
@@ -136,6 +154,7 @@ int traverse(PyObject* self, visitproc visit, void* arg) {
 }
 
 int clear(PyObject* self) {
+  if (!nb::inst_ready(self)) return 0;  // its __init__ has failed, or has not been called
   for (OwnKinematics* own : nb::inst_ptr<OwnCell>(self)->kinematics()) own->clear();
   return 0;
 }
@@ -193,29 +212,43 @@ void bind_cell(nb::module_& m) {
                            "them, with all checks. Not for two threads at once.");
   cell.def(
           "__init__",
-          [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles) {
+          [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles,
+             const std::string& gain_check, const std::string& start_inside, nb::handle limits) {
             const Trouble trouble = std::make_shared<std::optional<nb::python_error>>();
-            new (self) OwnCell(described(rate_hz, arms, obstacles, trouble), trouble);
+            OwnDescription description = described(rate_hz, arms, obstacles, trouble);
+            description.cell.gain_check = gain_check_of(gain_check);
+            description.cell.start_inside = start_inside_of(start_inside);
+            description.cell.limits = capacities_of(limits);
+            new (self) OwnCell(std::move(description), trouble);
           },
           nb::kw_only(), nb::arg("rate_hz"), nb::arg("arms"),
-          nb::arg("obstacles") = nb::make_tuple(),
-          nb::sig("def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
-                  "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = ()) -> None"),
-          "rate_hz [Hz] of the tick, 1 to 1e5. Runs every check; raises SetupError.")
+          nb::arg("obstacles") = nb::make_tuple(), nb::arg("gain_check") = "error",
+          nb::arg("start_inside") = "refuse", nb::arg("limits") = nb::none(),
+          nb::sig(
+              "def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
+              "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = (), gain_check: str "
+              "= 'error', start_inside: str = 'refuse', limits: repel.Capacities | None = None) "
+              "-> None"),
+          "rate_hz [Hz] of the tick, 1 to 1e5. gain_check of a wall too stiff for it: error, or "
+          "warning (see `warnings`). start_inside: what becomes of an arm that starts in an "
+          "obstacle, refuse, push_out (slowly) or allow. limits: how much the cell can hold; none: "
+          "Capacities(). Runs every check; raises SetupError.")
       .def("step", &OwnCell::step, nb::arg("q"), nb::arg("v"), nb::arg("command"),
-           nb::arg("now") = nb::none(),
+           nb::arg("now") = nb::none(), nb::arg("homed") = false,
            nb::sig("def step(self, q: numpy.typing.ArrayLike, v: numpy.typing.ArrayLike, command: "
-                   "Command, now: int | None = None) -> Tick"),
+                   "Command, now: int | None = None, homed: bool = False) -> Tick"),
            "One tick of a cell with one arm: joint positions q [rad] or [m] and rates v (joints,), "
            "the command of the operator, and the due time `now` [ns], above 0 and growing from "
-           "tick to "
-           "tick; without it, one period after the last. What is not finite is a fault of the "
-           "tick, not "
-           "an error.")
+           "tick to tick; without it, one period after the last. What is not finite is a fault of "
+           "the tick, not an error. homed: the positions are those of the arm, by a reference "
+           "beside its encoders; a joint that was lost is believed then.")
       .def("sense", &OwnCell::sense, nb::arg("readings"), nb::arg("now") = nb::none(),
+           nb::arg("homed") = false,
            nb::sig("def sense(self, readings: collections.abc.Sequence[tuple[numpy.typing."
-                   "ArrayLike, numpy.typing.ArrayLike]], now: int | None = None) -> None"),
-           "The first half of a tick: a pair (q, v) for each arm.")
+                   "ArrayLike, numpy.typing.ArrayLike]], now: int | None = None, homed: bool = "
+                   "False) -> "
+                   "None"),
+           "The first half of a tick: a pair (q, v) for each arm. homed: see `step`, of all arms.")
       .def("act", &OwnCell::act, nb::arg("commands"),
            "The second half of a tick: a command for each arm. Returns a Tick for each.");
   bind_questions(cell);

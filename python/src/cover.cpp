@@ -15,6 +15,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "interpreter.hpp"
 
 namespace repel::python {
 namespace {
@@ -60,7 +61,7 @@ Cover covered(nb::handle vertices, nb::handle triangles, int parts, double error
   options.error = error;
   options.overlap = overlap;
   options.engine = engine_of(engine);
-  const nb::gil_scoped_release others_go_on;
+  const Released others_go_on;
   return cover::cover_of(mesh, options);
 }
 

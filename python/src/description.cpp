@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <nanobind/stl/pair.h>
+
 #include <repel/base/setup_error.hpp>
 #ifdef REPEL_PYTHON_SCENES
 #include <repel/robots/kinematics.hpp>
@@ -100,6 +102,9 @@ ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKi
   arm.options.tool_speed = number(from, "tool_speed");
   arm.options.drive_delay = number(from, "drive_delay");
   arm.options.has_brakes = nb::cast<bool>(from.attr("has_brakes"));
+  for (nb::handle pair : from.attr("may_touch")) {
+    arm.may_touch.push_back(nb::cast<std::pair<int, int>>(pair));
+  }
   arm.kinematics = kinematics_of(from, arm.model, trouble, own);
   return arm;
 }
@@ -120,6 +125,20 @@ ObstacleDescription obstacle_of(nb::handle from) {
 }
 
 }  // namespace
+
+Capacities capacities_of(nb::handle from) {
+  Capacities limits;
+  if (from.is_none()) return limits;
+  const auto read = [&](const char* name, int& value, int most) {
+    value = nb::cast<int>(from.attr(name));
+    checked(name, value, 1.0, most, "");
+  };
+  read("bodies", limits.bodies, 1'000'000);
+  read("parts", limits.parts, 10'000'000);
+  read("pairs", limits.pairs, 100'000'000);
+  read("candidates", limits.candidates, 1'000'000);
+  return limits;
+}
 
 OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles,
                          const Trouble& trouble) {

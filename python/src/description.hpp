@@ -20,6 +20,9 @@ struct OwnDescription {
   std::vector<OwnKinematics*> kinematics;  ///< those of the arms that are written in Python
 };
 
+/// Those of a repel.Capacities; none: as many as C++ has. @throws SetupError
+[[nodiscard]] Capacities capacities_of(nb::handle from);
+
 /// @param arms,obstacles sequences of repel.Arm and repel.Obstacle
 /// @param trouble to which the kinematics report
 /// @throws SetupError or the errors of Python, naming what is wrong

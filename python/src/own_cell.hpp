@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,27 +15,11 @@
 #include <repel/cell/cell.hpp>
 
 #include "description.hpp"
+#include "interpreter.hpp"
 #include "own_kinematics.hpp"
 #include "tick.hpp"
 
 namespace repel::python {
-
-/// Refuses a second call of an object while one goes on, in another thread or from its own
-/// kinematics: others run while the interpreter is let go.
-class InUse {
- public:
-  /// @throws std::runtime_error
-  explicit InUse(bool& flag) : flag_(flag) {
-    if (flag_) throw std::runtime_error("this object is in use: allowed is one call at a time");
-    flag_ = true;
-  }
-  ~InUse() { flag_ = false; }
-  InUse(const InUse&) = delete;
-  InUse& operator=(const InUse&) = delete;
-
- private:
-  bool& flag_;  ///< read and written with the GIL only
-};
 
 /// A cell, with the kinematics that are written in Python and the names of its records.
 class OwnCell {
@@ -46,9 +29,9 @@ class OwnCell {
 
   /// One tick of a cell with one arm. @param now [ns] above 0; none: one period after the last
   [[nodiscard]] Tick step(nb::handle q, nb::handle v, const network::Command& hands,
-                          std::optional<std::int64_t> now);
+                          std::optional<std::int64_t> now, bool homed);
   /// The two halves of a tick. @param readings a pair (q, v) for each arm
-  void sense(const nb::sequence& readings, std::optional<std::int64_t> now);
+  void sense(const nb::sequence& readings, std::optional<std::int64_t> now, bool homed);
   [[nodiscard]] std::vector<Tick> act(const std::vector<network::Command>& hands);
 
   [[nodiscard]] Cell& cell() noexcept { return *cell_; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 
 namespace repel::python {
 namespace {
@@ -74,13 +75,13 @@ OwnKinematics::OwnKinematics(nb::object object, std::size_t joints, Trouble trou
 }
 
 OwnKinematics::~OwnKinematics() {
-  const nb::gil_scoped_acquire gil;
+  const Held gil;
   object_.reset();
 }
 
 template <class Work>
 bool OwnKinematics::attempt(const Work& work) const noexcept {
-  const nb::gil_scoped_acquire gil;
+  const Held gil;
   if (!object_.is_valid()) return false;
   try {
     work();
@@ -104,30 +105,26 @@ bool OwnKinematics::attempt(const Work& work) const noexcept {
 }
 
 void OwnKinematics::update(std::span<const double> q) noexcept {
-  attempt([&] { object_.attr("update")(to_array(q.data(), {q.size()})); });
+  attempt([&] { (void)call_method(object_, "update", to_array(q.data(), {q.size()})); });
 }
 
 Pose OwnKinematics::X_WT() const noexcept {
   Pose X = unknown_pose();
-  attempt([&] { X = pose_from(object_.attr("X_WT")(), "X_WT"); });
+  attempt([&] { X = pose_from(call_method(object_, "X_WT"), "X_WT"); });
   return X;
 }
 
 void OwnKinematics::tool_jacobian(JacobianRef J) const noexcept {
   J.setConstant(nan);
-  attempt([&] { copy_matrix(object_.attr("tool_jacobian")(), "tool_jacobian", 6, joints_, J); });
+  attempt(
+      [&] { copy_matrix(call_method(object_, "tool_jacobian"), "tool_jacobian", 6, joints_, J); });
 }
 
 void OwnKinematics::gravity_torques(std::span<double> out) noexcept {
   std::fill(out.begin(), out.end(), nan);
   attempt([&] {
     const std::vector<double> torques =
-        numbers_of(object_.attr("gravity_torques")(), "gravity_torques");
-    if (torques.size() != joints_) {
-      throw nb::value_error(("gravity_torques: expected " + std::to_string(joints_) +
-                             " numbers, got " + std::to_string(torques.size()))
-                                .c_str());
-    }
+        numbers_of(call_method(object_, "gravity_torques"), "gravity_torques", joints_);
     std::copy_n(torques.begin(), std::min(torques.size(), out.size()), out.begin());
   });
 }
@@ -135,7 +132,7 @@ void OwnKinematics::gravity_torques(std::span<double> out) noexcept {
 Pose OwnKinematics::X_WL(int link) const noexcept {
   if (!places_links_) return ArmKinematics::X_WL(link);
   Pose X = unknown_pose();
-  attempt([&] { X = pose_from(object_.attr("X_WL")(link), "X_WL"); });
+  attempt([&] { X = pose_from(call_method(object_, "X_WL", nb::int_(link)), "X_WL"); });
   return X;
 }
 
@@ -143,7 +140,8 @@ void OwnKinematics::jacobian(int link, const Vec3& p_WQ, JacobianRef J) const no
   J.setConstant(nan);
   if (!has_jacobian_) return;
   attempt([&] {
-    copy_matrix(object_.attr("jacobian")(link, to_array(p_WQ)), "jacobian", 6, joints_, J);
+    copy_matrix(call_method(object_, "jacobian", nb::int_(link), to_array(p_WQ)), "jacobian", 6,
+                joints_, J);
   });
 }
 
@@ -151,8 +149,9 @@ bool OwnKinematics::mass_matrix(Eigen::MatrixXd& M) const noexcept {
   if (!has_mass_) return false;
   const auto size = static_cast<Eigen::Index>(joints_);
   M.setConstant(size, size, nan);
-  return attempt(
-      [&] { copy_matrix(object_.attr("mass_matrix")(), "mass_matrix", joints_, joints_, M); });
+  return attempt([&] {
+    copy_matrix(call_method(object_, "mass_matrix"), "mass_matrix", joints_, joints_, M);
+  });
 }
 
 }  // namespace repel::python

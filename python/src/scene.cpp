@@ -90,12 +90,14 @@ class SimulatedArm {
 
   [[nodiscard]] nb::object read(void (TorqueDrivenArm::*what)(std::span<double>)
                                     const noexcept) const {
+    const InUse in_use(is_in_use_);
     std::vector<double> numbers(joints_);
     ((*arm_).*what)(numbers);
     return to_array(numbers.data(), {joints_});
   }
 
   void apply(const Tick& tick) {
+    const InUse in_use(is_in_use_);
     if (tick.record.enable) arm_->enable();
     arm_->set_torques(std::span(tick.record.torques).first(joints_));
     arm_->engage_brakes(tick.record.brakes);
@@ -103,7 +105,8 @@ class SimulatedArm {
 
   void step(double period) {
     checked("period", period, 1e-9, 10.0, "s");
-    const nb::gil_scoped_release others_go_on;
+    const InUse in_use(is_in_use_);
+    const Released others_go_on;
     arm_->step(period);
   }
 
@@ -121,10 +124,12 @@ class SimulatedArm {
 
   std::unique_ptr<TorqueDrivenArm> arm_;
   std::size_t joints_ = 0;
+  mutable bool is_in_use_ = false;
 };
 
-std::string path_of(nb::handle path) {
-  return nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(path));
+/// Of a file, or of a scene in the package.
+std::string path_of(nb::handle scene) {
+  return nb::cast<std::string>(nb::module_::import_("repel._scenes").attr("path_of")(scene));
 }
 
 /// The cell as `teleop --fast` builds it, but for its threads: with them the bits are the same.
@@ -210,7 +215,8 @@ void bind_scenes(nb::module_& m) {
   m.def(
       "load_scene", [](nb::handle path) { return scene::load(path_of(path)); }, nb::arg("path"),
       nb::sig("def load_scene(path: str | os.PathLike[str]) -> Scene"),
-      "Reads a scene file (scenes/README.md). Raises SetupError naming file, line and value.");
+      "Reads a scene: a file (scenes/README.md), or the name of one in the package. Raises "
+      "SetupError naming file, line and value.");
   nb::borrow<nb::class_<OwnCell>>(nb::type<OwnCell>())
       .def_static("from_scene", &cell_of, nb::arg("scene"), nb::arg("rate_hz") = nb::none(),
                   nb::kw_only(), nb::arg("gravity") = true,

@@ -15,6 +15,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "interpreter.hpp"
 
 namespace repel::python {
 
@@ -93,15 +94,18 @@ std::vector<const Shape*> shapes_of(const nb::list& list) {
   return shapes;
 }
 
-void require_pairs(const Pairs& pairs, std::size_t shapes) {
+/// A copy, checked: the array may change meanwhile, by another thread or by the rows written.
+std::vector<std::int64_t> indices_of(const Pairs& pairs, std::size_t shapes) {
+  std::vector<std::int64_t> indices(pairs.data(), pairs.data() + pairs.size());
   const auto count = static_cast<std::int64_t>(shapes);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::int64_t index = pairs.data()[i];
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::int64_t index = indices[i];
     if (index >= 0 && index < count) continue;
     throw nb::index_error(("pairs[" + std::to_string(i / 2) + "] names shape " +
                            std::to_string(index) + "; allowed: 0 to " + std::to_string(count - 1))
                               .c_str());
   }
+  return indices;
 }
 
 void ask_many(const nb::list& list, nb::handle X_W, const Pairs& pairs, const QueryOptions& options,
@@ -113,7 +117,7 @@ void ask_many(const nb::list& list, nb::handle X_W, const Pairs& pairs, const Qu
                            " shapes, got " + std::to_string(poses.size()))
                               .c_str());
   }
-  require_pairs(pairs, shapes.size());
+  const std::vector<std::int64_t> indices = indices_of(pairs, shapes.size());
   const std::size_t count = pairs.shape(0);
   if (warm != nullptr && warm->rows.size() != count) {
     throw nb::value_error(("warm: expected " + std::to_string(count) +
@@ -123,9 +127,9 @@ void ask_many(const nb::list& list, nb::handle X_W, const Pairs& pairs, const Qu
   if (out.size() != count * sizeof(Row)) {
     throw nb::value_error(("out: expected " + std::to_string(count) + " rows").c_str());
   }
-  const std::int64_t* index = pairs.data();
+  const std::int64_t* index = indices.data();
   auto* row = reinterpret_cast<Row*>(out.data());
-  const nb::gil_scoped_release others_go_on;
+  const Released others_go_on;
   for (std::size_t i = 0; i < count; ++i, index += 2) {
     WarmStart cold;
     const auto a = static_cast<std::size_t>(index[0]);

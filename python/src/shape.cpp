@@ -94,13 +94,21 @@ void bind_shape(nb::module_& m) {
       });
 }
 
+GivenAt given_at_of(const std::string& name) {
+  if (name == "part") return GivenAt::part;
+  if (name == "tool") return GivenAt::tool;
+  throw SetupError("given_at is '" + name + "'; allowed: part, tool");
+}
+
 ForceLaw law_of(double range, double surface_force, double damping, double ceiling, bool passable,
-                double depth, double plateau, double tilt, bool hard, double watched) {
+                const std::string& given_at, double depth, double plateau, double tilt, bool hard,
+                double watched) {
   return checked(ForceLaw{.range = range,
                           .surface_force = surface_force,
                           .damping = damping,
                           .ceiling = ceiling,
                           .passable = passable,
+                          .given_at = given_at_of(given_at),
                           .depth = depth,
                           .plateau = plateau,
                           .tilt = tilt,
@@ -115,19 +123,23 @@ void bind_law(nb::module_& m) {
       .def(
           "__init__",
           [](ForceLaw* law, double range, double surface_force, double damping, double ceiling,
-             bool passable, double depth, double plateau, double tilt, bool hard, double watched) {
-            new (law) ForceLaw(law_of(range, surface_force, damping, ceiling, passable, depth,
-                                      plateau, tilt, hard, watched));
+             bool passable, double depth, double plateau, double tilt, bool hard, double watched,
+             const std::string& given_at) {
+            new (law) ForceLaw(law_of(range, surface_force, damping, ceiling, passable, given_at,
+                                      depth, plateau, tilt, hard, watched));
           },
           nb::kw_only(), nb::arg("range") = usual.range,
           nb::arg("surface_force") = usual.surface_force, nb::arg("damping") = usual.damping,
           nb::arg("ceiling") = usual.ceiling, nb::arg("passable") = usual.passable,
           nb::arg("depth") = usual.depth, nb::arg("plateau") = usual.plateau,
           nb::arg("tilt") = usual.tilt, nb::arg("hard") = false, nb::arg("watched") = usual.watched,
+          nb::arg("given_at") = "part",
           "range [m]: where the force begins. surface_force [N]: at distance 0. damping [N s/m]. "
           "ceiling [N]. passable: it may be entered; then depth [m] and plateau (0 to 1) count. "
           "tilt [rad], 0 to 0.05: features parallel within it meet in a patch. hard: who pushes "
-          "harder does not go deeper. watched [m]: beyond the range, for hard walls.")
+          "harder does not go deeper. watched [m]: beyond the range, for hard walls. given_at: "
+          "part, "
+          "or tool: a cell scales it by the leverage of the tool over the part.")
       .def_ro("range", &ForceLaw::range, "[m]")
       .def_ro("surface_force", &ForceLaw::surface_force, "[N]")
       .def_ro("damping", &ForceLaw::damping, "[N s/m]")
@@ -138,6 +150,9 @@ void bind_law(nb::module_& m) {
       .def_ro("tilt", &ForceLaw::tilt, "[rad]")
       .def_prop_ro("hard", [](const ForceLaw& law) { return law.hold == HoldKind::hard; })
       .def_ro("watched", &ForceLaw::watched, "[m]")
+      .def_prop_ro(
+          "given_at",
+          [](const ForceLaw& law) { return law.given_at == GivenAt::part ? "part" : "tool"; })
       .def_prop_ro("stiffness", &ForceLaw::stiffness, "[N/m] largest slope of the spring.")
       .def("__call__", &ForceLaw::operator(), nb::arg("distance"), nb::arg("rate") = 0.0,
            "The force [N] at a signed distance [m] that changes at a rate [m/s].")

@@ -14,6 +14,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "description.hpp"
+#include "interpreter.hpp"
 
 namespace repel::python {
 namespace {
@@ -21,24 +23,29 @@ namespace {
 /// A world with the evaluation of its pairs.
 class OwnWorld {
  public:
-  explicit OwnWorld(const std::string& measure) : world_(Capacities{}, measure_of(measure)) {}
+  OwnWorld(const std::string& measure, nb::handle limits)
+      : world_(capacities_of(limits), measure_of(measure)) {}
 
   int add_body(const std::string& name, nb::handle X_WB) {
+    const InUse in_use(is_in_use_);
     require_open();
     return world_.add_body(name, X_WB.is_none() ? Pose::Identity() : pose_of(X_WB, "X_WB")).index;
   }
   int add_part(int body, const std::string& name, const Shape& shape, nb::handle X_BP) {
+    const InUse in_use(is_in_use_);
     require_open();
     return world_
         .add_part({body}, name, shape, X_BP.is_none() ? Pose::Identity() : pose_of(X_BP, "X_BP"))
         .index;
   }
   int add_pair(int a, int b, const ForceLaw& law) {
+    const InUse in_use(is_in_use_);
     require_open();
     return world_.add_pair({a}, {b}, law).index;
   }
 
   void place(int body, nb::handle X_WB, nb::handle V_WB) {
+    const InUse in_use(is_in_use_);
     checked("body", body, 1, world_.body_count() - 1, "");
     const Pose X = pose_of(X_WB, "X_WB");
     const Twist V = V_WB.is_none() ? Twist{} : twist_of(V_WB, "V_WB");
@@ -46,20 +53,8 @@ class OwnWorld {
     is_fresh_ = false;
   }
 
-  const Coprocessor& evaluated() {
-    if (coprocessor_ == nullptr) {
-      coprocessor_ = std::make_unique<Coprocessor>(world_, CoprocessorOptions{});
-    }
-    if (!is_fresh_) {
-      const nb::gil_scoped_release others_go_on;
-      ++world_.motion().tick;
-      forces_ = &coprocessor_->exchange();
-      is_fresh_ = true;
-    }
-    return *coprocessor_;
-  }
-
   nb::list near() {
+    const InUse in_use(is_in_use_);
     // Nothing may be thrown while the coprocessor goes through them, as Python does without memory.
     std::size_t count = 0;
     evaluated().for_each_near([&count](const NearPair&) { ++count; });
@@ -81,6 +76,7 @@ class OwnWorld {
   }
 
   nb::object force_on(int body) {
+    const InUse in_use(is_in_use_);
     checked("body", body, 0, world_.body_count() - 1, "");
     (void)evaluated();
     return to_array(forces_->on_body[static_cast<std::size_t>(body)]);
@@ -89,6 +85,19 @@ class OwnWorld {
   [[nodiscard]] const World& world() const { return world_; }
 
  private:
+  const Coprocessor& evaluated() {
+    if (coprocessor_ == nullptr) {
+      coprocessor_ = std::make_unique<Coprocessor>(world_, CoprocessorOptions{});
+    }
+    if (!is_fresh_) {
+      const Released others_go_on;
+      ++world_.motion().tick;
+      forces_ = &coprocessor_->exchange();
+      is_fresh_ = true;
+    }
+    return *coprocessor_;
+  }
+
   void require_open() const {
     if (coprocessor_ != nullptr) {
       throw SetupError("the world has been evaluated: bodies, parts and pairs are added before");
@@ -99,6 +108,7 @@ class OwnWorld {
   std::unique_ptr<Coprocessor> coprocessor_;  ///< from the first evaluation on
   const PairForces* forces_ = nullptr;
   bool is_fresh_ = false;  ///< the forces are those of where the bodies are
+  bool is_in_use_ = false;
 };
 
 }  // namespace
@@ -107,8 +117,12 @@ void bind_world(nb::module_& m) {
   nb::class_<OwnWorld>(m, "World",
                        "Bodies with convex parts, and pairs of parts to be kept apart. Bodies, "
                        "parts and pairs are numbers, counted from 0; body 0 is the fixed one.")
-      .def(nb::init<const std::string&>(), nb::kw_only(), nb::arg("measure") = "deepest_point",
-           "measure of overlaps: deepest_point, reduction or exact.")
+      .def(nb::init<const std::string&, nb::handle>(), nb::kw_only(),
+           nb::arg("measure") = "deepest_point", nb::arg("limits") = nb::none(),
+           nb::sig("def __init__(self, *, measure: str = 'deepest_point', limits: repel.Capacities "
+                   "| None = None) -> None"),
+           "measure of overlaps: deepest_point, reduction or exact. limits: how much it can hold; "
+           "none: Capacities().")
       .def("add_body", &OwnWorld::add_body, nb::arg("name"), nb::arg("X_WB") = nb::none(),
            "Adds a body that can be placed, at the pose X_WB [m]. Returns its number.")
       .def("add_part", &OwnWorld::add_part, nb::arg("body"), nb::arg("name"), nb::arg("shape"),

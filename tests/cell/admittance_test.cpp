@@ -146,6 +146,47 @@ TEST(Admittance, TheStiffestWallOfTheCheckIsHeldAndABitMoreIsRefused) {
   }
 }
 
+// Its 50 N s/m were taken for a choice, and refused with a number that was refused again.
+TEST(Admittance, WallWithTheDefaultLawGetsTheDampingThatItNeeds) {
+  for (const double rate_hz : {125.0, 400.0, 500.0, 1000.0, 999.9}) {
+    Trial trial{.rate_hz = rate_hz};
+    CellDescription description = trial.description();
+    description.obstacles[0].law = {};
+    const Cell cell(std::move(description));
+    const ForceLaw& law = cell.description().obstacles[0].law;
+    const double needed = (0.5 * trial.period() + 2.0 * trial.options.response) * law.stiffness();
+    EXPECT_NEAR(law.damping, needed, 1e-6 * needed);
+    EXPECT_TRUE(cell.warnings().empty()) << cell.warnings().front();
+  }
+}
+
+TEST(Admittance, AdviceForAWallThatIsTooStiffCanBeFollowedAndNoRateIsAdvisedThatWouldNotDo) {
+  Trial trial{.rate_hz = 500.0};
+  const auto refusal = [&](double damping) {
+    CellDescription description = trial.description();
+    description.obstacles[0].law = {
+        .range = 0.02, .surface_force = 100.0, .damping = damping, .damping_is_meant = true};
+    try {
+      const Cell cell(std::move(description));
+      return cell.warnings().empty() ? std::string() : cell.warnings().front();
+    } catch (const SetupError& error) {
+      return std::string(error.what());
+    }
+  };
+  for (const double damping : {5.0, 50.0, 599.0, 605.0}) {
+    const std::string said = refusal(damping);
+    const std::string words = "this wall needs ";
+    ASSERT_NE(said.find(words), std::string::npos) << said;
+    const double advised = std::stod(said.substr(said.find(words) + words.size()));
+    EXPECT_EQ(advised, 610.0) << said;
+    EXPECT_EQ(refusal(advised), "");
+    // 60 ms of the response alone need 600 N s/m.
+    EXPECT_EQ(said.find("no rate would do") < said.size(), damping < 600.0) << said;
+    EXPECT_EQ(said.find("answers within 29.45 ms") < said.size(), damping == 599.0) << said;
+    EXPECT_EQ(said.find("a rate of at least 1000 Hz") < said.size(), damping == 605.0) << said;
+  }
+}
+
 TEST(Admittance, AnArmThatIsBlockedDoesNotJumpWhenItIsFree) {
   for (const bool by_position : {false, true}) {
     Trial trial;

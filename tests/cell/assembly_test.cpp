@@ -153,7 +153,7 @@ TEST(CellRefuses, AnArmThatIsNotDescribed) {
       [](CellDescription& cell) {
         cell.arms[0].start = {0.0, 11.0, 0.0};
       },
-      {"11 for y; allowed: -10 to 10"});
+      {"11 m for y; allowed: -10 to 10 m"});
   expect_refused([](CellDescription& cell) { cell.arms[0].parts[0].link = 3; },
                  {"link of part 'ball' is 3", "0 to 2"});
 }

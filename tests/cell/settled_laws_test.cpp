@@ -44,8 +44,22 @@ TEST(SettledLaws, DampingIsRaisedForTheTickThatAnswersAreOlderBeside) {
   cell.coprocessor.mode = CoprocessorMode::beside;
   cell.coprocessor.threads = 1;
   EXPECT_EQ(wall_delay(cell), 1.0);
-  EXPECT_EQ(settle_laws(cell).size(), 2U) << "and that of the arm";
+  EXPECT_EQ(settle_laws(cell).size(), 1U) << "that of the arm is open";
   EXPECT_GT(law.damping, given);
+  EXPECT_GT(cell.arms[0].law.damping, ForceLaw::usual_damping);
+}
+
+// Who follows the advice of a check is not told the same number again, as one for threads beside
+// that are none.
+TEST(SettledLaws, DampingThatIsWhatTheWallNeedsIsRaisedWithoutAWord) {
+  CellDescription cell = test::sliders();
+  ForceLaw& law = cell.obstacles[0].law;
+  for (const double share : {1.0 - 1e-10, 1.0}) {
+    law.damping = share * wall_ticks(0.0) / 400.0 * law.stiffness();
+    const double given = law.damping;
+    EXPECT_TRUE(settle_laws(cell).empty());
+    EXPECT_GT(law.damping, given) << "for what scaling rounds";
+  }
 }
 
 }  // namespace settled_laws_test

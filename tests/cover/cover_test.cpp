@@ -180,6 +180,22 @@ TEST(Cover, RefusesOptionsOutOfTheirRange) {
   EXPECT_THROW((void)cover_of(mesh, {.overlap = std::nan("")}), SetupError);
 }
 
+// Corners 1e20 m away, as a damaged file has them, ended the program.
+TEST(Cover, RefusesMeshesThatNoShapeCanBeOf) {
+  TriangleMesh mesh = test::box_mesh({1, 1, 1});
+  const Vec3 corner = mesh.vertices[0];
+  for (const double far : {1e20, -1e300, std::nan("")}) {
+    mesh.vertices[0].x() = far;
+    EXPECT_THROW((void)cover_of(mesh, {.parts = 1}), SetupError) << far;
+    EXPECT_THROW((void)checked_cover(mesh, {}, {}), SetupError) << far;
+  }
+  mesh.vertices[0] = corner;
+  for (const int vertex : {-1, static_cast<int>(mesh.vertices.size())}) {
+    mesh.triangles[0][1] = vertex;
+    EXPECT_THROW((void)cover_of(mesh, {.parts = 1}), SetupError) << vertex;
+  }
+}
+
 /// The force [N] on a ball by the law of a wall between it and each part.
 Vec3 force_on(const Shape& ball, const Vec3& centre, const std::vector<Shape>& parts,
               const ForceLaw& law) {

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <devices/fake_clock.hpp>
 #include <devices/fake_haply.hpp>
@@ -262,6 +264,41 @@ TEST(HaplyInverse, AMessageThatIsWrongIsAFaultAndTheForceIsTakenBack) {
   handle = {};
   handle.id = "OTHER";
   expect_fault_after(state_update(handle).dump(), "changed for another");
+}
+
+// The tool once followed it at 10 m/s.
+TEST(HaplyInverse, AVelocityThatContradictsThePositionIsNotFollowed) {
+  for (const double told : {10.0, 2.0, 1.0, -1.0}) {
+    SCOPED_TRACE(told);
+    FakeHaply service;
+    HaplyInverse device(options_for(service));
+    (void)next(device);
+    service.set([&](FakeHandle& h) { h.velocity = Vec3(told, 0, 0); });
+    double followed = 0.0;  // [m]
+    Measured m;
+    for (int i = 0; i < 100 && m.operating_state != OperatingState::fault; ++i) {
+      m = next(device);
+      followed += 0.001 * m.measured_cv.linear.norm();
+    }
+    expect_fault(m, told > 3.0 ? "faster than a hand" : "contradicts its position");
+    EXPECT_LT(followed, 0.03);
+  }
+}
+
+TEST(HaplyInverse, AVelocityThatLagsBehindAQuickHandIsFollowed) {
+  FakeHaply service;
+  HaplyInverse device(options_for(service));
+  (void)next(device);
+  const Vec3 place = FakeHandle{}.position;
+  for (int i = 0; i < 2000; ++i) {
+    // To and fro by 0.1 m twice a second, at up to 1.3 m/s, told 10 ms late.
+    const double t = 0.001 * i, turn = 2.0 * std::numbers::pi * 2.0;
+    service.set([&](FakeHandle& h) {
+      h.position = place + Vec3(0, 0, 0.1 * (1.0 - std::cos(turn * t)));
+      h.velocity = Vec3(0, 0, t < 0.01 ? 0.0 : 0.1 * turn * std::sin(turn * (t - 0.01)));
+    });
+    ASSERT_EQ(next(device).operating_state, OperatingState::enabled) << t << " s";
+  }
 }
 
 TEST(HaplyInverse, AMessageThatIsHugeEndsTheConnection) {

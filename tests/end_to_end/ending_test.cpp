@@ -18,13 +18,6 @@
 namespace repel::test {
 namespace ending_test {
 
-/// Runs a shell command in which $T is the program; its stdin is empty.
-Ending shell(const std::string& line) {
-  const Folder folder;
-  const std::string script = folder.with("run.sh", "T=" + quoted(REPEL_TELEOP) + "\n" + line);
-  return run_program("/bin/bash", quoted(script));
-}
-
 /// The names in a folder, sorted.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
@@ -36,6 +29,11 @@ std::vector<std::string> names_in(const std::string& folder) {
 }
 
 using Names = std::vector<std::string>;
+
+/// Those of a run by the clock; a machine that stands still skips some.
+int ticks_due(const nlohmann::json& report) {
+  return report.at("ticks").get<int>() + report.at("skipped_ticks").get<int>();
+}
 
 /// Limits the file size in KiB; a longer file fails as on a full disk, but with "File too large".
 std::string within(int kilobytes) {
@@ -91,13 +89,13 @@ TEST(Ending, FullDiskIsSaidWhileItRunsAndTheReportComesToAnotherDisk) {
   for (const std::string name : {"run.csv", "run.mcap"}) {
     // In real time: output must arrive before the run is over.
     const Ending ending =
-        shell("$T anderson_4x8 --seconds 4 --log " + quoted(disk / name) + " --report " +
-              quoted(folder / "report.json") + " 2>" + quoted(folder / "said") +
-              " & sleep 3; grep -c 'No space left' " + quoted(folder / "said") + "; wait $!");
+        shell("$T anderson_4x8 --seconds 600 --log " + quoted(disk / name) + " --report " +
+              quoted(folder / "report.json") + " 2>" + quoted(folder / "said") + " & says " +
+              quoted(folder / "said") + " 'No space left' && echo said; kill $!; wait $!");
     EXPECT_EQ(ending.status, 4) << ending;
-    EXPECT_EQ(ending.out.substr(0, 2), "1\n") << ending << text_of(folder / "said");
+    EXPECT_EQ(ending.out.substr(0, 5), "said\n") << ending << text_of(folder / "said");
     const auto report = report_of(folder / "report.json");
-    EXPECT_EQ(report.at("ticks").get<int>() + report.at("skipped_ticks").get<int>(), 1600);
+    EXPECT_EQ(report.at("interrupted"), true);
     EXPECT_NE(report.at("log_trouble").get<std::string>().find("No space left"), std::string::npos);
     fs::remove(disk / (name + ".part"));
   }
@@ -139,8 +137,9 @@ TEST(Ending, ReaderThatLeavesEndsNothing) {
   const Ending ending = shell("set -o pipefail\n$T plates --seconds 1.5" + files +
                               " 2> >(head -c 1 >/dev/null) | sleep 0.1\n");
   EXPECT_EQ(ending.status, 0) << ending;
-  EXPECT_EQ(report_of(folder / "report.json").at("ticks"), 600);
-  EXPECT_EQ(columns_of(folder / "run.csv").at("tick").size(), 600U);
+  const auto report = report_of(folder / "report.json");
+  EXPECT_GE(ticks_due(report), 600);
+  EXPECT_EQ(columns_of(folder / "run.csv").at("tick").size(), report.at("ticks"));
 }
 
 /// Expects a log whose forces fade out at its end, within half a second and not abruptly.
@@ -160,13 +159,14 @@ TEST(Ending, EverySignalFadesTheForcesAndWritesTheReport) {
   for (const std::string signal : {"INT", "TERM", "HUP"}) {
     const Folder folder;
     const Ending ending =
-        shell("$T anderson_4x8 --seconds 60 --log " + quoted(folder / "run.csv") + " --report " +
-              quoted(folder / "report.json") + " & sleep 2.5; kill -" + signal + " $!; wait $!");
+        shell("$T anderson_4x8 --fast --seconds 6000 --log " + quoted(folder / "run.csv") +
+              " --report " + quoted(folder / "report.json") + " & holds " +
+              quoted(folder / "run.csv.part") + " 100000; kill -" + signal + " $!; wait $!");
     EXPECT_EQ(ending.status, 0) << signal << ending;
     EXPECT_TRUE(ending.says("interrupted")) << signal << ending;
     const auto report = report_of(folder / "report.json");
     EXPECT_EQ(report.at("interrupted"), true);
-    EXPECT_LT(report.at("ticks"), 24000);
+    EXPECT_LT(report.at("ticks"), 2400000);
     SCOPED_TRACE(signal);
     expect_faded(folder / "run.csv");
     EXPECT_EQ(names_in(folder / ""), (Names{"report.json", "run.csv"}));
@@ -177,8 +177,9 @@ TEST(Ending, EverySignalFadesTheForcesAndWritesTheReport) {
 TEST(Ending, RunThatFadedReplaysBitForBit) {
   for (const std::string clock : {"", " --fast"}) {
     const Folder folder;
-    const Ending ending = shell("timeout 3 $T two_arms --seconds 100000" + clock + " --log " +
-                                quoted(folder / "run.mcap") + "\n[ $? = 124 ]");
+    const Ending ending =
+        shell("$T two_arms --seconds 100000" + clock + " --log " + quoted(folder / "run.mcap") +
+              " & holds " + quoted(folder / "run.mcap.part") + " 400000; kill $!; wait $!");
     ASSERT_EQ(ending.status, 0) << ending;
     ASSERT_EQ(names_in(folder / ""), Names{"run.mcap"}) << ending;
     const Ending replay = teleop("--replay " + quoted(folder / "run.mcap") + " --report " +
@@ -187,6 +188,7 @@ TEST(Ending, RunThatFadedReplaysBitForBit) {
     const auto report = report_of(folder / "report.json");
     EXPECT_GE(report.at("replay").at("ticks"), 100);
     EXPECT_EQ(report.at("replay").at("same"), report.at("replay").at("ticks"));
+    if (clock.empty()) continue;  // a machine that stands still may have no tick of the end
     EXPECT_GE(report.at("status_ticks").at("silent_device"), 20) << "the hands had let go";
   }
 }
@@ -210,24 +212,29 @@ TEST(Ending, SecondSignalEndsAtOnceUnlessItIsTheSameWish) {
 
 TEST(Ending, HangUpThatIsIgnoredStaysSo) {
   const Folder folder;
-  const Ending ending = shell("nohup $T plates --seconds 2 --report " +
-                              quoted(folder / "report.json") + " & sleep 1; kill -HUP $!; wait $!");
+  const Ending ending =
+      shell("nohup $T plates --seconds 2 --report " + quoted(folder / "report.json") + " --log " +
+            quoted(folder / "run.csv") + " & holds " + quoted(folder / "run.csv.part") +
+            " 1; kill -HUP $!; wait $!");
   EXPECT_EQ(ending.status, 0) << ending;
-  EXPECT_EQ(report_of(folder / "report.json").at("ticks"), 800);
+  EXPECT_GE(ticks_due(report_of(folder / "report.json")), 800);
 }
 
 TEST(Ending, KillLeavesWhatStoodThereAndAPartThatReplays) {
   const Folder folder;
   const std::string log = folder / "run.mcap";
-  const std::string kill = "timeout -s KILL 2.5 $T plates --log " + quoted(log);
-  ASSERT_EQ(shell(kill).status, 137);
+  const auto kill_with = [&](const std::string& part) {
+    return shell("$T plates --log " + quoted(log) + " & holds " + quoted(folder / part) +
+                 " 100000; kill -KILL $!; wait $!");
+  };
+  ASSERT_EQ(kill_with("run.mcap.part").status, 137);
   EXPECT_EQ(names_in(folder / ""), Names{"run.mcap.part"});
   const Ending absent = teleop("--replay " + quoted(log));
   EXPECT_EQ(absent.status, 1) << absent;
   EXPECT_TRUE(absent.says("run.mcap.part")) << "where it is\n" << absent;
   EXPECT_EQ(teleop("--replay " + quoted(log + ".part")).status, 0);
   const std::string first = text_of(log + ".part");
-  ASSERT_EQ(shell(kill).status, 137);
+  ASSERT_EQ(kill_with("run.mcap.2.part").status, 137);
   EXPECT_TRUE(text_of(log + ".part") == first) << "nor is an earlier one lost";
   EXPECT_EQ(names_in(folder / ""), (Names{"run.mcap.2.part", "run.mcap.part"}));
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Virtual fixtures on arms of six and more joints, as a user has them from a scene.
+#include <repel/scene/scene.hpp>
+
 #include "end_to_end/teleop.hpp"
 
 namespace repel::test {

@@ -9,6 +9,7 @@
 
 #include <devices/fake_haply.hpp>
 #include <end_to_end/teleop.hpp>
+#include <end_to_end/undisturbed.hpp>
 
 namespace repel::test {
 namespace haply_test {
@@ -80,32 +81,38 @@ std::string scene_text(const std::string& grip) {
 TEST(Haply, AHandLeadsTheToolIntoAWallAndFeelsIt) {
   const Folder folder;
   const std::string scene = folder.with("led.yaml", scene_text("hand_damping: 0.8 N s/m"));
-  devices::FakeHaply service;
   Hand hand;
-  service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
-  const Ending ending = teleop(
-      quoted(scene) + " --seconds 7.5 --backend ideal --device haply:" + service.url() + " --log " +
-      quoted(folder / "log.csv") + " --report " + quoted(folder / "report.json"));
-  ASSERT_EQ(ending.status, 0) << ending;
-  const json report = report_of(folder / "report.json");
-  const Columns log = columns_of(folder / "log.csv");
+  Columns log;
+  const std::vector<json> reports = undisturbed([&]() -> std::vector<json> {
+    hand = Hand();
+    devices::FakeHaply service;
+    service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
+    const Ending ending = teleop(
+        quoted(scene) + " --seconds 7.5 --backend ideal --device haply:" + service.url() +
+        " --log " + quoted(folder / "log.csv") + " --report " + quoted(folder / "report.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    EXPECT_TRUE(service.force().isZero(0.0)) << "it is let go at the end";
+    EXPECT_LE(hand.most_, 3.0 + 1e-4);
+    log = columns_of(folder / "log.csv");
+    const json report = report_of(folder / "report.json");
+    EXPECT_EQ(report.at("allocations_in_tick"), 0);
+    for (const json& module : report.at("modules")) {
+      if (!module.at("claims_passive").get<bool>()) continue;
+      EXPECT_LE(module.at("deficit"), 1e-9) << module;
+    }
+    return {report};
+  });
+  if (reports.empty()) GTEST_SKIP() << stood_still;
   const auto& z = log.at("z_m");
   const double sunk = z.front() - *std::min_element(z.begin(), z.end());
   // Without the table it would sink twice as far as the hand.
   EXPECT_LT(hand.lowest_, -0.01);
   EXPECT_GT(sunk, 0.01);
   // Hand, grip and wall come to rest at 2.011 N; less if the machine stood still on the way there.
-  EXPECT_NEAR(report.at("peak_force_n"), 2.01, 0.1);
+  EXPECT_NEAR(reports[0].at("peak_force_n"), 2.01, 0.1);
   EXPECT_GT(hand.most_up_, 1.0);
   EXPECT_LT(hand.most_at_first_, 0.3);
-  EXPECT_LE(hand.most_, 3.0 + 1e-4);
   EXPECT_NEAR(z.back(), z.front(), 0.5 * sunk) << "it comes back with the hand";
-  EXPECT_TRUE(service.force().isZero(0.0)) << "and is let go at the end";
-  EXPECT_EQ(report.at("allocations_in_tick"), 0);
-  for (const json& module : report.at("modules")) {
-    if (!module.at("claims_passive").get<bool>()) continue;
-    EXPECT_LE(module.at("deficit"), 1e-9) << module;
-  }
 }
 
 // The handle is at the station, table and arm at the site, 20 ms away.
@@ -124,7 +131,9 @@ TEST(Haply, AHandFeelsATableInAnotherProgram) {
           "  - {module: puma_kin}\n"
           "  - {module: limits}\n"
           "  - {module: puma_joints}\n");
-  const auto run = [&](Hand& hand) {
+  Hand hand;
+  const std::vector<json> sides = undisturbed([&]() -> std::vector<json> {
+    hand = Hand();
     devices::FakeHaply service;
     service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
     const Ending ending = teleop(
@@ -132,29 +141,23 @@ TEST(Haply, AHandFeelsATableInAnotherProgram) {
         " --link udp:127.0.0.1:" + std::to_string(22000 + getpid() % 20000) + " --report " +
         quoted(folder / "report.json"));
     EXPECT_EQ(ending.status, 0) << ending;
-    EXPECT_TRUE(service.force().isZero(0.0)) << "and is let go at the end";
-    return report_of(folder / "report.json");
-  };
-  // A machine that stood still for a second while the hand was down has the tool come back before
-  // it touches: such a run says nothing.
-  Hand hand;
-  json site = run(hand);
-  for (int again = 0; again < 2 && site.at("skipped_ticks") > 0; ++again) {
-    hand = Hand();
-    site = run(hand);
-  }
-  const json& station = site.at("station");
-  SCOPED_TRACE(site.dump());
-  EXPECT_GT(site.at("peak_force_n"), 1.0);
-  EXPECT_GT(station.at("peak_hand_force_n"), 1.0);
-  EXPECT_GT(hand.most_up_, 0.5);
-  EXPECT_LE(hand.most_, 3.0 + 1e-4);
-  for (const json& side : {site, station}) {
-    EXPECT_EQ(side.at("allocations_in_tick"), 0);
-    for (const json& module : side.at("modules")) {
-      EXPECT_EQ(module.at("passive"), module.at("claims_passive")) << module;
+    EXPECT_TRUE(service.force().isZero(0.0)) << "it is let go at the end";
+    EXPECT_LE(hand.most_, 3.0 + 1e-4);
+    const json site = report_of(folder / "report.json");
+    const json& station = site.at("station");
+    for (const json& side : {site, station}) {
+      EXPECT_EQ(side.at("allocations_in_tick"), 0);
+      for (const json& module : side.at("modules")) {
+        EXPECT_EQ(module.at("passive"), module.at("claims_passive")) << module;
+      }
     }
-  }
+    return {site, station};
+  });
+  if (sides.empty()) GTEST_SKIP() << stood_still;
+  SCOPED_TRACE(sides[0].dump());
+  EXPECT_GT(sides[0].at("peak_force_n"), 1.0);
+  EXPECT_GT(sides[1].at("peak_hand_force_n"), 1.0);
+  EXPECT_GT(hand.most_up_, 0.5);
 }
 
 TEST(Haply, AGripThatNoDeviceCanKeepPassiveIsRefused) {

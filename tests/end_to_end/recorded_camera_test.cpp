@@ -139,6 +139,43 @@ TEST(RecordedCamera, LosesImagesThatAreDamaged) {
   EXPECT_GT(camera.at("images"), 45);
 }
 
+TEST(RecordedCamera, UsesTheLastOfTheImagesOfATickAndCountsTheOthers) {
+  const Recording recording;
+  for (int i = 0; i < count; ++i) {
+    fs::rename(recording.name(i), recording.depth() + "/" + std::to_string(1e-3 * i) + ".png");
+  }
+  const json camera = run_of(recorded(recording.path(), "  repeat: yes\n"), 1.0).at("camera");
+  const int used = camera.at("images");
+  EXPECT_GT(used, 350) << camera.dump(1);
+  EXPECT_NEAR(used + camera.at("images_lost").get<int>(), 1000, 40) << "those of its latency";
+}
+
+// Of images 1e-300 s apart that repeat, no tick would ever have taken the last.
+TEST(RecordedCamera, IsRefusedIfItsImagesAreFasterThanThoseOfACamera) {
+  const Recording recording;
+  const auto refusal = [&](const std::string& first, const std::string& second) {
+    const Folder pair;
+    fs::create_directory(pair / "depth");
+    fs::copy(recording.folder() / "camera.yaml", pair / "camera.yaml");
+    fs::copy(recording.name(0), pair / ("depth/" + first + ".png"));
+    fs::copy(recording.name(1), pair / ("depth/" + second + ".png"));
+    try {
+      (void)scene::parse(recorded(pair / ".", "  repeat: yes\n"),
+                         REPEL_SOURCE "/scenes/still.yaml");
+    } catch (const SetupError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const auto says = [](const std::string& text, const char* what) {
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  says(refusal("1e-300", "2e-300"), "has 1e+300 images in a second; allowed: up to 1000");
+  says(refusal("0.000000001", "0.000000002"), "has 1e+09 images in a second");
+  says(refusal("0", "1e300"), "is of 1e+300 s; allowed: -1e+10 to 1e+10 s");
+  EXPECT_EQ(refusal("1305031102.175", "1305031102.176"), "accepted");
+}
+
 TEST(RecordedCamera, IsRefusedWithFileAndValue) {
   const Recording recording;
   const auto says = [&](const std::string& what, const std::string& more = "") {

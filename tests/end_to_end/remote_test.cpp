@@ -398,7 +398,8 @@ TEST(Remote, EveryNumberOfTheSiteArrives) {
     for (double& x : *v) x = next += 0.125;
   }
   for (double& q : told.q) q = next += 0.125;
-  for (double* x : {&told.gain, &told.pairs.nearest, &told.time}) *x = next += 0.125;
+  for (double* x : {&told.pairs.nearest, &told.time}) *x = next += 0.125;
+  told.gain = 0.625;
   told.status = status::saturated | status::hold_lost;
   const Pose turned(Eigen::Translation3d(1.0, 2.0, 3.0) *
                     Eigen::AngleAxisd(2.5, Vec3(1.0, 2.0, -3.0).normalized()));

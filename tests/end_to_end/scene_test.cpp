@@ -213,7 +213,7 @@ TEST(Scene, OperatorThatSendsNoNumbersIsSaidAndForcesStayFinite) {
   const Ending ending =
       teleop(quoted(scene) + " --fast --seconds 2 --log " + quoted(folder / "log.csv") +
              " --report " + quoted(folder / "report.json"));
-  ASSERT_EQ(ending.status, 0) << ending;
+  ASSERT_EQ(ending.status, 5) << "a fifth of the ticks has a fault " << ending;
   EXPECT_TRUE(ending.says("bad_command")) << ending;
   EXPECT_EQ(report_of(folder / "report.json").at("status_ticks").at("bad_command"), 160);
   const Columns log = columns_of(folder / "log.csv");
@@ -247,10 +247,12 @@ TEST(Scene, TenThousandPairsInFiftyMicrosecondsRunByTheClockAndAreReportedHonest
   const std::string scene = folder.with("crowd.yaml", crowd());
   const Ending ending = teleop(quoted(scene) + " --seconds 1 --log " + quoted(folder / "log.csv") +
                                " --report " + quoted(folder / "report.json"));
-  ASSERT_EQ(ending.status, 0) << ending;
+  // 5: on a slow machine, results expire in many of its ticks.
+  ASSERT_TRUE(ending.status == 0 || ending.status == 5) << ending;
   const auto report = report_of(folder / "report.json");
   // A slow machine skips ticks, and says so.
-  EXPECT_EQ(report.at("ticks").get<int>() + report.at("skipped_ticks").get<int>(), 400);
+  EXPECT_GE(report.at("ticks").get<int>() + report.at("skipped_ticks").get<int>(), 400);
+  EXPECT_LE(report.at("ticks"), 400);
   EXPECT_EQ(report.at("pairs"), 10000);
   EXPECT_GT(report.at("pairs_stale"), 0);
   EXPECT_GT(report.at("oldest_age_ticks"), 0);

@@ -186,6 +186,58 @@ TEST(RecordedScene, EverySchemaIsOneThatViewersRead) {
   }
 }
 
+/// Where a value is not as its schema says; empty: nowhere.
+std::string disagreement(const nlohmann::json& value, const nlohmann::json& schema,
+                         const std::string& at) {
+  const std::string type = schema.at("type");
+  const bool fits = type == "object"    ? value.is_object()
+                    : type == "array"   ? value.is_array()
+                    : type == "integer" ? value.is_number_integer()
+                    : type == "number"  ? value.is_number()
+                    : type == "boolean" ? value.is_boolean()
+                                        : value.is_string();
+  if (!fits) return at + " is " + value.dump() + ", not of the type " + type;
+  if (type == "array") {
+    for (const nlohmann::json& item : value) {
+      const std::string where = disagreement(item, schema.at("items"), at + "[]");
+      if (!where.empty()) return where;
+    }
+  }
+  if (type != "object") return {};
+  for (const auto& [name, item] : value.items()) {
+    const bool is_named = schema.at("properties").contains(name);
+    if (!is_named && !schema.contains("additionalProperties")) return at + "/" + name + " is new";
+    const nlohmann::json& of_item =
+        is_named ? schema.at("properties").at(name) : schema.at("additionalProperties");
+    const std::string where = disagreement(item, of_item, at + "/" + name);
+    if (!where.empty()) return where;
+  }
+  return {};
+}
+
+// Where nothing was near, `nearest_m` was null, and its schema says that it is a number.
+TEST(RecordedScene, EveryMessageIsAsItsSchemaSays) {
+  for (const char* const run : {"anderson_4x8 --fast --seconds 6", "empty --fast --seconds 1",
+                                "six_axes --fast --seconds 4"}) {
+    const Folder folder;
+    record(run, folder / "run.mcap");
+    record::McapReader reader(folder / "run.mcap");
+    std::map<std::uint16_t, nlohmann::json> schemas;
+    for (const auto& [id, channel] : reader.channels()) {
+      schemas[id] = nlohmann::json::parse(reader.schemas().at(channel.schema).data);
+    }
+    record::McapMessage message;
+    std::size_t without_pair = 0;
+    while (reader.next(message)) {
+      const nlohmann::json value = nlohmann::json::parse(message.data);
+      const std::string& topic = reader.channels().at(message.channel).topic;
+      ASSERT_EQ(disagreement(value, schemas.at(message.channel), topic), "") << run;
+      without_pair += topic == "/separations" && !value.contains("nearest_m") ? 1U : 0U;
+    }
+    EXPECT_GT(without_pair, 0U) << run;
+  }
+}
+
 // The bodies are written again when one comes or goes.
 TEST(RecordedScene, PartsThatComeAndGoDoSoInTheRecording) {
   const Folder folder;

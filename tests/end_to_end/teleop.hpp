@@ -19,6 +19,19 @@ inline Ending teleop(const std::string& arguments) {
   return run_program(REPEL_TELEOP, arguments);
 }
 
+/// Runs shell commands in which $T is the program; its stdin is empty. `holds FILE BYTES` waits
+/// until that file has so many, `says FILE WORDS` until it has these; both for a minute at most.
+inline Ending shell(const std::string& line) {
+  const Folder folder;
+  const std::string script = folder.with("run.sh", "T=" + quoted(REPEL_TELEOP) + R"sh(
+within_a_minute() { for i in {1..1200}; do "$@" && return; sleep 0.05; done; return 1; }
+has() { [ "$(stat -c %s "$1" 2>/dev/null || echo 0)" -ge "$2" ]; }
+holds() { within_a_minute has "$1" "$2"; }
+says() { within_a_minute grep -qs "$2" "$1"; }
+)sh" + line);
+  return run_program("/bin/bash", quoted(script));
+}
+
 /// A CSV file by column.
 using Columns = std::map<std::string, std::vector<double>>;
 

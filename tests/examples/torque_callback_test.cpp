@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -26,6 +28,37 @@ CellDescription wall_in_front() {
   cell.obstacles.push_back({"wall", Shape::box({0.1, 0.5, 0.5}), X_WP});
   return cell;
 }
+
+// libfranka has a MotionFinished for each kind of command. Seven bare numbers fit three of them.
+template <class Command>
+concept IsFinished = requires(const Command& command) {
+  { franka::MotionFinished(command) } -> std::same_as<Command>;
+};
+static_assert(IsFinished<franka::Torques> && IsFinished<franka::JointPositions> &&
+              IsFinished<franka::JointVelocities> && IsFinished<franka::CartesianPose> &&
+              IsFinished<franka::CartesianVelocities>);
+template <class Numbers>
+concept IsTakenForACommand = requires(const Numbers& numbers) {
+  franka::MotionFinished(numbers);
+};
+static_assert(!IsTakenForACommand<std::array<double, 7>>,
+              "the stand-in takes what libfranka refuses");
+
+template <class Command>
+using Leads = Command (*)(const franka::RobotState&, franka::Duration);
+template <class... Callbacks>
+concept IsControlled = requires(franka::Robot& robot, Callbacks... callbacks) {
+  robot.control(callbacks..., false, franka::kMaxCutoffFrequency);
+};
+static_assert(IsControlled<Leads<franka::Torques>> &&
+              IsControlled<Leads<franka::Torques>, Leads<franka::JointPositions>> &&
+              IsControlled<Leads<franka::Torques>, Leads<franka::JointVelocities>> &&
+              IsControlled<Leads<franka::Torques>, Leads<franka::CartesianPose>> &&
+              IsControlled<Leads<franka::Torques>, Leads<franka::CartesianVelocities>> &&
+              IsControlled<Leads<franka::JointPositions>, franka::ControllerMode> &&
+              IsControlled<Leads<franka::JointVelocities>, franka::ControllerMode> &&
+              IsControlled<Leads<franka::CartesianPose>, franka::ControllerMode> &&
+              IsControlled<Leads<franka::CartesianVelocities>, franka::ControllerMode>);
 
 /// A robot whose hand is led towards the wall by 0.1 m/s.
 class TorqueCallback : public testing::Test {

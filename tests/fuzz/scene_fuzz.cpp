@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arbitrary text as a scene: read, or refused by a SetupError that names the file; its networks are
-// built or refused likewise. Seeds are the scenes of the repository, from whose folder it is run.
+// Arbitrary text as a scene, as the camera.yaml of recorded images, or as a list of convex parts:
+// read, or refused by a SetupError that names the file; the networks of a scene are built or
+// refused likewise. Seeds are the scenes of the repository, from whose folder it is run. The role
+// of a text is chosen by its contents.
 #include <repel/scene/scene.hpp>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
+#include <string_view>
 
+#include <end_to_end/folder.hpp>
 #include <fuzz/bytes.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/scene/build_network.hpp>
+#include <repel/scene/part_list.hpp>
 
 namespace repel::scene {
 namespace {
@@ -44,16 +50,66 @@ void check(const Scene& scene) {
   }
 }
 
+/// A scene whose camera has the images in this folder.
+std::string scene_with(const std::string& folder) {
+  std::string text = test::text_of("scenes/seen.yaml");
+  const std::size_t camera = text.find("camera:\n");
+  const std::size_t end = text.find("hidden:\n");
+  return text.replace(
+      camera, end - camera,
+      "camera:\n  recording: " + folder + "\n  law: seen\n  silent_after: 1000 s\n");
+}
+
+void check_camera(const std::string& text) {
+  static const test::Folder folder;
+  static const bool has_images = std::filesystem::create_directory(folder / "depth");
+  static const std::string first = folder.with("depth/0.5.png", "an image");
+  static const std::string second = folder.with("depth/0.6.png", "another");
+  static const std::string scene = scene_with(folder / ".");
+  require(has_images, "there is a folder for images");
+  const std::string file = folder.with("camera.yaml", text);
+  try {
+    check(parse(scene, "scenes/fuzz.yaml"));
+  } catch (const SetupError& error) {
+    require(!error.file().empty(), "an error names a file");
+  }
+}
+
+void check_part_list(const std::string& text) {
+  static const test::Folder folder;
+  const std::string path = folder.with("fuzz.parts.yaml", text);
+  try {
+    const PartList list = read_part_list(path);
+    for (const std::vector<Vec3>& part : list.parts) {
+      for (const Vec3& p : part) require(is_finite(p), "a corner is somewhere");
+    }
+    require(list.gaps.deepest.size() <= list.gaps.count, "each gap is counted");
+  } catch (const SetupError& error) {
+    require(error.file() == path, "an error names the file");
+  }
+}
+
+void check_scene(const std::string& text) {
+  const std::string file = "scenes/fuzz.yaml";
+  try {
+    check(parse(text, file));
+  } catch (const SetupError& error) {
+    require(error.file() == file, "an error names the file");
+  }
+}
+
 }  // namespace
 }  // namespace repel::scene
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);
-  const std::string file = "scenes/fuzz.yaml";
-  try {
-    repel::scene::check(repel::scene::parse(text, file));
-  } catch (const repel::SetupError& error) {
-    repel::fuzz::require(error.file() == file, "an error names the file");
+  const auto has = [&](std::string_view word) { return text.find(word) != std::string::npos; };
+  if (has("fx:") && !has("robot")) {
+    repel::scene::check_camera(text);
+  } else if (has("uncovered:") && !has("robot")) {
+    repel::scene::check_part_list(text);
+  } else {
+    repel::scene::check_scene(text);
   }
   return 0;
 }

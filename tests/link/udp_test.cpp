@@ -78,6 +78,63 @@ TEST(Udp, ASecondStationIsNotAnsweredWhileThereIsOne) {
   EXPECT_EQ(site.link.counts().sessions, 2);
 }
 
+// It keeps sending, and was first.
+TEST(Udp, AStationOfAnotherSceneKeepsNobodyOut) {
+  UdpOptions options{.agreement = 5};
+  test::JoinedSide site(1, open_site(options));
+  const auto stranger = open_udp(station_of(options));
+  network::RemotePacket packet;
+  packet.session = 9;
+  packet.agreement = 6;
+  const auto knock = [&] {
+    ++packet.sequence;
+    packet.sent += 2500000;
+    (void)stranger->send(packet);
+  };
+  for (int i = 0; i < 40; ++i) {
+    knock();
+    site.tick(1.0);
+    std::this_thread::sleep_for(std::chrono::microseconds(2500));
+  }
+  EXPECT_FALSE(site.link.is_linked());
+  test::JoinedSide station(2, open_udp(station_of(options)));
+  int both = 0;
+  for (int i = 0; i < 4000 && both < 50; ++i) {
+    knock();
+    site.tick(1.0);
+    station.tick(1.0);
+    std::this_thread::sleep_for(std::chrono::microseconds(2500));
+    both += site.link.is_linked() && station.link.is_linked() ? 1 : 0;
+  }
+  EXPECT_EQ(both, 50);
+  EXPECT_GT(site.link.counts().strangers, 40);
+  EXPECT_EQ(site.link.counts().sessions, 1);
+  EXPECT_FALSE(stranger->receive(packet)) << "it is never answered";
+}
+
+TEST(Udp, SaysWhoElseCanReachTheSite) {
+  UdpOptions options;
+  EXPECT_EQ(open_site(options)->exposure(), "");
+  options.address = "127.3.2.1";
+  EXPECT_EQ(open_site(options)->exposure(), "");
+  options.address = "0.0.0.0";
+  const std::string open = open_site(options)->exposure();
+  EXPECT_NE(open.find("0.0.0.0:" + std::to_string(options.port)), std::string::npos) << open;
+  EXPECT_NE(open.find("any network of this machine can drive the robot"), std::string::npos);
+  EXPECT_NE(open.find("--link udp:"), std::string::npos) << open;
+  for (const char* const any : {"::", "::ffff:0.0.0.0"}) {
+    options.address = any;
+    try {
+      EXPECT_NE(open_site(options)->exposure(), "") << any;
+    } catch (const SetupError&) {
+      continue;  // a machine without IPv6
+    }
+  }
+  // A station hears only where it sends to.
+  options.address = "0.0.0.0";
+  EXPECT_EQ(open_udp(station_of(options))->exposure(), "");
+}
+
 TEST(Udp, CountsWhatIsNoPacket) {
   UdpOptions options;
   const auto site = open_site(options);

@@ -56,7 +56,8 @@ TEST(ArmInertia, IsThatOfTheTextbookForTwoLinks) {
   ArmInertia inertia(arm.model);
   for (const double elbow : {0.0, 1.0, -2.0}) {
     arm.q = {0.3, elbow};
-    inertia.update(arm);
+    inertia.begin_anew();
+    ASSERT_TRUE(inertia.update(arm));
     const double c = std::cos(elbow);
     const double own = 0.01 + 1.0 * 0.3 * 0.3;
     EXPECT_NEAR(inertia.matrix()(1, 1), own + 0.1, 1e-12);
@@ -71,7 +72,7 @@ TEST(ArmInertia, AJointOfWhichNoMassIsKnownMovesAHundredthOfItsEffort) {
   ArmModel model = test::slider_model(300.0);
   model.links[1].rotor_inertia = 0.0;
   ArmInertia inertia(model);
-  inertia.update(test::SliderKinematics());
+  ASSERT_TRUE(inertia.update(test::SliderKinematics()));
   EXPECT_EQ(inertia.matrix()(0, 0), 5.0);
   EXPECT_EQ(inertia.matrix()(1, 1), 3.0);
   EXPECT_EQ(inertia.missing(), 1);
@@ -94,11 +95,46 @@ TEST(ArmInertia, IsWhatTheKinematicsSayItIsWhereTheySayIt) {
   ArmModel model = test::slider_model(300.0);
   for (ArmLink& link : model.links) link.mass = 100.0;
   ArmInertia inertia(model);
-  inertia.update(GivenMass());
+  ASSERT_TRUE(inertia.update(GivenMass()));
   EXPECT_EQ(inertia.missing(), -1);
   EXPECT_EQ(inertia.matrix()(0, 0), 3.0);
   EXPECT_EQ(inertia.matrix()(0, 1), 0.5);
   EXPECT_EQ(inertia.matrix()(2, 2), 1.0);
+}
+
+/// A mass matrix that goes wrong.
+struct WrongMass : test::SliderKinematics {
+  [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override {
+    M = given;
+    return true;
+  }
+  Eigen::MatrixXd given = 5.0 * Eigen::MatrixXd::Identity(3, 3);
+};
+
+// One NaN stayed in what hard walls remember; one off the diagonal was sent to the drive.
+TEST(ArmInertia, AMatrixThatIsNoneIsNotTaken) {
+  const ArmModel model = test::slider_model(300.0);
+  const auto wrong = [&](const auto& spoil) {
+    ArmInertia inertia(model);
+    WrongMass arm;
+    EXPECT_TRUE(inertia.update(arm));
+    spoil(arm.given);
+    const bool taken = inertia.update(arm);
+    EXPECT_EQ(inertia.matrix()(0, 0), taken ? arm.given(0, 0) : 5.0);
+    EXPECT_EQ(inertia.matrix()(0, 1), taken ? arm.given(0, 1) : 0.0);
+    return !taken;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(wrong([](Eigen::MatrixXd& M) { M(0, 1) = M(1, 0) = 4.0; }));
+  EXPECT_TRUE(wrong([&](Eigen::MatrixXd& M) { M(0, 0) = nan; }));
+  EXPECT_TRUE(wrong([&](Eigen::MatrixXd& M) { M(0, 1) = M(1, 0) = nan; }));
+  EXPECT_TRUE(wrong([&](Eigen::MatrixXd& M) { M(0, 1) = nan; }));
+  EXPECT_TRUE(wrong([](Eigen::MatrixXd& M) { M(0, 1) = 2.0; })) << "not symmetric";
+  EXPECT_TRUE(wrong([](Eigen::MatrixXd& M) { M(0, 1) = M(1, 0) = 6.0; })) << "not positive";
+  EXPECT_TRUE(wrong([](Eigen::MatrixXd& M) { M = -M; }));
+  EXPECT_TRUE(wrong([](Eigen::MatrixXd& M) { M.setZero(); }));
+  EXPECT_TRUE(wrong([](Eigen::MatrixXd& M) { M *= 1e6; }));
+  EXPECT_TRUE(wrong([](Eigen::MatrixXd& M) { M *= 1e-6; }));
 }
 
 TEST(ArmInertia, AnEffortThatIsNotKnownIsBoundedByWhatTheJointCarries) {

@@ -32,9 +32,9 @@ struct Rails {
     jacobian.topRows<3>().setIdentity();
   }
   std::vector<BarrierRow> gather(std::span<const HardContact> contacts, std::array<double, 3> q,
-                                 std::array<double, 3> v) {
+                                 std::array<double, 3> v, std::array<double, 3> untold = {}) {
     BarrierRows rows(model, 1e-3);
-    rows.gather(contacts, tool, jacobian, ArmBodies({}, 3), q, v, 0.02);
+    rows.gather(contacts, tool, jacobian, ArmBodies({}, 3), q, v, untold, 0.02);
     return {rows.all().begin(), rows.all().end()};
   }
   ArmModel model;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace repel {
 namespace energy_watch_test {
 
@@ -52,6 +54,25 @@ TEST(EnergyWatch, ForgetsAFaultThatIsOver) {
   (void)feed(watch, energy, 0.0, 5.0);
   EXPECT_EQ(watch.step(energy, T), 0U);
   EXPECT_EQ(watch.brake(), 0.0);
+}
+
+TEST(EnergyWatch, WhatIsNoNumberIsAFaultAndForgotten) {
+  EnergyWatch watch(T);
+  double energy = 0.0;
+  EXPECT_EQ(watch.step(std::nan(""), T), status::energy_gain);
+  EXPECT_EQ(feed(watch, energy, 0.0, 1.0), 0U);
+  EXPECT_EQ(feed(watch, energy, 1000.0, 0.01), status::energy_gain) << "it still watches";
+}
+
+TEST(EnergyWatch, AFaultThatIsLatchedStaysLongerEachTime) {
+  EnergyWatch watch(T, {.latch = 1.0});
+  double energy = 0.0;
+  for (const double stays : {1.0, 2.0, 4.0}) {
+    ASSERT_EQ(feed(watch, energy, 1000.0, 0.01), status::energy_gain);
+    double time = 0.0;
+    while (watch.step(energy, T) != 0U) ASSERT_LT(time += T, 10.0);
+    EXPECT_GE(time, stays - 2.0 * T);
+  }
 }
 
 // An arm that gave a lot back may not gain as much unseen.

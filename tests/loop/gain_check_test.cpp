@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "loop/slider.hpp"
+#include "support/draws.hpp"
+#include "support/families.hpp"
 
 namespace repel {
 namespace gain_check_test {
@@ -104,6 +109,61 @@ TEST(GainCheck, DampingThatMayRiseIsAtLeastWhatTheWallNeeds) {
   stiff.damping = 3.0;
   stiff.damping_may_rise = false;
   EXPECT_EQ(settled(stiff, 0.0025, 2.0).damping, 3.0);
+}
+
+TEST(GainCheck, UsualDampingIsOpenUnlessItIsMeant) {
+  ForceLaw stiff{.range = 0.02, .surface_force = 1000.0};
+  EXPECT_DOUBLE_EQ(settled(stiff, 0.0025, 0.0).damping, gain_rounding * 125.0);
+  stiff.damping_is_meant = true;
+  EXPECT_EQ(settled(stiff, 0.0025, 0.0).damping, ForceLaw::usual_damping);
+}
+
+/// The number behind some words of a text; NaN if they are not there.
+double number_behind(const std::string& words, const std::string& text) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? std::nan("") : std::stod(text.substr(at + words.size()));
+}
+
+// The numbers were rounded to the nearest, and half of them refused again.
+TEST(GainCheck, WhoFollowsItsAdviceIsNotRefusedAgain) {
+  constexpr unsigned seed = 610;
+  families::Rng rng(seed);
+  int rates = 0, none = 0;
+  for (int trial = 0; trial < families::draws(3000); ++trial) {
+    SCOPED_TRACE(families::of_seed(seed, "trial", trial));
+    const double period = 1.0 / families::log_uniform(rng, 50.0, 5000.0);
+    const double response = trial % 2 == 0 ? 0.0 : families::log_uniform(rng, 1e-3, 0.1);
+    const double ticks = trial % 3 == 0 ? 0.0 : families::uniform(rng, 0.0, 4.0);
+    const double delay = ticks + response / period;
+    ForceLaw law{.range = families::log_uniform(rng, 1e-3, 0.1),
+                 .surface_force = families::log_uniform(rng, 1.0, 1e4),
+                 .damping = families::log_uniform(rng, 0.1, 1e4)};
+    const std::string said = complaint(law, period, delay, response);
+    if (said.empty()) continue;
+    ForceLaw followed = law;
+    followed.damping = number_behind("this wall needs ", said);
+    EXPECT_EQ(complaint(followed, period, delay, response), "") << said;
+    followed = law;
+    followed.surface_force = 0.5 * followed.range * number_behind("the limit is ", said);
+    EXPECT_EQ(complaint(followed, period, delay, response), "") << said;
+    const double rate = number_behind("a rate of at least ", said);
+    if (rate > 0.0) {
+      ++rates;
+      EXPECT_LE(rate, greatest_rate);
+      EXPECT_EQ(complaint(law, 1.0 / rate, ticks + response * rate, response), "") << said;
+    } else {
+      ++none;
+      EXPECT_NE(said.find("no rate would do"), std::string::npos) << said;
+      const double answer = 1e-3 * number_behind("answers within ", said);
+      if (answer > 0.0) {
+        EXPECT_EQ(complaint(law, period, ticks + answer / period, answer), "") << said;
+      }
+      EXPECT_NE(complaint(law, 1.0 / greatest_rate, ticks + response * greatest_rate, response),
+                "");
+    }
+  }
+  EXPECT_GT(rates, families::draws(3000) / 20);
+  EXPECT_GT(none, families::draws(3000) / 20);
 }
 
 }  // namespace gain_check_test

@@ -17,7 +17,7 @@ constexpr double period = 0.0025;
 struct Bench {
   explicit Bench(double effort_limit = 100.0)
       : model(test::slider_model(effort_limit)), torques(model, period, {}), inertia(model) {
-    inertia.update(test::SliderKinematics());
+    (void)inertia.update(test::SliderKinematics());
     network.setZero(3);
     walls.setZero(3);
     set_weight(0.0);
@@ -125,6 +125,39 @@ TEST(JointTorques, SayHowFastEachJointIsExpectedToBe) {
   EXPECT_NEAR(bench.torques.expected_rate()(0), period * 6.0 / 5.0, 1e-12);
 }
 
+// Explicit friction multiplied the predicted rate of a light wrist by -13 in every tick.
+TEST(JointTorques, ThePredictedRateOfALightJointDiesAway) {
+  ArmModel model = test::slider_model(100.0);
+  for (ArmLink& link : model.links) {
+    link.rotor_inertia = 1.4e-4;
+    link.viscous_friction = 2.0;
+  }
+  JointTorques torques(model, 0.001, {});
+  ArmInertia inertia(model);
+  (void)inertia.update(test::SliderKinematics());
+  const JointTorques::Vector none = JointTorques::Vector::Zero(3);
+  std::vector<double> v{0.5, -0.5, 0.0};
+  for (int tick = 0; tick < 100; ++tick) {
+    (void)torques.compose(none, none, {}, v, inertia);
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_LE(std::abs(torques.expected_rate()(i)), std::abs(v[i])) << tick;
+      v[i] = torques.expected_rate()(i);
+    }
+  }
+  EXPECT_LT(std::abs(v[0]), 1e-6);
+}
+
+TEST(JointTorques, AJointThatMayBeFrozenIsPushedAsFarAsTheLimitsAllow) {
+  Bench bench;
+  bench.network << 7.0, 7.0, -7.0;
+  const std::vector<double> probes{20.0, -20.0, 0.0};
+  (void)bench.torques.compose(bench.network, bench.walls, {}, bench.v, bench.inertia, nullptr,
+                              probes);
+  EXPECT_EQ(bench.sent(0), 20.0);
+  EXPECT_EQ(bench.sent(1), -20.0);
+  EXPECT_EQ(bench.sent(2), -7.0);
+}
+
 /// Of the first two sliders, each is moved by the other.
 struct CoupledSliders : test::SliderKinematics {
   [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override {
@@ -139,7 +172,7 @@ struct CoupledSliders : test::SliderKinematics {
 // for one whose encoder is frozen, and the pose that was then predicted was 60 mm inside a wall.
 TEST(JointTorques, SayWhatMovesAJointAloneWhereABarrierHoldsTheArm) {
   Bench bench;
-  bench.inertia.update(CoupledSliders());
+  (void)bench.inertia.update(CoupledSliders());
   EntryBarrier barrier(bench.model, period, 0.0, 0.005, 1);
   bench.network << 10.0, 8.0, 0.0;
   (void)bench.torques.compose(bench.network, bench.walls, {.friction = 0.0}, bench.v, bench.inertia,

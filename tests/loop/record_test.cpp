@@ -102,7 +102,17 @@ TEST(RunTotals, AddUpAndKeepTheExtremes) {
   EXPECT_EQ(totals.status_ticks[0], 1);  // bad_pose
   EXPECT_EQ(totals.status_ticks[4], 2);  // stale_pairs
   EXPECT_EQ(totals.status_ticks[1], 0);
+  EXPECT_EQ(totals.unsound, 1);
   EXPECT_EQ(totals.workers.ticks, 3);  // already counted since set-up
+}
+
+TEST(RunTotals, NeitherASilentOperatorNorOneWhoStartsInAWallIsUnsound) {
+  RunTotals totals;
+  totals.add(record_with(1, status::silent_device, 0.0, 1.0));
+  totals.add(record_with(2, status::pushed_out | status::torque_limit, 0.0, 1.0));
+  EXPECT_EQ(totals.unsound, 0);
+  totals.add(record_with(3, status::silent_device | status::network_fault, 0.0, 1.0));
+  EXPECT_EQ(totals.unsound, 1);
 }
 
 }  // namespace record_test

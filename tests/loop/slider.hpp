@@ -129,6 +129,7 @@ struct SliderOptions {
   double velocity_limit = 0.0;   // [m/s] of the first; 0: none
   int walls = 1;                 // one behind the other, 1 mm apart
   std::optional<ReciprocatingMotion> door{};
+  bool is_touched = false;  // by what is not in the model
 };
 
 /// A ball of 50 mm that the script moves towards +x, against a wall with its face at x = 0.2 m. A
@@ -163,6 +164,7 @@ struct SliderCell {
     ArmDescription& sliders = description.arms.emplace_back();
     sliders.model = slider_model(options.effort_limit);
     sliders.model.links[0].velocity_limit = options.velocity_limit;
+    sliders.options.joints.touches = options.is_touched;
     auto owned = std::make_unique<SliderKinematics>();
     kinematics = owned.get();
     sliders.kinematics = std::move(owned);

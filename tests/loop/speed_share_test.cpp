@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
+
+#include "loop/slider.hpp"
 
 namespace repel {
 namespace speed_share_test {
@@ -32,6 +36,71 @@ TEST(SpeedShare, NeverDrivesAndBrakesAtOnce) {
     const SpeedShare share = speed_share(speed, 0.25);
     EXPECT_NEAR(share.drive * share.brake, 0.0, 1e-12) << speed;
   }
+}
+
+TEST(SpeedShare, WallsGiveBackNoneOfTheirForceBeyondAFifthMore) {
+  EXPECT_EQ(release_share(0.0, 0.25, 1e9), 1.0) << "at rest they push as they are";
+  EXPECT_EQ(release_share(0.125, 0.25, 1e9), 1.0);
+  EXPECT_NEAR(release_share(0.25, 0.25, 0.0), 1.0, 1e-12);
+  EXPECT_NEAR(release_share(0.275, 0.25, 0.0), 0.5, 1e-12);
+  EXPECT_NEAR(release_share(0.3, 0.25, 0.0), 0.0, 1e-12);
+  for (const double growth : {0.0, 0.1, 1.0, 100.0}) {
+    for (double speed = 0.13; speed < 0.3; speed += 0.01) {
+      const double then = speed * (1.0 + growth * release_share(speed, 0.25, growth));
+      EXPECT_LE(then, 0.3 + 1e-12) << speed << ", growth " << growth;
+    }
+  }
+}
+
+/// The greatest speed [m/s] out of a wall, after something has pressed the tool into it with
+/// `force` [N] and lets go. @param silent whether the operator is
+double thrown_back(double force, bool silent) {
+  network::Phase phase;
+  phase.duration = 100.0;
+  phase.silent = silent;
+  test::SliderCell cell({phase}, {.is_touched = true});
+  double fastest = 0.0;
+  double deepest = 0.0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    const TickRecord& record = cell.tick_alone();
+    EXPECT_EQ(record.status & status::blind, 0U) << to_text(record.status);
+    deepest = std::min(deepest, record.pairs.nearest);
+    // The network's spring gives way at 60 N; and hands tremble, or readings would be frozen.
+    const double trembling = 1.0 + 0.05 * std::sin(0.3 * tick);
+    if (tick < 2000) cell.arm.force[0] += trembling * (force + (silent ? 0.0 : 60.0));
+    cell.arm.step(0.0025);
+    if (tick >= 2000) fastest = std::max(fastest, -cell.arm.v[0]);
+  }
+  EXPECT_LT(deepest, 0.0) << "it must have been in the wall";
+  EXPECT_LT(cell.arm.q[0], 0.15) << "and is out again";
+  return fastest;
+}
+
+// The spring of the wall threw it back at twice the speed at which an operator may drive it.
+TEST(SpeedShare, SoftWallThrowsTheToolBackNoFasterThanItMayBeDriven) {
+  for (const double force : {120.0, 200.0, 260.0}) {
+    for (const bool silent : {false, true}) {
+      EXPECT_LT(thrown_back(force, silent), 1.25 * 0.25) << force << " N, silent " << silent;
+    }
+  }
+}
+
+// What a wall has stored is bounded, what it brings by its own motion is not: it would pass.
+TEST(SpeedShare, WallThatMovesFasterPushesTheToolAlong) {
+  network::Phase phase;
+  phase.duration = 100.0;
+  phase.silent = true;
+  test::SliderCell cell({phase}, {.door = ReciprocatingMotion{{0.2, 0.0, 0.0}, 1.0}});
+  double fastest = 0.0;
+  double nearest = 1.0;
+  for (int tick = 0; tick < 400; ++tick) {
+    const TickRecord& record = cell.tick();
+    if (cell.arm.q[0] < 0.1) nearest = std::min(nearest, record.pairs.nearest);
+    fastest = std::max(fastest, cell.arm.v[0]);
+  }
+  RecordProperty("nearest_um", static_cast<int>(1e6 * nearest));
+  EXPECT_GT(fastest, 0.4);
+  EXPECT_GT(nearest, 0.0025);
 }
 
 TEST(SpeedShare, AHandWhoseNumbersAreNoneRestsWhereItsLeverPointed) {

@@ -30,6 +30,18 @@ TEST(TickClock, ATickThatIsLateByPeriodsStandsForThoseThatAreMissing) {
   EXPECT_EQ(clock.elapsed(), 1);
 }
 
+// The first tick at 0 was a fault: a program that counts its time from its start held for 0.75 s.
+TEST(TickClock, AnyClockThatGrowsIsSoundFromItsFirstTickOn) {
+  for (const auto begin : {-1h, 0h, 1h}) {
+    TickClock clock(period, 100ms);
+    for (int tick = 0; tick < 5; ++tick) {
+      EXPECT_EQ(clock.step(begin + tick * period), 0U) << "tick " << tick;
+      EXPECT_EQ(clock.elapsed(), 1);
+    }
+    EXPECT_EQ(clock.step(begin), status::clock_fault);
+  }
+}
+
 TEST(TickClock, AGapLongerThanStatedIsAFaultOnce) {
   TickClock clock(period, 100ms);
   ASSERT_EQ(clock.step(1s), 0U);

@@ -139,6 +139,28 @@ TEST(Tick, ClockThatRunsBackLetsTheOperatorGoAndHeComesBack) {
       "clock", status::clock_fault, Stop::holding, [](SliderCell&, bool) {}, -1ms);
 }
 
+// Compared with the patience alone, an age that is not a number was never too old.
+TEST(Tick, SampleOfAnAgeThatIsNoneLetsTheOperatorGo) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  for (const double age : {std::nan(""), -inf, -1.0, -1e-300, 0.021, inf, 0.0, 0.02}) {
+    SliderCell cell({});
+    network::Command command;
+    command.hand.ball.linear.x() = 0.1;
+    command.silent_for = age;
+    const bool is_fresh = age >= 0.0 && age <= 0.02;
+    TickRecord record;
+    for (int tick = 0; tick < 100; ++tick) {
+      cell.now += SliderCell::period;
+      record = cell.cell.step(cell.port.read(), command, cell.now);
+      cell.port.apply(record);
+      cell.arm.step(0.0025);
+      ASSERT_EQ((record.status & status::silent_device) == 0U, is_fresh) << "age " << age;
+    }
+    EXPECT_EQ(record.gain, is_fresh ? 1.0 : 0.0) << "age " << age;
+    EXPECT_EQ(cell.arm.q[0] > 0.01, is_fresh) << "age " << age;
+  }
+}
+
 TEST(Tick, CommandThatIsNotANumberLetsTheOperatorGoAndTheWallStays) {
   network::Script script = test::push(4.0, 0.1);
   network::Phase fault = script.front();

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include <repel/base/setup_error.hpp>
@@ -92,6 +94,92 @@ TEST(Grid, OfAFileIsThatOfItsTree) {
               grid_of(tree, known_range(tree), false).solid);
     (void)std::remove(path.c_str());
     EXPECT_THROW((void)read_tree(path), SetupError);
+  }
+}
+
+/// Of a file with this head and these bytes behind it, which are of a chain of nodes.
+std::string refusal(const std::string& name, const std::string& bytes,
+                    const std::string& res = "0.1") {
+  const std::string path = testing::TempDir() + "repel_grid_test_" + name;
+  const bool is_binary = path.ends_with(".bt");
+  std::ofstream(path, std::ios::binary)
+      << "# Octomap OcTree " << (is_binary ? "binary " : "") << "file\nid OcTree\nsize "
+      << bytes.size() / 2 + 1 << "\nres " << res << "\ndata\n"
+      << bytes;
+  std::string why = "accepted";
+  try {
+    (void)read_tree(path);
+  } catch (const SetupError& error) {
+    why = error.what();
+    EXPECT_NE(why.find("map '" + path + "'"), std::string::npos) << why;
+  }
+  (void)std::remove(path.c_str());
+  return why;
+}
+
+std::string repeated(const std::string& node, int times) {
+  std::string bytes;
+  for (int i = 0; i < times; ++i) bytes += node;
+  return bytes;
+}
+
+// A chain of nodes that each have the next for their first child.
+TEST(Grid, OfATreeThatIsDeeperThanItsKeysIsRefused) {
+  const std::string inner("\3\0", 2);
+  const std::string leaf("\2\0", 2);
+  EXPECT_EQ(refusal("16.bt", repeated(inner, 15) + leaf), "accepted");
+  for (const int depth : {17, 1000, 100'000}) {
+    const std::string why = refusal("deep.bt", repeated(inner, depth - 1) + leaf);
+    EXPECT_NE(why, "accepted") << depth;
+    if (depth <= 1000) {
+      EXPECT_NE(why.find("deeper than 16 levels"), std::string::npos) << why;
+    }
+  }
+  const std::string with_child("\0\0\0\0\1", 5);
+  const std::string without("\0\0\0\0\0", 5);
+  EXPECT_EQ(refusal("16.ot", repeated(with_child, 16) + without), "accepted");
+  EXPECT_NE(refusal("17.ot", repeated(with_child, 17) + without), "accepted");
+  EXPECT_NE(refusal("deep.ot", repeated(with_child, 100'000) + without), "accepted");
+}
+
+TEST(Grid, OfATreeThatNoMapCanBeIsRefused) {
+  const std::string leaf("\2\0", 2);
+  for (const char* const res : {"0", "-0.1", "nan", "1e300", "1e-300"}) {
+    EXPECT_NE(refusal("res.bt", leaf, res), "accepted") << res;
+  }
+  EXPECT_NE(refusal("nan.ot", std::string("\0\0\xc0\x7f\0", 5)).find("not finite"),
+            std::string::npos);
+}
+
+// OctoMap goes on with what happens to be in memory where a file ends.
+TEST(Grid, OfAFileThatIsCutOffOrDamagedNeverCrashes) {
+  constexpr unsigned seed = 18;
+  std::mt19937 random(seed);
+  octomap::OcTree tree(0.1);
+  for (int i = 0; i < 60; ++i) {
+    (void)tree.updateNode(
+        key_at(static_cast<int>(random() % 40), 3, static_cast<int>(random() % 9)),
+        random() % 2 == 0);
+  }
+  for (const char* ending : {".bt", ".ot"}) {
+    const std::string path = testing::TempDir() + "repel_grid_damage" + ending;
+    ASSERT_TRUE(ending == std::string(".bt") ? tree.writeBinary(path) : tree.write(path));
+    std::ifstream stream(path, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+    for (int i = 0; i < 20; ++i) {
+      const bool is_cut_off = i % 2 == 0;
+      std::string bytes = whole.substr(0, is_cut_off ? random() % whole.size() : whole.size());
+      if (!is_cut_off) bytes[random() % bytes.size()] = static_cast<char>(random());
+      std::ofstream(path, std::ios::binary) << bytes;
+      try {
+        const auto read = read_tree(path);
+        EXPECT_FALSE(is_cut_off) << "seed " << seed << ", " << bytes.size() << " bytes";
+        if (read->getNumLeafNodes() > 0) (void)known_range(*read);
+      } catch (const SetupError& error) {
+        EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << "seed " << seed;
+      }
+    }
+    (void)std::remove(path.c_str());
   }
 }
 

@@ -38,7 +38,8 @@ struct Stage {
     parts.emplace(cube, *changes, options);
   }
 
-  void set(const Cube& at, bool is_occupied) {
+  // By value: `at` may be an element of `occupied`.
+  void set(Cube at, bool is_occupied) {
     const auto key = [](int each) { return static_cast<octomap::key_type>(each + 32768); };
     (void)tree.setNodeValue(octomap::OcTreeKey(key(at[0]), key(at[1]), key(at[2])),
                             is_occupied ? 2.0F : -2.0F);

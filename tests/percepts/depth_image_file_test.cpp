@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -103,6 +105,31 @@ TEST(DepthImageFile, ThatIsCutOffIsRefusedWhenItIsReadAndNeverCrashes) {
     refused += complaint(cut.path) == "accepted" ? 0 : 1;
   }
   EXPECT_GT(refused, 40) << "it has checksums";
+}
+
+// To open a pipe would wait for somebody who writes to it, and a device has no end.
+TEST(DepthImageFile, ThatIsNoFileIsRefusedAtOnce) {
+  const File pipe("pipe.png");
+  ASSERT_EQ(mkfifo(pipe.path.c_str(), 0600), 0);
+  for (const std::string& path : {pipe.path, testing::TempDir(), std::string("/dev/zero")}) {
+    EXPECT_NE(complaint(path).find("cannot be opened"), std::string::npos) << complaint(path);
+  }
+}
+
+TEST(DepthImageFile, ThatIsTooLargeIsRefusedUnread) {
+  const File large("large.png");
+  test::write_png(large.path, camera.width, camera.height,
+                  std::vector<std::uint16_t>(camera.pixels()));
+  std::filesystem::resize_file(large.path, std::uintmax_t{1} << 32U);
+  EXPECT_NE(complaint(large.path).find("4294967296 bytes; allowed: up to 16777216"),
+            std::string::npos)
+      << complaint(large.path);
+}
+
+// A text of 2 kB that would be one of 2 MB is passed over.
+TEST(DepthImageFile, IsReadWithoutItsTexts) {
+  EXPECT_EQ(complaint("tests/fuzz/seeds/depth.png"), "accepted");
+  EXPECT_EQ(complaint("tests/fuzz/seeds/texts.png"), "accepted");
 }
 
 }  // namespace depth_image_file_test

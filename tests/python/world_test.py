@@ -192,7 +192,7 @@ def test_kinematics_that_are_none_are_refused_by_name():
 
 
 @pytest.mark.parametrize("change, words", [
-    ({"start": [2.0, 0, 0]}, "robot start: 2 for"),
+    ({"start": [2.0, 0, 0]}, "robot start: 2 m for"),
     ({"start": [0.0, 0]}, "2 joints; allowed: 3"),
     ({"links": []}, "it has no joint"),
     ({"tool_speed": 100.0}, "tool speed is 100"),

@@ -27,10 +27,19 @@ constexpr std::chrono::nanoseconds period{2500000};
 struct LeaningKinematics : SliderKinematics {
   void update(std::span<const double> q) noexcept override {
     SliderKinematics::update(q);
-    const Eigen::AngleAxisd down_and_sideways(std::acos(-1.0) + 0.3 * (q[1] + 0.15), Vec3::UnitX());
-    const Eigen::AngleAxisd forwards(0.3 * (q[0] - 0.6), Vec3::UnitY());
-    pose.linear() = (down_and_sideways * forwards).toRotationMatrix();
+    down_and_sideways =
+        Eigen::AngleAxisd(std::acos(-1.0) + lean * (q[1] + 0.15), Vec3::UnitX()).toRotationMatrix();
+    const Eigen::AngleAxisd forwards(lean * (q[0] - 0.6), Vec3::UnitY());
+    pose.linear() = down_and_sideways * forwards;
   }
+  void tool_jacobian(JacobianRef J) const noexcept override {
+    SliderKinematics::tool_jacobian(J);
+    J.col(0).tail<3>() = lean * down_and_sideways.col(1);
+    J.col(1).tail<3>() = lean * Vec3::UnitX();
+  }
+
+  static constexpr double lean = 0.3;  // [rad/m]
+  Mat3 down_and_sideways = Mat3::Identity();
 };
 
 /// Full sizes [m], as in the scene file.

@@ -17,7 +17,7 @@ kernel="$kernel|(open|creat)(at)?(64)?|close|p?(read|write)v?(64)?|lseek(64)?|se
 kernel="$kernel|m(map|remap|unmap|advise|protect|lock|unlock).*|s?brk|get(pid|tid|rusage|random)"
 kernel="$kernel|fork|clone|exec.*|kill|raise|pthread_(create|join|kill|yield)"
 # In lock step, which is for replays, threads that outnumber the processors make room for each
-# other. By the clock it is not reached: tick_guard_test and end_to_end_test count.
+# other. By the clock it is not reached: tick_guard_test and every_scene_test count.
 excepted='sched_yield'
 
 undefined() {

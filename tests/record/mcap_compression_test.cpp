@@ -194,7 +194,8 @@ TEST_F(Compressed, EveryWrongByteIsNoticed) {
       noticed = true;
     }
     EXPECT_TRUE(noticed) << "byte " << at;
-    EXPECT_LE(messages, r.messages.size());
+    // A byte may make a message of one other record.
+    EXPECT_LE(messages, r.messages.size() + 1);
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <numbers>
 
@@ -154,6 +156,36 @@ TEST_F(Sdf, FilesThatAreNoneAreRefused) {
   const std::string worlds =
       complaint(file_of(folder_, "<world name='a'></world><world name='b'></world>"));
   EXPECT_TRUE(says(worlds, "2 worlds; allowed: 1")) << worlds;
+}
+
+TEST_F(Sdf, FilesWithoutAnElementAreRefused) {
+  for (const char* const text : {"", "<!-- -->", "<?xml version='1.0'?>\n", "words"}) {
+    const std::string why = complaint(folder_.with("empty.sdf", text));
+    EXPECT_TRUE(says(why, "empty.sdf")) << text << ": " << why;
+  }
+}
+
+// libsdformat would go on until all memory is taken.
+TEST_F(Sdf, FilesThatIncludeThemselvesAreRefused) {
+#ifdef REPEL_SANITIZED
+  GTEST_SKIP() << "a sanitizer may reserve the address space";
+#endif
+  const std::string path = folder_ / "cell.sdf";
+  const std::string why = complaint(
+      file_of(folder_, "<model name='m'><include><uri>" + path + "</uri></include></model>"));
+  EXPECT_TRUE(says(why, "cell.sdf: the file, with all that it includes, ")) << why;
+}
+
+TEST_F(Sdf, IncludedPipesAndDevicesAreNotOpened) {
+  const std::string pipe = folder_ / "pipe.sdf";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/zero", folder_ / "zero.sdf");
+  for (const char* const name : {"pipe.sdf", "zero.sdf"}) {
+    const std::string why =
+        complaint(file_of(folder_, "<world name='w'><include><uri>" + std::string(name) +
+                                       "</uri></include></world>"));
+    EXPECT_TRUE(says(why, "cell.sdf") && says(why, name)) << why;
+  }
 }
 
 TEST(WithoutSdformat, FilesAreRefusedWithTheLineThatInstallsIt) {

@@ -239,6 +239,22 @@ TEST(Visuals, OfHostileMeshFilesAreLeftOut) {
   }
 }
 
+// The reader of PLY does not look whether a face names vertices that there are.
+TEST(Visuals, OfAMeshWhoseFacesNameVerticesThatItHasNotAreLeftOut) {
+  if (!reads_meshes()) GTEST_SKIP() << "built without assimp";
+  const std::string ply = test::text_of("tests/fuzz/seeds/triangle_of_none.ply");
+  for (const char* const vertex : {"3", "1000000", "2147483647", "4294967295", "-1"}) {
+    const Folder folder;
+    std::string text = ply;
+    (void)folder.with("a.ply", text.replace(text.find("1000000"), 7, vertex));
+    const std::string mesh = "<mesh filename='a.ply'/>";
+    const RobotVisuals read = visuals_in(folder, link("base") + link("arm", visual(mesh)));
+    EXPECT_TRUE(read.all.empty()) << vertex;
+    ASSERT_EQ(read.warnings.size(), 1U) << vertex;
+    EXPECT_NE(read.warnings[0].find("a.ply"), std::string::npos) << read.warnings[0];
+  }
+}
+
 TEST(Visuals, OfThePumaShowItsBase) {
   const std::string path = "robots/puma560.urdf";
   const RobotVisuals read = load_visuals(path, load_arm(path));

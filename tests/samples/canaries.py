@@ -68,6 +68,16 @@ class Canaries(unittest.TestCase):
             fence("python", "import repel\nrepel.Nothing\n")))
         self.assertIn("syntax", samples.check_python(fence("python", "a b\n")))
 
+    def test_a_fragment_of_a_scene_must_be_one_in_its_frame(self):
+        if not (ROOT / "build/release/bin/teleop").is_file():
+            self.skipTest("teleop is not built")
+        law = "laws:\n  wall: {range: 20 mm, surface_force: 100 N%s}\n"
+        self.assertEqual(samples.check_scene(fence("yaml", law % ", damping: 100 N s/m")), "")
+        self.assertIn("colour", samples.check_scene(fence("yaml", law % ", colour: red")))
+        network = "network:\n  - {module: %s}\n  - ...\n"
+        self.assertEqual(samples.check_scene(fence("yaml", network % "six_axes")), "")
+        self.assertIn("seven_axes", samples.check_scene(fence("yaml", network % "seven_axes")))
+
     def test_commands_have_options_that_exist(self):
         known = samples.known_options()
         self.assertIn("--view", known["teleop"])

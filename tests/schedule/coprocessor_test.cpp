@@ -452,6 +452,46 @@ TEST(Coprocessor, StalledThreadIsStoodInForUntilItGoesOn) {
   }
 }
 
+// One stalled for longer than the caller once waited, 1 s, or half a second outside of a batch, was
+// given up: is_past() then answered by the clock, and a run in lock step came out otherwise.
+TEST(Coprocessor, InLockStepStalledThreadIsWaitedForHoweverLong) {
+#ifdef REPEL_SANITIZED
+  GTEST_SKIP() << "a sanitizer hands over a signal only outside of a batch";
+#endif
+  for (const CoprocessorMode mode : {CoprocessorMode::together, CoprocessorMode::beside}) {
+    for (const int threads : {1, 2}) {
+      SCOPED_TRACE(std::string(to_text(mode)) + ", threads " + std::to_string(threads));
+      const Threads watched([](int) {
+        ++Threads::caught;
+        const timespec stall{1, 300000000};
+        nanosleep(&stall, nullptr);
+        ++Threads::gone_on;
+      });
+      CoprocessorOptions options = Threads::options(threads, mode);
+      options.lock_step = true;
+      Both both(options, 400);
+      ASSERT_TRUE(comes_true([&] { return Threads::started == threads; }));
+      int ticks = 0;
+      const auto tick = [&] {
+        both.boxes.move();
+        EXPECT_TRUE(both.there.is_past(ticks)) << "at tick " << ticks;
+        ++ticks;
+        const PairForces& expected = both.here.exchange();
+        const PairForces& forces = both.there.exchange();
+        EXPECT_FALSE(both.there.late()) << "at tick " << ticks;
+        EXPECT_EQ(both.there.workers().age, mode == CoprocessorMode::beside ? 1 : 0);
+        if (mode == CoprocessorMode::together) both.expect_same_forces(expected, forces);
+      };
+      EXPECT_TRUE(Threads::strike(threads - 1, tick));
+      EXPECT_TRUE(comes_true([&] {
+        tick();
+        return Threads::gone_on == Threads::caught || HasFailure();
+      }));
+      EXPECT_EQ(both.there.usage().restarts, 0);
+    }
+  }
+}
+
 TEST(Coprocessor, KilledThreadIsReplaced) {
 #ifdef REPEL_SANITIZED
   GTEST_SKIP() << "a sanitizer waits for every thread to say that it ends";

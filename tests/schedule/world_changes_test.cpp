@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <thread>
 #include <vector>
@@ -329,6 +330,85 @@ TEST(WorldChanges, WaitUntilAPartIsFreeBeforeItGetsANewShape) {
   EXPECT_LT(changes.counts().waited, 16);
   EXPECT_EQ(scene.world.part(all[3]).shape.reach(), 0.06);
   EXPECT_EQ(changes.counts().refused, 0);
+}
+
+/// One reserved part, which is there, and a queue for so many changes.
+struct Queue {
+  explicit Queue(std::size_t capacity) : changes(world, capacity) {}
+
+  void tick(int ticks = 1) {
+    for (int k = 0; k < ticks; ++k) {
+      changes.apply(world, coprocessor);
+      world.advance(dt);
+      (void)coprocessor.exchange();
+    }
+  }
+  World world;
+  PartId part = world.reserve("spare", Shape::sphere(0.01, {.levels = 1}), 0.2);
+  Coprocessor coprocessor{world, {}};
+  WorldChanges changes;
+  const Shape ball = Shape::sphere(0.1, {.levels = 1});
+};
+
+// A part that was to go in a time below 0 stayed, and what was to come in its place waited for it
+// for ever, with everything behind it.
+TEST(WorldChanges, ImpossibleNumbersAreRefusedAtOnceAndBlockNothing) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  Queue queue(8);
+  WorldChanges& changes = queue.changes;
+  const Pose here = Pose::Identity();
+  Pose nowhere = here;
+  nowhere.translation().x() = nan;
+  for (const double over : {-1e-300, -1.0, nan, inf, 1e300}) {
+    EXPECT_FALSE(changes.add(queue.ball, here, over).valid()) << over;
+    EXPECT_FALSE(changes.add(queue.part, here, over)) << over;
+  }
+  EXPECT_FALSE(changes.add(queue.ball, nowhere).valid());
+  EXPECT_FALSE(changes.add(queue.part, nowhere));
+  ASSERT_EQ(changes.add(queue.ball, here, 0.0), queue.part) << "it is still free";
+  queue.tick(3);
+  for (const double over : {-1e-300, -1.0, nan, inf, 1e300}) {
+    EXPECT_FALSE(changes.attach(queue.part, World::fixed, over)) << over;
+    EXPECT_FALSE(changes.release(queue.part, over)) << over;
+    EXPECT_FALSE(changes.remove(queue.part, over)) << over;
+  }
+  for (const double speed : {0.0, -1.0, nan, inf, 1e300, 1e-300}) {
+    EXPECT_FALSE(changes.move(queue.part, here, speed)) << speed;
+  }
+  EXPECT_FALSE(changes.move(queue.part, nowhere));
+  EXPECT_FALSE(changes.add(queue.ball, here).valid()) << "it is in use";
+  queue.tick(3);
+  EXPECT_EQ(changes.counts().applied, 1);
+  EXPECT_EQ(changes.counts().refused, 0);
+  EXPECT_TRUE(changes.remove(queue.part, 0.0));
+  EXPECT_EQ(changes.add(queue.ball, here, 0.0), queue.part);
+  queue.tick(10);
+  EXPECT_EQ(changes.counts().applied, 3);
+}
+
+// A new shape for a part that is there and stays is refused; it does not wait for what never comes.
+TEST(WorldChanges, WhatTheTickDoesToAPartItselfBlocksNothing) {
+  Queue queue(8);
+  ASSERT_EQ(queue.changes.add(queue.ball, Pose::Identity(), 0.0), queue.part);
+  EXPECT_TRUE(queue.world.add(queue.part, Pose::Identity(), 0.0)) << "before its turn";
+  queue.tick(5);
+  EXPECT_EQ(queue.changes.counts().refused, 1);
+  EXPECT_EQ(queue.changes.counts().waited, 0);
+  EXPECT_TRUE(queue.changes.move(queue.part, Pose::Identity()));
+  queue.tick();
+  EXPECT_EQ(queue.changes.counts().applied, 1);
+}
+
+TEST(WorldChanges, FullQueueLosesNoPart) {
+  Queue queue(1);
+  const PartId other = queue.part;
+  ASSERT_TRUE(queue.changes.move(other, Pose::Identity())) << "the queue is full now";
+  EXPECT_FALSE(queue.changes.add(other, Pose::Identity()));
+  EXPECT_FALSE(queue.changes.add(queue.ball, Pose::Identity()).valid());
+  EXPECT_EQ(queue.changes.dropped(), 2);
+  queue.tick();
+  EXPECT_EQ(queue.changes.add(queue.ball, Pose::Identity()), other) << "it is still free";
 }
 
 // A box from a page once took the place of a crate that a script was to bring later.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -116,6 +117,34 @@ TEST(Results, CallPassiveOnlyWhatReturnedNoMoreThanItTook) {
   const nlohmann::json robot = report_of(false, {1.0});
   EXPECT_FALSE(robot.at("passive")) << "it may return more at any time";
   EXPECT_FALSE(robot.at("claims_passive"));
+}
+
+TEST(Results, RunIsOftenAtFaultInMoreThanATenthOfTheTicksOfSomeArm) {
+  RunResult result;
+  result.arms.resize(2);
+  EXPECT_FALSE(was_often_at_fault(result)) << "it had no tick";
+  for (ArmResult& arm : result.arms) arm.totals.ticks = 1000;
+  result.arms[1].totals.unsound = 100;
+  EXPECT_FALSE(was_often_at_fault(result));
+  result.arms[1].totals.unsound = 101;
+  EXPECT_TRUE(was_often_at_fault(result));
+}
+
+// A run of one second on a machine that stopped it for 160 ms ended with 5: its drive was enabled
+// again after 0.25 s.
+TEST(Results, WhatTheMachineHeldUpIsNoFaultOfTheArm) {
+  RunResult result;
+  RunTotals& totals = result.arms.emplace_back().totals;
+  totals.ticks = 400;
+  totals.unsound = 120;
+  EXPECT_TRUE(was_often_at_fault(result));
+  totals.missing = 64;
+  EXPECT_FALSE(was_often_at_fault(result)) << "a replay";
+  totals.missing = 0;
+  result.skipped_ticks = 64;
+  EXPECT_FALSE(was_often_at_fault(result));
+  totals.ticks = totals.unsound = 1000;
+  EXPECT_TRUE(was_often_at_fault(result));
 }
 
 }  // namespace results_test

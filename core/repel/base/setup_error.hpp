@@ -4,6 +4,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -51,6 +52,20 @@ class SetupError : public std::runtime_error {
   double rounded = value;
   std::from_chars(text, end, rounded);
   return to_text(rounded);
+}
+
+/// The least number of `digits` significant digits that is not below `value`, for advice that is to
+/// be enough. A part of 1e-12 of it is rounding.
+[[nodiscard]] inline std::string to_text_above(double value, int digits) {
+  if (!(value > 0.0)) return to_text(value, digits);
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
+  return to_text(unit * std::ceil(value / unit * (1.0 - 1e-12)), digits);
+}
+/// The same from below: the greatest that is not above `value`.
+[[nodiscard]] inline std::string to_text_below(double value, int digits) {
+  if (!(value > 0.0)) return to_text(value, digits);
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
+  return to_text(unit * std::floor(value / unit * (1.0 + 1e-12)), digits);
 }
 
 /// Returns `value` when `low <= value <= high`; throws SetupError naming it, its unit and the

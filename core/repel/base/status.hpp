@@ -86,6 +86,9 @@ inline constexpr Status blind = bad_joints | implausible_joints | frozen_joints;
 inline constexpr Status failsafe = bad_pose | bad_command | clock_fault | expired_pairs |
                                    silent_device | network_fault | clock_gap | bad_torque |
                                    arm_stopped | pushed_out | energy_gain | blind;
+/// The same without what a sound run may have for long: an operator who is silent, and an arm that
+/// is pushed out of where it started.
+inline constexpr Status unsound = failsafe & ~(silent_device | pushed_out);
 }  // namespace status
 
 /// Reaction of the loop to faults, named after the stop categories of machine safety.

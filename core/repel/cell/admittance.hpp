@@ -78,13 +78,14 @@ class AdmittedKinematics final : public ArmKinematics {
     q.resize(joints, 0.0);
     arm.kinematics->update(q);
     ArmInertia own(arm.model);
-    own.update(*arm.kinematics);
+    const bool is_sound = own.update(*arm.kinematics);
     if (own.missing() >= 0) {
       const auto joint = static_cast<std::size_t>(own.missing());
       throw SetupError("joint '" + arm.model.links[joint].joint_name +
                        "' moves no mass where the arm starts; allowed: an inertia for each joint "
                        "in AdmittanceOptions");
     }
+    if (!is_sound) throw SetupError(unsound_mass);
     for (std::size_t i = 0; i < joints; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       shown.push_back(options.scale * own.matrix().coeff(at, at));
@@ -130,6 +131,7 @@ class AdmittedKinematics final : public ArmKinematics {
   // It reports the same position until it answers, and where its own loop lets friction hold it.
   arm.options.joints.touches = true;
   arm.takes_motion = true;
+  arm.response += options.response;
   arm.options.joints.repeats += 2 * static_cast<int>(std::ceil(arm.options.drive_delay));
   arm.kinematics =
       std::make_unique<detail::AdmittedKinematics>(std::move(arm.kinematics), std::move(inertia));

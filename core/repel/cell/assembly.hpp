@@ -203,8 +203,11 @@ class CellAssembly {
   // Braking and the plausibility check of the readings use the mass of the arm.
   static void require_inertia(const ArmDescription& arm) {
     ArmInertia inertia(arm.model);
-    inertia.update(*arm.kinematics);
-    if (inertia.missing() < 0) return;
+    const bool is_sound = inertia.update(*arm.kinematics);
+    if (inertia.missing() < 0) {
+      if (!is_sound) throw SetupError(named(arm) + ": " + unsound_mass);
+      return;
+    }
     throw SetupError(
         "joint '" + arm.model.links[static_cast<std::size_t>(inertia.missing())].joint_name +
         "' moves no mass where the arm starts; allowed: links with mass and inertia, a "
@@ -228,12 +231,14 @@ class CellAssembly {
 
   void check_stiffness() {
     try {
-      warnings_ = check_gains(world_, 1.0 / description_.rate_hz, wall_delay(description_),
-                              device_damping_, description_.gain_check);
+      warnings_ =
+          check_gains(world_, 1.0 / description_.rate_hz, wall_delay(description_), device_damping_,
+                      description_.gain_check, longest_response(description_));
       warnings_.insert(warnings_.end(), raised_.begin(), raised_.end());
     } catch (const SetupError& error) {
-      throw SetupError(std::string("wall too stiff: ") + error.what() +
-                       " (to run all the same: 'gain_check: warning' at the obstacle module)");
+      throw SetupError(
+          std::string("wall too stiff: ") + error.what() +
+          " (to run all the same: 'gain_check: warning', in a scene at its obstacle module)");
     }
   }
 

@@ -46,6 +46,7 @@ struct ArmDescription {
   ForceLaw law;                 ///< between its parts and those of the arms before it in the list
   TeleoperatorOptions options;  ///< of fail-safe, stop, torques, readings and hard walls
   bool takes_motion = false;    ///< it takes rates or positions: set by `admitted`
+  double response = 0.0;        ///< [s] the part of its delay that is no number of ticks: likewise
 };
 
 /// A convex part P of the environment.

@@ -87,6 +87,25 @@ inline void add_pair(World& world, std::span<const ArmLayout> arms, PartId a, Pa
   return arm.name.empty() ? "the arm" : "arm '" + arm.name + "'";
 }
 
+/// @throws SetupError unless `start` has a position within the limits for each joint
+inline void require_start(const ArmModel& model, const std::vector<double>& start) {
+  const std::size_t joints = model.links.size();
+  if (start.size() != joints) {
+    throw SetupError("robot start: " + std::to_string(start.size()) +
+                     " joints; allowed: " + std::to_string(joints) + ", one for each moving joint");
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const ArmLink& link = model.links[i];
+    if (start[i] >= link.lower && start[i] <= link.upper) continue;
+    const std::string unit = link.type == JointType::revolute ? " rad" : " m";
+    std::string what = "robot start: " + to_text(start[i], 6);
+    what += unit;
+    what += " for " + link.joint_name + "; allowed: " + to_text(link.lower, 6) + " to ";
+    what += to_text(link.upper, 6);
+    throw SetupError(what + unit);
+  }
+}
+
 /// Updates the kinematics of the arm to its start. @throws SetupError if the arm has no joints or
 /// kinematics, or the start has a wrong number of joints or violates a joint limit
 inline void start(ArmDescription& arm) {
@@ -101,16 +120,7 @@ inline void start(ArmDescription& arm) {
     throw SetupError(named(arm) + ": it has no kinematics; allowed: an ArmKinematics");
   }
   if (arm.start.empty()) arm.start.assign(joints, 0.0);
-  if (arm.start.size() != joints) {
-    throw SetupError("robot start: " + std::to_string(arm.start.size()) +
-                     " joints; allowed: " + std::to_string(joints) + ", one for each moving joint");
-  }
-  for (std::size_t i = 0; i < joints; ++i) {
-    const ArmLink& link = arm.model.links[i];
-    if (arm.start[i] >= link.lower && arm.start[i] <= link.upper) continue;
-    throw SetupError("robot start: " + to_text(arm.start[i], 6) + " for " + link.joint_name +
-                     "; allowed: " + to_text(link.lower, 6) + " to " + to_text(link.upper, 6));
-  }
+  require_start(arm.model, arm.start);
   arm.kinematics->update(arm.start);
 }
 
@@ -179,8 +189,8 @@ inline void add_own_pairs(World& world, const ArmDescription& arm, const ArmLayo
       const Part& b = world.part(layout.parts[k]);
       if (separation(a.shape, pose_of(world, a), b.shape, pose_of(world, b)).lower <= 0.0) {
         throw SetupError("robot: '" + a.name + "' and '" + b.name +
-                         "' meet where the arm starts; allowed: another start, or links that "
-                         "the srdf file disables");
+                         "' meet where the arm starts; allowed: another start, or both in "
+                         "may_touch, which of a scene is what its srdf file disables");
       }
       add_pair(world, {&layout, 1}, layout.parts[i], layout.parts[k], *arm.self_law);
     }

@@ -66,7 +66,8 @@ inline void require_fitting_sensor(const ArmDescription& arm, const network::Net
     if (pose > 0) detail::draw_pose(arm, pose, q);
     arm.kinematics->update(q);
     arm.kinematics->tool_jacobian(J);
-    inertia.update(*arm.kinematics);
+    inertia.begin_anew();
+    if (!inertia.update(*arm.kinematics)) continue;
     ArmInertia::Matrix inverse = inertia.matrix();
     if (!network::dense::invert_positive(inverse.data(), size)) continue;
     tool = std::max(tool, detail::mobility(J, inverse, 0));

@@ -22,6 +22,15 @@ namespace repel {
   return delay;
 }
 
+/// [s] The part of the delay of the slowest drive that a faster tick does not shorten.
+[[nodiscard]] inline double longest_response(const CellDescription& cell) noexcept {
+  const auto is_faster = [](const ArmDescription& a, const ArmDescription& b) {
+    return a.options.drive_delay < b.options.drive_delay;
+  };
+  const auto slowest = std::max_element(cell.arms.begin(), cell.arms.end(), is_faster);
+  return slowest == cell.arms.end() ? 0.0 : slowest->response;
+}
+
 /// [ticks] How late the force of a wall acts: as late as the slowest drive, and a tick more where
 /// the coprocessor works beside.
 [[nodiscard]] inline double wall_delay(const CellDescription& cell) noexcept {
@@ -63,13 +72,14 @@ inline std::vector<std::string> settle_laws(CellDescription& cell) {
     if (law.hold == HoldKind::hard) law.watched = std::max(law.watched, stopping_distance(cell));
     law = settled(law, period, wall_delay(cell));
     const double needed = gain_rounding * wall_ticks(wall_delay(cell)) * period * law.stiffness();
-    const bool would_be_stable =
-        law.stiffness() <= stable_stiffness(law.damping, period, longest_delay(cell));
+    const double most = stable_stiffness(law.damping, period, longest_delay(cell));
+    const bool would_be_stable = law.stiffness() <= gain_rounding * most;
     if (!would_be_stable || law.damping >= needed) return;
     std::string said = "beside, forces are one tick late: the damping of walls of " +
-                       to_text(law.stiffness(), 4) + " N/m is " + to_text(needed, 4) +
-                       " N s/m, not " + to_text(law.damping, 4);
+                       to_text(law.stiffness(), 4) + " N/m is " + to_text_above(needed, 4) +
+                       " N s/m, not " + to_text(law.damping);
     law.damping = needed;
+    if (wall_delay(cell) == longest_delay(cell)) return;  // raised by rounding alone
     if (std::find(raised.begin(), raised.end(), said) == raised.end()) {
       raised.push_back(std::move(said));
     }

@@ -79,29 +79,38 @@ enum class HoldKind : std::uint8_t {
 ///     s(d) = min(phi(d), ceiling) min(1, (D + d) / L)    L = max((1 - plateau) D, ceiling / k)
 ///     f    = min(s max(0, 1 - (c0 / ceiling) d'), ceiling)
 struct ForceLaw {
+  static constexpr double usual_damping = 50.0;              ///< [N s/m]
   double range = 0.02;                                       ///< r [m] where the force begins
   double surface_force = 100.0;                              ///< F [N] at distance 0
-  double damping = 50.0;                                     ///< c0 [N s/m]
+  double damping = usual_damping;                            ///< c0 [N s/m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [N] greatest force of the pair
   bool passable = false;                                     ///< may be entered
   GivenAt given_at = GivenAt::part;                          ///< see repel/cell/leverage.hpp
   double depth = most;   ///< D [m] penetration depth at which a passable body releases;
                          ///< World::add_pair clamps it to the deepest that the two shapes can have
   double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1
-  /// e [rad], 0 to 0.05: where features are parallel within e, the force acts on the contact patch,
-  /// whose distance is the mean over tilts up to e (repel/patch/patch.hpp). World::add_pair lowers
-  /// it so that the patch is at most `most_nearer` nearer than the nearest points, and to 0 for
-  /// passable bodies. 0: the force acts at the nearest point, which jumps between the corners of
-  /// parallel faces.
+  /// e [rad], 0 to `most_tilt`: where features are parallel within e, the force acts on the contact
+  /// patch, whose distance is the mean over tilts up to e (repel/patch/patch.hpp). World::add_pair
+  /// lowers it so that the patch is at most `most_nearer` nearer than the nearest points, and to 0
+  /// for passable bodies. 0: the force acts at the nearest point, which jumps between the corners
+  /// of parallel faces.
   double tilt = 0.005;
-  bool damping_may_rise = false;   ///< a cell raises c0 to what keeps the wall stable at its rate
+  /// A cell raises c0 to what keeps the wall stable at its rate; so it does with `usual_damping`,
+  /// which nobody has chosen, unless `damping_is_meant`.
+  bool damping_may_rise = false;
+  bool damping_is_meant = false;   ///< c0 is a choice even where it is the usual one
   HoldKind hold = HoldKind::soft;  ///< whether a hand can get in, see docs/walls.md
   double watched = 0.0;  ///< [m] beyond the range, where the approach to a hard wall is watched; a
                          ///< cell raises it to what its arms need to stop
 
+  static constexpr double most_tilt = 0.05;      ///< [rad]
   static constexpr double most_nearer = 0.5e-3;  ///< [m]
   static constexpr double most = 1e9;            ///< upper bound of every number but the ceiling
 
+  /// c0 is no choice: a cell may raise it.
+  [[nodiscard]] bool is_damping_open() const noexcept {
+    return damping_may_rise || (damping == usual_damping && !damping_is_meant);
+  }
   /// [m] The distance within which a pair with this law is evaluated.
   [[nodiscard]] double reach() const noexcept { return range + watched; }
 
@@ -168,7 +177,7 @@ inline const ForceLaw& checked(const ForceLaw& law) {
   checked("ceiling", law.ceiling, 0.0, std::numeric_limits<double>::infinity(), "N");
   checked("depth", law.depth, 0.0, most, "m");
   checked("plateau", law.plateau, 0.0, 1.0, "");
-  checked("tilt", law.tilt, 0.0, 0.05, "rad");
+  checked("tilt", law.tilt, 0.0, ForceLaw::most_tilt, "rad");
   checked("watched", law.watched, 0.0, 10.0, "m");
   if (law.passable && law.hold == HoldKind::hard) {
     throw SetupError("hold is hard for a passable body; allowed: soft, since it may be entered");

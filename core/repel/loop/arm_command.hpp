@@ -10,6 +10,7 @@
 
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/driven_speed.hpp>
 #include <repel/loop/energy_watch.hpp>
 #include <repel/loop/entry_barrier.hpp>
 #include <repel/loop/failsafe.hpp>
@@ -19,6 +20,7 @@
 #include <repel/loop/record.hpp>
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/stop_control.hpp>
+#include <repel/network/machinery/prediction.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/network.hpp>
 #include <repel/world/arm.hpp>
@@ -30,7 +32,9 @@ struct ArmMotion {
   const network::Network& network;    ///< solved
   const network::Jacobian& jacobian;  ///< of the tool
   const std::vector<double>& v;       ///< [rad/s] of the joints
+  std::span<const double> probes;     ///< [N m] of joints that may be frozen (JointWatch::probe)
   double tool_speed = 0.0;            ///< [m/s]
+  double carried = 0.0;               ///< [W] that walls give because they move themselves
 };
 
 /// Decides on the stop and composes the joint torques; the command of the arm is in the record.
@@ -44,12 +48,17 @@ class ArmCommand {
       : options_(options),
         failsafe_(options.failsafe),
         energy_watch_(period, options.energy),
+        motion_watch_(period, out_of_phase),
         stop_control_(period, options.stop),
         torques_(model, period, options.torques),
         barrier_(model, period, options.drive_delay, options.torques.slew_time, pairs,
                  options.barrier) {
     walls_.setZero(static_cast<Eigen::Index>(model.links.size()));
-    asked_ = total_ = walls_;
+    asked_ = total_ = momenta_ = walls_;
+    horizon_ = network::Prediction::horizon(options.drive_delay) * period;
+    // What is sent takes the slew time and the delay of the drive to act, and the mass of the model
+    // may be off.
+    speed_horizon_ = (4.0 + 2.0 * options.drive_delay) * period + options.torques.slew_time;
   }
 
   /// Derives gain, stop, brakes and enable from the status of the tick, all in `record`.
@@ -58,10 +67,15 @@ class ArmCommand {
                                const network::Network& network, double elapsed) noexcept {
     const double sampled = network.find<network::PumaJoints>()->sampling_energy();
     record.status |= energy_watch_.step(sampled, elapsed);
+    const Status late = watch_phase(watch, elapsed);
+    record.status |= late;
     watch_drive(record, state, elapsed);
     if (is_poisoned_) record.status |= status::bad_torque;
     record.gain = failsafe_.step(record.status, elapsed);
-    const bool lost = (record.status & (status::blind | status::bad_pose)) != 0U;
+    // Out of phase, the torques of walls and braking may be what drives the arm. Without brakes
+    // there is nothing better.
+    const bool drives = late != 0U && options_.has_brakes;
+    const bool lost = (record.status & (status::blind | status::bad_pose)) != 0U || drives;
     record.stop = stop_control_.step(lost, watch.knows_nothing(), failsafe_.tripped(), elapsed);
     record.brakes = stop_control_.brakes();
   }
@@ -78,21 +92,25 @@ class ArmCommand {
   void drive(const ArmMotion& motion, const ArmInertia& inertia, JointWatch& watch,
              TickRecord& record) noexcept {
     const auto* robot = motion.network.find<network::PumaJoints>();
-    const TorqueShares shares = shares_of(motion, watch, record);
+    TorqueShares shares = shares_of(motion, watch, record);
     asked_ = robot->torques();
     walls_ = motion.network.walls();
-    yield(motion.network, shares);
+    if (options_.is_remote) keep_speed(motion, inertia, shares, record);
+    yield(motion, shares);
+    bound_release(motion, inertia, shares.walls);
     // An arm that is pushed out of where it started, or held by its brakes, is not held by walls.
     const bool is_held = !record.brakes && (record.status & status::pushed_out) == 0U;
     if (!is_held) barrier_.forget();
-    const Status found = torques_.compose(asked_, walls_, shares, motion.v, inertia, &barrier_);
+    const Status found =
+        torques_.compose(asked_, walls_, shares, motion.v, inertia, &barrier_, motion.probes);
     record.status |= found;
     record.held_force = barrier_.force();
     record.held_pair = barrier_.pushed();
     is_poisoned_ = (found & status::bad_torque) != 0U;
     std::copy(torques_.torques().begin(), torques_.torques().end(), record.torques.begin());
     const bool held = options_.has_brakes && (record.brakes || !is_enabled_);
-    watch.expect(torques_.alone(), torques_.gravity(), torques_.expected_rate(), held);
+    watch.expect(torques_.net(), torques_.alone(), torques_.gravity(), torques_.expected_rate(),
+                 held);
   }
 
   /// The operator's force has been ramped down to zero.
@@ -105,6 +123,19 @@ class ArmCommand {
   [[nodiscard]] bool is_poisoned() const noexcept { return is_poisoned_; }
 
  private:
+  // Beyond the error of the kinetic energy, an arm that follows its torques gains next to nothing.
+  static constexpr EnergyWatchOptions out_of_phase{
+      .taken_back = 0.1, .most = 0.2, .memory = 1.0, .latch = 3.0};
+
+  // What is not in the model may move an arm that touches it.
+  [[nodiscard]] Status watch_phase(const JointWatch& watch, double elapsed) noexcept {
+    if (options_.joints.touches) return 0;
+    if (watch.drive().strays()) motion_watch_.latch();
+    const double error = 2.0 * (1.0 - 1.0 / options_.joints.mass_uncertainty);
+    const MotionAccount& account = watch.account();
+    return motion_watch_.step(account.gained(), elapsed, error * account.kinetic());
+  }
+
   // A drive that stopped by itself is enabled again after FailsafeOptions::hold without other
   // faults.
   void watch_drive(TickRecord& record, ArmState state, double elapsed) noexcept {
@@ -130,8 +161,8 @@ class ArmCommand {
     shares.walls = record.brakes ? 0.0 : 1.0;
     if ((record.status & status::pushed_out) != 0U) shares.walls = exit_share(motion.tool_speed);
     shares.friction = let_go ? 0.0 : record.gain;
-    shares.brake =
-        std::max({let_go ? 1.0 : 1.0 - record.gain, at_speed.brake, energy_watch_.brake()});
+    shares.brake = std::max({let_go ? 1.0 : 1.0 - record.gain, at_speed.brake,
+                             energy_watch_.brake(), motion_watch_.brake()});
     if (!options_.has_brakes) return without_brakes(shares, watch);
     if (record.brakes) shares.brake = 0.0;
     if (record.stop == Stop::released) shares.gravity = 0.0;
@@ -152,29 +183,75 @@ class ArmCommand {
     return shares;
   }
 
+  // Cuts what would drive the tool beyond its speed limit, and brakes what is beyond it all the
+  // same: a push that is taken off a wall lets the wall throw the tool back.
+  void keep_speed(const ArmMotion& motion, const ArmInertia& inertia, TorqueShares& shares,
+                  TickRecord& record) const noexcept {
+    if (record.brakes || !(shares.operators * shares.drive > 0.0)) return;
+    const double beyond = motion.tool_speed / options_.tool_speed - 1.0;
+    shares.brake = std::max(shares.brake, std::clamp(beyond / 0.08, 0.0, 1.0));
+    ArmInertia::Vector v = asked_;
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = motion.v[static_cast<std::size_t>(i)];
+    const double share = share_within(motion.jacobian, v, shares.operators * (asked_ - walls_),
+                                      inertia, speed_horizon_, options_.tool_speed);
+    if (share >= shares.drive) return;
+    shares.drive = share;
+    record.status |= status::tool_speed;
+  }
+
   // Takes off the walls what they will not give where the arm moves within the horizon.
-  void yield(const network::Network& network, const TorqueShares& shares) noexcept {
+  void yield(const ArmMotion& motion, const TorqueShares& shares) noexcept {
+    double power = 0.0;  // of the operator [W]
+    for (Eigen::Index i = 0; i < walls_.size(); ++i) {
+      power += (asked_.coeff(i) - walls_.coeff(i)) * motion.v[static_cast<std::size_t>(i)];
+    }
+    const double share = shares.operators * (power > 0.0 ? shares.drive : 1.0);
     for (Eigen::Index i = 0; i < walls_.size(); ++i) {
       // A contribution of share zero may be NaN.
       total_.coeffRef(i) = shares.walls > 0.0 ? shares.walls * walls_.coeff(i) : 0.0;
-      if (!(shares.operators > 0.0)) continue;
-      total_.coeffRef(i) += shares.operators * (asked_.coeff(i) - walls_.coeff(i));
+      if (share > 0.0) total_.coeffRef(i) += share * (asked_.coeff(i) - walls_.coeff(i));
     }
-    const auto less = network.given_up(total_);
+    const auto less = motion.network.given_up(total_);
     asked_ = asked_ - less;
     walls_ = walls_ - less;
   }
 
+  // Takes off the walls what would drive the tool out of them faster than an operator may. It is
+  // taken along the momentum, so that what holds the arm across its motion stays, and only of what
+  // walls have stored: one that is entered takes power, one that moves brings its own.
+  void bound_release(const ArmMotion& motion, const ArmInertia& inertia, double share) noexcept {
+    if (!(share > 0.0)) return;
+    inertia.momenta(motion.v, momenta_);
+    double given = -motion.carried, power = 0.0, energy = 0.0;  // [W], [W] of all, [J] twice
+    for (Eigen::Index i = 0; i < walls_.size(); ++i) {
+      const double v = motion.v[static_cast<std::size_t>(i)];
+      given += walls_.coeff(i) * v;
+      power += total_.coeff(i) * v;
+      energy += momenta_.coeff(i) * v;
+    }
+    if (!(given > 0.0 && energy > 0.0)) return;
+    const double kept =
+        release_share(motion.tool_speed, options_.tool_speed, horizon_ * power / energy);
+    if (kept == 1.0) return;
+    momenta_ *= (1.0 - kept) * given / energy;
+    asked_ -= momenta_;
+    walls_ -= momenta_;
+  }
+
   TeleoperatorOptions options_;
   Failsafe failsafe_;
-  EnergyWatch energy_watch_;
+  EnergyWatch energy_watch_;  // by sampling
+  EnergyWatch motion_watch_;  // by torques that act later than they are told to
   StopControl stop_control_;
   JointTorques torques_;
   EntryBarrier barrier_;
-  network::Vec<network::any_size> walls_;  // [N m] of walls and limits on the joints
-  network::Vec<network::any_size> asked_;  // [N m] of the whole network
-  network::Vec<network::any_size> total_;  // [N m] the same, as far as it is sent
+  network::Vec<network::any_size> walls_;    // [N m] of walls and limits on the joints
+  network::Vec<network::any_size> asked_;    // [N m] of the whole network
+  network::Vec<network::any_size> total_;    // [N m] the same, as far as it is sent
+  network::Vec<network::any_size> momenta_;  // [kg m^2/s] of the joints
+  double horizon_ = 0.0;                     // [s] in which the arm follows its torques
   double exit_share_ = 0.0;
+  double speed_horizon_ = 0.0;  // [s] within which torques act
   bool is_poisoned_ = false;
   bool is_enabled_ = true;    // the drive of the arm
   double stopped_for_ = 0.0;  // [s] the drive was stopped, with no other fault

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include <repel/loop/arm_bodies.hpp>
+#include <repel/network/elements/dense.hpp>
 #include <repel/network/elements/port.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
@@ -39,6 +40,17 @@ namespace repel {
   return std::clamp(2.0 * weight + 50.0 * inertia, turns ? 200.0 : 1000.0, 1e6);
 }
 
+/// The same for all joints.
+[[nodiscard]] inline std::vector<double> effort_bounds(const ArmModel& model) {
+  std::vector<double> bounds;
+  for (std::size_t i = 0; i < model.links.size(); ++i) bounds.push_back(effort_bound(model, i));
+  return bounds;
+}
+
+/// What is said of an arm whose `ArmInertia` is not sound where it starts.
+inline constexpr const char* unsound_mass =
+    "its mass matrix at the start is none; allowed: a finite, symmetric and positive definite one";
+
 /// The inertia matrix of an arm at its joints,
 ///
 ///     M = sum over the links of  m Jv' Jv + Jw' I Jw     and the rotors on the diagonal
@@ -55,28 +67,40 @@ class ArmInertia {
   explicit ArmInertia(const ArmModel& model)
       : model_(model), drawn_(Jacobian::Zero(6, size())), given_(size(), size()) {
     M_.setZero(size(), size());
+    next_ = M_;
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       nominal_.push_back(0.01 * effort_bound(model, i));
     }
   }
 
-  /// Updates M to the pose of `kinematics`. Cost: a Jacobian for each link, or its mass matrix.
-  void update(const ArmKinematics& kinematics) noexcept {
+  /// Updates M to the pose of `kinematics`. Cost: a Jacobian for each link, or its mass matrix, and
+  /// a factorization.
+  /// @return whether it can be a mass matrix: finite, symmetric, nowhere negative, and with less
+  /// than four times, and more than a fourth of, the inertias of the last one; else M stays
+  [[nodiscard]] bool update(const ArmKinematics& kinematics) noexcept {
     const bool is_given =
         kinematics.mass_matrix(given_) && given_.rows() == size() && given_.cols() == size();
     if (is_given) {
-      std::copy(given_.data(), given_.data() + given_.size(), M_.data());
+      std::copy(given_.data(), given_.data() + given_.size(), next_.data());
     } else {
-      M_.setZero(size(), size());
+      next_.setZero(size(), size());
       add_links(kinematics);
     }
-    missing_ = -1;
+    if (!follows()) return false;
+    int missing = -1;
     for (Eigen::Index i = size() - 1; i >= 0; --i) {
-      if (M_.coeff(i, i) > 1e-9) continue;
-      missing_ = static_cast<int>(i);
-      M_.coeffRef(i, i) = nominal_[static_cast<std::size_t>(i)];
+      if (next_.coeff(i, i) > 1e-9) continue;
+      missing = static_cast<int>(i);
+      next_.coeffRef(i, i) = nominal_[static_cast<std::size_t>(i)];
     }
+    missing_ = missing;
+    if (!is_sound()) return false;
+    M_ = next_;
+    is_known_ = true;
+    return true;
   }
+  /// Accepts the next sound matrix whatever the last one was: the arm moved on unseen.
+  void begin_anew() noexcept { is_known_ = false; }
 
   /// M [kg m^2] or [kg], symmetric.
   [[nodiscard]] const Matrix& matrix() const noexcept { return M_; }
@@ -100,6 +124,33 @@ class ArmInertia {
     return static_cast<Eigen::Index>(model_.links.size());
   }
 
+  // Whether the inertias can be those of a moment after the last ones. Below a tenth of what stands
+  // for an unknown inertia they may be anything.
+  [[nodiscard]] bool follows() const noexcept {
+    for (Eigen::Index i = 0; is_known_ && i < size(); ++i) {
+      const double own = next_.coeff(i, i);
+      const double last = M_.coeff(i, i);
+      const double least = 0.1 * nominal_[static_cast<std::size_t>(i)];
+      if (!(own <= 4.0 * std::max(last, least))) return false;
+      if (last > least && !(own >= 0.25 * last)) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_sound() noexcept {
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      const double own = next_.coeff(i, i);
+      for (Eigen::Index k = 0; k < i; ++k) {
+        const double most = std::sqrt(own * next_.coeff(k, k));
+        if (!(std::abs(next_.coeff(i, k) - next_.coeff(k, i)) <= 1e-6 * most)) return false;
+      }
+    }
+    // A direction without mass is let through: joints in line may have one.
+    return factored_.factor(size(), [this](Eigen::Index k) {
+      return next_.data()[k] * (k % (size() + 1) == 0 ? 1.0 + 1e-6 : 1.0);
+    });
+  }
+
   void add_links(const ArmKinematics& kinematics) noexcept {
     for (Eigen::Index k = 0; k < size(); ++k) {
       const ArmLink& link = model_.links[static_cast<std::size_t>(k)];
@@ -107,8 +158,8 @@ class ArmInertia {
     }
     for (Eigen::Index i = 0; i < size(); ++i) {
       const auto joint = static_cast<std::size_t>(i);
-      M_.coeffRef(i, i) += model_.links[joint].rotor_inertia;
-      for (Eigen::Index k = 0; k < i; ++k) M_.coeffRef(i, k) = M_.coeff(k, i);
+      next_.coeffRef(i, i) += model_.links[joint].rotor_inertia;
+      for (Eigen::Index k = 0; k < i; ++k) next_.coeffRef(i, k) = next_.coeff(k, i);
     }
   }
 
@@ -118,7 +169,7 @@ class ArmInertia {
     kinematics.jacobian(index, X_WL * link.p_LC, drawn_);
     const Mat3 R_WL = rotation(X_WL);
     const Mat3 I_W = R_WL * link.I_C_L * transposed(R_WL);
-    double* row = M_.data();
+    double* row = next_.data();
     for (Eigen::Index i = 0; i <= index; ++i, row += size()) {
       const Twist column = column_of(drawn_, i);
       const Wrench inertial{link.mass * column.linear, I_W * column.angular};
@@ -129,9 +180,11 @@ class ArmInertia {
   const ArmModel& model_;
   Jacobian drawn_;
   Eigen::MatrixXd given_;
-  Matrix M_;
+  Matrix M_, next_;
+  network::dense::Factored factored_;
   std::vector<double> nominal_;  // [kg m^2] or [kg]
   int missing_ = -1;
+  bool is_known_ = false;
 };
 
 }  // namespace repel

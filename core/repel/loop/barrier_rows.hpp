@@ -40,15 +40,18 @@ class BarrierRows {
     zero_.setZero(static_cast<Eigen::Index>(model.links.size()));
   }
 
-  /// @param q [rad] or [m] @param v [rad/s] or [m/s] of the joints
+  /// @param q [rad] or [m] @param v [rad/s] or [m/s] of the joints, as told @param untold the rates
+  /// by which they move faster (JointWatch::untold_rate); they count where they close a gap
   /// @param soon [s] rows compare by their gap after this time
   void gather(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
               const ArmBodies& links, std::span<const double> q, std::span<const double> v,
-              double soon) noexcept {
+              std::span<const double> untold, double soon) noexcept {
     clear();
     soon_ = soon;
-    for (const HardContact& contact : contacts) add(contact, tool, jacobian, links, v);
-    for (std::size_t joint = 0; joint < q.size(); ++joint) add_joint(joint, q[joint], v[joint]);
+    for (const HardContact& contact : contacts) add(contact, tool, jacobian, links, v, untold);
+    for (std::size_t joint = 0; joint < q.size(); ++joint) {
+      add_joint(joint, q[joint], v[joint], untold[joint]);
+    }
   }
   void clear() noexcept { used_ = 0; }  ///< forgets all rows
 
@@ -64,22 +67,25 @@ class BarrierRows {
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
   void add(const HardContact& contact, BodyId tool, const Jacobian& jacobian,
-           const ArmBodies& links, std::span<const double> v) noexcept {
+           const ArmBodies& links, std::span<const double> v,
+           std::span<const double> untold) noexcept {
     BarrierRow row;
     row.h = zero_;
     const bool has_a = add_torques(contact.a, contact.on_a, tool, jacobian, links, row.h);
     const bool has_b = add_torques(contact.b, contact.on_b, tool, jacobian, links, row.h);
     if (!has_a && !has_b) return;
     double own = 0.0;
+    double faster = 0.0;
     double largest = 0.0;
     for (std::size_t i = 0; i < v.size(); ++i) {
       own += row.h.coeff(index(i)) * v[i];
+      faster += row.h.coeff(index(i)) * untold[i];
       largest = std::max(largest, std::abs(row.h.coeff(index(i))));
     }
     if (!(largest > 1e-6)) return;  // no joint moves it
     row.pair = contact.pair;
     row.gap = contact.gap - margin_;
-    row.rate = contact.rate;
+    row.rate = contact.rate + std::min(0.0, faster);
     row.others = contact.rate - own;
     row.is_shared = contact.is_between_arms;
     keep(row);
@@ -97,13 +103,13 @@ class BarrierRows {
 
   // What stops a joint at the end of its range, or at its greatest speed, would leave the others to
   // the wall.
-  void add_joint(std::size_t joint, double q, double v) noexcept {
+  void add_joint(std::size_t joint, double q, double v, double untold) noexcept {
     const ArmLink& link = model_.links[joint];
     for (const double side : {1.0, -1.0}) {
       BarrierRow row;
       row.h = zero_;
       row.h.coeffRef(index(joint)) = side;
-      row.rate = side * v;
+      row.rate = side * v + std::min(0.0, side * untold);
       row.gap = (side > 0.0 ? q - link.lower : link.upper - q) - margin_of_ranges;
       if (link.lower < link.upper && row.gap < 1.0) keep(row);
       row.gap = 0.0;

@@ -82,31 +82,36 @@ class EntryBarrier {
   [[nodiscard]] double reaction() const noexcept { return reaction_; }
 
   /// Takes the contacts that concern this arm, in its present pose. @param q [rad] or [m]
-  /// @param v [rad/s] or [m/s] of the joints @param jacobian of the tool
+  /// @param v [rad/s] or [m/s] of the joints, and by how much they are faster than `v` says
+  /// (JointWatch::untold_rate) @param jacobian of the tool
   void watch(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
-             const ArmBodies& links, std::span<const double> q,
-             std::span<const double> v) noexcept {
-    if (is_on()) rows_.gather(contacts, tool, jacobian, links, q, v, reaction_);
+             const ArmBodies& links, std::span<const double> q, std::span<const double> v,
+             std::span<const double> untold) noexcept {
+    if (is_on()) rows_.gather(contacts, tool, jacobian, links, q, v, untold, reaction_);
   }
   /// Without contacts, until the next `watch`.
   void forget() noexcept { rows_.clear(); }
 
-  /// Changes `torques` [N m] so that no hard wall is entered, and brings them within `lower` and
-  /// `upper` if it has to. @param weight [N m] the part of them that carries the weight
+  /// Changes `torques` [N m] so that no hard wall is entered once they are brought within `lower`
+  /// and `upper`. @param weight [N m] the part of them that carries the weight
+  /// @param efforts [N m] limits, by which the push that a wall withstands is counted: how fast a
+  /// torque may change does not matter to it
   /// @return `hold_lost`, or 0
   [[nodiscard]] Status limit(std::span<double> torques, std::span<const double> weight,
                              std::span<const double> lower, std::span<const double> upper,
-                             std::span<const double> v, const ArmInertia& inertia) noexcept {
+                             std::span<const double> efforts, std::span<const double> v,
+                             const ArmInertia& inertia) noexcept {
     force_ = 0.0;
     pushed_ = {};
     if (!is_on()) return 0;
     observe(v, inertia);
-    if (rows_.all().empty() || !begin(inertia)) return 0;
+    if (rows_.all().empty()) return 0;
+    if (!begin(inertia)) return status::hold_lost;
     predict(v, inertia);
     for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
     if (!solver_.solve(torques, weight, lower, upper)) return 0;
-    account();
-    for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.torque(i);
+    account(efforts);
+    for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.wanted(i);
     return judge();
   }
 
@@ -235,18 +240,19 @@ class EntryBarrier {
     return 2.0 * a * d / (a * t + std::sqrt(a * t * a * t + 2.0 * a * d) + 1e-300);
   }
 
-  void account() noexcept {
-    const double share = solver_.share();
-    double force = 0.0;  // on one pair
+  void account(std::span<const double> efforts) noexcept {
+    const double share = solver_.share();            // of what acts in this tick
+    const double withheld = solver_.share(efforts);  // of what the wall takes off
+    double force = 0.0;                              // on one pair
     for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
       const LeastConstraint::Row& bound = solver_.rows()[k];
       const PairId pair = rows_.all()[k].pair;
       if (!pair.valid()) continue;
       if (k == 0 || rows_.all()[k - 1].pair != pair) force = 0.0;
-      const double pushed = share * bound.force;
+      const double pushed = withheld * bound.force;
       const double rate = rows_.all()[k].rate;
       const bool gives = bound.least_rate > 0.0;
-      totals_.energy -= period_ * pushed * (gives ? rate : std::min(rate, 0.0));
+      totals_.energy -= period_ * share * bound.force * (gives ? rate : std::min(rate, 0.0));
       force += pushed;
       double& most = withstood_[static_cast<std::size_t>(pair.index)];
       most = std::max(most, force);

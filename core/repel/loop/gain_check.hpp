@@ -77,28 +77,48 @@ inline constexpr double gain_rounding = 1.0 + 1e-9;
 /// The law with its damping raised, where it may rise, to what is stable for a tick of `period` [s]
 /// and a drive delayed by `drive_delay` [ticks].
 [[nodiscard]] inline ForceLaw settled(ForceLaw law, double period, double drive_delay) noexcept {
-  if (law.damping_may_rise) {
+  if (law.is_damping_open()) {
     const double needed = wall_ticks(drive_delay) * period * law.stiffness();
     law.damping = std::max(law.damping, gain_rounding * needed);
   }
   return law;
 }
 
+/// [Hz] Greatest rate of a cell.
+inline constexpr double greatest_rate = 1e5;
+
+/// The longest period [s] at which the spring of a wall is stable; 0 or below: none is short
+/// enough.
+/// @param response [s] the part of the delay that a shorter period does not shorten
+[[nodiscard]] inline double longest_period(const ForceLaw& law, double period, double drive_delay,
+                                           double response) noexcept {
+  const double left = law.damping / law.stiffness() - 2.0 * response;
+  return left / wall_ticks(drive_delay - response / period);
+}
+
 /// Empty when the spring of a wall is stable; else one sentence with all numbers and what would do.
-[[nodiscard]] inline std::string complaint(const ForceLaw& law, double period, double drive_delay) {
+/// Who does what it says is not refused again. @param response as of `longest_period`
+[[nodiscard]] inline std::string complaint(const ForceLaw& law, double period, double drive_delay,
+                                           double response = 0.0) {
   const double most = stable_stiffness(law.damping, period, drive_delay);
-  if (law.stiffness() <= most) return {};
+  if (law.stiffness() <= gain_rounding * most) return {};
   const auto text = [](double value) { return repel::to_text(value, 4); };
   const double ticks = wall_ticks(drive_delay);
   std::string said = "wall stiffness is " + text(law.stiffness()) + " N/m; with its damping of " +
-                     text(law.damping) + " N s/m the limit is " + text(most) +
+                     text(law.damping) + " N s/m the limit is " + to_text_below(most, 4) +
                      " N/m at a period of " + text(1e3 * period) + " ms and a drive delay of " +
                      text(drive_delay) + " ticks; this wall needs " +
-                     text(law.stiffness() * ticks * period) + " N s/m of damping";
-  if (law.damping > 0.0) {
-    said += ", or a rate of at least " + text(law.stiffness() * ticks / law.damping) + " Hz";
+                     to_text_above(law.stiffness() * ticks * period, 4) + " N s/m of damping";
+  const double longest = longest_period(law, period, drive_delay, response);
+  if (longest * greatest_rate >= 1.0) {
+    return said + ", or a rate of at least " + to_text_above(1.0 / longest, 4) + " Hz";
   }
-  return said;
+  said += ", or a lower surface force or a longer range";
+  const double within = 0.5 * (law.damping / law.stiffness() - ticks * period) + response;
+  if (within > 0.0) {
+    said += ", or an arm that answers within " + to_text_below(1e3 * within, 4) + " ms";
+  }
+  return said + "; no rate would do, up to " + to_text(greatest_rate) + " Hz";
 }
 
 /// Checks every law of the world for a tick of `period` [s] and arms whose drives are late by
@@ -106,20 +126,22 @@ inline constexpr double gain_rounding = 1.0 + 1e-9;
 /// (network/machinery/clean_stiffness.hpp). Returns one sentence with the numbers for each pair of
 /// bodies whose wall is too stiff, equal sentences once; empty when there is none. Not for the
 /// tick.
+/// @param response [s] the part of the delay that a shorter period does not shorten
 /// @throws SetupError with the first of them when `check` is `error`
 inline std::vector<std::string> check_gains(const World& world, double period, double drive_delay,
-                                            double device_damping, network::GainCheck check) {
+                                            double device_damping, network::GainCheck check,
+                                            double response = 0.0) {
   std::vector<std::string> complaints;
   std::vector<std::string> told;
   for (const Pair& pair : world.pairs()) {
-    std::string text = complaint(pair.law, period, drive_delay);
+    std::string text = complaint(pair.law, period, drive_delay, response);
     const network::CleanStiffness clean{.period = period,
                                         .device_damping = device_damping,
                                         .wall_damping = pair.law.damping,
                                         .delay = drive_delay * period};
-    if (pair.law.stiffness() <= clean.limit()) continue;
+    if (pair.law.stiffness() <= gain_rounding * clean.limit()) continue;
     if (!text.empty()) {
-      text += ", or " + repel::to_text(clean.needed_damping(pair.law.stiffness()), 4) +
+      text += ", or " + to_text_above(clean.needed_damping(pair.law.stiffness()), 4) +
               " N s/m of damping in the device, which has " + repel::to_text(device_damping, 4);
     }
     if (text.empty() || std::find(told.begin(), told.end(), text) != told.end()) continue;

@@ -66,23 +66,28 @@ class JointTorques {
 
   /// Computes the torques of this tick. @param network all its joint torques [N m]; `walls` the
   /// part of them that comes from walls and limits; `v` [rad/s]
-  /// @param barrier before hard walls, or null
+  /// @param barrier before hard walls, or null @param probes [N m] net torques that joints must
+  /// exceed, signed, 0 where there is no doubt (StillJoint::probe)
   /// @return status bits
   [[nodiscard]] Status compose(const Vector& network, const Vector& walls, const TorqueShares& s,
                                const std::vector<double>& v, const ArmInertia& inertia,
-                               EntryBarrier* barrier = nullptr) noexcept {
+                               EntryBarrier* barrier = nullptr,
+                               std::span<const double> probes = {}) noexcept {
     const bool sound = keep_sound(network, walls);
     Status found = sound ? 0U : status::bad_torque;
     const TorqueShares given =
         sound ? s : TorqueShares{.operators = 0.0, .walls = 0.0, .friction = 0.0, .brake = s.brake};
     if (share_out(network, walls, given, v)) found |= status::speed_limit;
+    for (std::size_t i = 0; i < probes.size() && given.operators > 0.0; ++i) probe(i, probes[i]);
     const double braking = brake(walls, given, v, inertia);
     for (std::size_t i = 0; i < torques_.size(); ++i) found |= bound(i);
     if (barrier != nullptr) {
-      found |= barrier->limit(sum_, gravity_, lower_, upper_, v, inertia);
+      found |= barrier->limit(sum_, gravity_, lower_, upper_, effort_, v, inertia);
     }
     for (std::size_t i = 0; i < torques_.size(); ++i) {
       torques_[i] = std::clamp(sum_[i], lower_[i], upper_[i]);
+      const double most = std::clamp(sum_[i], -effort_[i], effort_[i]);
+      if (std::abs(most - torques_[i]) > 1e-9 * effort_[i]) found |= status::torque_rate;
     }
     has_sent_ = true;
     expect(v, inertia, braking);
@@ -97,9 +102,10 @@ class JointTorques {
   [[nodiscard]] const std::vector<double>& torques() const noexcept { return torques_; }  ///< [N m]
   /// tau - g of the last tick [N m].
   [[nodiscard]] const Vector& net() const noexcept { return net_; }
-  /// What accelerates each joint, if it moved alone, as `net` accelerates it with all others [N m].
-  /// Without a barrier the same as `net`: what the network sends is not meant to cancel, what holds
-  /// an arm is.
+  /// What accelerates each joint whatever holds the others: the smaller of `net` and of the torque
+  /// that would accelerate it alone as `net` accelerates it with all others [N m]; 0 where they
+  /// disagree. Without a barrier the same as `net`: what the network sends is not meant to cancel,
+  /// what holds an arm is.
   [[nodiscard]] const Vector& alone() const noexcept { return alone_; }
   /// Predicted rate of each joint one period later with the torques sent and dry friction [rad/s].
   [[nodiscard]] const Vector& expected_rate() const noexcept { return rate_; }
@@ -152,6 +158,12 @@ class JointTorques {
     return share * friction_[i](model_.links[i].coulomb_friction, asked, period_);
   }
 
+  void probe(std::size_t i, double level) noexcept {
+    double& wanted = wanted_.coeffRef(index(i));
+    if (level > 0.0) wanted = std::max(wanted, level);
+    if (level < 0.0) wanted = std::min(wanted, level);
+  }
+
   // Returns the share of the damping M v / brake_time that is applied; its torques are in `brake_`.
   double brake(const Vector& walls, const TorqueShares& s, const std::vector<double>& v,
                const ArmInertia& inertia) noexcept {
@@ -192,31 +204,46 @@ class JointTorques {
     if (!has_sent_) return found;
     lower_[i] = std::max(-most, torques_[i] - slew_ * most);
     upper_[i] = std::min(most, torques_[i] + slew_ * most);
-    if (torque < lower_[i] || torque > upper_[i]) found |= status::torque_rate;
     return found;
   }
 
   void expect(const std::vector<double>& v, const ArmInertia& inertia, double braking) noexcept {
     for (std::size_t i = 0; i < v.size(); ++i) {
-      const ArmLink& link = model_.links[i];
       const double mass = inertia.matrix()(index(i), index(i));
       net_(index(i)) = torques_[i] - gravity_[i];
-      const double push = net_(index(i)) - brake_(index(i)) - link.viscous_friction * v[i];
-      double rate = v[i] * (1.0 - braking * period_ / brake_time_) + period_ * push / mass;
-      const double friction = period_ * link.coulomb_friction / mass;
-      rate = rate > 0.0 ? std::max(0.0, rate - friction) : std::min(0.0, rate + friction);
-      rate_(index(i)) = rate;
+      const double push = net_(index(i)) - brake_(index(i));
+      const double kept = v[i] * (1.0 - braking * period_ / brake_time_);
+      rate_(index(i)) = slowed(i, mass * kept + period_ * push, v[i], mass);
     }
   }
 
-  // The same by the whole inertia matrix, but for friction.
+  // [rad/s] Of a joint with this `momentum`, after a period of friction. Implicit: a light joint is
+  // stopped by its friction, and not thrown back.
+  [[nodiscard]] double slowed(std::size_t i, double momentum, double v,
+                              double mass) const noexcept {
+    const ArmLink& link = model_.links[i];
+    const double dry = period_ * link.coulomb_friction;
+    const double left = std::max(0.0, std::abs(momentum) - dry);
+    const double rate = std::copysign(left, momentum) / (mass + period_ * link.viscous_friction);
+    if (!(link.velocity_limit > 0.0)) return rate;
+    const double most = std::max(link.velocity_limit, std::abs(v));
+    return std::clamp(rate, -most, most);
+  }
+
+  // The same by the whole inertia matrix.
   void expect_together(const std::vector<double>& v, const ArmInertia& inertia) noexcept {
     const ArmInertia::Matrix& M = inertia.matrix();
     if (!mass_.factor(M.rows(), [&](Eigen::Index i) { return M.data()[i]; })) return;
     mass_.solve(alone_);
     for (std::size_t i = 0; i < v.size(); ++i) {
-      rate_(index(i)) = v[i] + period_ * alone_(index(i));
-      alone_(index(i)) *= M(index(i), index(i));
+      const double mass = M(index(i), index(i));
+      double& alone = alone_.coeffRef(index(i));
+      alone *= mass;
+      rate_(index(i)) = slowed(i, mass * v[i] + period_ * alone, v[i], mass);
+      // Friction may hold the others, so that they do not move this one.
+      const double own = net_(index(i));
+      alone =
+          alone * own > 0.0 ? std::copysign(std::min(std::abs(alone), std::abs(own)), own) : 0.0;
     }
   }
 

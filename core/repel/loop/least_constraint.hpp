@@ -94,12 +94,11 @@ class LeastConstraint {
 
   /// [N m] tau of a joint.
   [[nodiscard]] double torque(std::size_t joint) const noexcept {
-    return std::clamp(asked_.coeff(index(joint)) + change_.coeff(index(joint)), lower_[joint],
-                      upper_[joint]);
+    return std::clamp(wanted(joint), lower_[joint], upper_[joint]);
   }
-  /// [N m] What a joint would get of what was asked for.
-  [[nodiscard]] double unchanged(std::size_t joint) const noexcept {
-    return std::clamp(asked_.coeff(index(joint)), lower_[joint], upper_[joint]);
+  /// [N m] The same without the limits.
+  [[nodiscard]] double wanted(std::size_t joint) const noexcept {
+    return asked_.coeff(index(joint)) + change_.coeff(index(joint));
   }
   /// [m/s] The rate after the step.
   [[nodiscard]] double rate_after(const Row& row) const noexcept {
@@ -110,15 +109,10 @@ class LeastConstraint {
     return row.rate + step_ * gained;
   }
   /// The share of the forces f that the limits let act, 0 to 1.
-  [[nodiscard]] double share() const noexcept {
-    double wanted = 0.0;
-    double applied = 0.0;
-    for (std::size_t i = 0; i < weight_.size(); ++i) {
-      const double change = change_.coeff(index(i));
-      wanted += change * change;
-      applied += change * (torque(i) - unchanged(i));
-    }
-    return wanted > 0.0 ? std::clamp(applied / wanted, 0.0, 1.0) : 0.0;
+  [[nodiscard]] double share() const noexcept { return share_within(lower_, upper_, 1.0); }
+  /// The share of the forces f that limits of +-`most` [N m] would let act, 0 to 1.
+  [[nodiscard]] double share(std::span<const double> most) const noexcept {
+    return share_within(most, most, -1.0);
   }
 
  private:
@@ -126,6 +120,21 @@ class LeastConstraint {
   static constexpr double tolerance = 1e-6;  // [m/s]
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+
+  // @param sign of `lower` as it is given
+  [[nodiscard]] double share_within(std::span<const double> lower, std::span<const double> upper,
+                                    double sign) const noexcept {
+    double all = 0.0;
+    double applied = 0.0;
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+      const double change = change_.coeff(index(i));
+      const double least = sign * lower[i];
+      const double before = std::clamp(asked_.coeff(index(i)), least, upper[i]);
+      all += change * change;
+      applied += change * (std::clamp(wanted(i), least, upper[i]) - before);
+    }
+    return all > 0.0 ? std::clamp(applied / all, 0.0, 1.0) : 0.0;
+  }
 
   // Returns by how much the rate changes [m/s].
   double correct(Row& row, double missing) noexcept {

@@ -14,6 +14,7 @@ struct EnergyWatchOptions {
                             ///< Hz and more, in proportion to the period for lower rates, and
                             ///< not watched below 10 Hz
   double memory = 1.0;      ///< [s] time constant with which a gain is forgotten
+  double latch = 0.0;       ///< [s] for which a fault stays, twice as long each time it comes back
 };
 
 /// Ramps of the operator's force (loop/failsafe.hpp).
@@ -54,8 +55,9 @@ struct JointWatchOptions {
   int repeats = 1;  ///< ticks for which a sound arm may report the same position of a moving joint;
                     ///< more where it is read more often than it measures
   double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
-  bool touches = false;  ///< the arm may press on objects that are not in the model: a joint that
-                         ///< stands still against a force is believed
+  bool touches = false;  ///< the arm may press on objects that are not in the model, and be pushed
+                         ///< by them: a joint that stands still against a force is believed, and
+                         ///< motion that no torque explains is no fault
   int regain = 4;        ///< consecutive sound readings after which they are believed again
 };
 
@@ -63,6 +65,9 @@ struct JointWatchOptions {
 struct TeleoperatorOptions {
   double tool_speed = 0.25;  ///< [m/s] up to which the operator may drive the tool; above it the
                              ///< driving power fades, from 1.2 times it the arm brakes; 1e-3 to 10
+  /// The operator is in another program, whose word is not taken: no more of the operator's torques
+  /// is sent than what keeps the tool within tool_speed over the next ticks.
+  bool is_remote = false;
   double longest_gap = 0.1;  ///< [s] without a tick after which the operator's force is removed
   double exit_speed = 0.02;  ///< [m/s] at which an arm is pushed out of an obstacle it starts in
   bool push_out = false;     ///< the arm starts inside an obstacle and is to be pushed out of it

@@ -114,6 +114,7 @@ struct RunTotals {
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
   std::array<std::int64_t, 4> stop_ticks{};     ///< ticks in each Stop
   std::int64_t brake_ticks = 0;                 ///< ticks in which the brakes were requested
+  std::int64_t unsound = 0;                     ///< ticks with a fault of `status::unsound`
   std::int64_t missing = 0;                     ///< missed ticks
   WorkerReport workers;                         ///< as of the last tick
 
@@ -136,6 +137,7 @@ struct RunTotals {
     for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
     ++stop_ticks[static_cast<std::size_t>(r.stop)];
     brake_ticks += r.brakes ? 1 : 0;
+    unsound += (r.status & status::unsound) != 0U ? 1 : 0;
     missing += r.elapsed - 1;
     workers = r.workers;
   }

@@ -25,6 +25,16 @@ struct SpeedShare {
   return {std::clamp(1.0 - (part - 1.0) / 0.2, 0.0, 1.0), std::clamp((part - 1.2) / 0.3, 0.0, 1.0)};
 }
 
+/// The share of their force with which walls give back what they have stored, on the way out: 1 up
+/// to the limit, 0 from 1.2 times it, at the speed that the tool will then have.
+/// @param growth by which the speed would grow within the time in which the arm follows its
+/// torques, as a part of it, with the whole force; at less than half the limit it does not count
+[[nodiscard]] inline double release_share(double speed, double limit, double growth) noexcept {
+  const double part = speed / limit;
+  if (!(part > 0.5)) return 1.0;
+  return std::clamp((1.2 - part) / (0.2 + part * std::max(0.0, growth)), 0.0, 1.0);
+}
+
 namespace detail {
 
 /// Of a vector whose squares may be beyond the range of numbers.

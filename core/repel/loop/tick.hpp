@@ -15,6 +15,7 @@
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/loop/hard_contacts.hpp>
 #include <repel/loop/held_weight.hpp>
+#include <repel/loop/kinematics_watch.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/readings.hpp>
 #include <repel/loop/record.hpp>
@@ -52,11 +53,14 @@ class Teleoperator {
         clock_(period, in_nanoseconds(options.longest_gap)),
         period_(std::chrono::duration<double>(period).count()),
         gravity_W_(parts.model.gravity_W),
-        watch_(parts.model, period_, options.joints),
+        watch_(parts.model, period_, options.joints, options.drive_delay),
+        kinematics_watch_(effort_bounds(parts.model)),
         inertia_(parts.model),
         command_(parts.model, period_, options, has_hard(world_) ? world_.pairs().size() : 0),
         q_(parts.model.links.size()),
         v_(q_),
+        untold_(q_),
+        probes_(q_),
         read_q_(q_),
         read_v_(q_),
         jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(q_.size()))),
@@ -68,7 +72,7 @@ class Teleoperator {
     before_walls_ = at == nullptr ? -1 : at->left;
     lever_scales_ = lever_scales(network_);
     signals_.period = signals_.elapsed = period_;
-    inertia_.update(kinematics_);
+    (void)inertia_.update(kinematics_);
   }
 
   /// The first half of a tick: places the arm in the world. When all arms of a world have done
@@ -88,7 +92,7 @@ class Teleoperator {
                         const Contacts& contacts, const network::Command& command) noexcept {
     push_away(forces, workers);  // world -> virtual forces on tool and links
     gather_damping(contacts.active, tool_, jacobian_, links_, signals_.wall_damping);
-    command_.barrier().watch(contacts.hard, tool_, jacobian_, links_, q_, v_);
+    command_.barrier().watch(contacts.hard, tool_, jacobian_, links_, q_, v_, untold_);
     follow(command);  // operator's input
     run_network();    // operator's input, walls, joint rates -> torques
     command_.judge(record_, watch_, drive_state_, network_, signals_.elapsed);  // -> stop
@@ -125,7 +129,9 @@ class Teleoperator {
     record_.elapsed = clock_.elapsed();
     signals_.elapsed = period_ * static_cast<double>(clock_.elapsed());
     // The arm moved on without the loop: readings need not follow from the last ones.
-    if ((record_.status & status::clock_gap) != 0U || next_tick_ == 0) watch_.begin_anew();
+    if ((record_.status & status::clock_gap) == 0U && next_tick_ != 0) return;
+    watch_.begin_anew();
+    inertia_.begin_anew();
   }
 
   [[gnu::noinline]] void read_joints(const ArmReadings& readings) noexcept {
@@ -134,10 +140,13 @@ class Teleoperator {
     drive_state_ = readings.state;
     if (sensor_ != nullptr) record_.wrench_read = readings.wrench;
     if (drive_state_ != ArmState::enabled) watch_.hold();
+    if (readings.homed) watch_.confirm();
     record_.status |= watch_.step(read_q_, read_v_, signals_.elapsed, inertia_.matrix());
     for (std::size_t i = 0; i < q_.size(); ++i) {
       q_[i] = watch_.position(i);
       v_[i] = watch_.rate(i);
+      untold_[i] = watch_.untold_rate(i);
+      probes_[i] = watch_.probe(i);
     }
   }
 
@@ -147,15 +156,19 @@ class Teleoperator {
     const Pose X_WT = kinematics_.X_WT();
     const Twist V_WT = twist_through(new_jacobian_, v_);
     world_.motion().tick = next_tick_;
-    if (world_.place(tool_, X_WT, V_WT)) {
+    bool is_sound = kinematics_watch_.agrees(q_, X_WT, new_jacobian_);
+    is_sound = is_sound && world_.place(tool_, X_WT, V_WT);
+    if (is_sound) {
       X_WT_ = X_WT;
       V_WT_ = V_WT;
       jacobian_.swap(new_jacobian_);
-      inertia_.update(kinematics_);
-    } else {
-      record_.status |= status::bad_pose;
+      kinematics_watch_.keep(q_, X_WT_, jacobian_);
+      is_sound = inertia_.update(kinematics_);
     }
-    if (!links_.place(world_, kinematics_, v_)) record_.status |= status::bad_pose;
+    kinematics_.gravity_torques(command_.gravity());
+    is_sound = kinematics_watch_.believe(q_, command_.gravity()) && is_sound;
+    is_sound = links_.place(world_, kinematics_, v_) && is_sound;
+    if (!is_sound) record_.status |= status::bad_pose;
   }
 
   [[gnu::noinline]] void push_away(const PairForces& forces, const WorkerReport& workers) noexcept {
@@ -193,7 +206,7 @@ class Teleoperator {
       record_.command.sound = false;
     }
     if (!record_.command.sound) record_.status |= status::bad_command;
-    if (command.silent_for > patience) record_.status |= status::silent_device;
+    if (command.is_silent(patience)) record_.status |= status::silent_device;
     signals_.hand = record_.command.hand;
     signals_.second = record_.command.second;
     if (cut_to_speed(signals_, options_.tool_speed, lever_scales_)) {
@@ -235,10 +248,10 @@ class Teleoperator {
   }
 
   [[gnu::noinline]] void drive() noexcept {
-    kinematics_.gravity_torques(command_.gravity());
     add_held_weight(world_, tool_, jacobian_, gravity_W_, Masses::known, command_.gravity());
-    command_.drive({network_, signals_.jacobian, v_, V_WT_.linear.norm()}, inertia_, watch_,
-                   record_);
+    const double carried = signals_.walls_power + signals_.arm_power;
+    command_.drive({network_, signals_.jacobian, v_, probes_, V_WT_.linear.norm(), carried},
+                   inertia_, watch_, record_);
   }
 
   [[gnu::noinline]] void finish_tick() noexcept {
@@ -277,9 +290,12 @@ class Teleoperator {
   double period_;   ///< [s]
   Vec3 gravity_W_;  ///< [m/s^2]
   JointWatch watch_;
+  KinematicsWatch kinematics_watch_;
   ArmInertia inertia_;
   ArmCommand command_;
-  std::vector<double> q_, v_, read_q_, read_v_;  ///< [rad], [rad/s]
+  std::vector<double> q_, v_, untold_;   ///< [rad], [rad/s], [rad/s]
+  std::vector<double> probes_;           ///< [N m]
+  std::vector<double> read_q_, read_v_;  ///< [rad], [rad/s]
   Jacobian jacobian_, new_jacobian_;
   Pose X_WT_ = Pose::Identity();
   Twist V_WT_;

@@ -21,7 +21,7 @@ namespace repel {
 /// period late counts as one period; a later one also stands for those that were missed.
 class TickClock {
  public:
-  using nanoseconds = std::chrono::nanoseconds;  ///< of any clock that grows
+  using nanoseconds = std::chrono::nanoseconds;  ///< of any clock that grows, from any number on
 
   /// @param longest_gap longest time without a tick that is not a fault
   TickClock(nanoseconds period, nanoseconds longest_gap) noexcept
@@ -53,7 +53,7 @@ class TickClock {
   nanoseconds period_;
   nanoseconds longest_gap_;
   nanoseconds first_{0};
-  nanoseconds last_{0};
+  nanoseconds last_ = nanoseconds::min();
   std::int64_t index_ = 0;
   std::int64_t elapsed_ = 1;
   bool has_begun_ = false;

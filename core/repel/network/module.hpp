@@ -54,10 +54,11 @@ namespace repel::network {
 /// joint rates [N m s/rad], besides the walls of the world model. `predict` is called for the
 /// element `prediction` after every module has read its signals, with the sums of both. Only
 /// `suit`, `fit` and `prepare` may throw or allocate; they are called once, in this order. A
-/// missing function is reported at compile time. Cost: a virtual call for each.
+/// missing function, and one with another signature under one of these names, is a compile-time
+/// error. Cost: a virtual call for each.
 class Module {
  public:
-  /// Holds a copy of any module; a missing function is a compile-time error.
+  /// Holds a copy of any module; a missing or wrong function is a compile-time error.
   template <class M>
   requires(!std::same_as<std::remove_cvref_t<M>, Module>)
       // NOLINTNEXTLINE(google-explicit-constructor): any module can stand for itself

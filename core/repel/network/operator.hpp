@@ -83,6 +83,11 @@ struct Command {
   bool sound = true;        ///< false: the source reports that its data are invalid
   double silent_for = 0.0;  ///< [s] age of the sample
   std::int32_t phase = 0;   ///< of a script; copied to the record
+
+  /// The sample is older than `patience` [s], or its age is none: below 0, or not a number.
+  [[nodiscard]] bool is_silent(double patience) const noexcept {
+    return !(silent_for >= 0.0 && silent_for <= patience);
+  }
 };
 
 /// Plays a script, phase after phase, and gives zero input when it is over. The hand holds the

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <repel/base/spatial.hpp>
+#include <repel/force/law.hpp>
 #include <repel/pairs/pair_answer.hpp>
 #include <repel/world/world.hpp>
 
@@ -40,7 +41,7 @@ struct MotionSince {
 /// No answer is deeper than World::deepest; this bound may be.
 [[nodiscard]] inline double bound_after(const NearAnswer& answer, const MotionSince& of_a,
                                         const MotionSince& of_b) noexcept {
-  constexpr double widest_lean = 2.0 * 0.05;  // [rad] twice the largest tilt of a law
+  constexpr double widest_lean = 2.0 * ForceLaw::most_tilt;  // [rad]
   const Vec3 moved = of_a.moved - of_b.moved;
   const double length = norm(moved);
   const double along = answer.is_apart ? dot(answer.gradient.force, moved) -

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include <repel/base/spatial.hpp>
+#include <repel/force/law.hpp>
 #include <repel/pairs/pair_geometry.hpp>
 #include <repel/reduction/separation_result.hpp>
 
@@ -61,14 +62,12 @@ struct alignas(64) PairAnswer {
   [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B) const noexcept {
     const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
     const bool separated = is_apart();
-    const double lean = nearer != 0.0 ? widest_tilt * norm(moved) : 0.0;
+    const double lean = nearer != 0.0 ? ForceLaw::most_tilt * norm(moved) : 0.0;
     const double along = separated ? dot(last.extraction_W, moved) - lean : -norm(moved);
     return proven() + along - (A.turn + B.turn - turn);
   }
 
  private:
-  static constexpr double widest_tilt = 0.05;  ///< [rad] of any law
-
   [[nodiscard]] bool cut_short() const noexcept { return last.end == QueryEnd::budget_spent; }
 };
 

@@ -223,11 +223,9 @@ namespace detail {
 /// The signed distance of A and B.
 ///
 /// While the shapes are apart (or only their rounded rims overlap) it is the distance itself, from
-/// GJK: for polytopes and rounded polytopes with an error of a few 1e-15 of their size, and a
-/// relative error of 1e-7 however small the gap; for cylinders within the bracket, which
-/// `docs/distance.md` states. In overlap it is minus the depth by `options.measure` (see
-/// `docs/reduction.md`): continuous, 1-Lipschitz in translation, never deeper than the penetration
-/// depth; `lower` and `upper` bracket the true one.
+/// GJK, with the error that `docs/accuracy.md` states for every pair of shapes. In overlap it is
+/// minus the depth by `options.measure` (see `docs/reduction.md`): continuous, 1-Lipschitz in
+/// translation, never deeper than the penetration depth; `lower` and `upper` bracket the true one.
 ///
 /// @param X_WA,X_WB rigid poses in the world [m]; entries that are not finite, or beyond 1e15 m,
 /// end in bad_input

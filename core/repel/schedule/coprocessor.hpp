@@ -29,8 +29,9 @@ namespace repel {
 /// it, at distances that are not larger than the true ones.
 ///
 /// Whenever threads are late, stalled or dead, the caller evaluates all pairs at the present motion
-/// by itself. Threads that do not go on are replaced after half a second. With threads, all memory
-/// of the pairs is allocated twice, with several threads beside three times.
+/// by itself. Threads that do not go on are replaced after half a second. In lock step it waits for
+/// them, and nothing depends on a clock. With threads, all memory of the pairs is allocated twice,
+/// with several threads beside three times.
 class Coprocessor {
  public:
   /// [ticks] Greatest age of an answer that is used beside.
@@ -97,7 +98,7 @@ class Coprocessor {
   [[nodiscard]] bool is_past(std::int64_t exchange) noexcept {
     if (exchanges_ < exchange || !team_->is_settled()) return false;
     if (!works_beside()) return true;
-    if (options_.lock_step) (void)wait_for(exchange, Clock::now() + longest_wait);
+    if (options_.lock_step) (void)wait_for(exchange, {});
     const detail::WholeAnswer& newest = current_->newest();
     return newest.exchange >= exchange && newest.is_settled &&
            lost_.load(std::memory_order_acquire) == 0;
@@ -118,11 +119,10 @@ class Coprocessor {
   [[nodiscard]] CoprocessorMode mode() const noexcept { return options_.mode; }  ///< as asked for
 
   /// Beside: waits until the last motion has been answered; true at once in the other mode. For
-  /// programs that do not run by the clock, between ticks. False on timeout.
+  /// programs that do not run by the clock, between ticks. False on timeout; none in lock step.
   [[nodiscard]] bool wait_for_answer(std::chrono::nanoseconds timeout) noexcept {
     if (!works_beside()) return true;
-    const auto until = std::chrono::steady_clock::now() + std::min(timeout, longest_wait);
-    return wait_for(exchanges_, until);
+    return wait_for(exchanges_, Clock::now() + std::min(timeout, longest_wait));
   }
 
   /// Calls see(NearPair) for each pair that was near at the last exchange, in an unspecified order.
@@ -179,8 +179,8 @@ class Coprocessor {
     }
     const std::chrono::nanoseconds none{0};
     options.period = std::clamp(options.period, none, longest_wait);
-    options.patience =
-        options.lock_step ? longest_wait : std::clamp(options.patience, none, longest_wait);
+    options.patience = std::clamp(options.patience, none, longest_wait);
+    if (options.lock_step) options.budget.wall = none;
     return options;
   }
   /// A thread without a processor of its own would take that of another thread or of the caller,
@@ -215,7 +215,7 @@ class Coprocessor {
 
   const PairForces& beside(const Motion& motion) noexcept {
     if (auto* fresh = offered_.exchange(nullptr, std::memory_order_acq_rel)) current_ = fresh;
-    if (options_.lock_step) (void)wait_for(exchanges_ - 1, Clock::now() + longest_wait);
+    if (options_.lock_step) (void)wait_for(exchanges_ - 1, {});
     answer_ = &current_->newest();
     current_->post(exchanges_, motion);
     report_.age = exchanges_ - answer_->exchange;
@@ -234,9 +234,10 @@ class Coprocessor {
     return uses_answer_ ? widened_->forces() : team_->pairs().forces();
   }
 
+  // In lock step, however long it takes.
   [[nodiscard]] bool wait_for(std::int64_t exchange, Clock::time_point until) noexcept {
     for (unsigned spins = 1; current_->newest().exchange < exchange; ++spins) {
-      if (spins % 16 == 0 && Clock::now() >= until) return false;
+      if (!options_.lock_step && spins % 16 == 0 && Clock::now() >= until) return false;
       if (spins % 4096 == 0) std::this_thread::yield();
       detail::WorkerThread::pause();
     }
@@ -248,7 +249,7 @@ class Coprocessor {
     team_->tend(usage_);
     if (!beside_.empty()) {
       beside_.back()->tend(usage_);
-      if (watch_.is_overdue(beside_.back()->beats())) replace_beside_worker();
+      if (!options_.lock_step && watch_.is_overdue(beside_.back()->beats())) replace_beside();
     }
     const auto lost = std::count_if(beside_.begin(), beside_.end(), [this](const auto& worker) {
       return worker != beside_.back() && !worker->has_ended();
@@ -259,7 +260,7 @@ class Coprocessor {
     restarts_.store(usage_.restarts, std::memory_order_relaxed);
   }
 
-  void replace_beside_worker() {
+  void replace_beside() {
     beside_.back()->request_stop();
     lost_.fetch_add(1, std::memory_order_release);
     // The caller moves its world meanwhile: until it posts a motion, the new one has none.

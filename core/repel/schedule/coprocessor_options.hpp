@@ -59,8 +59,10 @@ struct CoprocessorOptions {
                        ///< for which there is none are not started, except one that works beside
   void (*on_thread_start)(int index) noexcept = nullptr;  ///< called in each thread: priority etc.
   bool every_pair = false;  ///< no broad phase: evaluate all pairs, as a reference for comparison
-  bool lock_step = false;   ///< start every thread, wait for every answer (up to 1 s) and never
-                            ///< sleep: for replays. Beside, the answer is then one tick old
+  bool lock_step = false;   ///< start every thread, wait for every answer, however long it takes,
+                            ///< and never sleep: for replays. Nothing depends on a clock then, and
+                            ///< Budget::wall does not count. A thread that dies is waited for for
+                            ///< ever. Beside, the answer is one tick old
 };
 
 }  // namespace repel

@@ -174,6 +174,7 @@ class PairTeam {
     usage.page_faults += now.page_faults - helper.seen.page_faults;
     usage.switches += now.switches - helper.seen.switches;
     helper.seen = now;
+    if (options_.lock_step) return;  // the leader waits, however long it takes
     if (!helper.watch.is_overdue(helper.thread->beats())) return;
     helper.thread->request_stop();
     given_up_.push_back(std::move(helper.thread));
@@ -228,13 +229,17 @@ class PairTeam {
     return true;
   }
 
-  /// Waits until the threads have finished their batches, or for the patience of the options.
+  /// Waits until the threads have finished their batches, or for the patience of the options; in
+  /// lock step by no clock.
   [[nodiscard]] bool is_finished() const noexcept {
     if (current_->is_idle()) return true;
     const Clock::time_point until = Clock::now() + options_.patience;
     for (unsigned spins = 1; !current_->is_idle(); ++spins) {
-      if (spins % 16 == 0 && Clock::now() >= until) return current_->is_idle();
-      if (options_.lock_step && spins % 4096 == 0) std::this_thread::yield();
+      if (options_.lock_step) {
+        if (spins % 4096 == 0) std::this_thread::yield();
+      } else if (spins % 16 == 0 && Clock::now() >= until) {
+        return current_->is_idle();
+      }
       WorkerThread::pause();
     }
     return true;

@@ -51,9 +51,10 @@ class WorldChanges {
     }
   }
 
-  // The next five: one thread, the same for all. Each returns false, or an invalid id, if the queue
-  // is full or the part is none of those reserved; a change whose turn comes when the part's state
-  // does not allow it is counted as refused.
+  // The next five: one thread, the same for all. Each returns false, or an invalid id, and nothing
+  // is changed, if the queue is full, the part is none of those reserved, or a number is not within
+  // what World takes; a change whose turn comes when the part's state does not allow it is counted
+  // as refused.
 
   /// Lets a new part come, in the reserved part that has been free the longest of those with room
   /// for it and for more than the shape they were reserved with. Invalid if there is none, too.
@@ -62,6 +63,7 @@ class WorldChanges {
   /// one is taken
   PartId add(const Shape& shape, const Pose& X_WP, double over = usual_time,
              const ReservedShare& share = {}) {
+    if (!is_pose(X_WP) || !is_time(over)) return {};
     Reserved* chosen = nullptr;
     const std::size_t begin = std::min(share.first, parts_.size());
     const std::size_t end = begin + std::min(share.count, parts_.size() - begin);
@@ -85,28 +87,30 @@ class WorldChanges {
   /// Lets a reserved part come with the shape that it has. @param X_WP [m] @param over [s]
   bool add(PartId id, const Pose& X_WP, double over = usual_time) {
     Reserved* const part = find(id);
-    if (part == nullptr) return false;
-    part->is_used = true;
-    return post({.what = What::add, .part = id, .X_WP = X_WP, .over = over});
+    if (part == nullptr || !is_pose(X_WP) || !is_time(over)) return false;
+    if (!post({.what = What::add, .part = id, .X_WP = X_WP, .over = over})) return false;
+    return part->is_used = true;
   }
   /// Moves a part to a pose [m] at a speed [m/s]: World::move.
   bool move(PartId id, const Pose& X_WP, double speed = usual_speed) {
-    return find(id) != nullptr &&
+    return find(id) != nullptr && is_pose(X_WP) && detail::LooseParts::is_speed(speed) &&
            post({.what = What::move, .part = id, .X_WP = X_WP, .over = speed});
   }
   /// Lets a tool take a part: World::attach.
   bool attach(PartId id, BodyId tool, double over = usual_time) {
-    return find(id) != nullptr &&
+    return find(id) != nullptr && is_time(over) &&
            post({.what = What::attach, .part = id, .tool = tool, .over = over});
   }
   /// Lets the tool that holds a part put it down: World::release.
   bool release(PartId id, double over = usual_time) {
-    return find(id) != nullptr && post({.what = What::release, .part = id, .over = over});
+    return find(id) != nullptr && is_time(over) &&
+           post({.what = What::release, .part = id, .over = over});
   }
   /// Lets a part go, and its place be used again: World::remove.
   bool remove(PartId id, double over = usual_time) {
     Reserved* const part = find(id);
-    if (part == nullptr || !post({.what = What::remove, .part = id, .over = over})) return false;
+    if (part == nullptr || !is_time(over)) return false;
+    if (!post({.what = What::remove, .part = id, .over = over})) return false;
     part->is_used = false;
     part->freed_at = ++freed_;
     return true;
@@ -156,6 +160,12 @@ class WorldChanges {
     std::int64_t freed_at = 0;
   };
 
+  [[nodiscard]] static bool is_time(double over) noexcept {
+    return detail::LooseParts::is_time(over);
+  }
+  [[nodiscard]] static bool is_pose(const Pose& X) noexcept {
+    return is_finite(X) && is_rigid(X, 1e-6);
+  }
   [[nodiscard]] Reserved* find(PartId id) noexcept {
     const auto found = std::find_if(parts_.begin(), parts_.end(),
                                     [&](const Reserved& part) { return part.id == id; });
@@ -171,6 +181,7 @@ class WorldChanges {
     if (change.what != What::fit && change.what != What::add) return false;
     const bool is_leaving = world.is_leaving(change.part);
     if (change.what == What::add || is_leaving) return is_leaving;
+    if (world.is_there(change.part)) return false;  // and stays: the change is refused
     for (std::size_t i = 0; i < since_.size(); ++i) {
       if (world.loose()[i].part == change.part) return !coprocessor.is_past(since_[i]);
     }

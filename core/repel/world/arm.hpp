@@ -112,6 +112,9 @@ struct ArmReadings {
   /// on the tool, about its origin, in axes of the tool, bias and weight included. Empty without a
   /// sensor or a reading; used by the module FORCE SENSOR (network/modules/force_sensor.hpp).
   std::optional<Wrench> wrench{};
+  /// The positions are those of the arm, by a reference that does not depend on its encoders: homed
+  /// again, or compared with marks. A joint that was lost and came back elsewhere is believed then.
+  bool homed = false;
 };
 
 }  // namespace repel

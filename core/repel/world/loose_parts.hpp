@@ -71,6 +71,19 @@ struct LoosePart {
 /// documents them. Only `reserve` allocates.
 class LooseParts {
  public:
+  static constexpr double longest_time = 3600.0;  ///< [s] in which parts come, go or change hands
+  static constexpr double least_speed = 1e-6;     ///< [m/s] of parts that are moved
+  static constexpr double greatest_speed = 10.0;  ///< [m/s]
+
+  /// A part can come, go or change hands in it. @param over [s]
+  [[nodiscard]] static bool is_time(double over) noexcept {
+    return over >= 0.0 && over <= longest_time;
+  }
+  /// A part can be moved at it. @param speed [m/s]
+  [[nodiscard]] static bool is_speed(double speed) noexcept {
+    return speed >= least_speed && speed <= greatest_speed;
+  }
+
   void reserve(PartId part, BodyId body, double room) {
     all_.push_back({.part = part, .body = body, .room = room});
   }
@@ -87,7 +100,7 @@ class LooseParts {
 
   bool add(Motion& motion, PartId id, const Pose& X_WB, double over) noexcept {
     LoosePart* const loose = find(id);
-    if (loose == nullptr || !(over >= 0.0)) return false;
+    if (loose == nullptr || !is_time(over)) return false;
     BodyState& body = state(motion, *loose);
     if (body.presence.is_there() || !place(body, X_WB, {})) return false;
     const std::int32_t generation = body.presence.generation + 1;
@@ -104,7 +117,7 @@ class LooseParts {
 
   bool move(Motion& motion, PartId id, const Pose& X_WB, double speed) noexcept {
     LoosePart* const loose = find(id);
-    if (loose == nullptr || !(speed > 0.0)) return false;
+    if (loose == nullptr || !is_speed(speed)) return false;
     const BodyState& body = state(motion, *loose);
     if (!body.presence.is_there() || body.presence.holder.valid()) return false;
     if (!is_finite(X_WB) || !is_rigid(X_WB, 1e-6)) return false;
@@ -116,7 +129,7 @@ class LooseParts {
 
   bool attach(Motion& motion, PartId id, BodyId tool, double over) noexcept {
     LoosePart* const loose = find(id);
-    if (loose == nullptr || !(over >= 0.0)) return false;
+    if (loose == nullptr || !is_time(over)) return false;
     if (tool.index < 0 || tool.index >= static_cast<int>(motion.bodies.size())) return false;
     const BodyState& holder = motion.bodies[static_cast<std::size_t>(tool.index)];
     BodyState& body = state(motion, *loose);
@@ -131,7 +144,7 @@ class LooseParts {
 
   bool release(Motion& motion, PartId id, double over) noexcept {
     const LoosePart* const loose = find(id);
-    if (loose == nullptr || !(over >= 0.0)) return false;
+    if (loose == nullptr || !is_time(over)) return false;
     BodyState& body = state(motion, *loose);
     if (!body.presence.is_there() || !body.presence.holder.valid()) return false;
     body.presence.grip.rate = -1.0 / std::max(over, least_time);
@@ -140,7 +153,7 @@ class LooseParts {
 
   bool remove(Motion& motion, PartId id, double over) noexcept {
     LoosePart* const loose = find(id);
-    if (loose == nullptr || !(over >= 0.0)) return false;
+    if (loose == nullptr || !is_time(over)) return false;
     BodyState& body = state(motion, *loose);
     if (!(body.presence.there.now > 0.0)) return false;
     body.presence.there.rate = -1.0 / std::max(over, least_time);

@@ -180,12 +180,12 @@ class World {
   }
   /// Lets an absent part come. @param X_WB [m] @param over [s] the time in which its forces grow
   /// from nothing to those of their laws, in even steps, from the next `advance` on; 0: at once
-  /// then
+  /// then. Here and below up to an hour
   bool add(PartId id, const Pose& X_WB, double over) noexcept {
     return loose_.add(motion_, id, X_WB, over);
   }
   /// Moves a part that lies free, on a straight line and with an even turn, from the next
-  /// `advance` on. @param X_WB [m] where to @param speed [m/s] of its fastest point
+  /// `advance` on. @param X_WB [m] where to @param speed [m/s] of its fastest point, 1e-6 to 10
   bool move(PartId id, const Pose& X_WB, double speed) noexcept {
     return loose_.move(motion_, id, X_WB, speed);
   }

@@ -55,7 +55,7 @@ class TorqueCallback {
     std::copy_n(record_->torques.begin(), 7, torques.begin());
     const auto stands = [](double v) { return std::abs(v) < 0.01; };  // [rad/s]
     if (finish_ && std::all_of(state.dq.begin(), state.dq.end(), stands)) {
-      return franka::MotionFinished(torques);
+      return franka::MotionFinished(franka::Torques(torques));
     }
     return torques;
   }

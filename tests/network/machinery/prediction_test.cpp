@@ -280,5 +280,39 @@ TEST(Prediction, ShowsTheEffortAtTheMeasuredFlow) {
   }
 }
 
+/// What PUMA_KIN of a network without walls gained of the energy that passed, in a pose in which
+/// two joints move the tool alike but for a part `apart`.
+double gained_near_singular(double apart, unsigned seed) {
+  test::Rng rng(seed);
+  Network network = Plan()
+                        .add("hand", SixAxes())
+                        .add("kbb2", Kbb2())
+                        .add("puma_kin", PumaKin())
+                        .add("puma_joints", PumaJoints(6))
+                        .build(T, PredictionOptions{});
+  Signals signals = detail::neutral_signals(6, T);
+  signals.inertia = test::drawn_gain(rng, 6, 0.01, 5.0);
+  for (double& x : signals.jacobian.reshaped()) x = families::uniform(rng, -1.0, 1.0);
+  signals.jacobian.col(5) = signals.jacobian.col(3) + apart * signals.jacobian.col(5);
+  signals.hand.ball.linear = Vec3(0.1, 0.1, -0.1);
+  for (int tick = 0; tick < 200; ++tick) {
+    signals.rates = signals.mean_rates = test::drawn_vector(rng, 6, 0.3);
+    EXPECT_TRUE(network.run(signals)) << "at tick " << tick;
+  }
+  const Ledger& ledger = network.find("puma_kin")->ledger;
+  EXPECT_GT(ledger.passed, 1e-3);
+  return std::abs(ledger.energy) / ledger.passed;
+}
+
+// The impedance of the tool, seen from the joints, was inverted: it lost 8e-8 of the energy near a
+// singular pose, and had no inverse in one.
+TEST(Prediction, NetworkWithoutWallsKeepsItsEnergyInAndNearASingularPose) {
+  for (const double apart : {0.0, 1e-9, 1e-5, 1e-4, 3e-4, 1e-3, 1e-2, 1e-1}) {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      EXPECT_LT(gained_near_singular(apart, seed), 1e-13) << apart << ", seed " << seed;
+    }
+  }
+}
+
 }  // namespace prediction_test
 }  // namespace repel::network

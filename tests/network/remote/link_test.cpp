@@ -150,6 +150,122 @@ TEST(RemoteLink, DoesNotListenToOthers) {
   EXPECT_EQ(pair.here.counts().refused, before.refused + 3);
 }
 
+/// A side and what is posted to it.
+struct Target {
+  RemoteLink link{{.session = 11, .agreement = 5}};
+  int tick = 0;
+
+  Target() {
+    link.prepare(1, period);
+    link.set_most_power(100.0);
+  }
+  void step(std::initializer_list<const RemotePacket*> packets) {
+    for (const RemotePacket* packet : packets) {
+      link.incoming().draft() = *packet;
+      ASSERT_TRUE(link.incoming().post());
+    }
+    link.receive(at(period * ++tick));
+    wave = link.play(false)(0);
+    EXPECT_TRUE(std::isfinite(wave));
+    link.send(Vector::Zero(1), period);
+    while (link.outgoing().front() != nullptr) link.outgoing().pop();
+  }
+  double wave = 0.0;
+};
+RemotePacket packet_of(std::uint64_t session) {
+  RemotePacket packet;
+  packet.session = session;
+  packet.agreement = 5;
+  return packet;
+}
+void advance(RemotePacket& packet, double wave) {
+  ++packet.sequence;
+  packet.sent += 2500000;
+  packet.sum[0] += period * wave;
+  packet.energy_sent += period * wave * wave;
+}
+
+TEST(RemoteLink, ClosesAPartnerThatGoesOnBeyondTheBoundsAndHearsASoundOneAtOnce) {
+  for (const double wave : {15.0, 50.0, 1e3, 1e155}) {
+    SCOPED_TRACE(wave);
+    Target target;
+    RemotePacket wrong = packet_of(66), sound = packet_of(77);
+    int closed_at = 0, heard_at = 0;
+    for (int i = 1; i <= 600 && heard_at == 0; ++i) {
+      advance(wrong, wave);
+      advance(sound, 2.0);
+      // The false one is first in every tick.
+      target.step({&wrong, &sound});
+      if (closed_at == 0 && target.link.counts().closed > 0) closed_at = i;
+      if (std::abs(target.wave - 2.0) < 1e-9) heard_at = i;
+    }
+    // An absurd one is never met, or not heard; the others are given 0.1 s.
+    if (wave < 1e100) {
+      EXPECT_GT(closed_at, 20);
+    }
+    EXPECT_LT(closed_at, 80);
+    EXPECT_GT(heard_at, 0);
+    EXPECT_LT(heard_at, closed_at + 20);
+    EXPECT_EQ(target.link.counts().closed, wave < 1e100 ? 1 : 0);
+    EXPECT_TRUE(target.link.is_linked());
+    // It does not come back.
+    const std::int64_t sessions = target.link.counts().sessions;
+    for (int i = 0; i < 200; ++i) {
+      advance(wrong, 1.0);
+      target.step({&wrong});
+    }
+    EXPECT_EQ(target.link.counts().sessions, sessions);
+  }
+}
+
+TEST(RemoteLink, NothingThatAPacketSaysStaysInItsSums) {
+  constexpr double huge = 1e300;
+  for (const bool is_met : {false, true}) {
+    Target target;
+    RemotePacket wrong = packet_of(66);
+    for (int i = 0; i < 40; ++i) {
+      advance(wrong, 1.0);
+      if (is_met) target.step({&wrong});
+    }
+    RemotePacket poison = wrong;
+    poison.energy_sent = huge;
+    poison.energy_played = huge;
+    poison.heard = 11;
+    poison.heard_sent = poison.heard_for = std::numeric_limits<std::int64_t>::max();
+    for (double& x : poison.sum) x = 1e308;
+    for (int i = 0; i < 20; ++i) {
+      advance(wrong, 1.0);
+      ++poison.sequence;
+      poison.sent += 2500000;
+      target.step({&poison});
+      EXPECT_LE(target.link.partner_sent(), 1.0);
+    }
+    EXPECT_EQ(target.link.counts().refused, 20);
+    RemotePacket sound = packet_of(77);
+    for (int i = 0; i < 60; ++i) {
+      advance(sound, 2.0);
+      target.step({&sound});
+    }
+    EXPECT_NEAR(target.wave, 2.0, 1e-9);
+    EXPECT_EQ(target.link.counts().sessions, is_met ? 2 : 1);
+    EXPECT_LE(target.link.player().output(), sound.energy_sent);
+  }
+}
+
+TEST(RemoteLink, TimesAndNumbersBeyondAnyRunAreNoPackets) {
+  Target target;
+  RemotePacket packet = packet_of(66);
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  advance(packet, 1.0);
+  packet.heard = 11;
+  packet.heard_sent = packet.heard_for = most;  // their sum is no number
+  target.step({&packet});
+  EXPECT_EQ(target.link.round_trips().count(), 0);
+  packet.sequence = most;
+  target.step({&packet});
+  EXPECT_EQ(target.link.counts().refused, 1);
+}
+
 TEST(RemoteLink, BeforeItReceivesNothingIsSent) {
   RemoteLink link({.session = 1});
   link.prepare(1, period);

@@ -203,5 +203,56 @@ TEST(WavePlayer, RefusesCopiesAndContradictions) {
   EXPECT_EQ(player.newest(), 2);
 }
 
+// Finite all the same: sums of 1e308 and an energy of 1e300 J once stayed in the sums for good.
+TEST(WavePlayer, RefusesWavesThatCannotBe) {
+  constexpr double period = 0.0025;
+  WavePlayer player(1, period);
+  player.set_most_power(100.0);
+  Sender sender{period};
+  for (int i = 1; i <= 20; ++i) EXPECT_TRUE(player.arrive(sender.send(one(1.0)), i * period));
+  const RemotePacket next = sender.send(one(1.0));
+  RemotePacket wrong = next;
+  wrong.sum[0] = 1e308;
+  wrong.energy_sent = 1e300;
+  EXPECT_FALSE(player.is_credible(wrong));
+  EXPECT_FALSE(player.arrive(wrong, 21 * period));
+  wrong.energy_sent = next.energy_sent;  // motion without energy
+  wrong.sum[0] = next.sum[0] + 10.0;
+  EXPECT_FALSE(player.arrive(wrong, 21 * period));
+  wrong.sum[0] = next.sum[0];  // a wave of 2000 sqrt(W) where none is above 10
+  wrong.energy_sent = next.energy_sent + period * 4e6;
+  EXPECT_FALSE(player.arrive(wrong, 21 * period));
+  wrong = sender.packet;  // the same of one that was overtaken
+  EXPECT_TRUE(player.arrive(sender.send(one(1.0)), 22 * period));
+  wrong.sum[0] -= 10.0;
+  EXPECT_FALSE(player.arrive(wrong, 22 * period));
+  EXPECT_TRUE(player.arrive(next, 22 * period));
+  EXPECT_TRUE(std::isfinite(player.step(22 * period, false)(0)));
+}
+
+TEST(WavePlayer, TellsWavesBeyondTheBoundsFromSoundOnesWhateverTheJitter) {
+  constexpr double period = 0.0025;
+  families::Rng rng(seed);
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  WavePlayer player(1, period);
+  player.set_most_power(100.0);
+  Sender sender{period};
+  const auto send = [&](double wave, int ticks) {
+    int beyond = 0;
+    for (int i = 0; i < ticks; ++i) {
+      RemotePacket packet = sender.send(one(wave));
+      // The tick was late by a little, and the packet by more.
+      packet.sent += std::llround(1e6 * families::uniform(rng, 0.0, 1.0));
+      const double now = 1e-9 * static_cast<double>(packet.sent) + 0.05;
+      if (player.arrive(packet, now) && player.is_beyond()) ++beyond;
+    }
+    return beyond;
+  };
+  EXPECT_EQ(send(10.0, 4000), 0);
+  EXPECT_GT(send(11.0, 4000), 3000);
+  EXPECT_LT(send(9.0, 4000), 1500);
+  EXPECT_EQ(send(9.0, 4000), 0);
+}
+
 }  // namespace wave_player_test
 }  // namespace repel::network

@@ -66,8 +66,9 @@ struct Cover {
 };
 
 /// Covers `mesh`. Cost: seconds to minutes; the bounds take most of it.
-/// @throws SetupError for options out of their range, a mesh without a triangle that has area, or
-///   an engine that is not there
+/// @throws SetupError for options out of their range, a mesh without a triangle that has area, with
+///   a corner beyond Shape::largest or a triangle of none of its vertices, or an engine that is not
+///   there
 [[nodiscard]] Cover cover_of(const TriangleMesh& mesh, const CoverOptions& options);
 
 /// The bounds of parts that come from elsewhere: fills in a Cover for the hulls of `parts`.

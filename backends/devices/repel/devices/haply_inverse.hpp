@@ -39,7 +39,8 @@ struct HaplyInverseOptions {
   double retry_after = 0.5;   ///< [s] before the first attempt to connect anew
   double retry_at_most =
       8.0;                  ///< [s] each attempt that fails doubles the time to the next, to this
-  double most_speed = 3.0;  ///< [m/s] a position farther from the last is no motion of a hand
+  double most_speed = 3.0;  ///< [m/s] a position farther from the last, or a velocity beyond it, is
+                            ///< no motion of a hand
   Clock now = &steady_now;  ///< any clock that grows
 };
 
@@ -49,13 +50,18 @@ struct HaplyInverseOptions {
 /// device has exchanged it, adds the damping that keeps the network from giving more than it took.
 ///
 /// The force is zero while the clutch is released, on a fault and at the end. Whatever is wrong
-/// with a message, a service that is silent, gone or floods, and a handle that jumps or is changed
-/// for another, is a fault: the connection is closed, and opened anew after a while, with a clutch
-/// that is released. A service without a device, or with one that is not calibrated, is a fault as
-/// well, and is asked ten times a second. Not thread-safe: only the reading thread may call it.
+/// with a message, a service that is silent, gone or floods, a handle that jumps or is changed for
+/// another, and a velocity that contradicts the positions, is a fault: the connection is closed,
+/// and opened anew after a while, with a clutch that is released. A service without a device, or
+/// with one that is not calibrated, is a fault as well, and is asked ten times a second. Not
+/// thread-safe: only the reading thread may call it.
 class HaplyInverse {
  public:
-  static constexpr double jump = 0.02;  ///< [m] a change of position that needs no time
+  static constexpr double jump = 0.02;            ///< [m] a change of position that needs no time
+  static constexpr double compared_over = 0.02;   ///< [s] of velocities and positions
+  static constexpr double most_difference = 0.5;  ///< [m/s] of both
+  /// of that motion, by which they may differ besides: a filter lags behind a hand by some ms
+  static constexpr double most_share = 0.5;
 
   /// Connects to the service and waits up to a second for a device.
   /// @throws SetupError if a number is out of range, no service answers or it has no device, saying
@@ -95,7 +101,8 @@ class HaplyInverse {
   void take_until(SteadyTime end);
   void take(const std::string& message);
   [[nodiscard]] bool is_overdue() const noexcept;
-  [[nodiscard]] const char* complaint(double passed) const noexcept;
+  [[nodiscard]] const char* complaint(double passed) noexcept;
+  [[nodiscard]] bool contradicts(double passed) noexcept;
   void press() noexcept;
   void update_force(const HaplyState& before, double passed) noexcept;
   void let_go() noexcept;
@@ -110,6 +117,8 @@ class HaplyInverse {
   Clutch clutch_;
   HaplyState state_{};
   HaplyState read_{};         // the message being read
+  Vec3 moved_{0, 0, 0};       // [m/s] mean of late, by the positions
+  Vec3 told_{0, 0, 0};        // [m/s] likewise, by the velocities
   bool has_state_ = false;    // since the connection was opened
   bool is_known_ = false;     // the service has the name of the program
   bool is_answered_ = false;  // the last command; before any: the service has greeted

@@ -34,12 +34,16 @@ class LinkThread {
       : link_(link),
         transport_(std::move(transport)),
         options_(options),
-        name_(transport_->name()) {
+        name_(transport_->name()),
+        exposure_(transport_->exposure()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
   /// Of the transport, for people.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+  /// Transport::exposure.
+  [[nodiscard]] const std::string& exposure() const noexcept { return exposure_; }
 
   /// Ends the thread; after that the link is silent.
   void stop() {
@@ -73,6 +77,7 @@ class LinkThread {
   std::unique_ptr<Transport> transport_;
   LinkThreadOptions options_;
   std::string name_;
+  std::string exposure_;
   std::int64_t unsent_ = 0;
   std::jthread thread_;
 };

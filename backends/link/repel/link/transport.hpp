@@ -17,6 +17,14 @@ enum class Side {
   station,  ///< with the operator
 };
 
+/// Says of a transport that is open to `whom` that they can drive the robot, and what to do.
+[[nodiscard]] inline std::string exposed_to(const std::string& whom, const std::string& instead) {
+  return "whoever is on " + whom +
+         " can drive the robot: nothing is encrypted, and nobody is asked who they are; use a "
+         "network of your own or a tunnel, and name its address: " +
+         instead;
+}
+
 /// Carries packets to the other side and back; any may be lost, doubled or overtaken. For one
 /// thread, which is not the tick: these functions make system calls and may allocate.
 class Transport {
@@ -35,6 +43,8 @@ class Transport {
   virtual void wait(std::chrono::microseconds longest) noexcept = 0;
   /// What it joins, for people: "UDP 127.0.0.1:7411".
   [[nodiscard]] virtual std::string name() const = 0;
+  /// Who else can reach this side, and what to do about it: a sentence. Empty: this machine alone.
+  [[nodiscard]] virtual std::string exposure() const { return {}; }
   /// Messages that were no packets of this version.
   [[nodiscard]] virtual std::int64_t foreign() const noexcept { return foreign_; }
 

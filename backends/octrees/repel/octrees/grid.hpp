@@ -33,8 +33,10 @@ struct Region {
 /// its origin) or has more than Region::most cubes
 [[nodiscard]] cover::CubeRange cubes_in(const Region& region, double cube);
 
-/// Reads a file of OctoMap, .bt or .ot.
-/// @throws SetupError naming the file, if it cannot be read
+/// Reads a file of OctoMap, .bt or .ot, in a child process.
+/// @throws SetupError naming the file, if it cannot be read, is deeper than a map can be, or has
+/// cubes of less than a micrometre or more than a kilometre; also if the reader crashes or exceeds
+/// the limits of input_limits for meshes
 [[nodiscard]] std::unique_ptr<octomap::OcTree> read_tree(const std::string& path);
 
 /// The smallest range, counted from the origin, with all that a tree knows, occupied or free; the

@@ -13,6 +13,9 @@
 
 namespace repel::scene {
 
+/// [Hz] Of the images of a camera, simulated or recorded: what waits for its latency is kept.
+inline constexpr double most_camera_rate_hz = 1000.0;
+
 /// A map in which the images of a camera are entered.
 struct MapChoice {
   double cube = 0.05;        ///< [m] edge of its cubes

@@ -126,6 +126,7 @@ struct RobotChoice {
   bool covers = true;                  ///< meshes become the parts in the lists beside them
   std::vector<double> start;           ///< [rad] or [m] one for each moving joint, base outward
   std::vector<JointType> start_types;  ///< which of the two units the file gives
+  int start_line = 0;                  ///< with the start in the file
   Pose X_WB = Pose::Identity();        ///< [m] pose of the base in the world
   Pose X_LT = Pose::Identity();        ///< [m] pose of the tool frame in the tip link
   /// Links of the URDF file to which the walls apply, if the network has the module arm_obstacle;

@@ -15,6 +15,7 @@
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/signals.hpp>
 #include <repel/network/elements/two_port.hpp>
+#include <repel/network/machinery/optional_functions.hpp>
 
 namespace repel::network {
 
@@ -104,14 +105,20 @@ constexpr void require_module() noexcept {
   } else if constexpr (ShowsItsWaves<M> && !ShowsItself<M>) {
     static_assert(TakesItsWave<M>,
                   "repel: a matched one-port needs 'void incident(const Vec<N>& wave) noexcept'");
+  } else if constexpr (ports == Ports::one) {
+    static_assert((ShowsItsWaves<M> ? TakesItsWave<M> : TakesItsState<M>) || !has_incident<M>(),
+                  "repel: 'incident' of a one-port must be 'void incident(const "
+                  "PortState<any_size>& state) noexcept' or, if it shows its waves, 'void "
+                  "incident(const Vec<N>& wave) noexcept'");
   }
+  require_callable<M>();
 }
 
 template <class M>
 [[nodiscard]] constexpr Traits traits_of(const M& module) noexcept {
-  if constexpr (requires { module.traits(); }) {
+  if constexpr (TellsItsTraits<M>) {
     return module.traits();
-  } else if constexpr (requires { M::traits; }) {
+  } else if constexpr (HasTraits<M>) {
     return M::traits;
   } else {
     return {};
@@ -135,7 +142,7 @@ void settle_one_port(M& module, const PortState<any_size>& state) noexcept {
   if constexpr (ShowsItsWaves<M>) {
     const auto& R = module.resistance();
     if constexpr (TakesItsWave<M>) module.incident(state.incident(R));
-  } else if constexpr (requires { module.incident(state); }) {
+  } else if constexpr (TakesItsState<M>) {
     module.incident(state);
   }
 }
@@ -183,8 +190,8 @@ class AnyModule {
 template <class M>
 inline constexpr char type_mark = 0;
 
-/// Adapts `M` to AnyModule. A function that `M` does not have does nothing, or returns a neutral
-/// value.
+/// Adapts `M` to AnyModule. An optional function that `M` does not have does nothing, or returns a
+/// neutral value.
 template <class M>
 class ModuleOf final : public AnyModule {
  public:
@@ -197,24 +204,24 @@ class ModuleOf final : public AnyModule {
   }
   [[nodiscard]] Traits traits() const noexcept override { return traits_of(module_); }
   void fit(Space space, int size) override {
-    if constexpr (requires { module_.fit(space, size); }) module_.fit(space, size);
+    if constexpr (Fits<M>) module_.fit(space, size);
   }
   [[nodiscard]] int size() const noexcept override {
-    if constexpr (requires { module_.size(); }) return module_.size();
+    if constexpr (KnowsItsSize<M>) return module_.size();
     return 0;
   }
   void face(Side root) noexcept override {
-    if constexpr (requires { module_.face(root); }) module_.face(root);
+    if constexpr (Faces<M>) module_.face(root);
   }
   void suit(const RobotEnd& robot) override {
-    if constexpr (requires { module_.suit(robot); }) module_.suit(robot);
+    if constexpr (Suits<M>) module_.suit(robot);
   }
   void prepare(double period) override {
-    if constexpr (requires { module_.prepare(period); }) module_.prepare(period);
+    if constexpr (Prepares<M>) module_.prepare(period);
   }
 
   void read(const Signals& signals) noexcept override {
-    if constexpr (requires { module_.read(signals); }) module_.read(signals);
+    if constexpr (Reads<M>) module_.read(signals);
   }
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) noexcept override {
@@ -246,35 +253,29 @@ class ModuleOf final : public AnyModule {
   }
 
   [[nodiscard]] double supplied() const noexcept override {
-    if constexpr (requires { module_.supplied(); }) return module_.supplied();
+    if constexpr (Supplies<M>) return module_.supplied();
     return 0.0;
   }
   [[nodiscard]] double left_weight() const noexcept override {
-    if constexpr (requires { module_.left_weight(); }) return module_.left_weight();
+    if constexpr (WeighsItsLeft<M>) return module_.left_weight();
     return 1.0;
   }
   [[nodiscard]] bool saturated() const noexcept override {
-    if constexpr (requires { module_.saturated(); }) return module_.saturated();
+    if constexpr (Saturates<M>) return module_.saturated();
     return false;
   }
   void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept override {
-    if constexpr (requires { module_.add_walls(jacobian, torques); }) {
-      module_.add_walls(jacobian, torques);
-    }
+    if constexpr (AddsWalls<M>) module_.add_walls(jacobian, torques);
   }
   void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept override {
-    if constexpr (requires { module_.add_wall_damping(jacobian, damping); }) {
-      module_.add_wall_damping(jacobian, damping);
-    }
+    if constexpr (AddsWallDamping<M>) module_.add_wall_damping(jacobian, damping);
   }
   void predict(const Signals& signals, const Vec<any_size>& walls,
                const Mat<any_size>& damping) noexcept override {
-    if constexpr (requires { module_.predict(signals, walls, damping); }) {
-      module_.predict(signals, walls, damping);
-    }
+    if constexpr (Predicts<M>) module_.predict(signals, walls, damping);
   }
   [[nodiscard]] std::optional<PassivityReport> passivity() const noexcept override {
-    if constexpr (requires { module_.passivity(); }) return module_.passivity();
+    if constexpr (ReportsPassivity<M>) return module_.passivity();
     return std::nullopt;
   }
 

@@ -46,7 +46,7 @@ struct CleanStiffness {
          text(at.limit()) + " N/m for a period of " + text(1e3 * at.period) + " ms, a delay of " +
          text(1e3 * at.delay) + " ms, " + text(at.device_damping) +
          " N s/m of damping in the device and " + text(at.wall_damping) +
-         " N s/m in the wall; this wall needs " + text(at.needed_damping(stiffness)) +
+         " N s/m in the wall; this wall needs " + to_text_above(at.needed_damping(stiffness), 4) +
          " N s/m in the device";
 }
 

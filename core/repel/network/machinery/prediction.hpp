@@ -92,12 +92,19 @@ class Prediction {
     if (is_known_) move_to_port(signals);
   }
 
-  /// What is on the right measures its flow, so that only the effort at this flow is shown.
+  /// What is on the right measures its flow, so that only the effort at this flow is shown. In the
+  /// joints an impedance may be singular: what the tool does not feel, of seven joints or in a
+  /// singular pose, is answered by no torque.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept {
     shown = behind;
     if (!is_known_) return true;
-    if (!shown.take_form(Form::admittance)) return false;
+    const bool is_impedance = shown.form == Form::impedance;
+    if (is_impedance && (in_joints_ || !shown.take_form(Form::admittance))) {
+      shown.add_admittance(conductance_, -(flow_ + offset_));
+      shown.matrix.setZero();
+      return true;
+    }
     const Eigen::Index n = conductance_.rows();
     const double *own = conductance_.data(), *added = shown.matrix.data();
     dense::Factored both;

@@ -187,7 +187,7 @@ class Guide {
       throw SetupError("fixture '" + fixture.name + "': its spring of " +
                        repel::to_text(gains.stiffness, 4) + " is too stiff for its damping of " +
                        repel::to_text(gains.damping, 4) + "; allowed: a damping of at least " +
-                       repel::to_text(needed, 4) + " at this rate and delay, or 'auto'");
+                       to_text_above(needed, 4) + " at this rate and delay, or 'auto'");
     }
     return gains;
   }

@@ -35,6 +35,9 @@ struct RemoteCounts {
   std::int64_t refused = 0;      ///< not sound, or of a side that contradicts itself
   std::int64_t strangers = 0;    ///< of another agreement, or of a second partner
   std::int64_t sessions = 0;     ///< of the other side: 1, and one more for each restart
+  std::int64_t beyond = 0;       ///< of those received: told of larger waves than the bounds allow
+  std::int64_t cut = 0;          ///< ticks in which a wave was cut to the bounds
+  std::int64_t closed = 0;       ///< partners that went on sending what is beyond or not sound
   double longest_silence = 0.0;  ///< [s] between two packets of one session
 };
 
@@ -44,6 +47,9 @@ struct RemoteCounts {
 class RemoteLink {
  public:
   static constexpr std::size_t room = 64;  ///< packets between two visits of the thread
+  /// Packets of a partner, less a quarter of the others, that are beyond the bounds or not sound,
+  /// after which it is closed: 0.1 s at 400 Hz. Its session is not met again.
+  static constexpr double patience = 40.0;
 
   /// @throws SetupError for a number out of range
   explicit RemoteLink(const RemoteOptions& options)
@@ -61,6 +67,10 @@ class RemoteLink {
     sent_.clear(size);
     size_ = size;
   }
+  /// [W] Of the largest wave that a sound side sends, squared: by RemoteLine.
+  void set_most_power(double power) noexcept { player_.set_most_power(power); }
+  /// In this tick a wave was cut: by RemoteLine.
+  void count_cut() noexcept { ++counts_.cut; }
 
   /// First in a tick: takes all that has arrived. @param now [ns] must grow
   void receive(std::chrono::nanoseconds now) noexcept {
@@ -104,7 +114,8 @@ class RemoteLink {
   }
   /// True once the other side has been heard.
   [[nodiscard]] bool is_linked() const noexcept { return partner_ != 0; }
-  /// [s] since the newest packet came; since the first `receive` when there was none.
+  /// [s] since the newest packet came; since the first `receive`, or since the partner was closed,
+  /// when there was none.
   [[nodiscard]] double silent_for() const noexcept {
     return seconds(now_ - std::chrono::nanoseconds(partner_ == 0 ? began_ : heard_at_));
   }
@@ -132,8 +143,9 @@ class RemoteLink {
       ++counts_.strangers;
       return;
     }
-    if (!is_sound(packet) || packet.session == options_.session) {
+    if (!is_sound(packet) || packet.session == options_.session || !player_.is_credible(packet)) {
       ++counts_.refused;
+      if (packet.session == partner_) distrust();
       return;
     }
     if (packet.session != partner_ && !meet(packet)) {
@@ -144,9 +156,16 @@ class RemoteLink {
     const bool is_newer = packet.sequence > newest;
     if (!player_.arrive(packet, seconds(now_))) {
       ++(is_newer ? counts_.refused : counts_.doubled);
+      if (is_newer) distrust();
       return;
     }
     ++counts_.received;
+    if (is_newer && player_.is_beyond()) {
+      ++counts_.beyond;
+      if (distrust()) return;
+    } else {
+      distrust_ = std::max(0.0, distrust_ - 0.25);
+    }
     if (!is_newer) {
       ++counts_.overtaken;
       --counts_.lost;
@@ -164,10 +183,25 @@ class RemoteLink {
   bool meet(const RemotePacket& packet) noexcept {
     const bool is_free = partner_ == 0 || silent_for() > WavePlayer::silence;
     if (!is_free || packet.session == former_) return false;
+    if (std::find(closed_.begin(), closed_.end(), packet.session) != closed_.end()) return false;
     former_ = partner_;
     partner_ = packet.session;
+    distrust_ = 0.0;
     partner_sent_ = partner_played_ = 0.0;
     ++counts_.sessions;
+    player_.begin();
+    return true;
+  }
+
+  /// What the partner sent is beyond the bounds or not sound. True when it is closed for that: the
+  /// place is free, and this session is not met again.
+  bool distrust() noexcept {
+    if (++distrust_ < patience) return false;
+    closed_[static_cast<std::size_t>(counts_.closed++) % closed_.size()] = partner_;
+    partner_ = 0;
+    began_ = now_.count();
+    heard_values_ = {};
+    distrust_ = 0.0;
     player_.begin();
     return true;
   }
@@ -179,8 +213,9 @@ class RemoteLink {
     partner_sent_ = packet.energy_sent;
     if (packet.heard != options_.session) return;
     partner_played_ = packet.energy_played;
-    const std::int64_t round = now_.count() - packet.heard_sent - packet.heard_for;
-    if (round >= 0) round_trips_.record(std::chrono::nanoseconds(round));
+    const std::int64_t since = now_.count() - packet.heard_sent;
+    if (since < packet.heard_for) return;
+    round_trips_.record(std::chrono::nanoseconds(since - packet.heard_for));
   }
 
   RemoteOptions options_;
@@ -190,8 +225,10 @@ class RemoteLink {
   int size_ = 0;
   std::array<double, RemotePacket::most_values> values_{}, heard_values_{};
   std::chrono::nanoseconds now_{0};
-  std::int64_t began_ = -1;                           // [ns]
-  std::uint64_t partner_ = 0, former_ = 0;            // sessions
+  std::int64_t began_ = -1;                 // [ns]
+  std::uint64_t partner_ = 0, former_ = 0;  // sessions
+  std::array<std::uint64_t, 16> closed_{};  // the last ones
+  double distrust_ = 0.0;
   std::int64_t heard_at_ = 0;                         // [ns]
   std::int64_t heard_sent_ = 0;                       // [ns] by the clock of the other side
   double partner_sent_ = 0.0, partner_played_ = 0.0;  // [J]

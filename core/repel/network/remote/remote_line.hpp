@@ -5,6 +5,7 @@
 
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/signals.hpp>
+#include <repel/network/remote/line_bounds.hpp>
 #include <repel/network/remote/link.hpp>
 
 namespace repel::network {
@@ -13,13 +14,16 @@ namespace repel::network {
 struct RemoteLineOptions {
   double impedance = 20.0;         ///< Z [N s/m], the same at both ends
   double angular_impedance = 0.5;  ///< [N m s/rad]; of a tool port
+  LineBounds bounds{};             ///< of what passes; the same at both ends
+  bool is_station = false;         ///< the robot is at the other end
 };
 
 /// A one-port of resistance Z: what the other end of the line sent comes out of it, as far as it
 /// was sent in time, and what enters is sent there (Anderson and Spong 1989; sums of waves after
 /// Niemeyer and Slotine 1998). While nothing comes, it is a damper Z. It gives no more energy than
 /// the other end has sent, whatever the network does; in the ledger of its own network, that energy
-/// is what it is supplied with.
+/// is what it is supplied with. At the robot it drives no faster and pushes no harder than its
+/// bounds, whatever was sent: see WaveLimiter.
 class RemoteLine {
  public:
   /// @param link receives before each tick; must outlive the network. A link has one end here
@@ -33,16 +37,25 @@ class RemoteLine {
   /// Sets the size of its port, and the impedance for that space.
   void fit(Space space, int size) {
     impedance_ = LineImpedance(space, size, options_.impedance, options_.angular_impedance);
+    limiter_ = WaveLimiter(options_.bounds, impedance_, space);
     wave_.setZero(size);
   }
   /// Once, for the link as well. @param period [s] of the network.
   void prepare(double period) {
     period_ = detail::checked_period(period);
+    limiter_.prepare(period_);
     link_->prepare(impedance_.size(), period_);
+    link_->set_most_power(limiter_.most_power());
   }
 
-  /// Takes the wave that is due.
-  void read(const Signals& signals) noexcept { wave_ = link_->play(signals.at_rest); }
+  /// Takes the wave that is due, as far as the bounds go.
+  void read(const Signals& signals) noexcept {
+    limiter_.read(signals);
+    link_->set_most_power(limiter_.most_power());
+    wave_ = link_->play(signals.at_rest);
+    is_cut_ = !options_.is_station && limiter_.cut(wave_);
+    if (is_cut_) link_->count_cut();
+  }
   /// Resistance Z with the wave that is due.
   void equivalent(Equivalent<any_size>& shown) const noexcept {
     shown.form = Form::impedance;
@@ -51,10 +64,16 @@ class RemoteLine {
   }
   /// Sends the wave that enters.
   void incident(const PortState<any_size>& state) noexcept {
-    link_->send(impedance_.wave_of(state), period_);
+    limiter_.note(state);
+    Vec<any_size> wave = impedance_.wave_of(state);
+    limiter_.cut_to_sound(wave);
+    link_->send(wave, period_);
   }
   /// [W] That came over the line.
   [[nodiscard]] double supplied() const noexcept { return wave_.squaredNorm(); }
+
+  /// What came was beyond the bounds in this tick.
+  [[nodiscard]] bool saturated() const noexcept { return is_cut_; }
 
   /// The link that it sends over.
   [[nodiscard]] const RemoteLink& link() const noexcept { return *link_; }
@@ -64,6 +83,8 @@ class RemoteLine {
   RemoteLineOptions options_;
   double period_ = 1.0;  // [s]
   LineImpedance impedance_;
+  WaveLimiter limiter_;
+  bool is_cut_ = false;
   Vec<any_size> wave_;  // [sqrt(W)] that comes out in this tick
 };
 

@@ -29,6 +29,13 @@ enum class Frame {
 
 class Model {
  public:
+  Model() = default;
+  Model(Model&&) noexcept = default;
+  Model& operator=(Model&&) noexcept = default;
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+  ~Model() noexcept = default;
+
   /// Column-major 4 x 4 pose in the base frame [m].
   std::array<double, 16> pose(Frame frame, const RobotState& state) const {
     std::array<double, 16> out;
@@ -91,7 +98,7 @@ class Model {
 };
 
 inline Model Robot::loadModel() {
-  return {};
+  return Model();
 }
 
 // Weight and friction are compensated by the robot; what turns with the joints is not simulated.

@@ -7,17 +7,26 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
 
+#include <franka/control_types.h>
 #include <franka/exception.h>
 
 namespace franka {
 
-enum class RealtimeConfig { kEnforce, kIgnore };
-enum class RobotMode { kOther, kIdle, kMove, kGuiding, kReflex, kUserStopped };
+enum class RobotMode {
+  kOther,
+  kIdle,
+  kMove,
+  kGuiding,
+  kReflex,
+  kUserStopped,
+  kAutomaticErrorRecovery
+};
 inline constexpr double kMaxCutoffFrequency = 1000.0;     // [Hz]
 inline constexpr double kDefaultCutoffFrequency = 100.0;  // [Hz]
 
@@ -25,6 +34,11 @@ class Duration {  // of whole milliseconds
  public:
   Duration() noexcept = default;
   explicit Duration(uint64_t milliseconds) noexcept : milliseconds_(milliseconds) {}
+  Duration(std::chrono::duration<uint64_t, std::milli> time) noexcept
+      : milliseconds_(time.count()) {}
+  operator std::chrono::duration<uint64_t, std::milli>() const noexcept {
+    return std::chrono::duration<uint64_t, std::milli>(milliseconds_);
+  }
   double toSec() const noexcept { return 1e-3 * static_cast<double>(milliseconds_); }
   uint64_t toMSec() const noexcept { return milliseconds_; }
   Duration operator-(const Duration& rhs) const noexcept {
@@ -46,22 +60,11 @@ struct RobotState {
   Duration time{1000};  // since the robot was switched on
 };
 
-struct Finishable {
-  bool motion_finished = false;
-};
-
-class Torques : public Finishable {
- public:
-  Torques(const std::array<double, 7>& torques) noexcept : tau_J(torques) {}
-  std::array<double, 7> tau_J{};  // [N m] without gravity and friction
-};
-
-inline Torques MotionFinished(Torques command) noexcept {
-  command.motion_finished = true;
-  return command;
-}
-
 class Model;
+
+/// What `Robot::control` calls back.
+template <class Command>
+using Callback = std::function<Command(const RobotState&, Duration)>;
 
 class Robot {
  public:
@@ -71,6 +74,9 @@ class Robot {
     state_.q = {0.0, -M_PI / 4, 0.0, -3 * M_PI / 4, 0.0, M_PI / 2, M_PI / 4};
   }
   Robot(Robot&&) noexcept = default;
+  Robot& operator=(Robot&&) noexcept = default;
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
   virtual ~Robot() noexcept = default;
 
   Model loadModel();
@@ -79,8 +85,8 @@ class Robot {
 
   /// Calls back every millisecond until the motion is finished. Does not filter.
   /// @throws ControlException as the robot would, and what the callback throws; the arm then stands
-  void control(std::function<Torques(const RobotState&, Duration)> control_callback,
-               bool limit_rate = false, double /*cutoff*/ = kDefaultCutoffFrequency) {
+  void control(Callback<Torques> control_callback, bool limit_rate = false,
+               double /*cutoff*/ = kDefaultCutoffFrequency) {
     if (state_.robot_mode != RobotMode::kIdle) throw ControlException("command not possible");
     state_.robot_mode = RobotMode::kMove;
     state_.tau_J_d = {};
@@ -98,6 +104,40 @@ class Robot {
       if (state_.robot_mode == RobotMode::kMove) stand(RobotMode::kIdle);  // motion cancelled
       throw;
     }
+  }
+
+  // The other ways to lead the robot: only their signatures are here.
+  void control(Callback<Torques>, Callback<JointPositions>, bool = false,
+               double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<Torques>, Callback<JointVelocities>, bool = false,
+               double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<Torques>, Callback<CartesianPose>, bool = false,
+               double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<Torques>, Callback<CartesianVelocities>, bool = false,
+               double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<JointPositions>, ControllerMode = ControllerMode::kJointImpedance,
+               bool = false, double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<JointVelocities>, ControllerMode = ControllerMode::kJointImpedance,
+               bool = false, double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<CartesianPose>, ControllerMode = ControllerMode::kJointImpedance,
+               bool = false, double = kDefaultCutoffFrequency) {
+    refuse();
+  }
+  void control(Callback<CartesianVelocities>, ControllerMode = ControllerMode::kJointImpedance,
+               bool = false, double = kDefaultCutoffFrequency) {
+    refuse();
   }
 
   // What follows belongs to the stand-in alone.
@@ -133,6 +173,8 @@ class Robot {
     lost_ = 0;
     if (distort) distort(state_);
   }
+
+  [[noreturn]] static void refuse() { throw ControlException("the stand-in takes torques alone"); }
 
   [[noreturn]] void reflex(const char* error) {
     lost_ = 0;

@@ -17,8 +17,12 @@
 #include <fstream>
 #include <new>
 #include <string_view>
+#include <system_error>
 
+#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+
+#include "parcel.hpp"
 
 namespace repel::detail {
 namespace {
@@ -37,6 +41,7 @@ constexpr bool reserves_address_space = false;
 
 constexpr char succeeded = 'y';
 constexpr char failed = 'n';
+constexpr char refused = 'r';  // by a SetupError
 
 std::size_t address_space() {
   std::size_t pages = 0;
@@ -49,6 +54,32 @@ void limit(decltype(RLIMIT_CPU) resource, std::size_t most) {
   getrlimit(resource, &now);
   now.rlim_cur = std::min<rlim_t>(most, now.rlim_max);
   setrlimit(resource, &now);
+}
+
+std::string packed(const SetupError& error) {
+  Parcel parcel;
+  parcel.put_list(error.file());
+  parcel.put(error.line());
+  const std::string_view text = error.what();
+  // Without the place, which its constructor puts in front.
+  const SetupError place("", error.file(), error.line());
+  parcel.put_list(text.substr(std::strlen(place.what())));
+  return parcel.take();
+}
+
+[[noreturn]] void throw_packed(std::string_view bytes) {
+  Unpacking parcel(bytes);
+  const auto file = parcel.take_list<std::string>();
+  const int line = parcel.take<int>();
+  throw SetupError(parcel.take_list<std::string>(), file, line);
+}
+
+/// What libraries print of a file is in the error. @param to stays open: where the result goes
+void be_silent(int to) {
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  for (const int output : {STDOUT_FILENO, STDERR_FILENO}) {
+    if (nowhere >= 0 && output != to) (void)dup2(nowhere, output);
+  }
 }
 
 void write_all(int to, std::string_view bytes) {
@@ -84,6 +115,7 @@ class End {
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGALRM}) {
     (void)signal(number, SIG_DFL);
   }
+  be_silent(to);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<std::size_t>(limits.seconds));
   if (!reserves_address_space) limit(RLIMIT_AS, memory);
@@ -95,6 +127,9 @@ class End {
   try {
     answer = work();
     sign = succeeded;
+  } catch (const SetupError& error) {
+    answer = packed(error);
+    sign = refused;
   } catch (const std::bad_alloc&) {
     answer = "needs more memory than allowed, " + std::to_string(limits.memory) + " bytes";
   } catch (const std::exception& error) {
@@ -134,7 +169,9 @@ std::string ending(int status, const ChildLimits& limits) {
 
 }  // namespace
 
-std::string result_of_child(const std::function<std::string()>& work, const ChildLimits& limits) {
+// Weak: these objects are in more than one part, and a program may have the whole of each.
+[[gnu::weak]] std::string result_of_child(const std::function<std::string()>& work,
+                                          const ChildLimits& limits) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw SetupError("cannot be read: no pipe to its reader");
   End from(ends[0]);
@@ -151,8 +188,38 @@ std::string result_of_child(const std::function<std::string()>& work, const Chil
   if (bytes.size() > sizeof size) std::memcpy(&size, &bytes[1], sizeof size);
   const bool whole = bytes.size() > sizeof size && bytes.size() - 1 - sizeof size == size;
   if (!whole) throw SetupError(ending(status, limits));
-  if (bytes[0] != succeeded) throw SetupError(bytes.substr(1 + sizeof size));
-  return bytes.substr(1 + sizeof size);
+  std::string answer = bytes.substr(1 + sizeof size);
+  if (bytes[0] == refused) throw_packed(answer);
+  if (bytes[0] != succeeded) throw SetupError(answer);
+  return answer;
+}
+
+[[gnu::weak]] std::string result_of_file(const std::filesystem::path& path, const std::string& what,
+                                         std::size_t expansion,
+                                         const std::function<std::string()>& work) {
+  const std::string file = what + " '" + path.string() + "' ";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    const bool exists = std::filesystem::exists(path, error);
+    throw SetupError(file + (exists ? "is no file" : "is not there") +
+                     "; allowed: an existing file");
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) throw SetupError(file + "cannot be read: " + error.message());
+  if (bytes > input_limits.mesh_bytes) {
+    throw SetupError(file + "has " + std::to_string(bytes) + " bytes; allowed: up to " +
+                     std::to_string(input_limits.mesh_bytes));
+  }
+  const auto mebibytes = static_cast<int>(bytes >> 20U);
+  const ChildLimits limits{
+      .seconds = std::min(input_limits.mesh_seconds, 1 + 2 * mebibytes),
+      .memory = std::min<std::size_t>(input_limits.mesh_memory,
+                                      (std::size_t{256} << 20) + expansion * bytes)};
+  try {
+    return result_of_child(work, limits);
+  } catch (const SetupError& wrong) {
+    throw SetupError(file + wrong.what());
+  }
 }
 
 }  // namespace repel::detail

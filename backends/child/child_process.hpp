@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -17,9 +18,19 @@ struct ChildLimits {
 
 /// Runs `work` in a forked copy of this process and returns its result, so that a crash or an
 /// endless loop does no harm. Set-up only: it forks.
-/// @throws SetupError with the message of the exception that `work` throws, or saying how the child
-///   ended
+/// @throws SetupError that `work` throws, with the message of any other exception, or saying how
+///   the child ended
 [[nodiscard]] std::string result_of_child(const std::function<std::string()>& work,
                                           const ChildLimits& limits);
+
+/// The same for work on one file, of up to input_limits.mesh_bytes; small ones may cost less than
+/// large ones, none more than the limits of input_limits for meshes.
+/// @param what the file is, for errors: "mesh"
+/// @param expansion [byte] of memory for each byte of the file
+/// @throws SetupError that begins with `what` and the path; also if it is a directory, a device or
+///   a pipe
+[[nodiscard]] std::string result_of_file(const std::filesystem::path& path, const std::string& what,
+                                         std::size_t expansion,
+                                         const std::function<std::string()>& work);
 
 }  // namespace repel::detail

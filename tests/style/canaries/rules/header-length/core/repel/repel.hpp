@@ -1,6 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-/// @file
-/// A canary.
-#pragma once
-
-#include <repel/base/canary.hpp>
