@@ -39,12 +39,13 @@ function(repel_test name)
   # large ones cost less than many.
   set_target_properties(${name} PROPERTIES CXX_CLANG_TIDY "" UNITY_BUILD_BATCH_SIZE 16)
   add_test(NAME ${name} COMMAND ${name})
-  set(timeout 300)
+  set(timeout 1200)  # ends what hangs
   if(REPEL_SANITIZE)
-    set(timeout 1200)
+    set(timeout 2400)
   endif()
-  set_tests_properties(${name} PROPERTIES
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} TIMEOUT ${timeout})
+  # What passes says nothing, so that the failure is what a log begins with.
+  set_tests_properties(${name} PROPERTIES WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    TIMEOUT ${timeout} ENVIRONMENT GTEST_BRIEF=1)
   if(ARG_LABELS)
     set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}")
   endif()
