@@ -48,12 +48,18 @@ the_browser = TheBrowser()
 class Result(unittest.TextTestResult):
     """Says of each test how long it took."""
 
+    began = None  # of the test that runs; none does while a group is set up
+
     def startTest(self, test):
         super().startTest(test)
         self.began = time.monotonic()
 
+    def stopTest(self, test):
+        super().stopTest(test)
+        self.began = None
+
     def say_time(self):
-        if self.showAll:
+        if self.showAll and self.began is not None:
             self.stream.write(f"{time.monotonic() - self.began:.1f} s, ")
 
     def addSuccess(self, test):
@@ -73,6 +79,10 @@ class Result(unittest.TextTestResult):
         the_browser.spoilt = True
         self.say_time()
         super().addError(test, err)
+
+    def addSubTest(self, test, subtest, err):
+        the_browser.spoilt = the_browser.spoilt or err is not None
+        super().addSubTest(test, subtest, err)
 
 
 def by_the_clock(test):

@@ -205,14 +205,16 @@ class Page:
         return self.stands()
 
     def stands(self):
-        """Waits until it is paused and the last tick, which may be on its way, is seen."""
-        before = None
+        """Waits until it is paused and the last tick, which may be on its way, is seen: that one is
+        shown again and again, five times a second."""
+        first = None
 
         def same(state):
-            nonlocal before
-            last, before = before, state["tick"]
-            time.sleep(0.3)
-            return not state["running"] and state["tick"] == last
+            nonlocal first
+            if first is None or state["running"] or state["tick"] != first["tick"]:
+                first = None if state["running"] else state
+                return False
+            return state["framesRendered"] >= first["framesRendered"] + 4
 
         return self.until(same, "it pauses")
 
