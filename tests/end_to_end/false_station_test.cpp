@@ -17,12 +17,9 @@
 
 #include <repel/scene/scene.hpp>
 
-#include "arm_backend.hpp"
-#include "driven_cell.hpp"
 #include "end_to_end/program.hpp"
+#include "end_to_end/two_sides.hpp"
 #include "network/remote/relay.hpp"
-#include "prepared_run.hpp"
-#include "station_side.hpp"
 #include "support/draws.hpp"
 #include "support/families.hpp"
 
@@ -33,40 +30,17 @@ using network::any_size;
 using network::RemotePacket;
 using network::Vec;
 
-constexpr double tick = 0.0025;
-
-teleop::RunOptions in_step() {
-  teleop::RunOptions options;
-  options.fast = true;
-  return options;
-}
-
 /// The robot's side, and what a measurement from outside says of it: speed and intrusion from the
 /// joint positions of the simulated arm alone.
-struct Site {
-  network::RemoteLink link{{.session = 1}};
-  std::unique_ptr<teleop::PreparedRun> prepared;
-  std::unique_ptr<teleop::DrivenCell> driven;
-  TickRecord last;
+struct MeasuredSite : Site {
   Vec3 at_W{0, 0, 0};
   bool has_moved = false;
   double fastest = 0.0;  ///< [m/s] of the tool
   double nearest = 1.0;  ///< [m] least distance of a wall, negative inside
 
-  explicit Site(const scene::Scene& scene) {
-    const teleop::RunOptions options = in_step();
-    prepared = teleop::prepare(scene, options, nullptr, &link);
-    const ArmDescription& described = prepared->cell.description().arms.front();
-    std::vector<std::unique_ptr<TorqueDrivenArm>> arms;
-    arms.push_back(teleop::arm_backend("bullet").make(described.model, described.start, 0.1, {}));
-    std::vector<teleop::OperatorInput> operators;
-    operators.emplace_back(network::Script());
-    driven = std::make_unique<teleop::DrivenCell>(prepared->cell, prepared->scene, std::move(arms),
-                                                  std::move(operators), &link);
-  }
+  explicit MeasuredSite(const scene::Scene& scene) : Site(scene, 1) {}
   void step(double now) {
-    last = *driven->tick(at(now)).front();
-    driven->move_arms(tick, 1);
+    Site::step(now);
     measure();
   }
   void measure() {
@@ -76,15 +50,6 @@ struct Site {
     has_moved = true;
     nearest = std::min(nearest, last.pairs.nearest);
   }
-};
-
-/// The operator's side of the same scene, as it should be.
-struct SoundStation {
-  network::RemoteLink link;
-  teleop::StationSide side;
-
-  SoundStation(const scene::Scene& scene, std::uint64_t session)
-      : link({.session = session}), side(scene, in_step(), link, nullptr) {}
 };
 
 /// What a false station sends: a packet of its own making in each tick.
@@ -123,7 +88,7 @@ Vec<any_size> along(const Vec3& direction, double wave) {
 /// A run of a site with whatever is at the other end.
 struct Trial {
   scene::Scene scene;
-  Site site;
+  MeasuredSite site;
   double now = 0.0;
 
   explicit Trial(const scene::Scene& of) : scene(of), site(of) {}
@@ -136,7 +101,7 @@ struct Trial {
     }
   }
   /// With the script of the scene, over a path without delay.
-  void play(double seconds, SoundStation& station) {
+  void play(double seconds, Station& station) {
     Relay forth(1), back(2);
     for (const double until = now + seconds; now < until;) {
       now += tick;
@@ -167,7 +132,7 @@ scene::Scene softened(const std::string& name, const std::string& hard, const st
 /// The deepest that the scene's own script comes into its walls [m].
 double depth_of_script(const scene::Scene& scene) {
   Trial run(scene);
-  SoundStation station(scene, 2);
+  Station station(scene, 2);
   run.play(14.0, station);
   EXPECT_GT(run.site.link.counts().received, 1000);
   EXPECT_EQ(run.site.link.counts().beyond, 0);
@@ -274,7 +239,7 @@ TEST(FalseStation, IsClosedAndASoundOneIsHeardAtOnce) {
     SCOPED_TRACE(u);
     Trial run(scene_named("delayed"));
     FalseStation wrong(9);
-    SoundStation sound(run.scene, 2);
+    Station sound(run.scene, 2);
     Relay forth(1), back(2);
     double heard_at = -1.0;
     while (run.now < 9.0) {
@@ -343,7 +308,7 @@ TEST(FalseStation, NoNumberThatItSendsStaysInTheRobot) {
       for (const double torque : run.site.last.torques) ASSERT_TRUE(std::isfinite(torque));
     }
     EXPECT_LE(run.site.fastest, 0.27);
-    SoundStation sound(run.scene, 2);
+    Station sound(run.scene, 2);
     run.play(7.0, sound);
     EXPECT_GT(norm(run.site.last.virtual_force.force), 10.0) << "its script leans on the table";
     EXPECT_EQ(run.site.last.status & status::failsafe, 0U);

@@ -14,67 +14,26 @@
 
 #include <repel/scene/scene.hpp>
 
-#include "arm_backend.hpp"
-#include "driven_cell.hpp"
 #include "end_to_end/program.hpp"
+#include "end_to_end/two_sides.hpp"
 #include "network/remote/relay.hpp"
-#include "prepared_run.hpp"
 #include "site_twin.hpp"
-#include "station_side.hpp"
 
 namespace repel::test {
 namespace remote_test {
 
 constexpr unsigned seed = 1993;
-constexpr double tick = 0.0025;
 
 scene::Scene delayed() {
   return scene::load(REPEL_SOURCE "/scenes/delayed.yaml");
 }
 
-teleop::RunOptions in_step() {
-  teleop::RunOptions options;
-  options.fast = true;
-  return options;
+/// [rad/s] The fastest joint of the last tick.
+double speed(const Site& site) {
+  double fastest = 0.0;
+  for (const double v : site.last.v) fastest = std::max(fastest, std::abs(v));
+  return fastest;
 }
-
-/// The robot's side.
-struct Site {
-  network::RemoteLink link;
-  std::unique_ptr<teleop::PreparedRun> prepared;
-  std::unique_ptr<teleop::DrivenCell> driven;
-  TickRecord last;
-
-  Site(const scene::Scene& scene, std::uint64_t session) : link({.session = session}) {
-    const teleop::RunOptions options = in_step();
-    prepared = teleop::prepare(scene, options, nullptr, &link);
-    const ArmDescription& arm = prepared->cell.description().arms.front();
-    std::vector<std::unique_ptr<TorqueDrivenArm>> arms;
-    arms.push_back(teleop::arm_backend("bullet").make(arm.model, arm.start, 0.1, {}));
-    std::vector<teleop::OperatorInput> operators;
-    operators.emplace_back(network::Script());
-    driven = std::make_unique<teleop::DrivenCell>(prepared->cell, prepared->scene, std::move(arms),
-                                                  std::move(operators), &link);
-  }
-  void step(double now) {
-    last = *driven->tick(at(now)).front();
-    driven->move_arms(tick, 1);
-  }
-  [[nodiscard]] double speed() const {
-    double fastest = 0.0;
-    for (const double v : last.v) fastest = std::max(fastest, std::abs(v));
-    return fastest;
-  }
-};
-
-/// The operator's side.
-struct Station {
-  network::RemoteLink link;
-  teleop::StationSide side;
-
-  Station(const scene::Scene& scene, std::uint64_t session)
-      : link({.session = session}), side(scene, in_step(), link, nullptr) {}
-};
 
 /// Both, the path between them, and what was worst.
 struct Divided {
@@ -140,7 +99,7 @@ TEST(Remote, TheOperatorFeelsTheWallAndTheWallIsKept) {
     EXPECT_LT(divided.fastest, 0.3);
     divided.run(8.0);
     EXPECT_GT(divided.nearest, 2e-3);
-    EXPECT_LT(divided.site->speed(), 0.02);
+    EXPECT_LT(speed(*divided.site), 0.02);
     EXPECT_EQ(divided.site->last.status & status::energy_gain, 0U);
     divided.expect_ledgers_hold();
   }
@@ -153,11 +112,11 @@ TEST(Remote, EitherSideMayEndAndBeginAnew) {
     divided.run(5.0);
     // The station is killed while its operator leans on the table: the robot rests within a second.
     divided.run(delay + 1.0, false, true);
-    EXPECT_LT(divided.site->speed(), 1e-3);
+    EXPECT_LT(speed(*divided.site), 1e-3);
     EXPECT_NE(divided.site->last.status & status::silent_device, 0U);
     EXPECT_EQ(divided.site->last.gain, 0.0);
     divided.run(2.0, false, true);
-    EXPECT_LT(divided.site->speed(), 1e-3);
+    EXPECT_LT(speed(*divided.site), 1e-3);
     // Another one lowers the tool once more, onto the same table.
     divided.station = std::make_unique<Station>(divided.scene, 3);
     divided.run(6.0);
