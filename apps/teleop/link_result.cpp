@@ -64,8 +64,8 @@ void print_link(const LinkResult& r, std::FILE* out) {
   if (c.closed > 0) {
     std::fprintf(
         out,
-        "  partners closed        %lld, which went on sending what is beyond the bounds or "
-        "not sound: a false station, or another version of this program\n",
+        "  partners closed        %lld, for repeated packets out of bounds or malformed: a false "
+        "station, or another version of this program\n",
         count(c.closed));
   }
   if (c.strangers + c.refused + r.foreign > 0) {

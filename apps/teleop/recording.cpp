@@ -36,7 +36,7 @@ class Fields {
     if (!json_.is_array() || i >= json_.size()) bad("an entry");
     return {json_[i], file_};
   }
-  /// NaN for null, which older recordings have in place of what is not finite.
+  /// NaN for null: older recordings wrote it for numbers that are not finite.
   [[nodiscard]] double number() const {
     if (json_.is_null()) return std::numeric_limits<double>::quiet_NaN();
     if (!json_.is_number()) bad("a number");
@@ -139,7 +139,7 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   for (const char* const name : {"linear", "angular", "lever_rate", "direction"})
     (void)arm.at(name);
   read_hand(arm, "", k.command.hand);
-  // Older recordings have no `second_scale`: a second hand that moved had that of the first.
+  // Older recordings have no `second_scale`. A second hand used the scale of the first.
   if (arm.has("second_linear")) k.command.second.scale = k.command.hand.scale;
   read_hand(arm, "second_", k.command.second);
   k.command.sound = arm.at("sound").yes();

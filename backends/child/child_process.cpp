@@ -61,7 +61,7 @@ std::string packed(const SetupError& error) {
   parcel.put_list(error.file());
   parcel.put(error.line());
   const std::string_view text = error.what();
-  // Without the place, which its constructor puts in front.
+  // The message without its file and line: the constructor adds them again.
   const SetupError place("", error.file(), error.line());
   parcel.put_list(text.substr(std::strlen(place.what())));
   return parcel.take();

@@ -49,12 +49,11 @@ struct HaplyInverseOptions {
 /// limited rate, and is kept passive: an account of the energy between handle and network, as the
 /// device has exchanged it, adds the damping that keeps the network from giving more than it took.
 ///
-/// The force is zero while the clutch is released, on a fault and at the end. Whatever is wrong
-/// with a message, a service that is silent, gone or floods, a handle that jumps or is changed for
-/// another, and a velocity that contradicts the positions, is a fault: the connection is closed,
-/// and opened anew after a while, with a clutch that is released. A service without a device, or
-/// with one that is not calibrated, is a fault as well, and is asked ten times a second. Not
-/// thread-safe: only the reading thread may call it.
+/// The force is zero while the clutch is released, on a fault and at the end. These faults close
+/// the connection: a malformed message; a silent, lost or flooding service; a jump or exchange of
+/// the handle; a velocity that contradicts the positions. It is opened again later, with the clutch
+/// released. A service without a calibrated device is a fault as well. It is asked ten times a
+/// second. Not thread-safe: only the reading thread may call it.
 class HaplyInverse {
  public:
   static constexpr double jump = 0.02;            ///< [m] a change of position that needs no time
