@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""As much of WebDriver BiDi as a smoke test in Firefox needs. Debian has no geckodriver, and Firefox
-speaks BiDi without one: on a WebSocket of its own, of which this is the client's side."""
+"""As much of WebDriver BiDi as a smoke test in Firefox needs. Debian has no geckodriver, and
+Firefox speaks BiDi without one: on a WebSocket of its own, of which this is the client's side."""
 
 import base64
 import json
