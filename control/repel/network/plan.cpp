@@ -80,7 +80,7 @@ void Plan::lay_out(Network& network, detail::Planner& planner) const {
 }
 
 bool Plan::insert(const PredictionOptions& options, std::vector<Node>& nodes,
-                        std::vector<Connection>& connections) {
+                  std::vector<Connection>& connections) {
   const auto measures = [](const Node& node) { return node.traits.measures_flow; };
   int at = static_cast<int>(std::find_if(nodes.begin(), nodes.end(), measures) - nodes.begin());
   int boundary = -1;
@@ -108,7 +108,7 @@ bool Plan::insert(const PredictionOptions& options, std::vector<Node>& nodes,
 }
 
 Network Plan::build(double period, const std::optional<PredictionOptions>& prediction,
-                          const RobotEnd& robot) const {
+                    const RobotEnd& robot) const {
   checked("number of modules", static_cast<double>(entries_.size()), 1, most_modules, "");
   Network network;
   detail::Planner planner(network.nodes_, network.connections_);
