@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All of the machine in one source, for programs without CMake:
 //
-//     g++ -std=c++20 -O2 -I core -I control -I /usr/include/eigen3 main.cpp \
-//         control/repel/control.cpp -pthread
+//     g++ -std=c++20 -O2 -I core -I control -I /usr/include/eigen3 main.cpp
+//       control/repel/control.cpp -pthread
 #include <repel/cell/admittance.cpp>
 #include <repel/cell/arm_port.cpp>
 #include <repel/cell/assembly.cpp>
