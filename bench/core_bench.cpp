@@ -10,6 +10,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 #include <support/families.hpp>
 

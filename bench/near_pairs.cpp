@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 #include <support/families.hpp>
 

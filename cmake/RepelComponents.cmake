@@ -5,7 +5,7 @@ include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/.
-set(REPEL_COMPONENTS core compiled ideal devices link dds record robots cover percepts octrees
+set(REPEL_COMPONENTS core control ideal devices link dds record robots cover percepts octrees
     bullet ode scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
@@ -20,14 +20,14 @@ function(repel_debian_packages part out)
   set(${out} ${packages} PARENT_SCOPE)
 endfunction()
 
-option(REPEL_WITH_PARTS "What REPEL_WITH_PART is by default, for every part but the core" ON)
+option(REPEL_WITH_PARTS "What REPEL_WITH_PART is by default, but for core and control" ON)
 
 # repel_switch(PART OUT): whether the part is wanted. What is not is as if its packages were
 # missing, but nothing is looked for, and nothing is said about it.
 function(repel_switch part out)
   string(TOUPPER ${part} upper)
-  if(part STREQUAL core)
-    set(REPEL_WITH_CORE ON)
+  if(part MATCHES "^(core|control)$")
+    set(REPEL_WITH_${upper} ON)
   else()
     option(REPEL_WITH_${upper} "Build ${part}, where its packages are" ${REPEL_WITH_PARTS})
   endif()
@@ -94,7 +94,7 @@ if(REPEL_BUILD_APPS OR REPEL_BUILD_BENCH)
   repel_all_found(HOST CLI11_FOUND nlohmann_json_FOUND)
 endif()
 if(REPEL_BUILD_APPS)
-  set(parts COMPILED IDEAL LINK PERCEPTS RECORD ROBOTS SCENE)
+  set(parts IDEAL LINK PERCEPTS RECORD ROBOTS SCENE)
   list(TRANSFORM parts PREPEND REPEL_HAS_ OUTPUT_VARIABLE found)
   repel_all_found(TELEOP REPEL_HAS_HOST ${found})
   repel_switched_off(unwanted ${parts})
@@ -106,7 +106,7 @@ if(REPEL_BUILD_APPS)
 endif()
 if(REPEL_BUILD_TESTS)
   find_package(GTest QUIET)
-  repel_all_found(TEST REPEL_HAS_COMPILED GTest_FOUND)
+  repel_all_found(TEST GTest_FOUND)
   repel_say_if_left_out(test)
 endif()
 if(REPEL_BUILD_BENCH)

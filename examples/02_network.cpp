@@ -3,6 +3,7 @@
 // torque that the operator feels at the lever.
 #include <cstdio>
 
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 
 int main() {

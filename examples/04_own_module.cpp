@@ -3,6 +3,7 @@
 // used in a network built here, and in one that a scene file describes by module name.
 #include <cstdio>
 
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 #include <repel/scene/build_network.hpp>
 #include <repel/scene/scene.hpp>

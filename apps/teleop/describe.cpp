@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/cell/admittance.hpp>
 #include <repel/cell/layout.hpp>
 #include <repel/robots/kinematics.hpp>

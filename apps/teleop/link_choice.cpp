@@ -9,6 +9,7 @@
 #include <random>
 #include <string_view>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/link/impaired.hpp>
 #include <repel/link/udp.hpp>
 #include <repel/network/elements/line.hpp>

@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 
+#include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/world/changed_arm.hpp>

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>

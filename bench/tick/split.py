@@ -3,7 +3,7 @@
 """Where the instructions of a tick go: split.py TELEOP [SCENE...] [--write FILE] [--json FILE].
 
 TELEOP is the path of that program. Runs the scenes (default: anderson_4x8 and two_arms) without
-real time under callgrind, and prints the instructions of each call of core/repel/loop/tick.hpp, as
+real time under callgrind, and prints the instructions of each call of control/repel/loop/tick.hpp, as
 a mean over the ticks, with the median time of a tick in a run without callgrind. Needs valgrind
 where the program is built and where it runs.
 """

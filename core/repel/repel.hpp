@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The core in one include. With `REPEL_COMPILED` without what a cell links then: the rooms `loop`,
-/// `pairs` and `schedule`.
+/// The kernel in one include: shapes, certified distances, forces, and a world of pairs. It needs
+/// Eigen and the standard library, and nothing is linked.
 #pragma once
 
 // One message instead of hundreds.
@@ -21,23 +21,18 @@
 #include <repel/base/status.hpp>
 #include <repel/base/text_file.hpp>
 #include <repel/base/types.hpp>
-#include <repel/cell/admittance.hpp>
-#include <repel/cell/arm_port.hpp>
-#include <repel/cell/cell.hpp>
 #include <repel/distance/gjk.hpp>
 #include <repel/force/law.hpp>
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
 #include <repel/geometry/triangle_mesh.hpp>
-#include <repel/loop/reciprocating_motion.hpp>
-#include <repel/network/machinery/clean_stiffness.hpp>
-#include <repel/network/modules.hpp>
-#include <repel/network/operator.hpp>
-#include <repel/network/plan.hpp>
+#include <repel/pairs/candidates.hpp>
+#include <repel/pairs/lane_evaluator.hpp>
+#include <repel/pairs/pair_index.hpp>
+#include <repel/pairs/pair_search.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/reduction/shape_mesh.hpp>
-#include <repel/schedule/deadline.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
 #include <repel/world/changed_arm.hpp>
@@ -46,13 +41,5 @@
 #include <repel/world/sensed_arm.hpp>
 #include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>
-
-#ifndef REPEL_COMPILED
-#include <repel/loop/gain_check.hpp>
-#include <repel/loop/tap.hpp>
-#include <repel/loop/tick.hpp>
-#include <repel/schedule/coprocessor.hpp>
-#include <repel/schedule/world_changes.hpp>
-#endif
 
 #endif

@@ -22,7 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 WORK = ROOT / "build/site_work/samples"
-INCLUDES = ["core", "robots", *sorted(f"backends/{p.name}" for p in (ROOT / "backends").iterdir()
+INCLUDES = ["core", "control", "robots", *sorted(f"backends/{p.name}" for p in (ROOT / "backends").iterdir()
                                             if (p / "repel").is_dir())]
 EIGEN = os.environ.get("REPEL_EIGEN", "/usr/include/eigen3")
 FLAGS = ["-std=c++20", "-Wall", "-Werror", "-Wno-unused", f"-I{ROOT}/tests/samples",
@@ -88,16 +88,27 @@ def errors_in(name, text):
     return errors_of(*COMPILER, *FLAGS, "-fsyntax-only", path)
 
 
+def is_of_the_machine(text):
+    """Whether it includes a header that stands in control/, not in core/."""
+    return any((ROOT / "control" / header).is_file()
+               for header in re.findall(r"#include <(repel/[^>]+)>", text))
+
+
 def check_program(fence):
     name = f"{fence.page.replace('/', '.')}.{fence.line}"
     text = f'#line {fence.line} "{fence.page}"\n{fence.text}'
     wanted = said_to_print(fence)
     if wanted is None:
         return errors_in(name, text)
-    source, unit, binary = (WORK / f"{name}{end}" for end in (".cpp", ".o", ".bin"))
+    source, unit, machine, binary = (WORK / f"{name}{end}"
+                                     for end in (".cpp", ".o", ".machine.o", ".bin"))
     source.write_text(text)
-    errors = (errors_of(*CACHED, *FLAGS, "-c", source, "-o", unit) or
-              errors_of(*COMPILER, unit, "-o", binary, "-lpthread"))
+    errors = errors_of(*CACHED, *FLAGS, "-c", source, "-o", unit)
+    parts = [unit]
+    if not errors and is_of_the_machine(text):
+        errors = errors_of(*CACHED, *FLAGS, "-c", ROOT / "control/repel/control.cpp", "-o", machine)
+        parts.append(machine)
+    errors = errors or errors_of(*COMPILER, *parts, "-o", binary, "-lpthread")
     if errors:
         return errors
     said = subprocess.run([binary], text=True, capture_output=True, timeout=60)

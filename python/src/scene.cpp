@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <repel/base/setup_error.hpp>
 #include <repel/scene/scene.hpp>
 
 #include <algorithm>

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/setup_error.hpp>
+
 #include "loop/slider.hpp"
 
 namespace repel {

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/cell/layout.hpp>
 
 namespace repel {

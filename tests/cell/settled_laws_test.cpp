@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/loop/gain_check.hpp>
+
 #include "cell/sliders.hpp"
 
 namespace repel {

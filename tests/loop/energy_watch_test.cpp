@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel {
 namespace energy_watch_test {
 

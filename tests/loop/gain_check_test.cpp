@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include <repel/base/setup_error.hpp>
+
 #include "loop/slider.hpp"
 #include "support/draws.hpp"
 #include "support/families.hpp"

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include <repel/base/setup_error.hpp>
+
 #include "loop/slider.hpp"
 
 namespace repel {

@@ -5,6 +5,8 @@
 
 #include <map>
 
+#include <repel/base/setup_error.hpp>
+
 #include "pairs/boxes.hpp"
 
 namespace repel {

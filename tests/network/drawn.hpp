@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <repel/network/elements/signals.hpp>
 #include <repel/network/elements/two_port.hpp>
 #include <repel/network/machinery/ledger.hpp>
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <optional>
 
+#include <repel/base/setup_error.hpp>
+
 #include "network/drawn_network.hpp"
 // Counts every heap call in this program, by defining its own malloc.
 #include "support/heap_counter.hpp"

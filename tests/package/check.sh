@@ -165,9 +165,9 @@ PKG_CONFIG_PATH=$prefix/share/pkgconfig
 export PKG_CONFIG_PATH
 # shellcheck disable=SC2046,SC2086
 step "pkg-config and g++" plain g++ -std=c++20 $sources $(pkg-config --cflags --libs repel)
-step "g++ with the control loop compiled" g++ -std=c++20 -DREPEL_COMPILED -I "$root/core" \
+step "g++ with the machine in one source" g++ -std=c++20 -I "$root/core" -I "$root/control" \
   -isystem /usr/include/eigen3 "$root/examples/03_own_controller.cpp" \
-  "$root/core/repel/cell/cell.cpp" -o "$scratch/plain"
+  "$root/control/repel/control.cpp" -o "$scratch/plain"
 for compiler in g++ clang++; do
   command -v $compiler >/dev/null || continue
   # shellcheck disable=SC2086

@@ -25,7 +25,8 @@ fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$compiler" -std=c++20 -O1 -g1 -ffp-contract=off -fsanitize=realtime -Wfunction-effects \
-  -I "$1/core" -I "$1/tests" -isystem "$2" "$1/tests/realtime/nonblocking_tick.cpp" \
+  -I "$1/core" -I "$1/control" -I "$1/tests" -isystem "$2" \
+  "$1/tests/realtime/nonblocking_tick.cpp" "$1/control/repel/control.cpp" \
   -o "$folder/tick" -pthread 2>"$folder/warnings" || { cat "$folder/warnings"; exit 1; }
 grep -q "must not call non-'nonblocking' function 'malloc'" "$folder/warnings" ||
   { echo "-Wfunction-effects does not see the canary"; exit 1; }

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# symbols.sh TICK CANARY: the object file of the tick must not lead to the heap, to a throw, to a
-# lock, to output or into the kernel; the canary must be refused for each kind.
+# symbols.sh TICK LIBRARY CANARY: what the object file of the tick needs of the library must not
+# lead to the heap, to a throw, to a lock, to output or into the kernel; the canary must be refused
+# for each kind.
 set -eu
 if ! command -v nm >/dev/null; then
   echo "skipped: nm is missing; to have it: apt-get install binutils"
@@ -20,26 +21,37 @@ kernel="$kernel|fork|clone|exec.*|kill|raise|pthread_(create|join|kill|yield)"
 # other. By the clock it is not reached: tick_guard_test and every_scene_test count.
 excepted='sched_yield'
 
+tick=$1 library=$2 canary=$3 reached=$(mktemp)
+trap 'rm -f "$reached"' EXIT
+# The functions that lead to each other from those of the tick, each in a section of its own.
+entries=$(nm "$tick" | sed -n 's/.* T /-u /p')
+# shellcheck disable=SC2086
+ld -r --gc-sections $entries -o "$reached" "$tick" "$library"
+
+# The symbols that the code and data of an object refer to and do not define.
 undefined() {
-  nm -u "$1" | sed 's/.* //; s/@.*//'
+  { nm -u "$1" | sed 's/.* /U /; s/@.*//'; readelf -rW "$1" | awk 'NF >= 5 { print "R", $5 }'; } |
+    awk '$1 == "U" { missing[$2] = 1 } $1 == "R" && missing[$2] { print $2; delete missing[$2] }'
 }
 # found KIND OBJECT: the undefined symbols of that kind.
 found() {
   undefined "$2" | grep -xE "$1" | grep -vxE "$excepted" || true
 }
 
-bad=$(found "$heap|$throw|$lock|$output|$kernel" "$1")
+bad=$(found "$heap|$throw|$lock|$output|$kernel" "$reached")
 if [ -n "$bad" ]; then
-  echo "$1 is the tick and needs:"
+  echo "$tick is the tick and needs:"
   echo "$bad"
   exit 1
 fi
 # An object without the tick in it would pass too.
-nm -C "$1" | grep -q 'T repel::test::one_tick' || { echo "$1 does not hold the tick"; exit 1; }
-undefined "$1" | grep -qx '_ZNSt6chrono3_V212steady_clock3nowEv' ||
-  { echo "$1 does not reach the budget of the coprocessor"; exit 1; }
+for part in repel::test::one_tick repel::Teleoperator::run_network repel::Coprocessor::exchange; do
+  nm -C "$reached" | grep -q "T $part" || { echo "$part is not in the tick"; exit 1; }
+done
+undefined "$reached" | grep -qx '_ZNSt6chrono3_V212steady_clock3nowEv' ||
+  { echo "the tick does not reach the budget of the coprocessor"; exit 1; }
 
 for kind in "$heap" "$throw" "$lock" "$output" "$kernel"; do
-  [ -n "$(found "$kind" "$2")" ] || { echo "the canary was not refused for $kind"; exit 1; }
+  [ -n "$(found "$kind" "$canary")" ] || { echo "the canary was not refused for $kind"; exit 1; }
 done
-echo "the tick needs only: $(undefined "$1" | tr '\n' ' ')"
+echo "the tick needs only: $(undefined "$reached" | tr '\n' ' ')"

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One tick only: objects are passed by reference, so that this object file contains no set-up code.
 // symbols.sh reads its undefined symbols.
+#include <repel/base/mailbox.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/schedule/deadline.hpp>
+#include <repel/schedule/pair_team.hpp>
+#include <repel/schedule/shared_tick.hpp>
+#include <repel/schedule/whole_answer.hpp>
 
 #include "loop/slider.hpp"
 

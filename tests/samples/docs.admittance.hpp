@@ -3,6 +3,7 @@
 /// What the samples of docs/admittance.md leave out.
 #pragma once
 
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 
 using namespace repel;

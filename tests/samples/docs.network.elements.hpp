@@ -3,6 +3,7 @@
 /// What the samples of docs/network/elements.md leave out.
 #pragma once
 
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 
 using namespace repel::network;

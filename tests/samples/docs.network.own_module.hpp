@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include <repel/control.hpp>
 #include <repel/repel.hpp>
 #include <repel/scene/scene.hpp>
 

@@ -3,6 +3,7 @@
 /// What the samples of docs/two_machines.md leave out.
 #pragma once
 
+#include <repel/control.hpp>
 #include <repel/link/link_thread.hpp>
 #include <repel/link/udp.hpp>
 #include <repel/repel.hpp>

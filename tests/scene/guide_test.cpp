@@ -2,6 +2,7 @@
 // Virtual fixtures of a scene file, and the phases that switch them and the compliance.
 #include <gtest/gtest.h>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/scene/build_network.hpp>
 

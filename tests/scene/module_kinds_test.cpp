@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/scene/build_network.hpp>
 

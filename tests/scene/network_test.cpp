@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/scene/build_network.hpp>
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <thread>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/schedule/coprocessor.hpp>
 
 #include "pairs/boxes.hpp"

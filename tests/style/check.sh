@@ -18,32 +18,41 @@ breaches() {
   rooms=$(cat "$here/rooms.txt")
   files | grep -E '\.(hpp|cpp|cmake|txt|sh|awk|md|yaml|urdf)$|/[^.]*$' | grep -v '/LICENSE$' |
     tr '\n' '\0' | xargs -0 awk -v rooms="$rooms" -f "$here/lines.awk"
-  core_headers_without_a_test
-  core_headers_not_in_the_umbrella
+  headers_without_a_test
+  headers_of_the_kernel_not_in_the_umbrella
+  sources_not_in_the_one
   circles
   dead_links
 }
 
-core_headers() {
-  files | sed -n 's#^\./core/repel/\(.*/.*\)\.hpp$#\1#p'
+# The headers in the rooms of kernel and machine, as FOLDER/repel/ROOM/NAME.
+headers() {
+  files | sed -n 's#^\./\(\(core\|control\)/repel/.*/.*\)\.hpp$#\1#p'
 }
 
-core_headers_without_a_test() {
-  for header in $(core_headers); do
-    [ -e "tests/${header}_test.cpp" ] ||
-      echo "core/repel/$header.hpp:1: [test-beside] tests/${header}_test.cpp does not exist"
+headers_without_a_test() {
+  for header in $(headers); do
+    test=tests/${header#*/repel/}_test.cpp
+    [ -e "$test" ] || echo "$header.hpp:1: [test-beside] $test does not exist"
   done
 }
 
-core_headers_not_in_the_umbrella() {
+headers_of_the_kernel_not_in_the_umbrella() {
   reached=$(included_from_the_umbrella)
-  for header in $(core_headers); do
-    echo "$reached" | grep -qxF "repel/$header.hpp" ||
-      echo "core/repel/$header.hpp:1: [umbrella] repel/repel.hpp does not lead to it"
+  for header in $(headers | grep '^core/'); do
+    echo "$reached" | grep -qxF "${header#core/}.hpp" ||
+      echo "$header.hpp:1: [umbrella] repel/repel.hpp does not lead to it"
   done
 }
 
-# Every core header that repel/repel.hpp includes, directly or through others.
+sources_not_in_the_one() {
+  for source in $(files | sed -n 's#^\./control/\(repel/.*/.*\.cpp\)$#\1#p'); do
+    grep -qxF "#include <$source>" control/repel/control.cpp ||
+      echo "control/$source:1: [one-source] control/repel/control.cpp does not include it"
+  done
+}
+
+# Every header of the kernel that repel/repel.hpp includes, directly or through others.
 included_from_the_umbrella() {
   find core -name '*.hpp' -exec grep -H '^#include <repel/' {} + 2>/dev/null |
     sed 's#^core/\(.*\):.*<\(.*\)>.*#\1 \2#' | awk '
@@ -63,7 +72,7 @@ included_from_the_umbrella() {
 # unit is X.hpp with X.cpp; the header may stand in repel/PART. An include in quotes counts within
 # its folder. What leads nowhere is taken away first: without a circle, nothing is left.
 circles() {
-  find core robots backends apps bench -name '*.[hc]pp' -exec grep -Hn '^#include' {} + \
+  find core control robots backends apps bench -name '*.[hc]pp' -exec grep -Hn '^#include' {} + \
     2>/dev/null | awk -F '[:<">]' '
       function unit(path) {
         while (sub("[^/]+/[.][.]/", "", path)) {}

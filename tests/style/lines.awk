@@ -46,11 +46,11 @@ FNR == 1 {
   is_code = FILENAME !~ /\.(md|urdf|yaml)$/
   is_page = FILENAME ~ /\.md$/ && FILENAME !~ /^\.\/bench\/results\//  # which programs write
   is_fenced = 0
-  is_core = FILENAME ~ /^\.\/core\//
-  is_library = FILENAME ~ /^\.\/(core|robots|backends)\//
+  is_core = FILENAME ~ /^\.\/(core|control)\//
+  is_library = FILENAME ~ /^\.\/(core|control|robots|backends)\//
   own_room = is_core ? room_of(FILENAME) : 0
   has_pragma = has_file_comment = 0
-  if (is_core && is_header && FILENAME !~ /repel\/repel\.hpp$/ && !own_room)
+  if (is_core && is_header && FILENAME !~ /repel\/(repel|control)\.hpp$/ && !own_room)
     breach("core-include", "this header is in no room of the core")
 }
 

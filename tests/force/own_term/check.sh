@@ -3,7 +3,7 @@
 # Gives the force law one more term, in the one place that docs/architecture.md names, and sees
 # every path follow. The law once stood in two places: a box got 140.6 N in its first tick and
 # 56.3 N from then on.
-#   check.sh COMPILER EIGEN_FOLDER CORE_FOLDER
+#   check.sh COMPILER EIGEN_FOLDER CORE_FOLDER CONTROL_FOLDER
 set -e
 here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
@@ -15,6 +15,13 @@ if cmp -s "$3/repel/force/law.hpp" "$folder/repel/force/law.hpp"; then
   echo "law.hpp has no line to which the term can be added"
   exit 1
 fi
-"$1" -std=c++20 -O1 -I "$folder" -I "$3" -isystem "$2" "$here/own_term.cpp" -pthread \
-  -o "$folder/own_term"
+# The compiled rooms that evaluate pairs, without the rest of the machine.
+set -- "$@" "$here/own_term.cpp" "$4"/repel/schedule/*.cpp
+compiler=$1 eigen=$2 core=$3 control=$4
+shift 4
+cat >"$folder/all.cpp" <<END
+$(printf '#include "%s"\n' "$@")
+END
+"$compiler" -std=c++20 -O1 -I "$folder" -I "$core" -I "$control" -isystem "$eigen" \
+  "$folder/all.cpp" -pthread -o "$folder/own_term"
 "$folder/own_term"

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/setup_error.hpp>
+
 #include "support/families.hpp"
 
 namespace repel::network {

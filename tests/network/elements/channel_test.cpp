@@ -6,6 +6,8 @@
 #include <array>
 #include <limits>
 
+#include <repel/base/setup_error.hpp>
+
 #include "support/draws.hpp"
 
 namespace repel::network {

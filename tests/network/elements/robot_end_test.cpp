@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/modules/kbb2.hpp>
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/relief.hpp>

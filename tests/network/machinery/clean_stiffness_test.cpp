@@ -2,6 +2,7 @@
 // Included first: the to_text of a space must not hide that of a number.
 #include <repel/network/elements/port.hpp>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/machinery/clean_stiffness.hpp>
 
 #include <gtest/gtest.h>

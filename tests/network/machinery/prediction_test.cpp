@@ -9,6 +9,7 @@
 #include <deque>
 #include <string>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/elements/one_ports.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/network/plan.hpp>
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/setup_error.hpp>
+
 #include "network/drawn.hpp"
 
 namespace repel::network {

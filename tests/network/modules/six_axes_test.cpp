@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/elements/junction.hpp>
 #include <repel/network/elements/one_ports.hpp>
 #include <repel/network/plan.hpp>

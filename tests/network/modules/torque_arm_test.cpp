@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/machinery/ledger.hpp>
 #include "network/drawn.hpp"
 

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include <repel/base/setup_error.hpp>
+
 #include "network/drawn.hpp"
 #include "network/remote/relay.hpp"
 

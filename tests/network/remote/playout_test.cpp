@@ -6,6 +6,8 @@
 #include <deque>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
+
 #include "network/drawn.hpp"
 
 namespace repel::network {

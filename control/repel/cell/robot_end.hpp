@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// How light an arm can appear to its network.
+#pragma once
+
+#include <repel/cell/description.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/network/elements/robot_end.hpp>
+#include <repel/network/network.hpp>
+
+namespace repel {
+
+namespace detail {
+
+/// The greatest eigenvalue of three rows and columns of J M^-1 J', from `row` on: 1 / the least
+/// mass or inertia over all directions.
+[[nodiscard]] double mobility(const Jacobian& J, const ArmInertia::Matrix& inverse,
+                              Eigen::Index row) noexcept;
+
+}  // namespace detail
+
+/// What an arm that takes rates or positions touches does not move what its admittance shows.
+/// @throws SetupError if it has a force sensor all the same
+void require_fitting_sensor(const ArmDescription& arm, const network::Network& network);
+
+/// The least masses of an arm at its start and in 63 poses of its workspace, the same in every run,
+/// divided by the uncertainty of its masses; and how late it answers. Leaves the kinematics at the
+/// start. Set-up only. Cost: 64 mass matrices.
+/// @param period [s]
+[[nodiscard]] network::RobotEnd robot_end(const ArmDescription& arm, double period);
+
+}  // namespace repel

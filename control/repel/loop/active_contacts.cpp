@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/loop/active_contacts.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace repel {
+
+ActiveContacts::ActiveContacts(const World& world, std::size_t capacity,
+                               std::span<const BodyId> moved)
+    : world_(&world), is_moved_(static_cast<std::size_t>(world.body_count()), 0) {
+  for (const BodyId body : moved) is_moved_[static_cast<std::size_t>(body.index)] = 1;
+  contacts_.resize(capacity);
+}
+
+void ActiveContacts::collect(const Coprocessor& coprocessor) noexcept {
+  count_ = 0;
+  coprocessor.for_each_near([&](const NearPair& near) {
+    if (near.force > 0.0 && count_ < contacts_.size()) add(near);
+  });
+  // Sums must not depend on how the pairs are shared out to threads.
+  std::sort(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(count_),
+            [](const auto& x, const auto& y) { return x.pair.index < y.pair.index; });
+}
+
+std::span<const ActiveContact> ActiveContacts::all() const noexcept {
+  return std::span(contacts_).first(count_);
+}
+
+void ActiveContacts::add(const NearPair& near) noexcept {
+  const Pair& pair = world_->pair(near.pair);
+  const Motion& motion = world_->motion();
+  const BodyId of_a = world_->part(pair.a).body;
+  const BodyId of_b = world_->part(pair.b).body;
+  const BodyId a = carrier_of(motion, of_a);
+  const BodyId b = carrier_of(motion, of_b);
+  const int moved = is_moved(a) + is_moved(b);
+  if (moved == 0) return;
+  const Vec3& n = near.separation.extraction_W;
+  const auto about = [&](BodyId body, const Vec3& force) {
+    const Vec3 arm = near.separation.p_WA - origin(motion.bodies[body.index].X_WB);
+    return wrench_of_force(force, arm);
+  };
+  const double damping =
+      share_between(motion.bodies[of_a.index], motion.bodies[of_b.index]).now *
+      (pair.law.passable ? pair.law.damping : pair.law.formula().damper(near.separation.distance));
+  // Where two arms meet, each is solved by itself: twice the damping covers the motion of the
+  // other.
+  contacts_[count_++] = {near.pair, a, b, about(a, n), about(b, -n), moved * damping};
+}
+
+int ActiveContacts::is_moved(BodyId body) const noexcept {
+  return is_moved_[static_cast<std::size_t>(body.index)];
+}
+
+void gather_damping(std::span<const ActiveContact> contacts, BodyId tool, const Jacobian& jacobian,
+                    const ArmBodies& links, network::Mat<network::any_size>& damping) noexcept {
+  const Eigen::Index joints = contacts.empty() ? 0 : jacobian.cols();
+  damping.setZero(joints, joints);
+  network::Vec<network::any_size> h(joints);
+  const auto add = [&](BodyId body, const Wrench& F) {
+    links.add_torques(body, F, h);
+    for (Eigen::Index i = 0; body == tool && i < joints; ++i) {
+      h.coeffRef(i) += power(F, column_of(jacobian, i));
+    }
+  };
+  for (const ActiveContact& contact : contacts) {
+    h.setZero(joints);
+    add(contact.a, contact.on_a);
+    add(contact.b, contact.on_b);
+    for (Eigen::Index k = 0; k < joints; ++k) {
+      const double share = contact.damping * h.coeff(k);
+      for (Eigen::Index i = 0; i < joints; ++i) damping.coeffRef(i, k) += share * h.coeff(i);
+    }
+  }
+}
+
+}  // namespace repel

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/loop/barrier_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace repel {
+
+BarrierRows::BarrierRows(const ArmModel& model, double margin)
+    : model_(model), margin_(margin), rows_(most) {
+  zero_.setZero(static_cast<Eigen::Index>(model.links.size()));
+}
+
+void BarrierRows::gather(std::span<const HardContact> contacts, BodyId tool,
+                         const Jacobian& jacobian, const ArmBodies& links,
+                         std::span<const double> q, std::span<const double> v,
+                         std::span<const double> untold, double soon) noexcept {
+  clear();
+  soon_ = soon;
+  for (const HardContact& contact : contacts) add(contact, tool, jacobian, links, v, untold);
+  for (std::size_t joint = 0; joint < q.size(); ++joint) {
+    add_joint(joint, q[joint], v[joint], untold[joint]);
+  }
+}
+
+std::span<const BarrierRow> BarrierRows::all() const noexcept {
+  return std::span(rows_).first(used_);
+}
+
+void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& jacobian,
+                      const ArmBodies& links, std::span<const double> v,
+                      std::span<const double> untold) noexcept {
+  BarrierRow row;
+  row.h = zero_;
+  const bool has_a = add_torques(contact.a, contact.on_a, tool, jacobian, links, row.h);
+  const bool has_b = add_torques(contact.b, contact.on_b, tool, jacobian, links, row.h);
+  if (!has_a && !has_b) return;
+  double own = 0.0;
+  double faster = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    own += row.h.coeff(index(i)) * v[i];
+    faster += row.h.coeff(index(i)) * untold[i];
+    largest = std::max(largest, std::abs(row.h.coeff(index(i))));
+  }
+  if (!(largest > 1e-6)) return;  // no joint moves it
+  row.pair = contact.pair;
+  row.gap = contact.gap - margin_;
+  row.rate = contact.rate + std::min(0.0, faster);
+  row.others = contact.rate - own;
+  row.is_shared = contact.is_between_arms;
+  keep(row);
+}
+
+bool BarrierRows::add_torques(BodyId body, const Wrench& F, BodyId tool, const Jacobian& jacobian,
+                              const ArmBodies& links, BarrierRow::Vector& h) noexcept {
+  links.add_torques(body, F, h);
+  for (Eigen::Index i = 0; body == tool && i < h.size(); ++i) {
+    h.coeffRef(i) += power(F, column_of(jacobian, i));
+  }
+  return body == tool || links.has(body);
+}
+
+void BarrierRows::add_joint(std::size_t joint, double q, double v, double untold) noexcept {
+  const ArmLink& link = model_.links[joint];
+  for (const double side : {1.0, -1.0}) {
+    BarrierRow row;
+    row.h = zero_;
+    row.h.coeffRef(index(joint)) = side;
+    row.rate = side * v + std::min(0.0, side * untold);
+    row.gap = (side > 0.0 ? q - link.lower : link.upper - q) - margin_of_ranges;
+    if (link.lower < link.upper && row.gap < 1.0) keep(row);
+    row.gap = 0.0;
+    row.top_speed = most_of_speed * link.velocity_limit;
+    if (link.velocity_limit > 0.0 && -row.rate > 0.5 * row.top_speed) keep(row);
+  }
+}
+
+void BarrierRows::keep(const BarrierRow& row) noexcept {
+  if (used_ < rows_.size()) {
+    rows_[used_++] = row;
+    return;
+  }
+  const auto soonest = [this](const BarrierRow& r) {
+    return r.gap + soon_ * std::min(r.rate, 0.0);
+  };
+  const auto last = std::max_element(
+      rows_.begin(), rows_.end(),
+      [&](const BarrierRow& x, const BarrierRow& y) { return soonest(x) < soonest(y); });
+  if (soonest(row) < soonest(*last)) *last = row;
+}
+
+}  // namespace repel

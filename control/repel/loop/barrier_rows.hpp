@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The gaps of one arm that must not close: of its hard contacts, and to the ends of its joints.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <repel/loop/arm_bodies.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/hard_contacts.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// One gap of an arm, or the speed of a joint, as a row of the constraints on its motion.
+struct BarrierRow {
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
+
+  PairId pair;             ///< invalid: of a joint
+  Vector h;                ///< [m] torques on the joints of 1 N that opens the gap
+  double gap = 0.0;        ///< [m], [rad] less its margin
+  double rate = 0.0;       ///< [m/s] of the gap, positive on retreat
+  double others = 0.0;     ///< [m/s] the part of it that is not of this arm
+  double top_speed = 0.0;  ///< [rad/s] of a joint, in place of what a gap allows; 0: none
+  bool is_shared = false;  ///< another arm can close it too
+};
+
+/// Gathers the rows of an arm. Allocates at construction only; of more rows than it has room for,
+/// those are kept that will close first.
+class BarrierRows {
+ public:
+  static constexpr std::size_t most = 64;  ///< rows in one tick
+
+  /// @param margin [m] by which the gaps of walls count as smaller
+  BarrierRows(const ArmModel& model, double margin);
+
+  /// @param q [rad] or [m] @param v [rad/s] or [m/s] of the joints, as told @param untold the rates
+  /// by which they move faster (JointWatch::untold_rate); they count where they close a gap
+  /// @param soon [s] rows compare by their gap after this time
+  void gather(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
+              const ArmBodies& links, std::span<const double> q, std::span<const double> v,
+              std::span<const double> untold, double soon) noexcept;
+  void clear() noexcept { used_ = 0; }  ///< forgets all rows
+
+  /// The rows of this tick.
+  [[nodiscard]] std::span<const BarrierRow> all() const noexcept;
+
+ private:
+  static constexpr double margin_of_ranges = 1e-3;  // [rad], [m]
+  static constexpr double most_of_speed = 1.3;      // of the speed limit of a joint
+
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+
+  void add(const HardContact& contact, BodyId tool, const Jacobian& jacobian,
+           const ArmBodies& links, std::span<const double> v,
+           std::span<const double> untold) noexcept;
+
+  // False if the body is not of this arm.
+  static bool add_torques(BodyId body, const Wrench& F, BodyId tool, const Jacobian& jacobian,
+                          const ArmBodies& links, BarrierRow::Vector& h) noexcept;
+
+  // What stops a joint at the end of its range, or at its greatest speed, would leave the others to
+  // the wall.
+  void add_joint(std::size_t joint, double q, double v, double untold) noexcept;
+
+  void keep(const BarrierRow& row) noexcept;
+
+  const ArmModel& model_;
+  double margin_;      // [m]
+  double soon_ = 0.0;  // [s]
+  BarrierRow::Vector zero_;
+  std::vector<BarrierRow> rows_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace repel

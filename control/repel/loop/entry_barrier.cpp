@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/loop/entry_barrier.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/network/machinery/prediction.hpp>
+
+namespace repel {
+
+EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_delay,
+                           double slew_time, std::size_t pairs, const EntryBarrierOptions& options)
+    : model_(model),
+      options_(options),
+      period_(period),
+      delay_(drive_delay),
+      slew_time_(slew_time),
+      step_(std::max(period, slew_time)),
+      reaction_(network::Prediction::horizon(drive_delay) * period + 2.0 * step_),
+      rows_(model, margin()),
+      solver_(model.links.size(), BarrierRows::most),
+      stops_(BarrierRows::most),
+      withstood_(pairs, 0.0),
+      sent_(static_cast<std::size_t>(std::ceil(drive_delay)) + 1) {
+  checked("margin", options.margin, 0.0, 0.1, "m");
+  checked("mass uncertainty", options.mass_uncertainty, 1.0, 10.0, "");
+  checked("recovery", options.recovery, 0.0, 10.0, "m/s");
+  drift_.setZero(static_cast<Eigen::Index>(model.links.size()));
+  disturbance_ = last_rates_ = drift_;
+  for (Vector& sent : sent_) sent = drift_;
+  for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
+}
+
+void EntryBarrier::watch(std::span<const HardContact> contacts, BodyId tool,
+                         const Jacobian& jacobian, const ArmBodies& links,
+                         std::span<const double> q, std::span<const double> v,
+                         std::span<const double> untold) noexcept {
+  if (is_on()) rows_.gather(contacts, tool, jacobian, links, q, v, untold, reaction_);
+}
+
+Status EntryBarrier::limit(std::span<double> torques, std::span<const double> weight,
+                           std::span<const double> lower, std::span<const double> upper,
+                           std::span<const double> efforts, std::span<const double> v,
+                           const ArmInertia& inertia) noexcept {
+  force_ = 0.0;
+  pushed_ = {};
+  if (!is_on()) return 0;
+  observe(v, inertia);
+  if (rows_.all().empty()) return 0;
+  if (!begin(inertia)) return status::hold_lost;
+  predict(v, inertia);
+  for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
+  if (!solver_.solve(torques, weight, lower, upper)) return 0;
+  account(efforts);
+  for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.wanted(i);
+  return judge();
+}
+
+void EntryBarrier::note_sent(const Vector& net) noexcept {
+  sent_[oldest_] = net;
+  oldest_ = (oldest_ + 1) % sent_.size();
+}
+
+double EntryBarrier::withstood(PairId pair) const noexcept {
+  return is_on() ? withstood_[static_cast<std::size_t>(pair.index)] : 0.0;
+}
+
+double EntryBarrier::margin() const noexcept {
+  return options_.margin * std::max(1.0, 400.0 * period_);
+}
+
+bool EntryBarrier::begin(const ArmInertia& inertia) noexcept {
+  const double until = delay_ * period_ + 0.5 * (period_ + step_);
+  const auto& M = inertia.matrix();
+  const Eigen::Index n = M.rows();
+  const auto entry = [&](Eigen::Index i) {
+    const auto joint = static_cast<std::size_t>(i / n);
+    const bool is_diagonal = i % (n + 1) == 0;
+    return M.data()[i] + (is_diagonal ? until * model_.links[joint].viscous_friction : 0.0);
+  };
+  return solver_.begin(n, entry, step_);
+}
+
+void EntryBarrier::observe(std::span<const double> v, const ArmInertia& inertia) noexcept {
+  Vector change = last_rates_;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    change.coeffRef(index(i)) = v[i] - last_rates_.coeff(index(i));
+    last_rates_.coeffRef(index(i)) = v[i];
+  }
+  const Vector momentum = network::dense::product<Vector>(inertia.matrix(), change);
+  const double share = period_ / (period_ + memory + 5.0 * delay_ * period_);
+  const Vector& acted = sent_[oldest_];
+  for (Eigen::Index i = 0; i < momentum.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const double friction = model_.links[joint].viscous_friction * v[joint];
+    const double seen = momentum.coeff(i) / period_ - acted.coeff(i) + friction;
+    disturbance_.coeffRef(i) += share * (seen - disturbance_.coeff(i));
+  }
+}
+
+void EntryBarrier::predict(std::span<const double> v, const ArmInertia& inertia) noexcept {
+  inertia.momenta(v, drift_);
+  // Newest first; the oldest has acted, but for its rest where the delay is no whole number.
+  double left = delay_;  // [ticks]
+  for (std::size_t k = 1; left > 0.0; ++k, left -= 1.0) {
+    const Vector& sent = sent_[(oldest_ + sent_.size() - k) % sent_.size()];
+    const double time = std::min(left, 1.0) * period_;
+    for (Eigen::Index i = 0; i < drift_.size(); ++i) drift_.coeffRef(i) += time * sent.coeff(i);
+  }
+  const double until = delay_ * period_ + step_;
+  for (Eigen::Index i = 0; i < drift_.size(); ++i) {
+    drift_.coeffRef(i) += until * disturbance_.coeff(i);
+  }
+  solver_.solve_mass(drift_);
+  for (std::size_t i = 0; i < v.size(); ++i) drift_.coeffRef(index(i)) -= v[i];
+}
+
+void EntryBarrier::add(const BarrierRow& row, Stopping& stop,
+                       std::span<const double> weight) noexcept {
+  double gained = 0.0;
+  for (Eigen::Index i = 0; i < drift_.size(); ++i) gained += row.h.coeff(i) * drift_.coeff(i);
+  LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained);
+  if (bound == nullptr) return;
+  stop = stopping(*bound, weight);
+  if (row.top_speed > 0.0) {
+    bound->least_rate = -row.top_speed;
+    return;
+  }
+  double gap = row.gap + delay_ * period_ * std::min({row.rate, bound->rate, 0.0});
+  if (row.is_shared) {
+    // Either arm stops within its half; what the other exceeds it by is made up for.
+    gap = gap > 0.0 ? 0.5 * gap : gap;
+    bound->rate += std::min(0.0, row.others + allowed(gap, stop.surely)) - row.others;
+  }
+  bound->least_rate = -allowed(gap + 0.5 * step_ * bound->rate, stop.surely);
+}
+
+EntryBarrier::Stopping EntryBarrier::stopping(const LeastConstraint::Row& row,
+                                              std::span<const double> weight) const noexcept {
+  double force = std::numeric_limits<double>::infinity();  // [N] that the joints can give
+  Stopping stop;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    const double h = row.h.coeff(index(i));
+    const double u = row.moved.coeff(index(i));
+    stop.at_most += std::abs(u) * std::max(0.0, effort_[i] - (u > 0.0 ? weight[i] : -weight[i]));
+    if (std::abs(h) < 1e-9) continue;
+    const double room = std::max(0.0, h > 0.0 ? effort_[i] - weight[i] : effort_[i] + weight[i]);
+    force = std::min(force, room / std::abs(h));
+  }
+  stop.surely = force * row.mobility / options_.mass_uncertainty;
+  return stop;
+}
+
+double EntryBarrier::allowed(double d, double a) const noexcept {
+  const double t = reaction_ + 0.5 * step_;
+  if (d < 0.0) return totals_.energy > 0.0 ? std::max(d / t, -options_.recovery) : 0.0;
+  return 2.0 * a * d / (a * t + std::sqrt(a * t * a * t + 2.0 * a * d) + 1e-300);
+}
+
+void EntryBarrier::account(std::span<const double> efforts) noexcept {
+  const double share = solver_.share();            // of what acts in this tick
+  const double withheld = solver_.share(efforts);  // of what the wall takes off
+  double force = 0.0;                              // on one pair
+  for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+    const LeastConstraint::Row& bound = solver_.rows()[k];
+    const PairId pair = rows_.all()[k].pair;
+    if (!pair.valid()) continue;
+    if (k == 0 || rows_.all()[k - 1].pair != pair) force = 0.0;
+    const double pushed = withheld * bound.force;
+    const double rate = rows_.all()[k].rate;
+    const bool gives = bound.least_rate > 0.0;
+    totals_.energy -= period_ * share * bound.force * (gives ? rate : std::min(rate, 0.0));
+    force += pushed;
+    double& most = withstood_[static_cast<std::size_t>(pair.index)];
+    most = std::max(most, force);
+    if (force > force_) {
+      force_ = force;
+      pushed_ = pair;
+    }
+  }
+  totals_.peak_force = std::max(totals_.peak_force, force_);
+  if (force_ > 0.0) ++totals_.ticks;
+}
+
+Status EntryBarrier::judge() noexcept {
+  for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+    const BarrierRow& row = rows_.all()[k];
+    const double approach = -solver_.rate_after(solver_.rows()[k]);
+    if (!row.pair.valid() || !(approach > least_speed)) continue;
+    const double time = delay_ * period_ + 0.5 * slew_time_;
+    const double stop = 0.5 * approach * approach / std::max(stops_[k].at_most, 1e-9);
+    if (approach * time + stop > row.gap + margin() + slack) {
+      ++totals_.lost;
+      return status::hold_lost;
+    }
+  }
+  return 0;
+}
+
+}  // namespace repel

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Keeps an arm from entering hard walls, by the least change of torques that lets it stop.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <repel/base/status.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/barrier_rows.hpp>
+#include <repel/loop/least_constraint.hpp>
+#include <repel/loop/options.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// What the barrier has done since set-up.
+struct BarrierTotals {
+  std::int64_t ticks = 0;   ///< in which it changed a torque
+  std::int64_t lost = 0;    ///< in which some wall could not be held
+  double peak_force = 0.0;  ///< [N] hardest push that a wall withstood
+  double energy = 0.0;      ///< [J] taken from gaps that closed, less what was given to open them
+};
+
+/// A barrier on the approach to hard walls. A gap d (BarrierRows) may close no faster than
+///
+///     d = b t + b^2 / (2 a)        b(d) = sqrt(a^2 t^2 + 2 a d) - a t
+///
+/// with a the deceleration that the efforts of the joints leave to the arm there, by its inertia
+/// times `mass_uncertainty`, and t the time until a torque acts: the delay of the drive, the slew
+/// rate of the torques, and some ticks, so that the gap closes exponentially at last. Of all
+/// torques that bring every gap to its speed within a step, the ones are sent that change the
+/// acceleration of the arm least (LeastConstraint), as if walls without friction pushed. So retreat
+/// and sliding are free. The forces only brake what approaches, or take off what is asked for; they
+/// add energy only to flee from a wall that comes, and to return to the margin as much as was taken
+/// before.
+///
+/// Where no torque within the limits can stop the arm any more, `limit` says so while the gap is
+/// still open. Allocates at construction only. Cost: up to 60 sweeps over the gaps where one of
+/// them binds, else a solution with the mass matrix for each.
+class EntryBarrier {
+ public:
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
+
+  /// @param period [s] @param drive_delay [ticks] of the arm @param slew_time [s] of its torques
+  /// @param pairs of the world; 0: none is hard, and nothing is changed
+  /// @throws SetupError for an option out of range
+  EntryBarrier(const ArmModel& model, double period, double drive_delay, double slew_time,
+               std::size_t pairs, const EntryBarrierOptions& options = {});
+
+  /// Some wall is hard.
+  [[nodiscard]] bool is_on() const noexcept { return !withstood_.empty(); }
+  /// t [s]. A gap that cannot close in several of these need not be known.
+  [[nodiscard]] double reaction() const noexcept { return reaction_; }
+
+  /// Takes the contacts that concern this arm, in its present pose. @param q [rad] or [m]
+  /// @param v [rad/s] or [m/s] of the joints, and by how much they are faster than `v` says
+  /// (JointWatch::untold_rate) @param jacobian of the tool
+  void watch(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
+             const ArmBodies& links, std::span<const double> q, std::span<const double> v,
+             std::span<const double> untold) noexcept;
+  /// Without contacts, until the next `watch`.
+  void forget() noexcept { rows_.clear(); }
+
+  /// Changes `torques` [N m] so that no hard wall is entered once they are brought within `lower`
+  /// and `upper`. @param weight [N m] the part of them that carries the weight
+  /// @param efforts [N m] limits, by which the push that a wall withstands is counted: how fast a
+  /// torque may change does not matter to it
+  /// @return `hold_lost`, or 0
+  [[nodiscard]] Status limit(std::span<double> torques, std::span<const double> weight,
+                             std::span<const double> lower, std::span<const double> upper,
+                             std::span<const double> efforts, std::span<const double> v,
+                             const ArmInertia& inertia) noexcept;
+
+  /// To be called in every tick, with the torques that were sent less those of the weight [N m].
+  void note_sent(const Vector& net) noexcept;
+
+  /// [N] With which it pushed at the last tick on the pair on which it did so hardest.
+  [[nodiscard]] double force() const noexcept { return force_; }
+  /// The pair of the hardest contact; invalid where none held.
+  [[nodiscard]] PairId pushed() const noexcept { return pushed_; }
+  /// [N] Hardest push that the wall of this pair withstood since set-up.
+  [[nodiscard]] double withstood(PairId pair) const noexcept;
+  [[nodiscard]] const BarrierTotals& totals() const noexcept { return totals_; }  ///< since set-up
+
+ private:
+  static constexpr double least_speed = 1e-6;  // [m/s]
+  static constexpr double memory = 0.02;       // [s] of what else acts on the arm
+  static constexpr double slack = 1e-4;        // [m] of the sentence that a wall is lost
+
+  /// How a gap can be braked [m/s^2].
+  struct Stopping {
+    double surely = 0.0;   ///< a: by a push along the gap, with the inertia that is uncertain
+    double at_most = 0.0;  ///< if all joints did their utmost for this gap alone
+  };
+
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+  // [m] What turns and bends within a tick grows with it.
+  [[nodiscard]] double margin() const noexcept;
+
+  // M and the viscous friction until the torque of this tick has acted, by an implicit rule.
+  [[nodiscard]] bool begin(const ArmInertia& inertia) noexcept;
+
+  // What else acts on the arm, as the Prediction of a network estimates it: the low-passed
+  // difference of its change of momentum and the torques and viscous friction that acted.
+  void observe(std::span<const double> v, const ArmInertia& inertia) noexcept;
+
+  // The change of the rates by friction and by the torques that were sent and have not acted yet.
+  void predict(std::span<const double> v, const ArmInertia& inertia) noexcept;
+
+  void add(const BarrierRow& row, Stopping& stop, std::span<const double> weight) noexcept;
+
+  [[nodiscard]] Stopping stopping(const LeastConstraint::Row& row,
+                                  std::span<const double> weight) const noexcept;
+
+  // b [m/s] at a gap of d [m]; below zero for one that is to be opened. @param a [m/s^2]
+  [[nodiscard]] double allowed(double d, double a) const noexcept;
+
+  void account(std::span<const double> efforts) noexcept;
+
+  // A wall is lost where the arm, braked with all it has, comes to rest behind it.
+  [[nodiscard]] Status judge() noexcept;
+
+  const ArmModel& model_;
+  EntryBarrierOptions options_;
+  double period_;     // [s]
+  double delay_;      // [ticks]
+  double slew_time_;  // [s]
+  double step_;       // [s] in which a gap is brought to its speed
+  double reaction_;   // t [s]
+  BarrierRows rows_;
+  LeastConstraint solver_;
+  std::vector<Stopping> stops_;    // of each row
+  std::vector<double> withstood_;  // [N] by PairId; empty: it is off
+  std::vector<double> effort_;     // [N m] limits
+  std::vector<Vector> sent_;       // ring of what has not acted yet
+  std::size_t oldest_ = 0;
+  Vector drift_;        // [rad/s] by what cannot be changed any more
+  Vector disturbance_;  // [N m]
+  Vector last_rates_;
+  double force_ = 0.0;
+  PairId pushed_;
+  BarrierTotals totals_;
+};
+
+}  // namespace repel

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/loop/hard_contacts.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+
+namespace repel {
+
+bool has_hard(const World& world) noexcept {
+  return std::any_of(world.pairs().begin(), world.pairs().end(),
+                     [](const Pair& pair) { return pair.law.hold == HoldKind::hard; });
+}
+
+HardContacts::HardContacts(const World& world, std::span<const BodyId> moved)
+    : world_(&world), is_moved_(static_cast<std::size_t>(world.body_count()), 0) {
+  for (const BodyId body : moved) is_moved_[static_cast<std::size_t>(body.index)] = 1;
+  const auto is_hard = [](const Pair& pair) { return pair.law.hold == HoldKind::hard; };
+  const auto hard = std::count_if(world.pairs().begin(), world.pairs().end(), is_hard);
+  contacts_.resize(std::min<std::size_t>(static_cast<std::size_t>(hard), most_pairs) * (1 + ring));
+}
+
+void HardContacts::collect(const Coprocessor& coprocessor, double soon) noexcept {
+  count_ = 0;
+  left_out_ = 0;
+  soon_ = soon;
+  if (!any()) return;
+  coprocessor.for_each_near([&](const NearPair& near) {
+    const Pair& pair = world_->pair(near.pair);
+    if (pair.law.hold == HoldKind::hard) add(near.pair, pair, near.separation.extraction_W);
+  });
+  // What is made of them must not depend on how the pairs are shared out to threads.
+  std::sort(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(count_),
+            [](const HardContact& x, const HardContact& y) {
+              return x.pair.index != y.pair.index ? x.pair.index < y.pair.index : x.at < y.at;
+            });
+}
+
+std::span<const HardContact> HardContacts::all() const noexcept {
+  return std::span(contacts_).first(count_);
+}
+
+Vec3 HardContacts::Side::farthest(const Vec3& d, const Vec3& out) const noexcept {
+  const Vec<double> local = rotate_transposed(X_W, Vec<double>(d));
+  return X_W * to_vec3(level.core.support(local).p) + level.depth * out;
+}
+
+void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
+  const Motion& motion = world_->motion();
+  const Part& part_a = world_->part(pair.a);
+  const Part& part_b = world_->part(pair.b);
+  const BodyState& A = state(part_a.body);
+  const BodyState& B = state(part_b.body);
+  HardContact contact;
+  contact.pair = id;
+  contact.a = carrier_of(motion, part_a.body);
+  contact.b = carrier_of(motion, part_b.body);
+  if (!is_moved(contact.a) && !is_moved(contact.b)) return;
+  const BodyId arm_a = state(contact.a).arm;
+  const BodyId arm_b = state(contact.b).arm;
+  contact.is_between_arms = arm_a.valid() && arm_b.valid() && arm_a != arm_b;
+  // What is still coming pushes by its law, in the time that it takes.
+  if (share_between(A, B).now < 1.0 || !(dot(n, n) > 0.5)) return;
+  const Side a{part_a.shape.level(0), composed(A.X_WB, part_a.X_BP)};
+  const Side b{part_b.shape.level(0), composed(B.X_WB, part_b.X_BP)};
+  const Vec3 p_WA = a.farthest(-n, -n);
+  const Vec3 p_WB = b.farthest(n, n);
+  const double gap = dot(n, p_WA - p_WB);
+  const double turns = norm(A.V_WB.angular - B.V_WB.angular);
+  const double extent = std::min(part_a.shape.reach(), part_b.shape.reach());
+  const double fastest = norm(velocity(A, p_WA) - velocity(B, p_WA)) + 2.0 * turns * extent;
+  if (gap > soon_ * fastest + pair.law.range) return;
+  const double tilt = std::clamp(least_tilt + soon_ * turns, least_tilt, most_tilt);
+  const Vec3 middle = 0.5 * (p_WA + p_WB);
+  push_back(contact, n, middle, gap);
+  const Vec3 t1 = across(n);
+  const Vec3 t2 = n.cross(t1);
+  for (int k = 0; k < ring; ++k) {
+    const double angle = (k + 0.29) * 2.0 * std::numbers::pi / ring;
+    const Vec3 t = std::cos(angle) * t1 + std::sin(angle) * t2;
+    const Vec3 corner_a = a.farthest(tilt * t - n, -n);
+    const Vec3 corner_b = b.farthest(tilt * t + n, n);
+    const bool ends_with_a = dot(t, corner_a) <= dot(t, corner_b);
+    const Vec3& at = ends_with_a ? corner_a : corner_b;
+    const double there = ends_with_a ? dot(n, corner_a - p_WB) : dot(n, p_WA - corner_b);
+    const Vec3 off = at - middle;
+    if (norm(off - dot(off, n) * n) < 1e-4) continue;  // the nearest point again
+    contact.at = k + 1;
+    push_back(contact, n, at, there);
+  }
+}
+
+void HardContacts::push_back(HardContact contact, const Vec3& n, const Vec3& p_W,
+                             double gap) noexcept {
+  if (count_ == contacts_.size()) {
+    ++left_out_;
+    return;
+  }
+  const BodyState& A = state(contact.a);
+  const BodyState& B = state(contact.b);
+  contact.on_a = wrench_of_force(n, p_W - origin(A.X_WB));
+  contact.on_b = wrench_of_force(-n, p_W - origin(B.X_WB));
+  contact.gap = gap;
+  contact.rate = power(contact.on_a, A.V_WB) + power(contact.on_b, B.V_WB);
+  contacts_[count_++] = contact;
+}
+
+Vec3 HardContacts::across(const Vec3& n) noexcept {
+  int least = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(n.coeff(axis)) < std::abs(n.coeff(least))) least = axis;
+  }
+  return direction_of(n.cross(unit(least)));
+}
+
+Vec3 HardContacts::velocity(const BodyState& body, const Vec3& p_W) noexcept {
+  return body.V_WB.linear + body.V_WB.angular.cross(Vec3(p_W - origin(body.X_WB)));
+}
+
+const BodyState& HardContacts::state(BodyId body) const noexcept {
+  return world_->motion().bodies[static_cast<std::size_t>(body.index)];
+}
+
+bool HardContacts::is_moved(BodyId body) const noexcept {
+  return is_moved_[static_cast<std::size_t>(body.index)] != 0;
+}
+
+}  // namespace repel

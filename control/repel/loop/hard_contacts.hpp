@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the hard walls of a world could be entered: the points of their near pairs that matter,
+/// with their gaps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <repel/base/spatial.hpp>
+#include <repel/loop/active_contacts.hpp>
+#include <repel/schedule/coprocessor.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel {
+
+/// A point at which two bodies of a hard pair may meet.
+struct HardContact {
+  PairId pair;        ///< whose wall is hard
+  BodyId a;           ///< the body that moves: a body that a tool holds is the tool
+  BodyId b;           ///< likewise, of the other part
+  Wrench on_a;        ///< [1, m] on A of a unit force that parts them, about the origin of its body
+  Wrench on_b;        ///< on B, likewise
+  double gap = 0.0;   ///< [m] there, along that force; of the pair, not larger than its distance
+  double rate = 0.0;  ///< [m/s] of the gap, positive on retreat
+  bool is_between_arms = false;  ///< two arms can close the gap
+  std::int32_t at = 0;           ///< which point of the pair it is
+};
+
+/// What the tick of an arm needs to know of the contacts of all arms.
+struct Contacts {
+  std::span<const ActiveContact> active;  ///< that exert a force
+  std::span<const HardContact> hard{};    ///< that must not be entered
+};
+
+/// Some pair of the world is hard.
+[[nodiscard]] bool has_hard(const World& world) noexcept;
+
+/// Collects the points of the hard pairs that are near, at the present poses, whatever the age of
+/// the answer of the pair: its direction alone is used, and the shapes are apart by at least what
+/// they are apart along it.
+///
+/// The nearest point is not enough: where two faces are nearly parallel, a small turn moves it to
+/// the other end of the face, which may approach as the first one retreats. So for a ring of
+/// directions along the plane, the corner of what lies between both shapes is taken where the
+/// plane, tilted by what the bodies turn soon, would touch.
+///
+/// Allocates at construction only; points beyond its capacity are left out and counted.
+class HardContacts {
+ public:
+  static constexpr int ring = 8;  ///< directions along the plane
+
+  /// @param moved the bodies that arms move
+  HardContacts(const World& world, std::span<const BodyId> moved);
+
+  /// There are hard pairs.
+  [[nodiscard]] bool any() const noexcept { return !contacts_.empty(); }
+
+  /// Collects those of the last exchange. Cost: a look at each near pair; for a hard one that
+  /// could be entered soon 18 evaluations of both support maps, about 1 us.
+  /// @param soon [s] a pair that cannot be entered within this time has no points
+  void collect(const Coprocessor& coprocessor, double soon) noexcept;
+
+  /// The contacts of the last `collect`.
+  [[nodiscard]] std::span<const HardContact> all() const noexcept;
+  /// Points that found no room at the last `collect`.
+  [[nodiscard]] int left_out() const noexcept { return left_out_; }
+
+ private:
+  static constexpr std::size_t most_pairs = 512;
+  static constexpr double least_tilt = 0.02;  // [rad]
+  static constexpr double most_tilt = 0.3;    // [rad]
+
+  /// One shape at its pose, and how far it reaches.
+  struct Side {
+    const Level& level;
+    Pose X_W;
+    /// [m] in the world: the farthest point along `d`, of the core, moved out by its depth along
+    /// the unit `out`.
+    [[nodiscard]] Vec3 farthest(const Vec3& d, const Vec3& out) const noexcept;
+  };
+
+  void add(PairId id, const Pair& pair, const Vec3& n) noexcept;
+
+  void push_back(HardContact contact, const Vec3& n, const Vec3& p_W, double gap) noexcept;
+
+  /// A unit vector perpendicular to the unit `n`.
+  [[nodiscard]] static Vec3 across(const Vec3& n) noexcept;
+  /// [m/s] of a point of the body.
+  [[nodiscard]] static Vec3 velocity(const BodyState& body, const Vec3& p_W) noexcept;
+  [[nodiscard]] const BodyState& state(BodyId body) const noexcept;
+  [[nodiscard]] bool is_moved(BodyId body) const noexcept;
+
+  const World* world_;
+  std::vector<std::uint8_t> is_moved_;  // by BodyId
+  std::vector<HardContact> contacts_;
+  std::size_t count_ = 0;
+  int left_out_ = 0;
+  double soon_ = 0.0;
+};
+
+}  // namespace repel

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Plausibility check of joint readings, and prediction of the motion while they fail it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <repel/base/status.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/drive_watch.hpp>
+#include <repel/loop/motion_account.hpp>
+#include <repel/loop/options.hpp>
+#include <repel/loop/rate_check.hpp>
+#include <repel/loop/sent_torques.hpp>
+#include <repel/loop/still_joint.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// Compares every reading with the last one, with the torques sent in between and with the inertia
+/// of the arm, joint by joint:
+///
+/// - positions and rates are finite, rates below twice the speed limit;
+/// - positions and rates tell of the same motion (RateCheck);
+/// - a rate grows no faster than the full effort of the joint, and the coupling from other joints,
+///   can accelerate it: M_ii |dv_i| <= T (|tau_i - g_i| + effort_i) + sum |M_ik dv_k|. Speed may be
+///   lost at once, by an impact;
+/// - a joint that moves, or is driven by more than its friction can hold, does not report exactly
+///   the same position repeatedly (StillJoint).
+///
+/// A reading that fails is not used; meanwhile the motion is predicted from the last believed one.
+/// A joint is believed again where each of its readings followed from the one before, or where it
+/// was lost and braked; else the program has to confirm its position (`confirm`). Losses in short
+/// succession double the number of sound readings that it takes.
+///
+/// Allocates at construction only; a tick costs a few operations for each pair of joints.
+class JointWatch {
+ public:
+  using Vector = ArmInertia::Vector;  ///< one entry for each joint
+
+  /// @param period [s] from reading to reading @param drive_delay [ticks] of the torques
+  /// @throws SetupError for an option out of range
+  JointWatch(const ArmModel& model, double period, const JointWatchOptions& options = {},
+             double drive_delay = 0.0);
+
+  /// Checks a reading `q` [rad], `v` [rad/s]; `position` and `rate` then return it if it is
+  /// believed, else the prediction. @param elapsed [s] since the last reading
+  /// @return the bits of status::blind that hold; 0 when the reading is believed
+  [[nodiscard]] Status step(const std::vector<double>& q, const std::vector<double>& v,
+                            double elapsed, const ArmInertia::Matrix& M) noexcept;
+
+  /// What the loop sent after the reading: the net torque `net` = tau - g [N m], the part `alone`
+  /// of it that moves each joint whatever holds the others, `weight` g, and the `rate` predicted
+  /// one period later [rad/s]. `held`: brakes are on.
+  void expect(const Vector& net, const Vector& alone, std::span<const double> weight,
+              const Vector& rate, bool held) noexcept;
+
+  /// Brakes are on, whoever engaged them: the joints need not move.
+  void hold() noexcept { held_ = true; }
+
+  /// Accepts the next reading without comparison: the arm moved on while the loop was suspended.
+  void begin_anew() noexcept;
+  /// The positions are those of the arm, by a reference that does not depend on its encoders: the
+  /// next readings are believed, whatever was lost before.
+  void confirm() noexcept;
+
+  /// Read or predicted [rad] or [m].
+  [[nodiscard]] double position(std::size_t joint) const noexcept { return joints_[joint].q; }
+  /// Read or predicted [rad/s] or [m/s].
+  [[nodiscard]] double rate(std::size_t joint) const noexcept { return joints_[joint].v; }
+  /// [rad/s] By which the positions move faster than `rate` says, signed; 0 while a reading is
+  /// predicted, and where the difference is within the noise.
+  [[nodiscard]] double untold_rate(std::size_t joint) const noexcept;
+  /// [N m] The net torque, signed, that shows whether a joint stands still or its encoder is
+  /// frozen; 0: there is no doubt.
+  [[nodiscard]] double probe(std::size_t joint) const noexcept;
+  /// The energy that no torque gave.
+  [[nodiscard]] const MotionAccount& account() const noexcept { return account_; }
+  /// What the drive does with its torques.
+  [[nodiscard]] const DriveWatch& drive() const noexcept { return drive_; }
+  /// No reading has been believed yet.
+  [[nodiscard]] bool knows_nothing() const noexcept { return !has_believed_; }
+
+ private:
+  struct Joint {
+    double q = 0.0, v = 0.0;            // believed or predicted
+    double read_q = 0.0, read_v = 0.0;  // the last finite reading
+    double expected_rate = 0.0;         // [rad/s]
+    double lost_q = 0.0;                // [rad] where the readings failed
+    double path = 0.0;                  // [rad] predicted since then
+    bool is_continuous = true;          // since then, each reading follows from the one before
+    bool is_stuck = false;
+    JointLoad load;
+    RateCheck rates;
+    StillJoint still;
+
+    void forget() noexcept;
+  };
+
+  static constexpr double braking = 0.04;  // [s] an arm moves on at the speed at which it was lost
+  static constexpr double succession = 5.0;  // [s] between losses
+  static constexpr int most_losses = 8;      // that count
+
+  static bool is_number(double x) noexcept { return x - x == 0.0; }
+
+  [[nodiscard]] Status compare(const std::vector<double>& q, const std::vector<double>& v,
+                               double elapsed, const ArmInertia::Matrix& M) noexcept;
+
+  // By the speed limit and by what can accelerate the joint.
+  [[nodiscard]] bool can_be_true(std::size_t i, const std::vector<double>& v,
+                                 const ArmInertia::Matrix& M) const noexcept;
+
+  // Whether the readings are those of an arm that went on from where it was lost.
+  [[nodiscard]] bool agrees(const std::vector<double>& q) const noexcept;
+
+  void keep(const std::vector<double>& q, const std::vector<double>& v) noexcept;
+
+  [[nodiscard]] Status believe(Status found, double elapsed) noexcept;
+
+  // Starts the prediction. The motion of a joint with frozen readings was lost some ticks ago.
+  void lose(double elapsed) noexcept;
+
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+
+  const ArmModel& model_;
+  JointWatchOptions options_;
+  double period_;  // [s]
+  SentTorques sent_, alone_;
+  MotionAccount account_;
+  DriveWatch drive_;
+  std::vector<Joint> joints_;
+  std::vector<double> change_;  // [rad/s] of the rates since the last reading
+  std::vector<double> read_v_;  // [rad/s] the last finite reading
+  Status blind_ = 0U;           // why the readings are not believed
+  std::int64_t sound_ = 0;      // consecutive sound readings since
+  double lost_speed_ = 0.0;     // [rad/s] greatest joint speed when the readings failed
+  double believed_for_ = 0.0;   // [s]
+  int losses_ = 0;              // in short succession
+  bool has_reading_ = false, has_believed_ = false, has_been_lost_ = false, held_ = false;
+};
+
+}  // namespace repel

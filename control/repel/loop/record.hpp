@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The record of every tick, and the totals of a run.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include <repel/base/ids.hpp>
+#include <repel/base/status.hpp>
+#include <repel/network/operator.hpp>
+#include <repel/network/plan.hpp>
+#include <repel/pairs/forces_and_totals.hpp>
+#include <repel/schedule/pair_forces.hpp>
+
+namespace repel {
+
+/// One tick, as logged.
+struct TickRecord {
+  std::int64_t tick = 0;      ///< its number, from 0
+  double time = 0.0;          ///< [s] since the first tick
+  std::int32_t phase = 0;     ///< of the operator's script
+  Status status = 0;          ///< the bits of what was noticed, 0 without a fault
+  Stop stop = Stop::running;  ///< what was done about faults
+  bool brakes = false;        ///< the brakes of the arm are requested
+  bool enable = false;        ///< the stopped drive of the arm is to be enabled again
+  std::int64_t elapsed = 1;   ///< [periods] since the last tick; more after missed ticks
+  /// [rad] or [m] joints as read, or predicted where the reading was not believed.
+  std::array<double, network::most_joints> q{};
+  std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] their rates
+  std::array<double, network::most_joints> q_read{};  ///< as read, believed or not
+  std::array<double, network::most_joints> v_read{};  ///< likewise
+  /// [N, N m] of the force sensor, as read; empty without a reading or a module for it.
+  std::optional<Wrench> wrench_read{};
+  network::Command command;   ///< of the operator
+  Vec3 p_WT{0, 0, 0};         ///< [m] tool
+  Vec3 v_WT{0, 0, 0};         ///< [m/s]
+  Wrench virtual_force;       ///< [N, N m] on the tool, about its origin
+  Wrench coupling;            ///< [N, N m] from the operator's side on the tool
+  double lever_torque = 0.0;  ///< [N m] reflected to the torque arm of the first hand
+  Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
+  Wrench second_grip;         ///< [N, N m] and on a second one; likewise
+  double gain = 1.0;          ///< of the fail-safe
+  double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
+  PairId held_pair;           ///< that of the hardest one; invalid: none did
+  std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
+  /// [J] ledger of each module of the network, in its order.
+  std::array<float, network::Plan::most_nodes> energy{};
+  std::chrono::nanoseconds network_time{0};  ///< compute time of the network; not reproducible
+  PairTotals pairs;                          ///< of all pairs of the world
+  WorkerReport workers;                      ///< the coprocessor's threads
+};
+
+/// Notes what the masters of the network do to the hands that hold them; zero where there is none.
+void note_masters(const network::Network& network, TickRecord& record) noexcept;
+
+/// Keeps the ticks of a run in memory reserved at set-up; ticks beyond it are dropped and counted.
+class Recorder {
+ public:
+  /// Reserves the memory of `capacity` ticks.
+  explicit Recorder(std::size_t capacity) { records_.reserve(capacity); }
+
+  /// Keeps a tick if there is room. Does not allocate.
+  void add(const TickRecord& record) noexcept;
+  /// Those kept, in their order.
+  [[nodiscard]] const std::vector<TickRecord>& records() const noexcept { return records_; }
+  /// Ticks for which there was no room.
+  [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  std::vector<TickRecord> records_;
+  std::int64_t dropped_ = 0;
+};
+
+/// Sums and extremes of a run.
+struct RunTotals {
+  std::int64_t ticks = 0;       ///< run
+  std::int64_t near = 0;        ///< pair evaluations that were due, summed over ticks
+  std::int64_t evaluated = 0;   ///< pair evaluations made
+  std::int64_t iterations = 0;  ///< support-map pairs
+  std::int64_t stale = 0;       ///< stale answers used, summed over ticks
+  int most_stale = 0;           ///< in one tick
+  std::int64_t oldest_age = 0;  ///< [ticks]
+  double refresh_energy = 0.0;  ///< [J] PairTotals::refresh_energy, summed over ticks
+  /// [m] Least signed distance by the measure of the overlap; of all pairs, passable ones included.
+  double nearest = std::numeric_limits<double>::infinity();
+  PairId nearest_pair;      ///< that of `nearest`
+  double deepest = 0.0;     ///< [m] proven bound: none of these pairs was deeper when evaluated
+  double peak_force = 0.0;  ///< [N] greatest virtual force on the tool
+  std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
+  std::array<std::int64_t, 4> stop_ticks{};     ///< ticks in each Stop
+  std::int64_t brake_ticks = 0;                 ///< ticks in which the brakes were requested
+  std::int64_t unsound = 0;                     ///< ticks with a fault of `status::unsound`
+  std::int64_t missing = 0;                     ///< missed ticks
+  WorkerReport workers;                         ///< as of the last tick
+
+  /// Adds a tick.
+  void add(const TickRecord& r) noexcept;
+};
+
+}  // namespace repel

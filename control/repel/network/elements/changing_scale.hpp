@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The scale between a hand and the tool, changed while both move.
+#pragma once
+
+#include <cmath>
+
+namespace repel::network {
+
+/// Follows HandInput::scale as a first-order lag. A transformer between motions and between forces
+/// by the same number, constant within a tick, neither stores nor supplies energy, whatever number
+/// it has in the next: so a change moves nothing, and a force that is felt goes over to its new
+/// size.
+class ChangingScale {
+ public:
+  static constexpr double time = 0.3;    ///< [s] in which 63 % of a change are made
+  static constexpr double least = 1e-3;  ///< of a scale
+  static constexpr double most = 1e3;    ///< of a scale
+
+  /// @param period [s]
+  void prepare(double period) noexcept { share_ = -std::expm1(-period / time); }
+  /// A number that is none, or out of range, leaves it as it is. The first is taken over at once.
+  void step(double wanted) noexcept;
+  [[nodiscard]] double value() const noexcept { return value_; }  ///< in this tick
+
+ private:
+  double share_ = 1.0;
+  double value_ = 1.0;
+  bool begun_ = false;
+};
+
+}  // namespace repel::network

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// GUIDE: virtual fixtures that attract the tool.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <repel/network/elements/entry_energy.hpp>
+#include <repel/network/elements/equivalent.hpp>
+#include <repel/network/elements/fixture.hpp>
+#include <repel/network/elements/passivity.hpp>
+#include <repel/network/elements/signals.hpp>
+
+namespace repel::network {
+
+/// The fixtures, and how they come and go.
+struct GuideOptions {
+  std::vector<FixtureOptions> fixtures{};  ///< in the order of HandInput::guides
+  double ramp = 0.25;         ///< [s] in which a fixture that is switched comes or goes
+  double entry_energy = 1.0;  ///< [J] that coming may take from the module itself: EntryEnergy
+  PassivityOptions passivity{.keeps_energy = true};  ///< over all of them
+};
+
+/// A series source of effort: f_left = f_right - F at the same flow, F the sum over the fixtures of
+///
+///     - a grad U(x) - a B across v
+///
+/// with a gain a, 0 to 1, for the position and one for the orientation. At a constant gain it is
+/// conservative but for its damper. A gain that falls releases a U; one that rises does so no
+/// faster than the energy for it is there: what the damper and falling gains took from motion, then
+/// `entry_energy`, which counts as supplied. Where the tool is at the fixture U is zero and so is
+/// the cost. A passivity controller watches the port.
+class Guide {
+ public:
+  /// For the planner.
+  static constexpr Traits traits{
+      .left = Space::tool, .right = Space::tool, .needs_flow = true, .keeps_flow = true};
+  static constexpr std::size_t most_fixtures = 30;  ///< one bit of HandInput::guides each
+  static constexpr double turning_time = 0.02;      ///< [s] of the damper behind a bend or corner
+
+  /// One fixture as of the last tick.
+  struct Held {
+    FixtureOptions options;        ///< with the gains in use
+    FixtureGeometry geometry{};    ///< where it attracts
+    Attraction along{};            ///< the law of its force
+    Attraction about{};            ///< and of its torque
+    double damping = 0.0;          ///< [N s/m] in use
+    double angular_damping = 0.0;  ///< [N m s/rad] in use
+    FixtureView view{};            ///< while it acts
+    double clear = 0.0;            ///< [m] no place of the fixture is nearer
+    Mat3 across = Mat3::Zero();    ///< of the damper
+    double gain = 0.0;             ///< of the force, 0 to 1
+    double angular_gain = 0.0;     ///< of the torque, 0 to 1
+    double most_force = 0.0;       ///< [N] exerted since set-up
+    /// It exerts something.
+    [[nodiscard]] bool acts() const noexcept { return gain > 0.0 || angular_gain > 0.0; }
+    /// Where it holds the orientation, too.
+    [[nodiscard]] bool is_near() const noexcept { return view.distance < options.range; }
+    /// Energy in its springs [J].
+    [[nodiscard]] double stored() const noexcept;
+  };
+  /// @throws SetupError, naming the fixture, for a number out of range
+  explicit Guide(const GuideOptions& options = {});
+  /// Chooses the gains that are `automatic`.
+  void suit(const RobotEnd& robot) noexcept { robot_ = robot; }
+  /// @throws SetupError for a damping that does not keep its spring stable at this period
+  void prepare(double period);
+  /// Takes pose and motion of the tool, and what the hand has switched.
+  void read(const Signals& signals) noexcept;
+  /// What is behind, and the wrench in series. Always true.
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept;
+  /// The same flow, less the wrench.
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) const noexcept;
+  /// Wrench of all fixtures on the tool, after the passivity controller [N, N m].
+  [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
+  /// The fixtures, in the order of the options.
+  [[nodiscard]] std::span<const Held> fixtures() const noexcept { return held_; }
+  /// Energy in the springs [J].
+  [[nodiscard]] double stored() const noexcept;
+  /// Adds the torques of the wrench [N m].
+  void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept;
+  /// Adds J' D J, D the damping of fixtures and passivity controller.
+  void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept;
+  /// Energy balance of the whole wrench.
+  [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] of entry energy
+
+ private:
+  using Six = Eigen::Matrix<double, 6, 1>;
+  static Six weight_of(const PassivityOptions& options);
+  // What the springs hold must fit into the account beside what the damper took.
+  static PassivityOptions with_room(const GuideOptions& options);
+  // As of a wall: B >= wall_ticks T K.
+  [[nodiscard]] Gains settled(const FixtureOptions& fixture, const Gains& asked, const Gains& usual,
+                              double mass, double least) const;
+  void release() noexcept;
+  [[nodiscard]] static double wanted(const HandInput& hand, const Held& held,
+                                     std::size_t index) noexcept;
+  void settle_gains(const Signals& signals) noexcept;
+  // A place that attracts nothing may be left for a nearer one; if that would attract, as something
+  // that is switched on. It is looked for where the tool may have come within range of it.
+  static void search(Held& held, const Pose& X_WT) noexcept;
+  void look(Held& held, const Pose& X_WT, double motion) noexcept;
+  void push(Held& held, const Vec<any_size>& flow) noexcept;
+
+  std::vector<Held> held_;
+  RobotEnd robot_;
+  double ramp_;
+  EntryEnergy entry_;
+  double turn_share_ = 1.0;
+  bool has_position_ = false;
+  Vec3 x_{0, 0, 0};  // of the tool in the last tick
+  PassivityController<6> controller_;
+  Vec<any_size> effort_ = Vec<any_size>::Zero(6);  // into the module
+  Mat3 linear_damping_ = Mat3::Zero(), angular_damping_ = Mat3::Zero();
+  double supplied_ = 0.0;
+  double damping_ = 0.0;  // [N s/m] of the passivity controller in this tick
+};
+
+}  // namespace repel::network

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/network/modules/six_axes.hpp>
+
+#include <cstddef>
+
+namespace repel::network {
+
+SixAxes::SixAxes(const SixAxesOptions& options) : options_(options) {
+  checked("mass", options.mass, 1e-6, 1e3, "kg");
+  checked("inertia", options.inertia, 1e-9, 1e3, "kg m^2");
+  checked("friction", options.friction, 0.0, 1e4, "N s/m");
+  checked("angular friction", options.angular_friction, 0.0, 1e3, "N m s/rad");
+  checked("hand stiffness", options.hand_stiffness, 0.0, 1e6, "N/m");
+  checked("hand damping", options.hand_damping, 0.0, 1e5, "N s/m");
+  checked("angular hand stiffness", options.angular_hand_stiffness, 0.0, 1e5, "N m/rad");
+  checked("angular hand damping", options.angular_hand_damping, 0.0, 1e4, "N m s/rad");
+  checked("force limit", options.force_limit, 0.0, 1e5, "N");
+  checked("torque limit", options.torque_limit, 0.0, 1e4, "N m");
+  checked("motion scale", options.motion_scale, 1e-3, 1e3, "");
+}
+
+void SixAxes::prepare(double period) {
+  detail::checked_period(period);
+  const HeldAxisGains along{options_.mass, options_.friction, options_.hand_stiffness,
+                            options_.hand_damping, options_.force_limit};
+  const HeldAxisGains about{options_.inertia, options_.angular_friction,
+                            options_.angular_hand_stiffness, options_.angular_hand_damping,
+                            options_.torque_limit};
+  for (std::size_t i = 0; i < 6; ++i) axes_[i] = HeldAxis(i < 3 ? along : about, period);
+  scale_.prepare(period);
+  show_resistance();
+}
+
+void SixAxes::read(const Signals& signals) noexcept {
+  const HandInput& input = signals.of(options_.hand);
+  scale_.step(input.scale);
+  show_resistance();
+  const Vec<any_size> hand = to_vec(input.ball);
+  for (std::size_t i = 0; i < 6; ++i) {
+    axes_[i].move(hand.coeff(static_cast<Eigen::Index>(i)), signals.at_rest);
+  }
+}
+
+Vec<6> SixAxes::reflected() const noexcept {
+  return all([&](const HeldAxis& axis) { return axis.reflected() / scale(); });
+}
+
+void SixAxes::incident(const Vec<6>& wave) noexcept {
+  for (std::size_t i = 0; i < 6; ++i) {
+    axes_[i].incident(scale() * wave.coeff(static_cast<Eigen::Index>(i)));
+  }
+}
+
+Vec<6> SixAxes::position() const noexcept {
+  return all([](const HeldAxis& axis) { return axis.position(); });
+}
+
+Vec<6> SixAxes::rate() const noexcept {  ///< [m/s, rad/s] of the hand
+  return all([](const HeldAxis& axis) { return axis.rate(); });
+}
+
+Vec<6> SixAxes::felt() const noexcept {  ///< [N, N m] of the motors
+  return all([](const HeldAxis& axis) { return axis.felt(); });
+}
+
+Vec<6> SixAxes::grip() const noexcept {
+  return all([](const HeldAxis& axis) { return axis.grip(); });
+}
+
+Vec<6> SixAxes::device_damping(double late) const noexcept {
+  return all([&](const HeldAxis& axis) { return axis.device_damping(late); });
+}
+
+Vec<6> SixAxes::best_grip_damping(double late) const noexcept {
+  return all([&](const HeldAxis& axis) { return axis.best_grip_damping(late); });
+}
+
+double SixAxes::supplied() const noexcept {  ///< [W] by the hand
+  double sum = 0.0;
+  for (const HeldAxis& axis : axes_) sum += axis.supplied();
+  return sum;
+}
+
+bool SixAxes::saturated() const noexcept {
+  bool any = false;
+  for (const HeldAxis& axis : axes_) any = any || axis.saturated();
+  return any;
+}
+
+void SixAxes::show_resistance() noexcept {
+  const double s = scale();
+  for (std::size_t i = 0; i < 6; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    resistance_.coeffRef(at, at) = axes_[i].resistance() / (s * s);
+  }
+}
+
+}  // namespace repel::network
