@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <repel/schedule/instruction_set.hpp>
+
 #include "commit.hpp"
 
 namespace repel::host {
@@ -111,8 +113,12 @@ std::string to_text(const Grant& grant) {
 Machine describe_machine(const std::string& scheduler) {
   utsname kernel{};
   uname(&kernel);
-  return {cpu_model(), std::string(kernel.sysname) + " " + kernel.release + " " + kernel.machine,
-          scheduler, compiler_name, commit};
+  return {cpu_model(),
+          std::string(kernel.sysname) + " " + kernel.release + " " + kernel.machine,
+          scheduler,
+          compiler_name,
+          std::string(instruction_set()),
+          commit};
 }
 
 }  // namespace repel::host

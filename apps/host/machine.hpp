@@ -20,6 +20,7 @@ struct Machine {
   std::string kernel;
   std::string scheduler;  ///< as to_text(Grant): "SCHED_FIFO 80, memory locked" or what was refused
   std::string compiler;
+  std::string instruction_set;  ///< in use (repel/schedule/instruction_set.hpp)
   std::string commit;
 };
 

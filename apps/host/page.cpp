@@ -82,7 +82,8 @@ std::string where(const Machine& machine) {
   std::string html = "<p>";
   html += escaped(machine.cpu) + ", " + escaped(machine.kernel);
   html += "<br/>granted: " + escaped(machine.scheduler);
-  html += "<br/>" + escaped(machine.compiler) + ", commit " + escaped(machine.commit) + "</p>\n";
+  html += "<br/>" + escaped(machine.compiler) + ", pairs by " + escaped(machine.instruction_set) +
+          ", commit " + escaped(machine.commit) + "</p>\n";
   return html;
 }
 

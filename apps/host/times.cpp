@@ -21,6 +21,7 @@ ordered_json to_json(const Machine& machine) {
           {"kernel", machine.kernel},
           {"scheduler", machine.scheduler},
           {"compiler", machine.compiler},
+          {"instruction_set", machine.instruction_set},
           {"commit", machine.commit}};
 }
 
@@ -94,9 +95,9 @@ void print_times(const char* name, const DurationHistogram& times, std::FILE* ou
 void print_machine(const Machine& machine, std::FILE* out) {
   std::fprintf(out,
                "  machine                %s, %s\n                         %s\n"
-               "                         %s, commit %s\n",
+               "                         %s, pairs by %s, commit %s\n",
                machine.cpu.c_str(), machine.kernel.c_str(), machine.scheduler.c_str(),
-               machine.compiler.c_str(), machine.commit.c_str());
+               machine.compiler.c_str(), machine.instruction_set.c_str(), machine.commit.c_str());
 }
 
 }  // namespace repel::host

@@ -93,9 +93,9 @@
 #include <repel/schedule/built_alike.cpp>
 #include <repel/schedule/coprocessor.cpp>
 #include <repel/schedule/deadline.cpp>
-#include <repel/schedule/evaluation_plan.cpp>
+#include <repel/schedule/evaluators.cpp>
+#include <repel/schedule/instruction_set.cpp>
 #include <repel/schedule/pair_forces.cpp>
-#include <repel/schedule/pair_set.cpp>
 #include <repel/schedule/pair_team.cpp>
 #include <repel/schedule/shared_tick.cpp>
 #include <repel/schedule/supervisor.cpp>

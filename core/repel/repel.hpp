@@ -26,10 +26,7 @@
 #include <repel/force/passage.hpp>
 #include <repel/geometry/box_tree.hpp>
 #include <repel/geometry/triangle_mesh.hpp>
-#include <repel/pairs/candidates.hpp>
-#include <repel/pairs/lane_evaluator.hpp>
-#include <repel/pairs/pair_index.hpp>
-#include <repel/pairs/pair_search.hpp>
+#include <repel/pairs/pairs.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/reduction/shape_mesh.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/reduction/separation.hpp>
+#include <repel/schedule/separations.hpp>
 
 #include <array>
 #include <cstddef>
@@ -57,10 +58,13 @@ struct WarmStarts {
   std::vector<WarmStart> rows;
 };
 
-// The query is inlined into whoever calls it: once for both ways to ask.
-[[gnu::noinline]] Separation ask(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
-                                 const QueryOptions& options, WarmStart& warm) noexcept {
-  return separation(a, X_WA, b, X_WB, options, warm);
+// With the code for the instruction set in use.
+Separation ask(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB,
+               const QueryOptions& options, WarmStart& warm) noexcept {
+  const PosedShapes pair{{a, X_WA}, {b, X_WB}};
+  Separation found;
+  separations({&pair, 1}, options, {&warm, 1}, {&found, 1});
+  return found;
 }
 
 Separation ask_one(const Shape& a, nb::handle X_WA, const Shape& b, nb::handle X_WB,

@@ -87,7 +87,7 @@ TEST(Replay, ReportHasEveryNumberAndTheTickTookNothingFromTheHeap) {
     EXPECT_LE(report.at(times).at("p99"), report.at(times).at("p99_9"));
     EXPECT_LE(report.at(times).at("p99_9"), report.at(times).at("max"));
   }
-  for (const char* key : {"cpu", "kernel", "scheduler", "compiler", "commit"}) {
+  for (const char* key : {"cpu", "kernel", "scheduler", "compiler", "instruction_set", "commit"}) {
     EXPECT_FALSE(report.at("machine").at(key).get<std::string>().empty()) << key;
   }
   EXPECT_EQ(report.at("scene"), "anderson_4x8");

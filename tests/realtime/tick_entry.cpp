@@ -3,6 +3,7 @@
 // symbols.sh reads its undefined symbols.
 #include <repel/base/mailbox.hpp>
 #include <repel/cell/cell.hpp>
+#include <repel/pairs/pairs.hpp>
 #include <repel/schedule/deadline.hpp>
 #include <repel/schedule/pair_team.hpp>
 #include <repel/schedule/shared_tick.hpp>
@@ -26,6 +27,20 @@ void one_update(SliderKinematics& kinematics, std::span<const double> q) noexcep
 /// The work of a coprocessor thread in a tick.
 bool one_answer(detail::SharedTick& pairs, detail::Evaluator& evaluator) noexcept {
   return pairs.work(evaluator);
+}
+/// The evaluation of pairs, which the machine has compiled for several instruction sets and calls
+/// through a table.
+const PairForces& one_evaluation(Pairs& pairs) noexcept {
+  pairs.for_each_near([](const NearPair& /*near*/) {});
+  return pairs.exchange();
+}
+void one_rehearsal(detail::PairSet& pairs, const Motion& motion,
+                   detail::PartPoses& poses) noexcept {
+  (void)pairs.rehearse(motion, poses, 32);
+  pairs.skip_ticks();
+  pairs.forget(poses);
+  pairs.for_each_answer(motion,
+                        [](const NearPair& /*near*/, const detail::NearAnswer& /*answer*/) {});
 }
 /// The work of a thread that leads others, and its answer.
 void one_whole_answer(detail::PairTeam& team, Mailbox<Motion>& inbox,

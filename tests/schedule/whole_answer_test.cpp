@@ -14,7 +14,8 @@ constexpr unsigned seed = 77;
 struct Answered {
   explicit Answered(const World& the_world)
       : world(&the_world),
-        set(the_world, count()),
+        made(make_pair_set(the_world, count(), {}, 0.0)),
+        set(*made),
         poses(the_world),
         answer(the_world, count()),
         widened(the_world, count()) {
@@ -31,7 +32,8 @@ struct Answered {
     return set.forces();
   }
   const World* world;
-  PairSet set;
+  std::unique_ptr<AnyPairSet> made;
+  AnyPairSet& set;
   PartPoses poses;
   WholeAnswer answer;
   WidenedForces widened;

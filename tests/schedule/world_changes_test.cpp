@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/reduction/separation.hpp>
+
 #include <atomic>
 #include <cmath>
 #include <cstring>

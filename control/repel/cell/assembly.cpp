@@ -16,6 +16,7 @@
 #include <repel/cell/robot_end.hpp>
 #include <repel/cell/settled_laws.hpp>
 #include <repel/loop/gain_check.hpp>
+#include <repel/reduction/separation.hpp>
 
 namespace repel::detail {
 

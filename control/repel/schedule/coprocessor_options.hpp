@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The budget of the coprocessor per tick, and its options.
+/// The options of the coprocessor.
 #pragma once
 
 #include <array>
@@ -10,18 +10,9 @@
 #include <optional>
 #include <string_view>
 
-namespace repel {
+#include <repel/pairs/budget.hpp>
 
-/// Budget for the pair evaluations of one tick. A pair that could not be evaluated keeps its last
-/// answer, with its distance reduced by the motion since.
-struct Budget {
-  std::int64_t work_units = 0;  ///< support-map pairs per tick; 0 = no limit. The pair that has
-                                ///< been begun is finished
-  std::chrono::nanoseconds wall{0};  ///< per tick, from its beginning; 0 = no limit
-  /// [ticks] A near pair without a new answer for longer than this is expired: its force fades out
-  /// linearly and is zero after twice that time.
-  std::int64_t max_age = 100;
-};
+namespace repel {
 
 /// What the threads of a coprocessor do while the caller is in its tick.
 enum class CoprocessorMode : std::uint8_t {

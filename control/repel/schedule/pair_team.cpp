@@ -50,7 +50,7 @@ void PairTeam::stop() {
 }
 
 bool PairTeam::run(const Motion& motion) noexcept {
-  const EvaluationLimit limit = limit_from_now();
+  const EvaluationLimit limit = EvaluationLimit::from_now(options_.budget);
   if (SharedTick* fresh = offered_.exchange(nullptr, std::memory_order_acq_rel)) spare_ = fresh;
   // Without a spare memory, a late thread could not be replaced.
   const bool all_are_back = spare_ != nullptr && spare_->is_idle();
@@ -140,19 +140,12 @@ void PairTeam::note_lost() noexcept {
   lost_.store(static_cast<int>(lost), std::memory_order_release);
 }
 
-EvaluationLimit PairTeam::limit_from_now() const noexcept {
-  EvaluationLimit limit;
-  if (options_.budget.wall.count() > 0) limit.deadline = Clock::now() + options_.budget.wall;
-  if (options_.budget.work_units > 0) limit.work_units = options_.budget.work_units;
-  return limit;
-}
-
 bool PairTeam::Sink::take(PairId id, std::int32_t list, double distance) noexcept {
   return pairs.take(id, list, distance, motion, poses);
 }
 
 bool PairTeam::answer(const Motion& motion, const EvaluationLimit& limit, bool may_share) noexcept {
-  PairSet& pairs = current_->pairs();
+  AnyPairSet& pairs = current_->pairs();
   leader_.poses.begin_tick();
   leader_.round = ++round_;
   pairs.begin_tick(motion.tick);

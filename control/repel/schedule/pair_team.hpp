@@ -55,7 +55,7 @@ class PairTeam {
   void rehearse(const Motion& motion) noexcept;
 
   /// The pairs as of the last `run`.
-  [[nodiscard]] const PairSet& pairs() const noexcept { return current_->pairs(); }
+  [[nodiscard]] const AnyPairSet& pairs() const noexcept { return current_->pairs(); }
   /// Ticks whose pairs were shared.
   [[nodiscard]] std::int64_t shared() const noexcept { return shared_; }
   /// Before `stop`, without what a memory knows that a late or dead thread holds.
@@ -85,14 +85,12 @@ class PairTeam {
   void tend(std::size_t i, WorkerUsage& usage);
   void note_lost() noexcept;
 
-  [[nodiscard]] EvaluationLimit limit_from_now() const noexcept;
-
   /// Passes what the search finds to the pairs of this tick.
   struct Sink {
     bool take(PairId id, std::int32_t list, double distance) noexcept;
     int end(std::int32_t list) noexcept { return pairs.end(list); }
     void drop(std::int32_t list) noexcept { pairs.drop(list); }
-    PairSet& pairs;
+    AnyPairSet& pairs;
     const Motion& motion;
     PartPoses& poses;
   };

@@ -7,7 +7,7 @@
 namespace repel::detail {
 
 SharedTick::SharedTick(const World& world, int slots, const Budget& budget, double lookahead)
-    : pairs_(world, slots, budget, lookahead) {
+    : pairs_(make_pair_set(world, slots, budget, lookahead)) {
   motion_.bodies.resize(static_cast<std::size_t>(world.body_count()));
 }
 
@@ -58,7 +58,7 @@ void SharedTick::evaluate_taken(int batch, Evaluator& evaluator) noexcept {
     evaluator.round = round_;
     evaluator.poses.begin_tick();
   }
-  pairs_.evaluate(batch, motion_, evaluator.poses);
+  (void)pairs_->evaluate(batch, motion_, evaluator.poses);
   unfinished_.fetch_sub(1, std::memory_order_release);
 }
 

@@ -5,8 +5,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 
-#include <repel/schedule/pair_set.hpp>
+#include <repel/schedule/any_pair_set.hpp>
 
 namespace repel::detail {
 
@@ -27,12 +28,12 @@ class SharedTick {
   SharedTick(const World& world, int slots, const Budget& budget, double lookahead);
 
   /// Of the leader, while the set is idle.
-  [[nodiscard]] PairSet& pairs() noexcept { return pairs_; }
-  [[nodiscard]] const PairSet& pairs() const noexcept { return pairs_; }
+  [[nodiscard]] AnyPairSet& pairs() noexcept { return *pairs_; }
+  [[nodiscard]] const AnyPairSet& pairs() const noexcept { return *pairs_; }
   /// True when no thread is in a batch.
   [[nodiscard]] bool is_idle() const noexcept;
 
-  /// Leader: opens the batches that PairSet::select has made to all threads. Copies the motion,
+  /// Leader: opens the batches that AnyPairSet::select has made to all threads. Copies the motion,
   /// which the caller may change while a late thread still reads it.
   /// @param round larger than any before
   void open(std::int64_t round, const Motion& motion, int batches) noexcept;
@@ -49,7 +50,7 @@ class SharedTick {
 
   void evaluate_taken(int batch, Evaluator& evaluator) noexcept;
 
-  PairSet pairs_;
+  std::unique_ptr<AnyPairSet> pairs_;
   Motion motion_;            ///< of the round
   std::int64_t round_ = -1;  ///< that is open
   // Each on a cache line of its own: all threads write to them.

@@ -13,7 +13,7 @@ WholeAnswer::WholeAnswer(const World& world, int most) : near(most), shown(most)
   motion.bodies.resize(static_cast<std::size_t>(world.body_count()));
 }
 
-void WholeAnswer::fill(const PairSet& pairs, const Motion& at,
+void WholeAnswer::fill(const AnyPairSet& pairs, const Motion& at,
                        std::int64_t exchange_of_it) noexcept {
   exchange = exchange_of_it;
   motion.take(at);

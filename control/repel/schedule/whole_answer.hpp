@@ -9,7 +9,7 @@
 
 #include <repel/pairs/near_answer.hpp>
 #include <repel/pairs/near_pair.hpp>
-#include <repel/schedule/pair_set.hpp>
+#include <repel/schedule/any_pair_set.hpp>
 
 namespace repel::detail {
 
@@ -19,7 +19,7 @@ struct WholeAnswer {
   WholeAnswer(const World& world, int most);
 
   /// @param pairs as of a tick with `at`
-  void fill(const PairSet& pairs, const Motion& at, std::int64_t exchange_of_it) noexcept;
+  void fill(const AnyPairSet& pairs, const Motion& at, std::int64_t exchange_of_it) noexcept;
   [[nodiscard]] std::span<const NearAnswer> all() const noexcept { return {near.data(), count}; }
 
   std::int64_t exchange = 0;  ///< number of the exchange in which the motion was posted

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// SIMD: several numbers in one register of the target, for code that works on several vertices or
+/// SIMD: four numbers in the registers of the target, for code that works on several vertices or
 /// pairs at once.
 #pragma once
 
@@ -8,89 +8,226 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include <repel/base/vec.hpp>
 
 namespace repel::detail {
 
-// As many numbers as one register holds. The result in a lane does not depend on the lane count.
-#if defined(__AVX512F__)
-inline constexpr int lane_bytes = 64;
-#elif defined(__AVX__)
-inline constexpr int lane_bytes = 32;
+/// On every processor, so that the same sums are made in the same order, and types have the same
+/// layout, whatever registers a unit is compiled for.
+inline constexpr int lane_count = 4;
+inline constexpr int lane_bytes = 8 * lane_count;
+#if defined(__AVX__)
+inline constexpr int register_bytes = 32;
 #else
-inline constexpr int lane_bytes = 16;
+inline constexpr int register_bytes = 16;
 #endif
-inline constexpr int lane_count = lane_bytes / 8;
-using Lanes = double __attribute__((vector_size(lane_bytes)));
-/// All bits of a lane are set, or none: the result of comparing Lanes.
-using LaneMask = std::int64_t __attribute__((vector_size(lane_bytes)));
 
+using DoubleRegister = double __attribute__((vector_size(register_bytes)));
+using MaskRegister = std::int64_t __attribute__((vector_size(register_bytes)));
+
+template <class Number>
+struct Wide;
+using Lanes = Wide<double>;
+/// All bits of a lane are set, or none: the result of comparing Lanes.
+using LaneMask = Wide<std::int64_t>;
+
+/// f of the registers of each of `a`.
+template <class Result, class F, class... A>
+[[gnu::always_inline, nodiscard]] inline Result by_register(const F& f, const A&... a) noexcept {
+#if defined(__AVX__)
+  return {f(a.whole...)};
+#else
+  return {f(a.low...), f(a.high...)};
+#endif
+}
+
+/// Four numbers, in one register or in two.
+template <class Number>
+struct alignas(lane_bytes) Wide {
+  using Register = std::conditional_t<std::is_same_v<Number, double>, DoubleRegister, MaskRegister>;
+#if defined(__AVX__)
+  Register whole;
+#else
+  Register low, high;
+#endif
+
+  [[nodiscard]] Number operator[](int k) const noexcept {
+    return reinterpret_cast<const Number*>(this)[k];
+  }
+  [[nodiscard]] Number& operator[](int k) noexcept {
+    return reinterpret_cast<Number*>(this)[k];
+  }
+
+  /// x in every lane.
+  [[nodiscard]] static Wide all(Number x) noexcept {
+    const Register one = x - Register{};
+#if defined(__AVX__)
+    return {one};
+#else
+    return {one, one};
+#endif
+  }
+
+  [[nodiscard]] friend Wide operator+(const Wide& a, const Wide& b) noexcept {
+    return by_register<Wide>([](const auto& x, const auto& y) { return x + y; }, a, b);
+  }
+  [[nodiscard]] friend Wide operator-(const Wide& a, const Wide& b) noexcept {
+    return by_register<Wide>([](const auto& x, const auto& y) { return x - y; }, a, b);
+  }
+  [[nodiscard]] friend Wide operator*(const Wide& a, const Wide& b) noexcept {
+    return by_register<Wide>([](const auto& x, const auto& y) { return x * y; }, a, b);
+  }
+  [[nodiscard]] friend Wide operator/(const Wide& a, const Wide& b) noexcept {
+    return by_register<Wide>([](const auto& x, const auto& y) { return x / y; }, a, b);
+  }
+  [[nodiscard]] friend Wide operator-(const Wide& a) noexcept {
+    return by_register<Wide>([](const auto& x) { return -x; }, a);
+  }
+  [[nodiscard]] friend Wide operator+(const Wide& a, Number b) noexcept {
+    return a + all(b);
+  }
+  [[nodiscard]] friend Wide operator+(Number a, const Wide& b) noexcept {
+    return all(a) + b;
+  }
+  [[nodiscard]] friend Wide operator-(const Wide& a, Number b) noexcept {
+    return a - all(b);
+  }
+  [[nodiscard]] friend Wide operator-(Number a, const Wide& b) noexcept {
+    return all(a) - b;
+  }
+  [[nodiscard]] friend Wide operator*(const Wide& a, Number b) noexcept {
+    return a * all(b);
+  }
+  [[nodiscard]] friend Wide operator*(Number a, const Wide& b) noexcept {
+    return all(a) * b;
+  }
+  [[nodiscard]] friend Wide operator/(const Wide& a, Number b) noexcept {
+    return a / all(b);
+  }
+  [[nodiscard]] friend Wide operator/(Number a, const Wide& b) noexcept {
+    return all(a) / b;
+  }
+
+  [[nodiscard]] friend LaneMask operator<(const Wide& a, const Wide& b) noexcept {
+    return by_register<LaneMask>([](const auto& x, const auto& y) { return (MaskRegister)(x < y); },
+                                 a, b);
+  }
+  [[nodiscard]] friend LaneMask operator<=(const Wide& a, const Wide& b) noexcept {
+    return by_register<LaneMask>(
+        [](const auto& x, const auto& y) { return (MaskRegister)(x <= y); }, a, b);
+  }
+  [[nodiscard]] friend LaneMask operator==(const Wide& a, const Wide& b) noexcept {
+    return by_register<LaneMask>(
+        [](const auto& x, const auto& y) { return (MaskRegister)(x == y); }, a, b);
+  }
+  [[nodiscard]] friend LaneMask operator>(const Wide& a, const Wide& b) noexcept {
+    return b < a;
+  }
+  [[nodiscard]] friend LaneMask operator>=(const Wide& a, const Wide& b) noexcept {
+    return b <= a;
+  }
+  [[nodiscard]] friend LaneMask operator<(const Wide& a, Number b) noexcept {
+    return a < all(b);
+  }
+  [[nodiscard]] friend LaneMask operator<=(const Wide& a, Number b) noexcept {
+    return a <= all(b);
+  }
+  [[nodiscard]] friend LaneMask operator>(const Wide& a, Number b) noexcept {
+    return a > all(b);
+  }
+  [[nodiscard]] friend LaneMask operator>=(const Wide& a, Number b) noexcept {
+    return a >= all(b);
+  }
+  [[nodiscard]] friend LaneMask operator==(const Wide& a, Number b) noexcept {
+    return a == all(b);
+  }
+
+  [[nodiscard]] friend Wide operator&(const Wide& a, const Wide& b) noexcept {
+    return by_register<Wide>([](const auto& x, const auto& y) { return x & y; }, a, b);
+  }
+  [[nodiscard]] friend Wide operator|(const Wide& a, const Wide& b) noexcept {
+    return by_register<Wide>([](const auto& x, const auto& y) { return x | y; }, a, b);
+  }
+  [[nodiscard]] friend Wide operator~(const Wide& a) noexcept {
+    return by_register<Wide>([](const auto& x) { return ~x; }, a);
+  }
+};
+
+[[nodiscard]] inline Lanes four(double a, double b, double c, double d) noexcept {
+#if defined(__AVX__)
+  return Lanes{DoubleRegister{a, b, c, d}};
+#else
+  return Lanes{DoubleRegister{a, b}, DoubleRegister{c, d}};
+#endif
+}
 /// x in every lane.
 [[nodiscard]] inline Lanes all_of(double x) noexcept {
-  return x - Lanes{};
+  return Lanes::all(x);
 }
 /// f(k) in lane k.
 template <class F>
 [[nodiscard]] Lanes lanes_of(const F& f) noexcept {
-  Lanes lanes{};
-  for (int k = 0; k < lane_count; ++k) lanes[k] = f(k);
-  return lanes;
+  return four(f(0), f(1), f(2), f(3));
+}
+
+/// `a` in the lanes of `first`, `b` in the others.
+[[nodiscard]] inline Lanes either(const LaneMask& first, const Lanes& a, const Lanes& b) noexcept {
+  return by_register<Lanes>([](const auto& m, const auto& x, const auto& y) { return m ? x : y; },
+                            first, a, b);
 }
 /// The larger in each lane; b where one of the two is NaN.
 [[nodiscard]] inline Lanes larger(const Lanes& a, const Lanes& b) noexcept {
-#if defined(__AVX__) && !defined(__AVX512F__)
-  return __builtin_ia32_maxpd256(a, b);
+#if defined(__AVX__)
+  return {__builtin_ia32_maxpd256(a.whole, b.whole)};
+#elif defined(__SSE2__)
+  return {__builtin_ia32_maxpd(a.low, b.low), __builtin_ia32_maxpd(a.high, b.high)};
 #else
-  return a > b ? a : b;
+  return either(a > b, a, b);
 #endif
 }
+/// The smaller in each lane; b where one of the two is NaN.
 [[nodiscard]] inline Lanes smaller(const Lanes& a, const Lanes& b) noexcept {
-#if defined(__AVX__) && !defined(__AVX512F__)
-  return __builtin_ia32_minpd256(a, b);
+#if defined(__AVX__)
+  return {__builtin_ia32_minpd256(a.whole, b.whole)};
+#elif defined(__SSE2__)
+  return {__builtin_ia32_minpd(a.low, b.low), __builtin_ia32_minpd(a.high, b.high)};
 #else
-  return a < b ? a : b;
+  return either(a < b, a, b);
 #endif
 }
 [[nodiscard]] inline Lanes magnitudes(const Lanes& a) noexcept {
-  return (Lanes)((LaneMask)a & std::int64_t{0x7FFFFFFFFFFFFFFF});
+  return by_register<Lanes>(
+      [](const auto& x) {
+        return (DoubleRegister)((MaskRegister)x & std::int64_t{0x7FFFFFFFFFFFFFFF});
+      },
+      a);
 }
 [[nodiscard]] inline Lanes roots(const Lanes& a) noexcept {
-#if defined(__clang__)
-  // The builtin functions differ from version to version.
+#if defined(__clang__) || !defined(__SSE2__)
+  // The builtin functions of clang differ from version to version.
   return lanes_of([&](int k) { return std::sqrt(a[k]); });
-#elif defined(__AVX512F__)
-  return __builtin_ia32_sqrtpd512_mask(a, a, -1, 4);
 #elif defined(__AVX__)
-  return __builtin_ia32_sqrtpd256(a);
-#elif defined(__SSE2__)
-  return __builtin_ia32_sqrtpd(a);
+  return {__builtin_ia32_sqrtpd256(a.whole)};
 #else
-  return lanes_of([&](int k) { return std::sqrt(a[k]); });
+  return {__builtin_ia32_sqrtpd(a.low), __builtin_ia32_sqrtpd(a.high)};
 #endif
 }
 // In halves: a chain through all lanes would be waited for.
-[[nodiscard]] inline double largest_of(Lanes a) noexcept {
-  for (int half = lane_count / 2; half > 0; half /= 2) {
-    for (int k = 0; k < half; ++k) a[k] = std::max(a[k], a[k + half]);
-  }
-  return a[0];
+[[nodiscard]] inline double largest_of(const Lanes& a) noexcept {
+  return std::max(std::max(a[0], a[2]), std::max(a[1], a[3]));
 }
-[[nodiscard]] inline double least_of(Lanes a) noexcept {
-  for (int half = lane_count / 2; half > 0; half /= 2) {
-    for (int k = 0; k < half; ++k) a[k] = std::min(a[k], a[k + half]);
-  }
-  return a[0];
+[[nodiscard]] inline double least_of(const Lanes& a) noexcept {
+  return std::min(std::min(a[0], a[2]), std::min(a[1], a[3]));
 }
 /// Bit k is set when the mask of lane k is set.
 [[nodiscard]] inline unsigned bits_of(const LaneMask& mask) noexcept {
-#if defined(__AVX512DQ__)
-  using Long = long long __attribute__((vector_size(lane_bytes)));
-  return static_cast<unsigned char>(__builtin_ia32_cvtq2mask512((Long)mask));
-#elif defined(__AVX__) && !defined(__AVX512F__)
-  return static_cast<unsigned>(__builtin_ia32_movmskpd256((Lanes)mask));
-#elif defined(__SSE2__) && !defined(__AVX__)
-  return static_cast<unsigned>(__builtin_ia32_movmskpd((Lanes)mask));
+#if defined(__AVX__)
+  return static_cast<unsigned>(__builtin_ia32_movmskpd256((DoubleRegister)mask.whole));
+#elif defined(__SSE2__)
+  return static_cast<unsigned>(__builtin_ia32_movmskpd((DoubleRegister)mask.low) |
+                               __builtin_ia32_movmskpd((DoubleRegister)mask.high) << 2);
 #else
   unsigned bits = 0;
   for (int k = 0; k < lane_count; ++k) bits |= static_cast<unsigned>(mask[k] & 1) << k;
@@ -159,31 +296,31 @@ struct LaneVec {
   }
   friend Lanes sum(const LaneVec& a) noexcept { return a.x + a.y + a.z; }
   friend LaneVec either(const LaneMask& first, const LaneVec& a, const LaneVec& b) noexcept {
-    return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
+    return {either(first, a.x, b.x), either(first, a.y, b.y), either(first, a.z, b.z)};
   }
 };
 
-#if defined(__AVX__) && !defined(__AVX512F__)
+#if defined(__AVX__)
 template <class F>
 LaneVec LaneVec::of(const F& v) noexcept {
-  const Lanes a = v(0).lanes();
-  const Lanes b = v(1).lanes();
-  const Lanes c = v(2).lanes();
-  const Lanes d = v(3).lanes();
-  const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-  const Lanes xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-  const Lanes y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Lanes y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  return {__builtin_shufflevector(xz_ab, xz_cd, 0, 1, 4, 5),
-          __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5),
-          __builtin_shufflevector(xz_ab, xz_cd, 2, 3, 6, 7)};
+  const auto a = v(0).lanes();
+  const auto b = v(1).lanes();
+  const auto c = v(2).lanes();
+  const auto d = v(3).lanes();
+  const auto xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const auto xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const auto y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const auto y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {Lanes{__builtin_shufflevector(xz_ab, xz_cd, 0, 1, 4, 5)},
+          Lanes{__builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5)},
+          Lanes{__builtin_shufflevector(xz_ab, xz_cd, 2, 3, 6, 7)}};
 }
 inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
-  const Lanes none{};
-  const Lanes xy_ac = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-  const Lanes xy_bd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-  const Lanes z_ac = __builtin_shufflevector(z, none, 0, 4, 2, 6);
-  const Lanes z_bd = __builtin_shufflevector(z, none, 1, 5, 3, 7);
+  const DoubleRegister none{};
+  const auto xy_ac = __builtin_shufflevector(x.whole, y.whole, 0, 4, 2, 6);
+  const auto xy_bd = __builtin_shufflevector(x.whole, y.whole, 1, 5, 3, 7);
+  const auto z_ac = __builtin_shufflevector(z.whole, none, 0, 4, 2, 6);
+  const auto z_bd = __builtin_shufflevector(z.whole, none, 1, 5, 3, 7);
   return {Vec<double>(__builtin_shufflevector(xy_ac, z_ac, 0, 1, 4, 5)),
           Vec<double>(__builtin_shufflevector(xy_bd, z_bd, 0, 1, 4, 5)),
           Vec<double>(__builtin_shufflevector(xy_ac, z_ac, 2, 3, 6, 7)),
@@ -192,19 +329,16 @@ inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
 #else
 template <class F>
 LaneVec LaneVec::of(const F& v) noexcept {
-  LaneVec lanes;
-  for (int k = 0; k < lane_count; ++k) {
-    const Vec<double> one = v(k);
-    lanes.x[k] = one.x();
-    lanes.y[k] = one.y();
-    lanes.z[k] = one.z();
-  }
-  return lanes;
+  const Vec<double> a = v(0);
+  const Vec<double> b = v(1);
+  const Vec<double> c = v(2);
+  const Vec<double> d = v(3);
+  return {four(a.x(), b.x(), c.x(), d.x()), four(a.y(), b.y(), c.y(), d.y()),
+          four(a.z(), b.z(), c.z(), d.z())};
 }
 inline std::array<Vec<double>, lane_count> LaneVec::each() const noexcept {
-  std::array<Vec<double>, lane_count> all;
-  for (int k = 0; k < lane_count; ++k) all[static_cast<std::size_t>(k)] = {x[k], y[k], z[k]};
-  return all;
+  const auto one = [this](int k) { return Vec<double>(x[k], y[k], z[k]); };
+  return {one(0), one(1), one(2), one(3)};
 }
 #endif
 

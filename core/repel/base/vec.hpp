@@ -16,44 +16,61 @@
 
 namespace repel {
 
+namespace detail {
+template <class T>
+struct Coordinates {
+  T x, y, z;
+};
+/// As in the register of four that holds them where there is one, so that data laid out by a unit
+/// are read by any other, whatever registers they are compiled for.
+template <>
+struct alignas(32) Coordinates<double> {
+  double x, y, z;
+  double none = 0.0;
+};
+}  // namespace detail
+
 /// `Vec<T> v;` leaves the coordinates uninitialized, `Vec<T>()` is zero.
 template <class T>
 class Vec {
  public:
   Vec() = default;
   /// By entries.
-  Vec(T x, T y, T z) noexcept : x_(x), y_(y), z_(z) {}
+  Vec(T x, T y, T z) noexcept : at_{x, y, z} {}
   /// Exact.
-  explicit Vec(const Vec3& v) noexcept : x_(v.x()), y_(v.y()), z_(v.z()) {}
+  explicit Vec(const Vec3& v) noexcept : at_{v.x(), v.y(), v.z()} {}
   /// Converts entry by entry; rounds where T is narrower.
   template <class U>
   requires(!std::same_as<U, T>) explicit Vec(const Vec<U>& v) noexcept
-      : x_(static_cast<T>(v.x())), y_(static_cast<T>(v.y())), z_(static_cast<T>(v.z())) {}
+      : at_{static_cast<T>(v.x()), static_cast<T>(v.y()), static_cast<T>(v.z())} {}
 
-  [[nodiscard]] T x() const noexcept { return x_; }  ///< first entry
-  [[nodiscard]] T y() const noexcept { return y_; }  ///< second entry
-  [[nodiscard]] T z() const noexcept { return z_; }  ///< third entry
+  [[nodiscard]] T x() const noexcept { return at_.x; }  ///< first entry
+  [[nodiscard]] T y() const noexcept { return at_.y; }  ///< second entry
+  [[nodiscard]] T z() const noexcept { return at_.z; }  ///< third entry
 
   /// Sum.
   friend Vec operator+(const Vec& a, const Vec& b) noexcept {
-    return {a.x_ + b.x_, a.y_ + b.y_, a.z_ + b.z_};
+    return {a.at_.x + b.at_.x, a.at_.y + b.at_.y, a.at_.z + b.at_.z};
   }
   /// Difference.
   friend Vec operator-(const Vec& a, const Vec& b) noexcept {
-    return {a.x_ - b.x_, a.y_ - b.y_, a.z_ - b.z_};
+    return {a.at_.x - b.at_.x, a.at_.y - b.at_.y, a.at_.z - b.at_.z};
   }
   /// Negative.
-  friend Vec operator-(const Vec& a) noexcept { return {-a.x_, -a.y_, -a.z_}; }
+  friend Vec operator-(const Vec& a) noexcept { return {-a.at_.x, -a.at_.y, -a.at_.z}; }
   /// Multiple.
-  friend Vec operator*(T s, const Vec& a) noexcept { return {s * a.x_, s * a.y_, s * a.z_}; }
+  friend Vec operator*(T s, const Vec& a) noexcept {
+    return {s * a.at_.x, s * a.at_.y, s * a.at_.z};
+  }
 
   /// Scalar product.
   friend T dot(const Vec& a, const Vec& b) noexcept {
-    return a.x_ * b.x_ + a.y_ * b.y_ + a.z_ * b.z_;
+    return a.at_.x * b.at_.x + a.at_.y * b.at_.y + a.at_.z * b.at_.z;
   }
   /// Vector product.
   friend Vec cross(const Vec& a, const Vec& b) noexcept {
-    return {a.y_ * b.z_ - a.z_ * b.y_, a.z_ * b.x_ - a.x_ * b.z_, a.x_ * b.y_ - a.y_ * b.x_};
+    return {a.at_.y * b.at_.z - a.at_.z * b.at_.y, a.at_.z * b.at_.x - a.at_.x * b.at_.z,
+            a.at_.x * b.at_.y - a.at_.y * b.at_.x};
   }
   /// The dot products of `d` with `a`, `b` and `c`.
   friend Vec dots(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
@@ -61,29 +78,31 @@ class Vec {
   }
   /// The absolute value of each entry.
   friend Vec magnitudes(const Vec& a) noexcept {
-    return {std::abs(a.x_), std::abs(a.y_), std::abs(a.z_)};
+    return {std::abs(a.at_.x), std::abs(a.at_.y), std::abs(a.at_.z)};
   }
   /// Sum of the entries.
-  friend T sum(const Vec& a) noexcept { return a.x_ + a.y_ + a.z_; }
+  friend T sum(const Vec& a) noexcept { return a.at_.x + a.at_.y + a.at_.z; }
   /// The elementwise product.
   friend Vec product(const Vec& a, const Vec& b) noexcept {
-    return {a.x_ * b.x_, a.y_ * b.y_, a.z_ * b.z_};
+    return {a.at_.x * b.at_.x, a.at_.y * b.at_.y, a.at_.z * b.at_.z};
   }
   /// Bit k is set when coordinate k has its sign bit set, also for a negative zero.
   friend unsigned minus_signs(const Vec& a) noexcept {
-    return (is_minus(a.x_) ? 1U : 0U) | (is_minus(a.y_) ? 2U : 0U) | (is_minus(a.z_) ? 4U : 0U);
+    return (is_minus(a.at_.x) ? 1U : 0U) | (is_minus(a.at_.y) ? 2U : 0U) |
+           (is_minus(a.at_.z) ? 4U : 0U);
   }
   /// The sum of `a`, `b` and `c`, each negated where the corresponding coordinate of `d` has its
   /// sign bit set: `a` by x, `b` by y, `c` by z.
   friend Vec sum_along(const Vec& a, const Vec& b, const Vec& c, const Vec& d) noexcept {
-    return (is_minus(d.x_) ? -a : a) + (is_minus(d.y_) ? -b : b) + (is_minus(d.z_) ? -c : c);
+    return (is_minus(d.at_.x) ? -a : a) + (is_minus(d.at_.y) ? -b : b) +
+           (is_minus(d.at_.z) ? -c : c);
   }
 
  private:
   static bool is_minus(double x) noexcept { return std::signbit(x); }
   static bool is_minus(DoubleDouble x) noexcept { return std::signbit(x.hi); }
 
-  T x_, y_, z_;
+  detail::Coordinates<T> at_;
 };
 
 #ifdef __AVX__

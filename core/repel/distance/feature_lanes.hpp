@@ -135,16 +135,16 @@ struct FeatureLanes {
     const LaneVec slanted = p - first * e;
     const Lanes rest = scale * dot(e, slanted);
     const Lanes none{};
-    const Lanes along = is_corner ? none : first + rest;
+    const Lanes along = either(is_corner, none, first + rest);
     Foot foot{either(is_corner, p, slanted - rest * e), 1.0 + along, -along, none};
     if (bits_of(is_face) == 0U) return foot;
     const LaneVec n = cross(e, r - p);
     const LaneVec areas{dot(cross(q, r), n), dot(cross(r, p), n), dot(cross(p, q), n)};
     const Lanes share = 1.0 / sum(areas);
     foot.v = either(is_face, (dot(n, p) / dot(n, n)) * n, foot.v);
-    foot.p = is_face ? share * areas.x : foot.p;
-    foot.q = is_face ? share * areas.y : foot.q;
-    foot.r = is_face ? share * areas.z : foot.r;
+    foot.p = either(is_face, share * areas.x, foot.p);
+    foot.q = either(is_face, share * areas.y, foot.q);
+    foot.r = either(is_face, share * areas.z, foot.r);
     return foot;
   }
 

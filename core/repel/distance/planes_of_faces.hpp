@@ -61,7 +61,7 @@ class PlanesOfFaces {
       const LaneVec n{some(x_, f), some(y_, f), some(z_, f)};
       const Lanes part = 1.0 / roots(dot(n, n));
       const Lanes offset = part * some(offset_, f);
-      beyond &= offset > all_of(least);
+      beyond = beyond & (offset > all_of(least));
       store(part * n.x, x_, f);
       store(part * n.y, y_, f);
       store(part * n.z, z_, f);

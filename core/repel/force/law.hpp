@@ -13,6 +13,14 @@
 
 namespace repel {
 
+namespace detail {
+/// `a` where `first` is true, else `b`: as for SIMD lanes.
+template <class Number>
+[[nodiscard]] Number either(bool first, const Number& a, const Number& b) noexcept {
+  return first ? a : b;
+}
+}  // namespace detail
+
 /// The force of a pair that is not passable, for any number type: double, an extended precision, or
 /// SIMD lanes with one pair each. The only place of the formula; its letters are those of ForceLaw.
 template <class Number>
@@ -28,23 +36,26 @@ struct LawFormula {
     const Number inward = 1.0 - share;
     const Number bent = surface_force * inward * inward;
     const Number straight = surface_force * (1.0 - 2.0 * share);
-    return distance > 0.0 ? bent : straight;
+    using detail::either;
+    return either(distance > 0.0, bent, straight);
   }
   /// c(d) [N s/m].
   [[nodiscard]] Number damper(const Number& distance) const noexcept {
     const Number none = Number{};
     const Number all = none + 1.0;
     const Number share = 1.0 - distance / range;
-    const Number positive = share > none ? share : none;
-    return damping * (positive < all ? positive : all);
+    using detail::either;
+    const Number positive = either(share > none, share, none);
+    return damping * either(positive < all, positive, all);
   }
   /// f [N], 0 to the ceiling.
   [[nodiscard]] Number operator()(const Number& distance, const Number& rate) const noexcept {
     const Number none = Number{};
     const Number wanted = spring(distance) - damper(distance) * rate;
-    const Number pushed = wanted > none ? wanted : none;
-    const Number size = pushed < ceiling ? pushed : ceiling;
-    return distance < range ? size : none;
+    using detail::either;
+    const Number pushed = either(wanted > none, wanted, none);
+    const Number size = either(pushed < ceiling, pushed, ceiling);
+    return either(distance < range, size, none);
   }
 };
 

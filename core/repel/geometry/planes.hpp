@@ -171,12 +171,12 @@ inline Planes::Nearest<double> Planes::nearest_of_listed(const Vec<double>& x) c
     const Lanes height = numbers(0, i) * x.x() + numbers(1, i) * x.y() + numbers(2, i) * x.z();
     const Lanes depth = numbers(3, i) - height;
     const auto nearer = depth < best;
-    best = nearer ? depth : best;
-    winner = nearer ? here : winner;
-    here += detail::lane_count;
+    best = either(nearer, depth, best);
+    winner = either(nearer, here, winner);
+    here = here + static_cast<double>(detail::lane_count);
   }
   const double least = detail::least_of(best);
-  const Lanes first = best == detail::all_of(least) ? winner : Lanes{} + none;
+  const Lanes first = either(best == detail::all_of(least), winner, Lanes{} + none);
   return {static_cast<std::uint32_t>(detail::least_of(first)), least};
 }
 

@@ -218,7 +218,7 @@ class LaneEvaluator {
 
  private:
   /// Measured: below, a group costs more than its pairs do singly.
-  static constexpr int fewest_in_group = lane_count < 8 ? lane_count / 2 : 3;
+  static constexpr int fewest_in_group = lane_count / 2;
 
   [[nodiscard]] PairMemory& memory() noexcept { return singles_->memory(); }
   [[nodiscard]] const PairMemory& memory() const noexcept { return singles_->memory(); }

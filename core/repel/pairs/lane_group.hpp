@@ -178,7 +178,7 @@ class LaneGroup {
     if (to_look_at != 0U) {
       pointed_.look_at(to_look_at, features_, gap, tilt_);
       const PointedPairLanes::Shown now = pointed_.shown(features_, gap);
-      flat &= now.may_be_flat;
+      flat = flat & now.may_be_flat;
       edge = now.edge;
     }
     unsigned corners = 0;
@@ -194,7 +194,7 @@ class LaneGroup {
       corners = search.corners();
       const auto take = [&](const PolygonPatches& found) {
         in_lanes |= bits_of(found.valid);
-        nearer_ = found.valid ? found.nearer : nearer_;
+        nearer_ = either(found.valid, found.nearer, nearer_);
         gradient_W_ = either(found.valid, found.force, gradient_W_);
         moment_W_ = either(found.valid, found.torque + cross(p_AQ_W_, found.force), moment_W_);
       };
@@ -231,12 +231,12 @@ class LaneGroup {
     const LaneVec n = either(in_range, gradient_W_, LaneVec{});
     const LaneVec moment = either(in_range, moment_W_, LaneVec{});
     const Lanes rate = dot(n, relative.v_BA_W) + dot(relative.w_BA_W, moment);
-    size_ = in_range ? law_(distance, rate) : none;
+    size_ = either(in_range, law_(distance, rate), none);
     force_W_ = size_ * n;
     torque_W_ = size_ * moment;
     distance_if_proven_ =
-        proven ? apart_.distance : all_of(std::numeric_limits<double>::infinity());
-    depth_ = larger(proven ? -apart_.lower : none, none);
+        either(proven, apart_.distance, all_of(std::numeric_limits<double>::infinity()));
+    depth_ = larger(either(proven, -apart_.lower, none), none);
     nearest_ = smaller(nearest_, distance_if_proven_);
     deepest_ = larger(deepest_, depth_);
     peak_ = larger(peak_, size_);

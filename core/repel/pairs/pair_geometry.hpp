@@ -13,7 +13,7 @@ namespace repel::detail {
 /// are apart, the measured distance (negative depth) in overlap.
 template <class Number>
 [[nodiscard]] Number proven_distance(const Number& distance, const Number& lower) noexcept {
-  return lower > 0.0 ? lower : distance;
+  return either(lower > 0.0, lower, distance);
 }
 
 /// The body of part A relative to that of part B, in world axes.

@@ -82,10 +82,10 @@ class FaceLanes {
   void place(const LaneMask& lanes, const LanePose& X_W, const LaneVec& nearest,
              const PlanarLaneAxes& axes, PolygonLanes& polygons) const noexcept {
     const LaneVec normal = X_W.rotate(normal_);
-    const Lanes upright = lanes ? dot(normal, axes.n) : all_of(1.0);
+    const Lanes upright = either(lanes, dot(normal, axes.n), all_of(1.0));
     polygons.slope = either(lanes, (-1.0 / upright) * axes.in_plane(normal), polygons.slope);
-    polygons.valid |= lanes;
-    polygons.is_large |= lanes & is_large_;
+    polygons.valid = polygons.valid | lanes;
+    polygons.is_large = polygons.is_large | (lanes & is_large_);
     const std::size_t size = bits_of(lanes & is_large_) != 0U ? PolygonLanes::most : 4;
     for (std::size_t i = 0; i < size; ++i) {
       const PlanarLanes r = axes.in_plane(X_W.rotate(corners_[i]) - nearest);

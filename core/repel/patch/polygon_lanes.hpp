@@ -32,7 +32,7 @@ struct PlanarLanes {
   }
   friend PlanarLanes either(const LaneMask& first, const PlanarLanes& a,
                             const PlanarLanes& b) noexcept {
-    return {first ? a.x : b.x, first ? a.y : b.y};
+    return {either(first, a.x, b.x), either(first, a.y, b.y)};
   }
 };
 
@@ -79,16 +79,17 @@ struct PolygonLanes {
     const auto& columns = X_W.columns;
     valid = ((x & y) | (x & z) | (y & z)) & ~(x & y & z);
     const LaneVec side = either(x & y, columns[2], either(x, columns[1], columns[0]));
-    const Lanes height = (x & y) ? half.z : (x ? half.y : half.x);
-    const Lanes facing = (x & y) ? n.z : (x ? n.y : n.x);
-    const PlanarLanes centre = axes.in_plane((facing > none ? height : -height) * side - nearest);
+    const Lanes height = either(x & y, half.z, either(x, half.y, half.x));
+    const Lanes facing = either(x & y, n.z, either(x, n.y, n.x));
+    const PlanarLanes centre =
+        axes.in_plane(either(facing > none, height, -height) * side - nearest);
     // Lanes without one hold a square, so that nothing invalid is computed in them.
     const Lanes one = all_of(1.0);
     const PlanarLanes u =
-        either(valid, (x ? half.x : half.y) * axes.in_plane(either(x, columns[0], columns[1])),
+        either(valid, either(x, half.x, half.y) * axes.in_plane(either(x, columns[0], columns[1])),
                {one, none});
     const PlanarLanes w =
-        either(valid, (z ? half.z : half.y) * axes.in_plane(either(z, columns[2], columns[1])),
+        either(valid, either(z, half.z, half.y) * axes.in_plane(either(z, columns[2], columns[1])),
                {none, one});
     const PlanarLanes v = either(cross(u, w) < none, {-w.x, -w.y}, w);
     corners[0] = centre - u - v;
@@ -96,7 +97,7 @@ struct PolygonLanes {
     corners[2] = centre + u + v;
     corners[3] = centre - u + v;
     size = 4;
-    slope = (-1.0 / (valid ? dot(side, axes.n) : one)) * axes.in_plane(side);
+    slope = (-1.0 / either(valid, dot(side, axes.n), one)) * axes.in_plane(side);
   }
 
   /// As how many sides a polygon is held: the last one is divided into as many as are missing.

@@ -78,8 +78,8 @@ class PolygonMean {
   using All = std::array<Side, sides>;
 
   static Ray chosen(const LaneMask& first, const Ray& a, const Ray& b) noexcept {
-    return {either(first, a.normal, b.normal), first ? a.share : b.share,
-            first ? a.moment : b.moment, first ? a.across : b.across};
+    return {either(first, a.normal, b.normal), either(first, a.share, b.share),
+            either(first, a.moment, b.moment), either(first, a.across, b.across)};
   }
 
   void set(const PolygonLanes& polygon, std::size_t i, Side& side) noexcept {
@@ -102,15 +102,17 @@ class PolygonMean {
     const Lanes half = roots(square);
     const LaneMask is_inside = dot(s_, s_) < e_ * e_;
     const Lanes out = b + half;
-    const Lanes turn = turns_of(is_inside ? out * y - s_.y : -h, is_inside ? out * x - s_.x : half);
+    const Lanes turn =
+        turns_of(either(is_inside, out * y - s_.y, -h), either(is_inside, out * x - s_.x, half));
     const Lanes sector = e_ * e_ * turn;
     const Lanes cube = square * half;
     const Lanes within = 0.5 + of_area_ * (sector - h * half);
-    const Lanes beside = h > none ? none : all_of(1.0);
+    const Lanes beside = either(h > none, none, all_of(1.0));
     const LaneMask meets = (b > none) & (half > none);
-    ray.share = is_inside ? 0.5 * of_area_ * (sector - out * h) : (meets ? within : beside);
+    ray.share =
+        either(is_inside, 0.5 * of_area_ * (sector - out * h), either(meets, within, beside));
     const Lanes moment = 0.5 * of_area_ * (square * out - (1.0 / 3.0) * (cube + b * b * b));
-    ray.moment = is_inside ? moment : (b > none ? (2.0 / 3.0) * of_area_ * cube : none);
+    ray.moment = either(is_inside, moment, either(b > none, (2.0 / 3.0) * of_area_ * cube, none));
     ray.moment = ray.moment - share_ * flat_;
     ray.across = h;
   }
@@ -127,7 +129,7 @@ class PolygonMean {
   void grow(std::size_t j) noexcept {
     Side& side = sides_b_[j];
     const Lanes none{};
-    touching_b_ = touching_b_ + (magnitudes(side.offset) < touching ? all_of(1.0) : none);
+    touching_b_ = touching_b_ + either(magnitudes(side.offset) < touching, all_of(1.0), none);
     lowest_ = smaller(lowest_, side.offset);
     const PlanarLanes& n = side.ray.normal;
     const auto tangent_of_half = [](const PlanarLanes& from, const PlanarLanes& to) {
@@ -142,20 +144,20 @@ class PolygonMean {
   static void cut(Side& a, Side& b) noexcept {
     const Lanes none{};
     const Lanes sine = cross(a.ray.normal, b.ray.normal);
-    const Lanes inverse = 1.0 / (sine == none ? all_of(1e-30) : sine);
+    const Lanes inverse = 1.0 / either(sine == none, all_of(1e-30), sine);
     const Lanes at_a = inverse * (b.offset - dot(b.ray.normal, a.from));
     const Lanes at_b = inverse * (dot(a.ray.normal, b.from) - a.offset);
     const LaneMask leaves = sine >= none;  // also along it
     const LaneMask ends = leaves & (at_a < a.end);
     const LaneMask begins = ~leaves & (at_a > a.begin);
-    a.end = ends ? at_a : a.end;
+    a.end = either(ends, at_a, a.end);
     a.after = chosen(ends, b.ray, a.after);
-    a.begin = begins ? at_a : a.begin;
+    a.begin = either(begins, at_a, a.begin);
     a.before = chosen(begins, b.ray, a.before);
     const LaneMask enters = leaves & (at_b > b.begin);
-    b.begin = enters ? at_b : b.begin;
-    b.before.share = enters ? a.ray.share : b.before.share;
-    b.end = (~leaves & (at_b < b.end)) ? at_b : b.end;
+    b.begin = either(enters, at_b, b.begin);
+    b.before.share = either(enters, a.ray.share, b.before.share);
+    b.end = either(~leaves & (at_b < b.end), at_b, b.end);
   }
 
   struct Corner {
@@ -167,24 +169,25 @@ class PolygonMean {
                               const Ray& to) const noexcept {
     const Lanes share = to.share - from.share;
     const PlanarLanes r = side.at(t);
-    return {r, share < -1e-9 ? share + 1.0 : share, dot(r, r) <= all_of(at_nearest * at_nearest)};
+    return {r, either(share < -1e-9, share + 1.0, share),
+            dot(r, r) <= all_of(at_nearest * at_nearest)};
   }
 
   Corner add(const Side& side) noexcept {
     const Lanes none{};
     const LaneMask is_left = side.end > side.begin;
-    const Lanes length = is_left ? side.end - side.begin : none;
+    const Lanes length = either(is_left, side.end - side.begin, none);
     Corner start = corner(side, side.begin, side.before, side.ray);
-    const Lanes share = is_left ? start.share : none;
+    const Lanes share = either(is_left, start.share, none);
     const PlanarLanes r = either(is_left, start.r, {none, none});
     point_ = point_ + share * r;
     shares_ = shares_ + share;
-    held_ = held_ + (start.is_nearest ? share : none);
+    held_ = held_ + either(start.is_nearest, share, none);
     nearer_ = nearer_ + side.ray.moment * length;
     perimeter_ = perimeter_ + length;
     closing_ = closing_ + length * side.ray.normal;
     const Lanes far = dot(s_, start.r);
-    farthest_ = (is_left & (far > farthest_)) ? far : farthest_;
+    farthest_ = either(is_left & (far > farthest_), far, farthest_);
     return start;
   }
 
@@ -202,23 +205,23 @@ class PolygonMean {
     // y in the axes of the other normal; its size bounds the multiple.
     const Lanes away = share * dot(s_, other.normal) + one.moment * sine;
     const Lanes most = 4.0 * roots(wanted * wanted + away * away);
-    return sine > 1e-9 ? (is_own ? found : smaller(larger(found, -most), most)) : none;
+    return either(sine > 1e-9, either(is_own, found, smaller(larger(found, -most), most)), none);
   }
 
   void add_of_a(const Side& side) noexcept {
     const Lanes none{};
-    touching_a_ = touching_a_ + (magnitudes(side.offset) < touching ? all_of(1.0) : none);
+    touching_a_ = touching_a_ + either(magnitudes(side.offset) < touching, all_of(1.0), none);
     const Corner start = add(side);
     const Corner end = corner(side, side.end, side.ray, side.after);
     const Ray& ray = side.ray;
-    const auto moving = [&](const Corner& c) { return c.is_nearest ? none : c.share; };
+    const auto moving = [&](const Corner& c) { return either(c.is_nearest, none, c.share); };
     const Lanes first = multiple(ray, side.before, cross(side.before.normal, ray.normal),
                                  side.before.across, moving(start), side.begin == none);
     const Lanes last = multiple(ray, side.after, cross(ray.normal, side.after.normal),
                                 -side.after.across, moving(end), side.end == side.length);
     const LaneMask is_left = side.end > side.begin;
-    const Lanes by_first = is_left ? first : none;
-    const Lanes by_last = is_left ? last : none;
+    const Lanes by_first = either(is_left, first, none);
+    const Lanes by_last = either(is_left, last, none);
     const PlanarLanes moment = either(is_left, by_first * start.r + by_last * end.r, {none, none});
     pull_ = pull_ - (by_first + by_last) * ray.normal;
     drill_ = drill_ - cross(moment, ray.normal);

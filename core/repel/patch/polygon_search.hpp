@@ -29,7 +29,7 @@ class PolygonSearch {
       : features_(features),
         gap_(gap),
         axes_(gap.n_BA_W),
-        tilt_(tilt > Lanes{} ? tilt : all_of(1.0)) {}
+        tilt_(either(tilt > Lanes{}, tilt, all_of(1.0))) {}
 
   /// Finds the features of those lanes.
   /// @param pose_a,pose_b called with k: the pose of the set in lane k
@@ -113,7 +113,7 @@ class PolygonSearch {
   }
 
   /// Corners from which on a patch is found faster alone: all sides of A are cut by all of B.
-  static constexpr int largest = lane_count < 8 ? 4 : static_cast<int>(PolygonLanes::most);
+  static constexpr int largest = 4;
 
   const FeatureLanes& features_;
   const LaneGap& gap_;

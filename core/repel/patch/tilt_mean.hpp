@@ -192,9 +192,9 @@ class TiltMean {
       }
       // The share clockwise of the ray: of the disc beyond a line at -h.
       const Lanes within = 0.5 + of_area * (e_ * e_ * turns_of(-h, half) - h * half);
-      const Lanes beside = h > 0.0 ? none : all_of(1.0);
-      Sides::store(rays.share, i, b > 0.0 && half > 0.0 ? within : beside);
-      Sides::store(rays.moment, i, b > 0.0 ? 2.0 / 3.0 * of_area * half * half * half : none);
+      const Lanes beside = either(h > 0.0, none, all_of(1.0));
+      Sides::store(rays.share, i, either((b > 0.0) & (half > 0.0), within, beside));
+      Sides::store(rays.moment, i, either(b > 0.0, 2.0 / 3.0 * of_area * half * half * half, none));
     }
     return rays;
   }

@@ -18,9 +18,9 @@ namespace repel::detail {
   const Lanes high = larger(along, across);
   // Beyond an eighth of pi the angle is measured from the diagonal.
   const LaneMask past = low > (std::numbers::sqrt2 - 1.0) * high;
-  const Lanes above = past ? low - high : low;
-  const Lanes below = past ? low + high : high;
-  const Lanes z = above / (below > 0.0 ? below : all_of(1.0));
+  const Lanes above = either(past, low - high, low);
+  const Lanes below = either(past, low + high, high);
+  const Lanes z = above / either(below > 0.0, below, all_of(1.0));
   // The polynomial that differs least from atan(z) / z, in u = z^2.
   const Lanes u = z * z;
   const Lanes u2 = u * u;
@@ -31,10 +31,10 @@ namespace repel::detail {
                        u2 * (0.075637035519151919886 - 0.058745056213078307484 * u);
   const Lanes whole = z * (first + u4 * (second + u4 * 0.030662440370424448757));
   const Lanes none{};
-  const Lanes from_axis = (past ? all_of(0.25 * std::numbers::pi) : none) + whole;
-  const Lanes quarter = across > along ? 0.5 * std::numbers::pi - from_axis : from_axis;
-  const Lanes half = x < 0.0 ? std::numbers::pi - quarter : quarter;
-  return y < 0.0 ? -half : half;
+  const Lanes from_axis = either(past, all_of(0.25 * std::numbers::pi), none) + whole;
+  const Lanes quarter = either(across > along, 0.5 * std::numbers::pi - from_axis, from_axis);
+  const Lanes half = either(x < 0.0, std::numbers::pi - quarter, quarter);
+  return either(y < 0.0, -half, half);
 }
 
 }  // namespace repel::detail

@@ -5,30 +5,15 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include <repel/pairs/budget.hpp>
+#include <repel/pairs/evaluation_order.hpp>
 #include <repel/pairs/forces_and_totals.hpp>
-#include <repel/schedule/evaluation_order.hpp>
 
 namespace repel::detail {
-
-/// When the evaluation of a tick has to end.
-struct EvaluationLimit {
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
-
-  Clock::time_point deadline = Clock::time_point::max();
-  std::int64_t work_units = no_limit;  ///< support-map pairs
-
-  [[nodiscard]] bool is_counted() const noexcept { return work_units < no_limit; }
-  [[nodiscard]] bool is_set() const noexcept;
-  /// @param spent support-map pairs so far
-  [[nodiscard]] bool is_reached(std::int64_t spent) const noexcept;
-};
 
 /// The items of a tick, lane groups and single pairs, in batches of a few. If the last tick could
 /// not evaluate all, half the number of singles it managed is selected by urgency; the others, and
@@ -152,5 +137,27 @@ class EvaluationPlan {
   int evaluated_singles_ = 0;   ///< at the last tick, if the time did not suffice for all
   int urgent_ = 0;              ///< singles selected by urgency at this tick
 };
+
+inline int EvaluationPlan::batches_of(int items) noexcept {
+  return (items + batch_size - 1) / batch_size;
+}
+
+inline bool EvaluationPlan::is_single(int item) const noexcept {
+  return singles_first_ ? item < singles_ : item >= groups_;
+}
+
+inline int EvaluationPlan::place_of(int item) const noexcept {
+  return singles_first_ ? item : item - groups_;
+}
+
+inline int EvaluationPlan::single_of(int item) const noexcept {
+  const int place = place_of(item);
+  return in_order_.empty() ? place : in_order_[static_cast<std::size_t>(place)];
+}
+
+inline int EvaluationPlan::group_of(int item) const noexcept {
+  const int g = first_group_ + (singles_first_ ? item - singles_ : item);
+  return g < groups_ ? g : g - groups_;
+}
 
 }  // namespace repel::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/schedule/evaluation_order.hpp>
+#include <repel/pairs/evaluation_order.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/schedule/pair_set.hpp>
+#include <repel/pairs/pair_set.hpp>
 
 #include <gtest/gtest.h>
 
