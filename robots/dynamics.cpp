@@ -8,7 +8,8 @@
 #include <kdl/chaindynparam.hpp>
 #include <limits>
 
-#include <repel/world/arm_drive.hpp>
+#include <repel/simulated/arm_drive.hpp>
+#include <repel/simulated/brake_torque.hpp>
 
 #include "kdl_chain.hpp"
 

@@ -12,7 +12,7 @@
 #include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include "camera_feed.hpp"
 #include "covers_beside.hpp"

@@ -11,7 +11,7 @@
 
 #include <repel/base/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include "mcap_names.hpp"
 

@@ -18,8 +18,8 @@
 #include <repel/scene/scene.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/schedule/deadline.hpp>
+#include <repel/simulated/contact.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/contact.hpp>
 #include <repel/world/world.hpp>
 
 #include "camera_feeds.hpp"

@@ -10,9 +10,9 @@
 #include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/reduction/separation.hpp>
-#include <repel/world/changed_arm.hpp>
-#include <repel/world/delayed_arm.hpp>
-#include <repel/world/sensed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
+#include <repel/simulated/delayed_arm.hpp>
+#include <repel/simulated/sensed_arm.hpp>
 
 #include "arm_backend.hpp"
 #include "camera_feeds.hpp"

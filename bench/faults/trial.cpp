@@ -8,7 +8,7 @@
 
 #include <repel/cell/cell.hpp>
 #include <repel/robots/kinematics.hpp>
-#include <repel/world/arm_drive.hpp>
+#include <repel/simulated/arm_drive.hpp>
 
 namespace repel::faults {
 namespace {

@@ -35,11 +35,6 @@
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
-#include <repel/world/changed_arm.hpp>
-#include <repel/world/contact.hpp>
-#include <repel/world/delayed_arm.hpp>
-#include <repel/world/sensed_arm.hpp>
-#include <repel/world/simulated_arm.hpp>
 #include <repel/world/world.hpp>
 
 #endif
