@@ -254,3 +254,6 @@ double ReferenceArm::kinetic_energy() noexcept {
 }
 
 }  // namespace repel
+
+void repel::robots::is_built_for(EigenAlignmentHere /*alignment*/,
+                                 VectorRegisterHere /*size*/) noexcept {}

@@ -34,7 +34,7 @@
 #include <repel/reduction/shape.hpp>
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/arm_kinematics.hpp>
+#include <repel/world/kinematics.hpp>
 #include <repel/world/world.hpp>
 
 #endif
