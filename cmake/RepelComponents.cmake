@@ -5,8 +5,8 @@ include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/.
-set(REPEL_COMPONENTS core control simulated ideal devices link dds record robots cover percepts
-    octrees bullet ode scene visual)
+set(REPEL_COMPONENTS core control common simulated ideal devices link dds record robots cover
+    percepts octrees bullet ode scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)
@@ -26,7 +26,7 @@ option(REPEL_WITH_PARTS "What REPEL_WITH_PART is by default" ON)
 # missing, but nothing is looked for, and nothing is said about it.
 function(repel_switch part out)
   string(TOUPPER ${part} upper)
-  if(part MATCHES "^(core|control|simulated)$")
+  if(part MATCHES "^(core|control|common|simulated)$")
     set(REPEL_WITH_${upper} ON)
   else()
     option(REPEL_WITH_${upper} "Build ${part}, where its packages are" ${REPEL_WITH_PARTS})

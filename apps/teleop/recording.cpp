@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <repel/base/text_file.hpp>
+#include <repel/common/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
 #include <repel/simulated/changed_arm.hpp>
 

@@ -203,6 +203,7 @@ void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& att
     driven.move_arms(period_s, 1);
     result.arm_step.record(steady_clock::now() - arm_begin);
     note_tick(records, times, result, observers);
+    if (attached.remote != nullptr) note_round_trips(*attached.remote, *result.link);
     if (cameras != nullptr) cameras->follow(result.scene, records);
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
     show_force(attached.device, *records.front(), has_handle);
@@ -334,6 +335,7 @@ std::vector<double> withstood_by(const Cell& cell) {
 RunResult run(PreparedRun& prepared, const Attachments& attached, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {
   RunResult result = result_of(prepared);
+  if (attached.remote != nullptr) result.link.emplace();
   const RunOptions& options = result.options;
   Cell& cell = prepared.cell;
   DrivenCell driven(cell, prepared.scene, make_arms(prepared, attached.recording),

@@ -18,5 +18,4 @@
 #include <repel/network/plan.hpp>
 #include <repel/network/remote/link.hpp>
 #include <repel/schedule/coprocessor.hpp>
-#include <repel/schedule/deadline.hpp>
 #include <repel/schedule/world_changes.hpp>

@@ -10,16 +10,13 @@
 #else
 
 #include <repel/base/capacities.hpp>
-#include <repel/base/complaint.hpp>
 #include <repel/base/ids.hpp>
-#include <repel/base/input_limits.hpp>
 #include <repel/base/layout.hpp>
 #include <repel/base/mailbox.hpp>
 #include <repel/base/ring.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
 #include <repel/base/status.hpp>
-#include <repel/base/text_file.hpp>
 #include <repel/base/types.hpp>
 #include <repel/distance/gjk.hpp>
 #include <repel/force/law.hpp>
