@@ -5,8 +5,8 @@ include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/.
-set(REPEL_COMPONENTS core control ideal devices link dds record robots cover percepts octrees
-    bullet ode scene visual)
+set(REPEL_COMPONENTS core control common simulated ideal devices link dds record robots cover
+    percepts octrees bullet ode scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)
@@ -20,13 +20,13 @@ function(repel_debian_packages part out)
   set(${out} ${packages} PARENT_SCOPE)
 endfunction()
 
-option(REPEL_WITH_PARTS "What REPEL_WITH_PART is by default, but for core and control" ON)
+option(REPEL_WITH_PARTS "What REPEL_WITH_PART is by default" ON)
 
 # repel_switch(PART OUT): whether the part is wanted. What is not is as if its packages were
 # missing, but nothing is looked for, and nothing is said about it.
 function(repel_switch part out)
   string(TOUPPER ${part} upper)
-  if(part MATCHES "^(core|control)$")
+  if(part MATCHES "^(core|control|common|simulated)$")
     set(REPEL_WITH_${upper} ON)
   else()
     option(REPEL_WITH_${upper} "Build ${part}, where its packages are" ${REPEL_WITH_PARTS})

@@ -8,7 +8,8 @@
 #include <kdl/chaindynparam.hpp>
 #include <limits>
 
-#include <repel/world/arm_drive.hpp>
+#include <repel/simulated/arm_drive.hpp>
+#include <repel/simulated/brake_torque.hpp>
 
 #include "kdl_chain.hpp"
 
@@ -253,3 +254,6 @@ double ReferenceArm::kinetic_energy() noexcept {
 }
 
 }  // namespace repel
+
+void repel::robots::is_built_for(EigenAlignmentHere /*alignment*/,
+                                 VectorRegisterHere /*size*/) noexcept {}

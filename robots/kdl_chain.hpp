@@ -6,8 +6,7 @@
 #include <kdl/chain.hpp>
 
 #include <repel/world/arm.hpp>
-
-#include "usable_arm.hpp"
+#include <repel/world/kinematics.hpp>
 
 namespace repel::detail {
 

@@ -10,8 +10,8 @@
 
 #include <tinyxml2.h>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 #include <repel/geometry/facets.hpp>
 #include <repel/robots/read_mesh.hpp>
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 
 #ifdef REPEL_HAS_SDFORMAT
 #include <tinyxml2.h>

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <optional>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 
 namespace repel::detail {
 namespace {

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/robots/parts.hpp>
 

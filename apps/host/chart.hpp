@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <repel/schedule/deadline.hpp>
+#include <repel/common/deadline.hpp>
 
 namespace repel::host {
 

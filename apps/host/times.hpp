@@ -5,8 +5,8 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <repel/common/deadline.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/schedule/deadline.hpp>
 
 #include "machine.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include <nlohmann/json.hpp>
+#include <repel/common/deadline.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/schedule/deadline.hpp>
 
 #include "hiccups.hpp"
 #include "machine.hpp"

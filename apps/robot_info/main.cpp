@@ -13,8 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <repel/robots/kinematics.hpp>
 #include <repel/robots/urdf.hpp>
+#include <repel/world/kinematics.hpp>
 
 #include "command_line.hpp"
 #include "times.hpp"

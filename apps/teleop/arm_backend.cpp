@@ -6,6 +6,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/ideal/arm.hpp>
 #include <repel/robots/dynamics.hpp>
+#include <repel/simulated/brake_torque.hpp>
 #ifdef REPEL_TELEOP_BULLET
 #include <repel/bullet/arm.hpp>
 #endif

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <repel/simulated/contact.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/contact.hpp>
 
 namespace repel::teleop {
 

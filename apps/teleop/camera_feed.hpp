@@ -13,10 +13,10 @@
 #include <vector>
 
 #include <repel/base/ring.hpp>
+#include <repel/common/deadline.hpp>
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/simulated_camera.hpp>
 #include <repel/scene/scene.hpp>
-#include <repel/schedule/deadline.hpp>
 
 #include "part_maker.hpp"
 #include "sights.hpp"

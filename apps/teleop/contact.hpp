@@ -7,7 +7,7 @@
 
 #include <repel/robots/urdf.hpp>
 #include <repel/scene/scene.hpp>
-#include <repel/world/contact.hpp>
+#include <repel/simulated/contact.hpp>
 
 namespace repel::teleop {
 

@@ -9,10 +9,10 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/cell/admittance.hpp>
 #include <repel/cell/layout.hpp>
-#include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/scene/build_network.hpp>
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
+#include <repel/world/kinematics.hpp>
 
 #include "camera_feed.hpp"
 #include "covers_beside.hpp"

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "link_result.hpp"
 
+#include <chrono>
+
 #include <repel/link/link_thread.hpp>
 
 #include "figure.hpp"
 
 namespace repel::teleop {
 
-LinkResult link_result(const network::RemoteLink& link, const link::LinkThread& thread) {
-  LinkResult result;
+void note_round_trips(const network::RemoteLink& link, LinkResult& result) noexcept {
+  for (const std::chrono::nanoseconds each : link.round_trips()) result.round_trips.record(each);
+}
+
+void note_link(const network::RemoteLink& link, const link::LinkThread& thread,
+               LinkResult& result) {
   result.name = thread.name();
   result.exposure = thread.exposure();
   result.counts = link.counts();
@@ -16,12 +22,10 @@ LinkResult link_result(const network::RemoteLink& link, const link::LinkThread& 
   result.unsent = thread.unsent();
   result.buffer = link.player().buffer();
   result.silent = link.silent_for();
-  result.round_trips = link.round_trips();
   result.energy_sent = link.energy_sent();
   result.energy_played = link.player().output();
   result.partner_sent = link.partner_sent();
   result.partner_played = link.partner_played();
-  return result;
 }
 
 void say_exposure(const link::LinkThread& thread) {

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/common/deadline.hpp>
 #include <repel/network/remote/link.hpp>
 
 namespace repel::link {
@@ -29,9 +30,10 @@ struct LinkResult {
   double partner_sent = 0.0, partner_played = 0.0;  ///< [J] what the other side says
 };
 
-/// Once the thread of the link has stopped.
-[[nodiscard]] LinkResult link_result(const network::RemoteLink& link,
-                                     const link::LinkThread& thread);
+/// In each tick, once it has been made.
+void note_round_trips(const network::RemoteLink& link, LinkResult& result) noexcept;
+/// The rest, once the thread of the link has stopped.
+void note_link(const network::RemoteLink& link, const link::LinkThread& thread, LinkResult& result);
 
 /// Says at the start who else can reach this side of the link; nothing where nobody can.
 void say_exposure(const link::LinkThread& thread);

@@ -14,7 +14,7 @@
 #include <repel/cell/layout.hpp>
 #include <repel/loop/held_weight.hpp>
 #include <repel/network/elements/port.hpp>
-#include <repel/robots/kinematics.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel::teleop {
 

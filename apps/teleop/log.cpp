@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include <repel/base/complaint.hpp>
+#include <repel/common/complaint.hpp>
 
 #include "times.hpp"
 

@@ -12,7 +12,7 @@
 #include <random>
 #include <sstream>
 
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include "arm_backend.hpp"
 #include "budget.hpp"

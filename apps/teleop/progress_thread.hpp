@@ -12,9 +12,9 @@
 #include <string>
 #include <thread>
 
-#include <repel/base/complaint.hpp>
 #include <repel/base/mailbox.hpp>
 #include <repel/base/status.hpp>
+#include <repel/common/complaint.hpp>
 
 namespace repel::teleop {
 

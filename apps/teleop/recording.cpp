@@ -9,9 +9,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <repel/base/text_file.hpp>
+#include <repel/common/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include "mcap_names.hpp"
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/common/deadline.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/loop/tap.hpp>
 #include <repel/network/modules/kbb2.hpp>
@@ -17,9 +18,8 @@
 #include <repel/robots/robot.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/schedule/coprocessor.hpp>
-#include <repel/schedule/deadline.hpp>
+#include <repel/simulated/contact.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/contact.hpp>
 #include <repel/world/world.hpp>
 
 #include "camera_feeds.hpp"

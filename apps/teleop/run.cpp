@@ -10,9 +10,9 @@
 #include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
 #include <repel/reduction/separation.hpp>
-#include <repel/world/changed_arm.hpp>
-#include <repel/world/delayed_arm.hpp>
-#include <repel/world/sensed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
+#include <repel/simulated/delayed_arm.hpp>
+#include <repel/simulated/sensed_arm.hpp>
 
 #include "arm_backend.hpp"
 #include "camera_feeds.hpp"
@@ -203,6 +203,7 @@ void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& att
     driven.move_arms(period_s, 1);
     result.arm_step.record(steady_clock::now() - arm_begin);
     note_tick(records, times, result, observers);
+    if (attached.remote != nullptr) note_round_trips(*attached.remote, *result.link);
     if (cameras != nullptr) cameras->follow(result.scene, records);
     if (recording != nullptr) compare(*recording, tick, records, result.replay);
     show_force(attached.device, *records.front(), has_handle);
@@ -334,6 +335,7 @@ std::vector<double> withstood_by(const Cell& cell) {
 RunResult run(PreparedRun& prepared, const Attachments& attached, const std::atomic<bool>& stop,
               const std::function<void(const Progress&)>& show) {
   RunResult result = result_of(prepared);
+  if (attached.remote != nullptr) result.link.emplace();
   const RunOptions& options = result.options;
   Cell& cell = prepared.cell;
   DrivenCell driven(cell, prepared.scene, make_arms(prepared, attached.recording),

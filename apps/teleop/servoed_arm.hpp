@@ -16,7 +16,7 @@
 #include <repel/cell/admittance.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/network/plan.hpp>
-#include <repel/robots/kinematics.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel::teleop {
 

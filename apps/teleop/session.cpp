@@ -74,10 +74,10 @@ class RemoteEnd {
     thread_.emplace(link, open_link(choice, scene));
     say_exposure(*thread_);
   }
-  /// Nothing passes any more. @return what did
-  [[nodiscard]] LinkResult close() {
+  /// Nothing passes any more. What did is noted.
+  void close(LinkResult& result) {
     thread_->stop();
-    return link_result(link, *thread_);
+    note_link(link, *thread_, result);
   }
 
   network::RemoteLink link;
@@ -111,7 +111,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
   const auto run_once = [&] {
     RunResult result = run(*prepared, attached, stop, show);
     if (!remote) return result;
-    result.link = remote->close();
+    remote->close(*result.link);
     if (!result.link->exposure.empty()) result.warnings.push_back(result.link->exposure);
     return result;
   };

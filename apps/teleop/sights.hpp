@@ -13,9 +13,9 @@
 #include <repel/cell/cell.hpp>
 #include <repel/geometry/triangle_mesh.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/robots/kinematics.hpp>
 #include <repel/robots/robot.hpp>
 #include <repel/scene/scene.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel::teleop {
 

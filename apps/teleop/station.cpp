@@ -45,8 +45,9 @@ void show_to(devices::DeviceLink* device, const StationSide& station) {
 constexpr double farewell = 0.1;
 
 /// @param view null: none
-void make_ticks(StationSide& station, devices::DeviceLink* device, StationView* view,
-                const std::atomic<bool>& stop, StationResult& result, Mailbox<Progress>& progress) {
+void make_ticks(StationSide& station, const network::RemoteLink& link, devices::DeviceLink* device,
+                StationView* view, const std::atomic<bool>& stop, StationResult& result,
+                Mailbox<Progress>& progress) {
   const double period_s = 1.0 / result.options.rate_hz;
   const nanoseconds period(std::llround(1e9 * period_s));
   host::Metronome metronome(period);
@@ -68,6 +69,7 @@ void make_ticks(StationSide& station, devices::DeviceLink* device, StationView* 
     }
     const TickTimes times{late, steady_clock::now() - begin};
     result.deadline.record(times.late, times.compute);
+    note_round_trips(link, result.link);
     ++result.ticks;
     result.linked += station.is_heard() ? period_s : 0.0;
     const SiteState& site = station.site();
@@ -118,9 +120,9 @@ StationResult run_station(const scene::Scene& scene, const RunOptions& options,
   result.machine = host::describe_machine(host::to_text(grant));
   SystemCallGuard::arm(Pauses::none);
   if (grant.priority > 0) host::clear_own_processor();
-  make_ticks(station, device.link.get(), view.get(), stop, result, progress);
+  make_ticks(station, link, device.link.get(), view.get(), stop, result, progress);
   thread.stop();
-  result.link = link_result(link, thread);
+  note_link(link, thread, result.link);
   result.has_handle = station.has_handle();
   result.modules = module_results(station.network());
   result.interrupted = stop;

@@ -9,8 +9,8 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/cell/layout.hpp>
-#include <repel/robots/kinematics.hpp>
 #include <repel/robots/visuals.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel::teleop {
 namespace {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/simulated/arm_drive.hpp>
 
 #include "contacts.hpp"
 #include "implicit_joints.hpp"

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include <repel/world/contact.hpp>
+#include <repel/simulated/contact.hpp>
 
 namespace repel::bullet::detail {
 

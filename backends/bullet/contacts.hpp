@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <repel/base/spatial.hpp>
-#include <repel/world/simulated_arm.hpp>
+#include <repel/simulated/simulated_arm.hpp>
 
 #include "contact_search.hpp"
 

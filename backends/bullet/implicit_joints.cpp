@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repel/simulated/brake_torque.hpp>
+
 namespace repel::bullet::detail {
 namespace {
 

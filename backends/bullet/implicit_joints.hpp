@@ -6,8 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <repel/simulated/simulated_arm.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/simulated_arm.hpp>
 
 #include "contacts.hpp"
 

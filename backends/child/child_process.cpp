@@ -19,8 +19,8 @@
 #include <string_view>
 #include <system_error>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 
 #include "parcel.hpp"
 

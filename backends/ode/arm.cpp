@@ -13,6 +13,8 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/simulated/arm_drive.hpp>
+#include <repel/simulated/brake_torque.hpp>
 
 #include "contacts.hpp"
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <repel/base/spatial.hpp>
-#include <repel/world/contact.hpp>
-#include <repel/world/simulated_arm.hpp>
+#include <repel/simulated/contact.hpp>
+#include <repel/simulated/simulated_arm.hpp>
 
 namespace repel::ode::detail {
 

@@ -10,8 +10,8 @@
 #include <system_error>
 #include <vector>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 
 #ifdef REPEL_PERCEPTS_PNG
 #include <png.h>

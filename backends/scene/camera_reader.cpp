@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/base/text_file.hpp>
+#include <repel/common/text_file.hpp>
 #include <repel/reduction/shape.hpp>
 
 namespace repel::scene::detail {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <repel/base/input_limits.hpp>
+#include <repel/common/input_limits.hpp>
 
 namespace repel::scene {
 namespace {

@@ -8,9 +8,9 @@
 #include <ostream>
 #include <system_error>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
-#include <repel/base/text_file.hpp>
+#include <repel/common/input_limits.hpp>
+#include <repel/common/text_file.hpp>
 #include <repel/reduction/shape.hpp>
 
 #include "yaml.hpp"

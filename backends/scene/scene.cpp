@@ -11,7 +11,7 @@
 
 #include <repel/base/capacities.hpp>
 #include <repel/base/setup_error.hpp>
-#include <repel/base/text_file.hpp>
+#include <repel/common/text_file.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/line.hpp>
 #include <repel/scene/part_list.hpp>

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/types.hpp>
+#include <repel/common/input_limits.hpp>
 
 #include "units.hpp"
 #include "yaml_document.hpp"

@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 
 namespace repel::scene {
 namespace {

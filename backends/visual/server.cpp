@@ -15,8 +15,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <repel/base/complaint.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/complaint.hpp>
 #include <repel/visual/server.hpp>
 
 #include "gate.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <repel/robots/dynamics.hpp>
-#include <repel/robots/kinematics.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel::engines {
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-#include <repel/world/arm_drive.hpp>
+#include <repel/simulated/brake_torque.hpp>
 
 namespace repel::faults {
 

@@ -8,7 +8,7 @@
 
 #include <repel/network/modules.hpp>
 #include <repel/robots/urdf.hpp>
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 namespace repel::faults {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <repel/cell/cell.hpp>
-#include <repel/robots/kinematics.hpp>
-#include <repel/world/arm_drive.hpp>
+#include <repel/simulated/arm_drive.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel::faults {
 namespace {

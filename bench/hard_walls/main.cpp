@@ -15,11 +15,11 @@
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/cell/layout.hpp>
+#include <repel/common/deadline.hpp>
 #include <repel/loop/hard_contacts.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/scene/scene.hpp>
-#include <repel/schedule/deadline.hpp>
 
 #include "../parts.hpp"
 #include "arm_backend.hpp"

@@ -13,10 +13,10 @@
 #include <memory>
 #include <thread>
 
+#include <repel/common/deadline.hpp>
 #include <repel/link/link_thread.hpp>
 #include <repel/link/udp.hpp>
 #include <repel/network/remote/link.hpp>
-#include <repel/schedule/deadline.hpp>
 #ifdef REPEL_BENCH_DDS
 #include <repel/dds/dds.hpp>
 #endif

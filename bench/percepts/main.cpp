@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include <repel/common/deadline.hpp>
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/perceived_parts.hpp>
-#include <repel/schedule/deadline.hpp>
 
 #include "../parts.hpp"
 #include "percepts/seen.hpp"

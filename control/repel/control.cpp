@@ -92,7 +92,6 @@
 #include <repel/schedule/beside_worker.cpp>
 #include <repel/schedule/built_alike.cpp>
 #include <repel/schedule/coprocessor.cpp>
-#include <repel/schedule/deadline.cpp>
 #include <repel/schedule/evaluators.cpp>
 #include <repel/schedule/instruction_set.cpp>
 #include <repel/schedule/pair_forces.cpp>

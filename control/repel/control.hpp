@@ -18,7 +18,6 @@
 #include <repel/network/plan.hpp>
 #include <repel/network/remote/link.hpp>
 #include <repel/schedule/coprocessor.hpp>
-#include <repel/schedule/deadline.hpp>
 #include <repel/schedule/instruction_set.hpp>
 #include <repel/schedule/separations.hpp>
 #include <repel/schedule/world_changes.hpp>

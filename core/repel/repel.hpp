@@ -10,16 +10,13 @@
 #else
 
 #include <repel/base/capacities.hpp>
-#include <repel/base/complaint.hpp>
 #include <repel/base/ids.hpp>
-#include <repel/base/input_limits.hpp>
 #include <repel/base/layout.hpp>
 #include <repel/base/mailbox.hpp>
 #include <repel/base/ring.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
 #include <repel/base/status.hpp>
-#include <repel/base/text_file.hpp>
 #include <repel/base/types.hpp>
 #include <repel/distance/gjk.hpp>
 #include <repel/force/law.hpp>
@@ -31,12 +28,7 @@
 #include <repel/reduction/shape.hpp>
 #include <repel/reduction/shape_mesh.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/arm_kinematics.hpp>
-#include <repel/world/changed_arm.hpp>
-#include <repel/world/contact.hpp>
-#include <repel/world/delayed_arm.hpp>
-#include <repel/world/sensed_arm.hpp>
-#include <repel/world/simulated_arm.hpp>
+#include <repel/world/kinematics.hpp>
 #include <repel/world/world.hpp>
 
 #endif

@@ -7,9 +7,7 @@
 #include <nanobind/stl/pair.h>
 
 #include <repel/base/setup_error.hpp>
-#ifdef REPEL_PYTHON_SCENES
-#include <repel/robots/kinematics.hpp>
-#endif
+#include <repel/world/kinematics.hpp>
 
 #include "arrays.hpp"
 
@@ -77,11 +75,7 @@ std::unique_ptr<ArmKinematics> kinematics_of(nb::handle from, const ArmModel& mo
     own.push_back(made.get());
     return made;
   }
-#ifdef REPEL_PYTHON_SCENES
   return std::make_unique<Kinematics>(model);
-#else
-  throw SetupError("an arm without kinematics needs repel built with the part robots");
-#endif
 }
 
 ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKinematics*>& own) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <repel/robots/kinematics.hpp>
 #include <repel/robots/urdf.hpp>
+#include <repel/world/kinematics.hpp>
 
 #include "end_to_end/live.hpp"
 

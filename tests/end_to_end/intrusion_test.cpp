@@ -4,7 +4,7 @@
 #include <describe.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/cell/layout.hpp>
-#include <repel/robots/kinematics.hpp>
+#include <repel/world/kinematics.hpp>
 #include <support/wolfe.hpp>
 
 #include "end_to_end/teleop.hpp"

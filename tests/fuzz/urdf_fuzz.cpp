@@ -14,10 +14,10 @@
 #include <fuzz/bytes.hpp>
 #include <repel/base/setup_error.hpp>
 #include <repel/robots/dynamics.hpp>
-#include <repel/robots/kinematics.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/robots/urdf.hpp>
 #include <repel/robots/visuals.hpp>
+#include <repel/world/kinematics.hpp>
 
 namespace repel {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include <repel/world/delayed_arm.hpp>
+#include <repel/simulated/delayed_arm.hpp>
 
 #include "loop/slider.hpp"
 

@@ -9,6 +9,20 @@
 #include <repel/robots/urdf.hpp>
 #include <repel/robots/visuals.hpp>
 #endif
+#ifdef PART_common
+#include <repel/common/complaint.hpp>
+#include <repel/common/deadline.hpp>
+#include <repel/common/input_limits.hpp>
+#include <repel/common/text_file.hpp>
+#endif
+#ifdef PART_simulated
+#include <repel/simulated/brake_torque.hpp>
+#include <repel/simulated/changed_arm.hpp>
+#include <repel/simulated/contact.hpp>
+#include <repel/simulated/delayed_arm.hpp>
+#include <repel/simulated/sensed_arm.hpp>
+#include <repel/simulated/simulated_arm.hpp>
+#endif
 #ifdef PART_link
 #include <repel/link/link_thread.hpp>
 #include <repel/link/udp.hpp>

@@ -3,8 +3,8 @@
 // symbols.sh reads its undefined symbols.
 #include <repel/base/mailbox.hpp>
 #include <repel/cell/cell.hpp>
+#include <repel/common/deadline.hpp>
 #include <repel/pairs/pairs.hpp>
-#include <repel/schedule/deadline.hpp>
 #include <repel/schedule/pair_team.hpp>
 #include <repel/schedule/shared_tick.hpp>
 #include <repel/schedule/whole_answer.hpp>

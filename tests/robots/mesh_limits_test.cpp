@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <string>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 #include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
 

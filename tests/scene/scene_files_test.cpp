@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/base/capacities.hpp>
-#include <repel/base/input_limits.hpp>
+#include <repel/common/input_limits.hpp>
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 #include <scene/yaml_text.hpp>
 
 namespace repel::scene {

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include "simulated/arms.hpp"
 

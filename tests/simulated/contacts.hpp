@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include <repel/world/contact.hpp>
+#include <repel/simulated/contact.hpp>
 
 #include "simulated/arms.hpp"
 

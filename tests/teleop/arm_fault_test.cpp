@@ -11,7 +11,7 @@
 
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
-#include <repel/robots/kinematics.hpp>
+#include <repel/world/kinematics.hpp>
 #ifdef REPEL_TELEOP_BULLET
 #include <repel/bullet/arm.hpp>
 #endif

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/world/arm_drive.hpp>
+#include <repel/simulated/arm_drive.hpp>
 
 namespace repel {
 

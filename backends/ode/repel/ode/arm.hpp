@@ -9,8 +9,8 @@
 #include <span>
 
 #include <repel/base/layout.hpp>
-#include <repel/world/contact.hpp>
-#include <repel/world/simulated_arm.hpp>
+#include <repel/simulated/contact.hpp>
+#include <repel/simulated/simulated_arm.hpp>
 
 namespace repel::ode {
 

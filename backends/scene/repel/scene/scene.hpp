@@ -25,9 +25,9 @@
 #include <repel/scene/network.hpp>
 #include <repel/scene/part_list.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
+#include <repel/simulated/changed_arm.hpp>
+#include <repel/simulated/sensed_arm.hpp>
 #include <repel/world/arm.hpp>
-#include <repel/world/changed_arm.hpp>
-#include <repel/world/sensed_arm.hpp>
 
 namespace repel::scene {
 

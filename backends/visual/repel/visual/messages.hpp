@@ -13,9 +13,9 @@
 #include <vector>
 
 #include <repel/base/layout.hpp>
+#include <repel/common/deadline.hpp>
 #include <repel/geometry/triangle_mesh.hpp>
 #include <repel/loop/tap.hpp>
-#include <repel/schedule/deadline.hpp>
 #include <repel/visual/arm_info.hpp>
 
 namespace repel::visual {

@@ -21,6 +21,7 @@ void RemoteLink::prepare(int size, double period) {
 
 void RemoteLink::receive(std::chrono::nanoseconds now) noexcept {
   now_ = now;
+  told_ = 0;
   if (began_ < 0) began_ = now.count();
   for (std::size_t i = 0; i < room; ++i) {
     const RemotePacket* packet = incoming_.front();
@@ -51,6 +52,10 @@ void RemoteLink::send(const Vec<any_size>& wave, double period) noexcept {
 
 std::span<const double, RemotePacket::most_values> RemoteLink::heard() const noexcept {
   return heard_values_;
+}
+
+std::span<const std::chrono::nanoseconds> RemoteLink::round_trips() const noexcept {
+  return std::span(round_trips_).first(told_);
 }
 
 double RemoteLink::silent_for() const noexcept {
@@ -135,7 +140,7 @@ void RemoteLink::hear(const RemotePacket& packet) noexcept {
   partner_played_ = packet.energy_played;
   const std::int64_t since = now_.count() - packet.heard_sent;
   if (since < packet.heard_for) return;
-  round_trips_.record(std::chrono::nanoseconds(since - packet.heard_for));
+  round_trips_[told_++] = std::chrono::nanoseconds(since - packet.heard_for);
 }
 
 }  // namespace repel::network

@@ -3,14 +3,15 @@
 /// One side of a link between two machines, as a tick sees it.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include <repel/base/ring.hpp>
 #include <repel/network/remote/packet.hpp>
 #include <repel/network/remote/wave_player.hpp>
-#include <repel/schedule/deadline.hpp>
 
 namespace repel::network {
 
@@ -91,8 +92,9 @@ class RemoteLink {
   [[nodiscard]] double partner_sent() const noexcept { return partner_sent_; }
   /// [J] likewise: what it has output of this side's waves.
   [[nodiscard]] double partner_played() const noexcept { return partner_played_; }
-  /// From this tick to the other side and back, without the time in between there.
-  [[nodiscard]] const DurationHistogram& round_trips() const noexcept { return round_trips_; }
+  /// From a tick to the other side and back, without the time in between there: what the packets of
+  /// this tick told, until the next `receive`.
+  [[nodiscard]] std::span<const std::chrono::nanoseconds> round_trips() const noexcept;
 
  private:
   [[nodiscard]] static double seconds(std::chrono::nanoseconds t) noexcept;
@@ -123,7 +125,8 @@ class RemoteLink {
   std::int64_t heard_sent_ = 0;                       // [ns] by the clock of the other side
   double partner_sent_ = 0.0, partner_played_ = 0.0;  // [J]
   RemoteCounts counts_;
-  DurationHistogram round_trips_;
+  std::array<std::chrono::nanoseconds, room> round_trips_{};  // the first ones, `told_`
+  std::size_t told_ = 0;
 };
 
 }  // namespace repel::network

@@ -9,8 +9,8 @@
 #include <string>
 #include <system_error>
 
-#include <repel/base/input_limits.hpp>
 #include <repel/base/setup_error.hpp>
+#include <repel/common/input_limits.hpp>
 
 namespace repel {
 

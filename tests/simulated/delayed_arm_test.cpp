@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/world/delayed_arm.hpp>
+#include <repel/simulated/delayed_arm.hpp>
 
 #include <gtest/gtest.h>
 

@@ -3,15 +3,13 @@
 /// A simulated arm whose drive is late.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include <repel/base/setup_error.hpp>
+#include <repel/simulated/built_alike.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
@@ -22,18 +20,9 @@ class DelayedArm final : public TorqueDrivenArm {
  public:
   /// @param joints of `arm` @param delay [calls] 0 to 100
   /// @throws SetupError for a delay out of range
-  DelayedArm(std::unique_ptr<TorqueDrivenArm> arm, std::size_t joints, int delay)
-      : arm_(std::move(arm)),
-        joints_(joints),
-        under_way_(joints * static_cast<std::size_t>(checked("delay", delay, 0, 100, "ticks"))) {}
+  DelayedArm(std::unique_ptr<TorqueDrivenArm> arm, std::size_t joints, int delay);
 
-  void set_torques(std::span<const double> torques) noexcept override {
-    if (under_way_.empty() || torques.size() != joints_) return arm_->set_torques(torques);
-    const std::span<double> oldest = std::span(under_way_).subspan(at_, joints_);
-    arm_->set_torques(oldest);
-    std::copy(torques.begin(), torques.end(), oldest.begin());
-    at_ = (at_ + joints_) % under_way_.size();
-  }
+  void set_torques(std::span<const double> torques) noexcept override;
   void step(double period) noexcept override { arm_->step(period); }
   void read_positions(std::span<double> out) const noexcept override { arm_->read_positions(out); }
   void read_velocities(std::span<double> out) const noexcept override {

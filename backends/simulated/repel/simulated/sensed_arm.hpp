@@ -8,11 +8,9 @@
 #include <optional>
 #include <random>
 #include <span>
-#include <string>
-#include <utility>
 
-#include <repel/base/setup_error.hpp>
 #include <repel/base/spatial.hpp>
+#include <repel/simulated/built_alike.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
@@ -25,10 +23,7 @@ struct SensorErrors {
   std::uint64_t seed = 1;     ///< of the noise: the same seed gives the same noise
 
   /// There are none.
-  [[nodiscard]] bool none() const noexcept {
-    return force_noise == 0.0 && torque_noise == 0.0 && bias.force.isZero(0.0) &&
-           bias.torque.isZero(0.0);
-  }
+  [[nodiscard]] bool none() const noexcept;
 };
 
 /// An arm whose readings of force have errors, the same for the same seed. Everything else is that
@@ -36,22 +31,12 @@ struct SensorErrors {
 class SensedArm final : public TorqueDrivenArm {
  public:
   /// @throws SetupError for an error that is negative or not finite
-  SensedArm(std::unique_ptr<TorqueDrivenArm> arm, const SensorErrors& errors)
-      : arm_(std::move(arm)), errors_(errors), rng_(errors.seed) {
-    checked("noise of the force", errors.force_noise, 0.0, 1e6, "N");
-    checked("noise of the torque", errors.torque_noise, 0.0, 1e6, "N m");
-    checked("bias of the force", errors.bias.force.norm(), 0.0, 1e7, "N");
-    checked("bias of the torque", errors.bias.torque.norm(), 0.0, 1e7, "N m");
-    draw();
-  }
+  SensedArm(std::unique_ptr<TorqueDrivenArm> arm, const SensorErrors& errors);
 
   void set_torques(std::span<const double> torques) noexcept override {
     arm_->set_torques(torques);
   }
-  void step(double period) noexcept override {
-    arm_->step(period);
-    draw();
-  }
+  void step(double period) noexcept override;
   void read_positions(std::span<double> out) const noexcept override { arm_->read_positions(out); }
   void read_velocities(std::span<double> out) const noexcept override {
     arm_->read_velocities(out);
@@ -62,23 +47,12 @@ class SensedArm final : public TorqueDrivenArm {
   /// That of the arm.
   [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
   [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
-  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
-    const std::optional<Wrench> exact = arm_->read_wrench();
-    return exact ? std::optional(*exact + error_) : std::nullopt;
-  }
+  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override;
 
  private:
-  void draw() noexcept {
-    error_ = errors_.bias;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      error_.force.coeffRef(i) += errors_.force_noise * uniform();
-      error_.torque.coeffRef(i) += errors_.torque_noise * uniform();
-    }
-  }
+  void draw() noexcept;
   // -1 to 1, the same with every standard library.
-  [[nodiscard]] double uniform() noexcept {
-    return static_cast<double>(rng_() >> 11U) * 0x1p-52 - 1.0;
-  }
+  [[nodiscard]] double uniform() noexcept;
 
   std::unique_ptr<TorqueDrivenArm> arm_;
   SensorErrors errors_;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <repel/base/text_file.hpp>
+#include <repel/common/text_file.hpp>
 
 #include "end_to_end/folder.hpp"
 

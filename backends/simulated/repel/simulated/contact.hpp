@@ -6,8 +6,9 @@
 #include <span>
 #include <string>
 
-#include <repel/base/setup_error.hpp>
+#include <repel/base/types.hpp>
 #include <repel/reduction/shape.hpp>
+#include <repel/simulated/built_alike.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
@@ -22,26 +23,10 @@ struct ContactPart {
 
 /// Support values [m] of the core of `shape` along its x, y and z axis: half extents of a box; 0, 0
 /// and half length of a capsule; radius, radius and half length of a cylinder or cone.
-[[nodiscard]] inline Vec3 core_extents(const Shape& shape) noexcept {
-  const Convex& core = shape.level(0).core;
-  return {core.support_value({1.0, 0.0, 0.0}), core.support_value({0.0, 1.0, 0.0}),
-          core.support_value({0.0, 0.0, 1.0})};
-}
+[[nodiscard]] Vec3 core_extents(const Shape& shape) noexcept;
 
 /// Throws SetupError naming the part whose link is not in `model` or whose pose is not rigid.
 /// Set-up only.
-inline void require_touchable(std::span<const ContactPart> parts, const ArmModel& model) {
-  const int links = static_cast<int>(model.links.size());
-  for (const ContactPart& part : parts) {
-    const std::string whose = "part '" + part.name + "': ";
-    if (part.link < -1 || part.link >= links) {
-      throw SetupError(whose + "link is " + std::to_string(part.link) + "; allowed: -1 to " +
-                       std::to_string(links - 1));
-    }
-    if (!is_finite(part.X_LP) || !is_rigid(part.X_LP)) {
-      throw SetupError(whose + "X_LP is not a rigid pose");
-    }
-  }
-}
+void require_touchable(std::span<const ContactPart> parts, const ArmModel& model);
 
 }  // namespace repel

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a simulated arm can touch, and what is refused.
-#include <repel/world/contact.hpp>
+#include <repel/simulated/contact.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,59 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// @file
-/// Options, faults and set-up checks that all simulated arms share, whatever their engine.
-#pragma once
+#include <repel/simulated/simulated_arm.hpp>
 
 #include <cmath>
-#include <concepts>
+#include <cstddef>
 #include <limits>
-#include <span>
 #include <string>
 
 #include <Eigen/Eigenvalues>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/world/arm.hpp>
-#include <repel/world/arm_drive.hpp>
 
 namespace repel {
 
-/// How an engine steps, and how stiff the joint stops and physical contacts are.
-struct SimulationOptions {
-  int substeps = 4;                ///< equal parts of one `step`; 1 to 1000
-  double stop_stiffness = 1e5;     ///< [N m/rad] or [N/m] of a joint stop; >= 0
-  double stop_damping = 1e3;       ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
-  double contact_stiffness = 1e6;  ///< [N/m] of a contact point; 0 to 1e12
-  double contact_damping = 1e4;    ///< [N s/m] of the same, which never pulls; 1e-3 to 1e12
-  double contact_friction = 0.5;   ///< friction force as a share of the normal force; 0 to 1e3
-  double watchdog = 0.0;  ///< [s] timeout without torques after which the arm stops; 0: never
-};
+namespace {
 
-/// What a simulated arm has rejected since construction or since its faults were cleared.
-struct SimulationFaults {
-  bool torque = false;  ///< an entry was missing or not usable and was taken as zero
-  bool period = false;  ///< a period was not finite or not positive: the arm did not move
-  bool state = false;   ///< the motion diverged: the arm was stopped where it was; lower the
-                        ///< torques or raise SimulationOptions::substeps
-};
-
-namespace detail {
-
-inline void require(bool fact, const ArmLink& link, const std::string& otherwise) {
+void require(bool fact, const ArmLink& link, const std::string& otherwise) {
   if (!fact) throw SetupError("joint '" + link.joint_name + "': " + otherwise);
 }
 
-// A template, so that the eigenvalue solver is compiled only where it is used.
-template <class Matrix>
-void require_moments(const Matrix& inertia, const ArmLink& link) {
+void require_moments(const Mat3& inertia, const ArmLink& link) {
   require(inertia.allFinite() && inertia.isApprox(inertia.transpose(), 1e-9), link,
           "the inertia is not a finite symmetric matrix");
-  const auto moments = Eigen::SelfAdjointEigenSolver<Matrix>(inertia).eigenvalues();
+  const auto moments = Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues();
   require(moments.minCoeff() >= -1e-9 * moments.maxCoeff(), link,
           "the inertia has a negative principal moment");
 }
 
-template <std::same_as<ArmLink> Link>
-void require_simulable(const Link& link) {
+void require_simulable(const ArmLink& link) {
   const auto not_negative = [&](const char* what, double value, const char* unit) {
     checked("joint '" + link.joint_name + "': " + what, value, 0.0,
             std::numeric_limits<double>::max(), unit);
@@ -72,13 +45,9 @@ void require_simulable(const Link& link) {
               "; the lower must be below the upper (-inf and inf: no stop)");
 }
 
-}  // namespace detail
+}  // namespace
 
-/// Throws SetupError naming the joint and the number of `model` that no engine can simulate: a pose
-/// that is not rigid, an axis that is not of unit length, a mass, friction or inertia that is
-/// negative or not finite, limits out of order. Set-up only, as all below.
-template <std::same_as<ArmModel> Model>
-void require_simulable(const Model& model) {
+void require_simulable(const ArmModel& model) {
   if (model.links.empty()) throw SetupError("arm '" + model.name + "' has no links");
   if (!is_finite(model.X_WB) || !is_rigid(model.X_WB)) {
     throw SetupError("arm '" + model.name + "': X_WB is not a rigid pose");
@@ -86,11 +55,10 @@ void require_simulable(const Model& model) {
   if (!is_finite(model.gravity_W)) {
     throw SetupError("arm '" + model.name + "': gravity is not finite");
   }
-  for (const auto& link : model.links) detail::require_simulable(link);
+  for (const auto& link : model.links) require_simulable(link);
 }
 
-/// Throws SetupError naming the option that is out of its range.
-inline void require_valid(const SimulationOptions& options) {
+void require_valid(const SimulationOptions& options) {
   constexpr double largest = std::numeric_limits<double>::max();
   checked("SimulationOptions::substeps", options.substeps, 1, 1000, "");
   checked("SimulationOptions::stop_stiffness", options.stop_stiffness, 0.0, largest, "N m/rad");
@@ -102,10 +70,7 @@ inline void require_valid(const SimulationOptions& options) {
           std::numeric_limits<double>::infinity(), "s");
 }
 
-/// Throws SetupError unless `q` [rad] or [m] and `v` [rad/s] or [m/s], which may be empty, are
-/// finite, one for each link, and `q` within the limits.
-inline void require_state(const ArmModel& model, std::span<const double> q,
-                          std::span<const double> v) {
+void require_state(const ArmModel& model, std::span<const double> q, std::span<const double> v) {
   if (q.size() != model.links.size() || (!v.empty() && v.size() != q.size())) {
     throw SetupError("arm '" + model.name + "': reset needs " + std::to_string(model.links.size()) +
                      " positions, and as many velocities or none");

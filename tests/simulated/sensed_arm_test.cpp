@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/world/sensed_arm.hpp>
+#include <repel/simulated/sensed_arm.hpp>
 
 #include <gtest/gtest.h>
 

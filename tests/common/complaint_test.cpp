@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/base/complaint.hpp>
+#include <repel/common/complaint.hpp>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/base/capacities.hpp>
-#include <repel/base/input_limits.hpp>
+#include <repel/common/input_limits.hpp>
 
 namespace repel {
 namespace input_limits_test {

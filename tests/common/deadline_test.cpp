@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/schedule/deadline.hpp>
+#include <repel/common/deadline.hpp>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include <repel/world/simulated_arm.hpp>
+#include <repel/simulated/simulated_arm.hpp>
 
 namespace repel {
 namespace simulated_arm_test {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The models of arms with another inertia and with a payload.
-#include <repel/world/changed_arm.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include <repel/simulated/brake_torque.hpp>
 
 #include "simulated/arms.hpp"
 
