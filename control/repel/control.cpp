@@ -19,14 +19,12 @@
 #include <repel/loop/arm_inertia.cpp>
 #include <repel/loop/barrier_rows.cpp>
 #include <repel/loop/drive_watch.cpp>
-#include <repel/loop/driven_speed.cpp>
 #include <repel/loop/energy_watch.cpp>
 #include <repel/loop/entry_barrier.cpp>
 #include <repel/loop/failsafe.cpp>
 #include <repel/loop/gain_check.cpp>
 #include <repel/loop/hard_contacts.cpp>
 #include <repel/loop/held_weight.cpp>
-#include <repel/loop/joint_speed.cpp>
 #include <repel/loop/joint_torques.cpp>
 #include <repel/loop/joint_watch.cpp>
 #include <repel/loop/kinematics_watch.cpp>
@@ -34,7 +32,6 @@
 #include <repel/loop/motion_account.cpp>
 #include <repel/loop/options.cpp>
 #include <repel/loop/rate_check.cpp>
-#include <repel/loop/readings.cpp>
 #include <repel/loop/reciprocating_motion.cpp>
 #include <repel/loop/record.cpp>
 #include <repel/loop/sent_torques.cpp>

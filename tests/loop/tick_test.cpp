@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
 #include <thread>
+
+#include <repel/network/plan.hpp>
 
 #include "loop/slider.hpp"
 
@@ -286,6 +289,42 @@ TEST(Tick, LateCoprocessorIsSaid) {
     }
     held = false;
   }
+}
+
+TEST(Readings, MissingEntriesAreNotNumbers) {
+  std::vector<double> to(3, 7.0);
+  detail::copy_readings(std::array{1.0, 2.0}, to);
+  EXPECT_EQ(to[0], 1.0);
+  EXPECT_EQ(to[1], 2.0);
+  EXPECT_TRUE(std::isnan(to[2]));
+}
+
+TEST(Readings, AWrenchThatIsMissingOrNotFiniteIsNoMeasurement) {
+  const network::ForceSensor sensor;
+  network::Signals signals;
+  signals.inertia.setIdentity(2, 2);
+  detail::pass_wrench(Wrench{{1, 2, 3}, {4, 5, 6}}, sensor, signals);
+  EXPECT_TRUE(signals.is_measured);
+  EXPECT_EQ(signals.measured.torque, Vec3(4, 5, 6));
+  detail::pass_wrench({}, sensor, signals);
+  EXPECT_FALSE(signals.is_measured);
+  EXPECT_EQ(signals.measured.torque, Vec3::Zero());
+  detail::pass_wrench(Wrench{{1, std::nan(""), 3}, {4, 5, 6}}, sensor, signals);
+  EXPECT_FALSE(signals.is_measured);
+  EXPECT_TRUE(is_finite(signals.measured));
+  EXPECT_EQ(signals.inertia(0, 0), 1.0) << "the sensor does not act yet";
+}
+
+TEST(Readings, TheNetworkMovesALighterArm) {
+  network::ForceSensor sensor({.gain = 0.6});
+  sensor.fit(network::Space::joints, 1);
+  sensor.prepare(0.01);
+  network::Signals signals = network::detail::neutral_signals(1, 0.01);
+  signals.is_measured = true;
+  for (int tick = 0; tick < 100; ++tick) sensor.read(signals);
+  signals.inertia.setConstant(1, 1, 8.0);
+  detail::pass_wrench(Wrench{}, sensor, signals);
+  EXPECT_NEAR(signals.inertia(0, 0), 5.0, 1e-12);
 }
 
 }  // namespace tick_test

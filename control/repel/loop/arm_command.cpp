@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <repel/loop/driven_speed.hpp>
 #include <repel/loop/speed_share.hpp>
 #include <repel/network/machinery/prediction.hpp>
 #include <repel/network/modules/puma_joints.hpp>

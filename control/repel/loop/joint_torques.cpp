@@ -8,9 +8,14 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/loop/joint_speed.hpp>
 
 namespace repel {
+
+double within_speed(double asked, double v, double limit) noexcept {
+  constexpr double fade = 0.2;
+  if (!(limit > 0.0) || std::isinf(limit) || !(asked * v > 0.0)) return asked;
+  return asked * std::clamp((limit - std::abs(v)) / (fade * limit), 0.0, 1.0);
+}
 
 JointTorques::JointTorques(const ArmModel& model, double period, const JointTorqueOptions& options)
     : model_(model),

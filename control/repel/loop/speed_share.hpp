@@ -3,6 +3,7 @@
 /// Keeps the tool within its speed limit.
 #pragma once
 
+#include <repel/loop/arm_inertia.hpp>
 #include <repel/network/elements/signals.hpp>
 #include <repel/network/network.hpp>
 
@@ -16,6 +17,16 @@ struct SpeedShare {
 
 /// @param speed of the tool [m/s]; `limit` [m/s] up to which the operator may drive it, above 0
 [[nodiscard]] SpeedShare speed_share(double speed, double limit) noexcept;
+
+/// The greatest share s of an operator's torques with which the tool is no faster after the horizon
+/// h than its limit, |J (v + s h M^-1 tau)| <= limit; where it is faster already, 0 for torques
+/// that drive it on and 1 for others. 1 where the mass is not known. `speed_share` acts on the
+/// speed that the tool has, and a force that is far beyond what it needs passes that by within a
+/// tick. Cost: one inversion.
+/// @param v [rad/s] of the joints @param torques [N m] @param horizon [s] @param limit [m/s]
+[[nodiscard]] double share_within(const network::Jacobian& jacobian, const ArmInertia::Vector& v,
+                                  const ArmInertia::Vector& torques, const ArmInertia& inertia,
+                                  double horizon, double limit) noexcept;
 
 /// The share of their force with which walls give back what they have stored, on the way out: 1 up
 /// to the limit, 0 from 1.2 times it, at the speed that the tool will then have.

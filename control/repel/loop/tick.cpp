@@ -3,14 +3,34 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <repel/loop/held_weight.hpp>
-#include <repel/loop/readings.hpp>
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/obstacle.hpp>
 #include <repel/network/modules/puma_kin.hpp>
+
+namespace repel::detail {
+
+void copy_readings(std::span<const double> from, std::vector<double>& to) noexcept {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    to[i] = i < from.size() ? from[i] : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+void pass_wrench(const std::optional<Wrench>& reading, const network::ForceSensor& sensor,
+                 network::Signals& signals) noexcept {
+  signals.is_measured = reading.has_value() && is_finite(*reading);
+  signals.measured = signals.is_measured ? *reading : Wrench{};
+  signals.inertia *= 1.0 / (1.0 + sensor.gain());
+}
+
+}  // namespace repel::detail
 
 namespace repel {
 
@@ -92,8 +112,8 @@ void Teleoperator::begin_tick(std::chrono::nanoseconds now) noexcept {
 }
 
 void Teleoperator::read_joints(const ArmReadings& readings) noexcept {
-  copy_readings(readings.q, read_q_);
-  copy_readings(readings.v, read_v_);
+  detail::copy_readings(readings.q, read_q_);
+  detail::copy_readings(readings.v, read_v_);
   drive_state_ = readings.state;
   if (sensor_ != nullptr) record_.wrench_read = readings.wrench;
   if (drive_state_ != ArmState::enabled) watch_.hold();
@@ -187,7 +207,7 @@ void Teleoperator::run_network() noexcept {
   signals_.jacobian = jacobian_;
   signals_.inertia = inertia_.matrix();
   signals_.X_WT = X_WT_;
-  if (sensor_ != nullptr) pass_wrench(record_.wrench_read, *sensor_, signals_);
+  if (sensor_ != nullptr) detail::pass_wrench(record_.wrench_read, *sensor_, signals_);
   if (!network_.run(signals_)) record_.status |= status::network_fault;
   note_limits();
   record_.network_time = std::chrono::steady_clock::now() - begin;

@@ -4,8 +4,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include <repel/base/spatial.hpp>
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
@@ -16,6 +20,7 @@
 #include <repel/loop/speed_share.hpp>
 #include <repel/loop/teleoperator_parts.hpp>
 #include <repel/loop/tick_clock.hpp>
+#include <repel/network/elements/signals.hpp>
 #include <repel/network/modules/force_sensor.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/operator.hpp>
@@ -23,6 +28,18 @@
 #include <repel/world/arm_kinematics.hpp>
 
 namespace repel {
+
+namespace detail {
+
+/// Copies the readings `from` an arm; missing entries read as NaN.
+void copy_readings(std::span<const double> from, std::vector<double>& to) noexcept;
+
+/// Gives a network with a force sensor its reading, and the inertia of the arm in `signals` as the
+/// modules on its left move it.
+void pass_wrench(const std::optional<Wrench>& reading, const network::ForceSensor& sensor,
+                 network::Signals& signals) noexcept;
+
+}  // namespace detail
 
 /// The control of one arm: from joint readings, the forces of the world and the operator's input,
 /// through a network, to joint torques. Allocates at construction only. A cell has one per arm.
