@@ -165,6 +165,9 @@ PKG_CONFIG_PATH=$prefix/share/pkgconfig
 export PKG_CONFIG_PATH
 # shellcheck disable=SC2046,SC2086
 step "pkg-config and g++" plain g++ -std=c++20 $sources $(pkg-config --cflags --libs repel)
+# shellcheck disable=SC2046
+step "pkg-config and g++, with the machine" g++ -std=c++20 "$root/examples/03_own_controller.cpp" \
+  $(pkg-config --cflags --libs repel-control) -o "$scratch/plain"
 step "g++ with the machine in one source" g++ -std=c++20 -I "$root/core" -I "$root/control" \
   -isystem /usr/include/eigen3 "$root/examples/03_own_controller.cpp" \
   "$root/control/repel/control.cpp" -o "$scratch/plain"

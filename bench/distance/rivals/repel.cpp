@@ -13,7 +13,12 @@ std::unique_ptr<Rival> load(const Task& task, double tolerance) {
 const Enlisted enlisted({
     .name = "repel",
     .version = REPEL_VERSION,
-    .settings = "separation() with default options; warm: the WarmStart of the pair",
+    .settings =
+#ifdef REPEL_BENCH_NATIVE
+        "separation() with default options; warm: the WarmStart of the pair",
+#else
+        "separations() of one pair, default options; warm: the WarmStart of the pair",
+#endif
     .tolerance = QueryOptions{}.tolerance,
     .exact_depths = false,
     .ours = true,

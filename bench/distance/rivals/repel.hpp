@@ -4,12 +4,26 @@
 #pragma once
 
 #include <repel/repel.hpp>
+#include <repel/schedule/separations.hpp>
 
 #include "rival.hpp"
 
 namespace repel::bench {
 
-/// Every answer is exactly one call of `separation`.
+/// One query, as a program makes it that is compiled for this machine, or for any.
+inline Separation query(PosedShape a, PosedShape b, const QueryOptions& options,
+                        WarmStart& warm) noexcept {
+#ifdef REPEL_BENCH_NATIVE
+  return separation(a.shape, a.X_W, b.shape, b.X_W, options, warm);
+#else
+  const PosedShapes pair{a, b};
+  Separation found;
+  separations({&pair, 1}, options, {&warm, 1}, {&found, 1});
+  return found;
+#endif
+}
+
+/// Every answer is exactly one query.
 class Repel {
  public:
   Repel(const Task& task, const QueryOptions& options, const ReductionOptions& reduction)
@@ -23,12 +37,13 @@ class Repel {
   Separation cold(const Ask& ask) noexcept {
     const auto& [a, b] = task_.pairs[ask.pair];
     const std::vector<Pose>& X_W = task_.X_W[ask.tick];
-    return separation(shapes_[a], X_W[a], shapes_[b], X_W[b], options_);
+    WarmStart cold;
+    return query({shapes_[a], X_W[a]}, {shapes_[b], X_W[b]}, options_, cold);
   }
   Separation warm(const Ask& ask) noexcept {
     const auto& [a, b] = task_.pairs[ask.pair];
     const std::vector<Pose>& X_W = task_.X_W[ask.tick];
-    return separation(shapes_[a], X_W[a], shapes_[b], X_W[b], options_, warm_[ask.pair]);
+    return query({shapes_[a], X_W[a]}, {shapes_[b], X_W[b]}, options_, warm_[ask.pair]);
   }
   static Answer read(const Separation& s) { return {s.distance, s.lower, s.upper, s.extraction_W}; }
 
