@@ -5,8 +5,8 @@
 
 #include <span>
 
+#include <repel/contact/patch.hpp>
 #include <repel/force/law.hpp>
-#include <repel/patch/patch.hpp>
 
 namespace repel::scale {
 

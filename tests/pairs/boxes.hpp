@@ -3,8 +3,8 @@
 /// A world of boxes, a random motion through it, and its forces by brute force.
 #pragma once
 
+#include <repel/contact/patch.hpp>
 #include <repel/pairs/forces_and_totals.hpp>
-#include <repel/patch/patch.hpp>
 #include <repel/reduction/separation.hpp>
 #include <repel/world/world.hpp>
 

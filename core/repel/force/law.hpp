@@ -101,10 +101,10 @@ struct ForceLaw {
                          ///< World::add_pair clamps it to the deepest that the two shapes can have
   double plateau = 0.5;  ///< share of D up to which the ceiling holds, 0 to 1
   /// e [rad], 0 to `most_tilt`: where features are parallel within e, the force acts on the contact
-  /// patch, whose distance is the mean over tilts up to e (repel/patch/patch.hpp). World::add_pair
-  /// lowers it so that the patch is at most `most_nearer` nearer than the nearest points, and to 0
-  /// for passable bodies. 0: the force acts at the nearest point, which jumps between the corners
-  /// of parallel faces.
+  /// patch, whose distance is the mean over tilts up to e (repel/contact/patch.hpp).
+  /// World::add_pair lowers it so that the patch is at most `most_nearer` nearer than the nearest
+  /// points, and to 0 for passable bodies. 0: the force acts at the nearest point, which jumps
+  /// between the corners of parallel faces.
   double tilt = 0.005;
   /// A cell raises c0 to what keeps the wall stable at its rate; so it does with `usual_damping`,
   /// which nobody has chosen, unless `damping_is_meant`.

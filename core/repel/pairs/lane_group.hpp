@@ -8,13 +8,13 @@
 #include <cstdint>
 #include <limits>
 
+#include <repel/contact/patch.hpp>
+#include <repel/contact/pointed_pair.hpp>
+#include <repel/contact/polygon_search.hpp>
 #include <repel/distance/feature_lanes.hpp>
 #include <repel/force/law_lanes.hpp>
 #include <repel/pairs/lane_bodies.hpp>
 #include <repel/pairs/pair_memory.hpp>
-#include <repel/patch/patch.hpp>
-#include <repel/patch/pointed_pair.hpp>
-#include <repel/patch/polygon_search.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <vector>
 
+#include <repel/contact/pointed_pair.hpp>
 #include <repel/force/passage.hpp>
 #include <repel/pairs/forces_and_totals.hpp>
 #include <repel/pairs/pair_answer.hpp>
-#include <repel/patch/pointed_pair.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <optional>
 
+#include <repel/contact/patch.hpp>
 #include <repel/pairs/near_pair.hpp>
 #include <repel/pairs/pair_memory.hpp>
 #include <repel/pairs/part_poses.hpp>
-#include <repel/patch/patch.hpp>
 #include <repel/reduction/separation.hpp>
 
 namespace repel::detail {

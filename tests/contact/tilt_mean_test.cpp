@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/tilt_mean.hpp>
+#include <repel/contact/tilt_mean.hpp>
 
 #include <gtest/gtest.h>
 

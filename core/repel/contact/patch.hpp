@@ -8,9 +8,9 @@
 #include <limits>
 
 #include <repel/base/spatial.hpp>
-#include <repel/patch/flat.hpp>
-#include <repel/patch/overlap.hpp>
-#include <repel/patch/tilt_mean.hpp>
+#include <repel/contact/flat.hpp>
+#include <repel/contact/overlap.hpp>
+#include <repel/contact/tilt_mean.hpp>
 #include <repel/reduction/separation_result.hpp>
 #include <repel/reduction/shape.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/flat.hpp>
+#include <repel/contact/flat.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/plane.hpp>
+#include <repel/contact/plane.hpp>
 
 #include <gtest/gtest.h>
 

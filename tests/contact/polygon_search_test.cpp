@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/polygon_search.hpp>
+#include <repel/contact/polygon_search.hpp>
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "patch/contacts.hpp"
+#include "contact/contacts.hpp"
 
 namespace repel::detail {
 namespace polygon_search_test {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/face_lanes.hpp>
+#include <repel/contact/face_lanes.hpp>
 
 #include <gtest/gtest.h>
 
-#include <repel/patch/flat.hpp>
+#include <repel/contact/flat.hpp>
 #include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 

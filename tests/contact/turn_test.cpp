@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/turn.hpp>
+#include <repel/contact/turn.hpp>
 
 #include <gtest/gtest.h>
 

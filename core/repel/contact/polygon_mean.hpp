@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <numbers>
 
-#include <repel/patch/polygon_lanes.hpp>
-#include <repel/patch/tilt_mean.hpp>
-#include <repel/patch/turn.hpp>
+#include <repel/contact/polygon_lanes.hpp>
+#include <repel/contact/tilt_mean.hpp>
+#include <repel/contact/turn.hpp>
 
 namespace repel::detail {
 

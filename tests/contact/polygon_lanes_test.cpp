@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/polygon_lanes.hpp>
+#include <repel/contact/polygon_lanes.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include <repel/patch/flat.hpp>
+#include <repel/contact/flat.hpp>
 #include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <repel/patch/plane.hpp>
-#include <repel/patch/turn.hpp>
+#include <repel/contact/plane.hpp>
+#include <repel/contact/turn.hpp>
 
 namespace repel::detail {
 

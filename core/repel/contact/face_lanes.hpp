@@ -10,9 +10,9 @@
 #include <cstdint>
 
 #include <repel/base/lanes.hpp>
+#include <repel/contact/polygon_lanes.hpp>
+#include <repel/contact/tilt_mean.hpp>
 #include <repel/geometry/convex.hpp>
-#include <repel/patch/polygon_lanes.hpp>
-#include <repel/patch/tilt_mean.hpp>
 
 namespace repel::detail {
 

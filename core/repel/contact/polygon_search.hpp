@@ -6,10 +6,10 @@
 #include <bit>
 #include <cstddef>
 
+#include <repel/contact/face_lanes.hpp>
+#include <repel/contact/patch.hpp>
+#include <repel/contact/polygon_mean.hpp>
 #include <repel/distance/feature_lanes.hpp>
-#include <repel/patch/face_lanes.hpp>
-#include <repel/patch/patch.hpp>
-#include <repel/patch/polygon_mean.hpp>
 
 namespace repel::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/patch.hpp>
+#include <repel/contact/patch.hpp>
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include <repel/force/law.hpp>
 
-#include "patch/contacts.hpp"
+#include "contact/contacts.hpp"
 
 namespace repel {
 namespace patch_test {

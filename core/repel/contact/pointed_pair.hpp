@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include <repel/contact/patch.hpp>
+#include <repel/contact/pointed.hpp>
 #include <repel/distance/feature_lanes.hpp>
-#include <repel/patch/patch.hpp>
-#include <repel/patch/pointed.hpp>
 
 namespace repel::detail {
 

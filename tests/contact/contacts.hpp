@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <repel/patch/patch.hpp>
+#include <repel/contact/patch.hpp>
 #include <repel/reduction/separation.hpp>
 #include <support/families.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/overlap.hpp>
+#include <repel/contact/overlap.hpp>
 
 #include <gtest/gtest.h>
 

@@ -11,9 +11,9 @@
 #include <limits>
 
 #include <repel/base/lanes.hpp>
+#include <repel/contact/plane.hpp>
+#include <repel/contact/tilt_mean.hpp>
 #include <repel/geometry/convex.hpp>
-#include <repel/patch/plane.hpp>
-#include <repel/patch/tilt_mean.hpp>
 
 namespace repel::detail {
 

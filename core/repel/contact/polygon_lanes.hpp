@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include <repel/base/lanes.hpp>
-#include <repel/patch/plane.hpp>
+#include <repel/contact/plane.hpp>
 
 namespace repel::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/pointed_pair.hpp>
+#include <repel/contact/pointed_pair.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/pointed.hpp>
+#include <repel/contact/pointed.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include <repel/patch/flat.hpp>
+#include <repel/contact/flat.hpp>
 #include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 

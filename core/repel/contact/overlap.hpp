@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <utility>
 
-#include <repel/patch/plane.hpp>
+#include <repel/contact/plane.hpp>
 
 namespace repel::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/patch/polygon_mean.hpp>
+#include <repel/contact/polygon_mean.hpp>
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include <repel/patch/overlap.hpp>
+#include <repel/contact/overlap.hpp>
 #include <support/families.hpp>
 
 namespace repel::detail {
