@@ -13,6 +13,7 @@
 
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/perceived_parts.hpp>
+#include <repel/reduction/shape.hpp>
 #include <repel/schedule/deadline.hpp>
 
 #include "../parts.hpp"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <support/draws.hpp>
 #include <support/families.hpp>
 #include <support/linear_program.hpp>

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include "support/draws.hpp"
 
 namespace repel {

@@ -11,8 +11,8 @@
 #include <repel/patch/flat.hpp>
 #include <repel/patch/overlap.hpp>
 #include <repel/patch/tilt_mean.hpp>
+#include <repel/reduction/convex_shape.hpp>
 #include <repel/reduction/separation_result.hpp>
-#include <repel/reduction/shape.hpp>
 
 namespace repel {
 
