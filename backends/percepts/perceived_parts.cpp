@@ -5,6 +5,8 @@
 #include <array>
 #include <limits>
 
+#include <repel/reduction/shape.hpp>
+
 namespace repel::percepts {
 namespace {
 

@@ -14,6 +14,7 @@
 #include <repel/common/text_file.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/line.hpp>
+#include <repel/reduction/shape.hpp>
 #include <repel/scene/part_list.hpp>
 
 #include "camera_reader.hpp"

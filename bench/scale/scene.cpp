@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene.hpp"
+#include <repel/reduction/shape.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include <repel/reduction/shape.hpp>
 #include <repel/schedule/coprocessor.hpp>
 
 #include "../distance/measurement.hpp"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 
 namespace repel::figures {
 

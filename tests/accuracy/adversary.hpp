@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <accuracy/specimen.hpp>
+#include <repel/reduction/shape.hpp>
 #include <support/gaps.hpp>
 
 namespace repel::accuracy {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 #include <support/placed.hpp>
 #include <support/wolfe.hpp>

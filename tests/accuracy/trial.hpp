@@ -10,6 +10,7 @@
 
 #include <accuracy/tally.hpp>
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 #include <support/exact_depth.hpp>
 #include <support/gaps.hpp>
 

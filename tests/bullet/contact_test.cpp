@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Physical contact in the Bullet arm: obstacles stop it.
+#include <repel/reduction/shape.hpp>
 #include "simulated/contacts.hpp"
 
 #include <gtest/gtest.h>

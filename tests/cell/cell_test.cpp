@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 
+#include <repel/reduction/shape.hpp>
 #include <repel/schedule/world_changes.hpp>
 
 #include "cell/sliders.hpp"

@@ -8,6 +8,7 @@
 
 #include <repel/contact/patch.hpp>
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 
 namespace repel::test {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 
 namespace repel::detail {

@@ -10,6 +10,7 @@
 #include <repel/cover/cover.hpp>
 #include <repel/force/law.hpp>
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 
 #include "meshes.hpp"
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <support/gaps.hpp>
 
 namespace repel {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <support/exact_depth.hpp>
 #include <support/gaps.hpp>
 

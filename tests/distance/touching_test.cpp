@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
+
 namespace repel {
 namespace touching_test {
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include "support/families.hpp"
 
 namespace repel {

@@ -13,6 +13,8 @@
 
 #include <fuzz/bytes.hpp>
 
+#include <repel/reduction/shape.hpp>
+
 namespace repel::visual {
 namespace {
 

@@ -8,6 +8,8 @@
 
 #include <fuzz/bytes.hpp>
 
+#include <repel/reduction/shape.hpp>
+
 namespace repel {
 namespace {
 

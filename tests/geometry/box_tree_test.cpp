@@ -21,17 +21,22 @@ Box random_box(families::Rng& random, double within, double size) {
   return {centre - half, centre + half};
 }
 
+double distance_of(const Box& a, const Box& b) {
+  return Eigen::AlignedBox3d(a.min(), a.max())
+      .exteriorDistance(Eigen::AlignedBox3d(b.min(), b.max()));
+}
+
 void expect_what_a_scan_finds(const std::vector<Box>& boxes, const Box& probe, double within) {
   std::set<int> found;
   const double others = BoxTree(boxes).query(probe, within, [&](int i, double distance) {
     EXPECT_TRUE(found.insert(i).second) << "box " << i << " twice";
-    const double truth = boxes[i].exteriorDistance(probe);
+    const double truth = distance_of(boxes[i], probe);
     EXPECT_LE(distance, truth);
     // Single-precision coordinates, and the rounding of the distance.
-    EXPECT_GE(distance, truth * (1.0 - 2e-6) - 1e-6 * (1.0 + boxes[i].center().norm()));
+    EXPECT_GE(distance, truth * (1.0 - 2e-6) - 1e-6 * (1.0 + centre(boxes[i]).norm()));
   });
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-    const double truth = boxes[i].exteriorDistance(probe);
+    const double truth = distance_of(boxes[i], probe);
     if (truth <= within) {
       EXPECT_TRUE(found.contains(i)) << "box " << i << " at " << truth;
     }
@@ -40,6 +45,19 @@ void expect_what_a_scan_finds(const std::vector<Box>& boxes, const Box& probe, d
     }
   }
   EXPECT_GT(others, within);
+}
+
+TEST(BoxTree, ABoxIsExtendedAroundPointsAndBoxes) {
+  const Vec3 low(1, -2, 3), high(2, 0, 3);
+  Box box;
+  EXPECT_FALSE(box.contains(low));
+  EXPECT_EQ(box.extend(low).min(), low);
+  EXPECT_EQ(box.max(), low);
+  EXPECT_FALSE(box.contains(high));
+  EXPECT_EQ(box.extend(Box(high)).max(), high);
+  EXPECT_EQ(box.min(), low);
+  EXPECT_TRUE(box.contains(low) && box.contains(high) && box.contains(centre(box)));
+  EXPECT_FALSE(box.contains(high + unit(2)));
 }
 
 TEST(BoxTree, FindsWhatAScanFinds) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <set>
 
+#include <repel/geometry/facets.hpp>
+#include <repel/geometry/hull_faces.hpp>
 #include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 
@@ -13,7 +15,7 @@ namespace repel {
 namespace faces_test {
 
 Faces faces_of(const std::vector<Vec3>& points) {
-  return Faces(points, hull_facets(points), points);
+  return hull_faces(points, hull_facets(points), points);
 }
 
 TEST(Faces, OfABoxAreSixRectangles) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/geometry/facets.hpp>
 #include <support/families.hpp>
 
 namespace repel {

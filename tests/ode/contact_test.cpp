@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <repel/ode/arm.hpp>
+#include <repel/reduction/shape.hpp>
 
 #include "simulated/contacts.hpp"
 

@@ -22,11 +22,12 @@ TEST(BodyView, BoxHoldsWhateverTheBoxOfTheOtherBodyHolds) {
     box.extend(Vec3(0.3 * families::direction(random)));
     const Box seen = BodyView(X_WA, X_WB).box(box);
     for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 p_A = box.corner(static_cast<Box::CornerType>(corner));
+      const auto end = [&](int axis) { return (corner >> axis & 1) != 0 ? box.max() : box.min(); };
+      const Vec3 p_A(end(0).x(), end(1).y(), end(2).z());
       const Vec3 p_B = X_WB.linear().inverse() * (X_WA * p_A - X_WB.translation());
       ASSERT_TRUE(seen.contains(p_B)) << families::of_seed(seed, "sample", i);
     }
-    widest = std::max(widest, seen.sizes().norm() / box.sizes().norm());
+    widest = std::max(widest, extents(seen).norm() / extents(box).norm());
   }
   EXPECT_GT(widest, 1.2);
   EXPECT_LT(widest, 2.0);

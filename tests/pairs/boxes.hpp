@@ -6,6 +6,7 @@
 #include <repel/contact/patch.hpp>
 #include <repel/pairs/forces_and_totals.hpp>
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 #include <repel/world/world.hpp>
 
 #include <string>

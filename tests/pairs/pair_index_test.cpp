@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <repel/reduction/shape.hpp>
 #include "pairs/boxes.hpp"
 
 namespace repel::detail {
@@ -25,7 +26,7 @@ TEST(BoxOf, HoldsThePartAndTouchesIt) {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double side : {-1.0, 1.0}) {
         Pose X = Pose::Identity();
-        X.translation() = box.center();
+        X.translation() = centre(box);
         X.translation()[axis] = side * 1e4;
         Vec3 half(1e5, 1e5, 1e5);
         half[axis] = 0.0;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 
 #include "percepts/seen.hpp"
 #include "support/draws.hpp"

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <repel/reduction/way_out.hpp>
 #include <support/draws.hpp>
 #include <support/families.hpp>

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <support/draws.hpp>
 #include <support/exact_depth.hpp>
 

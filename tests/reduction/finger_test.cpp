@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <support/families.hpp>
 
 namespace repel {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include <support/draws.hpp>
 
 #include "reduction/posed_boxes.hpp"

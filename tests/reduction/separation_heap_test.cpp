@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include "reduction/posed_boxes.hpp"
 #include "support/heap_counter.hpp"
 

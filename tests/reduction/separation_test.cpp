@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include "reduction/posed_boxes.hpp"
 
 namespace repel {

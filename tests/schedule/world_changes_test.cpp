@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include <repel/reduction/shape.hpp>
 #include "support/draws.hpp"
 
 namespace repel {

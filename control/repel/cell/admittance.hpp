@@ -81,9 +81,13 @@ class JointAdmittance {
   void step(const ArmReadings& readings, std::span<const double> torques, bool stop) noexcept;
 
   /// Commands to the arm [rad/s] or [m/s], and [rad] or [m]: it takes one or the other.
-  [[nodiscard]] std::span<const double> rates() const noexcept { return rates_; }
+  [[nodiscard]] std::span<const double> rates() const noexcept {
+    return {rates_.data(), rates_.size()};
+  }
   /// [rad] or [m] that the joints are to be at, one for each.
-  [[nodiscard]] std::span<const double> positions() const noexcept { return positions_; }
+  [[nodiscard]] std::span<const double> positions() const noexcept {
+    return {positions_.data(), positions_.size()};
+  }
 
  private:
   [[nodiscard]] double most_change(std::size_t i) const noexcept;

@@ -16,7 +16,7 @@
 #include <repel/loop/reciprocating_motion.hpp>
 #include <repel/network/machinery/clean_stiffness.hpp>
 #include <repel/network/plan.hpp>
-#include <repel/reduction/shape.hpp>
+#include <repel/reduction/convex_shape.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>

@@ -11,7 +11,7 @@
 
 #include <repel/base/spatial.hpp>
 #include <repel/cell/description.hpp>
-#include <repel/reduction/shape.hpp>
+#include <repel/reduction/convex_shape.hpp>
 
 namespace repel {
 

@@ -32,7 +32,9 @@ class ArmBodies {
   ArmBodies(std::vector<LinkBody> links, int joints);
 
   /// The links that have bodies.
-  [[nodiscard]] std::span<const LinkBody> bodies() const noexcept { return links_; }
+  [[nodiscard]] std::span<const LinkBody> bodies() const noexcept {
+    return {links_.data(), links_.size()};
+  }
 
   /// Places every body at its pose from `kinematics`, moving with the joint rates `v`. False when a
   /// pose is invalid: that body stays where it was.

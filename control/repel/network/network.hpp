@@ -61,9 +61,13 @@ class Network {
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept;
 
   /// The modules, in the order of the plan.
-  [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
+  [[nodiscard]] std::span<const Node> nodes() const noexcept {
+    return {nodes_.data(), nodes_.size()};
+  }
   /// The connections; a Node names them by index.
-  [[nodiscard]] std::span<const Connection> connections() const noexcept { return connections_; }
+  [[nodiscard]] std::span<const Connection> connections() const noexcept {
+    return {connections_.data(), connections_.size()};
+  }
 
   /// The node of the first module of type `M`; null when there is none.
   template <class M>

@@ -6,8 +6,8 @@
 #include <span>
 
 #include <repel/distance/query.hpp>
+#include <repel/reduction/convex_shape.hpp>
 #include <repel/reduction/separation_result.hpp>
-#include <repel/reduction/shape.hpp>
 
 namespace repel {
 

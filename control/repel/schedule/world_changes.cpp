@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 
 namespace repel {
 

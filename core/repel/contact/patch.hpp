@@ -11,8 +11,8 @@
 #include <repel/contact/flat.hpp>
 #include <repel/contact/overlap.hpp>
 #include <repel/contact/tilt_mean.hpp>
+#include <repel/reduction/convex_shape.hpp>
 #include <repel/reduction/separation_result.hpp>
-#include <repel/reduction/shape.hpp>
 
 namespace repel {
 

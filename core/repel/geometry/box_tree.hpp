@@ -19,7 +19,42 @@
 namespace repel {
 
 /// An axis-aligned box of a frame, between two corners [m].
-using Box = Eigen::AlignedBox3d;
+class Box {
+ public:
+  /// Empty: it contains no point until it is extended.
+  Box() = default;
+  /// A point.
+  explicit Box(const Vec3& p) : min_(p), max_(p) {}
+  /// The corners with the least and the greatest coordinates.
+  Box(const Vec3& min, const Vec3& max) : min_(min), max_(max) {}
+
+  [[nodiscard]] const Vec3& min() const noexcept { return min_; }  ///< the least coordinates
+  [[nodiscard]] const Vec3& max() const noexcept { return max_; }  ///< the greatest ones
+  [[nodiscard]] Vec3& min() noexcept { return min_; }              ///< to be changed
+  [[nodiscard]] Vec3& max() noexcept { return max_; }              ///< to be changed
+
+  /// The smallest box around this one and another.
+  Box& extend(const Box& other) noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+      min_[axis] = std::min(min_[axis], other.min_[axis]);
+      max_[axis] = std::max(max_[axis], other.max_[axis]);
+    }
+    return *this;
+  }
+  /// The smallest box around this one and a point.
+  Box& extend(const Vec3& p) noexcept { return extend(Box(p)); }
+
+  /// The point is inside or on the boundary.
+  [[nodiscard]] bool contains(const Vec3& p) const noexcept {
+    return min_[0] <= p[0] && min_[1] <= p[1] && min_[2] <= p[2] && p[0] <= max_[0] &&
+           p[1] <= max_[1] && p[2] <= max_[2];
+  }
+
+ private:
+  static constexpr double far = std::numeric_limits<double>::max();
+  Vec3 min_{far, far, far};
+  Vec3 max_{-far, -far, -far};
+};
 
 /// The centre of `box` [m], as a plain vector.
 [[nodiscard]] inline Vec3 centre(const Box& box) noexcept {

@@ -4,21 +4,14 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include <repel/geometry/planes.hpp>
 #include <repel/geometry/quick_hull.hpp>
 
 namespace repel {
-
-/// The half space n.x <= offset that contains the hull and touches it in a facet.
-struct Facet {
-  std::array<int, 3> vertices{};  ///< indices, counter-clockwise seen from outside
-  Vec3 n{0, 0, 0};                ///< unit, outward
-  double offset = 0.0;            ///< [m]
-};
 
 /// The triangulated facets of the convex hull of finite `points` [m]: a closed surface however thin
 /// the hull is. Empty when all points lie within 1e-14 of their largest coordinate from one plane,

@@ -13,10 +13,16 @@
 #include <vector>
 
 #include <repel/base/lanes.hpp>
-#include <repel/geometry/facets.hpp>
 #include <repel/geometry/tangents.hpp>
 
 namespace repel {
+
+/// The half space n.x <= offset that contains a hull and touches it in a facet.
+struct Facet {
+  std::array<int, 3> vertices{};  ///< indices, counter-clockwise seen from outside
+  Vec3 n{0, 0, 0};                ///< unit, outward
+  double offset = 0.0;            ///< [m]
+};
 
 /// Half spaces n.x <= offset, n unit, whose intersection is a polytope. Stored as padded arrays of
 /// all n.x, n.y, n.z and offsets, one after the other; the tangent planes of a curved side follow

@@ -9,7 +9,7 @@
 
 #include <repel/base/lanes.hpp>
 #include <repel/pairs/part_poses.hpp>
-#include <repel/reduction/shape.hpp>
+#include <repel/reduction/convex_shape.hpp>
 #include <repel/world/world.hpp>
 
 namespace repel::detail {

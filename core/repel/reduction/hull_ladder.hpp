@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <repel/geometry/facets.hpp>
+#include <repel/geometry/hull_faces.hpp>
 #include <repel/geometry/planes.hpp>
 #include <repel/geometry/vertex_scan.hpp>
 #include <repel/reduction/ladder.hpp>
@@ -89,11 +90,6 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   }
   return v + std::min(1.0, share * (1.0 + 1e-12)) * (deep - v);
 }
-
-/// Number of sample directions, all around, whose extreme vertices lead in a hull with very many
-/// vertices.
-inline constexpr int leading_steps = 13;  ///< along an edge of a cube around the origin
-inline constexpr std::size_t most_leading = std::size_t{6} * leading_steps * leading_steps;
 
 /// If there are more than a thousand corners, moves those to the front that are extreme along one
 /// of about a thousand directions all around. Returns their number, or the number of all corners
@@ -177,7 +173,7 @@ inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& 
   if (!facets.empty()) vertices = hull_corners(points, facets);
   const std::size_t leading = lead_with_extremes(vertices);
   const std::span<const Vec3> all(vertices.data(), vertices.size());
-  Convex hull = Convex::polytope(all, Faces(points, facets, all));
+  Convex hull = Convex::polytope(all, hull_faces(points, facets, all));
   return hull_ladder(std::move(hull), std::move(vertices), leading, options, std::move(facets));
 }
 
@@ -192,15 +188,6 @@ inline Ladder hull_ladder(const Convex& hull, const ReductionOptions& options) {
   const std::size_t leading = lead_with_extremes(led);
   std::vector<Facet> facets = hull_facets({vertices.data(), vertices.size()});
   return hull_ladder(hull, std::move(vertices), leading, options, std::move(facets));
-}
-
-/// [byte] Upper bound of the memory of the ladder of so many points, if all are vertices: no level
-/// has more vertices than its parent.
-[[nodiscard]] inline std::size_t most_ladder_bytes(std::size_t points,
-                                                   const ReductionOptions& options) noexcept {
-  const std::size_t moving = std::min(points, most_leading);
-  return most_ladder_bytes(options) + Convex::most_bytes(points) + Faces::most_bytes(points) +
-         static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
 }
 
 /// [m] The radius of the largest ball found in the hull of `points` with these facets; 0 for a flat

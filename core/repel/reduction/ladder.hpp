@@ -61,6 +61,20 @@ inline constexpr double flat_order = 1e9;
   return (static_cast<std::size_t>(options.levels) + 3) * sizeof(Level) + Convex::most_bytes(1);
 }
 
+/// Number of sample directions, all around, whose extreme vertices lead in a hull with very many
+/// vertices.
+inline constexpr int leading_steps = 13;  ///< along an edge of a cube around the origin
+inline constexpr std::size_t most_leading = std::size_t{6} * leading_steps * leading_steps;
+
+/// [byte] Upper bound of the memory of the ladder of so many points, if all are vertices: no level
+/// has more vertices than its parent.
+[[nodiscard]] inline std::size_t most_ladder_bytes(std::size_t points,
+                                                   const ReductionOptions& options) noexcept {
+  const std::size_t moving = std::min(points, most_leading);
+  return most_ladder_bytes(options) + Convex::most_bytes(points) + Faces::most_bytes(points) +
+         static_cast<std::size_t>(options.levels) * Convex::most_bytes(moving);
+}
+
 /// A ladder of one level.
 inline Ladder ladder_of(Convex core, double depth = 0.0) {
   Ladder ladder;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <repel/reduction/shape.hpp>
+#include <repel/reduction/convex_shape.hpp>
 
 namespace repel::detail {
 

@@ -39,12 +39,18 @@ class ArmKinematics {
   /// if there is no `mass_matrix`. If not overridden, the cell rejects link parts.
   [[nodiscard]] virtual Pose X_WL(int /*link*/) const noexcept {
     Pose unknown = Pose::Identity();
-    unknown.translation().setConstant(std::numeric_limits<double>::quiet_NaN());
+    for (int row = 0; row < 3; ++row) {
+      unknown.data()[12 + row] = std::numeric_limits<double>::quiet_NaN();
+    }
     return unknown;
   }
   /// Jacobian of the point Q fixed on `link`, now at `p_WQ` [m]; used as X_WL is.
   virtual void jacobian(int /*link*/, const Vec3& /*p_WQ*/, JacobianRef J) const noexcept {
-    J.setConstant(std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::Index column = 0; column < J.cols(); ++column) {
+      for (Eigen::Index row = 0; row < 6; ++row) {
+        J(row, column) = std::numeric_limits<double>::quiet_NaN();
+      }
+    }
   }
 
   /// Writes the joint-space inertia matrix [kg m^2] or [kg], symmetric, rotors included, and

@@ -11,9 +11,8 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Geometry>
-
 #include <repel/base/ids.hpp>
+#include <repel/base/rotation.hpp>
 #include <repel/force/law.hpp>
 #include <repel/world/body_state.hpp>
 
@@ -38,19 +37,14 @@ struct PoseMove {
   [[nodiscard]] Pose pose() const noexcept {
     const double share = at < over ? at / over : 1.0;
     if (share >= 1.0) return to;
-    const Eigen::Quaterniond first(from.linear());
-    const Eigen::Quaterniond last(to.linear());
-    Pose X = Pose::Identity();
-    X.linear() = first.slerp(share, last).toRotationMatrix();
-    X.translation() = (1.0 - share) * from.translation() + share * to.translation();
-    return X;
+    return posed(between(rotation(from), rotation(to), share),
+                 (1.0 - share) * origin(from) + share * origin(to));
   }
   /// [m/s, rad/s] of the origin
   [[nodiscard]] Twist twist() const noexcept {
     if (!(at < over)) return {};
-    const Eigen::AngleAxisd turn(Mat3(to.linear() * from.linear().transpose()));
-    return {Vec3((to.translation() - from.translation()) / over),
-            Vec3(turn.angle() / over * turn.axis())};
+    const Turn turn = turn_of(rotation(to) * transposed(rotation(from)));
+    return {(origin(to) - origin(from)) / over, turn.angle / over * turn.axis};
   }
 };
 
@@ -88,7 +82,9 @@ class LooseParts {
     all_.push_back({.part = part, .body = body, .room = room});
   }
 
-  [[nodiscard]] std::span<const LoosePart> all() const noexcept { return all_; }
+  [[nodiscard]] std::span<const LoosePart> all() const noexcept {
+    return {all_.data(), all_.size()};
+  }
   /// Null for a part that is none of these.
   [[nodiscard]] LoosePart* find(PartId id) noexcept {
     const auto is_before = [](const LoosePart& loose, std::int32_t i) {
@@ -121,9 +117,9 @@ class LooseParts {
     const BodyState& body = state(motion, *loose);
     if (!body.presence.is_there() || body.presence.holder.valid()) return false;
     if (!is_finite(X_WB) || !is_rigid(X_WB, 1e-6)) return false;
-    const Eigen::AngleAxisd turn(Mat3(X_WB.linear() * body.X_WB.linear().transpose()));
-    const double way = (X_WB.translation() - body.X_WB.translation()).norm();
-    loose->move = {body.X_WB, X_WB, (way + std::abs(turn.angle()) * loose->room) / speed};
+    const Turn turn = turn_of(rotation(X_WB) * transposed(rotation(body.X_WB)));
+    const double way = norm(origin(X_WB) - origin(body.X_WB));
+    loose->move = {body.X_WB, X_WB, (way + std::abs(turn.angle) * loose->room) / speed};
     return true;
   }
 
@@ -224,7 +220,7 @@ class LooseParts {
     if (is_held && !body.arm.valid()) {
       body.arm = body.presence.holder;
       const Pose& X_WT = motion.bodies[static_cast<std::size_t>(body.arm.index)].X_WB;
-      loose.X_TB = X_WT.inverse() * body.X_WB;
+      loose.X_TB = composed(inverted(X_WT), body.X_WB);
     }
     if (!is_held && body.arm.valid()) {
       body.arm = {};

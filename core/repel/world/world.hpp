@@ -16,7 +16,7 @@
 #include <repel/base/vec.hpp>
 #include <repel/distance/query.hpp>
 #include <repel/force/law.hpp>
-#include <repel/reduction/shape.hpp>
+#include <repel/reduction/convex_shape.hpp>
 #include <repel/world/body_state.hpp>
 #include <repel/world/loose_parts.hpp>
 

@@ -4,10 +4,8 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <fstream>
 #include <string>
-#include <system_error>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/common/input_limits.hpp>
@@ -20,8 +18,9 @@ namespace repel {
 /// @throws SetupError naming the file when it cannot be read or is larger than `most`
 [[nodiscard]] inline std::string text_of_file(const std::string& path, const std::string& what,
                                               std::size_t most = input_limits.file_bytes) {
-  std::error_code unused;
-  if (std::filesystem::is_directory(path, unused)) {
+  // Without <filesystem>, which would be a tenth of the time that all of the kernel takes to
+  // compile.
+  if (!path.empty() && std::ifstream(path + "/.")) {
     throw SetupError("this is a directory; allowed: " + what, path);
   }
   std::ifstream file(path, std::ios::binary);
@@ -37,8 +36,9 @@ namespace repel {
   }
   if (file.bad()) throw SetupError("the file cannot be read; allowed: " + what, path);
   if (text.size() > most) {
-    const auto size = std::filesystem::file_size(path, unused);
-    const bool known = !unused && size > most;
+    const auto end = static_cast<std::streamoff>(file.seekg(0, std::ios::end).tellg());
+    const auto size = static_cast<std::size_t>(end);
+    const bool known = end > 0 && size > most;
     throw SetupError((known ? "the file has " + std::to_string(size) + " bytes"
                             : "the file has more than " + std::to_string(most) + " bytes") +
                          "; allowed: " + what + " of up to " + std::to_string(most),

@@ -78,7 +78,9 @@ class Guide {
   /// Wrench of all fixtures on the tool, after the passivity controller [N, N m].
   [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
   /// The fixtures, in the order of the options.
-  [[nodiscard]] std::span<const Held> fixtures() const noexcept { return held_; }
+  [[nodiscard]] std::span<const Held> fixtures() const noexcept {
+    return {held_.data(), held_.size()};
+  }
   /// Energy in the springs [J].
   [[nodiscard]] double stored() const noexcept;
   /// Adds the torques of the wrench [N m].
