@@ -7,32 +7,55 @@
 #include <cstdint>
 #include <memory>
 #include <thread>
+#include <vector>
+
+#include <repel/schedule/beside_worker.hpp>
+#include <repel/schedule/pair_team.hpp>
 
 namespace repel {
+
+struct Coprocessor::Parts {
+  explicit Parts(const World& world) : prototype(world) {}
+
+  const detail::PartPoses prototype;  ///< of the parts at set-up
+  std::shared_ptr<const detail::PairIndex> pairs;
+  std::unique_ptr<detail::PairTeam> team;  ///< of the caller
+  std::unique_ptr<detail::WidenedForces> widened;
+  std::vector<std::unique_ptr<detail::BesideWorker>> beside;  ///< the last one is in use
+  detail::BesideWorker* current = nullptr;                    ///< the one that the caller uses
+  std::atomic<detail::BesideWorker*> offered{nullptr};
+  const detail::WholeAnswer* answer = nullptr;
+  detail::Watch watch;
+  detail::Supervisor supervisor;  // last member: joined before the data it uses is destroyed
+};
 
 Coprocessor::Coprocessor(const World& world, const CoprocessorOptions& options)
     : world_(&world),
       options_(checked_options(world, options)),
       threads_(useful_threads()),
-      prototype_(world) {
+      parts_(std::make_unique<Parts>(world)) {
   const bool beside = works_beside();
   lookahead_ = beside ? lookahead_for(options_.period) : 0.0;
-  pairs_ = std::make_shared<const detail::PairIndex>(world, lookahead_);
+  parts_->pairs = std::make_shared<const detail::PairIndex>(world, lookahead_);
   const int helpers = beside ? 0 : threads_;
-  team_ = std::make_unique<detail::PairTeam>(world, pairs_, prototype_, options_, helpers, 0,
-                                             lookahead_);
-  team_->prime(world.motion());
+  parts_->team = std::make_unique<detail::PairTeam>(world, parts_->pairs, parts_->prototype,
+                                                    options_, helpers, 0, lookahead_);
+  parts_->team->prime(world.motion());
   if (beside) {
-    widened_ = std::make_unique<detail::WidenedForces>(world, most_near());
-    beside_.push_back(make_beside_worker(world.motion()));
-    current_ = beside_.back().get();
-    current_->prime();
-    current_->start();
+    parts_->widened = std::make_unique<detail::WidenedForces>(world, most_near());
+    add_beside_worker(world.motion());
+    parts_->current = parts_->beside.back().get();
+    parts_->current->prime();
+    parts_->current->start();
   }
-  team_->start();
+  parts_->team->start();
   if (threads_ > 0) {
-    supervisor_.start([this] { tend(); });
+    parts_->supervisor.start([this] { tend(); });
   }
+}
+
+Coprocessor::~Coprocessor() {
+  parts_->supervisor.stop();
 }
 
 const PairForces& Coprocessor::exchange() noexcept {
@@ -41,23 +64,23 @@ const PairForces& Coprocessor::exchange() noexcept {
   if (works_beside()) {
     forces_ = &beside(motion);
   } else {
-    const bool late = team_->run(motion);
-    report_.shared = team_->shared();
+    const bool late = parts_->team->run(motion);
+    report_.shared = parts_->team->shared();
     report_.count(late);
-    forces_ = &team_->pairs().forces();
+    forces_ = &parts_->team->pairs().forces();
   }
   return *forces_;
 }
 
 void Coprocessor::rehearse() noexcept {
-  if (!works_beside()) team_->rehearse(world_->motion());
+  if (!works_beside()) parts_->team->rehearse(world_->motion());
 }
 
 bool Coprocessor::is_past(std::int64_t exchange) noexcept {
-  if (exchanges_ < exchange || !team_->is_settled()) return false;
+  if (exchanges_ < exchange || !parts_->team->is_settled()) return false;
   if (!works_beside()) return true;
   if (options_.lock_step) (void)wait_for(exchange, {});
-  const detail::WholeAnswer& newest = current_->newest();
+  const detail::WholeAnswer& newest = parts_->current->newest();
   return newest.exchange >= exchange && newest.is_settled &&
          lost_.load(std::memory_order_acquire) == 0;
 }
@@ -73,25 +96,41 @@ bool Coprocessor::wait_for_answer(std::chrono::nanoseconds timeout) noexcept {
 }
 
 Separation Coprocessor::separation_of(PairId id) const noexcept {
-  if (!uses_answer_) return team_->pairs().separation_of(id);
-  for (std::size_t i = 0; i < answer_->count; ++i) {
-    if (answer_->near[i].pair == id) return answer_->shown[i].separation;
+  if (!uses_answer_) return parts_->team->pairs().separation_of(id);
+  for (std::size_t i = 0; i < parts_->answer->count; ++i) {
+    if (parts_->answer->near[i].pair == id) return parts_->answer->shown[i].separation;
   }
   return {};
 }
 
+void Coprocessor::visit_near(void (*see)(const void* of, const NearPair& near) noexcept,
+                             const void* of) const noexcept {
+  if (!uses_answer_) {
+    parts_->team->pairs().for_each_near(world_->motion(),
+                                        [&](const NearPair& near) { see(of, near); });
+    return;
+  }
+  const detail::WholeAnswer& answer = *parts_->answer;
+  for (std::size_t i = 0; i < answer.count; ++i) {
+    NearPair near = answer.shown[i];
+    near.force = parts_->widened->size(i);
+    near.age += report_.age;
+    see(of, near);
+  }
+}
+
 PairExtremes Coprocessor::extremes_of(PairId id) const noexcept {
-  PairExtremes extremes = team_->extremes_of(id);
+  PairExtremes extremes = parts_->team->extremes_of(id);
   if (stopped_) {
-    for (const auto& worker : beside_) extremes.add(worker->team().extremes_of(id));
+    for (const auto& worker : parts_->beside) extremes.add(worker->team().extremes_of(id));
   }
   return extremes;
 }
 
 void Coprocessor::stop() {
-  supervisor_.stop();
-  team_->stop();
-  for (const auto& worker : beside_) worker->stop();
+  parts_->supervisor.stop();
+  parts_->team->stop();
+  for (const auto& worker : parts_->beside) worker->stop();
   stopped_ = true;
 }
 
@@ -132,34 +171,36 @@ int Coprocessor::most_near() const noexcept {
   return options_.every_pair ? all : std::min(all, world_->limits().candidates);
 }
 
-std::unique_ptr<detail::BesideWorker> Coprocessor::make_beside_worker(const Motion& motion) {
-  return std::make_unique<detail::BesideWorker>(*world_, motion, pairs_, prototype_, options_,
-                                                threads_ - 1, 0, lookahead_, most_near());
+void Coprocessor::add_beside_worker(const Motion& motion) {
+  parts_->beside.push_back(
+      std::make_unique<detail::BesideWorker>(*world_, motion, parts_->pairs, parts_->prototype,
+                                             options_, threads_ - 1, 0, lookahead_, most_near()));
 }
 
 const PairForces& Coprocessor::beside(const Motion& motion) noexcept {
-  if (auto* fresh = offered_.exchange(nullptr, std::memory_order_acq_rel)) current_ = fresh;
+  if (auto* fresh = parts_->offered.exchange(nullptr, std::memory_order_acq_rel))
+    parts_->current = fresh;
   if (options_.lock_step) (void)wait_for(exchanges_ - 1, {});
-  answer_ = &current_->newest();
-  current_->post(exchanges_, motion);
-  report_.age = exchanges_ - answer_->exchange;
+  parts_->answer = &parts_->current->newest();
+  parts_->current->post(exchanges_, motion);
+  report_.age = exchanges_ - parts_->answer->exchange;
   ++report_.shared;
   // A pair without memory has no answer that could be widened.
-  const bool is_usable = report_.age <= greatest_age && answer_->totals.crowded == 0;
-  if (!is_usable && uses_answer_) team_->skip_ticks();
+  const bool is_usable = report_.age <= greatest_age && parts_->answer->totals.crowded == 0;
+  if (!is_usable && uses_answer_) parts_->team->skip_ticks();
   uses_answer_ = is_usable;
   if (uses_answer_) {
-    widened_->widen(*answer_, motion);
+    parts_->widened->widen(*parts_->answer, motion);
   } else {
     report_.age = 0;
-    (void)team_->run(motion);
+    (void)parts_->team->run(motion);
   }
-  report_.count(!uses_answer_ || current_->is_team_late());
-  return uses_answer_ ? widened_->forces() : team_->pairs().forces();
+  report_.count(!uses_answer_ || parts_->current->is_team_late());
+  return uses_answer_ ? parts_->widened->forces() : parts_->team->pairs().forces();
 }
 
 bool Coprocessor::wait_for(std::int64_t exchange, Clock::time_point until) noexcept {
-  for (unsigned spins = 1; current_->newest().exchange < exchange; ++spins) {
+  for (unsigned spins = 1; parts_->current->newest().exchange < exchange; ++spins) {
     if (!options_.lock_step && spins % 16 == 0 && Clock::now() >= until) return false;
     if (spins % 4096 == 0) std::this_thread::yield();
     detail::WorkerThread::pause();
@@ -168,14 +209,16 @@ bool Coprocessor::wait_for(std::int64_t exchange, Clock::time_point until) noexc
 }
 
 void Coprocessor::tend() {
-  team_->tend(usage_);
-  if (!beside_.empty()) {
-    beside_.back()->tend(usage_);
-    if (!options_.lock_step && watch_.is_overdue(beside_.back()->beats())) replace_beside();
+  parts_->team->tend(usage_);
+  if (!parts_->beside.empty()) {
+    parts_->beside.back()->tend(usage_);
+    if (!options_.lock_step && parts_->watch.is_overdue(parts_->beside.back()->beats()))
+      replace_beside();
   }
-  const auto lost = std::count_if(beside_.begin(), beside_.end(), [this](const auto& worker) {
-    return worker != beside_.back() && !worker->has_ended();
-  });
+  const auto lost =
+      std::count_if(parts_->beside.begin(), parts_->beside.end(), [this](const auto& worker) {
+        return worker != parts_->beside.back() && !worker->has_ended();
+      });
   lost_.store(static_cast<int>(lost), std::memory_order_release);
   page_faults_.store(usage_.page_faults, std::memory_order_relaxed);
   switches_.store(usage_.switches, std::memory_order_relaxed);
@@ -183,15 +226,15 @@ void Coprocessor::tend() {
 }
 
 void Coprocessor::replace_beside() {
-  beside_.back()->request_stop();
+  parts_->beside.back()->request_stop();
   lost_.fetch_add(1, std::memory_order_release);
   // The caller moves its world meanwhile: until it posts a motion, the new one has none.
   Motion nowhere;
   nowhere.bodies.resize(static_cast<std::size_t>(world_->body_count()));
-  beside_.push_back(make_beside_worker(nowhere));
-  beside_.back()->start();
-  watch_ = {};
-  offered_.store(beside_.back().get(), std::memory_order_release);
+  add_beside_worker(nowhere);
+  parts_->beside.back()->start();
+  parts_->watch = {};
+  parts_->offered.store(parts_->beside.back().get(), std::memory_order_release);
   ++usage_.restarts;
 }
 

@@ -8,12 +8,12 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
-#include <repel/schedule/beside_worker.hpp>
+#include <repel/pairs/forces_and_totals.hpp>
+#include <repel/pairs/near_pair.hpp>
 #include <repel/schedule/built_alike.hpp>
+#include <repel/schedule/coprocessor_options.hpp>
 #include <repel/schedule/pair_forces.hpp>
-#include <repel/schedule/pair_team.hpp>
 
 namespace repel {
 
@@ -41,7 +41,7 @@ class Coprocessor {
   Coprocessor(const World& world, const CoprocessorOptions& options);
   Coprocessor(const Coprocessor&) = delete;
   Coprocessor& operator=(const Coprocessor&) = delete;
-  ~Coprocessor() { supervisor_.stop(); }
+  ~Coprocessor();
 
   /// The forces at `world.motion()`. Cost alone: the search and the near pairs. Together: a part of
   /// it, and the wait for a batch; if a thread is late, its patience, a search of all pairs and all
@@ -77,13 +77,9 @@ class Coprocessor {
   /// Call it between exchanges and from the same thread.
   template <class See>
   void for_each_near(const See& see) const noexcept {
-    if (!uses_answer_) return team_->pairs().for_each_near(world_->motion(), see);
-    for (std::size_t i = 0; i < answer_->count; ++i) {
-      NearPair near = answer_->shown[i];
-      near.force = widened_->size(i);
-      near.age += report_.age;
-      see(near);
-    }
+    visit_near(
+        [](const void* of, const NearPair& near) noexcept { (*static_cast<const See*>(of))(near); },
+        &see);
   }
 
   /// The last answer for a pair; a default `Separation`, which bounds nothing, if its slot has been
@@ -102,6 +98,12 @@ class Coprocessor {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::nanoseconds longest_wait{std::chrono::seconds(1)};
 
+  /// The threads, what they work on, and what the caller has of it.
+  struct Parts;
+
+  void visit_near(void (*see)(const void* of, const NearPair& near) noexcept,
+                  const void* of) const noexcept;
+
   static CoprocessorOptions checked_options(const World& world, CoprocessorOptions options);
   /// A thread without a processor of its own would take that of another thread or of the caller,
   /// and one for which there are never enough pairs would wait for ever.
@@ -111,7 +113,7 @@ class Coprocessor {
   /// that is out of range by more cannot be within range when the answer is used.
   [[nodiscard]] static double lookahead_for(std::chrono::nanoseconds period) noexcept;
   [[nodiscard]] int most_near() const noexcept;
-  [[nodiscard]] std::unique_ptr<detail::BesideWorker> make_beside_worker(const Motion& motion);
+  void add_beside_worker(const Motion& motion);
 
   const PairForces& beside(const Motion& motion) noexcept;
 
@@ -126,25 +128,16 @@ class Coprocessor {
   const World* world_;
   CoprocessorOptions options_;
   int threads_;
-  double lookahead_ = 0.0;             ///< [m]
-  const detail::PartPoses prototype_;  ///< of the parts at set-up
-  std::shared_ptr<const detail::PairIndex> pairs_;
-  std::unique_ptr<detail::PairTeam> team_;  ///< of the caller
-  std::unique_ptr<detail::WidenedForces> widened_;
-  std::vector<std::unique_ptr<detail::BesideWorker>> beside_;  ///< the last one is in use
-  detail::BesideWorker* current_ = nullptr;                    ///< the one that the caller uses
-  std::atomic<detail::BesideWorker*> offered_{nullptr};
-  const detail::WholeAnswer* answer_ = nullptr;
+  double lookahead_ = 0.0;    ///< [m]
   bool uses_answer_ = false;  ///< at the last exchange
   bool stopped_ = false;
   const PairForces* forces_ = nullptr;
   WorkerReport report_;
   std::int64_t exchanges_ = 0;
   std::atomic<int> lost_{0};  ///< workers given up that may yet go on
-  detail::Watch watch_;
-  WorkerUsage usage_;  ///< of the supervisor; the next three are for the caller
+  WorkerUsage usage_;         ///< of the supervisor; the next three are for the caller
   std::atomic<std::int64_t> page_faults_{0}, switches_{0}, restarts_{0};
-  detail::Supervisor supervisor_;  // last member: joined before the data it uses is destroyed
+  std::unique_ptr<Parts> parts_;  // last member: its threads use the others
 };
 
 }  // namespace repel
