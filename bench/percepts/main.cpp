@@ -14,6 +14,7 @@
 #include <repel/common/deadline.hpp>
 #include <repel/percepts/own_body.hpp>
 #include <repel/percepts/perceived_parts.hpp>
+#include <repel/reduction/separation.hpp>
 #include <repel/reduction/shape.hpp>
 
 #include "../parts.hpp"

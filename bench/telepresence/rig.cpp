@@ -44,7 +44,7 @@ ForceLaw stiff_wall(double stiffness, double damping) {
 Rig::Rig(const RigOptions& options)
     : options_(options),
       network_(build(options)),
-      signals_(detail::neutral_signals(1, 1.0 / options.rate_hz)),
+      signals_(network::detail::neutral_signals(1, 1.0 / options.rate_hz)),
       slider_(options.slider, 1.0 / options.rate_hz) {}
 
 Sample Rig::tick(double hand_speed) {

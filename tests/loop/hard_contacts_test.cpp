@@ -7,6 +7,8 @@
 #include <array>
 #include <random>
 
+#include <repel/reduction/separation.hpp>
+
 namespace repel {
 namespace hard_contacts_test {
 
