@@ -17,7 +17,7 @@ grep "REPEL_ISA is 'z80'; this processor and this library have: " said || {
   exit 1
 }
 sets=$(sed -n "s/.*this library have: //p" said | tr -d ,)
-for scene in anderson_4x8 plates two_arms whole_arm; do
+for scene in anderson_4x8 plates two_arms; do
   for set in $sets; do
     REPEL_ISA=$set "$teleop" "$scene" --fast --seconds 1 --quiet --log "$set.csv" \
       --report "$set.json"
