@@ -150,11 +150,12 @@ class Vec<double> {
     const Lanes p = a.lanes_ * d.lanes_;
     const Lanes q = b.lanes_ * d.lanes_;
     const Lanes r = c.lanes_ * d.lanes_;
-    const Lanes pq =
-        __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
+    const Lanes xz = __builtin_shufflevector(p, q, 0, 4, 2, 6);
+    const Lanes pq = xz + __builtin_shufflevector(p, q, 1, 5, 3, 7);
     const Lanes rr = r + __builtin_shufflevector(r, r, 1, 3, 3, 3);
+    // Without the fourth products, which are 0 and would take its sign from a sum of -0.
     return Vec(__builtin_shufflevector(pq, rr, 0, 1, 4, 7) +
-               __builtin_shufflevector(pq, r, 2, 3, 6, 7));
+               __builtin_shufflevector(xz, r, 2, 3, 6, 7));
   }
   friend double sum(const Vec& a) noexcept { return a.lanes_[0] + a.lanes_[1] + a.lanes_[2]; }
   friend Vec magnitudes(const Vec& a) noexcept {
@@ -214,7 +215,9 @@ inline void set_column(Pose& X, int k, const Vec<double>& v) noexcept {
   double* c = X.data() + std::ptrdiff_t{4} * k;
   const double last = k == 3 ? 1.0 : 0.0;
 #ifdef __AVX__
-  const Vec<double>::Lanes four = v.lanes() + Vec<double>::Lanes{0.0, 0.0, 0.0, last};
+  // Not by a sum, which would take its sign from a -0.
+  const Vec<double>::Lanes four =
+      __builtin_shufflevector(v.lanes(), Vec<double>::Lanes{last}, 0, 1, 2, 4);
 #else
   const double four[4] = {v.x(), v.y(), v.z(), last};
 #endif
