@@ -35,7 +35,7 @@ double brake_torque(const ArmModel& model, int joint) {
   for (std::size_t i = first; i < model.links.size(); ++i) {
     const ArmLink& link = model.links[i];
     if (turns) inertia += link.I_C_L.norm();
-    if (!(link.mass > 0.0)) continue;  // no weight, whatever the lever
+    if (!(link.mass > 0.0)) continue;  // without weight
     const double lever = turns ? longest_lever(model, first, i) : 1.0;
     weight += link.mass * lever * norm(model.gravity_W);
     inertia += link.mass * lever * lever;

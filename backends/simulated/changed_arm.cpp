@@ -12,8 +12,8 @@ namespace repel {
 
 namespace {
 
-/// Writes the brake torques into the model, so that they stay when its masses change. One without
-/// bound stays unknown, which gives the same.
+/// Writes the brake torques into the model, so that they stay when its masses change. An infinite
+/// one stays unknown.
 void keep_brakes(ArmModel& model) {
   std::vector<double> torques;
   for (std::size_t i = 0; i < model.links.size(); ++i) {

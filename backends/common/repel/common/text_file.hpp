@@ -18,8 +18,7 @@ namespace repel {
 /// @throws SetupError naming the file when it cannot be read or is larger than `most`
 [[nodiscard]] inline std::string text_of_file(const std::string& path, const std::string& what,
                                               std::size_t most = input_limits.file_bytes) {
-  // Without <filesystem>, which would be a tenth of the time that all of the kernel takes to
-  // compile.
+  // <filesystem> costs a tenth of the compile time of the kernel.
   if (!path.empty() && std::ifstream(path + "/.")) {
     throw SetupError("this is a directory; allowed: " + what, path);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Options, faults and set-up checks that all simulated arms share, whatever their engine.
+/// Options, faults and set-up checks of every simulated arm.
 #pragma once
 
 #include <span>
@@ -16,7 +16,7 @@ struct SimulationOptions {
   double stop_stiffness = 1e5;     ///< [N m/rad] or [N/m] of a joint stop; >= 0
   double stop_damping = 1e3;       ///< [N m s/rad] or [N s/m] while moving into a stop; >= 0
   double contact_stiffness = 1e6;  ///< [N/m] of a contact point; 0 to 1e12
-  double contact_damping = 1e4;    ///< [N s/m] of the same, which never pulls; 1e-3 to 1e12
+  double contact_damping = 1e4;    ///< [N s/m] of contacts; never pulls; 1e-3 to 1e12
   double contact_friction = 0.5;   ///< friction force as a share of the normal force; 0 to 1e3
   double watchdog = 0.0;  ///< [s] timeout without torques after which the arm stops; 0: never
 };
