@@ -17,6 +17,7 @@
 #include <repel/cell/settled_laws.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/reduction/separation.hpp>
+#include <repel/reduction/shape.hpp>
 
 namespace repel::detail {
 

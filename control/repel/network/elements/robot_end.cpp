@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 RobotEnd RobotEnd::lightened(double g) const {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 ForceSensor::ForceSensor(const ForceSensorOptions& options) : options_(options) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/kbb2.hpp>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 Kbb2::Kbb2(const Kbb2Options& options) : options_(options) {

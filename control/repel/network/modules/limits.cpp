@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {

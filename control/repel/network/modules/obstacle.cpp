@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/obstacle.hpp>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/puma_joints.hpp>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 MeasuredFlow::MeasuredFlow(int joints)

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 Relief::Relief(const ReliefOptions& options) : options_(options) {

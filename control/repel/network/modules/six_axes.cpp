@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 SixAxes::SixAxes(const SixAxesOptions& options) : options_(options) {

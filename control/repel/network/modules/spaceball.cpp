@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 Spaceball::Spaceball(const SpaceballOptions& options) : options_(options) {

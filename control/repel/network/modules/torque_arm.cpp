@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/torque_arm.hpp>
 
+#include <repel/base/setup_error.hpp>
+
 namespace repel::network {
 
 TorqueArm::TorqueArm(const TorqueArmOptions& options) : options_(options) {
