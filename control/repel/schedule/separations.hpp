@@ -13,7 +13,8 @@ namespace repel {
 
 /// Two shapes at their poses, for the length of a call.
 struct PosedShapes {
-  PosedShape a, b;
+  PosedShape a;  ///< one of them
+  PosedShape b;  ///< the other
 };
 
 /// `separation` of each of `pairs`, with the code for the instruction set in use

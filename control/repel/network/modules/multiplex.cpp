@@ -66,7 +66,7 @@ double Multiplex::power_factor() const noexcept {
   return options_.force_scale / options_.velocity_scale;
 }
 
-double Multiplex::velocity_scale() const noexcept {  ///< s_v [m/rad]
+double Multiplex::velocity_scale() const noexcept {
   return options_.velocity_scale;
 }
 

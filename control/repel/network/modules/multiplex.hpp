@@ -56,6 +56,7 @@ class Multiplex {
   [[nodiscard]] double left_weight() const noexcept { return 1.0 / power_factor(); }
   /// The hand whose lever it is.
   [[nodiscard]] Hand hand() const noexcept { return options_.hand; }
+  /// s_v [m/rad].
   [[nodiscard]] double velocity_scale() const noexcept;
   /// s_v [m/rad] times the scale of the hand, in this tick.
   [[nodiscard]] double flow_scale() const noexcept;

@@ -57,11 +57,11 @@ Vec<6> SixAxes::position() const noexcept {
   return all([](const HeldAxis& axis) { return axis.position(); });
 }
 
-Vec<6> SixAxes::rate() const noexcept {  ///< [m/s, rad/s] of the hand
+Vec<6> SixAxes::rate() const noexcept {
   return all([](const HeldAxis& axis) { return axis.rate(); });
 }
 
-Vec<6> SixAxes::felt() const noexcept {  ///< [N, N m] of the motors
+Vec<6> SixAxes::felt() const noexcept {
   return all([](const HeldAxis& axis) { return axis.felt(); });
 }
 
@@ -77,7 +77,7 @@ Vec<6> SixAxes::best_grip_damping(double late) const noexcept {
   return all([&](const HeldAxis& axis) { return axis.best_grip_damping(late); });
 }
 
-double SixAxes::supplied() const noexcept {  ///< [W] by the hand
+double SixAxes::supplied() const noexcept {
   double sum = 0.0;
   for (const HeldAxis& axis : axes_) sum += axis.supplied();
   return sum;

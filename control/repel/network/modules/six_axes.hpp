@@ -61,7 +61,9 @@ class SixAxes {
   [[nodiscard]] double scale() const noexcept { return options_.motion_scale * scale_.value(); }
   /// [m, rad] of the hand, since the start.
   [[nodiscard]] Vec<6> position() const noexcept;
+  /// [m/s, rad/s] of the hand.
   [[nodiscard]] Vec<6> rate() const noexcept;
+  /// [N, N m] of the motors.
   [[nodiscard]] Vec<6> felt() const noexcept;
   /// [N, N m] of the grip on the hand: what a device is to show whose motion HandInput::ball is.
   [[nodiscard]] Vec<6> grip() const noexcept;
@@ -69,6 +71,7 @@ class SixAxes {
   [[nodiscard]] Vec<6> device_damping(double late) const noexcept;
   /// [N s/m, N m s/rad] HeldAxis::best_grip_damping of every axis.
   [[nodiscard]] Vec<6> best_grip_damping(double late) const noexcept;
+  /// [W] by the hand.
   [[nodiscard]] double supplied() const noexcept;
   /// Some motor was at its limit in this tick.
   [[nodiscard]] bool saturated() const noexcept;
