@@ -19,7 +19,9 @@
 #include <repel/loop/hard_contacts.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/modules.hpp>
+#include <repel/reduction/shape.hpp>
 #include <repel/scene/scene.hpp>
+#include <repel/simulated/delayed_arm.hpp>
 
 #include "../parts.hpp"
 #include "arm_backend.hpp"
@@ -94,15 +96,19 @@ struct Setting {
   double rate = 400.0;  // [Hz]
   Way way = Way::hard;
   double inertia = 1.0;  // of the simulated arm, as a multiple of its model's
+  int delay = 0;         // [ticks] of its drive
 };
 
 struct Outcome {
-  double deepest = 0.0;    // [m] into a wall
-  double tool = 0.0;       // [m] the same, of tools alone
-  double withstood = 0.0;  // [N]
-  double way = 0.0;        // [m] that the tools moved
-  std::int64_t lost = 0;   // ticks
+  double deepest = 0.0;                 // [m] into a wall
+  double tool = 0.0;                    // [m] the same, of tools alone
+  double withstood = 0.0;               // [N]
+  double way = 0.0;                     // [m] that the tools moved
+  std::int64_t lost = 0;                // ticks
+  std::optional<std::int64_t> told;     // first tick in which a wall was said to be lost
+  std::optional<std::int64_t> entered;  // first tick in which a wall was entered by the bound
   DurationHistogram compute;
+  [[nodiscard]] bool is_untold() const { return entered && !(told && *told < *entered); }
 };
 
 /// The cell of a scene, with this hand and these walls.
@@ -119,6 +125,7 @@ teleop::DescribedScene described(const Setting& setting, const scene::Scene& sce
     change(arm.law);
     if (arm.self_law) change(*arm.self_law);
     arm.network = strong_hand(arm.model);
+    arm.options.drive_delay = setting.delay;
   }
   described.cell.gain_check = network::GainCheck::warning;
   described.cell.loose.clear();
@@ -196,6 +203,10 @@ struct Driven {
         link.rotor_inertia *= setting.inertia;
       }
       arms.push_back(teleop::arm_backend("bullet").make(plant, arm.start, 0.1, {}));
+      if (setting.delay > 0) {
+        arms.back() =
+            std::make_unique<DelayedArm>(std::move(arms.back()), plant.links.size(), setting.delay);
+      }
       if (const auto& admittance = scene.arm_setup(i).robot.admittance) {
         arms.back() = std::make_unique<teleop::ServoedArm>(
             std::move(arms.back()), model, arm.model, admittance->response, 1.0 / setting.rate);
@@ -213,6 +224,8 @@ struct Driven {
   std::vector<network::Command> commands;
 };
 
+constexpr double bound = 1e-4;  // [m] to which a hard wall may be entered
+
 void note_pairs(const Cell& cell, Outcome& outcome) {
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(cell.world().pairs().size()); ++i) {
     const Pair& pair = cell.world().pair({i});
@@ -228,9 +241,11 @@ void note_pairs(const Cell& cell, Outcome& outcome) {
   }
 }
 
-Outcome push(const Setting& setting, std::int64_t ticks, std::uint64_t seed) {
+Outcome push(const Setting& setting, std::int64_t ticks, std::uint64_t seed,
+             std::vector<ObstacleDescription> obstacles = {}) {
   const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/" + setting.scene + ".yaml");
   teleop::DescribedScene set_up = described(setting, scene, is_hard(setting.way));
+  if (!obstacles.empty()) set_up.cell.obstacles = std::move(obstacles);
   Driven driven(setting, scene, set_up, seed);
   Cell cell(std::move(set_up.cell));
   std::optional<CommandFilter> filter;
@@ -256,7 +271,10 @@ Outcome push(const Setting& setting, std::int64_t ticks, std::uint64_t seed) {
     const auto records = cell.act(driven.commands);
     outcome.compute.record(std::chrono::steady_clock::now() - begin);
     for (std::size_t i = 0; i < cell.arms(); ++i) {
-      outcome.lost += (records[i]->status & status::hold_lost) != 0U ? 1 : 0;
+      const bool is_lost = (records[i]->status & status::hold_lost) != 0U;
+      outcome.lost += is_lost ? 1 : 0;
+      if (is_lost && !outcome.told) outcome.told = tick;
+      if (records[i]->pairs.nearest < -bound && !outcome.entered) outcome.entered = tick;
       outcome.way += records[i]->v_WT.norm() / setting.rate;
       driven.ports[i].apply(*records[i]);
       driven.arms[i]->step(1.0 / setting.rate);
@@ -272,8 +290,6 @@ double fastest(const std::string& name) {
   const auto& admittance = scene.robot.admittance;
   return admittance ? std::min(4000.0, 100.0 / admittance->response) : 4000.0;
 }
-
-constexpr double bound = 1e-4;  // [m] to which a hard wall may be entered
 
 double rounded(double value, double step) {
   return std::round(value / step) * step;
@@ -378,9 +394,146 @@ bench::Result ways(const bench::Options& options) {
   return result;
 }
 
-constexpr std::array<bench::Part, 2> all{
+/// Walls of a random kind around a tool, for one arm to be pushed into.
+class RandomWalls {
+ public:
+  explicit RandomWalls(std::uint64_t seed) : random_(seed) {}
+
+  std::vector<ObstacleDescription> around(const Vec3& p, std::string& kind) {
+    constexpr const char* kinds[] = {"boxes", "hulls", "plates", "blades", "pegs"};
+    const auto which = static_cast<std::size_t>(pick(5));
+    kind = kinds[which];
+    std::vector<ObstacleDescription> walls;
+    if (which == 2) {  // a slot that the tool is in
+      const Vec3 n = direction();
+      const Vec3 half(0.2, 0.2, 0.01);
+      const double room = 0.09 + 0.05 * draw(0.0, 1.0);
+      for (const double side : {1.0, -1.0}) {
+        walls.push_back(wall(Shape::box(half), turned_to(n, p + side * (room + 0.01) * n)));
+      }
+      return walls;
+    }
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 at = p + (0.12 + 0.25 * draw(0.0, 1.0)) * direction();
+      walls.push_back(wall(shape(which), turned_to(direction(), at)));
+    }
+    return walls;
+  }
+  double draw(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  int pick(int of) { return std::uniform_int_distribution<int>(0, of - 1)(random_); }
+
+ private:
+  Vec3 direction() {
+    std::normal_distribution<double> normal;
+    return Vec3(normal(random_), normal(random_), normal(random_)).normalized();
+  }
+  Shape shape(std::size_t which) {
+    switch (which) {
+      case 0:
+        return Shape::box({draw(0.02, 0.1), draw(0.02, 0.1), draw(0.02, 0.1)});
+      case 1: {
+        std::vector<Vec3> points;
+        const Vec3 axes(draw(0.03, 0.12), draw(0.03, 0.12), draw(0.03, 0.12));
+        for (int k = 0; k < 150; ++k) points.emplace_back(axes.cwiseProduct(direction()));
+        return Shape::hull(points);
+      }
+      case 3:
+        return Shape::box({draw(0.05, 0.2), draw(0.05, 0.2), 0.001});
+      default:
+        return Shape::cylinder(draw(0.003, 0.02), draw(0.05, 0.2));
+    }
+  }
+  static Pose turned_to(const Vec3& z, const Vec3& p) {
+    Pose X = Pose::Identity();
+    X.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), z).toRotationMatrix();
+    X.translation() = p;
+    return X;
+  }
+  static ObstacleDescription wall(Shape shape, const Pose& X_WP) {
+    ForceLaw law;
+    law.range = 0.02;
+    law.surface_force = 2.0;
+    law.damping_may_rise = true;
+    law.hold = HoldKind::hard;
+    return {"", std::move(shape), X_WP, law};
+  }
+  std::mt19937_64 random_;
+};
+
+/// A scene whose arm stands free among random walls; null where none was found.
+std::vector<ObstacleDescription> free_walls(const Setting& setting, RandomWalls& random,
+                                            std::string& kind) {
+  const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/" + setting.scene + ".yaml");
+  teleop::DescribedScene probe = described(setting, scene, true);
+  const Cell cell(std::move(probe.cell));
+  const BodyId tool = cell.layout(0).tool;
+  const Vec3 p = origin(cell.world().motion().bodies[static_cast<std::size_t>(tool.index)].X_WB);
+  for (int attempt = 0; attempt < 50; ++attempt) {
+    std::vector<ObstacleDescription> walls = random.around(p, kind);
+    for (std::size_t i = 0; i < walls.size(); ++i) walls[i].name = kind + std::to_string(i);
+    teleop::DescribedScene tried = described(setting, scene, true);
+    tried.cell.obstacles = walls;
+    try {
+      const Cell with(std::move(tried.cell));
+      return walls;
+    } catch (const SetupError&) {
+      continue;  // the arm starts in one of them
+    }
+  }
+  return {};
+}
+
+bench::Result attacks(const bench::Options& options) {
+  bench::Result result;
+  result.title = "Random walls, arms and hands";
+  result.columns = {"seed",
+                    "arm of",
+                    "walls",
+                    "rate [Hz]",
+                    "inertia of the arm / model",
+                    "delay of the drive [ticks]",
+                    "deepest [mm]",
+                    "told as lost [ticks]",
+                    "entered untold",
+                    "push withstood [N]"};
+  constexpr const char* arms[] = {"anderson_4x8", "plates", "six_axes", "two_arms"};
+  constexpr double rates[] = {200.0, 400.0, 1000.0, 4000.0};
+  const std::uint64_t count = options.quick ? 4 : 200;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t seed = options.seed * 1000 + i;
+    RandomWalls random(seed);
+    Setting setting;
+    setting.scene = arms[random.pick(4)];
+    setting.rate = rates[random.pick(4)];
+    setting.inertia = random.draw(0.6, 1.7);
+    setting.delay = random.pick(4);
+    std::string kind;
+    std::vector<ObstacleDescription> walls = free_walls(setting, random, kind);
+    if (walls.empty()) continue;
+    const auto ticks = static_cast<std::int64_t>((options.quick ? 2.0 : 8.0) * setting.rate);
+    const Outcome outcome = push(setting, ticks, seed, std::move(walls));
+    if (outcome.is_untold()) {
+      result.fail("seed " + std::to_string(seed), "a hard wall was entered without a word");
+    }
+    result.rows.push_back({seed, setting.scene, kind, setting.rate, rounded(setting.inertia, 0.01),
+                           setting.delay, rounded(1e3 * outcome.deepest, 1e-3), outcome.lost,
+                           outcome.is_untold(), std::round(outcome.withstood)});
+    bench::progress("attacks", i + 1, count);
+  }
+  result.notes = {
+      "The springs of the walls give 2 N at the surface. Plates stand on both sides of the tool; "
+      "hulls have 150 corners.",
+      "A row fails where a wall is entered by more than 0.1 mm, and no tick before said that it "
+      "would be."};
+  return result;
+}
+
+constexpr std::array<bench::Part, 3> all{
     bench::Part{"pushes", "how deep hands get into springs and hard walls", pushes},
-    bench::Part{"ways", "the same with what others do", ways}};
+    bench::Part{"ways", "the same with what others do", ways},
+    bench::Part{"attacks", "random walls, arms, delays and hands", attacks}};
 constexpr bench::Program program{"hard_walls",
                                  "How deep hands that push at random get into walls.",
                                  all,

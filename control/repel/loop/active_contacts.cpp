@@ -60,9 +60,9 @@ void gather_damping(std::span<const ActiveContact> contacts, BodyId tool, const 
   damping.setZero(joints, joints);
   network::Vec<network::any_size> h(joints);
   const auto add = [&](BodyId body, const Wrench& F) {
-    links.add_torques(body, F, h);
-    for (Eigen::Index i = 0; body == tool && i < joints; ++i) {
-      h.coeffRef(i) += power(F, column_of(jacobian, i));
+    const Jacobian* J = body == tool ? &jacobian : links.jacobian_of(body);
+    for (Eigen::Index i = 0; J != nullptr && i < joints; ++i) {
+      h.coeffRef(i) += power(F, column_of(*J, i));
     }
   };
   for (const ActiveContact& contact : contacts) {

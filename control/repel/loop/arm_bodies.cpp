@@ -23,6 +23,20 @@ Twist twist_through(const Jacobian& J, std::span<const double> v) noexcept {
   return V;
 }
 
+Twist bias_of(const Jacobian& J, std::span<const double> v) noexcept {
+  Twist bias;
+  Twist after;  // of the joints after this one
+  for (std::size_t i = v.size(); i-- > 0;) {
+    const Twist column = column_of(J, static_cast<Eigen::Index>(i));
+    const Vec3 turn = v[i] * column.angular;
+    bias.linear += turn.cross(Vec3(v[i] * column.linear + 2.0 * after.linear));
+    bias.angular += turn.cross(after.angular);
+    after.linear += v[i] * column.linear;
+    after.angular += turn;
+  }
+  return bias;
+}
+
 std::vector<LinkBody> joined(World& world, BodyId tool, std::vector<LinkBody> links) {
   world.join(tool, tool);
   for (const LinkBody& link : links) world.join(link.body, tool);
@@ -64,21 +78,11 @@ void ArmBodies::gather(const PairForces& forces, BodyId tool, const Jacobian& of
   }
 }
 
-bool ArmBodies::has(BodyId body) const noexcept {
-  for (const LinkBody& link : links_) {
-    if (link.body == body) return true;
-  }
-  return false;
-}
-
-void ArmBodies::add_torques(BodyId body, const Wrench& F,
-                            network::Vec<network::any_size>& torques) const noexcept {
+const Jacobian* ArmBodies::jacobian_of(BodyId body) const noexcept {
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i].body != body) continue;
-    for (int joint = 0; joint <= links_[i].link; ++joint) {
-      torques.coeffRef(joint) += power(F, column_of(jacobians_[i], joint));
-    }
+    if (links_[i].body == body) return &jacobians_[i];
   }
+  return nullptr;
 }
 
 double ArmBodies::carried(const PairForces& forces) const noexcept {

@@ -21,6 +21,12 @@ namespace repel {
 /// J v, the twist at the joint rates `v` [rad/s] or [m/s].
 [[nodiscard]] Twist twist_through(const Jacobian& J, std::span<const double> v) noexcept;
 
+/// (dJ/dt) v, the acceleration at constant joint rates `v` [rad/s] or [m/s]: linear [m/s^2] of the
+/// point that the linear rows of J are of, angular [rad/s^2]. From J alone: joint i turns or moves
+/// the columns of all joints after it (H. Bruyninckx, J. De Schutter, "Symbolic differentiation of
+/// the velocity mapping for a serial kinematic chain", 1996).
+[[nodiscard]] Twist bias_of(const Jacobian& J, std::span<const double> v) noexcept;
+
 /// Makes the tool and the links one arm of the world. @return `links`
 [[nodiscard]] std::vector<LinkBody> joined(World& world, BodyId tool, std::vector<LinkBody> links);
 
@@ -48,12 +54,8 @@ class ArmBodies {
   void gather(const PairForces& forces, BodyId tool, const Jacobian& of_tool,
               network::Vec<network::any_size>& torques) const noexcept;
 
-  /// The body is one of them.
-  [[nodiscard]] bool has(BodyId body) const noexcept;
-
-  /// Adds to `torques` [N m] those of the wrench `F` on `body`; nothing if it is not on the arm.
-  void add_torques(BodyId body, const Wrench& F,
-                   network::Vec<network::any_size>& torques) const noexcept;
+  /// That of the origin of the link which is this body; null: it is none of them.
+  [[nodiscard]] const Jacobian* jacobian_of(BodyId body) const noexcept;
 
   /// Power that the bodies which push the links deliver by their own motion [W].
   [[nodiscard]] double carried(const PairForces& forces) const noexcept;

@@ -34,8 +34,10 @@ void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& j
                       std::span<const double> untold) noexcept {
   BarrierRow row;
   row.h = zero_;
-  const bool has_a = add_torques(contact.a, contact.on_a, tool, jacobian, links, row.h);
-  const bool has_b = add_torques(contact.b, contact.on_b, tool, jacobian, links, row.h);
+  row.bending = contact.bending;
+  const auto of = [&](BodyId body) { return body == tool ? &jacobian : links.jacobian_of(body); };
+  const bool has_a = add_side(of(contact.a), contact.on_a, v, row);
+  const bool has_b = add_side(of(contact.b), contact.on_b, v, row);
   if (!has_a && !has_b) return;
   double own = 0.0;
   double faster = 0.0;
@@ -54,13 +56,14 @@ void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& j
   keep(row);
 }
 
-bool BarrierRows::add_torques(BodyId body, const Wrench& F, BodyId tool, const Jacobian& jacobian,
-                              const ArmBodies& links, BarrierRow::Vector& h) noexcept {
-  links.add_torques(body, F, h);
-  for (Eigen::Index i = 0; body == tool && i < h.size(); ++i) {
-    h.coeffRef(i) += power(F, column_of(jacobian, i));
+bool BarrierRows::add_side(const Jacobian* jacobian, const Wrench& F, std::span<const double> v,
+                           BarrierRow& row) noexcept {
+  if (jacobian == nullptr) return false;
+  for (Eigen::Index i = 0; i < row.h.size(); ++i) {
+    row.h.coeffRef(i) += power(F, column_of(*jacobian, i));
   }
-  return body == tool || links.has(body);
+  row.bending += power(F, bias_of(*jacobian, v));
+  return true;
 }
 
 void BarrierRows::add_joint(std::size_t joint, double q, double v, double untold) noexcept {

@@ -23,6 +23,7 @@ struct BarrierRow {
   double gap = 0.0;        ///< [m], [rad] less its margin
   double rate = 0.0;       ///< [m/s] of the gap, positive on retreat
   double others = 0.0;     ///< [m/s] the part of it that is not of this arm
+  double bending = 0.0;    ///< [m/s^2] of the rate at constant joint rates
   double top_speed = 0.0;  ///< [rad/s] of a joint, in place of what a gap allows; 0: none
   bool is_shared = false;  ///< another arm can close it too
 };
@@ -57,9 +58,9 @@ class BarrierRows {
            const ArmBodies& links, std::span<const double> v,
            std::span<const double> untold) noexcept;
 
-  // False if the body is not of this arm.
-  static bool add_torques(BodyId body, const Wrench& F, BodyId tool, const Jacobian& jacobian,
-                          const ArmBodies& links, BarrierRow::Vector& h) noexcept;
+  // Adds what the wrench `F` on a body does. False if the body is not of this arm.
+  static bool add_side(const Jacobian* jacobian, const Wrench& F, std::span<const double> v,
+                       BarrierRow& row) noexcept;
 
   // What stops a joint at the end of its range, or at its greatest speed, would leave the others to
   // the wall.

@@ -30,7 +30,8 @@ EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_de
   checked("mass uncertainty", options.mass_uncertainty, 1.0, 10.0, "");
   checked("recovery", options.recovery, 0.0, 10.0, "m/s");
   drift_.setZero(static_cast<Eigen::Index>(model.links.size()));
-  disturbance_ = last_rates_ = drift_;
+  disturbance_ = last_rates_ = doubt_ = drift_;
+  foreseen_.assign(sent_.size() - 1, drift_);
   for (Vector& sent : sent_) sent = drift_;
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
 }
@@ -50,13 +51,16 @@ Status EntryBarrier::limit(std::span<double> torques, std::span<const double> we
   pushed_ = {};
   if (!is_on()) return 0;
   observe(v, inertia);
-  if (rows_.all().empty()) return 0;
+  if (rows_.all().empty()) {
+    known_ = 0;
+    return 0;
+  }
   if (!begin(inertia)) return status::hold_lost;
   predict(v, inertia);
   for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
   if (!solver_.solve(torques, weight, lower, upper)) return 0;
   account(efforts);
-  for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.wanted(i);
+  for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.torque(i);
   return judge();
 }
 
@@ -111,26 +115,52 @@ void EntryBarrier::predict(std::span<const double> v, const ArmInertia& inertia)
     const double time = std::min(left, 1.0) * period_;
     for (Eigen::Index i = 0; i < drift_.size(); ++i) drift_.coeffRef(i) += time * sent.coeff(i);
   }
-  const double until = delay_ * period_ + step_;
+  Vector pushed = disturbance_;
   for (Eigen::Index i = 0; i < drift_.size(); ++i) {
-    drift_.coeffRef(i) += until * disturbance_.coeff(i);
+    drift_.coeffRef(i) += delay_ * period_ * disturbance_.coeff(i);
+    pushed.coeffRef(i) = step_ * disturbance_.coeff(i);
   }
   solver_.solve_mass(drift_);
-  for (std::size_t i = 0; i < v.size(); ++i) drift_.coeffRef(index(i)) -= v[i];
+  doubt(v, drift_);
+  solver_.solve_mass(pushed);
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    drift_.coeffRef(index(i)) += pushed.coeff(index(i)) - v[i];
+  }
+}
+
+void EntryBarrier::doubt(std::span<const double> v, const Vector& after) noexcept {
+  if (foreseen_.empty()) return;
+  ++known_;
+  const double kept = std::exp(-period_ / std::max(0.1, 2.0 * delay_ * period_));
+  const double scale = (delay_ + 1.0) / delay_;
+  Vector& foreseen = foreseen_[now_];
+  now_ = (now_ + 1) % foreseen_.size();
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const Eigen::Index k = index(i);
+    const double missed = scale * std::abs(v[i] - foreseen.coeff(k));
+    doubt_.coeffRef(k) = std::max(kept * doubt_.coeff(k), known_ > foreseen_.size() ? missed : 0.0);
+    foreseen.coeffRef(k) = after.coeff(k);
+  }
 }
 
 void EntryBarrier::add(const BarrierRow& row, Stopping& stop,
                        std::span<const double> weight) noexcept {
   double gained = 0.0;
-  for (Eigen::Index i = 0; i < drift_.size(); ++i) gained += row.h.coeff(i) * drift_.coeff(i);
-  LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained);
+  for (Eigen::Index i = 0; i < drift_.size(); ++i) {
+    gained += row.h.coeff(i) * drift_.coeff(i) - std::abs(row.h.coeff(i)) * doubt_.coeff(i);
+  }
+  const double late = delay_ * period_;  // [s] what cannot be changed any more
+  const double bending = std::min(0.0, row.bending);
+  LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained + (late + step_) * bending);
   if (bound == nullptr) return;
   stop = stopping(*bound, weight);
+  stop.surely = std::max(stop.surely + bending, 0.1 * stop.surely);
+  stop.at_most += bending;
   if (row.top_speed > 0.0) {
     bound->least_rate = -row.top_speed;
     return;
   }
-  double gap = row.gap + delay_ * period_ * std::min({row.rate, bound->rate, 0.0});
+  double gap = row.gap + late * std::min({row.rate, bound->rate, 0.0});
   if (row.is_shared) {
     // Either arm stops within its half; what the other exceeds it by is made up for.
     gap = gap > 0.0 ? 0.5 * gap : gap;

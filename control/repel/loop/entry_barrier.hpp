@@ -111,6 +111,9 @@ class EntryBarrier {
   // The change of the rates by friction and by the torques that were sent and have not acted yet.
   void predict(std::span<const double> v, const ArmInertia& inertia) noexcept;
 
+  // By how much the rates may be other than predicted, from how far they were of late.
+  void doubt(std::span<const double> v, const Vector& after) noexcept;
+
   void add(const BarrierRow& row, Stopping& stop, std::span<const double> weight) noexcept;
 
   [[nodiscard]] Stopping stopping(const LeastConstraint::Row& row,
@@ -141,6 +144,10 @@ class EntryBarrier {
   Vector drift_;        // [rad/s] by what cannot be changed any more
   Vector disturbance_;  // [N m]
   Vector last_rates_;
+  std::vector<Vector> foreseen_;  // ring of the rates predicted for the ticks of the delay [rad/s]
+  std::size_t now_ = 0;
+  std::size_t known_ = 0;
+  Vector doubt_;  // [rad/s]
   double force_ = 0.0;
   PairId pushed_;
   BarrierTotals totals_;

@@ -104,7 +104,22 @@ void HardContacts::push_back(HardContact contact, const Vec3& n, const Vec3& p_W
   contact.on_b = wrench_of_force(-n, p_W - origin(B.X_WB));
   contact.gap = gap;
   contact.rate = power(contact.on_a, A.V_WB) + power(contact.on_b, B.V_WB);
+  contact.bending = bending_of(n, p_W, A, B);
   contacts_[count_++] = contact;
+}
+
+double HardContacts::bending_of(const Vec3& n, const Vec3& p_W, const BodyState& A,
+                                const BodyState& B) noexcept {
+  const Vec3& of_a = A.V_WB.angular;
+  const Vec3& of_b = B.V_WB.angular;
+  const Vec3 to_a = of_a.cross(Vec3(of_a.cross(Vec3(p_W - origin(A.X_WB)))));
+  const Vec3 to_b = of_b.cross(Vec3(of_b.cross(Vec3(p_W - origin(B.X_WB)))));
+  // The normal turns with the body whose face it is of, or with both where edges cross. A direction
+  // that stands still bounds the gap as well, so the worst of these is safe.
+  const Vec3 slip = velocity(A, p_W) - velocity(B, p_W);
+  const double with_a = 2.0 * dot(Vec3(of_a.cross(n)), slip);
+  const double with_b = 2.0 * dot(Vec3(of_b.cross(n)), slip);
+  return dot(n, Vec3(to_a - to_b)) + std::min({0.0, with_a, with_b});
 }
 
 Vec3 HardContacts::across(const Vec3& n) noexcept {

@@ -25,6 +25,7 @@ struct HardContact {
   Wrench on_b;        ///< on B, likewise
   double gap = 0.0;   ///< [m] there, along that force; of the pair, not larger than its distance
   double rate = 0.0;  ///< [m/s] of the gap, positive on retreat
+  double bending = 0.0;          ///< [m/s^2] of the rate as both bodies go on with constant twists
   bool is_between_arms = false;  ///< two arms can close the gap
   std::int32_t at = 0;           ///< which point of the pair it is
 };
@@ -88,6 +89,10 @@ class HardContacts {
 
   /// A unit vector perpendicular to the unit `n`.
   [[nodiscard]] static Vec3 across(const Vec3& n) noexcept;
+  // [m/s^2] Of points that turn with their bodies, and of the normal that turns with either.
+  [[nodiscard]] static double bending_of(const Vec3& n, const Vec3& p_W, const BodyState& A,
+                                         const BodyState& B) noexcept;
+
   /// [m/s] of a point of the body.
   [[nodiscard]] static Vec3 velocity(const BodyState& body, const Vec3& p_W) noexcept;
   [[nodiscard]] const BodyState& state(BodyId body) const noexcept;

@@ -4,6 +4,7 @@
 /// bounds and change the acceleration of an arm as little as possible.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -17,9 +18,13 @@ namespace repel {
 ///
 ///     h_k' (v + step M^-1 (tau - weight)) >= least_k      lower <= tau <= upper
 ///
-/// (C. F. Gauss 1829). By their duals f_k >= 0, tau = asked + sum h_k f_k clamped to the limits: as
-/// if bodies without friction pushed with the forces f_k. Projected Gauss-Seidel; where the limits
-/// leave no solution, the result is what they allow. Allocates at construction only.
+/// (C. F. Gauss 1829). By their duals f_k >= 0, it is as if bodies without friction pushed with the
+/// forces f_k, and as if stops held what is at its limit. A dual active set (D. Goldfarb, A. Idnani
+/// 1983): the most violated bound is added until none is left, so the result is exact after about
+/// as many steps as there are bounds that bind.
+///
+/// Each bound of a rate gives way by `give` of its mobility. Where the limits leave no solution,
+/// the result misses the bounds by the least sum of squares. Allocates at construction only.
 class LeastConstraint {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -43,6 +48,7 @@ class LeastConstraint {
   [[nodiscard]] bool begin(Eigen::Index joints, const Entry& mass, double step) noexcept {
     used_ = 0;
     step_ = step;
+    for (Eigen::Index i = 0; i < joints * joints; ++i) M_.data()[i] = mass(i);
     return mass_.factor(joints, mass);
   }
   /// x = M^-1 x.
@@ -55,42 +61,62 @@ class LeastConstraint {
 
   /// @param asked [N m], may be beyond the limits @param weight [N m] the part of it that carries
   /// the weight; the spans must stay valid for the calls below
-  /// @return false if nothing has to be changed. Cost: up to 60 sweeps over the rows
+  /// @return false if nothing has to be changed. Cost: for each bound that binds, a look at all
+  /// rows and the solution of a triangular system
   [[nodiscard]] bool solve(std::span<const double> asked, std::span<const double> weight,
                            std::span<const double> lower, std::span<const double> upper) noexcept;
 
   /// [N m] tau of a joint.
   [[nodiscard]] double torque(std::size_t joint) const noexcept;
-  /// [N m] The same without the limits.
-  [[nodiscard]] double wanted(std::size_t joint) const noexcept;
   /// [m/s] The rate after the step.
   [[nodiscard]] double rate_after(const Row& row) const noexcept;
+  /// [m/s] By which the rate that is missed most is below its bound: 0 but for rounding where the
+  /// limits leave a solution and the steps sufficed.
+  [[nodiscard]] double missed() const noexcept;
   /// The share of the forces f that the limits let act, 0 to 1.
-  [[nodiscard]] double share() const noexcept { return share_within(lower_, upper_, 1.0); }
+  [[nodiscard]] double share() const noexcept;
   /// The share of the forces f that limits of +-`most` [N m] would let act, 0 to 1.
   [[nodiscard]] double share(std::span<const double> most) const noexcept;
 
  private:
-  static constexpr int sweeps = 60;
-  static constexpr double tolerance = 1e-6;  // [m/s]
+  static constexpr std::size_t most_active = 32;
+  static constexpr int most_steps = 64;
+  static constexpr double give = 1e-6;
+  static constexpr double tolerance = 1e-9;  // [m/s], and of the range of a torque
+
+  /// A bound that binds: of a row, or the limit of a joint.
+  struct Active {
+    std::size_t index = 0;  // of the row or joint
+    double side = 0.0;      // 0: a row, 1: the lower limit, -1: the upper one
+    double missing = 0.0;   // [m/s^2] or [N m] by which `asked` violates it
+    double force = 0.0;     // its dual
+  };
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
-  // @param sign of `lower` as it is given
-  [[nodiscard]] double share_within(std::span<const double> lower, std::span<const double> upper,
-                                    double sign) const noexcept;
+  // The bound that is violated most, by what its removal costs; false: none is.
+  [[nodiscard]] bool find_worst(Active& worst) const noexcept;
+  // Scalar product of the gradients of two bounds by the norm of M^-1.
+  [[nodiscard]] double product(const Active& x, const Active& y) const noexcept;
+  // Adds a row to the Cholesky factor of these products. False where it depends on the others.
+  [[nodiscard]] bool append(const Active& bound) noexcept;
+  void drop(std::size_t k) noexcept;
+  // The duals with which all active bounds hold; those that would pull are dropped.
+  void settle() noexcept;
+  // Torques and accelerations of the duals.
+  void apply() noexcept;
 
-  // Returns by how much the rate changes [m/s].
-  double correct(Row& row, double missing) noexcept;
-
-  // [N] More does nothing: it would bring all joints to their limits, with what the others push.
-  [[nodiscard]] double most_force(const Row& row) const noexcept;
-
+  ArmInertia::Matrix M_;
   network::dense::Factored mass_;
   double step_ = 0.0;  // [s]
   std::vector<Row> rows_;
   std::size_t used_ = 0;
-  Vector asked_, change_;
+  std::array<Active, most_active> active_{};
+  std::size_t count_ = 0;
+  std::array<std::array<double, most_active>, most_active> L_{};
+  Vector asked_, freely_;                           // [N m], [rad/s^2] by what is asked
+  Vector torques_, acceleration_;                   // [N m], [rad/s^2]
+  Vector change_;                                   // [N m] by the forces f alone
   std::span<const double> weight_, lower_, upper_;  // of the last `solve`
 };
 
