@@ -144,7 +144,7 @@ class HullFaces {
           lower(faces_.face_room_[one.face], std::sqrt(dot(between, between)) / 60.0);
           if (faces_.at(v).size() == 3 || other.next == one.previous) continue;
           const Vec3 edge = vertices[other.next] - vertices[v];
-          lower(faces_.vertex_room_[v], -0.25 * dot(n, Vec<double>(edge)) / edge.norm());
+          lower(faces_.vertex_room_[v], -0.25 * dot(n, Vec<double>(edge)) / norm(edge));
         }
       }
     }
