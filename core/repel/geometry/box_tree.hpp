@@ -92,7 +92,7 @@ class BoxTree {
         if (!leaf) open.push_back({link, quarter});
       }
     }
-    nodes_.shrink_to_fit();
+    nodes_ = std::vector<Node>(nodes_);  // a copy holds no more memory than it needs
   }
 
   /// Calls `found(index, distance)` for every box whose distance to `box` is at most `within` [m],

@@ -8,8 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <limits>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -27,24 +28,11 @@ class HullFaces {
   HullFaces(std::span<const Vec3> points, const std::vector<Facet>& facets,
             std::span<const Vec3> vertices) {
     if (facets.empty()) return;
-    using Triangle = std::array<std::uint32_t, 3>;
-    std::map<std::array<double, 3>, std::uint32_t> names;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      names[{vertices[i].x(), vertices[i].y(), vertices[i].z()}] = static_cast<std::uint32_t>(i);
-    }
-    std::vector<Triangle> triangles;
-    for (const Facet& facet : facets) {
-      Triangle triangle{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& p = points[facet.vertices[k]];
-        triangle[k] = names.at({p.x(), p.y(), p.z()});
-      }
-      triangles.push_back(triangle);
-    }
-    add_joined(facets, triangles, vertices);
-    faces_.normals_.shrink_to_fit();
-    faces_.first_.shrink_to_fit();
-    faces_.corners_.shrink_to_fit();
+    add_joined(facets, triangles_of(points, facets, vertices), vertices);
+    // Copies hold no more memory than they need.
+    faces_.normals_ = std::vector<Vec<double>>(faces_.normals_);
+    faces_.first_ = std::vector<std::uint32_t>(faces_.first_);
+    faces_.corners_ = std::vector<std::uint32_t>(faces_.corners_);
     index(vertices);
     find_room(vertices);
   }
@@ -55,16 +43,79 @@ class HullFaces {
   /// [rad] Facets that share an edge and differ by less are one face.
   static constexpr double flat = 1e-7;
 
-  /// Joins triangles across their common edges.
-  template <class Triangles>
-  void add_joined(const std::vector<Facet>& facets, const Triangles& triangles,
-                  std::span<const Vec3> vertices) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> beside;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
+  using Triangle = std::array<std::uint32_t, 3>;
+
+  /// The facets by the indices of their vertices; of several at one place, that of the last.
+  static std::vector<Triangle> triangles_of(std::span<const Vec3> points,
+                                            const std::vector<Facet>& facets,
+                                            std::span<const Vec3> vertices) {
+    const auto is_before = [](const Vec3& p, const Vec3& q) {
+      if (p[0] != q[0]) return p[0] < q[0];
+      return p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
+    };
+    std::vector<std::uint32_t> in_order(vertices.size());
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) in_order[i] = i;
+    std::sort(in_order.begin(), in_order.end(), [&](std::uint32_t i, std::uint32_t k) {
+      return is_same(vertices[i], vertices[k]) ? i > k : is_before(vertices[i], vertices[k]);
+    });
+    std::vector<Triangle> triangles(facets.size());
+    for (std::size_t t = 0; t < facets.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        beside[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
+        const Vec3& p = points[facets[t].vertices[k]];
+        const auto place =
+            std::partition_point(in_order.begin(), in_order.end(),
+                                 [&](std::uint32_t i) { return is_before(vertices[i], p); });
+        if (place == in_order.end() || !is_same(vertices[*place], p)) {
+          throw std::out_of_range("a facet has a vertex that is not among those of the hull");
+        }
+        triangles[t][k] = *place;
       }
     }
+    return triangles;
+  }
+
+  /// The corners of triangles, by vertex.
+  class Corners {
+   public:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    Corners(const std::vector<Triangle>& triangles, std::size_t vertices)
+        : first_(vertices + 1), corners_(3 * triangles.size()) {
+      for (const Triangle& triangle : triangles) {
+        for (const std::uint32_t vertex : triangle) ++first_[vertex + 1];
+      }
+      for (std::size_t i = 0; i < vertices; ++i) first_[i + 1] += first_[i];
+      std::vector<std::uint32_t> next = first_;
+      for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        const Triangle& triangle = triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+          corners_[next[triangle[k]]++] = {t, triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
+        }
+      }
+    }
+
+    /// The last triangle with the edge from one vertex to another, or none. Looks at the end where
+    /// fewer triangles meet, so that all edges of a hull take a time linear in its vertices.
+    [[nodiscard]] std::uint32_t beside(std::uint32_t from, std::uint32_t to) const {
+      const bool is_at_from = first_[from + 1] - first_[from] <= first_[to + 1] - first_[to];
+      const std::uint32_t vertex = is_at_from ? from : to;
+      for (std::uint32_t i = first_[vertex + 1]; i-- > first_[vertex];) {
+        if (is_at_from ? corners_[i].next == to : corners_[i].previous == from) {
+          return corners_[i].face;
+        }
+      }
+      return none;
+    }
+
+   private:
+    std::vector<std::uint32_t> first_;  ///< of the corners at each vertex
+    std::vector<Faces::Corner> corners_;
+  };
+
+  /// Joins triangles across their common edges.
+  void add_joined(const std::vector<Facet>& facets, const std::vector<Triangle>& triangles,
+                  std::span<const Vec3> vertices) {
+    const Corners corners(triangles, vertices.size());
     std::vector<char> is_done(triangles.size());
     for (std::size_t start = 0; start < triangles.size(); ++start) {
       if (is_done[start] != 0) continue;
@@ -76,11 +127,11 @@ class HullFaces {
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t from = triangles[joined[i]][k];
           around.push_back(from);
-          const auto other = beside.find({triangles[joined[i]][(k + 1) % 3], from});
-          if (other == beside.end() || is_done[other->second] != 0) continue;
-          if (norm(facets[other->second].n - n) > flat) continue;
-          is_done[other->second] = 1;
-          joined.push_back(other->second);
+          const std::uint32_t other = corners.beside(triangles[joined[i]][(k + 1) % 3], from);
+          if (other == Corners::none || is_done[other] != 0) continue;
+          if (norm(facets[other].n - n) > flat) continue;
+          is_done[other] = 1;
+          joined.push_back(other);
         }
       }
       add(n, std::move(around), vertices);

@@ -48,26 +48,42 @@ class Candidates {
   template <class Condition>
   void update(std::int32_t list, const Condition& condition) noexcept {
     const auto is_gone = [&](const Candidate& c) { return condition(c.slot); };
-    const auto added = all_.begin() + in_order_;
-    const auto begin = std::partition_point(all_.begin(), added,
-                                            [&](const Candidate& c) { return c.list < list; });
-    const auto end =
-        std::partition_point(begin, added, [&](const Candidate& c) { return c.list == list; });
+    const auto [begin, end] = places_of(list);
     const auto kept_end = std::remove_if(begin, end, is_gone);
-    const auto added_end = std::remove_if(added, all_.begin() + count_, is_gone);
-    count_ = in_order_ = static_cast<int>(added_end - all_.begin() - (end - kept_end));
-    // Behind the kept: a gap, the candidates of other lists, the added.
-    const auto others = std::rotate(end, added, added_end);
-    if (kept_end != end) std::move(end, added_end, kept_end);
-    merge(begin, kept_end, kept_end + (others - end));
+    const auto added_end = std::remove_if(added(), all_.begin() + count_, is_gone);
+    close(begin, kept_end, end, added_end);
   }
 
   void clear() noexcept { count_ = in_order_ = 0; }
 
  private:
   using Place = std::vector<Candidate>::iterator;
+  struct Places {
+    Place begin, end;
+  };
 
   [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+  /// Where those begin that are not in order.
+  [[nodiscard]] Place added() noexcept { return all_.begin() + in_order_; }
+
+  /// Those of a list that are in order.
+  [[nodiscard]] Places places_of(std::int32_t list) noexcept {
+    const auto begin = std::partition_point(all_.begin(), added(),
+                                            [&](const Candidate& c) { return c.list < list; });
+    const auto end =
+        std::partition_point(begin, added(), [&](const Candidate& c) { return c.list == list; });
+    return {begin, end};
+  }
+
+  /// Closes the gap [kept_end, end) in a list that begins at `begin`, and sorts in those added.
+  void close(Place begin, Place kept_end, Place end, Place added_end) noexcept {
+    const Place first_added = added();
+    count_ = in_order_ = static_cast<int>(added_end - all_.begin() - (end - kept_end));
+    // Behind the kept: a gap, the candidates of other lists, the added.
+    const auto others = std::rotate(end, first_added, added_end);
+    if (kept_end != end) std::move(end, added_end, kept_end);
+    merge(begin, kept_end, kept_end + (others - end));
+  }
 
   /// Sorts [middle, end), in any order, into [begin, middle), by insertion.
   static void merge(Place begin, Place middle, Place end) noexcept {

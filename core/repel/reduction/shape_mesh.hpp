@@ -72,7 +72,11 @@ inline std::vector<int> corners_in_plane(const std::vector<Vec3>& points, const 
   };
   std::vector<int> order(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return at(a) < at(b); });
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto [ax, ay] = at(a);
+    const auto [bx, by] = at(b);
+    return ax != bx ? ax < bx : ay < by;
+  });
   std::vector<int> corners;
   for (int side = 0; side < 2; ++side) {
     const std::size_t begin = corners.size();
