@@ -76,7 +76,7 @@ class BoxTree {
     std::iota(order.begin(), order.end(), 0);
     nodes_.reserve(boxes.size() / 2 + 1);
     if (boxes.empty()) return;
-    std::vector<Task> open{{add_node(), order}};
+    std::vector<Task> open{{add_node(), {order.data(), order.size()}}};
     while (!open.empty()) {
       const Task task = open.back();
       open.pop_back();

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -43,12 +42,10 @@ class HullFaces {
   /// [rad] Facets that share an edge and differ by less are one face.
   static constexpr double flat = 1e-7;
 
-  using Triangle = std::array<std::uint32_t, 3>;
-
-  /// The facets by the indices of their vertices; of several at one place, that of the last.
-  static std::vector<Triangle> triangles_of(std::span<const Vec3> points,
-                                            const std::vector<Facet>& facets,
-                                            std::span<const Vec3> vertices) {
+  /// The indices of the vertices of all facets; of several at one place, that of the last.
+  static std::vector<std::uint32_t> triangles_of(std::span<const Vec3> points,
+                                                 const std::vector<Facet>& facets,
+                                                 std::span<const Vec3> vertices) {
     const auto is_before = [](const Vec3& p, const Vec3& q) {
       if (p[0] != q[0]) return p[0] < q[0];
       return p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
@@ -58,36 +55,36 @@ class HullFaces {
     std::sort(in_order.begin(), in_order.end(), [&](std::uint32_t i, std::uint32_t k) {
       return is_same(vertices[i], vertices[k]) ? i > k : is_before(vertices[i], vertices[k]);
     });
-    std::vector<Triangle> triangles(facets.size());
-    for (std::size_t t = 0; t < facets.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& p = points[facets[t].vertices[k]];
+    std::vector<std::uint32_t> triangles;
+    triangles.reserve(3 * facets.size());
+    for (const Facet& facet : facets) {
+      for (const int i : facet.vertices) {
+        const Vec3& p = points[i];
         const auto place =
             std::partition_point(in_order.begin(), in_order.end(),
-                                 [&](std::uint32_t i) { return is_before(vertices[i], p); });
+                                 [&](std::uint32_t k) { return is_before(vertices[k], p); });
         if (place == in_order.end() || !is_same(vertices[*place], p)) {
           throw std::out_of_range("a facet has a vertex that is not among those of the hull");
         }
-        triangles[t][k] = *place;
+        triangles.push_back(*place);
       }
     }
     return triangles;
   }
 
-  /// The corners of triangles, by vertex.
+  /// The corners of triangles, by vertex. Triangle t has the vertices 3 t to 3 t + 2 of those
+  /// given.
   class Corners {
    public:
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-    Corners(const std::vector<Triangle>& triangles, std::size_t vertices)
-        : first_(vertices + 1), corners_(3 * triangles.size()) {
-      for (const Triangle& triangle : triangles) {
-        for (const std::uint32_t vertex : triangle) ++first_[vertex + 1];
-      }
+    Corners(const std::vector<std::uint32_t>& triangles, std::size_t vertices)
+        : first_(vertices + 1), corners_(triangles.size()) {
+      for (const std::uint32_t vertex : triangles) ++first_[vertex + 1];
       for (std::size_t i = 0; i < vertices; ++i) first_[i + 1] += first_[i];
       std::vector<std::uint32_t> next = first_;
-      for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        const Triangle& triangle = triangles[t];
+      for (std::uint32_t t = 0; 3 * t < triangles.size(); ++t) {
+        const std::uint32_t* const triangle = &triangles[3 * t];
         for (std::size_t k = 0; k < 3; ++k) {
           corners_[next[triangle[k]]++] = {t, triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
         }
@@ -113,11 +110,11 @@ class HullFaces {
   };
 
   /// Joins triangles across their common edges.
-  void add_joined(const std::vector<Facet>& facets, const std::vector<Triangle>& triangles,
+  void add_joined(const std::vector<Facet>& facets, const std::vector<std::uint32_t>& triangles,
                   std::span<const Vec3> vertices) {
     const Corners corners(triangles, vertices.size());
-    std::vector<char> is_done(triangles.size());
-    for (std::size_t start = 0; start < triangles.size(); ++start) {
+    std::vector<char> is_done(facets.size());
+    for (std::size_t start = 0; start < facets.size(); ++start) {
       if (is_done[start] != 0) continue;
       std::vector<std::size_t> joined{start};
       std::vector<std::uint32_t> around;
@@ -125,9 +122,9 @@ class HullFaces {
       const Vec3& n = facets[start].n;
       for (std::size_t i = 0; i < joined.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t from = triangles[joined[i]][k];
+          const std::uint32_t from = triangles[3 * joined[i] + k];
           around.push_back(from);
-          const std::uint32_t other = corners.beside(triangles[joined[i]][(k + 1) % 3], from);
+          const std::uint32_t other = corners.beside(triangles[3 * joined[i] + (k + 1) % 3], from);
           if (other == Corners::none || is_done[other] != 0) continue;
           if (norm(facets[other].n - n) > flat) continue;
           is_done[other] = 1;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <repel/base/ids.hpp>
@@ -33,8 +32,12 @@ class Candidates {
  public:
   explicit Candidates(int most) : all_(most) {}
 
-  [[nodiscard]] std::span<Candidate> all() noexcept { return {all_.data(), size()}; }
-  [[nodiscard]] std::span<const Candidate> all() const noexcept { return {all_.data(), size()}; }
+  [[nodiscard]] int count() const noexcept { return count_; }
+  [[nodiscard]] const Candidate& operator[](int i) const noexcept { return all_[i]; }
+  [[nodiscard]] Candidate* begin() noexcept { return all_.data(); }
+  [[nodiscard]] const Candidate* begin() const noexcept { return all_.data(); }
+  [[nodiscard]] Candidate* end() noexcept { return all_.data() + count_; }
+  [[nodiscard]] const Candidate* end() const noexcept { return all_.data() + count_; }
 
   /// Adds a pair, which is not in order before the next `update` of its list. Precondition: fewer
   /// than `most` are stored.
@@ -62,7 +65,6 @@ class Candidates {
     Place begin, end;
   };
 
-  [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
   /// Where those begin that are not in order.
   [[nodiscard]] Place added() noexcept { return all_.begin() + in_order_; }
 

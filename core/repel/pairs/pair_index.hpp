@@ -88,7 +88,7 @@ struct PairIndex {
   /// The trees of two bodies, by the parts they are around.
   struct TreesByPartners {
     std::vector<std::vector<std::int32_t>> partners;  ///< of each tree
-    std::vector<std::size_t> in_order;                ///< the trees, as `is_before` says
+    std::vector<std::int32_t> in_order;               ///< the trees, as `is_before` says
   };
 
   static std::vector<Entry> entries_of(const World& world) {
@@ -139,7 +139,7 @@ struct PairIndex {
     for (const BodyId body : {body_pair.a, body_pair.b}) {
       body_pair.is_loose |= world.motion().bodies[static_cast<std::size_t>(body.index)].is_loose;
     }
-    body_pair.tree = BoxTree(boxes);
+    body_pair.tree = BoxTree({boxes.data(), boxes.size()});
     body_pairs.push_back(std::move(body_pair));
   }
 
@@ -154,15 +154,15 @@ struct PairIndex {
     const auto first = static_cast<std::int32_t>(trees.size() - made.partners.size());
     const auto place = std::partition_point(
         made.in_order.begin(), made.in_order.end(),
-        [&](std::size_t tree) { return is_before(made.partners[tree], parts); });
+        [&](std::int32_t tree) { return is_before(made.partners[tree], parts); });
     if (place != made.in_order.end() && !is_before(parts, made.partners[*place])) {
-      return first + static_cast<std::int32_t>(*place);
+      return first + *place;
     }
     std::vector<Box> boxes;
     boxes.reserve(parts.size());
     for (const std::int32_t i : parts) boxes.push_back(boxes_[i]);
-    trees.emplace_back(boxes);
-    made.in_order.insert(place, made.partners.size());
+    trees.push_back(BoxTree({boxes.data(), boxes.size()}));
+    made.in_order.insert(place, static_cast<std::int32_t>(made.partners.size()));
     made.partners.push_back(std::move(parts));
     return static_cast<std::int32_t>(trees.size()) - 1;
   }

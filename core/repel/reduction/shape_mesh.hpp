@@ -130,7 +130,7 @@ inline std::vector<std::array<int, 3>> mesh_fan(const std::vector<Vec3>& points)
   const std::vector<Vec3> points =
       detail::mesh_outline(chosen.core, is_first ? chosen.depth : 0.0, is_first ? 48 : 24);
   TriangleMesh mesh;
-  const std::vector<Facet> facets = hull_facets(points);
+  const std::vector<Facet> facets = hull_facets({points.data(), points.size()});
   if (facets.empty()) return {points, detail::mesh_fan(points)};
   std::vector<int> index(points.size(), -1);
   for (const Facet& facet : facets) {

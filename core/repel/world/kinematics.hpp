@@ -173,7 +173,8 @@ class Kinematics final : public ArmKinematics {
       : X_WB_(arm.X_WB), X_LT_(arm.X_LT), X_WT_(arm.X_LT), gravity_W_(arm.gravity_W) {
     detail::require_usable(arm);
     for (const ArmLink& link : arm.links) bodies_.emplace_back(link);
-    place(std::vector<double>(bodies_.size(), 0.0));
+    std::vector<double> zeros(bodies_.size());
+    place({zeros.data(), zeros.size()});
   }
 
   /// The number of moving links.
