@@ -114,7 +114,7 @@ struct PlacedLink {
   Mat3 fixed, of_cosine, of_sine;
 
   // World axes, as of the last update:
-  Mat3 R = Mat3::Identity();
+  Mat3 R = Mat3::Zero();
   Vec3 p{0, 0, 0};       // [m] origin
   Vec3 axis{0, 0, 1};    // of the joint
   Vec3 centre{0, 0, 0};  // [m] of mass
