@@ -30,13 +30,12 @@ TEST(Candidates, StayInTheOrderOfTheirListsAndPairsWhateverComesAndGoes) {
       }
     }
     candidates.update(list, [&](std::int32_t slot) { return slot % 3 == gone; });
-    const auto all = candidates.all();
-    ASSERT_EQ(all.size(), truth.size()) << "seed " << seed;
-    std::size_t i = 0;
+    ASSERT_EQ(static_cast<std::size_t>(candidates.count()), truth.size()) << "seed " << seed;
+    const Candidate* next = candidates.begin();
     for (const auto& [place, slot] : truth) {
-      ASSERT_EQ(all[i].list, place.first);
-      ASSERT_EQ(all[i].pair.index, place.second);
-      ASSERT_EQ(all[i++].slot, slot);
+      ASSERT_EQ(next->list, place.first);
+      ASSERT_EQ(next->pair.index, place.second);
+      ASSERT_EQ(next++->slot, slot);
     }
     most = std::max(most, truth.size());
   }
@@ -54,8 +53,8 @@ TEST(Candidates, ConditionIsCalledOnceForEachOfTheList) {
     return true;
   });
   EXPECT_EQ(called, (std::vector<int>{0, 1, 2, 3}));
-  ASSERT_EQ(candidates.all().size(), 1U);
-  EXPECT_EQ(candidates.all()[0].slot, 7);
+  ASSERT_EQ(candidates.count(), 1);
+  EXPECT_EQ(candidates[0].slot, 7);
 }
 
 }  // namespace candidates_test

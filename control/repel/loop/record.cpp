@@ -2,6 +2,7 @@
 #include <repel/loop/record.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 #include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
@@ -21,6 +22,10 @@ void note_masters(const network::Network& network, TickRecord& record) noexcept 
     const bool is_first = handle->hand() == network::Hand::first;
     (is_first ? record.grip : record.second_grip) = network::to_wrench(handle->grip());
   }
+}
+
+Recorder::Recorder(std::size_t capacity) {
+  records_.reserve(capacity);
 }
 
 void Recorder::add(const TickRecord& record) noexcept {

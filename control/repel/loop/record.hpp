@@ -62,7 +62,7 @@ void note_masters(const network::Network& network, TickRecord& record) noexcept;
 class Recorder {
  public:
   /// Reserves the memory of `capacity` ticks.
-  explicit Recorder(std::size_t capacity) { records_.reserve(capacity); }
+  explicit Recorder(std::size_t capacity);
 
   /// Keeps a tick if there is room. Does not allocate.
   void add(const TickRecord& record) noexcept;

@@ -3,7 +3,6 @@
 /// A network of modules: solved once per tick, leaves to root and back.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -61,13 +60,9 @@ class Network {
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept;
 
   /// The modules, in the order of the plan.
-  [[nodiscard]] std::span<const Node> nodes() const noexcept {
-    return {nodes_.data(), nodes_.size()};
-  }
+  [[nodiscard]] const std::vector<Node>& nodes() const noexcept { return nodes_; }
   /// The connections; a Node names them by index.
-  [[nodiscard]] std::span<const Connection> connections() const noexcept {
-    return {connections_.data(), connections_.size()};
-  }
+  [[nodiscard]] const std::vector<Connection>& connections() const noexcept { return connections_; }
 
   /// The node of the first module of type `M`; null when there is none.
   template <class M>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/network/machinery/planner.hpp>
 
 namespace repel::network {
 

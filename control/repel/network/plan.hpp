@@ -9,11 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include <repel/network/machinery/planner.hpp>
 #include <repel/network/machinery/prediction.hpp>
 #include <repel/network/network.hpp>
 
 namespace repel::network {
+
+namespace detail {
+class Planner;
+}
 
 /// What the right port of a module is connected to: by default the next module of the plan. Only a
 /// junction can be connected to more than one; a module connected to none ends a branch.

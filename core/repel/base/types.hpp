@@ -181,6 +181,15 @@ template <std::same_as<Vec3> V>
   return zero[0] + zero[1] + zero[2] == 0.0;
 }
 
+/// True when every entry of `R` is finite.
+template <std::same_as<Mat3> M>
+[[nodiscard]] bool is_finite(const M& R) noexcept {
+  double zero = 0.0;
+  // NOLINTNEXTLINE(misc-redundant-expression)
+  for (int k = 0; k < 9; ++k) zero += R.data()[k] - R.data()[k];
+  return zero == 0.0;
+}
+
 /// True when the rotation of `X` is orthonormal within `tolerance` per entry and right-handed;
 /// false when an entry is NaN. Cost: 24 multiplications.
 [[nodiscard]] inline bool is_rigid(const Pose& X, double tolerance = 1e-9) noexcept {

@@ -56,7 +56,7 @@ class Passage {
     travel_ = travel;
     const double size = norm(spring_W_);
     if (size > largest) {
-      spring_W_ *= largest / size;
+      spring_W_ = largest / size * spring_W_;
       allowed -= size - largest;
     }
     const Vec3 lag_W = largest * gradient_W - spring_W_;

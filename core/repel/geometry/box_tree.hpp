@@ -76,7 +76,7 @@ class BoxTree {
     std::iota(order.begin(), order.end(), 0);
     nodes_.reserve(boxes.size() / 2 + 1);
     if (boxes.empty()) return;
-    std::vector<Task> open{{add_node(), order}};
+    std::vector<Task> open{{add_node(), {order.data(), order.size()}}};
     while (!open.empty()) {
       const Task task = open.back();
       open.pop_back();
@@ -92,7 +92,7 @@ class BoxTree {
         if (!leaf) open.push_back({link, quarter});
       }
     }
-    nodes_.shrink_to_fit();
+    nodes_ = std::vector<Node>(nodes_);  // a copy holds no more memory than it needs
   }
 
   /// Calls `found(index, distance)` for every box whose distance to `box` is at most `within` [m],

@@ -4,12 +4,12 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <limits>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -27,24 +27,11 @@ class HullFaces {
   HullFaces(std::span<const Vec3> points, const std::vector<Facet>& facets,
             std::span<const Vec3> vertices) {
     if (facets.empty()) return;
-    using Triangle = std::array<std::uint32_t, 3>;
-    std::map<std::array<double, 3>, std::uint32_t> names;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      names[{vertices[i].x(), vertices[i].y(), vertices[i].z()}] = static_cast<std::uint32_t>(i);
-    }
-    std::vector<Triangle> triangles;
-    for (const Facet& facet : facets) {
-      Triangle triangle{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& p = points[facet.vertices[k]];
-        triangle[k] = names.at({p.x(), p.y(), p.z()});
-      }
-      triangles.push_back(triangle);
-    }
-    add_joined(facets, triangles, vertices);
-    faces_.normals_.shrink_to_fit();
-    faces_.first_.shrink_to_fit();
-    faces_.corners_.shrink_to_fit();
+    add_joined(facets, triangles_of(points, facets, vertices), vertices);
+    // Copies hold no more memory than they need.
+    faces_.normals_ = std::vector<Vec<double>>(faces_.normals_);
+    faces_.first_ = std::vector<std::uint32_t>(faces_.first_);
+    faces_.corners_ = std::vector<std::uint32_t>(faces_.corners_);
     index(vertices);
     find_room(vertices);
   }
@@ -55,18 +42,79 @@ class HullFaces {
   /// [rad] Facets that share an edge and differ by less are one face.
   static constexpr double flat = 1e-7;
 
-  /// Joins triangles across their common edges.
-  template <class Triangles>
-  void add_joined(const std::vector<Facet>& facets, const Triangles& triangles,
-                  std::span<const Vec3> vertices) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> beside;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        beside[{triangles[t][k], triangles[t][(k + 1) % 3]}] = t;
+  /// The indices of the vertices of all facets; of several at one place, that of the last.
+  static std::vector<std::uint32_t> triangles_of(std::span<const Vec3> points,
+                                                 const std::vector<Facet>& facets,
+                                                 std::span<const Vec3> vertices) {
+    const auto is_before = [](const Vec3& p, const Vec3& q) {
+      if (p[0] != q[0]) return p[0] < q[0];
+      return p[1] != q[1] ? p[1] < q[1] : p[2] < q[2];
+    };
+    std::vector<std::uint32_t> in_order(vertices.size());
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) in_order[i] = i;
+    std::sort(in_order.begin(), in_order.end(), [&](std::uint32_t i, std::uint32_t k) {
+      return is_same(vertices[i], vertices[k]) ? i > k : is_before(vertices[i], vertices[k]);
+    });
+    std::vector<std::uint32_t> triangles;
+    triangles.reserve(3 * facets.size());
+    for (const Facet& facet : facets) {
+      for (const int i : facet.vertices) {
+        const Vec3& p = points[i];
+        const auto place =
+            std::partition_point(in_order.begin(), in_order.end(),
+                                 [&](std::uint32_t k) { return is_before(vertices[k], p); });
+        if (place == in_order.end() || !is_same(vertices[*place], p)) {
+          throw std::out_of_range("a facet has a vertex that is not among those of the hull");
+        }
+        triangles.push_back(*place);
       }
     }
-    std::vector<char> is_done(triangles.size());
-    for (std::size_t start = 0; start < triangles.size(); ++start) {
+    return triangles;
+  }
+
+  /// The corners of triangles, by vertex. Triangle t has the vertices 3 t to 3 t + 2 of those
+  /// given.
+  class Corners {
+   public:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    Corners(const std::vector<std::uint32_t>& triangles, std::size_t vertices)
+        : first_(vertices + 1), corners_(triangles.size()) {
+      for (const std::uint32_t vertex : triangles) ++first_[vertex + 1];
+      for (std::size_t i = 0; i < vertices; ++i) first_[i + 1] += first_[i];
+      std::vector<std::uint32_t> next = first_;
+      for (std::uint32_t t = 0; 3 * t < triangles.size(); ++t) {
+        const std::uint32_t* const triangle = &triangles[3 * t];
+        for (std::size_t k = 0; k < 3; ++k) {
+          corners_[next[triangle[k]]++] = {t, triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
+        }
+      }
+    }
+
+    /// The last triangle with the edge from one vertex to another, or none. Looks at the end where
+    /// fewer triangles meet, so that all edges of a hull take a time linear in its vertices.
+    [[nodiscard]] std::uint32_t beside(std::uint32_t from, std::uint32_t to) const {
+      const bool is_at_from = first_[from + 1] - first_[from] <= first_[to + 1] - first_[to];
+      const std::uint32_t vertex = is_at_from ? from : to;
+      for (std::uint32_t i = first_[vertex + 1]; i-- > first_[vertex];) {
+        if (is_at_from ? corners_[i].next == to : corners_[i].previous == from) {
+          return corners_[i].face;
+        }
+      }
+      return none;
+    }
+
+   private:
+    std::vector<std::uint32_t> first_;  ///< of the corners at each vertex
+    std::vector<Faces::Corner> corners_;
+  };
+
+  /// Joins triangles across their common edges.
+  void add_joined(const std::vector<Facet>& facets, const std::vector<std::uint32_t>& triangles,
+                  std::span<const Vec3> vertices) {
+    const Corners corners(triangles, vertices.size());
+    std::vector<char> is_done(facets.size());
+    for (std::size_t start = 0; start < facets.size(); ++start) {
       if (is_done[start] != 0) continue;
       std::vector<std::size_t> joined{start};
       std::vector<std::uint32_t> around;
@@ -74,13 +122,13 @@ class HullFaces {
       const Vec3& n = facets[start].n;
       for (std::size_t i = 0; i < joined.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t from = triangles[joined[i]][k];
+          const std::uint32_t from = triangles[3 * joined[i] + k];
           around.push_back(from);
-          const auto other = beside.find({triangles[joined[i]][(k + 1) % 3], from});
-          if (other == beside.end() || is_done[other->second] != 0) continue;
-          if (norm(facets[other->second].n - n) > flat) continue;
-          is_done[other->second] = 1;
-          joined.push_back(other->second);
+          const std::uint32_t other = corners.beside(triangles[3 * joined[i] + (k + 1) % 3], from);
+          if (other == Corners::none || is_done[other] != 0) continue;
+          if (norm(facets[other].n - n) > flat) continue;
+          is_done[other] = 1;
+          joined.push_back(other);
         }
       }
       add(n, std::move(around), vertices);
@@ -144,7 +192,7 @@ class HullFaces {
           lower(faces_.face_room_[one.face], std::sqrt(dot(between, between)) / 60.0);
           if (faces_.at(v).size() == 3 || other.next == one.previous) continue;
           const Vec3 edge = vertices[other.next] - vertices[v];
-          lower(faces_.vertex_room_[v], -0.25 * dot(n, Vec<double>(edge)) / edge.norm());
+          lower(faces_.vertex_room_[v], -0.25 * dot(n, Vec<double>(edge)) / norm(edge));
         }
       }
     }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <repel/base/ids.hpp>
@@ -33,8 +32,12 @@ class Candidates {
  public:
   explicit Candidates(int most) : all_(most) {}
 
-  [[nodiscard]] std::span<Candidate> all() noexcept { return {all_.data(), size()}; }
-  [[nodiscard]] std::span<const Candidate> all() const noexcept { return {all_.data(), size()}; }
+  [[nodiscard]] int count() const noexcept { return count_; }
+  [[nodiscard]] const Candidate& operator[](int i) const noexcept { return all_[i]; }
+  [[nodiscard]] Candidate* begin() noexcept { return all_.data(); }
+  [[nodiscard]] const Candidate* begin() const noexcept { return all_.data(); }
+  [[nodiscard]] Candidate* end() noexcept { return all_.data() + count_; }
+  [[nodiscard]] const Candidate* end() const noexcept { return all_.data() + count_; }
 
   /// Adds a pair, which is not in order before the next `update` of its list. Precondition: fewer
   /// than `most` are stored.
@@ -48,26 +51,41 @@ class Candidates {
   template <class Condition>
   void update(std::int32_t list, const Condition& condition) noexcept {
     const auto is_gone = [&](const Candidate& c) { return condition(c.slot); };
-    const auto added = all_.begin() + in_order_;
-    const auto begin = std::partition_point(all_.begin(), added,
-                                            [&](const Candidate& c) { return c.list < list; });
-    const auto end =
-        std::partition_point(begin, added, [&](const Candidate& c) { return c.list == list; });
+    const auto [begin, end] = places_of(list);
     const auto kept_end = std::remove_if(begin, end, is_gone);
-    const auto added_end = std::remove_if(added, all_.begin() + count_, is_gone);
-    count_ = in_order_ = static_cast<int>(added_end - all_.begin() - (end - kept_end));
-    // Behind the kept: a gap, the candidates of other lists, the added.
-    const auto others = std::rotate(end, added, added_end);
-    if (kept_end != end) std::move(end, added_end, kept_end);
-    merge(begin, kept_end, kept_end + (others - end));
+    const auto added_end = std::remove_if(added(), all_.begin() + count_, is_gone);
+    close(begin, kept_end, end, added_end);
   }
 
   void clear() noexcept { count_ = in_order_ = 0; }
 
  private:
   using Place = std::vector<Candidate>::iterator;
+  struct Places {
+    Place begin, end;
+  };
 
-  [[nodiscard]] std::size_t size() const noexcept { return static_cast<std::size_t>(count_); }
+  /// Where those begin that are not in order.
+  [[nodiscard]] Place added() noexcept { return all_.begin() + in_order_; }
+
+  /// Those of a list that are in order.
+  [[nodiscard]] Places places_of(std::int32_t list) noexcept {
+    const auto begin = std::partition_point(all_.begin(), added(),
+                                            [&](const Candidate& c) { return c.list < list; });
+    const auto end =
+        std::partition_point(begin, added(), [&](const Candidate& c) { return c.list == list; });
+    return {begin, end};
+  }
+
+  /// Closes the gap [kept_end, end) in a list that begins at `begin`, and sorts in those added.
+  void close(Place begin, Place kept_end, Place end, Place added_end) noexcept {
+    const Place first_added = added();
+    count_ = in_order_ = static_cast<int>(added_end - all_.begin() - (end - kept_end));
+    // Behind the kept: a gap, the candidates of other lists, the added.
+    const auto others = std::rotate(end, first_added, added_end);
+    if (kept_end != end) std::move(end, added_end, kept_end);
+    merge(begin, kept_end, kept_end + (others - end));
+  }
 
   /// Sorts [middle, end), in any order, into [begin, middle), by insertion.
   static void merge(Place begin, Place middle, Place end) noexcept {

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
-#include <map>
-#include <tuple>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -81,13 +81,15 @@ struct PairIndex {
  private:
   struct Entry {
     std::int32_t a, b, part_a, part_b, pair;
-    friend bool operator<(const Entry& e, const Entry& f) {
-      return std::tie(e.a, e.b, e.part_a, e.part_b, e.pair) <
-             std::tie(f.a, f.b, f.part_a, f.part_b, f.pair);
-    }
+    friend std::strong_ordering operator<=>(const Entry& e, const Entry& f) = default;
     [[nodiscard]] Entry swapped() const { return {b, a, part_b, part_a, pair}; }
   };
   using Place = std::vector<Entry>::iterator;
+  /// The trees of two bodies, by the parts they are around.
+  struct TreesByPartners {
+    std::vector<std::vector<std::int32_t>> partners;  ///< of each tree
+    std::vector<std::int32_t> in_order;               ///< the trees, as `is_before` says
+  };
 
   static std::vector<Entry> entries_of(const World& world) {
     std::vector<Entry> entries;
@@ -118,7 +120,7 @@ struct PairIndex {
     body_pair.b = {first->b};
     body_pair.first = static_cast<std::int32_t>(lists.size());
     std::vector<Box> boxes;
-    std::map<std::vector<std::int32_t>, std::int32_t> tree_of;
+    TreesByPartners trees_made;
     while (first != end) {
       PairList list{boxes_[first->part_a], 0.0, 0, static_cast<std::int32_t>(pairs.size())};
       std::vector<std::int32_t> partners;
@@ -128,10 +130,7 @@ struct PairIndex {
         body_pair.partners.extend(boxes_[first->part_b]);
         pairs.push_back({first->pair});
       }
-      const auto [tree, is_new] =
-          tree_of.try_emplace(std::move(partners), static_cast<std::int32_t>(trees.size()));
-      if (is_new) trees.push_back(tree_around(tree->first));
-      list.tree = tree->second;
+      list.tree = tree_around(std::move(partners), trees_made);
       lists.push_back(list);
       boxes.push_back(list.box);
       body_pair.range = std::max(body_pair.range, list.range);
@@ -140,15 +139,32 @@ struct PairIndex {
     for (const BodyId body : {body_pair.a, body_pair.b}) {
       body_pair.is_loose |= world.motion().bodies[static_cast<std::size_t>(body.index)].is_loose;
     }
-    body_pair.tree = BoxTree(boxes);
+    body_pair.tree = BoxTree({boxes.data(), boxes.size()});
     body_pairs.push_back(std::move(body_pair));
   }
 
-  [[nodiscard]] BoxTree tree_around(const std::vector<std::int32_t>& parts) const {
+  /// Any order that tells lists of parts apart.
+  static bool is_before(const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b) {
+    if (a.size() != b.size()) return a.size() < b.size();
+    return std::memcmp(a.data(), b.data(), a.size() * sizeof(std::int32_t)) < 0;
+  }
+
+  /// The index of the tree around these parts, which is built unless it is among those `made`.
+  std::int32_t tree_around(std::vector<std::int32_t> parts, TreesByPartners& made) {
+    const auto first = static_cast<std::int32_t>(trees.size() - made.partners.size());
+    const auto place = std::partition_point(
+        made.in_order.begin(), made.in_order.end(),
+        [&](std::int32_t tree) { return is_before(made.partners[tree], parts); });
+    if (place != made.in_order.end() && !is_before(parts, made.partners[*place])) {
+      return first + *place;
+    }
     std::vector<Box> boxes;
     boxes.reserve(parts.size());
     for (const std::int32_t i : parts) boxes.push_back(boxes_[i]);
-    return BoxTree(boxes);
+    trees.push_back(BoxTree({boxes.data(), boxes.size()}));
+    made.in_order.insert(place, static_cast<std::int32_t>(made.partners.size()));
+    made.partners.push_back(std::move(parts));
+    return static_cast<std::int32_t>(trees.size()) - 1;
   }
 
   double lookahead_ = 0.0;  ///< [m]

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -89,7 +88,7 @@ class PairSet {
   /// Calls see(NearPair) for each pair that was near at the tick of that motion.
   template <class See>
   void for_each_near(const Motion& motion, const See& see) const noexcept {
-    for (const Candidate& candidate : candidates_.all()) {
+    for (const Candidate& candidate : candidates_) {
       const auto near = lanes_.near_pair(candidate.slot, motion);
       if (near) see(*near);
     }
@@ -97,7 +96,7 @@ class PairSet {
   /// Calls see(NearPair, NearAnswer) for each of these.
   template <class See>
   void for_each_answer(const Motion& motion, const See& see) const noexcept {
-    for (const Candidate& candidate : candidates_.all()) {
+    for (const Candidate& candidate : candidates_) {
       const auto near = lanes_.near_pair(candidate.slot, motion);
       if (near) see(*near, lanes_.near_answer(candidate.slot, motion));
     }
@@ -108,7 +107,7 @@ class PairSet {
   [[nodiscard]] PairMemory& memory() noexcept { return singles_.memory(); }
 
   /// The k-th of the due candidates.
-  [[nodiscard]] const Candidate& due(int k) const noexcept { return candidates_.all()[due_[k]]; }
+  [[nodiscard]] const Candidate& due(int k) const noexcept { return candidates_[due_[k]]; }
 
   /// Calls f(slot) for the due pairs that were found near. After `evaluate`.
   template <class F>
@@ -271,7 +270,7 @@ inline void PairSet::forget(const PartPoses& poses) noexcept {
   skip_ticks();
   if (all_near_) return;
   lanes_.remove_all(poses);
-  for (const Candidate& candidate : candidates_.all()) singles_.remove_from_list(candidate.slot);
+  for (const Candidate& candidate : candidates_) singles_.remove_from_list(candidate.slot);
   candidates_.clear();
 }
 
@@ -294,17 +293,17 @@ inline PairExtremes PairSet::extremes_of(PairId id) const noexcept {
 
 inline void PairSet::find_due(const Motion& motion) noexcept {
   due_count_ = 0;
-  const std::span<Candidate> all = candidates_.all();
+  Candidate* const all = candidates_.begin();
   // Every pair in a lane is a candidate: if there are no other candidates, skip the scan.
-  if (all.size() == static_cast<std::size_t>(lanes_.count())) return;
+  if (candidates_.count() == lanes_.count()) return;
   std::int32_t list = PairMemory::none;
   double travel = 0.0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (std::int32_t i = 0; i < candidates_.count(); ++i) {
     if (all[i].list != list) {
       list = all[i].list;
       travel = singles_.travel(all[i].slot, motion);
     }
-    due_[due_count_] = static_cast<std::int32_t>(i);
+    due_[due_count_] = i;
     due_count_ += travel < all[i].due_at ? 0 : 1;
   }
   const int asked = std::exchange(due_count_, 0);

@@ -144,11 +144,18 @@ class Shape {
   static constexpr std::size_t counters = 4 * sizeof(void*);
 
   Shape(Ladder ladder, Planes planes, const ReductionOptions& reduction, double radius = 0.0) {
-    ladder.shrink_to_fit();
     radius = std::max(radius, ladder.back().depth);
     // make_shared would add a tenth of the time that all of Eigen takes to compile.
-    data_.reset(new Data{std::move(ladder), std::move(planes), reduction, radius});
+    data_.reset(new Data{without_spare(ladder), std::move(planes), reduction, radius});
     first_ = data_->ladder.data();
+  }
+
+  /// Moves the levels to where they take no more memory than they need.
+  static Ladder without_spare(Ladder& ladder) {
+    Ladder moved;
+    moved.reserve(ladder.size());
+    for (Level& level : ladder) moved.push_back(std::move(level));
+    return moved;
   }
 
   template <class Options>

@@ -36,7 +36,7 @@ inline std::vector<Vec3> mesh_directions(int turns) {
 }
 
 inline void add_once(std::vector<Vec3>& points, const Vec3& p) {
-  const auto is_same = [&](const Vec3& q) { return (p - q).norm() < 1e-9; };
+  const auto is_same = [&](const Vec3& q) { return norm(p - q) < 1e-9; };
   if (std::none_of(points.begin(), points.end(), is_same)) points.push_back(p);
 }
 
@@ -62,7 +62,7 @@ inline std::vector<int> corners_in_plane(const std::vector<Vec3>& points, const 
                                          const Vec3& y) {
   const auto at = [&](int i) {
     const Vec3& p = points[static_cast<std::size_t>(i)];
-    return std::pair(x.dot(p), y.dot(p));
+    return std::pair(dot(x, p), dot(y, p));
   };
   const auto turns_left = [&](int a, int b, int c) {
     const auto [ax, ay] = at(a);
@@ -72,7 +72,11 @@ inline std::vector<int> corners_in_plane(const std::vector<Vec3>& points, const 
   };
   std::vector<int> order(points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return at(a) < at(b); });
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto [ax, ay] = at(a);
+    const auto [bx, by] = at(b);
+    return ax != bx ? ax < bx : ay < by;
+  });
   std::vector<int> corners;
   for (int side = 0; side < 2; ++side) {
     const std::size_t begin = corners.size();
@@ -90,21 +94,21 @@ inline std::vector<int> corners_in_plane(const std::vector<Vec3>& points, const 
 
 /// Both sides of a planar set, as triangle fans; empty for a line.
 inline std::vector<std::array<int, 3>> mesh_fan(const std::vector<Vec3>& points) {
-  Vec3 middle = Vec3::Zero();
+  Vec3 middle(0, 0, 0);
   for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
-  Vec3 normal = Vec3::Zero();
-  Vec3 x = Vec3::Zero();
+  Vec3 normal(0, 0, 0);
+  Vec3 x(0, 0, 0);
   for (const Vec3& p : points) {
     for (const Vec3& q : points) {
       const Vec3 n = (p - middle).cross(q - middle);
-      if (n.norm() <= normal.norm()) continue;
+      if (norm(n) <= norm(normal)) continue;
       normal = n;
-      x = (p - middle).normalized();
+      x = normalized(p - middle);
     }
   }
-  const double size = std::sqrt(normal.norm());
+  const double size = std::sqrt(norm(normal));
   if (points.size() < 3 || size < 1e-6) return {};
-  const std::vector<int> corners = corners_in_plane(points, x, normal.normalized().cross(x));
+  const std::vector<int> corners = corners_in_plane(points, x, normalized(normal).cross(x));
   std::vector<std::array<int, 3>> triangles;
   for (std::size_t i = 2; i < corners.size(); ++i) {
     triangles.push_back({corners[0], corners[i - 1], corners[i]});
@@ -126,7 +130,7 @@ inline std::vector<std::array<int, 3>> mesh_fan(const std::vector<Vec3>& points)
   const std::vector<Vec3> points =
       detail::mesh_outline(chosen.core, is_first ? chosen.depth : 0.0, is_first ? 48 : 24);
   TriangleMesh mesh;
-  const std::vector<Facet> facets = hull_facets(points);
+  const std::vector<Facet> facets = hull_facets({points.data(), points.size()});
   if (facets.empty()) return {points, detail::mesh_fan(points)};
   std::vector<int> index(points.size(), -1);
   for (const Facet& facet : facets) {

@@ -23,11 +23,11 @@ namespace repel {
 namespace detail {
 
 inline void require_usable(const ArmLink& link) {
-  const bool finite = is_finite(link.X_PJ) && is_finite(link.p_LC) && link.I_C_L.allFinite() &&
+  const bool finite = is_finite(link.X_PJ) && is_finite(link.p_LC) && is_finite(link.I_C_L) &&
                       link.mass - link.mass == 0.0;
   if (!finite) throw SetupError("link '" + link.name + "' holds a value that is not finite");
   const std::string axis_length = "length of the axis of joint '" + link.joint_name + "'";
-  checked(axis_length, link.axis_J.norm(), 1.0 - 1e-9, 1.0 + 1e-9, "");
+  checked(axis_length, norm(link.axis_J), 1.0 - 1e-9, 1.0 + 1e-9, "");
 }
 
 /// @throws SetupError if the arm has no link, a value is not finite or an axis is not of unit
@@ -48,6 +48,13 @@ inline Mat3 vector_product_matrix(const Vec3& u) {
   Mat3 U;
   U << 0.0, -u[2], u[1], u[2], 0.0, -u[0], -u[1], u[0], 0.0;
   return U;
+}
+
+/// a b^T
+inline Mat3 outer_product(const Vec3& a, const Vec3& b) noexcept {
+  Mat3 product;
+  for (int k = 0; k < 9; ++k) product.data()[k] = a[k % 3] * b[k / 3];
+  return product;
 }
 
 inline Pose pose_with(const Mat3& R, const Vec3& p) noexcept {
@@ -71,8 +78,8 @@ struct PlacedLink {
         of_sine(Mat3::Zero()) {
     if (!turns) return;
     const Mat3 R_PJ = fixed;
-    fixed = R_PJ * Mat3(link.axis_J * link.axis_J.transpose());
-    of_cosine = R_PJ - fixed;
+    fixed = R_PJ * outer_product(link.axis_J, link.axis_J);
+    for (int k = 0; k < 9; ++k) of_cosine.data()[k] = R_PJ.data()[k] - fixed.data()[k];
     of_sine = R_PJ * vector_product_matrix(link.axis_J);
   }
 
@@ -107,7 +114,7 @@ struct PlacedLink {
   Mat3 fixed, of_cosine, of_sine;
 
   // World axes, as of the last update:
-  Mat3 R = Mat3::Identity();
+  Mat3 R = Mat3::Zero();
   Vec3 p{0, 0, 0};       // [m] origin
   Vec3 axis{0, 0, 1};    // of the joint
   Vec3 centre{0, 0, 0};  // [m] of mass
@@ -166,7 +173,8 @@ class Kinematics final : public ArmKinematics {
       : X_WB_(arm.X_WB), X_LT_(arm.X_LT), X_WT_(arm.X_LT), gravity_W_(arm.gravity_W) {
     detail::require_usable(arm);
     for (const ArmLink& link : arm.links) bodies_.emplace_back(link);
-    place(std::vector<double>(bodies_.size(), 0.0));
+    std::vector<double> zeros(bodies_.size());
+    place({zeros.data(), zeros.size()});
   }
 
   /// The number of moving links.

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include <repel/base/ids.hpp>
@@ -82,9 +81,7 @@ class LooseParts {
     all_.push_back({.part = part, .body = body, .room = room});
   }
 
-  [[nodiscard]] std::span<const LoosePart> all() const noexcept {
-    return {all_.data(), all_.size()};
-  }
+  [[nodiscard]] const std::vector<LoosePart>& all() const noexcept { return all_; }
   /// Null for a part that is none of these.
   [[nodiscard]] LoosePart* find(PartId id) noexcept {
     const auto is_before = [](const LoosePart& loose, std::int32_t i) {

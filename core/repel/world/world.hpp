@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -153,7 +152,9 @@ class World {
   /// a number is not finite, or the state of the part does not allow it. Cost: below 1 us; of
   /// `refit`, 20 ns more for each pair. `schedule/world_changes.hpp` takes changes from other
   /// threads.
-  [[nodiscard]] std::span<const detail::LoosePart> loose() const noexcept { return loose_.all(); }
+  [[nodiscard]] const std::vector<detail::LoosePart>& loose() const noexcept {
+    return loose_.all();
+  }
   /// The part is there, if only in part: some force on it may act. Always true of other parts.
   [[nodiscard]] bool is_there(PartId id) const noexcept {
     const BodyState& body = motion_.bodies[part(id).body.index];
