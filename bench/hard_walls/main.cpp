@@ -394,28 +394,38 @@ bench::Result ways(const bench::Options& options) {
   return result;
 }
 
+/// A shape and where it is.
+struct Posed {
+  Shape shape;
+  Pose X_W;
+  /// [m] How far it reaches along the unit `d`, from the origin of the world.
+  [[nodiscard]] double extent(const Vec3& d) const {
+    const Level& level = shape.level(0);
+    return d.dot(X_W * to_vec3(level.core.support(rotate_transposed(X_W, Vec<double>(d))).p)) +
+           level.depth;
+  }
+};
+
 /// Walls of a random kind around a tool, for one arm to be pushed into.
 class RandomWalls {
  public:
   explicit RandomWalls(std::uint64_t seed) : random_(seed) {}
 
-  std::vector<ObstacleDescription> around(const Vec3& p, std::string& kind) {
-    constexpr const char* kinds[] = {"boxes", "hulls", "plates", "blades", "pegs"};
+  /// @param tool its parts, where it starts @param kind set to the name of the kind
+  std::vector<ObstacleDescription> around(std::span<const Posed> tool, std::string& kind) {
+    constexpr const char* kinds[] = {"boxes", "hulls", "slot", "blades", "pegs"};
     const auto which = static_cast<std::size_t>(pick(5));
     kind = kinds[which];
     std::vector<ObstacleDescription> walls;
-    if (which == 2) {  // a slot that the tool is in
-      const Vec3 n = direction();
-      const Vec3 half(0.2, 0.2, 0.01);
-      const double room = 0.09 + 0.05 * draw(0.0, 1.0);
+    if (which == 2) {  // that the tool is in
+      const Vec3 d = direction();
       for (const double side : {1.0, -1.0}) {
-        walls.push_back(wall(Shape::box(half), turned_to(n, p + side * (room + 0.01) * n)));
+        walls.push_back(before(tool, Shape::box({0.2, 0.2, 0.01}), side * d, d, draw(1e-3, 6e-3)));
       }
       return walls;
     }
     for (int i = 0; i < 4; ++i) {
-      const Vec3 at = p + (0.12 + 0.25 * draw(0.0, 1.0)) * direction();
-      walls.push_back(wall(shape(which), turned_to(direction(), at)));
+      walls.push_back(before(tool, shape(which), direction(), direction(), draw(5e-3, 0.1)));
     }
     return walls;
   }
@@ -445,19 +455,25 @@ class RandomWalls {
         return Shape::cylinder(draw(0.003, 0.02), draw(0.05, 0.2));
     }
   }
-  static Pose turned_to(const Vec3& z, const Vec3& p) {
-    Pose X = Pose::Identity();
-    X.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), z).toRotationMatrix();
-    X.translation() = p;
-    return X;
-  }
-  static ObstacleDescription wall(Shape shape, const Pose& X_WP) {
+  // A wall with its z axis along `z`, so far from all parts of the tool along `d`.
+  static ObstacleDescription before(std::span<const Posed> tool, Shape shape, const Vec3& d,
+                                    const Vec3& z, double gap) {
+    Posed wall{shape, Pose::Identity()};
+    wall.X_W.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3(0, 0, 1), z).toRotationMatrix();
+    Vec3 middle(0, 0, 0);
+    double most = -1e9;
+    for (const Posed& part : tool) {
+      most = std::max(most, part.extent(d));
+      middle += origin(part.X_W) / static_cast<double>(tool.size());
+    }
+    const double along = most + wall.extent(-d) + gap;
+    wall.X_W.translation() = middle + (along - d.dot(middle)) * d;
     ForceLaw law;
     law.range = 0.02;
     law.surface_force = 2.0;
     law.damping_may_rise = true;
     law.hold = HoldKind::hard;
-    return {"", std::move(shape), X_WP, law};
+    return {"", std::move(shape), wall.X_W, law};
   }
   std::mt19937_64 random_;
 };
@@ -468,10 +484,15 @@ std::vector<ObstacleDescription> free_walls(const Setting& setting, RandomWalls&
   const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/" + setting.scene + ".yaml");
   teleop::DescribedScene probe = described(setting, scene, true);
   const Cell cell(std::move(probe.cell));
-  const BodyId tool = cell.layout(0).tool;
-  const Vec3 p = origin(cell.world().motion().bodies[static_cast<std::size_t>(tool.index)].X_WB);
+  const World& world = cell.world();
+  std::vector<Posed> tool;
+  for (const Part& part : world.parts()) {
+    if (part.body != cell.layout(0).tool) continue;
+    const BodyState& body = world.motion().bodies[static_cast<std::size_t>(part.body.index)];
+    tool.push_back({part.shape, body.X_WB * part.X_BP});
+  }
   for (int attempt = 0; attempt < 50; ++attempt) {
-    std::vector<ObstacleDescription> walls = random.around(p, kind);
+    std::vector<ObstacleDescription> walls = random.around(tool, kind);
     for (std::size_t i = 0; i < walls.size(); ++i) walls[i].name = kind + std::to_string(i);
     teleop::DescribedScene tried = described(setting, scene, true);
     tried.cell.obstacles = walls;
@@ -523,7 +544,9 @@ bench::Result attacks(const bench::Options& options) {
     bench::progress("attacks", i + 1, count);
   }
   result.notes = {
-      "The springs of the walls give 2 N at the surface. Plates stand on both sides of the tool; "
+      "The springs of the walls give 2 N at the surface. A slot is 1 to 6 mm from the tool on "
+      "either "
+      "side; "
       "hulls have 150 corners.",
       "A row fails where a wall is entered by more than 0.1 mm, and no tick before said that it "
       "would be."};

@@ -32,6 +32,7 @@
 #include <repel/loop/motion_account.cpp>
 #include <repel/loop/options.cpp>
 #include <repel/loop/rate_check.cpp>
+#include <repel/loop/rate_forecast.cpp>
 #include <repel/loop/reciprocating_motion.cpp>
 #include <repel/loop/record.cpp>
 #include <repel/loop/sent_torques.cpp>

@@ -113,6 +113,33 @@ TEST(ArmBodies, TwistsAreThoseOfTheOriginsOfTheLinks) {
   EXPECT_LT(((there - state.X_WB.translation()) / h - state.V_WB.linear).norm(), 1e-5);
 }
 
+TEST(ArmBodies, TheBiasIsTheAccelerationAtConstantRates) {
+  Rng rng(seed + 2);
+  TurningKinematics kinematics;
+  double largest = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed + 2) + ", case " + std::to_string(i));
+    const Vec3 q = families::uniform(rng, 0.1, 1.0) * families::direction(rng);
+    const Vec3 v = families::uniform(rng, 0.1, 1.0) * families::direction(rng);
+    const std::vector<double> rates(v.data(), v.data() + 3);
+    const auto twist_after = [&](double time) {
+      const Vec3 there = q + time * v;
+      kinematics.update(std::vector<double>(there.data(), there.data() + 3));
+      Jacobian J(6, 3);
+      kinematics.tool_jacobian(J);
+      return std::pair(twist_through(J, rates), J);
+    };
+    const double h = 1e-5;  // [s]
+    const Twist before = twist_after(-h).first;
+    const Twist after = twist_after(h).first;
+    const Twist bias = bias_of(twist_after(0.0).second, rates);
+    EXPECT_LT((bias.linear - (after.linear - before.linear) / (2.0 * h)).norm(), 1e-8);
+    EXPECT_LT((bias.angular - (after.angular - before.angular) / (2.0 * h)).norm(), 1e-8);
+    largest = std::max(largest, bias.linear.norm());
+  }
+  EXPECT_GT(largest, 0.1);
+}
+
 TEST(ArmBodies, APoseThatIsNoneLeavesTheBodyWhereItWas) {
   World world;
   const BodyId body = world.add_body("link");

@@ -116,6 +116,49 @@ TEST(HardContacts, BoundHowFarTheDistanceCanShrink) {
   EXPECT_LT(told_by_the_nearest, tried * 9 / 10) << "the nearest point alone must not do";
 }
 
+// A plate that slid over an edge of a hull and tipped went into it: its rows knew the rate of the
+// gap, and not that the rate was changing.
+TEST(HardContacts, KnowHowTheRateOfAGapChangesAsBodiesTurn) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  double largest = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE("seed 6, case " + std::to_string(i));
+    const Twist V{{0.5 * draw(random), 0.5 * draw(random), 0.1 * draw(random)},
+                  {draw(random), draw(random), draw(random)}};
+    const Pose X = moved_to(0, 0, 0.035);
+    // The plate is over the whole block, so the block's corners meet the plate's face.
+    Plates plates({0.2, 0.2, 0.01}, X, V, {0.05, 0.05, 0.01});
+    const double h = 1e-4;  // [s]
+    const auto gap_after = [&](double time) {
+      const Vec3 turn = time * V.angular;
+      Pose moved = X;
+      moved.translation() += time * V.linear;
+      if (turn.norm() > 0.0) {
+        moved.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+      }
+      const Vec3 n = moved.linear().col(2);
+      double least = 1.0;  // of the corners of the block to the lower face of the plate
+      for (const double x : {-0.05, 0.05}) {
+        for (const double y : {-0.05, 0.05}) {
+          least = std::min(least, n.dot(moved.translation() - Vec3(x, y, 0.01)) - 0.01);
+        }
+      }
+      return least;
+    };
+    const double now = gap_after(0.0);
+    const double later = gap_after(h);
+    double least = 1.0;
+    for (const HardContact& contact : plates.contacts(0.3)) {
+      least = std::min(least, contact.gap + h * contact.rate + 0.5 * h * h * contact.bending);
+      largest = std::max(largest, std::abs(contact.bending));
+    }
+    EXPECT_LT(least, later + 1e-12);
+    EXPECT_NEAR(least, now, 2e-4);
+  }
+  EXPECT_GT(largest, 0.3);
+}
+
 TEST(HardContacts, TakeTheDirectionOfAnOldAnswerAndThePresentPoses) {
   Plates plates({0.1, 0.05, 0.01}, moved_to(0, 0, 0.035), {}, {1, 1, 0.01});
   ASSERT_TRUE(plates.world.place(plates.body, moved_to(0, 0, 0.03), {}));

@@ -23,16 +23,12 @@ EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_de
       reaction_(network::Prediction::horizon(drive_delay) * period + 2.0 * step_),
       rows_(model, margin()),
       solver_(model.links.size(), BarrierRows::most),
+      forecast_(model, period, drive_delay, step_),
       stops_(BarrierRows::most),
-      withstood_(pairs, 0.0),
-      sent_(static_cast<std::size_t>(std::ceil(drive_delay)) + 1) {
+      withstood_(pairs, 0.0) {
   checked("margin", options.margin, 0.0, 0.1, "m");
   checked("mass uncertainty", options.mass_uncertainty, 1.0, 10.0, "");
   checked("recovery", options.recovery, 0.0, 10.0, "m/s");
-  drift_.setZero(static_cast<Eigen::Index>(model.links.size()));
-  disturbance_ = last_rates_ = doubt_ = drift_;
-  foreseen_.assign(sent_.size() - 1, drift_);
-  for (Vector& sent : sent_) sent = drift_;
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
 }
 
@@ -50,23 +46,18 @@ Status EntryBarrier::limit(std::span<double> torques, std::span<const double> we
   force_ = 0.0;
   pushed_ = {};
   if (!is_on()) return 0;
-  observe(v, inertia);
+  forecast_.observe(v, inertia);
   if (rows_.all().empty()) {
-    known_ = 0;
+    forecast_.forget();
     return 0;
   }
   if (!begin(inertia)) return status::hold_lost;
-  predict(v, inertia);
+  forecast_.predict(v, inertia, solver_.mass());
   for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
   if (!solver_.solve(torques, weight, lower, upper)) return 0;
   account(efforts);
   for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.torque(i);
   return judge();
-}
-
-void EntryBarrier::note_sent(const Vector& net) noexcept {
-  sent_[oldest_] = net;
-  oldest_ = (oldest_ + 1) % sent_.size();
 }
 
 double EntryBarrier::withstood(PairId pair) const noexcept {
@@ -89,69 +80,12 @@ bool EntryBarrier::begin(const ArmInertia& inertia) noexcept {
   return solver_.begin(n, entry, step_);
 }
 
-void EntryBarrier::observe(std::span<const double> v, const ArmInertia& inertia) noexcept {
-  Vector change = last_rates_;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    change.coeffRef(index(i)) = v[i] - last_rates_.coeff(index(i));
-    last_rates_.coeffRef(index(i)) = v[i];
-  }
-  const Vector momentum = network::dense::product<Vector>(inertia.matrix(), change);
-  const double share = period_ / (period_ + memory + 5.0 * delay_ * period_);
-  const Vector& acted = sent_[oldest_];
-  for (Eigen::Index i = 0; i < momentum.size(); ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    const double friction = model_.links[joint].viscous_friction * v[joint];
-    const double seen = momentum.coeff(i) / period_ - acted.coeff(i) + friction;
-    disturbance_.coeffRef(i) += share * (seen - disturbance_.coeff(i));
-  }
-}
-
-void EntryBarrier::predict(std::span<const double> v, const ArmInertia& inertia) noexcept {
-  inertia.momenta(v, drift_);
-  // Newest first; the oldest has acted, but for its rest where the delay is no whole number.
-  double left = delay_;  // [ticks]
-  for (std::size_t k = 1; left > 0.0; ++k, left -= 1.0) {
-    const Vector& sent = sent_[(oldest_ + sent_.size() - k) % sent_.size()];
-    const double time = std::min(left, 1.0) * period_;
-    for (Eigen::Index i = 0; i < drift_.size(); ++i) drift_.coeffRef(i) += time * sent.coeff(i);
-  }
-  Vector pushed = disturbance_;
-  for (Eigen::Index i = 0; i < drift_.size(); ++i) {
-    drift_.coeffRef(i) += delay_ * period_ * disturbance_.coeff(i);
-    pushed.coeffRef(i) = step_ * disturbance_.coeff(i);
-  }
-  solver_.solve_mass(drift_);
-  doubt(v, drift_);
-  solver_.solve_mass(pushed);
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    drift_.coeffRef(index(i)) += pushed.coeff(index(i)) - v[i];
-  }
-}
-
-void EntryBarrier::doubt(std::span<const double> v, const Vector& after) noexcept {
-  if (foreseen_.empty()) return;
-  ++known_;
-  const double kept = std::exp(-period_ / std::max(0.1, 2.0 * delay_ * period_));
-  const double scale = (delay_ + 1.0) / delay_;
-  Vector& foreseen = foreseen_[now_];
-  now_ = (now_ + 1) % foreseen_.size();
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const Eigen::Index k = index(i);
-    const double missed = scale * std::abs(v[i] - foreseen.coeff(k));
-    doubt_.coeffRef(k) = std::max(kept * doubt_.coeff(k), known_ > foreseen_.size() ? missed : 0.0);
-    foreseen.coeffRef(k) = after.coeff(k);
-  }
-}
-
 void EntryBarrier::add(const BarrierRow& row, Stopping& stop,
                        std::span<const double> weight) noexcept {
-  double gained = 0.0;
-  for (Eigen::Index i = 0; i < drift_.size(); ++i) {
-    gained += row.h.coeff(i) * drift_.coeff(i) - std::abs(row.h.coeff(i)) * doubt_.coeff(i);
-  }
   const double late = delay_ * period_;  // [s] what cannot be changed any more
   const double bending = std::min(0.0, row.bending);
-  LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained + (late + step_) * bending);
+  const double gained = forecast_.least_gain(row.h) + (late + step_) * bending;
+  LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained);
   if (bound == nullptr) return;
   stop = stopping(*bound, weight);
   stop.surely = std::max(stop.surely + bending, 0.1 * stop.surely);

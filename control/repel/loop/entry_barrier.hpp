@@ -13,6 +13,7 @@
 #include <repel/loop/barrier_rows.hpp>
 #include <repel/loop/least_constraint.hpp>
 #include <repel/loop/options.hpp>
+#include <repel/loop/rate_forecast.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
@@ -30,17 +31,19 @@ struct BarrierTotals {
 ///     d = b t + b^2 / (2 a)        b(d) = sqrt(a^2 t^2 + 2 a d) - a t
 ///
 /// with a the deceleration that the efforts of the joints leave to the arm there, by its inertia
-/// times `mass_uncertainty`, and t the time until a torque acts: the delay of the drive, the slew
-/// rate of the torques, and some ticks, so that the gap closes exponentially at last. Of all
-/// torques that bring every gap to its speed within a step, the ones are sent that change the
-/// acceleration of the arm least (LeastConstraint), as if walls without friction pushed. So retreat
-/// and sliding are free. The forces only brake what approaches, or take off what is asked for; they
-/// add energy only to flee from a wall that comes, and to return to the margin as much as was taken
-/// before.
+/// times `mass_uncertainty` and less the bending of the gap, and t the time until a torque acts:
+/// the delay of the drive, the slew rate of the torques, and some ticks, so that the gap closes
+/// exponentially at last. The speed of a gap is the lowest that a RateForecast leaves possible.
+///
+/// Of all torques that bring every gap to its speed within a step, the ones are sent that change
+/// the acceleration of the arm least (LeastConstraint), as if walls without friction pushed. So
+/// retreat and sliding are free. The forces only brake what approaches, or take off what is asked
+/// for; they add energy only to flee from a wall that comes, and to return to the margin as much as
+/// was taken before.
 ///
 /// Where no torque within the limits can stop the arm any more, `limit` says so while the gap is
-/// still open. Allocates at construction only. Cost: up to 60 sweeps over the gaps where one of
-/// them binds, else a solution with the mass matrix for each.
+/// still open. Allocates at construction only. Cost: a solution with the mass matrix for each gap,
+/// and what LeastConstraint says.
 class EntryBarrier {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -76,7 +79,7 @@ class EntryBarrier {
                              const ArmInertia& inertia) noexcept;
 
   /// To be called in every tick, with the torques that were sent less those of the weight [N m].
-  void note_sent(const Vector& net) noexcept;
+  void note_sent(const Vector& net) noexcept { forecast_.note_sent(net); }
 
   /// [N] With which it pushed at the last tick on the pair on which it did so hardest.
   [[nodiscard]] double force() const noexcept { return force_; }
@@ -88,7 +91,6 @@ class EntryBarrier {
 
  private:
   static constexpr double least_speed = 1e-6;  // [m/s]
-  static constexpr double memory = 0.02;       // [s] of what else acts on the arm
   static constexpr double slack = 1e-4;        // [m] of the sentence that a wall is lost
 
   /// How a gap can be braked [m/s^2].
@@ -103,16 +105,6 @@ class EntryBarrier {
 
   // M and the viscous friction until the torque of this tick has acted, by an implicit rule.
   [[nodiscard]] bool begin(const ArmInertia& inertia) noexcept;
-
-  // What else acts on the arm, as the Prediction of a network estimates it: the low-passed
-  // difference of its change of momentum and the torques and viscous friction that acted.
-  void observe(std::span<const double> v, const ArmInertia& inertia) noexcept;
-
-  // The change of the rates by friction and by the torques that were sent and have not acted yet.
-  void predict(std::span<const double> v, const ArmInertia& inertia) noexcept;
-
-  // By how much the rates may be other than predicted, from how far they were of late.
-  void doubt(std::span<const double> v, const Vector& after) noexcept;
 
   void add(const BarrierRow& row, Stopping& stop, std::span<const double> weight) noexcept;
 
@@ -136,18 +128,10 @@ class EntryBarrier {
   double reaction_;   // t [s]
   BarrierRows rows_;
   LeastConstraint solver_;
+  RateForecast forecast_;
   std::vector<Stopping> stops_;    // of each row
   std::vector<double> withstood_;  // [N] by PairId; empty: it is off
   std::vector<double> effort_;     // [N m] limits
-  std::vector<Vector> sent_;       // ring of what has not acted yet
-  std::size_t oldest_ = 0;
-  Vector drift_;        // [rad/s] by what cannot be changed any more
-  Vector disturbance_;  // [N m]
-  Vector last_rates_;
-  std::vector<Vector> foreseen_;  // ring of the rates predicted for the ticks of the delay [rad/s]
-  std::size_t now_ = 0;
-  std::size_t known_ = 0;
-  Vector doubt_;  // [rad/s]
   double force_ = 0.0;
   PairId pushed_;
   BarrierTotals totals_;

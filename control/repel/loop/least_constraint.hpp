@@ -51,8 +51,8 @@ class LeastConstraint {
     for (Eigen::Index i = 0; i < joints * joints; ++i) M_.data()[i] = mass(i);
     return mass_.factor(joints, mass);
   }
-  /// x = M^-1 x.
-  void solve_mass(Vector& x) const noexcept { mass_.solve(x); }
+  /// M, in factors.
+  [[nodiscard]] const network::dense::Factored& mass() const noexcept { return mass_; }
 
   /// @return the row, whose `least_rate` may still be set; null: there is no room
   [[nodiscard]] Row* add(const Vector& h, double rate) noexcept;
