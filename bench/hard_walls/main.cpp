@@ -413,14 +413,18 @@ class RandomWalls {
 
   /// @param tool its parts, where it starts @param kind set to the name of the kind
   std::vector<ObstacleDescription> around(std::span<const Posed> tool, std::string& kind) {
-    constexpr const char* kinds[] = {"boxes", "hulls", "slot", "blades", "pegs"};
-    const auto which = static_cast<std::size_t>(pick(5));
+    constexpr const char* kinds[] = {"boxes", "hulls", "slot", "blades", "pegs", "crates"};
+    const auto which = static_cast<std::size_t>(pick(6));
     kind = kinds[which];
     std::vector<ObstacleDescription> walls;
-    if (which == 2) {  // that the tool is in
+    if (which == 2 || which == 5) {  // that the tool is in
       const Vec3 d = direction();
+      const double half = which == 2 ? 0.2 : 0.05;
+      const double gap = which == 2 ? draw(1e-3, 6e-3) : draw(0.03, 0.1);
+      const double way = which == 2 ? 0.0 : gap - draw(2e-3, 2e-2);
       for (const double side : {1.0, -1.0}) {
-        walls.push_back(before(tool, Shape::box({0.2, 0.2, 0.01}), side * d, d, draw(1e-3, 6e-3)));
+        walls.push_back(before(tool, Shape::box({half, half, 0.01}), side * d, d, gap));
+        if (which == 5) walls.back().motion = ReciprocatingMotion{-side * way * d, way / 0.05};
       }
       return walls;
     }
@@ -545,9 +549,9 @@ bench::Result attacks(const bench::Options& options) {
   }
   result.notes = {
       "The springs of the walls give 2 N at the surface. A slot is 1 to 6 mm from the tool on "
-      "either "
-      "side; "
-      "hulls have 150 corners.",
+      "either side; hulls have 150 corners; crates come from both sides at up to 0.16 m/s and "
+      "leave 2 "
+      "to 20 mm.",
       "A row fails where a wall is entered by more than 0.1 mm, and no tick before said that it "
       "would be."};
   return result;

@@ -56,7 +56,10 @@ void ArmCommand::drive(const ArmMotion& motion, const ArmInertia& inertia, Joint
   bound_release(motion, inertia, shares.walls);
   // An arm that is pushed out of where it started, or held by its brakes, is not held by walls.
   const bool is_held = !record.brakes && (record.status & status::pushed_out) == 0U;
-  if (!is_held) barrier_.forget();
+  if (!is_held) {
+    const Status comes = barrier_.forget();
+    if (record.brakes) record.status |= comes;
+  }
   const Status found =
       torques_.compose(asked_, walls_, shares, motion.v, inertia, &barrier_, motion.probes);
   record.status |= found;

@@ -2,6 +2,7 @@
 #include <repel/loop/entry_barrier.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -11,6 +12,11 @@
 #include <repel/network/machinery/prediction.hpp>
 
 namespace repel {
+namespace {
+
+constexpr double least_miss = 1e-4;  // [m/s] of a rate that counts as missed
+
+}  // namespace
 
 EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_delay,
                            double slew_time, std::size_t pairs, const EntryBarrierOptions& options)
@@ -39,6 +45,18 @@ void EntryBarrier::watch(std::span<const HardContact> contacts, BodyId tool,
   if (is_on()) rows_.gather(contacts, tool, jacobian, links, q, v, untold, reaction_);
 }
 
+Status EntryBarrier::forget() noexcept {
+  const auto comes = [this](const BarrierRow& row) {
+    const double soon = row.gap + margin() + (delay_ * period_ + 2.0 * reaction_) * row.rate;
+    return row.pair.valid() && row.rate < -least_speed && soon < 0.0;
+  };
+  const bool is_lost = std::any_of(rows_.all().begin(), rows_.all().end(), comes);
+  rows_.clear();
+  forecast_.forget();
+  if (is_lost) ++totals_.lost;
+  return is_lost ? status::hold_lost : 0U;
+}
+
 Status EntryBarrier::limit(std::span<double> torques, std::span<const double> weight,
                            std::span<const double> lower, std::span<const double> upper,
                            std::span<const double> efforts, std::span<const double> v,
@@ -56,6 +74,19 @@ Status EntryBarrier::limit(std::span<double> torques, std::span<const double> we
   for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
   if (!solver_.solve(torques, weight, lower, upper)) return 0;
   account(efforts);
+  if (solver_.missed() > least_miss) {
+    // Rows that no torques can keep together are braked by what is left for each.
+    std::array<double, network::dense::most_rows> least{};
+    for (std::size_t i = 0; i < efforts.size(); ++i) least[i] = -efforts[i];
+    (void)solver_.solve(torques, weight, std::span(least).first(efforts.size()), efforts);
+    for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+      const LeastConstraint::Row& bound = solver_.rows()[k];
+      const double after = solver_.rate_after(bound);
+      if (bound.least_rate - after <= least_miss) continue;
+      stops_[k].at_most = std::min(stops_[k].at_most, (after - bound.rate) / step_);
+    }
+    (void)solver_.solve(torques, weight, lower, upper);
+  }
   for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.torque(i);
   return judge();
 }
@@ -134,7 +165,9 @@ void EntryBarrier::account(std::span<const double> efforts) noexcept {
     const PairId pair = rows_.all()[k].pair;
     if (!pair.valid()) continue;
     if (k == 0 || rows_.all()[k - 1].pair != pair) force = 0.0;
-    const double pushed = withheld * bound.force;
+    // Between walls that cannot be kept together the duals grow without bound.
+    const double most_push = 2.0 * stops_[k].at_most / bound.mobility;
+    const double pushed = std::min(withheld * bound.force, std::max(0.0, most_push));
     const double rate = rows_.all()[k].rate;
     const bool gives = bound.least_rate > 0.0;
     totals_.energy -= period_ * share * bound.force * (gives ? rate : std::min(rate, 0.0));

@@ -65,8 +65,9 @@ class EntryBarrier {
   void watch(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
              const ArmBodies& links, std::span<const double> q, std::span<const double> v,
              std::span<const double> untold) noexcept;
-  /// Without contacts, until the next `watch`.
-  void forget() noexcept { rows_.clear(); }
+  /// Without contacts, until the next `watch`: something else holds the arm.
+  /// @return `hold_lost` where a wall comes that will be at the arm soon, or 0
+  [[nodiscard]] Status forget() noexcept;
 
   /// Changes `torques` [N m] so that no hard wall is entered once they are brought within `lower`
   /// and `upper`. @param weight [N m] the part of them that carries the weight
