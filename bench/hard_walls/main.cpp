@@ -125,7 +125,7 @@ teleop::DescribedScene described(const Setting& setting, const scene::Scene& sce
     change(arm.law);
     if (arm.self_law) change(*arm.self_law);
     arm.network = strong_hand(arm.model);
-    arm.options.drive_delay = setting.delay;
+    arm.options.drive_delay += setting.delay;
   }
   described.cell.gain_check = network::GainCheck::warning;
   described.cell.loose.clear();
