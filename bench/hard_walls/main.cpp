@@ -411,13 +411,13 @@ class RandomWalls {
  public:
   explicit RandomWalls(std::uint64_t seed) : random_(seed) {}
 
-  /// @param tool its parts, where it starts @param kind set to the name of the kind
+  /// @param tool its parts at the start @param kind receives the name of the kind
   std::vector<ObstacleDescription> around(std::span<const Posed> tool, std::string& kind) {
     constexpr const char* kinds[] = {"boxes", "hulls", "slot", "blades", "pegs", "crates"};
     const auto which = static_cast<std::size_t>(pick(6));
     kind = kinds[which];
     std::vector<ObstacleDescription> walls;
-    if (which == 2 || which == 5) {  // that the tool is in
+    if (which == 2 || which == 5) {  // the tool is between two walls
       const Vec3 d = direction();
       const double half = which == 2 ? 0.2 : 0.05;
       const double gap = which == 2 ? draw(1e-3, 6e-3) : draw(0.03, 0.1);

@@ -89,7 +89,7 @@ class HardContacts {
 
   /// A unit vector perpendicular to the unit `n`.
   [[nodiscard]] static Vec3 across(const Vec3& n) noexcept;
-  // [m/s^2] Of points that turn with their bodies, and of the normal that turns with either.
+  // [m/s^2] The centripetal part, and the part of the turning normal.
   [[nodiscard]] static double bending_of(const Vec3& n, const Vec3& p_W, const BodyState& A,
                                          const BodyState& B) noexcept;
 

@@ -45,6 +45,7 @@ bool LeastConstraint::solve(std::span<const double> asked, std::span<const doubl
     settle();
     apply();
   }
+  for (std::size_t k = 0; k < used_; ++k) rows_[k].force = 0.0;
   for (std::size_t k = 0; k < count_; ++k) {
     if (active_[k].side == 0.0) rows_[active_[k].index].force = active_[k].force;
   }

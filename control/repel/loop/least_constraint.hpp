@@ -70,8 +70,8 @@ class LeastConstraint {
   [[nodiscard]] double torque(std::size_t joint) const noexcept;
   /// [m/s] The rate after the step.
   [[nodiscard]] double rate_after(const Row& row) const noexcept;
-  /// [m/s] By which the rate that is missed most is below its bound: 0 but for rounding where the
-  /// limits leave a solution and the steps sufficed.
+  /// [m/s] The residual: the largest shortfall of a rate below its bound. It is more than rounding
+  /// where the limits leave no solution, or the steps did not suffice.
   [[nodiscard]] double missed() const noexcept;
   /// The share of the forces f that the limits let act, 0 to 1.
   [[nodiscard]] double share() const noexcept;
@@ -101,7 +101,7 @@ class LeastConstraint {
   // Adds a row to the Cholesky factor of these products. False where it depends on the others.
   [[nodiscard]] bool append(const Active& bound) noexcept;
   void drop(std::size_t k) noexcept;
-  // The duals with which all active bounds hold; those that would pull are dropped.
+  // Solves for the duals of the active bounds, and drops bounds of negative duals.
   void settle() noexcept;
   // Torques and accelerations of the duals.
   void apply() noexcept;

@@ -13,7 +13,7 @@
 
 namespace repel {
 
-/// The joint rates of an arm with a drive that is late, predicted by the torques that were sent and
+/// The joint rates of an arm with a late drive, predicted by the torques that were sent and
 /// have not acted yet, by viscous friction, and by what else acted of late. What else acts is the
 /// low-passed difference of the change of momentum and the torques and viscous friction that acted.
 ///
