@@ -132,7 +132,12 @@ Colour distance_colour(double distance, double range) {
 Entry arrow_json(const Vec3& at, const Vec3& direction, double length, double shaft,
                  const Colour& colour) {
   const double head = rounded(std::min(2.5 * shaft, 0.4 * length), 1e6);
-  Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitX(), direction);
+  // From the x axis, by half the angle. Eigen's FromTwoVectors takes as long to compile as the
+  // rest.
+  const Vec3 unit = direction.normalized();
+  Eigen::Quaterniond turned(1.0 + unit.x(), 0.0, -unit.z(), unit.y());
+  if (turned.squaredNorm() < 1e-12) turned = Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0);
+  turned.normalize();
   for (double& each : turned.coeffs()) each = rounded(each, 1e6);
   return {{"pose", pose_json(at, turned)}, {"shaft_length", rounded(length - head, 1e6)},
           {"shaft_diameter", shaft},       {"head_length", head},

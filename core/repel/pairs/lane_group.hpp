@@ -172,8 +172,10 @@ class LaneGroup {
   }
 
   /// The gradients of the patches of the pairs in `flat`.
-  void find_patches(LaneMask flat, LaneMask edge, const LaneGap& gap, const Motion& motion,
-                    PartPoses& poses) noexcept {
+  void find_patches(const LaneMask& may_be_flat, const LaneMask& may_be_edge, const LaneGap& gap,
+                    const Motion& motion, PartPoses& poses) noexcept {
+    LaneMask flat = may_be_flat;
+    LaneMask edge = may_be_edge;
     const unsigned to_look_at = bits_of(flat) & ~had_polygons_;
     if (to_look_at != 0U) {
       pointed_.look_at(to_look_at, features_, gap, tilt_);
