@@ -140,7 +140,6 @@ ArmDescription describe_arm(const scene::Scene& scene, const scene::ArmSetup& se
   arm.network = remote == nullptr ? scene::plan_network(scene, setup, robot.arm)
                                   : scene::plan_half(scene, setup, robot.arm, {false, remote});
   arm.options.tool_speed = scene.tool_speed;
-  arm.options.is_remote = remote != nullptr;
   arm.options.has_brakes = true;
   arm.options.drive_delay = setup.robot.drive_delay;
   return arm;

@@ -22,9 +22,11 @@
 #include <repel/reduction/shape.hpp>
 #include <repel/scene/scene.hpp>
 #include <repel/simulated/delayed_arm.hpp>
+#include <repel/world/kinematics.hpp>
 
 #include "../parts.hpp"
 #include "arm_backend.hpp"
+#include "chatter.hpp"
 #include "command_line.hpp"
 #include "describe.hpp"
 #include "servoed_arm.hpp"
@@ -34,11 +36,12 @@ namespace {
 using namespace repel;
 using std::chrono::nanoseconds;
 
-/// A network whose hand is stronger than the arm: nothing in it gives way.
-network::Plan strong_hand(const ArmModel& arm) {
+constexpr double stronger_than_the_arm = 1e4;  // [N] of a hand: nothing in its network gives way
+
+/// @param most [N] and [N m] of the hand
+network::Plan hand_of(const ArmModel& arm, double most) {
   std::vector<network::JointRange> ranges;
   for (const ArmLink& link : arm.links) ranges.push_back({link.lower, link.upper});
-  const double most = 1e4;
   return network::Plan()
       .add("torque_arm", network::TorqueArm())
       .add("multiplex", network::Multiplex())
@@ -97,6 +100,10 @@ struct Setting {
   Way way = Way::hard;
   double inertia = 1.0;  // of the simulated arm, as a multiple of its model's
   int delay = 0;         // [ticks] of its drive
+  double wrist = 0.0;  // [kg m^2] of the last link, which then has no friction; 0: as in the scene
+  double hand = stronger_than_the_arm;  // [N]
+  double hand_speed = 0.6;              // [m/s] along each axis
+  double hand_until = 1e9;              // [s] after which it rests
 };
 
 struct Outcome {
@@ -108,8 +115,19 @@ struct Outcome {
   std::optional<std::int64_t> told;     // first tick in which a wall was said to be lost
   std::optional<std::int64_t> entered;  // first tick in which a wall was entered by the bound
   DurationHistogram compute;
+  double sampling_energy = 0.0;  // [J] most
+  double fastest_joint = 0.0;    // [rad/s]
+  double chatter = 0.0;          // [N m] rms of the last joint, while the hand rests
+  Status said = 0;               // in some tick
   [[nodiscard]] bool is_untold() const { return entered && !(told && *told < *entered); }
 };
+
+void lighten(ArmLink& link, double inertia) {
+  link.mass = 0.01;
+  link.p_LC = Vec3(0, 0, 0.01);
+  link.I_C_L = inertia * Mat3::Identity();
+  link.rotor_inertia = link.viscous_friction = link.coulomb_friction = 0.0;
+}
 
 /// The cell of a scene, with this hand and these walls.
 teleop::DescribedScene described(const Setting& setting, const scene::Scene& scene, bool hard) {
@@ -121,10 +139,16 @@ teleop::DescribedScene described(const Setting& setting, const scene::Scene& sce
     law.hold = hard ? HoldKind::hard : HoldKind::soft;
   };
   for (ObstacleDescription& obstacle : described.cell.obstacles) change(obstacle.law);
-  for (ArmDescription& arm : described.cell.arms) {
+  for (std::size_t i = 0; i < described.cell.arms.size(); ++i) {
+    ArmDescription& arm = described.cell.arms[i];
+    if (setting.wrist > 0.0) {
+      lighten(arm.model.links.back(), setting.wrist);
+      lighten(described.robots[i].arm.links.back(), setting.wrist);
+      arm.kinematics = std::make_unique<Kinematics>(arm.model);
+    }
     change(arm.law);
     if (arm.self_law) change(*arm.self_law);
-    arm.network = strong_hand(arm.model);
+    arm.network = hand_of(arm.model, setting.hand);
     arm.options.drive_delay += setting.delay;
   }
   described.cell.gain_check = network::GainCheck::warning;
@@ -212,7 +236,7 @@ struct Driven {
             std::move(arms.back()), model, arm.model, admittance->response, 1.0 / setting.rate);
       }
       ports.emplace_back(*arms.back(), plant.links.size());
-      hands.emplace_back(seed + 1000 * hands.size(), 0.6);
+      hands.emplace_back(seed + 1000 * hands.size(), setting.hand_speed);
     }
     readings.resize(arms.size());
     commands.resize(arms.size());
@@ -241,6 +265,15 @@ void note_pairs(const Cell& cell, Outcome& outcome) {
   }
 }
 
+void note_motion(const Cell& cell, std::size_t arm, const TickRecord& record, Outcome& outcome) {
+  outcome.said |= record.status;
+  const auto* joints = cell.network(arm).find<network::PumaJoints>();
+  outcome.sampling_energy = std::max(outcome.sampling_energy, joints->sampling_energy());
+  for (const double rate : record.v_read) {
+    outcome.fastest_joint = std::max(outcome.fastest_joint, std::abs(rate));
+  }
+}
+
 Outcome push(const Setting& setting, std::int64_t ticks, std::uint64_t seed,
              std::vector<ObstacleDescription> obstacles = {}) {
   const scene::Scene scene = scene::load(REPEL_SOURCE "/scenes/" + setting.scene + ".yaml");
@@ -253,12 +286,19 @@ Outcome push(const Setting& setting, std::int64_t ticks, std::uint64_t seed,
     filter.emplace(setting, described(setting, scene, true).cell);
   }
   Outcome outcome;
+  std::vector<teleop::ChatterMeter> meters;
+  for (std::size_t i = 0; i < cell.arms(); ++i) {
+    meters.emplace_back(1, setting.rate);
+  }
   nanoseconds now{0};
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     now += cell.period();
     for (std::size_t i = 0; i < cell.arms(); ++i) {
       driven.readings[i] = driven.ports[i].read();
       driven.commands[i] = driven.hands[i].step(1.0 / setting.rate);
+      if (static_cast<double>(tick) > setting.hand_until * setting.rate) {
+        driven.commands[i].hand.ball = {};
+      }
     }
     if (filter) {
       filter->sense(driven.readings, now);
@@ -276,11 +316,21 @@ Outcome push(const Setting& setting, std::int64_t ticks, std::uint64_t seed,
       if (is_lost && !outcome.told) outcome.told = tick;
       if (records[i]->pairs.nearest < -bound && !outcome.entered) outcome.entered = tick;
       outcome.way += records[i]->v_WT.norm() / setting.rate;
+      note_motion(cell, i, *records[i], outcome);
+      // What swings out at the end of the motion is none.
+      if (static_cast<double>(tick) > (setting.hand_until + 1.0) * setting.rate) {
+        const std::size_t last = driven.readings[i].q.size() - 1;
+        meters[i].add(std::span(records[i]->torques).subspan(last, 1));
+      }
       driven.ports[i].apply(*records[i]);
       driven.arms[i]->step(1.0 / setting.rate);
     }
   }
   note_pairs(cell, outcome);
+  for (const teleop::ChatterMeter& meter : meters) {
+    const double rms = meter.of(0).rms;
+    if (rms > outcome.chatter) outcome.chatter = rms;
+  }
   return outcome;
 }
 
@@ -557,10 +607,72 @@ bench::Result attacks(const bench::Options& options) {
   return result;
 }
 
-constexpr std::array<bench::Part, 3> all{
+// Arms at their limits: joints that weigh next to nothing, drives that are late, a hand that asks
+// for more than the tool may do.
+bench::Result limits(const bench::Options& options) {
+  bench::Result result;
+  result.title = "Light wrists, late drives and fast hands before soft walls";
+  result.columns = {"seed",
+                    "arm of",
+                    "rate [Hz]",
+                    "inertia of the arm / model",
+                    "delay of the drive [ticks]",
+                    "last link [kg m^2]",
+                    "hand [N]",
+                    "hand [m/s]",
+                    "most gained by sampling [J]",
+                    "fastest joint [rad/s]",
+                    "chatter of the last joint [N m rms]",
+                    "deepest [mm]",
+                    "said"};
+  constexpr const char* arms[] = {"anderson_4x8", "plates", "six_axes", "glove_box"};
+  constexpr double rates[] = {200.0, 400.0, 1000.0, 4000.0};
+  const std::uint64_t count = options.quick ? 2 : 100;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t seed = options.seed * 1000 + i;
+    RandomWalls random(seed);
+    Setting setting;
+    setting.way = Way::springs;
+    setting.scene = arms[random.pick(4)];
+    setting.rate = rates[random.pick(4)];
+    setting.inertia = random.pick(2) == 0 ? 1.0 : random.draw(0.6, 1.7);
+    setting.delay = random.pick(4);
+    setting.wrist = random.pick(4) == 0 ? 0.0 : 2e-5 * std::pow(50.0, random.draw(0.0, 1.0));
+    setting.hand = 60.0;
+    setting.hand_speed = random.draw(0.1, 0.6);
+    setting.hand_until = options.quick ? 1.0 : 5.0;
+    const auto ticks = static_cast<std::int64_t>((setting.hand_until + 2.0) * setting.rate);
+
+    const Outcome outcome = push(setting, ticks, seed);
+    const std::string row = "seed " + std::to_string(seed);
+    if (setting.wrist > 0.0 && outcome.chatter > 0.2)
+      result.fail(row, "chattered by more than 0.2 N m");
+    if (outcome.deepest > 5e-3) result.fail(row, "got more than 5 mm into a wall");
+    if ((outcome.said & status::blind) != 0U) result.fail(row, "sound readings were not believed");
+    result.rows.push_back({seed, setting.scene, setting.rate, rounded(setting.inertia, 0.01),
+                           setting.delay, rounded(setting.wrist, 1e-6), setting.hand,
+                           rounded(setting.hand_speed, 0.01),
+                           rounded(outcome.sampling_energy, 1e-3),
+                           rounded(outcome.fastest_joint, 0.01), rounded(outcome.chatter, 1e-3),
+                           rounded(1e3 * outcome.deepest, 1e-3), to_text(outcome.said)});
+    bench::progress("limits", i + 1, count);
+  }
+  result.notes = {
+      "The walls are those of the scenes, as springs. A link that is light has no friction, and "
+      "its "
+      "joint ends are damped by 20 N m s/rad. The hand moves for 5 s as in the random pushes, and "
+      "then rests.",
+      "A row fails where a light joint chatters by more than 0.2 N m, the tool gets deeper than 5 "
+      "mm, or sound readings are not believed. What sampling gives to an arm that a hand shakes is "
+      "shown and not judged: it grows with the square of the force and the period."};
+  return result;
+}
+
+constexpr std::array<bench::Part, 4> all{
     bench::Part{"pushes", "how deep hands get into springs and hard walls", pushes},
     bench::Part{"ways", "the same with what others do", ways},
-    bench::Part{"attacks", "random walls, arms, delays and hands", attacks}};
+    bench::Part{"attacks", "random walls, arms, delays and hands", attacks},
+    bench::Part{"limits", "light wrists, late drives and fast hands", limits}};
 constexpr bench::Program program{"hard_walls",
                                  "How deep hands that push at random get into walls.",
                                  all,

@@ -23,6 +23,7 @@
 #include <repel/loop/entry_barrier.cpp>
 #include <repel/loop/failsafe.cpp>
 #include <repel/loop/gain_check.cpp>
+#include <repel/loop/hand_speed.cpp>
 #include <repel/loop/hard_contacts.cpp>
 #include <repel/loop/held_weight.cpp>
 #include <repel/loop/joint_torques.cpp>
@@ -36,7 +37,7 @@
 #include <repel/loop/reciprocating_motion.cpp>
 #include <repel/loop/record.cpp>
 #include <repel/loop/sent_torques.cpp>
-#include <repel/loop/speed_share.cpp>
+#include <repel/loop/speed_bounds.cpp>
 #include <repel/loop/still_joint.cpp>
 #include <repel/loop/stop_control.cpp>
 #include <repel/loop/tap.cpp>

@@ -151,8 +151,8 @@ TEST(JointTorques, AJointThatMayBeFrozenIsPushedAsFarAsTheLimitsAllow) {
   Bench bench;
   bench.network << 7.0, 7.0, -7.0;
   const std::vector<double> probes{20.0, -20.0, 0.0};
-  (void)bench.torques.compose(bench.network, bench.walls, {}, bench.v, bench.inertia, nullptr,
-                              probes);
+  (void)bench.torques.compose(bench.network, bench.walls, {}, bench.v, bench.inertia,
+                              {.probes = probes});
   EXPECT_EQ(bench.sent(0), 20.0);
   EXPECT_EQ(bench.sent(1), -20.0);
   EXPECT_EQ(bench.sent(2), -7.0);
@@ -176,7 +176,7 @@ TEST(JointTorques, SayWhatMovesAJointAloneWhereABarrierHoldsTheArm) {
   EntryBarrier barrier(bench.model, period, 0.0, 0.005, 1);
   bench.network << 10.0, 8.0, 0.0;
   (void)bench.torques.compose(bench.network, bench.walls, {.friction = 0.0}, bench.v, bench.inertia,
-                              &barrier);
+                              {.barrier = &barrier});
   EXPECT_NEAR(bench.torques.net()(1), 8.0, 1e-9);
   EXPECT_NEAR(bench.torques.alone()(0), 10.0, 1e-9);
   EXPECT_NEAR(bench.torques.alone()(1), 0.0, 1e-9);
@@ -241,30 +241,29 @@ TEST(JointTorques, CompensateFrictionAnewAfterItWasSwitchedOff) {
   EXPECT_EQ(bench.sent(), first);
 }
 
-TEST(JointSpeed, FadesWhatDrivesOverTheLastFifthAndNothingElse) {
-  EXPECT_EQ(within_speed(10.0, 0.79, 1.0), 10.0);
-  EXPECT_NEAR(within_speed(10.0, 0.9, 1.0), 5.0, 1e-12);
-  EXPECT_NEAR(within_speed(-10.0, -0.9, 1.0), -5.0, 1e-12);
-  EXPECT_EQ(within_speed(10.0, 1.0, 1.0), 0.0);
-  EXPECT_EQ(within_speed(10.0, 2.0, 1.0), 0.0);
-  EXPECT_EQ(within_speed(-10.0, 2.0, 1.0), -10.0) << "it brakes";
-  EXPECT_EQ(within_speed(10.0, 100.0, 0.0), 10.0) << "no limit is known";
-}
-
-TEST(JointSpeed, NeverGivesPowerThatWasNotAskedFor) {
-  constexpr unsigned seed = 277;
-  families::Rng rng(seed);
-  int faded = 0;
-  for (int sample = 0; sample < 10000; ++sample) {
-    const double asked = families::uniform(rng, -50.0, 50.0);
-    const double v = families::uniform(rng, -2.0, 2.0);
-    const double given = within_speed(asked, v, 1.5);
-    ASSERT_LE(given * v, asked * v + 1e-12) << "seed " << seed;
-    ASSERT_LE(std::abs(given), std::abs(asked));
-    faded += given != asked ? 1 : 0;
-  }
-  EXPECT_GT(faded, 1000);
-  EXPECT_LT(faded, 9000);
+// Heavy joints may change their torques by less in a tick than they are asked to. A light wrist
+// that was sent its own share all the same was thrown to 50 rad/s.
+TEST(JointTorques, WhatAHeavyJointLacksThrowsNoLightOne) {
+  struct Wrist : test::SliderKinematics {
+    [[nodiscard]] bool mass_matrix(Eigen::MatrixXd& M) const noexcept override {
+      M.setZero();
+      M.diagonal() << 5.0, 5.0, 1e-3;
+      M(0, 2) = M(2, 0) = 0.05;
+      return true;
+    }
+  };
+  Bench bench;
+  for (ArmLink& link : bench.model.links) link.viscous_friction = 0.0;
+  ArmInertia inertia(bench.model);
+  ASSERT_TRUE(inertia.update(Wrist()));
+  const auto step = [&] {
+    return bench.torques.compose(bench.network, bench.walls, {.friction = 0.0}, bench.v, inertia);
+  };
+  EXPECT_EQ(step(), 0U);
+  bench.network << 100.0, 0.0, 1.0;  // at the wrist, what the heavy joint gives it
+  EXPECT_EQ(step(), status::torque_rate);
+  EXPECT_EQ(bench.sent(0), 50.0);
+  EXPECT_NEAR(bench.sent(2), 0.5, 1e-9);
 }
 
 TEST(JointSpeed, IsKeptByAnArmThatIsAskedToGoFasterAndTheStatusSaysSo) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <random>
+#include <span>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -15,6 +16,12 @@ namespace least_constraint_test {
 constexpr std::size_t joints = 6;
 constexpr double step = 5e-3;  // [s]
 using Six = std::array<double, joints>;
+
+bool solved(LeastConstraint& solver, std::span<const double> asked, std::span<const double> weight,
+            std::span<const double> lower, std::span<const double> upper) {
+  solver.ask(asked, weight);
+  return solver.solve(lower, upper);
+}
 
 /// A random arm, what is asked of it, and bounds on some rates.
 struct Problem {
@@ -38,7 +45,7 @@ struct Problem {
     }
   }
   double draw() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
-  bool solve() { return solver.solve(asked, weight, lower, upper); }
+  bool solve() { return solved(solver, asked, weight, lower, upper); }
   std::mt19937 random;
   Eigen::MatrixXd mass;
   Six asked{}, weight{}, lower{}, upper{};
@@ -174,7 +181,7 @@ TEST(LeastConstraint, ChangesNothingWhereAllBoundsHold) {
   solver.add(h, 0.0)->least_rate = -1.0;
   const std::array<double, 2> asked{-3.0, 4.0};
   const std::array<double, 2> weight{}, lower{-9.0, -9.0}, upper{9.0, 9.0};
-  EXPECT_FALSE(solver.solve(asked, weight, lower, upper));
+  EXPECT_FALSE(solved(solver, asked, weight, lower, upper));
   EXPECT_EQ(solver.torque(0), -3.0);
   EXPECT_EQ(solver.torque(1), 4.0);
 }
@@ -183,6 +190,18 @@ TEST(LeastConstraint, RefusesAMassThatIsNone) {
   LeastConstraint solver(2, 4);
   EXPECT_FALSE(solver.begin(
       2, [](Eigen::Index) { return 1.0; }, step));
+}
+
+// The order in which bounds hold that contradict each other.
+TEST(LeastConstraint, WhatIsSoftGivesWayToWhatIsFirm) {
+  Problem problem(5, 1e3);
+  LeastConstraint::Row firm = problem.solver.rows()[0];
+  LeastConstraint::Row* away = problem.solver.add(-firm.h, -firm.rate);
+  away->give = LeastConstraint::soft;
+  away->least_rate = 1.0 - firm.least_rate;  // 1 m/s faster the other way
+  EXPECT_TRUE(problem.solve());
+  EXPECT_LT(problem.solver.missed(), 2e-2);
+  EXPECT_GT(away->least_rate - problem.solver.rate_after(*away), 0.98);
 }
 
 }  // namespace least_constraint_test

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <repel/loop/speed_share.hpp>
 #include <repel/network/machinery/prediction.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 
@@ -17,15 +16,11 @@ ArmCommand::ArmCommand(const ArmModel& model, double period, const TeleoperatorO
       energy_watch_(period, options.energy),
       motion_watch_(period, out_of_phase),
       stop_control_(period, options.stop),
-      torques_(model, period, options.torques),
+      torques_(model, period, options.torques, options.drive_delay),
       barrier_(model, period, options.drive_delay, options.torques.slew_time, pairs,
                options.barrier) {
   walls_.setZero(static_cast<Eigen::Index>(model.links.size()));
-  asked_ = total_ = momenta_ = walls_;
-  horizon_ = network::Prediction::horizon(options.drive_delay) * period;
-  // What is sent takes the slew time and the delay of the drive to act, and the mass of the model
-  // may be off.
-  speed_horizon_ = (4.0 + 2.0 * options.drive_delay) * period + options.torques.slew_time;
+  asked_ = total_ = walls_;
 }
 
 void ArmCommand::judge(TickRecord& record, const JointWatch& watch, ArmState state,
@@ -48,20 +43,22 @@ void ArmCommand::judge(TickRecord& record, const JointWatch& watch, ArmState sta
 void ArmCommand::drive(const ArmMotion& motion, const ArmInertia& inertia, JointWatch& watch,
                        TickRecord& record) noexcept {
   const auto* robot = motion.network.find<network::PumaJoints>();
-  TorqueShares shares = shares_of(motion, watch, record);
+  const TorqueShares shares = shares_of(watch, record, motion.tool_speed);
   asked_ = robot->torques();
   walls_ = motion.network.walls();
-  if (options_.is_remote) keep_speed(motion, inertia, shares, record);
   yield(motion, shares);
-  bound_release(motion, inertia, shares.walls);
   // An arm that is pushed out of where it started, or held by its brakes, is not held by walls.
   const bool is_held = !record.brakes && (record.status & status::pushed_out) == 0U;
   if (!is_held) {
     const Status comes = barrier_.forget();
     if (record.brakes) record.status |= comes;
   }
+  const ToolSpeed tool{.jacobian = record.brakes ? nullptr : &motion.jacobian,
+                       .limit = options_.tool_speed,
+                       .is_carried = motion.carried > 0.0};
   const Status found =
-      torques_.compose(asked_, walls_, shares, motion.v, inertia, &barrier_, motion.probes);
+      torques_.compose(asked_, walls_, shares, motion.v, inertia,
+                       {.barrier = &barrier_, .tool = tool, .probes = motion.probes});
   record.status |= found;
   record.held_force = barrier_.force();
   record.held_pair = barrier_.pushed();
@@ -96,19 +93,17 @@ void ArmCommand::watch_drive(TickRecord& record, ArmState state, double elapsed)
   is_enabled_ = record.enable = true;
 }
 
-TorqueShares ArmCommand::shares_of(const ArmMotion& motion, const JointWatch& watch,
-                                   TickRecord& record) noexcept {
+TorqueShares ArmCommand::shares_of(const JointWatch& watch, const TickRecord& record,
+                                   double tool_speed) noexcept {
   const bool let_go = failsafe_.tripped();
-  const SpeedShare at_speed = speed_share(motion.tool_speed, options_.tool_speed);
-  if (at_speed.drive < 1.0 && !let_go) record.status |= status::tool_speed;
   TorqueShares shares;
   shares.operators = record.brakes ? 0.0 : record.gain;
-  shares.drive = let_go ? 0.0 : at_speed.drive;
+  shares.drive = let_go ? 0.0 : 1.0;
   shares.walls = record.brakes ? 0.0 : 1.0;
-  if ((record.status & status::pushed_out) != 0U) shares.walls = exit_share(motion.tool_speed);
+  if ((record.status & status::pushed_out) != 0U) shares.walls = exit_share(tool_speed);
   shares.friction = let_go ? 0.0 : record.gain;
-  shares.brake = std::max({let_go ? 1.0 : 1.0 - record.gain, at_speed.brake, energy_watch_.brake(),
-                           motion_watch_.brake()});
+  shares.brake =
+      std::max({let_go ? 1.0 : 1.0 - record.gain, energy_watch_.brake(), motion_watch_.brake()});
   if (!options_.has_brakes) return without_brakes(shares, watch);
   if (record.brakes) shares.brake = 0.0;
   if (record.stop == Stop::released) shares.gravity = 0.0;
@@ -125,20 +120,6 @@ TorqueShares ArmCommand::without_brakes(TorqueShares shares, const JointWatch& w
   return shares;
 }
 
-void ArmCommand::keep_speed(const ArmMotion& motion, const ArmInertia& inertia,
-                            TorqueShares& shares, TickRecord& record) const noexcept {
-  if (record.brakes || !(shares.operators * shares.drive > 0.0)) return;
-  const double beyond = motion.tool_speed / options_.tool_speed - 1.0;
-  shares.brake = std::max(shares.brake, std::clamp(beyond / 0.08, 0.0, 1.0));
-  ArmInertia::Vector v = asked_;
-  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = motion.v[static_cast<std::size_t>(i)];
-  const double share = share_within(motion.jacobian, v, shares.operators * (asked_ - walls_),
-                                    inertia, speed_horizon_, options_.tool_speed);
-  if (share >= shares.drive) return;
-  shares.drive = share;
-  record.status |= status::tool_speed;
-}
-
 void ArmCommand::yield(const ArmMotion& motion, const TorqueShares& shares) noexcept {
   double power = 0.0;  // of the operator [W]
   for (Eigen::Index i = 0; i < walls_.size(); ++i) {
@@ -153,26 +134,6 @@ void ArmCommand::yield(const ArmMotion& motion, const TorqueShares& shares) noex
   const auto less = motion.network.given_up(total_);
   asked_ = asked_ - less;
   walls_ = walls_ - less;
-}
-
-void ArmCommand::bound_release(const ArmMotion& motion, const ArmInertia& inertia,
-                               double share) noexcept {
-  if (!(share > 0.0)) return;
-  inertia.momenta(motion.v, momenta_);
-  double given = -motion.carried, power = 0.0, energy = 0.0;  // [W], [W] of all, [J] twice
-  for (Eigen::Index i = 0; i < walls_.size(); ++i) {
-    const double v = motion.v[static_cast<std::size_t>(i)];
-    given += walls_.coeff(i) * v;
-    power += total_.coeff(i) * v;
-    energy += momenta_.coeff(i) * v;
-  }
-  if (!(given > 0.0 && energy > 0.0)) return;
-  const double kept =
-      release_share(motion.tool_speed, options_.tool_speed, horizon_ * power / energy);
-  if (kept == 1.0) return;
-  momenta_ *= (1.0 - kept) * given / energy;
-  asked_ -= momenta_;
-  walls_ -= momenta_;
 }
 
 }  // namespace repel

@@ -76,8 +76,8 @@ class ArmCommand {
   // faults.
   void watch_drive(TickRecord& record, ArmState state, double elapsed) noexcept;
 
-  [[nodiscard]] TorqueShares shares_of(const ArmMotion& motion, const JointWatch& watch,
-                                       TickRecord& record) noexcept;
+  [[nodiscard]] TorqueShares shares_of(const JointWatch& watch, const TickRecord& record,
+                                       double tool_speed) noexcept;
 
   // Share of the walls that push an arm out of its start position: ramped up from zero while the
   // tool is slower than exit_speed, and down while it is faster.
@@ -87,18 +87,8 @@ class ArmCommand {
   [[nodiscard]] static TorqueShares without_brakes(TorqueShares shares,
                                                    const JointWatch& watch) noexcept;
 
-  // Cuts what would drive the tool beyond its speed limit, and brakes what is beyond it all the
-  // same: a push that is taken off a wall lets the wall throw the tool back.
-  void keep_speed(const ArmMotion& motion, const ArmInertia& inertia, TorqueShares& shares,
-                  TickRecord& record) const noexcept;
-
   // Takes off the walls what they will not give where the arm moves within the horizon.
   void yield(const ArmMotion& motion, const TorqueShares& shares) noexcept;
-
-  // Takes off the walls what would drive the tool out of them faster than an operator may. It is
-  // taken along the momentum, so that what holds the arm across its motion stays, and only of what
-  // walls have stored: one that is entered takes power, one that moves brings its own.
-  void bound_release(const ArmMotion& motion, const ArmInertia& inertia, double share) noexcept;
 
   TeleoperatorOptions options_;
   Failsafe failsafe_;
@@ -107,13 +97,10 @@ class ArmCommand {
   StopControl stop_control_;
   JointTorques torques_;
   EntryBarrier barrier_;
-  network::Vec<network::any_size> walls_;    // [N m] of walls and limits on the joints
-  network::Vec<network::any_size> asked_;    // [N m] of the whole network
-  network::Vec<network::any_size> total_;    // [N m] the same, as far as it is sent
-  network::Vec<network::any_size> momenta_;  // [kg m^2/s] of the joints
-  double horizon_ = 0.0;                     // [s] in which the arm follows its torques
+  network::Vec<network::any_size> walls_;  // [N m] of walls and limits on the joints
+  network::Vec<network::any_size> asked_;  // [N m] of the whole network
+  network::Vec<network::any_size> total_;  // [N m] the same, as far as it is sent
   double exit_share_ = 0.0;
-  double speed_horizon_ = 0.0;  // [s] within which torques act
   bool is_poisoned_ = false;
   bool is_enabled_ = true;    // the drive of the arm
   double stopped_for_ = 0.0;  // [s] the drive was stopped, with no other fault

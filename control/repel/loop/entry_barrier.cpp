@@ -28,7 +28,6 @@ EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_de
       step_(std::max(period, slew_time)),
       reaction_(network::Prediction::horizon(drive_delay) * period + 2.0 * step_),
       rows_(model, margin()),
-      solver_(model.links.size(), BarrierRows::most),
       forecast_(model, period, drive_delay, step_),
       stops_(BarrierRows::most),
       withstood_(pairs, 0.0) {
@@ -57,38 +56,42 @@ Status EntryBarrier::forget() noexcept {
   return is_lost ? status::hold_lost : 0U;
 }
 
-Status EntryBarrier::limit(std::span<double> torques, std::span<const double> weight,
-                           std::span<const double> lower, std::span<const double> upper,
-                           std::span<const double> efforts, std::span<const double> v,
-                           const ArmInertia& inertia) noexcept {
+bool EntryBarrier::observe(std::span<const double> v, const ArmInertia& inertia) noexcept {
   force_ = 0.0;
   pushed_ = {};
-  if (!is_on()) return 0;
+  if (!is_on()) return false;
   forecast_.observe(v, inertia);
-  if (rows_.all().empty()) {
-    forecast_.forget();
-    return 0;
+  if (!rows_.all().empty()) return true;
+  forecast_.forget();
+  return false;
+}
+
+void EntryBarrier::bound(LeastConstraint& problem, std::span<const double> weight,
+                         std::span<const double> v, const ArmInertia& inertia) noexcept {
+  forecast_.predict(v, inertia, problem.mass());
+  for (std::size_t k = 0; k < rows_.all().size(); ++k) {
+    add(problem, rows_.all()[k], stops_[k], weight);
   }
-  if (!begin(inertia)) return status::hold_lost;
-  forecast_.predict(v, inertia, solver_.mass());
-  for (std::size_t k = 0; k < rows_.all().size(); ++k) add(rows_.all()[k], stops_[k], weight);
-  if (!solver_.solve(torques, weight, lower, upper)) return 0;
-  account(efforts);
-  if (solver_.missed() > least_miss) {
+}
+
+Status EntryBarrier::account(LeastConstraint& problem, std::span<const double> lower,
+                             std::span<const double> upper,
+                             std::span<const double> efforts) noexcept {
+  count(problem, efforts);
+  if (problem.missed() > least_miss) {
     // Rows that no torques can keep together are braked by what is left for each.
     std::array<double, network::dense::most_rows> least{};
     for (std::size_t i = 0; i < efforts.size(); ++i) least[i] = -efforts[i];
-    (void)solver_.solve(torques, weight, std::span(least).first(efforts.size()), efforts);
-    for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
-      const LeastConstraint::Row& bound = solver_.rows()[k];
-      const double after = solver_.rate_after(bound);
+    (void)problem.solve(std::span(least).first(efforts.size()), efforts);
+    for (std::size_t k = 0; k < held(problem); ++k) {
+      const LeastConstraint::Row& bound = problem.rows()[k];
+      const double after = problem.rate_after(bound);
       if (bound.least_rate - after <= least_miss) continue;
       stops_[k].at_most = std::min(stops_[k].at_most, (after - bound.rate) / step_);
     }
-    (void)solver_.solve(torques, weight, lower, upper);
+    (void)problem.solve(lower, upper);
   }
-  for (std::size_t i = 0; i < torques.size(); ++i) torques[i] = solver_.torque(i);
-  return judge();
+  return judge(problem);
 }
 
 double EntryBarrier::withstood(PairId pair) const noexcept {
@@ -99,24 +102,12 @@ double EntryBarrier::margin() const noexcept {
   return options_.margin * std::max(1.0, 400.0 * period_);
 }
 
-bool EntryBarrier::begin(const ArmInertia& inertia) noexcept {
-  const double until = delay_ * period_ + 0.5 * (period_ + step_);
-  const auto& M = inertia.matrix();
-  const Eigen::Index n = M.rows();
-  const auto entry = [&](Eigen::Index i) {
-    const auto joint = static_cast<std::size_t>(i / n);
-    const bool is_diagonal = i % (n + 1) == 0;
-    return M.data()[i] + (is_diagonal ? until * model_.links[joint].viscous_friction : 0.0);
-  };
-  return solver_.begin(n, entry, step_);
-}
-
-void EntryBarrier::add(const BarrierRow& row, Stopping& stop,
+void EntryBarrier::add(LeastConstraint& problem, const BarrierRow& row, Stopping& stop,
                        std::span<const double> weight) noexcept {
   const double late = delay_ * period_;  // [s] what cannot be changed any more
   const double bending = std::min(0.0, row.bending);
   const double gained = forecast_.least_gain(row.h) + (late + step_) * bending;
-  LeastConstraint::Row* bound = solver_.add(row.h, row.rate + gained);
+  LeastConstraint::Row* bound = problem.add(row.h, row.rate + gained);
   if (bound == nullptr) return;
   stop = stopping(*bound, weight);
   stop.surely = std::max(stop.surely + bending, 0.1 * stop.surely);
@@ -156,12 +147,12 @@ double EntryBarrier::allowed(double d, double a) const noexcept {
   return 2.0 * a * d / (a * t + std::sqrt(a * t * a * t + 2.0 * a * d) + 1e-300);
 }
 
-void EntryBarrier::account(std::span<const double> efforts) noexcept {
-  const double share = solver_.share();            // of what acts in this tick
-  const double withheld = solver_.share(efforts);  // of what the wall takes off
+void EntryBarrier::count(const LeastConstraint& problem, std::span<const double> efforts) noexcept {
+  const double share = problem.share();            // of what acts in this tick
+  const double withheld = problem.share(efforts);  // of what the wall takes off
   double force = 0.0;                              // on one pair
-  for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
-    const LeastConstraint::Row& bound = solver_.rows()[k];
+  for (std::size_t k = 0; k < held(problem); ++k) {
+    const LeastConstraint::Row& bound = problem.rows()[k];
     const PairId pair = rows_.all()[k].pair;
     if (!pair.valid()) continue;
     if (k == 0 || rows_.all()[k - 1].pair != pair) force = 0.0;
@@ -183,10 +174,10 @@ void EntryBarrier::account(std::span<const double> efforts) noexcept {
   if (force_ > 0.0) ++totals_.ticks;
 }
 
-Status EntryBarrier::judge() noexcept {
-  for (std::size_t k = 0; k < solver_.rows().size(); ++k) {
+Status EntryBarrier::judge(const LeastConstraint& problem) noexcept {
+  for (std::size_t k = 0; k < held(problem); ++k) {
     const BarrierRow& row = rows_.all()[k];
-    const double approach = -solver_.rate_after(solver_.rows()[k]);
+    const double approach = -problem.rate_after(problem.rows()[k]);
     if (!row.pair.valid() || !(approach > least_speed)) continue;
     const double time = delay_ * period_ + 0.5 * slew_time_;
     const double stop = 0.5 * approach * approach / std::max(stops_[k].at_most, 1e-9);

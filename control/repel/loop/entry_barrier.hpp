@@ -3,6 +3,7 @@
 /// Keeps an arm from entering hard walls, by the least change of torques that lets it stop.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,7 +42,7 @@ struct BarrierTotals {
 /// for; they add energy only to flee from a wall that comes, and to return to the margin as much as
 /// was taken before.
 ///
-/// Where no torque within the limits can stop the arm any more, `limit` says so while the gap is
+/// Where no torque within the limits can stop the arm any more, `account` says so while the gap is
 /// still open. Allocates at construction only. Cost: a solution with the mass matrix for each gap,
 /// and what LeastConstraint says.
 class EntryBarrier {
@@ -69,15 +70,20 @@ class EntryBarrier {
   /// @return `hold_lost` where a wall comes that will be at the arm soon, or 0
   [[nodiscard]] Status forget() noexcept;
 
-  /// Changes `torques` [N m] so that no hard wall is entered once they are brought within `lower`
-  /// and `upper`. @param weight [N m] the part of them that carries the weight
+  /// To be called in every tick, before the others. @param v [rad/s]
+  /// @return true where a hard wall is near
+  [[nodiscard]] bool observe(std::span<const double> v, const ArmInertia& inertia) noexcept;
+  /// Adds the bounds of the gaps to a problem, as its first rows: with torques that keep them, no
+  /// hard wall is entered. @param weight [N m] the torques that carry the weight
+  void bound(LeastConstraint& problem, std::span<const double> weight, std::span<const double> v,
+             const ArmInertia& inertia) noexcept;
+  /// Takes account of the solution, and solves it again where no torques keep all gaps.
   /// @param efforts [N m] limits, by which the push that a wall withstands is counted: how fast a
   /// torque may change does not matter to it
   /// @return `hold_lost`, or 0
-  [[nodiscard]] Status limit(std::span<double> torques, std::span<const double> weight,
-                             std::span<const double> lower, std::span<const double> upper,
-                             std::span<const double> efforts, std::span<const double> v,
-                             const ArmInertia& inertia) noexcept;
+  [[nodiscard]] Status account(LeastConstraint& problem, std::span<const double> lower,
+                               std::span<const double> upper,
+                               std::span<const double> efforts) noexcept;
 
   /// To be called in every tick, with the torques that were sent less those of the weight [N m].
   void note_sent(const Vector& net) noexcept { forecast_.note_sent(net); }
@@ -104,10 +110,8 @@ class EntryBarrier {
   // [m] What turns and bends within a tick grows with it.
   [[nodiscard]] double margin() const noexcept;
 
-  // M and the viscous friction until the torque of this tick has acted, by an implicit rule.
-  [[nodiscard]] bool begin(const ArmInertia& inertia) noexcept;
-
-  void add(const BarrierRow& row, Stopping& stop, std::span<const double> weight) noexcept;
+  void add(LeastConstraint& problem, const BarrierRow& row, Stopping& stop,
+           std::span<const double> weight) noexcept;
 
   [[nodiscard]] Stopping stopping(const LeastConstraint::Row& row,
                                   std::span<const double> weight) const noexcept;
@@ -115,10 +119,15 @@ class EntryBarrier {
   // b [m/s] at a gap of d [m]; below zero for one that is to be opened. @param a [m/s^2]
   [[nodiscard]] double allowed(double d, double a) const noexcept;
 
-  void account(std::span<const double> efforts) noexcept;
+  void count(const LeastConstraint& problem, std::span<const double> efforts) noexcept;
 
   // A wall is lost where the arm, braked with all it has, comes to rest behind it.
-  [[nodiscard]] Status judge() noexcept;
+  [[nodiscard]] Status judge(const LeastConstraint& problem) noexcept;
+
+  // The first of the rows of a problem are those of the gaps.
+  [[nodiscard]] std::size_t held(const LeastConstraint& problem) const noexcept {
+    return std::min(rows_.all().size(), problem.rows().size());
+  }
 
   const ArmModel& model_;
   EntryBarrierOptions options_;
@@ -128,7 +137,6 @@ class EntryBarrier {
   double step_;       // [s] in which a gap is brought to its speed
   double reaction_;   // t [s]
   BarrierRows rows_;
-  LeastConstraint solver_;
   RateForecast forecast_;
   std::vector<Stopping> stops_;    // of each row
   std::vector<double> withstood_;  // [N] by PairId; empty: it is off

@@ -11,13 +11,8 @@
 
 namespace repel {
 
-double within_speed(double asked, double v, double limit) noexcept {
-  constexpr double fade = 0.2;
-  if (!(limit > 0.0) || std::isinf(limit) || !(asked * v > 0.0)) return asked;
-  return asked * std::clamp((limit - std::abs(v)) / (fade * limit), 0.0, 1.0);
-}
-
-JointTorques::JointTorques(const ArmModel& model, double period, const JointTorqueOptions& options)
+JointTorques::JointTorques(const ArmModel& model, double period, const JointTorqueOptions& options,
+                           double drive_delay)
     : model_(model),
       friction_(model.links.size()),
       period_(period),
@@ -29,40 +24,92 @@ JointTorques::JointTorques(const ArmModel& model, double period, const JointTorq
       torques_(model.links.size()),
       sum_(torques_),
       lower_(torques_),
-      upper_(torques_) {
+      upper_(torques_),
+      step_(std::max(period, options.slew_time)),
+      until_(drive_delay * period + 0.5 * (period + step_)),
+      // Half as much again as until the torque has acted: the mass of the model may be off.
+      speeds_(model, (2.0 + 1.5 * drive_delay) * period + options.slew_time),
+      problem_(model.links.size(), BarrierRows::most + model.links.size() + most_planes) {
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
   const auto size = static_cast<Eigen::Index>(model.links.size());
   net_.setZero(size);
-  wanted_ = brake_ = alone_ = rate_ = net_;
+  walls_ = wanted_ = brake_ = alone_ = rate_ = net_;
 }
 
 Status JointTorques::compose(const Vector& network, const Vector& walls, const TorqueShares& s,
                              const std::vector<double>& v, const ArmInertia& inertia,
-                             EntryBarrier* barrier, std::span<const double> probes) noexcept {
+                             const TorqueBounds& bounds) noexcept {
   const bool sound = keep_sound(network, walls);
   Status found = sound ? 0U : status::bad_torque;
   const TorqueShares given =
       sound ? s : TorqueShares{.operators = 0.0, .walls = 0.0, .friction = 0.0, .brake = s.brake};
-  if (share_out(network, walls, given, v)) found |= status::speed_limit;
-  for (std::size_t i = 0; i < probes.size() && given.operators > 0.0; ++i) probe(i, probes[i]);
-  const double braking = brake(walls, given, v, inertia);
+  share_out(network, walls, given, v);
+  for (std::size_t i = 0; i < bounds.probes.size() && given.operators > 0.0; ++i) {
+    probe(i, bounds.probes[i]);
+  }
+  const double braking = brake(given, v, inertia);
   for (std::size_t i = 0; i < torques_.size(); ++i) found |= bound(i);
-  if (barrier != nullptr) {
-    found |= barrier->limit(sum_, gravity_, lower_, upper_, effort_, v, inertia);
-  }
-  for (std::size_t i = 0; i < torques_.size(); ++i) {
-    torques_[i] = std::clamp(sum_[i], lower_[i], upper_[i]);
-    const double most = std::clamp(sum_[i], -effort_[i], effort_[i]);
-    if (std::abs(most - torques_[i]) > 1e-9 * effort_[i]) found |= status::torque_rate;
-  }
+  found |= decide(v, inertia, bounds);
   has_sent_ = true;
   expect(v, inertia, braking);
   alone_ = net_;
-  if (barrier != nullptr && barrier->is_on()) {
-    barrier->note_sent(net_);
-    expect_together(v, inertia);
+  const bool holds = bounds.barrier != nullptr && bounds.barrier->is_on();
+  if (holds) bounds.barrier->note_sent(net_);
+  if (holds || is_cut_) expect_together(v, inertia);
+  return found;
+}
+
+Status JointTorques::decide(const std::vector<double>& v, const ArmInertia& inertia,
+                            const TorqueBounds& bounds) noexcept {
+  const bool is_near = bounds.barrier != nullptr && bounds.barrier->observe(v, inertia);
+  is_cut_ = false;
+  if (!begin(inertia)) {
+    for (std::size_t i = 0; i < sum_.size(); ++i) {
+      torques_[i] = std::clamp(sum_[i], lower_[i], upper_[i]);
+    }
+    return is_near ? status::hold_lost : 0U;
+  }
+  const bool is_fast = speeds_.foresee(problem_.mass(), sum_, gravity_, v, bounds.tool);
+  if (!is_near && !is_fast && is_within_range()) {
+    torques_ = sum_;
+    return 0;
+  }
+  problem_.ask(sum_, gravity_);
+  if (is_near) bounds.barrier->bound(problem_, gravity_, v, inertia);
+  speeds_.bound_joints(problem_, v, walls_);
+  int planes = 0;
+  do {
+    is_cut_ = problem_.solve(lower_, upper_);
+  } while (planes++ < most_planes && speeds_.bound_tool(problem_, v, walls_, bounds.tool));
+  Status found = 0;
+  if (is_cut_ && is_near) found |= bounds.barrier->account(problem_, lower_, upper_, effort_);
+  if (is_cut_) found |= speeds_.said(problem_);
+  for (std::size_t i = 0; i < torques_.size(); ++i) {
+    const double asked = std::clamp(sum_[i], -effort_[i], effort_[i]);
+    const double within = std::clamp(asked, lower_[i], upper_[i]);
+    // What a wall takes is no matter of how fast a torque may change.
+    if (!is_near && std::abs(asked - within) > 1e-9 * effort_[i]) found |= status::torque_rate;
+    torques_[i] = problem_.torque(i);
   }
   return found;
+}
+
+bool JointTorques::is_within_range() const noexcept {
+  for (std::size_t i = 0; i < sum_.size(); ++i) {
+    if (sum_[i] < lower_[i] || sum_[i] > upper_[i]) return false;
+  }
+  return true;
+}
+
+bool JointTorques::begin(const ArmInertia& inertia) noexcept {
+  const auto& M = inertia.matrix();
+  const Eigen::Index n = M.rows();
+  const auto entry = [&](Eigen::Index i) {
+    const auto joint = static_cast<std::size_t>(i / n);
+    const bool is_diagonal = i % (n + 1) == 0;
+    return M.data()[i] + (is_diagonal ? until_ * model_.links[joint].viscous_friction : 0.0);
+  };
+  return problem_.begin(n, entry, step_);
 }
 
 bool JointTorques::keep_sound(const Vector& network, const Vector& walls) noexcept {
@@ -81,23 +128,19 @@ bool JointTorques::keep_sound(const Vector& network, const Vector& walls) noexce
   return sound;
 }
 
-bool JointTorques::share_out(const Vector& network, const Vector& walls, const TorqueShares& s,
+void JointTorques::share_out(const Vector& network, const Vector& walls, const TorqueShares& s,
                              const std::vector<double>& v) noexcept {
   double power = 0.0;  // of the operator [W]
   for (std::size_t i = 0; i < v.size(); ++i) power += (network(index(i)) - walls(index(i))) * v[i];
   const double share = s.operators * (power > 0.0 ? s.drive : 1.0);
-  bool is_kept = false;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    const ArmLink& link = model_.links[i];
     // A contribution of share zero may be NaN.
-    double wish = share > 0.0 ? share * (network(index(i)) - walls(index(i))) : 0.0;
-    if (s.walls > 0.0) wish += s.walls * walls(index(i));
-    const double asked = within_speed(wish, v[i], link.velocity_limit);
-    is_kept = is_kept || asked != wish;
+    walls_(index(i)) = s.walls > 0.0 ? s.walls * walls(index(i)) : 0.0;
+    double asked = walls_(index(i));
+    if (share > 0.0) asked += share * (network(index(i)) - walls(index(i)));
     gravity_[i] *= s.gravity;
     wanted_(index(i)) = asked + compensation(i, asked, s.friction);
   }
-  return is_kept;
 }
 
 double JointTorques::compensation(std::size_t i, double asked, double share) noexcept {
@@ -111,7 +154,7 @@ void JointTorques::probe(std::size_t i, double level) noexcept {
   if (level < 0.0) wanted = std::min(wanted, level);
 }
 
-double JointTorques::brake(const Vector& walls, const TorqueShares& s, const std::vector<double>& v,
+double JointTorques::brake(const TorqueShares& s, const std::vector<double>& v,
                            const ArmInertia& inertia) noexcept {
   double share = 0.0;
   if (s.brake > 0.0) {
@@ -120,7 +163,7 @@ double JointTorques::brake(const Vector& walls, const TorqueShares& s, const std
     double given = 0.0;  // by the walls [W]
     for (std::size_t i = 0; i < v.size(); ++i) {
       taken += brake_(index(i)) * v[i] / brake_time_;
-      if (s.walls > 0.0) given += s.walls * walls(index(i)) * v[i];
+      given += walls_(index(i)) * v[i];
     }
     share = s.brake;
     if (given > 0.0) share *= std::max(0.0, 1.0 - give_way * given / taken);
@@ -143,7 +186,7 @@ Status JointTorques::bound(std::size_t i) noexcept {
   const double wish = gravity_[i] + wanted_(index(i)) + brake_(index(i));
   const double torque = std::clamp(wish, -most, most);
   if (torque != wish) found |= status::torque_limit;
-  sum_[i] = torque;
+  sum_[i] = wish;
   lower_[i] = -most;
   upper_[i] = most;
   if (!has_sent_) return found;

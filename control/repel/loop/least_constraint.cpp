@@ -23,20 +23,23 @@ LeastConstraint::Row* LeastConstraint::add(const Vector& h, double rate) noexcep
   mass_.solve(row.moved);
   row.rate = rate;
   row.force = row.mobility = 0.0;
+  row.give = firm;
   for (Eigen::Index i = 0; i < h.size(); ++i) row.mobility += h.coeff(i) * row.moved.coeff(i);
   return &row;
 }
 
-bool LeastConstraint::solve(std::span<const double> asked, std::span<const double> weight,
-                            std::span<const double> lower, std::span<const double> upper) noexcept {
+void LeastConstraint::ask(std::span<const double> asked, std::span<const double> weight) noexcept {
   weight_ = weight;
-  lower_ = lower;
-  upper_ = upper;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     asked_.coeffRef(index(i)) = asked[i];
     freely_.coeffRef(index(i)) = asked[i] - weight[i];
   }
   mass_.solve(freely_);
+}
+
+bool LeastConstraint::solve(std::span<const double> lower, std::span<const double> upper) noexcept {
+  lower_ = lower;
+  upper_ = upper;
   count_ = 0;
   apply();
   Active worst;
@@ -66,7 +69,9 @@ double LeastConstraint::rate_after(const Row& row) const noexcept {
 
 double LeastConstraint::missed() const noexcept {
   double most = 0.0;
-  for (const Row& row : rows()) most = std::max(most, row.least_rate - rate_after(row));
+  for (const Row& row : rows()) {
+    if (row.give <= firm) most = std::max(most, row.least_rate - rate_after(row));
+  }
   return most;
 }
 
@@ -141,7 +146,7 @@ double LeastConstraint::product(const Active& x, const Active& y) const noexcept
   if (x.side != 0.0) return product(y, x);
   const Row& row = rows_[x.index];
   if (y.side != 0.0) return y.side * row.h.coeff(index(y.index));
-  double sum = x.index == y.index ? give * row.mobility : 0.0;
+  double sum = x.index == y.index ? row.give * row.mobility : 0.0;
   for (Eigen::Index i = 0; i < row.h.size(); ++i) {
     sum += row.h.coeff(i) * rows_[y.index].moved.coeff(i);
   }
@@ -225,6 +230,12 @@ void LeastConstraint::apply() noexcept {
       torques_.coeffRef(i) += pushed * M_.coeff(i, index(bound.index));
     }
     acceleration_.coeffRef(index(bound.index)) += pushed;
+  }
+  for (std::size_t k = 0; k < count_; ++k) {  // without rounding
+    const Active& bound = active_[k];
+    if (bound.side == 0.0) continue;
+    const std::span<const double> limits = bound.side > 0.0 ? lower_ : upper_;
+    torques_.coeffRef(index(bound.index)) = limits[bound.index];
   }
 }
 

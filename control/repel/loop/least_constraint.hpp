@@ -23,11 +23,15 @@ namespace repel {
 /// 1983): the most violated bound is added until none is left, so the result is exact after about
 /// as many steps as there are bounds that bind.
 ///
-/// Each bound of a rate gives way by `give` of its mobility. Where the limits leave no solution,
-/// the result misses the bounds by the least sum of squares. Allocates at construction only.
+/// Each bound of a rate gives way by a share of its mobility. Where the limits leave no solution,
+/// the result misses the bounds by the least sum of squares, each over its share: what gives way
+/// more is missed first. Allocates at construction only.
 class LeastConstraint {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
+
+  static constexpr double firm = 1e-7;  ///< gives way to nothing but the limits
+  static constexpr double soft = 1e-5;  ///< gives way to firm bounds
 
   /// One bound.
   struct Row {
@@ -36,6 +40,7 @@ class LeastConstraint {
     double rate = 0.0;        ///< [m/s] without any net torque
     double least_rate = 0.0;  ///< [m/s]
     double mobility = 0.0;    ///< [1/kg] h' M^-1 h, set by `add`
+    double give = firm;       ///< share of the mobility
     double force = 0.0;       ///< [N] f, found by `solve`
   };
 
@@ -51,6 +56,18 @@ class LeastConstraint {
     for (Eigen::Index i = 0; i < joints * joints; ++i) M_.data()[i] = mass(i);
     return mass_.factor(joints, mass);
   }
+  /// Takes what is asked for: after `begin`, before `solve`. The spans must stay valid.
+  /// @param asked [N m], may be beyond the limits @param weight [N m] the part of it that carries
+  /// the weight
+  void ask(std::span<const double> asked, std::span<const double> weight) noexcept;
+  /// [N m] What is asked for beyond the weight.
+  [[nodiscard]] double asked(std::size_t joint) const noexcept {
+    return asked_.coeff(index(joint)) - weight_[joint];
+  }
+  /// [rad/s^2] With the torques that are asked for.
+  [[nodiscard]] const Vector& asked_acceleration() const noexcept { return freely_; }
+  [[nodiscard]] double step() const noexcept { return step_; }  ///< [s]
+
   /// M, in factors.
   [[nodiscard]] const network::dense::Factored& mass() const noexcept { return mass_; }
 
@@ -59,19 +76,19 @@ class LeastConstraint {
   /// The rows added since `begin`.
   [[nodiscard]] std::span<const Row> rows() const noexcept { return std::span(rows_).first(used_); }
 
-  /// @param asked [N m], may be beyond the limits @param weight [N m] the part of it that carries
-  /// the weight; the spans must stay valid for the calls below
+  /// The spans must stay valid for the calls below.
   /// @return false if nothing has to be changed. Cost: for each bound that binds, a look at all
   /// rows and the solution of a triangular system
-  [[nodiscard]] bool solve(std::span<const double> asked, std::span<const double> weight,
-                           std::span<const double> lower, std::span<const double> upper) noexcept;
+  [[nodiscard]] bool solve(std::span<const double> lower, std::span<const double> upper) noexcept;
 
+  /// [rad/s^2] With tau, before rounding and what no solution keeps.
+  [[nodiscard]] const Vector& acceleration() const noexcept { return acceleration_; }
   /// [N m] tau of a joint.
   [[nodiscard]] double torque(std::size_t joint) const noexcept;
   /// [m/s] The rate after the step.
   [[nodiscard]] double rate_after(const Row& row) const noexcept;
-  /// [m/s] The residual: the largest shortfall of a rate below its bound. It is more than rounding
-  /// where the limits leave no solution, or the steps did not suffice.
+  /// [m/s] The residual of the firm bounds: the largest shortfall of a rate below its bound. It is
+  /// more than rounding where the limits leave no solution, or the steps did not suffice.
   [[nodiscard]] double missed() const noexcept;
   /// The share of the forces f that the limits let act, 0 to 1.
   [[nodiscard]] double share() const noexcept;
@@ -81,7 +98,6 @@ class LeastConstraint {
  private:
   static constexpr std::size_t most_active = 32;
   static constexpr int most_steps = 64;
-  static constexpr double give = 1e-6;
   static constexpr double tolerance = 1e-9;  // [m/s], and of the range of a torque
 
   /// A bound that binds: of a row, or the limit of a joint.

@@ -61,11 +61,8 @@ struct JointWatchOptions {
 
 /// Options of the control of one arm.
 struct TeleoperatorOptions {
-  double tool_speed = 0.25;  ///< [m/s] up to which the operator may drive the tool; above it the
-                             ///< driving power fades, from 1.2 times it the arm brakes; 1e-3 to 10
-  /// The operator is in another program, whose word is not taken: no more of the operator's torques
-  /// is sent than what keeps the tool within tool_speed over the next ticks.
-  bool is_remote = false;
+  double tool_speed = 0.25;  ///< [m/s] up to which the tool may be driven, by the operator and by
+                             ///< walls that do not move; 1e-3 to 10
   double longest_gap = 0.1;  ///< [s] without a tick after which the operator's force is removed
   double exit_speed = 0.02;  ///< [m/s] at which an arm is pushed out of an obstacle it starts in
   bool push_out = false;     ///< the arm starts inside an obstacle and is to be pushed out of it

@@ -13,11 +13,11 @@
 #include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
 #include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/hand_speed.hpp>
 #include <repel/loop/hard_contacts.hpp>
 #include <repel/loop/kinematics_watch.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/loop/speed_share.hpp>
 #include <repel/loop/teleoperator_parts.hpp>
 #include <repel/loop/tick_clock.hpp>
 #include <repel/network/elements/signals.hpp>

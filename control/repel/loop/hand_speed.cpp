@@ -1,49 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <repel/loop/speed_share.hpp>
+#include <repel/loop/hand_speed.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 #include <repel/network/elements/changing_scale.hpp>
-#include <repel/network/elements/dense.hpp>
 #include <repel/network/modules/multiplex.hpp>
-
-namespace repel {
-
-SpeedShare speed_share(double speed, double limit) noexcept {
-  const double part = speed / limit;
-  return {std::clamp(1.0 - (part - 1.0) / 0.2, 0.0, 1.0), std::clamp((part - 1.2) / 0.3, 0.0, 1.0)};
-}
-
-double share_within(const network::Jacobian& jacobian, const ArmInertia::Vector& v,
-                    const ArmInertia::Vector& torques, const ArmInertia& inertia, double horizon,
-                    double limit) noexcept {
-  ArmInertia::Matrix mobility = inertia.matrix();
-  if (!network::dense::invert_positive(mobility.data(), mobility.rows())) return 1.0;
-  const auto gained = network::dense::product<ArmInertia::Vector>(mobility, torques);
-  const auto tool = network::dense::product<ArmInertia::Vector>(jacobian, v);
-  const auto more = network::dense::product<ArmInertia::Vector>(jacobian, gained);
-  double speed = 0.0, along = 0.0, square = 0.0;  // |V|^2, V.A, |A|^2
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const double a = horizon * more.coeff(i);
-    speed += tool.coeff(i) * tool.coeff(i);
-    along += tool.coeff(i) * a;
-    square += a * a;
-  }
-  const double room = limit * limit - speed;
-  if (!(square > 0.0)) return 1.0;
-  if (room <= 0.0) return along > 0.0 ? 0.0 : 1.0;
-  const double share = (std::sqrt(along * along + square * room) - along) / square;
-  return share - share == 0.0 ? std::min(1.0, share) : 1.0;
-}
-
-double release_share(double speed, double limit, double growth) noexcept {
-  const double part = speed / limit;
-  if (!(part > 0.5)) return 1.0;
-  return std::clamp((1.2 - part) / (0.2 + part * std::max(0.0, growth)), 0.0, 1.0);
-}
-
-}  // namespace repel
 
 namespace repel::detail {
 

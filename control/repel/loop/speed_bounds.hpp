@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Bounds of the speeds of joints and tool, among those of the torques.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include <repel/base/status.hpp>
+#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/least_constraint.hpp>
+#include <repel/network/elements/dense.hpp>
+#include <repel/network/elements/signals.hpp>
+#include <repel/world/arm.hpp>
+
+namespace repel {
+
+/// How fast a tool may become.
+struct ToolSpeed {
+  const network::Jacobian* jacobian = nullptr;             ///< of the tool; null: it is not bounded
+  double limit = std::numeric_limits<double>::infinity();  ///< [m/s]
+  bool is_carried = false;  ///< walls that move themselves push it, as fast as they are
+};
+
+/// Bounds the speed s of a joint or the tool, of those that a torque would take beyond its limit
+/// within the horizon h:
+///
+///     s + h ds/dt <= limit
+///
+/// So a limit is approached exponentially, and what is beyond it is braked. Dry friction counts: a
+/// torque must overcome it before it moves anything. A bound of the tool
+/// acts along the velocity that it would have: forces across it, and against it, stay as they are.
+/// Nothing is scaled, so nothing that balances is taken apart.
+///
+/// Walls are held back only where the arm is faster than half its limit, and not by walls that move
+/// themselves: what they push against may be something that no model has.
+class SpeedBounds {
+ public:
+  /// @param horizon [s] in which a torque that is sent acts, with the delay of the drive
+  SpeedBounds(const ArmModel& model, double horizon) : model_(model), horizon_(horizon) {
+    driven_.setZero(static_cast<Eigen::Index>(model.links.size()));
+    friction_ = driven_;
+  }
+
+  /// To be called in every tick, before the others. @param mass of the arm @param asked [N m]
+  /// @param weight [N m] the part of it that carries the weight
+  /// @param v [rad/s] or [m/s] of the joints
+  /// @return true where what is asked for takes a joint or the tool beyond its limit
+  /// Cost: a solution with the mass matrix, and a product with the Jacobian
+  [[nodiscard]] bool foresee(const network::dense::Factored& mass, std::span<const double> asked,
+                             std::span<const double> weight, std::span<const double> v,
+                             const ToolSpeed& tool) noexcept;
+  /// Adds the bounds of joints that matter to a problem. @param walls [N m] that push the arm, by
+  /// their share. Cost: a solution with the mass matrix for
+  /// each bound
+  void bound_joints(LeastConstraint& problem, std::span<const double> v,
+                    const ArmInertia::Vector& walls) noexcept;
+  /// Adds a bound where the tool would be too fast with the solution of a problem, which is then to
+  /// be solved again: what is feasible is a ball, and each bound a plane that touches it.
+  /// @return false if nothing was added. Cost: a product with the Jacobian, and a solution with the
+  /// mass matrix
+  bool bound_tool(LeastConstraint& problem, std::span<const double> v,
+                  const ArmInertia::Vector& walls, const ToolSpeed& tool) noexcept;
+  /// Of the solution: `speed_limit` and `tool_speed` where their bounds changed a torque.
+  [[nodiscard]] Status said(const LeastConstraint& problem) const noexcept;
+
+ private:
+  // Above the limit, so that who asks for it gets it, and is not told of what swings beyond.
+  static constexpr double tool_slack = 0.1;
+
+  static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
+
+  // A row for a rate that must not fall below -limit within the horizon; null: there is no room.
+  // @param h its direction @param rate [m/s] now
+  LeastConstraint::Row* add(LeastConstraint& problem, const ArmInertia::Vector& h, double rate,
+                            double limit) const noexcept;
+  // The walls alone may do what they do.
+  static void let_walls(const LeastConstraint& problem, LeastConstraint::Row& row,
+                        const ArmInertia::Vector& walls) noexcept;
+  // [m/s] Velocity of the tool after the horizon; `now` receives that of now.
+  [[nodiscard]] Vec3 then(const ToolSpeed& tool, std::span<const double> v,
+                          const ArmInertia::Vector& acceleration, Vec3& now) const noexcept;
+  [[nodiscard]] bool is_beyond(double v, double acceleration, double limit) const noexcept {
+    return limit > 0.0 && std::abs(v + horizon_ * acceleration) > limit;
+  }
+  const ArmModel& model_;
+  double horizon_;               // [s]
+  ArmInertia::Vector driven_;    // [rad/s^2] by what is asked for, less what friction takes
+  ArmInertia::Vector friction_;  // [rad/s^2] of this, that of friction
+  std::size_t joints_ = 0;       // the first row of a joint
+  std::size_t tool_ = 0;         // the row of the tool, behind those of the joints
+};
+
+}  // namespace repel
