@@ -89,7 +89,7 @@ TEST_F(DrivenTool, IsNoFasterThanItMayBeWhateverIsAskedFor) {
       asked(k) = std::pow(10.0, families::uniform(rng, 0.0, 4.0)) * (rng() % 2 == 0 ? 1.0 : -1.0);
     }
     const std::vector<double> torques = sent(v, asked);
-    EXPECT_LE(after(v, torques).norm(), 1.15 * limit);
+    EXPECT_LE(after(v, torques).norm(), 1.1 * limit);
     const bool is_cut = (said & status::tool_speed) != 0U;
     if (!is_cut) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -108,7 +108,7 @@ TEST_F(DrivenTool, ThatIsTooFastIsBrakedAndWhatIsAskedAcrossStays) {
   asked(1) = 2.0;
   const std::vector<double> torques = sent(v, asked);
   EXPECT_LT(torques[0], 0.0);
-  EXPECT_NEAR(torques[1], 2.0, 0.25);
+  EXPECT_NEAR(torques[1], 2.0, 0.5);
   asked(0) = -300.0;
   EXPECT_EQ(sent(v, asked)[0], -300.0) << "who brakes harder may";
 }

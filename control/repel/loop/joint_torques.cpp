@@ -28,7 +28,7 @@ JointTorques::JointTorques(const ArmModel& model, double period, const JointTorq
       step_(std::max(period, options.slew_time)),
       until_(drive_delay * period + 0.5 * (period + step_)),
       // Half as much again as until the torque has acted: the mass of the model may be off.
-      speeds_(model, (2.0 + 1.5 * drive_delay) * period + options.slew_time),
+      speeds_(model, (2.0 + 1.5 * drive_delay) * period + 0.5 * options.slew_time),
       problem_(model.links.size(), BarrierRows::most + model.links.size() + most_planes) {
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
   const auto size = static_cast<Eigen::Index>(model.links.size());

@@ -68,7 +68,7 @@ class SpeedBounds {
 
  private:
   // Above the limit, so that who asks for it gets it, and is not told of what swings beyond.
-  static constexpr double tool_slack = 0.1;
+  static constexpr double tool_slack = 0.075;
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
