@@ -20,8 +20,7 @@ constexpr double least_miss = 1e-4;  // [m/s] of a rate that counts as missed
 
 EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_delay,
                            double slew_time, std::size_t pairs, const EntryBarrierOptions& options)
-    : model_(model),
-      options_(options),
+    : options_(options),
       period_(period),
       delay_(drive_delay),
       slew_time_(slew_time),

@@ -129,7 +129,6 @@ class EntryBarrier {
     return std::min(rows_.all().size(), problem.rows().size());
   }
 
-  const ArmModel& model_;
   EntryBarrierOptions options_;
   double period_;     // [s]
   double delay_;      // [ticks]

@@ -29,7 +29,7 @@ JointTorques::JointTorques(const ArmModel& model, double period, const JointTorq
       until_(drive_delay * period + 0.5 * (period + step_)),
       // Half as much again as until the torque has acted: the mass of the model may be off.
       speeds_(model, (2.0 + 1.5 * drive_delay) * period + 0.5 * options.slew_time),
-      problem_(model.links.size(), BarrierRows::most + model.links.size() + most_planes) {
+      problem_(model.links.size(), BarrierRows::most + most_rounds * (model.links.size() + 1)) {
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
   const auto size = static_cast<Eigen::Index>(model.links.size());
   net_.setZero(size);
@@ -76,14 +76,13 @@ Status JointTorques::decide(const std::vector<double>& v, const ArmInertia& iner
   }
   problem_.ask(sum_, gravity_);
   if (is_near) bounds.barrier->bound(problem_, gravity_, v, inertia);
-  speeds_.bound_joints(problem_, v, walls_);
-  int planes = 0;
+  int rounds = 0;
   do {
     is_cut_ = problem_.solve(lower_, upper_);
-  } while (planes++ < most_planes && speeds_.bound_tool(problem_, v, walls_, bounds.tool));
+  } while (rounds++ < most_rounds && speeds_.bound(problem_, v, walls_, bounds.tool));
   Status found = 0;
   if (is_cut_ && is_near) found |= bounds.barrier->account(problem_, lower_, upper_, effort_);
-  if (is_cut_) found |= speeds_.said(problem_);
+  if (is_cut_) found |= SpeedBounds::said(problem_);
   for (std::size_t i = 0; i < torques_.size(); ++i) {
     const double asked = std::clamp(sum_[i], -effort_[i], effort_[i]);
     const double within = std::clamp(asked, lower_[i], upper_[i]);

@@ -120,7 +120,7 @@ class JointTorques {
   void expect_together(const std::vector<double>& v, const ArmInertia& inertia) noexcept;
 
   static constexpr double give_way = 4.0;
-  static constexpr int most_planes = 4;  // around the speed of the tool
+  static constexpr int most_rounds = 4;  // until all speeds are kept
 
   const ArmModel& model_;
   std::vector<network::FrictionCompensation> friction_;

@@ -24,6 +24,7 @@ LeastConstraint::Row* LeastConstraint::add(const Vector& h, double rate) noexcep
   row.rate = rate;
   row.force = row.mobility = 0.0;
   row.give = firm;
+  row.tag = 0;
   for (Eigen::Index i = 0; i < h.size(); ++i) row.mobility += h.coeff(i) * row.moved.coeff(i);
   return &row;
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,7 @@ class LeastConstraint {
     double least_rate = 0.0;  ///< [m/s]
     double mobility = 0.0;    ///< [1/kg] h' M^-1 h, set by `add`
     double give = firm;       ///< share of the mobility
+    std::uint32_t tag = 0;    ///< of who added it
     double force = 0.0;       ///< [N] f, found by `solve`
   };
 

@@ -27,72 +27,66 @@ bool SpeedBounds::foresee(const network::dense::Factored& mass, std::span<const 
   return squared_norm(then(tool, v, driven_, now)) > limit * limit;
 }
 
-void SpeedBounds::bound_joints(LeastConstraint& problem, std::span<const double> v,
-                               const ArmInertia::Vector& walls) noexcept {
-  joints_ = problem.rows().size();
+bool SpeedBounds::bound(LeastConstraint& problem, std::span<const double> v,
+                        const ArmInertia::Vector& walls, const ToolSpeed& tool) noexcept {
   friction_ = driven_ - problem.asked_acceleration();
+  const ArmInertia::Vector a = problem.acceleration() + friction_;
+  bool has_more = false;
   for (std::size_t i = 0; i < v.size(); ++i) {
     const double limit = model_.links[i].velocity_limit;
-    const double a = driven_.coeff(index(i));
-    if (!is_beyond(v[i], a, limit)) continue;
-    const double side = v[i] + horizon_ * a > 0.0 ? -1.0 : 1.0;
-    ArmInertia::Vector h = ArmInertia::Vector::Zero(driven_.size());
+    if (!is_beyond(v[i], a.coeff(index(i)), rounding * limit)) continue;
+    const double side = v[i] + horizon_ * a.coeff(index(i)) > 0.0 ? -1.0 : 1.0;
+    ArmInertia::Vector h = ArmInertia::Vector::Zero(a.size());
     h.coeffRef(index(i)) = side;
-    LeastConstraint::Row* row = add(problem, h, side * v[i], limit);
-    if (row == nullptr) break;
-    if (std::abs(v[i]) < 0.5 * limit) let_walls(problem, *row, walls);
+    const bool is_slow = std::abs(v[i]) < 0.5 * limit;
+    if (add(problem, h, side * v[i], limit, is_slow ? &walls : nullptr, status::speed_limit)) {
+      has_more = true;
+    }
   }
-  tool_ = problem.rows().size();
+  return bound_tool(problem, v, a, walls, tool) || has_more;
 }
 
 bool SpeedBounds::bound_tool(LeastConstraint& problem, std::span<const double> v,
+                             const ArmInertia::Vector& acceleration,
                              const ArmInertia::Vector& walls, const ToolSpeed& tool) noexcept {
   if (tool.jacobian == nullptr) return false;
   const double limit = (1.0 + tool_slack) * tool.limit;
   Vec3 now;
-  const Vec3 fast = then(tool, v, problem.acceleration() + friction_, now);
+  const Vec3 fast = then(tool, v, acceleration, now);
   const double speed = std::sqrt(squared_norm(fast));
-  if (!(speed > (1.0 + 1e-2) * limit)) return false;
+  if (!(speed > rounding * limit)) return false;
   const Vec3 n = fast / speed;
   const double* const J = tool.jacobian->data();
-  ArmInertia::Vector h = ArmInertia::Vector::Zero(driven_.size());
+  ArmInertia::Vector h = ArmInertia::Vector::Zero(acceleration.size());
   for (std::size_t i = 0; i < v.size(); ++i) {
     h.coeffRef(index(i)) = -(n.x() * J[6 * i] + n.y() * J[6 * i + 1] + n.z() * J[6 * i + 2]);
   }
-  LeastConstraint::Row* row = add(problem, h, -dot(n, now), limit);
-  if (row == nullptr) return false;
-  if (tool.is_carried || dot(n, now) < 0.5 * limit) let_walls(problem, *row, walls);
-  return true;
+  const bool let_walls = tool.is_carried || dot(n, now) < 0.5 * limit;
+  return add(problem, h, -dot(n, now), limit, let_walls ? &walls : nullptr, status::tool_speed);
 }
 
-Status SpeedBounds::said(const LeastConstraint& problem) const noexcept {
+Status SpeedBounds::said(const LeastConstraint& problem) noexcept {
   Status found = 0;
-  for (std::size_t k = joints_; k < problem.rows().size(); ++k) {
-    if (!(problem.rows()[k].force > 0.0)) continue;
-    found |= k < tool_ ? status::speed_limit : status::tool_speed;
+  for (const LeastConstraint::Row& row : problem.rows()) {
+    if (row.force > 0.0) found |= row.tag;
   }
   return found;
 }
 
-LeastConstraint::Row* SpeedBounds::add(LeastConstraint& problem, const ArmInertia::Vector& h,
-                                       double rate, double limit) const noexcept {
+bool SpeedBounds::add(LeastConstraint& problem, const ArmInertia::Vector& h, double rate,
+                      double limit, const ArmInertia::Vector* walls, Status tag) const noexcept {
   LeastConstraint::Row* row = problem.add(h, rate);
-  if (row == nullptr) return nullptr;
+  if (row == nullptr) return false;
   row->give = LeastConstraint::soft;
+  row->tag = tag;
   row->least_rate = rate - problem.step() * (limit + rate) / horizon_;
+  double by_walls = 0.0;
   for (Eigen::Index i = 0; i < h.size(); ++i) {
     row->rate += problem.step() * h.coeff(i) * friction_.coeff(i);
+    if (walls != nullptr) by_walls += problem.step() * row->moved.coeff(i) * walls->coeff(i);
   }
-  return row;
-}
-
-void SpeedBounds::let_walls(const LeastConstraint& problem, LeastConstraint::Row& row,
-                            const ArmInertia::Vector& walls) noexcept {
-  double then = row.rate;
-  for (Eigen::Index i = 0; i < walls.size(); ++i) {
-    then += problem.step() * row.moved.coeff(i) * walls.coeff(i);
-  }
-  row.least_rate = std::min(row.least_rate, then);
+  if (walls != nullptr) row->least_rate = std::min(row->least_rate, row->rate + by_walls);
+  return true;
 }
 
 Vec3 SpeedBounds::then(const ToolSpeed& tool, std::span<const double> v,

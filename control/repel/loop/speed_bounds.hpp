@@ -52,33 +52,32 @@ class SpeedBounds {
   [[nodiscard]] bool foresee(const network::dense::Factored& mass, std::span<const double> asked,
                              std::span<const double> weight, std::span<const double> v,
                              const ToolSpeed& tool) noexcept;
-  /// Adds the bounds of joints that matter to a problem. @param walls [N m] that push the arm, by
-  /// their share. Cost: a solution with the mass matrix for
-  /// each bound
-  void bound_joints(LeastConstraint& problem, std::span<const double> v,
-                    const ArmInertia::Vector& walls) noexcept;
-  /// Adds a bound where the tool would be too fast with the solution of a problem, which is then to
-  /// be solved again: what is feasible is a ball, and each bound a plane that touches it.
+  /// Adds bounds where joints or the tool would be too fast with the solution of a problem, which
+  /// is then to be solved again. What the tool may do is a ball, and each bound a plane that
+  /// touches it; and who slows the tool by a light joint makes that one fast.
+  /// @param walls [N m] that push the arm, by their share
   /// @return false if nothing was added. Cost: a product with the Jacobian, and a solution with the
-  /// mass matrix
-  bool bound_tool(LeastConstraint& problem, std::span<const double> v,
-                  const ArmInertia::Vector& walls, const ToolSpeed& tool) noexcept;
+  /// mass matrix for each bound
+  bool bound(LeastConstraint& problem, std::span<const double> v, const ArmInertia::Vector& walls,
+             const ToolSpeed& tool) noexcept;
   /// Of the solution: `speed_limit` and `tool_speed` where their bounds changed a torque.
-  [[nodiscard]] Status said(const LeastConstraint& problem) const noexcept;
+  [[nodiscard]] static Status said(const LeastConstraint& problem) noexcept;
 
  private:
+  // The solution of soft bounds may be so much beyond.
+  static constexpr double rounding = 1.01;
   // Above the limit, so that who asks for it gets it, and is not told of what swings beyond.
   static constexpr double tool_slack = 0.075;
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
-  // A row for a rate that must not fall below -limit within the horizon; null: there is no room.
-  // @param h its direction @param rate [m/s] now
-  LeastConstraint::Row* add(LeastConstraint& problem, const ArmInertia::Vector& h, double rate,
-                            double limit) const noexcept;
-  // The walls alone may do what they do.
-  static void let_walls(const LeastConstraint& problem, LeastConstraint::Row& row,
-                        const ArmInertia::Vector& walls) noexcept;
+  // A row for a rate that must not fall below -limit within the horizon. @param h its direction
+  // @param rate [m/s] now @param walls that may do what they do; null: none @return false: no room
+  bool add(LeastConstraint& problem, const ArmInertia::Vector& h, double rate, double limit,
+           const ArmInertia::Vector* walls, Status tag) const noexcept;
+  bool bound_tool(LeastConstraint& problem, std::span<const double> v,
+                  const ArmInertia::Vector& acceleration, const ArmInertia::Vector& walls,
+                  const ToolSpeed& tool) noexcept;
   // [m/s] Velocity of the tool after the horizon; `now` receives that of now.
   [[nodiscard]] Vec3 then(const ToolSpeed& tool, std::span<const double> v,
                           const ArmInertia::Vector& acceleration, Vec3& now) const noexcept;
@@ -89,8 +88,6 @@ class SpeedBounds {
   double horizon_;               // [s]
   ArmInertia::Vector driven_;    // [rad/s^2] by what is asked for, less what friction takes
   ArmInertia::Vector friction_;  // [rad/s^2] of this, that of friction
-  std::size_t joints_ = 0;       // the first row of a joint
-  std::size_t tool_ = 0;         // the row of the tool, behind those of the joints
 };
 
 }  // namespace repel
