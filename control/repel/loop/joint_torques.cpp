@@ -71,7 +71,7 @@ Status JointTorques::decide(const std::vector<double>& v, const ArmInertia& iner
   }
   const bool is_fast = speeds_.foresee(problem_.mass(), sum_, gravity_, v, bounds.tool);
   if (!is_near && !is_fast && is_within_range()) {
-    torques_ = sum_;
+    std::copy(sum_.begin(), sum_.end(), torques_.begin());
     return 0;
   }
   problem_.ask(sum_, gravity_);
