@@ -333,8 +333,8 @@ TEST(NetworkOfAScene, WavesHoldAWallOverADelayWhereThePlainLineDoesNot) {
   EXPECT_LT(waves.at("peak_force_n"), 100.0);
   EXPECT_LE(worst_deficit(waves), 1e-9) << waves.at("modules");
   const auto [by_force, plain] = held_over_a_line(folder, "force_velocity");
-  // More than twice as much, although the speed of the tool is bounded.
-  EXPECT_GT(plain.at("peak_force_n"), 160.0);
+  // Although the speed of the tool is bounded.
+  EXPECT_GT(plain.at("peak_force_n").get<double>(), 2.0 * waves.at("peak_force_n").get<double>());
   EXPECT_LT(module_of(plain, "line").at("least_j"), -100.0);
 }
 
