@@ -607,8 +607,7 @@ bench::Result attacks(const bench::Options& options) {
   return result;
 }
 
-// Arms at their limits: joints that weigh next to nothing, drives that are late, a hand that asks
-// for more than the tool may do.
+// Light joints, late drives, and a hand beyond the speed limit of the tool.
 bench::Result limits(const bench::Options& options) {
   bench::Result result;
   result.title = "Light wrists, late drives and fast hands before soft walls";

@@ -41,8 +41,8 @@ struct TorqueBounds {
 ///
 ///     tau = g(q) + operator + walls + friction - M v / brake_time
 ///
-/// where braking uses the effort that is left over, all its torques scaled together, so that it
-/// never drives, and is reduced while a wall pushes the arm along. What is sent is, of all torques
+/// Braking uses the effort that is left over. All its torques are scaled together, so it never
+/// drives. It is reduced while a wall pushes the arm along. What is sent is, of all torques
 /// within the bounds, the one that changes the acceleration of the arm least (LeastConstraint). Of
 /// bounds that contradict each other, the first of these holds: effort and slew rate; hard walls
 /// (EntryBarrier); speeds of joints and tool (SpeedBounds). A torque that cannot be sent therefore

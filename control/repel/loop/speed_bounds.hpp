@@ -38,7 +38,7 @@ struct ToolSpeed {
 /// themselves: what they push against may be something that no model has.
 class SpeedBounds {
  public:
-  /// @param horizon [s] in which a torque that is sent acts, with the delay of the drive
+  /// @param horizon [s] from a torque to its effect, with the delay of the drive
   SpeedBounds(const ArmModel& model, double horizon) : model_(model), horizon_(horizon) {
     driven_.setZero(static_cast<Eigen::Index>(model.links.size()));
     friction_ = driven_;
