@@ -57,6 +57,7 @@ void write_names(const ArmHeading& arm, std::ostream& file) {
     write("v", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad_s" : "_m_s");
   }
   write("held_n");
+  write("hold_margin_m");
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
@@ -73,7 +74,7 @@ void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file
   file << ',' << to_text(k.stop) << ',' << (k.brakes ? 1 : 0);
   for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.torques[i]);
   for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.v[i]);
-  file << ',' << or_nothing(k.held_force);
+  file << ',' << or_nothing(k.held_force) << ',' << or_nothing(k.hold.margin);
 }
 
 class CsvLog final : public TickLog {

@@ -108,6 +108,7 @@ Json forces_of(const TickRecord& k, std::size_t joints) {
           {"force_n", k.virtual_force.force.norm()},
           {"lever_torque", k.lever_torque},
           {"held_n", k.held_force},
+          {"hold_margin_m", std::isfinite(k.hold.margin) ? Json(k.hold.margin) : Json()},
           {"gain", k.gain},
           {"stop", to_text(k.stop)},
           {"brakes", k.brakes},

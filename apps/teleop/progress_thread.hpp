@@ -6,9 +6,11 @@
 #include <pthread.h>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -34,8 +36,11 @@ class ProgressThread {
   ProgressThread(Mailbox<Progress>& box, const std::function<void(const Progress&)>& show)
       : thread_([&box, &show](const std::stop_token& stop) {
           (void)pthread_setname_np(pthread_self(), "repel progress");
+          std::mutex mutex;
+          std::unique_lock lock(mutex);
+          std::condition_variable_any ending;
           while (!stop.stop_requested()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(200));
+            (void)ending.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
             if (!box.take()) continue;
             const std::string why = complaint_of([&] { show(box.newest()); });
             if (why.empty()) continue;

@@ -158,6 +158,8 @@ ordered_json partner_list(const RunResult& r) {
     const ArmResult& arm = r.arms[i];
     ordered_json partner = {{"name", arm.name},
                             {"peak_force_n", arm.totals.peak_force},
+                            {"hold_margin_m", arm.totals.hold_margin},
+                            {"hold_gaps_left_out", arm.totals.gaps_left_out},
                             {"chatter", chatter_to_json(arm)},
                             {"status_ticks", host::status_ticks(arm.totals)},
                             {"stop", stop_ticks(arm.totals)},
@@ -191,6 +193,18 @@ void print_status(const ArmResult& arm, std::FILE* out) {
     std::fprintf(out, "  status %-15s in %lld ticks%s\n", to_text(1U << bit).c_str(),
                  static_cast<long long>(ticks), whose.c_str());
   }
+}
+
+/// The least that was proven of hard walls, if there are any.
+void print_hold(const ArmResult& arm, std::FILE* out) {
+  const std::string whose = arm.name.empty() ? "" : " of " + arm.name;
+  if (!std::isfinite(arm.totals.hold_margin)) return;
+  print_line("hard walls",
+             "stopping proven " + figure(1e3 * arm.totals.hold_margin, 3) + " mm before" + whose,
+             out);
+  if (arm.totals.gaps_left_out == 0) return;
+  print_line("", std::to_string(arm.totals.gaps_left_out) + " gaps had no room and are left out",
+             out);
 }
 
 /// What to do where an arm gained energy from its own control.
@@ -482,6 +496,7 @@ void print_report(const RunResult& r, std::FILE* out) {
                  static_cast<long long>(r.log_dropped));
   }
   for (const ArmResult& arm : r.arms) {
+    print_hold(arm, out);
     print_stops(arm, out);
     print_status(arm, out);
   }
@@ -547,6 +562,8 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["device_damping_n_s_per_m"] = r.device_damping;
   report["stop"] = stop_ticks(r.totals());
   report["brake_ticks"] = r.totals().brake_ticks;
+  report["hold_margin_m"] = r.totals().hold_margin;
+  report["hold_gaps_left_out"] = r.totals().gaps_left_out;
   report["held_joints"] = held_list(r.arms.front());
   report["modules"] = modules_to_json(r.arms.front().modules);
   report["partners"] = partner_list(r);

@@ -250,6 +250,8 @@ def _of_arm(inputs: _Rows, forces: _Rows, prefix: str,
     add_each(of_joints("tau", "_nm", "_n"), forces, "torques")
     if "held_n" in forces[0]:  # older recordings do not have it
         add("held_n", forces, "held_n")
+    if "hold_margin_m" in forces[0]:
+        add("hold_margin_m", forces, "hold_margin_m")
     return columns
 
 

@@ -175,7 +175,7 @@ TEST(Patch, WrenchIsLipschitzInTheMotionAndTheGradientOfItsDistance) {
   for (const auto& kinds : test::kinds_of_contacts()) {
     if (!is_exact(kinds)) continue;
     Walk seen;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 100; ++i) {
       walk(test::draw_contacts(kinds, families::uniform(rng, 0.002, 0.01), rng), rng, 400, seen);
     }
     EXPECT_LE(seen.quick, is_shallow(kinds) ? seen.steps / 100 : 0)
@@ -190,8 +190,8 @@ TEST(Patch, WrenchIsLipschitzInTheMotionAndTheGradientOfItsDistance) {
     all.steps += seen.steps;
     all.leaps += seen.leaps;
   }
-  EXPECT_GE(all.steps, 1'000'000);
-  EXPECT_GT(all.leaps, 50);
+  EXPECT_GE(all.steps, 300'000);
+  EXPECT_GT(all.leaps, 15);
 }
 
 /// A closed path through poses around a contact, and the work of a wall without damping along it.

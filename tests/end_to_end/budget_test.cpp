@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Forces and reports when there are more near pairs than the budget covers.
-#include "end_to_end/teleop.hpp"
+#include "end_to_end/whole_run.hpp"
 
 namespace repel::test {
 namespace budget_test {
@@ -101,10 +101,9 @@ TEST(Budget, OverloadIsTheSameBitsEveryTimeAndWithAnyNumberOfThreads) {
 }
 
 TEST(Budget, OneSupportPairIsEnoughToRunEveryScene) {
-  for (const auto& entry : fs::directory_iterator(REPEL_SOURCE "/scenes")) {
-    if (entry.path().extension() != ".yaml") continue;
-    SCOPED_TRACE(entry.path());
-    const Outcome run = run_of(quoted(entry.path().string()) + " --seconds 5 --budget 1");
+  for (const std::string& scene : scene_names()) {
+    SCOPED_TRACE(scene);
+    const Outcome run = run_of(scene + " --seconds 5 --budget 1");
     EXPECT_EQ(units_of(run), 1);
     for (const char* fault : {"bad_pose", "bad_command", "bad_joints", "clock_fault"}) {
       EXPECT_FALSE(has_status(run, fault)) << fault;

@@ -37,7 +37,7 @@ TEST(Camera, KeepsTheArmOffWhatOnlyItSeesWhateverItIsLike) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(rng);
   };
-  const int draws = std::max(1, families::draws(6));
+  const int draws = std::max(1, families::draws(3));
   int touched = 0;
   for (int i = 0; i < draws; ++i) {
     const double noise = between(0.0, 1.2);
@@ -189,7 +189,7 @@ TEST(Camera, WithAMapKeepsTheArmOffWhatOnlyItSees) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(rng);
   };
-  const int draws = std::max(1, families::draws(3));
+  const int draws = std::max(1, families::draws(2));
   int touched = 0;
   for (int i = 0; i < draws; ++i) {
     const std::string cube = std::to_string(between(20.0, 50.0)) + " mm";

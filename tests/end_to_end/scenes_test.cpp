@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every scene of the repository agrees with its reference report, and has a page that shows it.
-#include "end_to_end/teleop.hpp"
+#include "end_to_end/whole_run.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,15 +15,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const std::string scenes = REPEL_SOURCE "/scenes/";
-
-/// The names of all scenes, sorted.
-std::set<std::string> names() {
-  std::set<std::string> all;
-  for (const auto& entry : fs::directory_iterator(scenes)) {
-    if (entry.path().extension() == ".yaml") all.insert(entry.path().stem().string());
-  }
-  return all;
-}
 
 /// The names of the elements of a list, or the keys of an object.
 std::vector<std::string> names_in(const json& list) {
@@ -80,7 +71,7 @@ void expect_like(const json& report, const json& reference) {
 
 TEST(Scenes, HaveAReportAPictureAndAPageThatTheListLeadsTo) {
   const std::string list = text_of(scenes + "README.md");
-  for (const std::string& name : names()) {
+  for (const std::string& name : scene_names()) {
     EXPECT_TRUE(fs::exists(scenes + "reports/" + name + ".json")) << name << ": scenes/publish";
     EXPECT_TRUE(fs::exists(scenes + "pictures/" + name + ".svg")) << name << ": scenes/publish";
     EXPECT_NE(list.find("](" + name + ".md)"), std::string::npos) << name;
@@ -91,7 +82,7 @@ TEST(Scenes, HaveAReportAPictureAndAPageThatTheListLeadsTo) {
 }
 
 TEST(Scenes, HaveTheFiguresOfTheirReportOnTheirPage) {
-  for (const std::string& name : names()) {
+  for (const std::string& name : scene_names()) {
     const std::string page = text_of(scenes + name + ".md");
     const json reference = report_of(scenes + "reports/" + name + ".json");
     for (const json& obstacle : reference.at("obstacles")) {
@@ -107,7 +98,7 @@ TEST(Scenes, HaveTheFiguresOfTheirReportOnTheirPage) {
 }
 
 TEST(Scenes, HaveNoReportOrPictureOfWhatIsGone) {
-  const std::set<std::string> all = names();
+  const std::set<std::string> all = scene_names();
   for (const char* folder : {"reports", "pictures"}) {
     for (const auto& entry : fs::directory_iterator(scenes + folder)) {
       EXPECT_TRUE(all.contains(entry.path().stem().string())) << entry.path();
@@ -116,24 +107,19 @@ TEST(Scenes, HaveNoReportOrPictureOfWhatIsGone) {
 }
 
 TEST(Scenes, DoWhatTheirReferenceReportsSay) {
-  const Folder folder;
-  const std::string to = folder / "report.json";
-  for (const std::string& name : names()) {
+  for (const std::string& name : scene_names()) {
     SCOPED_TRACE(name);
-    const json reference = report_of(scenes + "reports/" + name + ".json");
-    const Ending ending =
-        teleop(name + " --fast --seconds 20 --backend " +
-               reference.at("backend").get<std::string>() + " --report " + quoted(to));
-    if (ending.says("is not built in")) GTEST_SKIP() << ending;
-    ASSERT_EQ(ending.status, 0) << ending;
-    expect_like(report_of(to), reference);
+    const WholeRun& run = whole_run_of(name);
+    if (run.ending.says("is not built in")) GTEST_SKIP() << run.ending;
+    ASSERT_EQ(run.ending.status, 0) << run.ending;
+    expect_like(run.report, run.reference);
   }
 }
 
 // A passable body may be entered; all others keep their distance, from any part of an arm.
 TEST(Scenes, LetNothingBeTouchedThatMayNotBeEntered) {
   const std::set<std::string> passable = {"membrane", "crust", "skin"};
-  for (const std::string& name : names()) {
+  for (const std::string& name : scene_names()) {
     const json reference = report_of(scenes + "reports/" + name + ".json");
     for (const json& obstacle : reference.at("obstacles")) {
       if (passable.contains(obstacle.at("name")) || obstacle.at("nearest_m").is_null()) continue;

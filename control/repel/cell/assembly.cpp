@@ -56,7 +56,7 @@ std::span<const TickRecord* const> CellAssembly::act(
     std::span<const network::Command> hands) noexcept {
   for (std::size_t i = 0; i < controls_.size(); ++i) {
     records_[i] =
-        &controls_[i].act(*forces_, coprocessor_->workers(), {contacts_->all(), hard_->all()},
+        &controls_[i].act(*forces_, coprocessor_->workers(), {contacts_->all(), hard_->all(), hard_->left_out()},
                           i < hands.size() ? hands[i] : silent_);
   }
   return records_;

@@ -62,6 +62,7 @@ void ArmCommand::drive(const ArmMotion& motion, const ArmInertia& inertia, Joint
   record.status |= found;
   record.held_force = barrier_.force();
   record.held_pair = barrier_.pushed();
+  record.hold = barrier_.proof();
   is_poisoned_ = (found & status::bad_torque) != 0U;
   std::copy(torques_.torques().begin(), torques_.torques().end(), record.torques.begin());
   const bool held = options_.has_brakes && (record.brakes || !is_enabled_);

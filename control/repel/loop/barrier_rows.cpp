@@ -18,6 +18,7 @@ void BarrierRows::gather(std::span<const HardContact> contacts, BodyId tool,
                          std::span<const double> q, std::span<const double> v,
                          std::span<const double> untold, double soon) noexcept {
   clear();
+  side_a_ = side_b_ = {};
   soon_ = soon;
   for (const HardContact& contact : contacts) add(contact, tool, jacobian, links, v, untold);
   for (std::size_t joint = 0; joint < q.size(); ++joint) {
@@ -36,8 +37,8 @@ void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& j
   row.h = zero_;
   row.bending = contact.bending;
   const auto of = [&](BodyId body) { return body == tool ? &jacobian : links.jacobian_of(body); };
-  const bool has_a = add_side(of(contact.a), contact.on_a, v, row);
-  const bool has_b = add_side(of(contact.b), contact.on_b, v, row);
+  const bool has_a = add_side(side_a_, of(contact.a), contact.on_a, v, row);
+  const bool has_b = add_side(side_b_, of(contact.b), contact.on_b, v, row);
   if (!has_a && !has_b) return;
   double own = 0.0;
   double faster = 0.0;
@@ -56,13 +57,14 @@ void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& j
   keep(row);
 }
 
-bool BarrierRows::add_side(const Jacobian* jacobian, const Wrench& F, std::span<const double> v,
-                           BarrierRow& row) noexcept {
+bool BarrierRows::add_side(Side& side, const Jacobian* jacobian, const Wrench& F,
+                           std::span<const double> v, BarrierRow& row) noexcept {
   if (jacobian == nullptr) return false;
+  if (side.jacobian != jacobian) side = {jacobian, bias_of(*jacobian, v)};
   for (Eigen::Index i = 0; i < row.h.size(); ++i) {
     row.h.coeffRef(i) += power(F, column_of(*jacobian, i));
   }
-  row.bending += power(F, bias_of(*jacobian, v));
+  row.bending += power(F, side.bias);
   return true;
 }
 
@@ -86,6 +88,7 @@ void BarrierRows::keep(const BarrierRow& row) noexcept {
     rows_[used_++] = row;
     return;
   }
+  ++left_out_;
   const auto soonest = [this](const BarrierRow& r) {
     return r.gap + soon_ * std::min(r.rate, 0.0);
   };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -43,8 +44,10 @@ class BarrierRows {
   void gather(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
               const ArmBodies& links, std::span<const double> q, std::span<const double> v,
               std::span<const double> untold, double soon) noexcept;
-  void clear() noexcept { used_ = 0; }  ///< forgets all rows
+  void clear() noexcept { used_ = 0, left_out_ = 0; }  ///< forgets all rows
 
+  /// Rows of this tick for which there was no room.
+  [[nodiscard]] std::int32_t left_out() const noexcept { return left_out_; }
   /// The rows of this tick.
   [[nodiscard]] std::span<const BarrierRow> all() const noexcept;
 
@@ -58,9 +61,15 @@ class BarrierRows {
            const ArmBodies& links, std::span<const double> v,
            std::span<const double> untold) noexcept;
 
+  // The body of the last contact on one side: those of a pair come one after the other.
+  struct Side {
+    const Jacobian* jacobian = nullptr;
+    Twist bias;  // bias_of(*jacobian, v)
+  };
+
   // Adds what the wrench `F` on a body does. False if the body is not of this arm.
-  static bool add_side(const Jacobian* jacobian, const Wrench& F, std::span<const double> v,
-                       BarrierRow& row) noexcept;
+  static bool add_side(Side& side, const Jacobian* jacobian, const Wrench& F,
+                       std::span<const double> v, BarrierRow& row) noexcept;
 
   // What stops a joint at the end of its range, or at its greatest speed, would leave the others to
   // the wall.
@@ -72,8 +81,10 @@ class BarrierRows {
   double margin_;      // [m]
   double soon_ = 0.0;  // [s]
   BarrierRow::Vector zero_;
+  Side side_a_, side_b_;
   std::vector<BarrierRow> rows_;
   std::size_t used_ = 0;
+  std::int32_t left_out_ = 0;
 };
 
 }  // namespace repel

@@ -36,11 +36,13 @@ EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_de
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
 }
 
-void EntryBarrier::watch(std::span<const HardContact> contacts, BodyId tool,
+void EntryBarrier::watch(const Contacts& contacts, BodyId tool,
                          const Jacobian& jacobian, const ArmBodies& links,
                          std::span<const double> q, std::span<const double> v,
                          std::span<const double> untold) noexcept {
-  if (is_on()) rows_.gather(contacts, tool, jacobian, links, q, v, untold, reaction_);
+  if (!is_on()) return;
+  rows_.gather(contacts.hard, tool, jacobian, links, q, v, untold, reaction_);
+  left_out_ = contacts.left_out + rows_.left_out();
 }
 
 Status EntryBarrier::forget() noexcept {
@@ -58,6 +60,7 @@ Status EntryBarrier::forget() noexcept {
 bool EntryBarrier::observe(std::span<const double> v, const ArmInertia& inertia) noexcept {
   force_ = 0.0;
   pushed_ = {};
+  proof_ = {};
   if (!is_on()) return false;
   forecast_.observe(v, inertia);
   if (!rows_.all().empty()) return true;
@@ -173,19 +176,34 @@ void EntryBarrier::count(const LeastConstraint& problem, std::span<const double>
   if (force_ > 0.0) ++totals_.ticks;
 }
 
+double EntryBarrier::left(const BarrierRow& row, double then, double after,
+                          double a) const noexcept {
+  then = std::min(0.0, then);
+  after = std::min(0.0, after);
+  const double until = delay_ * period_ * std::min(row.rate, then) + 0.5 * step_ * (then + after);
+  const double stop = 0.5 * slew_time_ * after - 0.5 * after * after / std::max(a, 1e-9);
+  return row.gap + margin() + until + stop;
+}
+
 Status EntryBarrier::judge(const LeastConstraint& problem) noexcept {
+  proof_.missed = std::max(0.0, problem.missed());
+  proof_.left_out = left_out_;
+  bool is_lost = false;
   for (std::size_t k = 0; k < held(problem); ++k) {
     const BarrierRow& row = rows_.all()[k];
-    const double approach = -problem.rate_after(problem.rows()[k]);
-    if (!row.pair.valid() || !(approach > least_speed)) continue;
-    const double time = delay_ * period_ + 0.5 * slew_time_;
-    const double stop = 0.5 * approach * approach / std::max(stops_[k].at_most, 1e-9);
-    if (approach * time + stop > row.gap + margin() + slack) {
-      ++totals_.lost;
-      return status::hold_lost;
+    const LeastConstraint::Row& bound = problem.rows()[k];
+    if (!row.pair.valid()) continue;
+    const double after = problem.rate_after(bound);
+    const double margin = left(row, bound.rate, after, stops_[k].surely);
+    if (margin < proof_.margin) {
+      proof_.margin = margin;
+      proof_.pair = row.pair;
     }
+    if (!(left(row, bound.rate, after, stops_[k].at_most) >= 0.0)) is_lost = true;
   }
-  return 0;
+  is_lost = is_lost || proof_.margin < 0.0;
+  if (is_lost) ++totals_.lost;
+  return is_lost ? status::hold_lost : 0U;
 }
 
 }  // namespace repel

@@ -15,6 +15,7 @@
 #include <repel/loop/least_constraint.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/rate_forecast.hpp>
+#include <repel/loop/record.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
@@ -63,7 +64,7 @@ class EntryBarrier {
   /// Takes the contacts that concern this arm, in its present pose. @param q [rad] or [m]
   /// @param v [rad/s] or [m/s] of the joints, and by how much they are faster than `v` says
   /// (JointWatch::untold_rate) @param jacobian of the tool
-  void watch(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
+  void watch(const Contacts& contacts, BodyId tool, const Jacobian& jacobian,
              const ArmBodies& links, std::span<const double> q, std::span<const double> v,
              std::span<const double> untold) noexcept;
   /// Without contacts, until the next `watch`: something else holds the arm.
@@ -92,13 +93,14 @@ class EntryBarrier {
   [[nodiscard]] double force() const noexcept { return force_; }
   /// The pair of the hardest contact; invalid where none held.
   [[nodiscard]] PairId pushed() const noexcept { return pushed_; }
+  /// What the last tick leaves proven, with the torques that it sent.
+  [[nodiscard]] const HoldProof& proof() const noexcept { return proof_; }
   /// [N] Hardest push that the wall of this pair withstood since set-up.
   [[nodiscard]] double withstood(PairId pair) const noexcept;
   [[nodiscard]] const BarrierTotals& totals() const noexcept { return totals_; }  ///< since set-up
 
  private:
   static constexpr double least_speed = 1e-6;  // [m/s]
-  static constexpr double slack = 1e-4;        // [m] of the sentence that a wall is lost
 
   /// How a gap can be braked [m/s^2].
   struct Stopping {
@@ -121,7 +123,12 @@ class EntryBarrier {
 
   void count(const LeastConstraint& problem, std::span<const double> efforts) noexcept;
 
-  // A wall is lost where the arm, braked with all it has, comes to rest behind it.
+  // Where an arm that is braked by `a` [m/s^2] from the next tick on comes to rest: what is left of
+  // the gap [m]. @param then [m/s] when the torques of this tick begin to act @param after they have
+  [[nodiscard]] double left(const BarrierRow& row, double then, double after,
+                            double a) const noexcept;
+
+  // Finds the proof. A wall is lost where the arm, braked with all it has, comes to rest behind it.
   [[nodiscard]] Status judge(const LeastConstraint& problem) noexcept;
 
   // The first of the rows of a problem are those of the gaps.
@@ -142,6 +149,8 @@ class EntryBarrier {
   std::vector<double> effort_;     // [N m] limits
   double force_ = 0.0;
   PairId pushed_;
+  HoldProof proof_;
+  std::int32_t left_out_ = 0;
   BarrierTotals totals_;
 };
 

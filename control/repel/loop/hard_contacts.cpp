@@ -2,6 +2,7 @@
 #include <repel/loop/hard_contacts.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -75,6 +76,8 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
   const double tilt = std::clamp(least_tilt + soon_ * turns, least_tilt, most_tilt);
   const Vec3 middle = 0.5 * (p_WA + p_WB);
   push_back(contact, n, middle, gap);
+  std::array<Vec3, ring> corners;
+  int found = 0;
   const Vec3 t1 = across(n);
   const Vec3 t2 = n.cross(t1);
   for (int k = 0; k < ring; ++k) {
@@ -86,7 +89,10 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
     const Vec3& at = ends_with_a ? corner_a : corner_b;
     const double there = ends_with_a ? dot(n, corner_a - p_WB) : dot(n, p_WA - corner_b);
     const Vec3 off = at - middle;
-    if (norm(off - dot(off, n) * n) < 1e-4) continue;  // the nearest point again
+    const auto is_there = [&](const Vec3& corner) { return norm(at - corner) < same; };
+    if (norm(off - dot(off, n) * n) < same) continue;  // the nearest point again
+    if (std::any_of(corners.begin(), corners.begin() + found, is_there)) continue;
+    corners[static_cast<std::size_t>(found++)] = at;
     contact.at = k + 1;
     push_back(contact, n, at, there);
   }

@@ -34,6 +34,7 @@ struct HardContact {
 struct Contacts {
   std::span<const ActiveContact> active;  ///< that exert a force
   std::span<const HardContact> hard{};    ///< that must not be entered
+  std::int32_t left_out = 0;              ///< hard ones for which there was no room
 };
 
 /// Some pair of the world is hard.
@@ -73,6 +74,7 @@ class HardContacts {
   static constexpr std::size_t most_pairs = 512;
   static constexpr double least_tilt = 0.02;  // [rad]
   static constexpr double most_tilt = 0.3;    // [rad]
+  static constexpr double same = 1e-4;        // [m] points as near as this are one
 
   /// One shape at its pose, and how far it reaches.
   struct Side {

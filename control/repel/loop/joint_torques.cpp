@@ -81,7 +81,7 @@ Status JointTorques::decide(const std::vector<double>& v, const ArmInertia& iner
     is_cut_ = problem_.solve(lower_, upper_);
   } while (rounds++ < most_rounds && speeds_.bound(problem_, v, walls_, bounds.tool));
   Status found = 0;
-  if (is_cut_ && is_near) found |= bounds.barrier->account(problem_, lower_, upper_, effort_);
+  if (is_near) found |= bounds.barrier->account(problem_, lower_, upper_, effort_);
   if (is_cut_) found |= SpeedBounds::said(problem_);
   for (std::size_t i = 0; i < torques_.size(); ++i) {
     const double asked = std::clamp(sum_[i], -effort_[i], effort_[i]);

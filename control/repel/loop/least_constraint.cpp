@@ -13,20 +13,34 @@ LeastConstraint::LeastConstraint(std::size_t joints, std::size_t most_rows) : ro
   const auto n = static_cast<Eigen::Index>(joints);
   M_.setZero(n, n);
   asked_.setZero(n);
-  freely_ = torques_ = acceleration_ = change_ = asked_;
+  freely_ = torques_ = acceleration_ = change_ = net_ = asked_;
 }
 
 LeastConstraint::Row* LeastConstraint::add(const Vector& h, double rate) noexcept {
   if (used_ == rows_.size()) return nullptr;
+  if (!has_inverse_) invert();
   Row& row = rows_[used_++];
-  row.h = row.moved = h;
-  mass_.solve(row.moved);
+  row.h = h;
+  row.moved = network::dense::product<Vector>(inverse_, h);
   row.rate = rate;
   row.force = row.mobility = 0.0;
   row.give = firm;
   row.tag = 0;
   for (Eigen::Index i = 0; i < h.size(); ++i) row.mobility += h.coeff(i) * row.moved.coeff(i);
   return &row;
+}
+
+void LeastConstraint::invert() noexcept {
+  const Eigen::Index n = M_.rows();
+  inverse_.resize(n, n);
+  Vector column;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    column.setZero(n);
+    column.coeffRef(k) = 1.0;
+    mass_.solve(column);
+    for (Eigen::Index i = 0; i < n; ++i) inverse_.coeffRef(i, k) = column.coeff(i);
+  }
+  has_inverse_ = true;
 }
 
 void LeastConstraint::ask(std::span<const double> asked, std::span<const double> weight) noexcept {
@@ -53,6 +67,7 @@ bool LeastConstraint::solve(std::span<const double> lower, std::span<const doubl
   for (std::size_t k = 0; k < count_; ++k) {
     if (active_[k].side == 0.0) rows_[active_[k].index].force = active_[k].force;
   }
+  for (std::size_t i = 0; i < weight_.size(); ++i) net_.coeffRef(index(i)) = torque(i) - weight_[i];
   return count_ > 0;
 }
 
@@ -62,9 +77,7 @@ double LeastConstraint::torque(std::size_t joint) const noexcept {
 
 double LeastConstraint::rate_after(const Row& row) const noexcept {
   double gained = 0.0;
-  for (std::size_t i = 0; i < weight_.size(); ++i) {
-    gained += row.moved.coeff(index(i)) * (torque(i) - weight_[i]);
-  }
+  for (Eigen::Index i = 0; i < net_.size(); ++i) gained += row.moved.coeff(i) * net_.coeff(i);
   return row.rate + step_ * gained;
 }
 

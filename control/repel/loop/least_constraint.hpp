@@ -54,6 +54,7 @@ class LeastConstraint {
   template <class Entry>
   [[nodiscard]] bool begin(Eigen::Index joints, const Entry& mass, double step) noexcept {
     used_ = 0;
+    has_inverse_ = false;
     step_ = step;
     for (Eigen::Index i = 0; i < joints * joints; ++i) M_.data()[i] = mass(i);
     return mass_.factor(joints, mass);
@@ -112,6 +113,8 @@ class LeastConstraint {
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
+  // M^-1, where there is a row.
+  void invert() noexcept;
   // The bound that is violated most, by what its removal costs; false: none is.
   [[nodiscard]] bool find_worst(Active& worst) const noexcept;
   // Scalar product of the gradients of two bounds by the norm of M^-1.
@@ -126,6 +129,8 @@ class LeastConstraint {
 
   ArmInertia::Matrix M_;
   network::dense::Factored mass_;
+  ArmInertia::Matrix inverse_;  // M^-1
+  bool has_inverse_ = false;
   double step_ = 0.0;  // [s]
   std::vector<Row> rows_;
   std::size_t used_ = 0;
@@ -135,6 +140,7 @@ class LeastConstraint {
   Vector asked_, freely_;                           // [N m], [rad/s^2] by what is asked
   Vector torques_, acceleration_;                   // [N m], [rad/s^2]
   Vector change_;                                   // [N m] by the forces f alone
+  Vector net_;                                      // [N m] tau less the weight
   std::span<const double> weight_, lower_, upper_;  // of the last `solve`
 };
 

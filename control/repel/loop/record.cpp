@@ -51,6 +51,8 @@ void RunTotals::add(const TickRecord& r) noexcept {
   }
   deepest = std::max(deepest, r.pairs.deepest);
   peak_force = std::max(peak_force, r.virtual_force.force.norm());
+  hold_margin = std::min(hold_margin, r.hold.margin);
+  gaps_left_out += r.hold.left_out;
   for (unsigned bit = 0; bit < 32; ++bit) status_ticks[bit] += (r.status >> bit) & 1U;
   ++stop_ticks[static_cast<std::size_t>(r.stop)];
   brake_ticks += r.brakes ? 1 : 0;

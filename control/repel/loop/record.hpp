@@ -19,6 +19,18 @@
 
 namespace repel {
 
+/// What is proven of the hard walls of an arm in a tick: neither arm nor drive being worse than
+/// they were told to be, it can be stopped before all of them (EntryBarrier, docs/walls.md).
+struct HoldProof {
+  /// [m] How far off every hard wall it can still be stopped; below zero where that is not proven.
+  /// Infinite where no hard wall is near, or something else holds the arm.
+  double margin = std::numeric_limits<double>::infinity();
+  PairId pair;  ///< of the gap that leaves least; invalid: none is near
+  double missed = 0.0;        ///< [m/s] by which a gap closes faster than it may; the torques that
+                              ///< can be sent do not suffice (LeastConstraint::missed)
+  std::int32_t left_out = 0;  ///< gaps for which there was no room, so the proof is not of them
+};
+
 /// One tick, as logged.
 struct TickRecord {
   std::int64_t tick = 0;      ///< its number, from 0
@@ -47,6 +59,7 @@ struct TickRecord {
   double gain = 1.0;          ///< of the fail-safe
   double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
   PairId held_pair;           ///< that of the hardest one; invalid: none did
+  HoldProof hold;             ///< what is proven of hard walls
   std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
   /// [J] ledger of each module of the network, in its order.
   std::array<float, network::Plan::most_nodes> energy{};
@@ -91,6 +104,8 @@ struct RunTotals {
   PairId nearest_pair;      ///< that of `nearest`
   double deepest = 0.0;     ///< [m] proven bound: none of these pairs was deeper when evaluated
   double peak_force = 0.0;  ///< [N] greatest virtual force on the tool
+  double hold_margin = std::numeric_limits<double>::infinity();  ///< [m] least HoldProof::margin
+  std::int64_t gaps_left_out = 0;                                ///< HoldProof::left_out, summed
   std::array<std::int64_t, 32> status_ticks{};  ///< ticks in which each status bit was set
   std::array<std::int64_t, 4> stop_ticks{};     ///< ticks in each Stop
   std::int64_t brake_ticks = 0;                 ///< ticks in which the brakes were requested

@@ -80,7 +80,7 @@ const TickRecord& Teleoperator::act(const PairForces& forces, const WorkerReport
                                     const network::Command& command) noexcept {
   push_away(forces, workers);  // world -> virtual forces on tool and links
   gather_damping(contacts.active, tool_, jacobian_, links_, signals_.wall_damping);
-  command_.barrier().watch(contacts.hard, tool_, jacobian_, links_, q_, v_, untold_);
+  command_.barrier().watch(contacts, tool_, jacobian_, links_, q_, v_, untold_);
   follow(command);  // operator's input
   run_network();    // operator's input, walls, joint rates -> torques
   command_.judge(record_, watch_, drive_state_, network_, signals_.elapsed);  // -> stop
