@@ -101,18 +101,19 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
 }
 
 Json forces_of(const TickRecord& k, std::size_t joints) {
-  return {{"force", to_json(k.virtual_force.force)},
-          {"torque", to_json(k.virtual_force.torque)},
-          {"coupling_force", to_json(k.coupling.force)},
-          {"coupling_torque", to_json(k.coupling.torque)},
-          {"force_n", k.virtual_force.force.norm()},
-          {"lever_torque", k.lever_torque},
-          {"held_n", k.held_force},
-          {"hold_margin_m", std::isfinite(k.hold.margin) ? Json(k.hold.margin) : Json()},
-          {"gain", k.gain},
-          {"stop", to_text(k.stop)},
-          {"brakes", k.brakes},
-          {"torques", first_of(k.torques, joints)}};
+  Json forces = {{"force", to_json(k.virtual_force.force)},
+                 {"torque", to_json(k.virtual_force.torque)},
+                 {"coupling_force", to_json(k.coupling.force)},
+                 {"coupling_torque", to_json(k.coupling.torque)},
+                 {"force_n", k.virtual_force.force.norm()},
+                 {"lever_torque", k.lever_torque},
+                 {"held_n", k.held_force},
+                 {"gain", k.gain},
+                 {"stop", to_text(k.stop)},
+                 {"brakes", k.brakes},
+                 {"torques", first_of(k.torques, joints)}};
+  if (std::isfinite(k.hold.margin)) forces["hold_margin_m"] = k.hold.margin;
+  return forces;
 }
 
 class McapLog final : public TickLog {

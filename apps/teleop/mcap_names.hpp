@@ -97,8 +97,8 @@ inline constexpr Channel forces{"/forces", "repel.Forces", R"({
       "force_n": {"type": "number", "description": "size of the virtual force [N]"},
       "lever_torque": {"type": "number", "description": "[N m]"},
       "held_n": {"type": "number", "description": "with which hard walls held the arm [N]"},
-      "hold_margin_m": {"type": ["number", "null"], "description":
-        "how far off every hard wall the arm can still be stopped, by the proof [m]"},
+      "hold_margin_m": {"type": "number", "description":
+        "how far off every hard wall it can be stopped, by the proof, if one is near [m]"},
       "gain": {"type": "number", "description": "of the fail-safe, 0 to 1"},
       "stop": {"type": "string", "description": "running, holding, braking or released"},
       "brakes": {"type": "boolean", "description": "the brakes of the arm are asked for"},

@@ -250,8 +250,9 @@ def _of_arm(inputs: _Rows, forces: _Rows, prefix: str,
     add_each(of_joints("tau", "_nm", "_n"), forces, "torques")
     if "held_n" in forces[0]:  # older recordings do not have it
         add("held_n", forces, "held_n")
-    if "hold_margin_m" in forces[0]:
-        add("hold_margin_m", forces, "hold_margin_m")
+    if any("hold_margin_m" in row for row in forces):  # it is where a hard wall is near
+        columns[prefix + "hold_margin_m"] = np.array(
+            [row.get("hold_margin_m", np.nan) for row in forces], float)
     return columns
 
 

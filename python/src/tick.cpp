@@ -149,8 +149,8 @@ void add_forces(TickBinding& binding) {
   binding.add("held_force", "float", "[N] with which hard walls held the arm.",
               [](const Tick& t) { return t.record.held_force; });
   binding.add("hold_margin", "float",
-              "[m] How far off every hard wall the arm can still be stopped, by the proof; infinite "
-              "where none is near.",
+              "[m] How far off every hard wall the arm can still be stopped, by the proof; "
+              "infinite where none is near.",
               [](const Tick& t) { return t.record.hold.margin; });
   binding.add("energy", "dict[str, float]", "[J] the ledger of each module of the network.",
               &energy_of);

@@ -267,7 +267,7 @@ TEST(RecordedScene, WhatACameraSeesIsTheSameInTwoRuns) {
   }
 }
 
-TEST(RecordedScene, TheForceOfHardWallsIsThatOfTheTable) {
+TEST(RecordedScene, TheForceAndTheMarginOfHardWallsAreThoseOfTheTable) {
   const Folder folder;
   const std::string scene = folder.with("scene.yaml", robot_text() + table_text() + push_text());
   for (const char* name : {"run.csv", "run.mcap"}) {
@@ -278,11 +278,19 @@ TEST(RecordedScene, TheForceOfHardWallsIsThatOfTheTable) {
   const std::vector<double>& held = table.at("held_n");
   ASSERT_EQ(forces.size(), held.size());
   double most = 0.0;
+  int proven = 0;  // ticks
   for (const auto& [tick, row] : forces) {
     ASSERT_EQ(row.at("arms").at(0).at("held_n").get<double>(), held[tick]) << tick;
     most = std::max(most, held[tick]);
+    const nlohmann::json& arm = row.at("arms").at(0);
+    const double margin = table.at("hold_margin_m")[tick];
+    ASSERT_EQ(arm.contains("hold_margin_m"), !std::isnan(margin)) << tick;
+    if (std::isnan(margin)) continue;
+    ASSERT_EQ(arm.at("hold_margin_m").get<double>(), margin) << tick;
+    ++proven;
   }
   EXPECT_GT(most, 1.0);
+  EXPECT_GT(proven, 100);
 }
 
 // Compared with what was written before there was any compression or /bodies and /contacts.

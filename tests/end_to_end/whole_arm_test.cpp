@@ -127,6 +127,10 @@ TEST(WholeArm, AHardPostIsNotEnteredWhateverTheLeverage) {
   EXPECT_LT(post.at("deepest_m"), 1e-4) << post;
   EXPECT_GT(post.at("withstood_n"), 100.0) << post;
   EXPECT_FALSE(report.at("status_ticks").contains("hold_lost")) << report.at("status_ticks");
+  EXPECT_GE(report.at("hold_margin_m"), 0.0) << "it was proven all the time";
+  EXPECT_LT(report.at("hold_margin_m"), 1e-3);
+  EXPECT_EQ(report.at("hold_gaps_left_out"), 0);
+  EXPECT_TRUE(ending.says("hard walls             stopping proven")) << ending;
 }
 
 /// The robot of the repository, with a gripper on its flange.

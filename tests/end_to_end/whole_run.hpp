@@ -35,9 +35,10 @@ inline const WholeRun& whole_run_of(const std::string& name) {
   WholeRun& run = at->second;
   if (!is_new) return run;
   run.reference = report_of(REPEL_SOURCE "/scenes/reports/" + name + ".json");
-  run.ending = teleop(name + " --fast --seconds 20 --backend " +
-                      run.reference.at("backend").get<std::string>() + " --log " +
-                      quoted(run.folder / "log.csv") + " --report " + quoted(run.folder / "r.json"));
+  const std::string engine = run.reference.at("backend");
+  run.ending =
+      teleop(name + " --fast --seconds 20 --backend " + engine + " --log " +
+             quoted(run.folder / "log.csv") + " --report " + quoted(run.folder / "r.json"));
   if (run.ending.status == 0) run.report = report_of(run.folder / "r.json");
   return run;
 }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -62,7 +64,8 @@ struct Driven {
 };
 
 /// Pushes to and fro at random, most of all into the corner. Returns the least gap [m].
-double push(const Setting& setting, Status& seen, double& withstood) {
+/// @param margin least of what was proven [m]
+double push(const Setting& setting, Status& seen, double& withstood, double& margin) {
   Driven driven(corner(setting), setting);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> draw(-1.0, 1.0);
@@ -73,8 +76,15 @@ double push(const Setting& setting, Status& seen, double& withstood) {
     if (tick % static_cast<int>(0.4 * setting.rate) == 0) {
       rates = 0.15 * Vec3(1, 1, 0) + 0.6 * Vec3(draw(random), draw(random), draw(random));
     }
-    seen |= driven.tick(rates).status;
-    least = std::min({least, 0.2 - driven.arm.q[0], 0.2 - driven.arm.q[1]});
+    const double gap = std::min(0.2 - driven.arm.q[0], 0.2 - driven.arm.q[1]);
+    const TickRecord& record = driven.tick(rates);
+    seen |= record.status;
+    least = std::min(least, gap);
+    if (std::isfinite(record.hold.margin)) {
+      EXPECT_LE(record.hold.margin, gap + 1e-9);
+    }
+    EXPECT_EQ(record.hold.left_out, 0);
+    margin = std::min(margin, record.hold.margin);
   }
   withstood = std::max(driven.cell.withstood({0}), driven.cell.withstood({1}));
   for (const network::Node& node : driven.cell.network(0).nodes()) {
@@ -94,10 +104,13 @@ TEST(EntryBarrier, NoHandEntersAHardWall) {
                      std::to_string(delay));
         Status seen = 0;
         double withstood = 0.0;
-        const double least = push({rate, mass, delay}, seen, withstood);
+        double margin = 1.0;
+        const double least = push({rate, mass, delay}, seen, withstood, margin);
         EXPECT_GT(least, -1e-4);
         EXPECT_LT(least, 2e-3) << "it must come to the wall";
         EXPECT_GT(withstood, 50.0) << "N: and be pushed against it";
+        EXPECT_GE(margin, 0.0) << "m: it could be stopped at any time";
+        EXPECT_LT(margin, 1e-3) << "m: and the proof is not of what is far";
         EXPECT_EQ(seen & (status::failsafe | status::hold_lost), 0U) << to_text(seen);
       }
     }
@@ -130,8 +143,10 @@ TEST(EntryBarrier, ThePushThatAWallWithstandsDoesNotDependOnTheTick) {
 TEST(EntryBarrier, ASoftWallIsEnteredByTheSameHand) {
   Status seen = 0;
   double withstood = 0.0;
-  EXPECT_LT(push({.hold = HoldKind::soft}, seen, withstood), -0.5);
+  double margin = std::numeric_limits<double>::infinity();
+  EXPECT_LT(push({.hold = HoldKind::soft}, seen, withstood, margin), -0.5);
   EXPECT_EQ(withstood, 0.0);
+  EXPECT_EQ(margin, std::numeric_limits<double>::infinity()) << "m: of nothing hard, nothing";
 }
 
 TEST(EntryBarrier, SlidingAlongAWallThatIsPushedCostsNoSpeed) {

@@ -88,8 +88,13 @@ TEST(RunTotals, AddUpAndKeepTheExtremes) {
   RunTotals totals;
   totals.add(record_with(1, status::stale_pairs, 5.0, 0.3));
   totals.add(record_with(2, status::stale_pairs | status::bad_pose, 9.0, -0.1));
-  totals.add(record_with(3, 0, 2.0, 0.2));
+  TickRecord held = record_with(3, 0, 2.0, 0.2);
+  held.hold.margin = -1e-3;
+  held.hold.left_out = 2;
+  totals.add(held);
   EXPECT_EQ(totals.ticks, 3);
+  EXPECT_EQ(totals.hold_margin, -1e-3);
+  EXPECT_EQ(totals.gaps_left_out, 2);
   EXPECT_EQ(totals.near, 9);
   EXPECT_EQ(totals.evaluated, 6);
   EXPECT_EQ(totals.iterations, 30);

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # realtime_scenes.sh PROGRAM DISTURBANCE SCENES: every tick of every scene under RealtimeSanitizer,
-# whole scripts in lock step with 0 threads, and a while with 2 threads and by the clock. PROGRAM is teleop with
-# the sanitizer's runtime. It must end well, and for each thing that DISTURBANCE does in a tick not.
+# whole scripts in lock step with 0 threads, a while with 2 threads and by the clock. PROGRAM is
+# teleop with the sanitizer's runtime. It must end well, and for each thing that DISTURBANCE does in
+# a tick not.
 set -eu
 program=$1 disturbance=$2 scenes=$3
 here=$(dirname "$(readlink -f "$0")")

@@ -55,9 +55,9 @@ void CellAssembly::sense(std::span<const ArmReadings> readings,
 std::span<const TickRecord* const> CellAssembly::act(
     std::span<const network::Command> hands) noexcept {
   for (std::size_t i = 0; i < controls_.size(); ++i) {
-    records_[i] =
-        &controls_[i].act(*forces_, coprocessor_->workers(), {contacts_->all(), hard_->all(), hard_->left_out()},
-                          i < hands.size() ? hands[i] : silent_);
+    records_[i] = &controls_[i].act(*forces_, coprocessor_->workers(),
+                                    {contacts_->all(), hard_->all(), hard_->left_out()},
+                                    i < hands.size() ? hands[i] : silent_);
   }
   return records_;
 }

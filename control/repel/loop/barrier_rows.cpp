@@ -9,7 +9,7 @@
 namespace repel {
 
 BarrierRows::BarrierRows(const ArmModel& model, double margin)
-    : model_(model), margin_(margin), rows_(most) {
+    : model_(model), margin_(margin), rows_(most + 1) {
   zero_.setZero(static_cast<Eigen::Index>(model.links.size()));
 }
 
@@ -33,8 +33,7 @@ std::span<const BarrierRow> BarrierRows::all() const noexcept {
 void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& jacobian,
                       const ArmBodies& links, std::span<const double> v,
                       std::span<const double> untold) noexcept {
-  BarrierRow row;
-  row.h = zero_;
+  BarrierRow& row = begin_row();
   row.bending = contact.bending;
   const auto of = [&](BodyId body) { return body == tool ? &jacobian : links.jacobian_of(body); };
   const bool has_a = add_side(side_a_, of(contact.a), contact.on_a, v, row);
@@ -54,7 +53,7 @@ void BarrierRows::add(const HardContact& contact, BodyId tool, const Jacobian& j
   row.rate = contact.rate + std::min(0.0, faster);
   row.others = contact.rate - own;
   row.is_shared = contact.is_between_arms;
-  keep(row);
+  keep();
 }
 
 bool BarrierRows::add_side(Side& side, const Jacobian* jacobian, const Wrench& F,
@@ -71,29 +70,47 @@ bool BarrierRows::add_side(Side& side, const Jacobian* jacobian, const Wrench& F
 void BarrierRows::add_joint(std::size_t joint, double q, double v, double untold) noexcept {
   const ArmLink& link = model_.links[joint];
   for (const double side : {1.0, -1.0}) {
-    BarrierRow row;
-    row.h = zero_;
-    row.h.coeffRef(index(joint)) = side;
-    row.rate = side * v + std::min(0.0, side * untold);
-    row.gap = (side > 0.0 ? q - link.lower : link.upper - q) - margin_of_ranges;
-    if (link.lower < link.upper && row.gap < 1.0) keep(row);
-    row.gap = 0.0;
-    row.top_speed = most_of_speed * link.velocity_limit;
-    if (link.velocity_limit > 0.0 && -row.rate > 0.5 * row.top_speed) keep(row);
+    const double rate = side * v + std::min(0.0, side * untold);
+    const double gap = (side > 0.0 ? q - link.lower : link.upper - q) - margin_of_ranges;
+    const auto begin = [&]() -> BarrierRow& {
+      BarrierRow& row = begin_row();
+      row.h.coeffRef(index(joint)) = side;
+      row.rate = rate;
+      return row;
+    };
+    if (link.lower < link.upper && gap < 1.0) {
+      begin().gap = gap;
+      keep();
+    }
+    const double top_speed = most_of_speed * link.velocity_limit;
+    if (link.velocity_limit > 0.0 && -rate > 0.5 * top_speed) {
+      begin().top_speed = top_speed;
+      keep();
+    }
   }
 }
 
-void BarrierRows::keep(const BarrierRow& row) noexcept {
-  if (used_ < rows_.size()) {
-    rows_[used_++] = row;
+BarrierRow& BarrierRows::begin_row() noexcept {
+  BarrierRow& row = rows_[used_];
+  row.h = zero_;
+  row.pair = {};
+  row.gap = row.rate = row.others = row.bending = row.top_speed = 0.0;
+  row.is_shared = false;
+  return row;
+}
+
+void BarrierRows::keep() noexcept {
+  if (used_ < most) {
+    ++used_;
     return;
   }
   ++left_out_;
+  const BarrierRow& row = rows_[most];
   const auto soonest = [this](const BarrierRow& r) {
     return r.gap + soon_ * std::min(r.rate, 0.0);
   };
   const auto last = std::max_element(
-      rows_.begin(), rows_.end(),
+      rows_.begin(), rows_.begin() + most,
       [&](const BarrierRow& x, const BarrierRow& y) { return soonest(x) < soonest(y); });
   if (soonest(row) < soonest(*last)) *last = row;
 }

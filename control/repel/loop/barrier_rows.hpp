@@ -75,7 +75,10 @@ class BarrierRows {
   // the wall.
   void add_joint(std::size_t joint, double q, double v, double untold) noexcept;
 
-  void keep(const BarrierRow& row) noexcept;
+  // The row after those kept, without a gap.
+  [[nodiscard]] BarrierRow& begin_row() noexcept;
+  // Keeps it, or the one that closes first of all.
+  void keep() noexcept;
 
   const ArmModel& model_;
   double margin_;      // [m]

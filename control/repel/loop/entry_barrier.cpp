@@ -36,10 +36,9 @@ EntryBarrier::EntryBarrier(const ArmModel& model, double period, double drive_de
   for (std::size_t i = 0; i < model.links.size(); ++i) effort_.push_back(effort_bound(model, i));
 }
 
-void EntryBarrier::watch(const Contacts& contacts, BodyId tool,
-                         const Jacobian& jacobian, const ArmBodies& links,
-                         std::span<const double> q, std::span<const double> v,
-                         std::span<const double> untold) noexcept {
+void EntryBarrier::watch(const Contacts& contacts, BodyId tool, const Jacobian& jacobian,
+                         const ArmBodies& links, std::span<const double> q,
+                         std::span<const double> v, std::span<const double> untold) noexcept {
   if (!is_on()) return;
   rows_.gather(contacts.hard, tool, jacobian, links, q, v, untold, reaction_);
   left_out_ = contacts.left_out + rows_.left_out();
@@ -176,13 +175,15 @@ void EntryBarrier::count(const LeastConstraint& problem, std::span<const double>
   if (force_ > 0.0) ++totals_.ticks;
 }
 
-double EntryBarrier::left(const BarrierRow& row, double then, double after,
-                          double a) const noexcept {
-  then = std::min(0.0, then);
-  after = std::min(0.0, after);
-  const double until = delay_ * period_ * std::min(row.rate, then) + 0.5 * step_ * (then + after);
-  const double stop = 0.5 * slew_time_ * after - 0.5 * after * after / std::max(a, 1e-9);
-  return row.gap + margin() + until + stop;
+double EntryBarrier::soon(const BarrierRow& row, double then, double after) const noexcept {
+  const double closing = std::min(0.0, then);
+  return row.gap + margin() + delay_ * period_ * std::min(row.rate, closing) +
+         0.5 * step_ * (closing + std::min(0.0, after));
+}
+
+double EntryBarrier::stopping_distance(double after, double a) const noexcept {
+  const double approach = std::max(0.0, -after);
+  return 0.5 * slew_time_ * approach + 0.5 * approach * approach / std::max(a, 1e-9);
 }
 
 Status EntryBarrier::judge(const LeastConstraint& problem) noexcept {
@@ -194,14 +195,15 @@ Status EntryBarrier::judge(const LeastConstraint& problem) noexcept {
     const LeastConstraint::Row& bound = problem.rows()[k];
     if (!row.pair.valid()) continue;
     const double after = problem.rate_after(bound);
-    const double margin = left(row, bound.rate, after, stops_[k].surely);
-    if (margin < proof_.margin) {
-      proof_.margin = margin;
+    const double gap = soon(row, bound.rate, after);
+    const double proven = gap - stopping_distance(after, stops_[k].surely);
+    const double possible = gap - stopping_distance(after, stops_[k].at_most);
+    if (proven < proof_.margin) {
+      proof_.margin = proven;
       proof_.pair = row.pair;
     }
-    if (!(left(row, bound.rate, after, stops_[k].at_most) >= 0.0)) is_lost = true;
+    if (gap < margin() && std::min(proven, possible) < 0.0) is_lost = true;
   }
-  is_lost = is_lost || proof_.margin < 0.0;
   if (is_lost) ++totals_.lost;
   return is_lost ? status::hold_lost : 0U;
 }

@@ -123,12 +123,14 @@ class EntryBarrier {
 
   void count(const LeastConstraint& problem, std::span<const double> efforts) noexcept;
 
-  // Where an arm that is braked by `a` [m/s^2] from the next tick on comes to rest: what is left of
-  // the gap [m]. @param then [m/s] when the torques of this tick begin to act @param after they have
-  [[nodiscard]] double left(const BarrierRow& row, double then, double after,
-                            double a) const noexcept;
+  // [m] What is left of the gap of a row when the torques of this tick have acted.
+  // @param then [m/s] its rate when they begin to act @param after when they have
+  [[nodiscard]] double soon(const BarrierRow& row, double then, double after) const noexcept;
+  // [m] Way of an arm that approaches at `after` [m/s] and is braked by `a` [m/s^2] from then on.
+  [[nodiscard]] double stopping_distance(double after, double a) const noexcept;
 
-  // Finds the proof. A wall is lost where the arm, braked with all it has, comes to rest behind it.
+  // Finds the proof. A wall is lost where the arm passes the place where it is held and will,
+  // braked with all it has, come to rest behind the wall, or has no proof that it will not.
   [[nodiscard]] Status judge(const LeastConstraint& problem) noexcept;
 
   // The first of the rows of a problem are those of the gaps.

@@ -20,6 +20,10 @@ HardContacts::HardContacts(const World& world, std::span<const BodyId> moved)
   for (const BodyId body : moved) is_moved_[static_cast<std::size_t>(body.index)] = 1;
   const auto is_hard = [](const Pair& pair) { return pair.law.hold == HoldKind::hard; };
   const auto hard = std::count_if(world.pairs().begin(), world.pairs().end(), is_hard);
+  for (int k = 0; k < ring; ++k) {
+    const double angle = (k + 0.29) * 2.0 * std::numbers::pi / ring;
+    around_[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+  }
   contacts_.resize(std::min<std::size_t>(static_cast<std::size_t>(hard), most_pairs) * (1 + ring));
 }
 
@@ -81,8 +85,8 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
   const Vec3 t1 = across(n);
   const Vec3 t2 = n.cross(t1);
   for (int k = 0; k < ring; ++k) {
-    const double angle = (k + 0.29) * 2.0 * std::numbers::pi / ring;
-    const Vec3 t = std::cos(angle) * t1 + std::sin(angle) * t2;
+    const auto& [along, across] = around_[static_cast<std::size_t>(k)];
+    const Vec3 t = along * t1 + across * t2;
     const Vec3 corner_a = a.farthest(tilt * t - n, -n);
     const Vec3 corner_b = b.farthest(tilt * t + n, n);
     const bool ends_with_a = dot(t, corner_a) <= dot(t, corner_b);

@@ -4,6 +4,7 @@
 /// with their gaps.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -101,7 +102,8 @@ class HardContacts {
   [[nodiscard]] bool is_moved(BodyId body) const noexcept;
 
   const World* world_;
-  std::vector<std::uint8_t> is_moved_;  // by BodyId
+  std::vector<std::uint8_t> is_moved_;                // by BodyId
+  std::array<std::array<double, 2>, ring> around_{};  // unit vectors of the ring
   std::vector<HardContact> contacts_;
   std::size_t count_ = 0;
   int left_out_ = 0;
