@@ -136,5 +136,60 @@ TEST(Chatter, OfAReplayIsThatOfItsRecording) {
   EXPECT_EQ(report_of(folder / "a.json").at("chatter"), report_of(folder / "b.json").at("chatter"));
 }
 
+/// The plates of the repository on a wrist of 2e-5 kg m^2 without friction, led by a soft hand.
+std::string plates_on_a_light_wrist(const Folder& folder) {
+  const auto change = [](std::string& text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at != std::string::npos) text.replace(at, from.size(), to);
+  };
+  std::string robot = text_of(REPEL_SOURCE "/robots/puma560.urdf");
+  change(robot, "damping=\"0.427283021\" friction=\"0.85444524\"", "damping=\"0\" friction=\"0\"");
+  change(robot, "damping=\"0.215823253\" friction=\"0.55443978\"", "damping=\"0\" friction=\"0\"");
+  change(robot, "<mass value=\"0.34\"/>", "<mass value=\"0.01\"/>");
+  change(robot, "ixx=\"0.0003\" ixy=\"0\" ixz=\"0\" iyy=\"0.0004\" iyz=\"0\" izz=\"0.0003\"",
+         "ixx=\"1e-5\" ixy=\"0\" ixz=\"0\" iyy=\"1e-5\" iyz=\"0\" izz=\"1e-5\"");
+  change(robot, "<origin xyz=\"0 0 0.032\"", "<origin xyz=\"0 0 0\"");
+  change(robot, "<mass value=\"0.09\"/>", "<mass value=\"0.005\"/>");
+  change(robot, "ixx=\"0.00015\" ixy=\"0\" ixz=\"0\" iyy=\"0.00015\" iyz=\"0\" izz=\"0.00004\"",
+         "ixx=\"6e-6\" ixy=\"0\" ixz=\"0\" iyy=\"6e-6\" iyz=\"0\" izz=\"6e-6\"");
+  for (const std::string motor : {"motor_5", "motor_6"}) {
+    change(robot, motor + "\">\n      <drake:rotor_inertia value=\"33e-6\"",
+           motor + "\">\n      <drake:rotor_inertia value=\"1e-10\"");
+  }
+  std::string scene = text_of(REPEL_SOURCE "/scenes/plates.yaml");
+  change(scene, "../robots/puma560.urdf", folder.with("light.urdf", robot));
+  change(scene, "angular_stiffness: 30 N", "angular_stiffness: 2 N");
+  change(scene, "angular_damping: 4 N", "angular_damping: 0.05 N");
+  return folder.with("plates.yaml", scene.substr(0, scene.find("script:")) +
+                                        "script:\n"
+                                        "  - {name: tilt, device: spaceball, duration: 1 s, "
+                                        "angular: 7 8 0 deg/s}\n"
+                                        "  - {name: press, device: spaceball, duration: 2 s, "
+                                        "linear: 0 0 -60 mm/s}\n");
+}
+
+// A contact patch is a spring against turning without a damping of its own: the plate rang with
+// 2 rad/s while it was pressed flat on the other, and the torque changed by 4 N m from tick to
+// tick.
+TEST(Chatter, IsNoneWhereAPlateOnALightWristTurnsFlat) {
+  const Folder folder;
+  const std::string scene = quoted(plates_on_a_light_wrist(folder));
+  for (const int rate : {200, 400, 1000}) {
+    const LoggedRun run(scene + " --seconds 5 --rate " + std::to_string(rate));
+    const std::vector<double>& v = run.log.at("v5_rad_s");
+    const std::vector<double>& force = run.log.at("virtual_fz_n");
+    double fastest = 0.0;
+    double pressed = 0.0;
+    for (std::size_t i = 2U * static_cast<std::size_t>(rate); i < v.size(); ++i) {
+      fastest = std::max(fastest, std::abs(v[i]));
+      pressed = std::max(pressed, force[i]);
+    }
+    EXPECT_GT(pressed, 100.0) << rate << " Hz";
+    EXPECT_LT(fastest, 0.15) << rate << " Hz";
+    EXPECT_LT(run.report.at("chatter").at("joints").at(4).at("rms_nm"), 0.05) << rate << " Hz";
+  }
+}
+
 }  // namespace chatter_test
 }  // namespace repel::test

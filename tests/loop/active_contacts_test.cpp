@@ -79,5 +79,49 @@ TEST(ActiveContacts, BecomeAMatrixOfTheJoints) {
   }
 }
 
+/// A square plate of 100 mm on a floor, pressed flat with 100 N.
+struct Plate {
+  Plate() {
+    tool = world.add_body("tool");
+    const PartId plate = world.add_part(tool, "plate", Shape::box({0.05, 0.05, 0.005}));
+    const PartId floor =
+        world.add_part(World::fixed, "floor", Shape::box({1.0, 1.0, 0.1}), at(0, 0, -0.115));
+    world.add_pair(plate, floor, {.range = 0.02, .surface_force = 200.0, .damping = 100.0});
+    Pose X = Pose::Identity();
+    X.rotate(Eigen::AngleAxisd(1e-3, Vec3::UnitX()));  // not quite flat
+    EXPECT_TRUE(world.place(tool, X, {}));
+  }
+  World world;
+  BodyId tool;
+};
+
+TEST(ActiveContacts, OnAPatchALightToolIsDampedAgainstTurningAcrossItAlone) {
+  Plate plate;
+  Coprocessor coprocessor(plate.world, {});
+  (void)coprocessor.exchange();
+  ActiveContacts contacts(plate.world, 16, std::array{plate.tool});
+  contacts.collect(coprocessor);
+  ASSERT_EQ(contacts.all().size(), 1U);
+  EXPECT_GT(contacts.all()[0].turning, 100.0);
+  Jacobian ball = Jacobian::Zero(6, 3);  // a wrist of three joints
+  ball.bottomRows<3>().setIdentity();
+  const Vec3 w(0.3, -0.2, 0.5);
+  for (const double inertia : {1.0, 2e-5}) {
+    ArmInertia::Matrix M = inertia * ArmInertia::Matrix::Identity(3, 3);
+    network::Mat<network::any_size> damping = network::Mat<network::any_size>::Zero(3, 3);
+    const Wrench F = damp_turning(contacts.all(), plate.tool, ball, w, {M, 1.0 / 400.0}, damping);
+    EXPECT_EQ(F.force.norm(), 0.0);
+    if (inertia == 1.0) {
+      EXPECT_EQ(F.torque.norm(), 0.0) << "what is heavy does not ring";
+      EXPECT_EQ(damping.norm(), 0.0);
+      continue;
+    }
+    const double c = 0.5 / 400.0 * contacts.all()[0].turning;
+    EXPECT_NEAR((F.torque + c * Vec3(w.x(), w.y(), 0.0)).norm(), 0.0, 1e-3 * c);
+    EXPECT_NEAR((F.torque + Vec3(damping * w)).norm(), 0.0, 1e-12 * c)
+        << "the network knows all of it";
+  }
+}
+
 }  // namespace active_contacts_test
 }  // namespace repel

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <span>
 
+#include <repel/loop/gain_check.hpp>
+
 namespace repel {
 
 ActiveContacts::ActiveContacts(const World& world, std::size_t capacity,
@@ -47,7 +49,13 @@ void ActiveContacts::add(const NearPair& near) noexcept {
       (pair.law.passable ? pair.law.damping : pair.law.formula().damper(near.separation.distance));
   // Where two arms meet, each is solved by itself: twice the damping covers the motion of the
   // other.
-  contacts_[count_++] = {near.pair, a, b, about(a, n), about(b, -n), moved * damping};
+  double turning = 0.0;
+  if (near.has_patch) {
+    const double width =
+        std::min(world_->part(pair.a).shape.reach(), world_->part(pair.b).shape.reach());
+    turning = near.force * width / pair.law.tilt;
+  }
+  contacts_[count_++] = {near.pair, a, b, about(a, n), about(b, -n), moved * damping, turning};
 }
 
 int ActiveContacts::is_moved(BodyId body) const noexcept {
@@ -74,6 +82,36 @@ void gather_damping(std::span<const ActiveContact> contacts, BodyId tool, const 
       for (Eigen::Index i = 0; i < joints; ++i) damping.coeffRef(i, k) += share * h.coeff(i);
     }
   }
+}
+
+Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool, const Jacobian& jacobian,
+                    const Vec3& w, const TurningInertia& inertia,
+                    network::Mat<network::any_size>& damping) noexcept {
+  constexpr double calm = 0.25;  // K T^2 / I; a sampled spring alone rings from 4 on
+  const double step = wall_ticks(inertia.drive_delay) * inertia.period;
+  Wrench F;
+  network::Vec<network::any_size> h(jacobian.cols());
+  for (const ActiveContact& contact : contacts) {
+    if (!(contact.turning > 0.0) || (contact.a != tool && contact.b != tool)) continue;
+    const Vec3 first = perpendicular_to(contact.on_a.force);
+    for (const Vec3& axis : {first, Vec3(contact.on_a.force.cross(first))}) {
+      double mobility = 0.0;  // [1/(kg m^2)]
+      for (Eigen::Index i = 0; i < h.size(); ++i) {
+        h.coeffRef(i) = dot(axis, column_of(jacobian, i).angular);
+        mobility += h.coeff(i) * h.coeff(i) / inertia.mass.coeff(i, i);
+      }
+      const double ringing = contact.turning * inertia.period * inertia.period * mobility;
+      const double c = step * contact.turning * std::clamp(ringing / calm - 1.0, 0.0, 1.0);
+      if (!(c > 0.0)) continue;
+      F.torque += -c * dot(axis, w) * axis;
+      for (Eigen::Index k = 0; k < h.size(); ++k) {
+        for (Eigen::Index i = 0; i < h.size(); ++i) {
+          damping.coeffRef(i, k) += c * h.coeff(i) * h.coeff(k);
+        }
+      }
+    }
+  }
+  return F;
 }
 
 }  // namespace repel

@@ -11,6 +11,7 @@
 
 #include <repel/base/spatial.hpp>
 #include <repel/loop/arm_bodies.hpp>
+#include <repel/loop/arm_inertia.hpp>
 #include <repel/schedule/coprocessor.hpp>
 #include <repel/world/world.hpp>
 
@@ -24,6 +25,9 @@ struct ActiveContact {
   Wrench on_a;  ///< [1, m] on A of a unit force that parts them, about the origin of its body
   Wrench on_b;  ///< on B, likewise
   double damping = 0.0;  ///< [N s/m] how much its force falls with the speed along that force
+  /// [N m/rad] How much its torque rises as A turns across the force: F a / e on a contact patch of
+  /// half width a and tilt e (ForceLaw::tilt), 0 elsewhere.
+  double turning = 0.0;
 };
 
 /// Collects the contacts of the bodies that arms move, in the order of their pairs. Allocates at
@@ -55,5 +59,24 @@ class ActiveContacts {
 [[gnu::noinline]] void gather_damping(std::span<const ActiveContact> contacts, BodyId tool,
                                       const Jacobian& jacobian, const ArmBodies& links,
                                       network::Mat<network::any_size>& damping) noexcept;
+
+/// When a force acts, and on what.
+struct TurningInertia {
+  const ArmInertia::Matrix& mass;  ///< M of the arm
+  double period = 0.0;             ///< T [s]
+  double drive_delay = 0.0;        ///< [ticks]
+};
+
+/// Damps the turning of a tool that is light for the contact patches it rests on: a patch is a
+/// spring K against turning and has no damping of its own, so from K T^2 / I = 0.25 on, the damping
+/// wall_ticks T K is added by degrees, whole at 0.5. The inertia I is that about an axis across the
+/// force, by the diagonal of M.
+/// @param w [rad/s] of the tool @param damping [N m s/rad] of all contacts at the joints, to which
+/// it is added
+/// @return [N m] the torque on the tool; it only takes energy
+[[nodiscard]] Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool,
+                                  const Jacobian& jacobian, const Vec3& w,
+                                  const TurningInertia& inertia,
+                                  network::Mat<network::any_size>& damping) noexcept;
 
 }  // namespace repel

@@ -79,7 +79,8 @@ Status EntryBarrier::account(LeastConstraint& problem, std::span<const double> l
                              std::span<const double> upper,
                              std::span<const double> efforts) noexcept {
   count(problem, efforts);
-  if (problem.missed() > least_miss) {
+  proof_.missed = std::max(0.0, problem.missed());
+  if (proof_.missed > least_miss) {
     // Rows that no torques can keep together are braked by what is left for each.
     std::array<double, network::dense::most_rows> least{};
     for (std::size_t i = 0; i < efforts.size(); ++i) least[i] = -efforts[i];
@@ -187,7 +188,6 @@ double EntryBarrier::stopping_distance(double after, double a) const noexcept {
 }
 
 Status EntryBarrier::judge(const LeastConstraint& problem) noexcept {
-  proof_.missed = std::max(0.0, problem.missed());
   proof_.left_out = left_out_;
   bool is_lost = false;
   for (std::size_t k = 0; k < held(problem); ++k) {

@@ -82,7 +82,7 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
   push_back(contact, n, middle, gap);
   std::array<Vec3, ring> corners;
   int found = 0;
-  const Vec3 t1 = across(n);
+  const Vec3 t1 = perpendicular_to(n);
   const Vec3 t2 = n.cross(t1);
   for (int k = 0; k < ring; ++k) {
     const auto& [along, across] = around_[static_cast<std::size_t>(k)];
@@ -130,14 +130,6 @@ double HardContacts::bending_of(const Vec3& n, const Vec3& p_W, const BodyState&
   const double with_a = 2.0 * dot(Vec3(of_a.cross(n)), slip);
   const double with_b = 2.0 * dot(Vec3(of_b.cross(n)), slip);
   return dot(n, Vec3(to_a - to_b)) + std::min({0.0, with_a, with_b});
-}
-
-Vec3 HardContacts::across(const Vec3& n) noexcept {
-  int least = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    if (std::abs(n.coeff(axis)) < std::abs(n.coeff(least))) least = axis;
-  }
-  return direction_of(n.cross(unit(least)));
 }
 
 Vec3 HardContacts::velocity(const BodyState& body, const Vec3& p_W) noexcept {

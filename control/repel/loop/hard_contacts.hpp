@@ -90,8 +90,6 @@ class HardContacts {
 
   void push_back(HardContact contact, const Vec3& n, const Vec3& p_W, double gap) noexcept;
 
-  /// A unit vector perpendicular to the unit `n`.
-  [[nodiscard]] static Vec3 across(const Vec3& n) noexcept;
   // [m/s^2] The centripetal part, and the part of the turning normal.
   [[nodiscard]] static double bending_of(const Vec3& n, const Vec3& p_W, const BodyState& A,
                                          const BodyState& B) noexcept;

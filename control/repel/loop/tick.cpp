@@ -78,8 +78,8 @@ void Teleoperator::sense(const ArmReadings& readings, std::chrono::nanoseconds n
 const TickRecord& Teleoperator::act(const PairForces& forces, const WorkerReport& workers,
                                     const Contacts& contacts,
                                     const network::Command& command) noexcept {
-  push_away(forces, workers);  // world -> virtual forces on tool and links
-  gather_damping(contacts.active, tool_, jacobian_, links_, signals_.wall_damping);
+  push_away(forces, workers);   // world -> virtual forces on tool and links
+  damp_walls(contacts.active);  // what the implicit solution of the network needs of them
   command_.barrier().watch(contacts, tool_, jacobian_, links_, q_, v_, untold_);
   follow(command);  // operator's input
   run_network();    // operator's input, walls, joint rates -> torques
@@ -161,6 +161,15 @@ void Teleoperator::push_away(const PairForces& forces, const WorkerReport& worke
   signals_.walls_power = forces.carried[tool_.index];
   signals_.arm_power = links_.carried(forces);
   if (pushing_out_) push_out(forces.totals);
+}
+
+void Teleoperator::damp_walls(std::span<const ActiveContact> contacts) noexcept {
+  gather_damping(contacts, tool_, jacobian_, links_, signals_.wall_damping);
+  const Wrench turning =
+      damp_turning(contacts, tool_, jacobian_, V_WT_.angular,
+                   {inertia_.matrix(), period_, options_.drive_delay}, signals_.wall_damping);
+  signals_.walls += turning;
+  record_.virtual_force += turning;
 }
 
 void Teleoperator::push_out(const PairTotals& totals) noexcept {

@@ -85,6 +85,7 @@ class Teleoperator {
   [[gnu::noinline]] void place_bodies() noexcept;
 
   [[gnu::noinline]] void push_away(const PairForces& forces, const WorkerReport& workers) noexcept;
+  void damp_walls(std::span<const ActiveContact> contacts) noexcept;
 
   // Credits the walls with the power of an arm that leaves at exit_speed.
   void push_out(const PairTotals& totals) noexcept;

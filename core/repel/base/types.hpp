@@ -128,6 +128,15 @@ template <std::same_as<Vec3> V>
   return square > 0.0 ? v / (std::sqrt(square) * scale) : v;
 }
 
+/// A unit vector perpendicular to the unit vector `n`.
+[[nodiscard]] inline Vec3 perpendicular_to(const Vec3& n) noexcept {
+  int least = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(n[axis]) < std::abs(n[least])) least = axis;
+  }
+  return direction_of(n.cross(unit(least)));
+}
+
 /// The origin of B in A [m] for X_AB, as a plain vector.
 [[nodiscard]] inline Vec3 origin(const Pose& X) noexcept {
   const double* p = X.data() + 12;

@@ -61,7 +61,9 @@ class LaneEvaluator {
     if (!has_answer(lane)) return singles_->near_pair(slot, motion);
     const LaneGroup& group = group_of(lane);
     const int k = index_of(lane);
-    return NearPair{memory().tracking(slot).pair, group.answer(k).last, group.force(k), false, 0};
+    const PairAnswer answer = group.answer(k);
+    return NearPair{memory().tracking(slot).pair, answer.last, group.force(k), false, 0,
+                    answer.nearer != 0.0};
   }
 
   /// What another thread needs to know of a pair for which `near_pair` is one.

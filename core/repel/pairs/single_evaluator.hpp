@@ -166,8 +166,12 @@ class SingleEvaluator {
     const PairAnswer& answer = memory_.answer(slot);
     const bool stale = answer.tick != motion.tick;
     if (stale && answer.pushed_at != now_) return std::nullopt;
-    return NearPair{memory_.tracking(slot).pair, answer.last, answer.force, stale,
-                    stale ? motion.tick - answer.waits_since : 0};
+    return NearPair{memory_.tracking(slot).pair,
+                    answer.last,
+                    answer.force,
+                    stale,
+                    stale ? motion.tick - answer.waits_since : 0,
+                    answer.nearer != 0.0};
   }
 
   /// Call before a stale pair is evaluated: notes the bound that its force would come from.
