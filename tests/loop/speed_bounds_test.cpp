@@ -102,6 +102,49 @@ TEST_F(DrivenTool, IsNoFasterThanItMayBeWhateverIsAskedFor) {
   EXPECT_LT(cut, families::draws(2000));
 }
 
+/// [m] Where a rail gets that is driven at its end by all its effort, with a drive that is late.
+double furthest(double rate, int delay, double mass_factor, bool knows_where) {
+  Rails rails;
+  rails.model.links[0].effort_limit = 400.0;
+  rails.model.links[0].lower = -1.0;
+  rails.model.links[0].upper = 1.0;
+  ArmInertia inertia(rails.model);
+  (void)inertia.update(rails);
+  JointTorques torques(rails.model, 1.0 / rate, {}, delay);
+  std::vector<double> late(static_cast<std::size_t>(delay) + 1, 0.0);
+  Vector asked = Vector::Zero(3);
+  asked(0) = 400.0;
+  std::vector<double> q(3, 0.0), v(3, 0.0);
+  double most = 0.0;
+  for (int tick = 0; tick < static_cast<int>(2.0 * rate); ++tick) {
+    (void)torques.compose(
+        asked, Vector::Zero(3), {.friction = 0.0}, v, inertia,
+        {.q = knows_where ? std::span<const double>(q) : std::span<const double>()});
+    late.insert(late.begin(), torques.torques()[0]);
+    v[0] += late.back() / (10.0 * mass_factor) / rate;
+    late.pop_back();
+    q[0] += v[0] / rate;
+    most = std::max(most, q[0]);
+  }
+  return most;
+}
+
+// A joint that ran into the spring ahead of its stop with 2.9 rad/s was thrown back with 2, by a
+// drive that was two ticks of 5 ms late.
+TEST(SpeedBounds, StopAJointBeforeTheEndOfItsRangeWhateverTheDelay) {
+  for (const double rate : {200.0, 1000.0}) {
+    for (const int delay : {0, 3}) {
+      for (const double mass_factor : {0.6, 1.0, 1.7}) {
+        SCOPED_TRACE(std::to_string(rate) + " Hz, delay " + std::to_string(delay) +
+                     ", mass times " + std::to_string(mass_factor));
+        EXPECT_LE(furthest(rate, delay, mass_factor, true), mass_factor > 1.0 ? 1.04 : 1.002);
+        EXPECT_GT(furthest(rate, delay, mass_factor, true), 0.98) << "and lets it get there";
+        EXPECT_GT(furthest(rate, delay, mass_factor, false), 2.0) << "the ranges do not count";
+      }
+    }
+  }
+}
+
 TEST_F(DrivenTool, ThatIsTooFastIsBrakedAndWhatIsAskedAcrossStays) {
   Vector v = Vector::Zero(3), asked = Vector::Zero(3);
   v(0) = 0.3;

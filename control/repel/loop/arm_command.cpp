@@ -56,9 +56,9 @@ void ArmCommand::drive(const ArmMotion& motion, const ArmInertia& inertia, Joint
   const ToolSpeed tool{.jacobian = record.brakes ? nullptr : &motion.jacobian,
                        .limit = options_.tool_speed,
                        .is_carried = motion.carried > 0.0};
-  const Status found =
-      torques_.compose(asked_, walls_, shares, motion.v, inertia,
-                       {.barrier = &barrier_, .tool = tool, .probes = motion.probes});
+  const Status found = torques_.compose(
+      asked_, walls_, shares, motion.v, inertia,
+      {.barrier = &barrier_, .tool = tool, .probes = motion.probes, .q = motion.q});
   record.status |= found;
   record.held_force = barrier_.force();
   record.held_pair = barrier_.pushed();

@@ -25,7 +25,8 @@ namespace repel {
 struct ArmMotion {
   const network::Network& network;    ///< solved
   const network::Jacobian& jacobian;  ///< of the tool
-  const std::vector<double>& v;       ///< [rad/s] of the joints
+  const std::vector<double>& q;       ///< [rad] of the joints
+  const std::vector<double>& v;       ///< [rad/s] likewise
   std::span<const double> probes;     ///< [N m] of joints that may be frozen (JointWatch::probe)
   double tool_speed = 0.0;            ///< [m/s]
   double carried = 0.0;               ///< [W] that walls give because they move themselves

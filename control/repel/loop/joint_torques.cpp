@@ -69,6 +69,7 @@ Status JointTorques::decide(const std::vector<double>& v, const ArmInertia& iner
     }
     return is_near ? status::hold_lost : 0U;
   }
+  speeds_.observe(bounds.q, inertia);
   const bool is_fast = speeds_.foresee(problem_.mass(), sum_, gravity_, v, bounds.tool);
   if (!is_near && !is_fast && is_within_range()) {
     std::copy(sum_.begin(), sum_.end(), torques_.begin());

@@ -35,6 +35,7 @@ struct TorqueBounds {
   /// [N m] net torques that joints must exceed, signed, 0 where there is no doubt
   /// (StillJoint::probe)
   std::span<const double> probes{};
+  std::span<const double> q{};  ///< [rad] or [m] of the joints; empty: their ranges do not count
 };
 
 /// Decides the torques of an arm. What is asked for is the sum of the contributions,

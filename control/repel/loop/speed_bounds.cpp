@@ -4,9 +4,32 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace repel {
+
+void SpeedBounds::observe(std::span<const double> q, const ArmInertia& inertia) noexcept {
+  for (Eigen::Index i = 0; i < up_.size(); ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const ArmLink& link = model_.links[joint];
+    const double limit =
+        link.velocity_limit > 0.0 ? link.velocity_limit : std::numeric_limits<double>::infinity();
+    down_.coeffRef(i) = up_.coeffRef(i) = limit;
+    if (q.empty() || !(link.lower < link.upper)) continue;
+    const double effort = effort_bound(model_, joint);
+    const double mass = inertia.matrix().coeff(i, i);
+    down_.coeffRef(i) = std::min(limit, approach(q[joint] - link.lower, effort, mass));
+    up_.coeffRef(i) = std::min(limit, approach(link.upper - q[joint], effort, mass));
+  }
+}
+
+double SpeedBounds::approach(double distance, double effort, double inertia) const noexcept {
+  if (!(distance > 0.0)) return 0.0;
+  const double a = effort / (mass_uncertainty * inertia);
+  const double late = 2.0 * horizon_ * a;
+  return 2.0 * a * distance / (late + std::sqrt(late * late + 2.0 * a * distance));
+}
 
 bool SpeedBounds::foresee(const network::dense::Factored& mass, std::span<const double> asked,
                           std::span<const double> weight, std::span<const double> v,
@@ -19,7 +42,7 @@ bool SpeedBounds::foresee(const network::dense::Factored& mass, std::span<const 
   }
   mass.solve(driven_);
   for (std::size_t i = 0; i < v.size(); ++i) {
-    if (is_beyond(v[i], driven_.coeff(index(i)), model_.links[i].velocity_limit)) return true;
+    if (excess(index(i), v[i], driven_.coeff(index(i))) != 0.0) return true;
   }
   if (tool.jacobian == nullptr) return false;
   Vec3 now;
@@ -33,13 +56,17 @@ bool SpeedBounds::bound(LeastConstraint& problem, std::span<const double> v,
   const ArmInertia::Vector a = problem.acceleration() + friction_;
   bool has_more = false;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    const double limit = model_.links[i].velocity_limit;
-    if (!is_beyond(v[i], a.coeff(index(i)), rounding * limit)) continue;
-    const double side = v[i] + horizon_ * a.coeff(index(i)) > 0.0 ? -1.0 : 1.0;
+    const double beyond = excess(index(i), v[i], a.coeff(index(i)));
+    const double limit = beyond > 0.0 ? up_.coeff(index(i)) : down_.coeff(index(i));
+    if (std::abs(beyond) <= (rounding - 1.0) * limit + of_joints) continue;
+    const double side = beyond > 0.0 ? -1.0 : 1.0;
     ArmInertia::Vector h = ArmInertia::Vector::Zero(a.size());
     h.coeffRef(index(i)) = side;
-    const bool is_slow = std::abs(v[i]) < 0.5 * limit;
-    if (add(problem, h, side * v[i], limit, is_slow ? &walls : nullptr, status::speed_limit)) {
+    const double most = model_.links[i].velocity_limit;
+    const bool is_at_end = !(limit >= most) || !(most > 0.0);
+    const bool is_slow = std::abs(v[i]) < 0.5 * most;
+    if (add(problem, h, side * v[i], limit, is_slow ? &walls : nullptr,
+            is_at_end ? status::joint_limit : status::speed_limit)) {
       has_more = true;
     }
   }

@@ -3,6 +3,7 @@
 /// Bounds of the speeds of joints and tool, among those of the torques.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -29,7 +30,14 @@ struct ToolSpeed {
 ///
 ///     s + h ds/dt <= limit
 ///
-/// So a limit is approached exponentially, and what is beyond it is braked. Dry friction counts: a
+/// So a limit is approached exponentially, and what is beyond it is braked. Towards an end of its
+/// range, a joint may be as fast as it can still be stopped before it, at a distance d:
+///
+///     d = 2 h s + s^2 / (2 a)
+///
+/// with the deceleration a that its effort gives to it alone, its inertia taken 1.7 times. The
+/// springs ahead of the stops (network/modules/limits.hpp) act too late to stop a fast joint where
+/// the drive is late, and throw it back. Dry friction counts: a
 /// torque must overcome it before it moves anything. A bound of the tool
 /// acts along the velocity that it would have: forces across it, and against it, stay as they are.
 /// Nothing is scaled, so nothing that balances is taken apart.
@@ -41,10 +49,14 @@ class SpeedBounds {
   /// @param horizon [s] from a torque to its effect, with the delay of the drive
   SpeedBounds(const ArmModel& model, double horizon) : model_(model), horizon_(horizon) {
     driven_.setZero(static_cast<Eigen::Index>(model.links.size()));
-    friction_ = driven_;
+    friction_ = down_ = up_ = driven_;
   }
 
-  /// To be called in every tick, before the others. @param mass of the arm @param asked [N m]
+  /// To be called in every tick, before `foresee`: how fast each joint may be. @param q [rad] or
+  /// [m] of the joints; empty: the ends of their ranges do not count
+  void observe(std::span<const double> q, const ArmInertia& inertia) noexcept;
+
+  /// To be called in every tick, before `bound`. @param mass of the arm @param asked [N m]
   /// @param weight [N m] the part of it that carries the weight
   /// @param v [rad/s] or [m/s] of the joints
   /// @return true where what is asked for takes a joint or the tool beyond its limit
@@ -66,6 +78,8 @@ class SpeedBounds {
  private:
   // The solution of soft bounds may be so much beyond.
   static constexpr double rounding = 1.01;
+  static constexpr double of_joints = 5e-3;  // [rad/s] likewise, of joints
+  static constexpr double mass_uncertainty = 1.7;
   // Above the limit, so that who asks for it gets it, and is not told of what swings beyond.
   static constexpr double tool_slack = 0.075;
 
@@ -81,13 +95,19 @@ class SpeedBounds {
   // [m/s] Velocity of the tool after the horizon; `now` receives that of now.
   [[nodiscard]] Vec3 then(const ToolSpeed& tool, std::span<const double> v,
                           const ArmInertia::Vector& acceleration, Vec3& now) const noexcept;
-  [[nodiscard]] bool is_beyond(double v, double acceleration, double limit) const noexcept {
-    return limit > 0.0 && std::abs(v + horizon_ * acceleration) > limit;
+  // [rad/s] By which a joint is beyond its limit after the horizon; 0: it is not.
+  [[nodiscard]] double excess(Eigen::Index joint, double v, double acceleration) const noexcept {
+    const double then = v + horizon_ * acceleration;
+    if (then > up_.coeff(joint)) return then - up_.coeff(joint);
+    return std::min(0.0, then + down_.coeff(joint));
   }
+  // [rad/s] At which a joint of this effort and inertia can be stopped within `distance`.
+  [[nodiscard]] double approach(double distance, double effort, double inertia) const noexcept;
   const ArmModel& model_;
-  double horizon_;               // [s]
-  ArmInertia::Vector driven_;    // [rad/s^2] by what is asked for, less what friction takes
-  ArmInertia::Vector friction_;  // [rad/s^2] of this, that of friction
+  double horizon_;                // [s]
+  ArmInertia::Vector driven_;     // [rad/s^2] by what is asked for, less what friction takes
+  ArmInertia::Vector friction_;   // [rad/s^2] of this, that of friction
+  ArmInertia::Vector down_, up_;  // [rad/s] limits of this tick towards the ends of the ranges
 };
 
 }  // namespace repel

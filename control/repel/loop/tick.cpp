@@ -235,8 +235,8 @@ void Teleoperator::note_limits() noexcept {
 void Teleoperator::drive() noexcept {
   add_held_weight(world_, tool_, jacobian_, gravity_W_, Masses::known, command_.gravity());
   const double carried = signals_.walls_power + signals_.arm_power;
-  command_.drive({network_, signals_.jacobian, v_, probes_, V_WT_.linear.norm(), carried}, inertia_,
-                 watch_, record_);
+  command_.drive({network_, signals_.jacobian, q_, v_, probes_, V_WT_.linear.norm(), carried},
+                 inertia_, watch_, record_);
 }
 
 void Teleoperator::finish_tick() noexcept {
