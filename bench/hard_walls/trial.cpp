@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "trial.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <utility>
+
+#include <repel/cell/arm_port.hpp>
+#include <repel/cell/cell.hpp>
+#include <repel/cell/layout.hpp>
+#include <repel/loop/tick.hpp>
+#include <repel/network/modules.hpp>
+#include <repel/simulated/delayed_arm.hpp>
+
+#include "arm_backend.hpp"
+#include "chatter.hpp"
+#include "command_filter.hpp"
+#include "servoed_arm.hpp"
+
+namespace repel::hard_walls {
+namespace {
+
+using std::chrono::nanoseconds;
+
+/// A hand that goes another way, at another speed, every third of a second.
+class RandomHand {
+ public:
+  RandomHand(std::uint64_t seed, double speed) : random_(seed), speed_(speed) {}
+  const network::Command& step(double period) {
+    left_ -= period;
+    if (left_ <= 0.0) {
+      left_ = 0.3 * (0.5 + std::abs(draw()));
+      command_.hand.ball.linear = speed_ * Vec3(draw(), draw(), draw());
+      command_.hand.ball.angular = 3.0 * speed_ * Vec3(draw(), draw(), draw());
+    }
+    return command_;
+  }
+
+ private:
+  double draw() { return std::uniform_real_distribution<double>(-1.0, 1.0)(random_); }
+  std::mt19937_64 random_;
+  double speed_;
+  double left_ = 0.0;
+  network::Command command_;
+};
+
+/// The simulated arms of a cell, and what moves them.
+struct Driven {
+  Driven(const Setting& setting, const scene::Scene& scene,
+         const teleop::DescribedScene& described) {
+    for (std::size_t i = 0; i < described.cell.arms.size(); ++i) {
+      const ArmDescription& arm = described.cell.arms[i];
+      const ArmModel& model = described.robots[i].arm;
+      ArmModel plant = model;
+      for (ArmLink& link : plant.links) {
+        link.mass *= setting.inertia;
+        link.I_C_L = setting.inertia * link.I_C_L;
+        link.rotor_inertia *= setting.inertia;
+      }
+      arms.push_back(teleop::arm_backend("bullet").make(plant, arm.start, 0.1, {}));
+      if (setting.delay > 0) {
+        arms.back() =
+            std::make_unique<DelayedArm>(std::move(arms.back()), plant.links.size(), setting.delay);
+      }
+      if (const auto& admittance = scene.arm_setup(i).robot.admittance) {
+        arms.back() = std::make_unique<teleop::ServoedArm>(
+            std::move(arms.back()), model, arm.model, admittance->response, 1.0 / setting.rate);
+      }
+      ports.emplace_back(*arms.back(), plant.links.size());
+      hands.emplace_back(setting.seed + 1000 * hands.size(), setting.hand_speed);
+    }
+    readings.resize(arms.size());
+    commands.resize(arms.size());
+  }
+  std::vector<std::unique_ptr<TorqueDrivenArm>> arms;
+  std::vector<ArmPort> ports;
+  std::vector<RandomHand> hands;
+  std::vector<ArmReadings> readings;
+  std::vector<network::Command> commands;
+};
+
+void note_pairs(const Cell& cell, Outcome& outcome) {
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(cell.world().pairs().size()); ++i) {
+    const Pair& pair = cell.world().pair({i});
+    if (pair.law.passable) continue;
+    const double deepest = cell.coprocessor().extremes_of({i}).deepest;
+    outcome.deepest = std::max(outcome.deepest, deepest);
+    const BodyId body = cell.world().part(pair.a).body;
+    const bool is_fixed = cell.world().part(pair.b).body == World::fixed;
+    for (std::size_t k = 0; k < cell.arms(); ++k) {
+      if (is_fixed && body == cell.layout(k).tool) outcome.tool = std::max(outcome.tool, deepest);
+    }
+    outcome.withstood = std::max(outcome.withstood, cell.withstood({i}));
+  }
+}
+
+void note_motion(const Cell& cell, std::size_t arm, const TickRecord& record, Outcome& outcome) {
+  outcome.said |= record.status;
+  const auto* joints = cell.network(arm).find<network::PumaJoints>();
+  outcome.sampling_energy = std::max(outcome.sampling_energy, joints->sampling_energy());
+  for (const double rate : record.v_read) {
+    outcome.fastest_joint = std::max(outcome.fastest_joint, std::abs(rate));
+  }
+}
+
+}  // namespace
+
+Outcome push(const Setting& setting) {
+  const scene::Scene scene = load(setting.scene);
+  teleop::DescribedScene set_up = described(setting, scene);
+  Driven driven(setting, scene, set_up);
+  Cell cell(std::move(set_up.cell));
+  std::optional<CommandFilter> filter;
+  if (!is_hard(setting.way) && setting.way != Way::springs) {
+    Setting walled = setting;
+    walled.way = Way::hard;
+    filter.emplace(setting.way, described(walled, scene).cell);
+  }
+  Outcome outcome;
+  std::vector<teleop::ChatterMeter> meters;
+  for (std::size_t i = 0; i < cell.arms(); ++i) meters.emplace_back(1, setting.rate);
+  nanoseconds now{0};
+  for (std::int64_t tick = 0; tick < setting.ticks; ++tick) {
+    now += cell.period();
+    for (std::size_t i = 0; i < cell.arms(); ++i) {
+      driven.readings[i] = driven.ports[i].read();
+      driven.commands[i] = driven.hands[i].step(1.0 / setting.rate);
+      if (static_cast<double>(tick) > setting.hand_until * setting.rate) {
+        driven.commands[i].hand.ball = {};
+      }
+    }
+    if (filter) {
+      filter->sense(driven.readings, now);
+      for (std::size_t i = 0; i < cell.arms(); ++i) {
+        filter->filter(i, driven.commands[i].hand.ball);
+      }
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    cell.sense(driven.readings, now);
+    const auto records = cell.act(driven.commands);
+    outcome.compute.record(std::chrono::steady_clock::now() - begin);
+    for (std::size_t i = 0; i < cell.arms(); ++i) {
+      const bool is_lost = (records[i]->status & status::hold_lost) != 0U;
+      outcome.lost += is_lost ? 1 : 0;
+      if (is_lost && !outcome.told) outcome.told = tick;
+      if (records[i]->pairs.nearest < -bound && !outcome.entered) outcome.entered = tick;
+      outcome.way += records[i]->v_WT.norm() / setting.rate;
+      note_motion(cell, i, *records[i], outcome);
+      // What swings out at the end of the motion is none.
+      if (static_cast<double>(tick) > (setting.hand_until + 1.0) * setting.rate) {
+        const std::size_t last = driven.readings[i].q.size() - 1;
+        meters[i].add(std::span(records[i]->torques).subspan(last, 1));
+      }
+      driven.ports[i].apply(*records[i]);
+      driven.arms[i]->step(1.0 / setting.rate);
+    }
+  }
+  note_pairs(cell, outcome);
+  for (const teleop::ChatterMeter& meter : meters) {
+    const double rms = meter.of(0).rms;
+    if (rms > outcome.chatter) outcome.chatter = rms;
+  }
+  return outcome;
+}
+
+}  // namespace repel::hard_walls
