@@ -33,12 +33,13 @@ struct Setting {
   double inertia = 1.0;  ///< of the simulated arm, as a multiple of its model's
   int delay = 0;         ///< [ticks] of its drive
   double wrist = 0.0;    ///< [kg m^2] of the last link, without friction; 0: as in the scene
-  double hand = stronger_than_the_arm;           ///< [N]
-  double hand_speed = 0.6;                       ///< [m/s] along each axis
-  double hand_until = 1e9;                       ///< [s] after which it rests
-  std::int64_t ticks = 0;                        ///< to run
-  std::uint64_t seed = 0;                        ///< of the hands
-  std::string kind{};                            ///< of the walls
+  double hand = stronger_than_the_arm;  ///< [N]
+  double hand_speed = 0.6;              ///< [m/s] along each axis
+  double hand_until = 1e9;              ///< [s] after which it rests
+  std::int64_t ticks = 0;               ///< to run
+  std::uint64_t seed = 0;               ///< of the hands
+  int libccd_every = 0;  ///< [ticks] between two looks of libccd at the overlaps; 0: none
+  std::string kind{};    ///< of the walls
   std::vector<ObstacleDescription> obstacles{};  ///< in place of those of the scene; empty: these
 };
 

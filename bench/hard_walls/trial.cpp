@@ -18,6 +18,7 @@
 #include "arm_backend.hpp"
 #include "chatter.hpp"
 #include "command_filter.hpp"
+#include "libccd_depth.hpp"
 #include "servoed_arm.hpp"
 
 namespace repel::hard_walls {
@@ -119,6 +120,7 @@ Outcome push(const Setting& setting) {
     walled.way = Way::hard;
     filter.emplace(setting.way, described(walled, scene).cell);
   }
+  LibccdDepth libccd(cell);
   Outcome outcome;
   std::vector<teleop::ChatterMeter> meters;
   for (std::size_t i = 0; i < cell.arms(); ++i) meters.emplace_back(1, setting.rate);
@@ -131,6 +133,11 @@ Outcome push(const Setting& setting) {
       if (static_cast<double>(tick) > setting.hand_until * setting.rate) {
         driven.commands[i].hand.ball = {};
       }
+    }
+    if (has_libccd && setting.libccd_every > 0 && tick % setting.libccd_every == 0) {
+      const double depth = libccd.at(driven.readings, static_cast<double>(tick) / setting.rate);
+      outcome.by_libccd = std::max(outcome.by_libccd, depth);
+      if (depth > tolerated && !outcome.entered) outcome.entered = tick;
     }
     if (filter) {
       filter->sense(driven.readings, now);
@@ -146,7 +153,7 @@ Outcome push(const Setting& setting) {
       const bool is_lost = (records[i]->status & status::hold_lost) != 0U;
       outcome.lost += is_lost ? 1 : 0;
       if (is_lost && !outcome.told) outcome.told = tick;
-      if (records[i]->pairs.nearest < -bound && !outcome.entered) outcome.entered = tick;
+      if (records[i]->pairs.nearest < -tolerated && !outcome.entered) outcome.entered = tick;
       outcome.way += records[i]->v_WT.norm() / setting.rate;
       note_motion(cell, i, *records[i], outcome);
       // What swings out at the end of the motion is none.

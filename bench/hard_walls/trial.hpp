@@ -13,17 +13,18 @@
 
 namespace repel::hard_walls {
 
-inline constexpr double bound = 1e-4;  ///< [m] to which a hard wall may be entered
+inline constexpr double tolerated = 1e-4;  ///< [m] to which a hard wall may be entered
 
 /// What came of it.
 struct Outcome {
-  double deepest = 0.0;                 ///< [m] into a wall
+  double deepest = 0.0;                 ///< [m] into a wall, by the proven bound of the library
+  double by_libccd = 0.0;               ///< [m] the same by libccd, where it looked
   double tool = 0.0;                    ///< [m] the same, of tools alone
   double withstood = 0.0;               ///< [N]
   double way = 0.0;                     ///< [m] that the tools moved
   std::int64_t lost = 0;                ///< ticks
   std::optional<std::int64_t> told;     ///< first tick in which a wall was said to be lost
-  std::optional<std::int64_t> entered;  ///< first tick in which one was entered by the bound
+  std::optional<std::int64_t> entered;  ///< first tick in which one was entered by either
   DurationHistogram compute;            ///< of the cell
   double sampling_energy = 0.0;         ///< [J] most
   double fastest_joint = 0.0;           ///< [rad/s]
