@@ -42,9 +42,14 @@ void lighten(ArmLink& link, double inertia) {
 }  // namespace
 
 const char* text_of(Way way) {
-  constexpr const char* names[] = {
-      "springs",          "hard", "hard, weak springs", "velocity damper", "barrier function",
-      "stopping distance"};
+  constexpr const char* names[] = {"springs",
+                                   "hard",
+                                   "hard, weak springs",
+                                   "velocity damper",
+                                   "barrier function",
+                                   "stopping distance",
+                                   "velocity damper of the arm",
+                                   "OSCBF of the arm"};
   return names[static_cast<std::size_t>(way)];
 }
 scene::Scene load(const std::string& name) {
@@ -71,6 +76,9 @@ teleop::DescribedScene described(const Setting& setting, const scene::Scene& sce
     if (arm.self_law) change(*arm.self_law);
     arm.network = hand_of(arm.model, setting.hand);
     arm.options.drive_delay += setting.delay;
+    // The cell does not know of the torques that act in its place: a joint that they hold is not
+    // frozen.
+    arm.options.joints.touches |= is_of_arm(setting.way);
   }
   described.cell.gain_check = network::GainCheck::warning;
   described.cell.loose.clear();

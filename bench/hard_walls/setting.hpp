@@ -15,12 +15,25 @@
 namespace repel::hard_walls {
 
 /// What holds an arm off.
-enum class Way { springs, hard, hard_alone, velocity_damper, barrier_function, stopping_distance };
+enum class Way {
+  springs,
+  hard,
+  hard_alone,         ///< with weak springs
+  velocity_damper,    ///< of the tool, by what the hand commands
+  barrier_function,   ///< likewise
+  stopping_distance,  ///< likewise
+  damper_of_arm,      ///< of tool and links, by the torques
+  barrier_of_arm      ///< likewise
+};
 /// Its name in the tables.
 [[nodiscard]] const char* text_of(Way way);
 /// The walls of the cell are hard.
 [[nodiscard]] inline bool is_hard(Way way) {
   return way == Way::hard || way == Way::hard_alone;
+}
+/// It changes the torques of a cell with springs.
+[[nodiscard]] inline bool is_of_arm(Way way) {
+  return way == Way::damper_of_arm || way == Way::barrier_of_arm;
 }
 
 inline constexpr double stronger_than_the_arm = 1e4;  ///< [N]: nothing in its network gives way

@@ -18,8 +18,10 @@
 #include "arm_backend.hpp"
 #include "chatter.hpp"
 #include "command_filter.hpp"
+#include "gaps.hpp"
 #include "libccd_depth.hpp"
 #include "servoed_arm.hpp"
+#include "torque_filter.hpp"
 
 namespace repel::hard_walls {
 namespace {
@@ -83,6 +85,51 @@ struct Driven {
   std::vector<network::Command> commands;
 };
 
+/// What others do, if the setting is about them.
+class Filter {
+ public:
+  Filter(const Setting& setting, const scene::Scene& scene) : way_(setting.way) {
+    if (is_hard(way_) || way_ == Way::springs) return;
+    Setting walled = setting;
+    walled.way = Way::hard;
+    gaps_.emplace(described(walled, scene).cell, is_of_arm(way_));
+    for (std::size_t i = 0; is_of_arm(way_) && i < gaps_->cell().arms(); ++i) {
+      of_torques_.emplace_back(way_, gaps_->cell(), i);
+    }
+  }
+  /// Of what the hands command, in a tick that is due at `now`.
+  void change(Driven& driven, nanoseconds now) {
+    if (!gaps_) return;
+    gaps_->sense(driven.readings, now);
+    const auto begin = std::chrono::steady_clock::now();
+    gaps_->collect(is_of_arm(way_) ? 1.0 : 0.2);
+    for (std::size_t i = 0; !is_of_arm(way_) && i < driven.commands.size(); ++i) {
+      const BodyId tool = gaps_->cell().layout(i).tool;
+      filter_command(way_, gaps_->all(), tool, driven.commands[i].hand.ball);
+    }
+    spent_ = std::chrono::steady_clock::now() - begin;
+  }
+  /// Of the torques that are sent in this tick.
+  void change(const Driven& driven, std::span<TickRecord> sent) {
+    if (!gaps_) return;
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < of_torques_.size(); ++i) {
+      const auto torques = std::span(sent[i].torques).first(driven.readings[i].q.size());
+      of_torques_[i].filter(gaps_->all(), driven.readings[i], torques);
+    }
+    time_.record(spent_ + (std::chrono::steady_clock::now() - begin));
+  }
+  /// Of all ticks, without that of the second cell.
+  [[nodiscard]] const DurationHistogram& time() const { return time_; }
+
+ private:
+  Way way_;
+  std::optional<Gaps> gaps_;
+  std::vector<TorqueFilter> of_torques_;
+  nanoseconds spent_{0};
+  DurationHistogram time_;
+};
+
 void note_pairs(const Cell& cell, Outcome& outcome) {
   for (std::int32_t i = 0; i < static_cast<std::int32_t>(cell.world().pairs().size()); ++i) {
     const Pair& pair = cell.world().pair({i});
@@ -114,12 +161,7 @@ Outcome push(const Setting& setting) {
   teleop::DescribedScene set_up = described(setting, scene);
   Driven driven(setting, scene, set_up);
   Cell cell(std::move(set_up.cell));
-  std::optional<CommandFilter> filter;
-  if (!is_hard(setting.way) && setting.way != Way::springs) {
-    Setting walled = setting;
-    walled.way = Way::hard;
-    filter.emplace(setting.way, described(walled, scene).cell);
-  }
+  Filter filter(setting, scene);
   LibccdDepth libccd(cell);
   Outcome outcome;
   std::vector<teleop::ChatterMeter> meters;
@@ -139,16 +181,14 @@ Outcome push(const Setting& setting) {
       outcome.by_libccd = std::max(outcome.by_libccd, depth);
       if (depth > tolerated && !outcome.entered) outcome.entered = tick;
     }
-    if (filter) {
-      filter->sense(driven.readings, now);
-      for (std::size_t i = 0; i < cell.arms(); ++i) {
-        filter->filter(i, driven.commands[i].hand.ball);
-      }
-    }
+    filter.change(driven, now);
     const auto begin = std::chrono::steady_clock::now();
     cell.sense(driven.readings, now);
     const auto records = cell.act(driven.commands);
     outcome.compute.record(std::chrono::steady_clock::now() - begin);
+    std::vector<TickRecord> sent;
+    for (const TickRecord* record : records) sent.push_back(*record);
+    filter.change(driven, sent);
     for (std::size_t i = 0; i < cell.arms(); ++i) {
       const bool is_lost = (records[i]->status & status::hold_lost) != 0U;
       outcome.lost += is_lost ? 1 : 0;
@@ -161,10 +201,11 @@ Outcome push(const Setting& setting) {
         const std::size_t last = driven.readings[i].q.size() - 1;
         meters[i].add(std::span(records[i]->torques).subspan(last, 1));
       }
-      driven.ports[i].apply(*records[i]);
+      driven.ports[i].apply(sent[i]);
       driven.arms[i]->step(1.0 / setting.rate);
     }
   }
+  outcome.filter = filter.time();
   note_pairs(cell, outcome);
   for (const teleop::ChatterMeter& meter : meters) {
     const double rms = meter.of(0).rms;

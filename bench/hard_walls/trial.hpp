@@ -26,6 +26,7 @@ struct Outcome {
   std::optional<std::int64_t> told;     ///< first tick in which a wall was said to be lost
   std::optional<std::int64_t> entered;  ///< first tick in which one was entered by either
   DurationHistogram compute;            ///< of the cell
+  DurationHistogram filter;             ///< of what changes commands or torques, for all arms
   double sampling_energy = 0.0;         ///< [J] most
   double fastest_joint = 0.0;           ///< [rad/s]
   double chatter = 0.0;                 ///< [N m] rms of the last joint, while the hand rests
