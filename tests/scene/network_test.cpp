@@ -184,8 +184,8 @@ ArmModel mast() {
 std::string posture_refusal(const ArmModel& arm, const std::string& key) {
   try {
     const Scene scene = parsed(base_scene +
-                               "network: [{module: ground}, {module: kbb2}, {module: puma_kin},\n"
-                               "  {module: posture" +
+                               "network: [{module: ground}, {module: kbb2}, {module: obstacle},\n"
+                               "  {module: puma_kin}, {module: posture" +
                                key + "},\n  {module: puma_joints}]\n");
     (void)build_network(scene, scene, arm, 400.0);
   } catch (const SetupError& error) {
