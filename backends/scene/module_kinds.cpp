@@ -254,6 +254,50 @@ ReadModule limits_of(const Map& map) {
           [law, zones](const ArmModel& arm) { return network::Limits(law, zones.ranges(arm)); }};
 }
 
+/// @throws SetupError unless there is one position for each joint, of its kind
+void require_positions(const Value& value, const std::vector<JointType>& types,
+                       const ArmModel& arm) {
+  if (types.size() != arm.links.size()) {
+    value.fail("'joints' has " + std::to_string(types.size()) +
+               " positions; allowed: " + std::to_string(arm.links.size()) + ", one for each joint");
+  }
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    const ArmLink& link = arm.links[i];
+    if (link.type == types[i]) continue;
+    const bool slides = link.type == JointType::prismatic;
+    value.fail("'joints' has " + std::string(slides ? "an angle" : "a length") +
+               " for the joint '" + link.joint_name + "'; allowed: " +
+               (slides ? "a length, since it slides" : "an angle, since it turns") +
+               ", as in [1 m, 0 45 deg]");
+  }
+}
+
+ReadModule posture_of(const Map& map) {
+  allow(map, {"stiffness", "damping", "torque_limit", "most_energy", "most_damping", "joints"});
+  network::PostureOptions options;
+  map.read("stiffness", {unit::angular_stiffness, 0.0, 1e6}, options.stiffness);
+  map.read("damping", {unit::angular_damping, 0.0, 1e6}, options.damping);
+  map.read("torque_limit", {unit::torque, 0.0, 1e6}, options.torque_limit);
+  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.most_energy);
+  map.read("most_damping", {unit::angular_damping, 0.0, 1e6}, options.most_damping);
+  const Value* const joints = map.find("joints");
+  if (joints == nullptr) return made_of(options, make<network::Posture>);
+  std::vector<JointType> types;
+  for (const Value& entry :
+       joints->is_list() ? joints->list(network::most_joints) : std::vector<Value>{*joints}) {
+    const bool slides = quantity(entry.text(), unit::length).has_value();
+    const Rule rule{slides ? Units(unit::length) : Units(unit::angle), -1e3, 1e3};
+    for (const double q : entry.numbers(rule, 1, network::most_joints)) {
+      options.joints.push_back(q);
+      types.push_back(slides ? JointType::prismatic : JointType::revolute);
+    }
+  }
+  return {options, [options, types, value = *joints](const ArmModel& arm) {
+            require_positions(value, types, arm);
+            return network::Posture(options);
+          }};
+}
+
 ReadModule line_of(const Map& map) {
   allow(map,
         {"kind", "impedance", "angular_impedance", "delay", "jitter", "loss", "seed", "buffer"});
@@ -374,6 +418,7 @@ ModuleKinds::ModuleKinds() {
       {"puma_kin", plain_of<network::PumaKin>},
       {"arm_obstacle", arm_obstacle_of},
       {"limits", limits_of},
+      {"posture", posture_of},
       {"force_sensor", force_sensor_of},
       {"visual", plain_of<network::Visual>},
       {"puma_joints", joints_of},

@@ -72,6 +72,7 @@
 #include <repel/network/modules/limits.cpp>
 #include <repel/network/modules/multiplex.cpp>
 #include <repel/network/modules/obstacle.cpp>
+#include <repel/network/modules/posture.cpp>
 #include <repel/network/modules/puma_joints.cpp>
 #include <repel/network/modules/puma_kin.cpp>
 #include <repel/network/modules/relief.cpp>

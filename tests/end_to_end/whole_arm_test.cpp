@@ -228,7 +228,7 @@ TEST(WholeArm, AStartInsideWhatMayBeEnteredIsNoneToSpeakOf) {
 
 /// A redundant arm with its elbow out to the side, a bar that moves 150 mm towards the elbow and
 /// back, and an idle operator.
-std::string elbow_scene() {
+std::string elbow_scene(const std::string& posture = "") {
   return "robot:\n  urdf: " REPEL_SOURCE
          "/robots/long_reach.urdf\n"
          "  base: {position: 0 0 4 m}\n"
@@ -242,7 +242,8 @@ std::string elbow_scene() {
          "  - {module: kbb2, stiffness: 10 N/mm, damping: 1 kN s/m, force_limit: 600 N, "
          "angular_stiffness: 400 N m/rad, angular_damping: 20 N m s/rad, torque_limit: 40 N m}\n"
          "  - {module: obstacle, gain_check: warning}\n  - {module: puma_kin}\n"
-         "  - {module: arm_obstacle}\n  - {module: limits}\n  - {module: puma_joints}\n";
+         "  - {module: arm_obstacle}\n  - {module: limits}\n" +
+         posture + "  - {module: puma_joints}\n";
 }
 
 // Seven joints and a tool with six degrees of freedom: a force on the elbow folds the arm, and the
@@ -267,6 +268,27 @@ TEST(WholeArm, GivesWayAtItsElbowWhileTheToolStaysWhereTheArmHasAJointToSpare) {
   };
   for (std::size_t tick = 0; tick < elbow.size(); ++tick) ASSERT_LT(moved(tick), 0.01) << tick;
   EXPECT_LT(moved(elbow.size() - 1), 0.002) << "with the bar at rest";
+}
+
+TEST(WholeArm, BringsItsElbowBackWhereAPostureSaysSo) {
+  const Folder folder;
+  const auto left_after = [&](const std::string& posture) {
+    const std::string scene = folder.with("elbow.yaml", elbow_scene(posture));
+    const Ending ending =
+        teleop(quoted(scene) + " --fast --seconds 8 --log " + quoted(folder / "log.csv") +
+               " --report " + quoted(folder / "r.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    const Columns log = columns_of(folder / "log.csv");
+    return log.at("q4_rad").back() - log.at("q4_rad").front();
+  };
+  EXPECT_GT(left_after(""), 0.1) << "the bar has gone, the elbow stays";
+  EXPECT_LT(left_after("  - {module: posture, stiffness: 400 N m/rad, damping: 200 N m s/rad, "
+                       "torque_limit: 300 N m}\n"),
+            0.02);
+  for (const json& module : report_of(folder / "r.json").at("modules")) {
+    if (module.at("name") != "posture") continue;
+    EXPECT_TRUE(module.at("passive").get<bool>()) << module;
+  }
 }
 
 // The partner's rod as an obstacle, seen from the other arm, and vice versa.

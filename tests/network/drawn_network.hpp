@@ -96,7 +96,10 @@ class DrawnPlan {
     if (whole) plan.add("arm_obstacle", network::ArmObstacle(), "limits");
     const std::vector<network::JointRange> ranges(static_cast<std::size_t>(joints), {-0.2, 0.2});
     const bool measures = joints % 2 == 0;
-    plan.add("limits", network::Limits({}, ranges), measures ? "force_sensor" : "puma_joints");
+    const std::string last = measures ? "force_sensor" : "puma_joints";
+    const bool is_redundant = joints > 6;
+    plan.add("limits", network::Limits({}, ranges), is_redundant ? "posture" : last);
+    if (is_redundant) plan.add("posture", network::Posture(), last);
     if (measures) plan.add("force_sensor", network::ForceSensor(), "puma_joints");
     grow(first, network::Space::tool, 4);
     plan.add("puma_joints", network::PumaJoints(joints));
@@ -230,7 +233,8 @@ class Laws {
       return near(root.effort, leaf.effort, 0.0);
     }
     if (node.module.as<network::Obstacle>() != nullptr ||
-        node.module.as<network::Limits>() != nullptr) {
+        node.module.as<network::Limits>() != nullptr ||
+        node.module.as<network::Posture>() != nullptr) {
       return near(root.flow, leaf.flow, 0.0);
     }
     return true;

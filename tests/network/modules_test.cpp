@@ -30,10 +30,11 @@ TEST(Modules, BuildANetworkOfAllKindsWithThisHeaderAndAPlan) {
                               .add("puma_kin", PumaKin())
                               .add("arm_obstacle", ArmObstacle())
                               .add("limits", Limits({}, {{-1.0, 1.0}, {-1.0, 1.0}}))
+                              .add("posture", Posture())
                               .add("visual", Visual())
                               .add("puma_joints", PumaJoints(2))
                               .build(0.001);
-  EXPECT_EQ(network.nodes().size(), 20U);
+  EXPECT_EQ(network.nodes().size(), 21U);
 }
 
 }  // namespace modules_test

@@ -36,9 +36,10 @@ struct MetOf {
     for (std::size_t i = 0; i < count.size(); ++i) EXPECT_GT(count[i], least) << "type " << i;
   }
 };
-using Met = MetOf<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaKin, ArmObstacle,
-                  ForceSensor, Limits, Visual, PumaJoints, Junction, Line, Spring<any_size>,
-                  Mass<any_size>, Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
+using Met =
+    MetOf<TorqueArm, Multiplex, Spaceball, Relief, Kbb2, Obstacle, PumaKin, ArmObstacle,
+          ForceSensor, Limits, Posture, Visual, PumaJoints, Junction, Line, Spring<any_size>,
+          Mass<any_size>, Damper<any_size>, EffortSource<any_size>, FlowSource<any_size>>;
 
 /// The sum of the ledgers of all modules, sources and robot included: energy into one comes out of
 /// another. A multiplex with a power factor declares the part it does not pass on.
@@ -148,6 +149,7 @@ Plan of_everything() {
   plan.add("obstacle", Obstacle()).add("visual", Visual()).add("puma_kin", PumaKin());
   plan.add("arm_obstacle", ArmObstacle());
   plan.add("limits", Limits({}, std::vector<JointRange>(6, {-0.2, 0.2})));
+  plan.add("posture", Posture());
   plan.add("force_sensor", ForceSensor());
   plan.add("puma_joints", PumaJoints(6));
   return plan;

@@ -110,6 +110,16 @@ TEST(SceneNetwork, EveryNumberOfAModuleArrives) {
   EXPECT_EQ(obstacle.network.gain_check, network::GainCheck::warning);
   EXPECT_EQ(options<network::ObstacleOptions>(obstacle).passivity.most_energy, 2.0);
 
+  const auto posture = options<network::PostureOptions>(
+      with_module("posture, stiffness: 20 N m/rad, damping: 3 N m s/rad, torque_limit: 9 N m, "
+                  "most_energy: 4 J, most_damping: 200 N m s/rad, joints: [50 mm, 0.1 0.2 rad]"));
+  EXPECT_EQ(posture.stiffness, 20.0);
+  EXPECT_EQ(posture.damping, 3.0);
+  EXPECT_EQ(posture.torque_limit, 9.0);
+  EXPECT_EQ(posture.most_energy, 4.0);
+  EXPECT_EQ(posture.most_damping, 200.0);
+  EXPECT_EQ(posture.joints, (std::vector<double>{0.05, 0.1, 0.2}));
+
   const auto mass = options<Element>(with_module("mass, mass: 200 g, inertia: 0.5 kg m^2"));
   EXPECT_EQ(mass.kind, Element::Kind::mass);
   EXPECT_EQ(mass.linear, 0.2);
@@ -168,6 +178,37 @@ ArmModel mast() {
   arm.links[0].lower = 0.0;
   arm.links[0].upper = 5.0;
   return arm;
+}
+
+/// What is said of a posture with this key; empty: nothing.
+std::string posture_refusal(const ArmModel& arm, const std::string& key) {
+  try {
+    const Scene scene = parsed(base_scene +
+                               "network: [{module: ground}, {module: kbb2}, {module: obstacle},\n"
+                               "  {module: puma_kin}, {module: posture" +
+                               key + "},\n  {module: puma_joints}]\n");
+    (void)build_network(scene, scene, arm, 400.0);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SceneNetwork, APostureHasAPositionOfTheRightKindForEachJoint) {
+  EXPECT_EQ(posture_refusal(two_joints(), ""), "");
+  EXPECT_EQ(posture_refusal(two_joints(), ", joints: 0 45 deg"), "");
+  EXPECT_EQ(posture_refusal(mast(), ", joints: [1 m, 45 deg]"), "");
+  const auto expect = [](const ArmModel& arm, const std::string& key, const std::string& part) {
+    const std::string text = posture_refusal(arm, key);
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+    EXPECT_EQ(text.find("scenes/test.yaml:"), 0U) << text;
+  };
+  expect(two_joints(), ", joints: 0 45 10 deg", "'joints' has 3 positions; allowed: 2");
+  expect(mast(), ", joints: 0 45 deg", "an angle for the joint 'first'; allowed: a length");
+  expect(two_joints(), ", joints: [1 m, 45 deg]", "a length for the joint 'first'");
+  expect(two_joints(), ", joints: 0 1e9 rad", "allowed: ");
+  expect(two_joints(), ", stiffness: -1 N m/rad", "'stiffness' is '-1 N m/rad'; allowed: 0 to");
+  expect(two_joints(), ", range: 1 deg", "'range'");
 }
 
 /// Where the limits begin to act, for each joint; the part of the message after the file if they

@@ -25,6 +25,8 @@ const MODULES = {
     "From joint rates to the motion of the tool, and from its force to torques. Loses nothing."],
   limits: ["joint limits",
     "A spring and a damper over the last piece before the end of the range of a joint."],
+  posture: ["posture",
+    "Springs and dampers that bring the elbow back to where it was, while the tool stays."],
   force_sensor: ["force sensor",
     "Adds torques for a measured contact, so that it is felt and not what the arm adds to it."],
   visual: ["display",

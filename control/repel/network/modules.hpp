@@ -13,6 +13,7 @@
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/multiplex.hpp>
 #include <repel/network/modules/obstacle.hpp>
+#include <repel/network/modules/posture.hpp>
 #include <repel/network/modules/puma_joints.hpp>
 #include <repel/network/modules/puma_kin.hpp>
 #include <repel/network/modules/relief.hpp>

@@ -66,5 +66,22 @@ TEST(Dense, FactorsSolveAndRefuseWhatIsSingular) {
   }
 }
 
+TEST(Dense, EigenvectorsAndEigenvaluesMakeUpTheMatrix) {
+  test::Rng rng(seed);
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(families::of_seed(seed, "draw", i));
+    const int n = families::count_between(rng, 1, most_joints);
+    const int zeros = families::count_between(rng, 0, n);
+    const test::Matrix S =
+        i % 2 == 0 ? test::drawn_gain(rng, n, 1e-3, 1.0, zeros) : test::drawn_singular(rng, n);
+    test::Matrix diagonal = S, vectors = S;
+    dense::diagonalize(diagonal.data(), vectors.data(), n);
+    const test::Matrix values = diagonal.diagonal().asDiagonal();
+    EXPECT_LE((diagonal - values).norm(), 1e-14 * S.norm());
+    EXPECT_LE((vectors.transpose() * vectors - test::Matrix::Identity(n, n)).norm(), 1e-13);
+    EXPECT_LE((vectors * values * vectors.transpose() - S).norm(), 1e-13 * S.norm());
+  }
+}
+
 }  // namespace dense_test
 }  // namespace repel::network

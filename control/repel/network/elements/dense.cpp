@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/elements/dense.hpp>
 
+#include <cmath>
 #include <cstring>
 
 #include <Eigen/Core>
@@ -74,6 +75,47 @@ bool invert_positive(double* A, Eigen::Index n) noexcept {
       return invert_positive_of<7>(A, n);
     default:
       return invert_positive_of<0>(A, n);
+  }
+}
+
+namespace {
+
+/// Turns rows and columns p and q of A so that its entry there becomes zero, and the columns of V.
+void rotate(double* A, double* V, int n, int p, int q) noexcept {
+  const double x = A[n * q + p];
+  if (x == 0.0) return;
+  const double half = 0.5 * (A[n * q + q] - A[n * p + p]);
+  const double t = x / (half + std::copysign(std::sqrt(half * half + x * x), half));
+  const double c = 1.0 / std::sqrt(1.0 + t * t);
+  const double s = t * c;
+  const auto turn = [c, s](double& a, double& b) {
+    const double first = c * a - s * b;
+    b = s * a + c * b;
+    a = first;
+  };
+  for (int k = 0; k < n; ++k) turn(A[n * p + k], A[n * q + k]);
+  for (int k = 0; k < n; ++k) turn(A[n * k + p], A[n * k + q]);
+  for (int k = 0; k < n; ++k) turn(V[n * p + k], V[n * q + k]);
+  A[n * q + p] = A[n * p + q] = 0.0;
+}
+
+}  // namespace
+
+void diagonalize(double* A, double* V, int n) noexcept {
+  double size = 0.0;
+  for (int k = 0; k < n * n; ++k) {
+    V[k] = k % (n + 1) == 0 ? 1.0 : 0.0;
+    size += A[k] * A[k];
+  }
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double left = 0.0;
+    for (int q = 1; q < n; ++q) {
+      for (int p = 0; p < q; ++p) left += A[n * q + p] * A[n * q + p];
+    }
+    if (!(left > 1e-30 * size)) return;
+    for (int q = 1; q < n; ++q) {
+      for (int p = 0; p < q; ++p) rotate(A, V, n, p, q);
+    }
   }
 }
 

@@ -160,6 +160,14 @@ class Factored {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_rows, 1> inverse_;
 };
 
+/// Turns a symmetric n x n matrix by columns into the diagonal of its eigenvalues, in place, and
+/// writes its eigenvectors, of unit length, to the columns of `V`, in no order. Finite entries
+/// only. Cost: at most `most_sweeps` sweeps of Jacobi rotations, 6 n^3 multiplications each; 4 to 7
+/// in practice.
+void diagonalize(double* A, double* V, int n) noexcept;
+/// Sweeps after which `diagonalize` ends in any case.
+inline constexpr int most_sweeps = 16;
+
 /// C = A' S A, S symmetric. Sizes must match; C must not alias the others. Cost: half of
 /// `sandwich`.
 template <class A, class S, class C>

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// POSTURE: a spring and a damper on the motion of the joints that the tool does not feel.
+#pragma once
+
+#include <vector>
+
+#include <repel/network/elements/equivalent.hpp>
+#include <repel/network/elements/passivity.hpp>
+#include <repel/network/elements/robot_end.hpp>
+#include <repel/network/elements/signals.hpp>
+
+namespace repel::network {
+
+/// The spring and damper of a Posture, the same for each joint; for one that slides as N and m.
+struct PostureOptions {
+  double stiffness = 10.0;       ///< [N m/rad]
+  double damping = 2.0;          ///< [N m s/rad]; raised where the tick rate and the delay of the
+                                 ///< drive need more
+  double torque_limit = 20.0;    ///< [N m] of spring and damper, on each joint
+  double most_energy = 5.0;      ///< [J] see PassivityOptions
+  double most_damping = 300.0;   ///< [N m s/rad] limit of the damping against energy from sampling
+  std::vector<double> joints{};  ///< [rad] or [m] at which the spring is slack; empty: where the
+                                 ///< arm is in the first tick, and in the first after a release
+};
+
+/// A series source of torque in the null space of the tool, for arms with joints to spare:
+///
+///     tau = -P (K (q - q0) + B P qdot)
+///
+/// P projects on the null space of the Jacobian J: with the eigenvectors n of J' J and their
+/// eigenvalues s^2, P = sum g n n', g = (1 - (s / s0)^2)^2 below s0 and 0 above, where s0 is
+/// `singular` times the greatest s. So P is I - J^+ J in a regular pose, zero for six joints there,
+/// and a direction that the tool loses near a singular pose comes to it continuously.
+///
+/// As v = P qdot and tau = P x, power is kept: spring, damper and passivity controller act at a
+/// port of their own, x . v = tau . qdot, and push nothing but the null space. The projected spring
+/// has no potential, so it gives back what was stored and what the damper took, up to
+/// `most_energy`. With positions that are given it begins charged, which counts as supplied. It
+/// must stand between PUMA_KIN and the robot, with nothing compliant on its right.
+class Posture {
+ public:
+  /// For the planner.
+  static constexpr Traits traits{
+      .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
+  /// Share of the greatest motion of the tool, 1 rad counted as 0.3 m, below which the motion of
+  /// the joints begins to count as one that the tool does not feel.
+  static constexpr double singular = 0.01;
+
+  /// @throws SetupError for a number out of range
+  explicit Posture(PostureOptions options = {});
+
+  /// Takes what keeps a spring stable at this arm.
+  void suit(const RobotEnd& robot) noexcept { wall_ticks_ = robot.wall_ticks; }
+  /// For an arm of `size` joints.
+  /// @throws SetupError if positions are given, and not one for each joint
+  void fit(Space /*space*/, int size);
+  /// Raises the damping to what keeps the sampled spring stable: K T / 2 and more where the drive
+  /// is late. @param period [s] of the network
+  void prepare(double period);
+
+  /// Takes the torques, corrected by the passivity controller. Cost: the eigenvectors of J' J, a
+  /// few microseconds for seven joints.
+  void read(const Signals& signals) noexcept;
+
+  /// What is behind, and the torques in series. Always true.
+  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
+                               Equivalent<any_size>& shown) const noexcept;
+  /// The same rates, less the torques.
+  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
+                PortState<any_size>& at_leaf) const noexcept;
+
+  /// Torques on the joints [N m].
+  [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
+  /// Adds the torques [N m].
+  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept;
+  /// Adds the damping of law and passivity controller, through P on both sides.
+  void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept;
+  /// P of this tick.
+  [[nodiscard]] const Mat<any_size>& projector() const noexcept { return projector_; }
+  /// Stiffness and damping in use.
+  [[nodiscard]] const PostureOptions& options() const noexcept { return options_; }
+  /// Energy balance of all joints together.
+  [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
+  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] as it is charged
+
+ private:
+  void release() noexcept;
+  void project(const Jacobian& jacobian) noexcept;
+  void begin(const Signals& signals) noexcept;
+
+  PostureOptions options_;
+  PassivityController<any_size> controller_;
+  double wall_ticks_ = 0.5;
+  bool has_begun_ = false;
+  Vec<any_size> slack_;      // q0
+  Mat<any_size> projector_;  // P
+  Vec<any_size> effort_;     // into the module [N m]
+  double damping_ = 0.0;     // [N m s/rad] of law and controller in this tick
+  double supplied_ = 0.0;
+};
+
+}  // namespace repel::network
