@@ -176,10 +176,11 @@ void EntryBarrier::count(const LeastConstraint& problem, std::span<const double>
   if (force_ > 0.0) ++totals_.ticks;
 }
 
-double EntryBarrier::soon(const BarrierRow& row, double then, double after) const noexcept {
-  const double closing = std::min(0.0, then);
-  return row.gap + margin() + delay_ * period_ * std::min(row.rate, closing) +
-         0.5 * step_ * (closing + std::min(0.0, after));
+double EntryBarrier::soon(const BarrierRow& row, double freely, double after) const noexcept {
+  const double late = delay_ * period_;
+  const double then = std::min(0.0, row.rate + (freely - row.rate) * late / (late + step_));
+  return row.gap + margin() + late * std::min(row.rate, then) +
+         0.5 * step_ * (then + std::min(0.0, after));
 }
 
 double EntryBarrier::stopping_distance(double after, double a) const noexcept {

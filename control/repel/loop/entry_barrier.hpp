@@ -124,8 +124,8 @@ class EntryBarrier {
   void count(const LeastConstraint& problem, std::span<const double> efforts) noexcept;
 
   // [m] What is left of the gap of a row when the torques of this tick have acted.
-  // @param then [m/s] its rate when they begin to act @param after when they have
-  [[nodiscard]] double soon(const BarrierRow& row, double then, double after) const noexcept;
+  // @param freely [m/s] its rate then without them @param after with them
+  [[nodiscard]] double soon(const BarrierRow& row, double freely, double after) const noexcept;
   // [m] Way of an arm that approaches at `after` [m/s] and is braked by `a` [m/s^2] from then on.
   [[nodiscard]] double stopping_distance(double after, double a) const noexcept;
 
