@@ -25,7 +25,7 @@ struct HoldProof {
   /// [m] How far off every hard wall it can still be stopped; below zero where that is not proven.
   /// Infinite where no hard wall is near, or something else holds the arm.
   double margin = std::numeric_limits<double>::infinity();
-  PairId pair;  ///< of the gap that leaves least; invalid: none is near
+  PairId pair;                ///< of the gap that leaves least; invalid: none is near
   double missed = 0.0;        ///< [m/s] by which a gap closes faster than it may; the torques that
                               ///< can be sent do not suffice (LeastConstraint::missed)
   std::int32_t left_out = 0;  ///< gaps for which there was no room, so the proof is not of them
