@@ -87,12 +87,19 @@ void gather_damping(std::span<const ActiveContact> contacts, BodyId tool, const 
 Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool, const Jacobian& jacobian,
                     const Vec3& w, const TurningInertia& inertia,
                     network::Mat<network::any_size>& damping) noexcept {
+  if (contacts.empty()) return {};
   constexpr double calm = 0.25;  // K T^2 / I; a sampled spring alone rings from 4 on
   const double step = wall_ticks(inertia.drive_delay) * inertia.period;
+  const double square = inertia.period * inertia.period;
   Wrench F;
+  double most = 0.0;  // [1/(kg m^2)] mobility about any axis
   network::Vec<network::any_size> h(jacobian.cols());
+  for (Eigen::Index i = 0; i < h.size(); ++i) {
+    most += squared_norm(column_of(jacobian, i).angular) / inertia.mass.coeff(i, i);
+  }
   for (const ActiveContact& contact : contacts) {
-    if (!(contact.turning > 0.0) || (contact.a != tool && contact.b != tool)) continue;
+    if (!(contact.turning * square * most > calm)) continue;
+    if (contact.a != tool && contact.b != tool) continue;
     const Vec3 first = perpendicular_to(contact.on_a.force);
     for (const Vec3& axis : {first, Vec3(contact.on_a.force.cross(first))}) {
       double mobility = 0.0;  // [1/(kg m^2)]
@@ -100,7 +107,7 @@ Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool, const 
         h.coeffRef(i) = dot(axis, column_of(jacobian, i).angular);
         mobility += h.coeff(i) * h.coeff(i) / inertia.mass.coeff(i, i);
       }
-      const double ringing = contact.turning * inertia.period * inertia.period * mobility;
+      const double ringing = contact.turning * square * mobility;
       const double c = step * contact.turning * std::clamp(ringing / calm - 1.0, 0.0, 1.0);
       if (!(c > 0.0)) continue;
       F.torque += -c * dot(axis, w) * axis;

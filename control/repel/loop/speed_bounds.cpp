@@ -9,24 +9,35 @@
 
 namespace repel {
 
+SpeedBounds::SpeedBounds(const ArmModel& model, double horizon) : model_(model), horizon_(horizon) {
+  driven_.setZero(static_cast<Eigen::Index>(model.links.size()));
+  friction_ = down_ = up_ = driven_;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const double most = model.links[i].velocity_limit;
+    const double limit = most > 0.0 ? most : std::numeric_limits<double>::infinity();
+    const double effort = effort_bound(model, i) / mass_uncertainty;
+    ends_.push_back({limit, effort, 2.0 * horizon_ * limit, 0.5 * limit * limit / effort});
+  }
+}
+
 void SpeedBounds::observe(std::span<const double> q, const ArmInertia& inertia) noexcept {
   for (Eigen::Index i = 0; i < up_.size(); ++i) {
     const auto joint = static_cast<std::size_t>(i);
     const ArmLink& link = model_.links[joint];
-    const double limit =
-        link.velocity_limit > 0.0 ? link.velocity_limit : std::numeric_limits<double>::infinity();
-    down_.coeffRef(i) = up_.coeffRef(i) = limit;
+    const End& end = ends_[joint];
+    down_.coeffRef(i) = up_.coeffRef(i) = end.limit;
     if (q.empty() || !(link.lower < link.upper)) continue;
-    const double effort = effort_bound(model_, joint);
     const double mass = inertia.matrix().coeff(i, i);
-    down_.coeffRef(i) = std::min(limit, approach(q[joint] - link.lower, effort, mass));
-    up_.coeffRef(i) = std::min(limit, approach(link.upper - q[joint], effort, mass));
+    const double far = end.late + end.braking * mass;  // [rad] where it may be as fast as anywhere
+    const double below = q[joint] - link.lower;
+    const double above = link.upper - q[joint];
+    if (below < far) down_.coeffRef(i) = std::min(end.limit, approach(below, end.effort / mass));
+    if (above < far) up_.coeffRef(i) = std::min(end.limit, approach(above, end.effort / mass));
   }
 }
 
-double SpeedBounds::approach(double distance, double effort, double inertia) const noexcept {
+double SpeedBounds::approach(double distance, double a) const noexcept {
   if (!(distance > 0.0)) return 0.0;
-  const double a = effort / (mass_uncertainty * inertia);
   const double late = 2.0 * horizon_ * a;
   return 2.0 * a * distance / (late + std::sqrt(late * late + 2.0 * a * distance));
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include <repel/base/status.hpp>
 #include <repel/loop/arm_inertia.hpp>
@@ -47,10 +48,7 @@ struct ToolSpeed {
 class SpeedBounds {
  public:
   /// @param horizon [s] from a torque to its effect, with the delay of the drive
-  SpeedBounds(const ArmModel& model, double horizon) : model_(model), horizon_(horizon) {
-    driven_.setZero(static_cast<Eigen::Index>(model.links.size()));
-    friction_ = down_ = up_ = driven_;
-  }
+  SpeedBounds(const ArmModel& model, double horizon);
 
   /// To be called in every tick, before `foresee`: how fast each joint may be. @param q [rad] or
   /// [m] of the joints; empty: the ends of their ranges do not count
@@ -101,9 +99,18 @@ class SpeedBounds {
     if (then > up_.coeff(joint)) return then - up_.coeff(joint);
     return std::min(0.0, then + down_.coeff(joint));
   }
-  // [rad/s] At which a joint of this effort and inertia can be stopped within `distance`.
-  [[nodiscard]] double approach(double distance, double effort, double inertia) const noexcept;
+  // [rad/s] At which a joint can be stopped within `distance` by a deceleration of `a` [rad/s^2].
+  [[nodiscard]] double approach(double distance, double a) const noexcept;
+  // Of the ends of the range of a joint.
+  struct End {
+    double limit = 0.0;    // [rad/s] of the joint
+    double effort = 0.0;   // [N m] over `mass_uncertainty`
+    double late = 0.0;     // [rad] way until a torque acts, at the limit
+    double braking = 0.0;  // [rad/(kg m^2)] way of braking from the limit, for its inertia
+  };
+
   const ArmModel& model_;
+  std::vector<End> ends_;
   double horizon_;                // [s]
   ArmInertia::Vector driven_;     // [rad/s^2] by what is asked for, less what friction takes
   ArmInertia::Vector friction_;   // [rad/s^2] of this, that of friction
