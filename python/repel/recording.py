@@ -250,8 +250,7 @@ def _of_arm(inputs: _Rows, forces: _Rows, prefix: str,
     add_each(of_joints("tau", "_nm", "_n"), forces, "torques")
     if "held_n" in forces[0]:  # older recordings do not have it
         add("held_n", forces, "held_n")
-    if any("hold_margin_m" in row for row in forces):  # it is where a hard wall is near
-        columns[prefix + "hold_margin_m"] = np.array(
+        columns[prefix + "hold_margin_m"] = np.array(  # it is where a hard wall is near
             [row.get("hold_margin_m", np.nan) for row in forces], float)
     return columns
 
