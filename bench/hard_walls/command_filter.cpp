@@ -35,7 +35,7 @@ void filter_command(Way way, std::span<const HardContact> gaps, BodyId tool, Twi
         share = std::min(share, allowed(way, contact.gap) / -rate);
         continue;
       }
-      // The smallest change, where 1 rad counts as 0.1 m.
+      // The least change of the twist, 1 rad/s weighted as 0.1 m/s.
       const double turn = 100.0;
       const double per = squared_norm(on_tool.force) + turn * squared_norm(on_tool.torque);
       V.linear += missing / per * on_tool.force;

@@ -11,7 +11,7 @@
 
 namespace repel::hard_walls {
 
-/// A second cell at the same poses, with hard walls, that commands nothing.
+/// An observer: a cell with hard walls at the poses of another one, without influence on it.
 class Gaps {
  public:
   /// @param with_links also the gaps of links, and not of tools alone

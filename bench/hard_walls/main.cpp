@@ -101,16 +101,19 @@ bench::Result pushes(const bench::Options& options) {
     }
   }
   result.notes = {
-      "A row fails where a hard wall is entered by more than 0.1 mm, by the proven bound of the "
-      "distance at each evaluation or by libccd, which looks 200 to 500 times a second.",
+      "A row fails where a hard wall is entered by more than 0.1 mm. Depths are the proven bound "
+      "of "
+      "the distance, at each evaluation, and that of libccd, at 200 to 500 Hz.",
       about_libccd,
       "The hand moves at up to 0.6 m/s and 1.8 rad/s along each axis, another way every third of a "
       "second; its coupling gives up to 10 kN. Arms are simulated by Bullet.",
-      "With weak springs, their forces are 2 % of those of the scene. What can come and go, or is "
-      "only seen by a camera, is left out. The arm of `admittance` takes positions and answers 40 "
-      "ms late, which is too late at 4 kHz.",
-      "Ticks told as lost are those in which the arm, braked with all it has, would by its model "
-      "have come to rest behind the wall."};
+      "Weak springs have 2 % of the force of the scene. Loose parts and what only a camera sees "
+      "are "
+      "left out. The arm of `admittance` takes positions with a response of 40 ms; 4 kHz would be "
+      "more delay than a cell allows.",
+      "Told as lost are the ticks with the status `hold_lost`: the proof fails as the arm passes "
+      "the "
+      "place where it is held."};
   return result;
 }
 
@@ -164,14 +167,12 @@ bench::Result ways(const bench::Options& options) {
       "joints: a velocity damper of 0.5 m/s at 50 mm (Faverjon and Tournassoud 1987; Kanoun 2011), "
       "and operational space control barrier functions of second order with 10 / s twice (OSCBF; "
       "Morton and Pavone 2025). Each keeps 2 mm.",
-      "Assumes: those of the arm, that a torque acts at once and is held for a period, that it may "
-      "change at any rate up to its limit, and that masses and viscous friction are those of the "
-      "model; dry friction is left out. They look at the same points of the faces as hard walls "
-      "do, and are solved exactly. What is asked for is what the cell with springs sends, which "
-      "does not know of them: it is told that joints may be held and pushed. So it takes none for "
-      "frozen and does not brake motion that no torque explains, as it does for the others, "
-      "which move less for that. The damper assumes besides that gaps close at even rates within a "
-      "period.",
+      "Assumptions of the two filters of torques: no delay, no slew rate, masses and viscous "
+      "friction of the model, no dry friction. The damper also takes the rate of a gap as constant "
+      "within a period. Both see the contact points of hard walls and are solved exactly.",
+      "Both filter the torques of the cell with springs. That cell has the option `touches`, so it "
+      "does not fault joints for being held or moved by the filter. The others have it not: faults "
+      "stop them at times, and `tools moved` does not compare.",
       "The time is that of the filter with the points of its gaps, without that of the distances."};
   return result;
 }

@@ -30,12 +30,21 @@ struct Corner {
   BodyId tool;
 };
 
+/// The contacts of a tool, collected once.
+struct Seen {
+  Seen(World& world, BodyId tool, std::size_t capacity = 16)
+      : coprocessor(world, {}), contacts(world, capacity, std::array{tool}) {
+    (void)coprocessor.exchange();
+    contacts.collect(coprocessor);
+  }
+  Coprocessor coprocessor;
+  ActiveContacts contacts;
+};
+
 TEST(ActiveContacts, HaveDirectionLeverAndDampingOfThePairsThatPush) {
   Corner corner;
-  Coprocessor coprocessor(corner.world, {});
-  (void)coprocessor.exchange();
-  ActiveContacts contacts(corner.world, 16, std::array{corner.tool});
-  contacts.collect(coprocessor);
+  const Seen seen(corner.world, corner.tool);
+  const ActiveContacts& contacts = seen.contacts;
   ASSERT_EQ(contacts.all().size(), 2U);
   Vec3 sum{0, 0, 0};
   for (const ActiveContact& contact : contacts.all()) {
@@ -51,22 +60,17 @@ TEST(ActiveContacts, HaveDirectionLeverAndDampingOfThePairsThatPush) {
 
 TEST(ActiveContacts, ThoseBeyondTheCapacityAndOfBodiesThatNoArmMovesAreLeftOut) {
   Corner corner;
-  Coprocessor coprocessor(corner.world, {});
-  (void)coprocessor.exchange();
-  ActiveContacts one(corner.world, 1, std::array{corner.tool});
-  one.collect(coprocessor);
-  EXPECT_EQ(one.all().size(), 1U);
+  const Seen one(corner.world, corner.tool, 1);
+  EXPECT_EQ(one.contacts.all().size(), 1U);
   ActiveContacts none(corner.world, 16, {});
-  none.collect(coprocessor);
+  none.collect(one.coprocessor);
   EXPECT_TRUE(none.all().empty());
 }
 
 TEST(ActiveContacts, BecomeAMatrixOfTheJoints) {
   Corner corner;
-  Coprocessor coprocessor(corner.world, {});
-  (void)coprocessor.exchange();
-  ActiveContacts contacts(corner.world, 16, std::array{corner.tool});
-  contacts.collect(coprocessor);
+  const Seen seen(corner.world, corner.tool);
+  const ActiveContacts& contacts = seen.contacts;
   Jacobian rails = Jacobian::Zero(6, 3);
   rails.topRows<3>().setIdentity();
   network::Mat<network::any_size> damping;
@@ -97,10 +101,8 @@ struct Plate {
 
 TEST(ActiveContacts, OnAPatchALightToolIsDampedAgainstTurningAcrossItAlone) {
   Plate plate;
-  Coprocessor coprocessor(plate.world, {});
-  (void)coprocessor.exchange();
-  ActiveContacts contacts(plate.world, 16, std::array{plate.tool});
-  contacts.collect(coprocessor);
+  const Seen seen(plate.world, plate.tool);
+  const ActiveContacts& contacts = seen.contacts;
   ASSERT_EQ(contacts.all().size(), 1U);
   EXPECT_GT(contacts.all()[0].turning, 100.0);
   Jacobian ball = Jacobian::Zero(6, 3);  // a wrist of three joints

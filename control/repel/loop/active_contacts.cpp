@@ -85,17 +85,17 @@ void gather_damping(std::span<const ActiveContact> contacts, BodyId tool, const 
 }
 
 Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool, const Jacobian& jacobian,
-                    const Vec3& w, const TurningInertia& inertia,
+                    const Vec3& w, const TurnedArm& arm,
                     network::Mat<network::any_size>& damping) noexcept {
   if (contacts.empty()) return {};
   constexpr double calm = 0.25;  // K T^2 / I; a sampled spring alone rings from 4 on
-  const double step = wall_ticks(inertia.drive_delay) * inertia.period;
-  const double square = inertia.period * inertia.period;
+  const double step = wall_ticks(arm.drive_delay) * arm.period;
+  const double square = arm.period * arm.period;
   Wrench F;
   double most = 0.0;  // [1/(kg m^2)] mobility about any axis
   network::Vec<network::any_size> h(jacobian.cols());
   for (Eigen::Index i = 0; i < h.size(); ++i) {
-    most += squared_norm(column_of(jacobian, i).angular) / inertia.mass.coeff(i, i);
+    most += squared_norm(column_of(jacobian, i).angular) / arm.mass.coeff(i, i);
   }
   for (const ActiveContact& contact : contacts) {
     if (!(contact.turning * square * most > calm)) continue;
@@ -105,7 +105,7 @@ Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool, const 
       double mobility = 0.0;  // [1/(kg m^2)]
       for (Eigen::Index i = 0; i < h.size(); ++i) {
         h.coeffRef(i) = dot(axis, column_of(jacobian, i).angular);
-        mobility += h.coeff(i) * h.coeff(i) / inertia.mass.coeff(i, i);
+        mobility += h.coeff(i) * h.coeff(i) / arm.mass.coeff(i, i);
       }
       const double ringing = contact.turning * square * mobility;
       const double c = step * contact.turning * std::clamp(ringing / calm - 1.0, 0.0, 1.0);

@@ -60,8 +60,8 @@ class ActiveContacts {
                                       const Jacobian& jacobian, const ArmBodies& links,
                                       network::Mat<network::any_size>& damping) noexcept;
 
-/// When a force acts, and on what.
-struct TurningInertia {
+/// The arm behind a contact patch.
+struct TurnedArm {
   const ArmInertia::Matrix& mass;  ///< M of the arm
   double period = 0.0;             ///< T [s]
   double drive_delay = 0.0;        ///< [ticks]
@@ -75,8 +75,7 @@ struct TurningInertia {
 /// it is added
 /// @return [N m] the torque on the tool; it only takes energy
 [[nodiscard]] Wrench damp_turning(std::span<const ActiveContact> contacts, BodyId tool,
-                                  const Jacobian& jacobian, const Vec3& w,
-                                  const TurningInertia& inertia,
+                                  const Jacobian& jacobian, const Vec3& w, const TurnedArm& arm,
                                   network::Mat<network::any_size>& damping) noexcept;
 
 }  // namespace repel

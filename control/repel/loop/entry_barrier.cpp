@@ -9,6 +9,7 @@
 #include <span>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/loop/speed_bounds.hpp>
 #include <repel/network/machinery/prediction.hpp>
 
 namespace repel {
@@ -146,7 +147,7 @@ EntryBarrier::Stopping EntryBarrier::stopping(const LeastConstraint::Row& row,
 double EntryBarrier::allowed(double d, double a) const noexcept {
   const double t = reaction_ + 0.5 * step_;
   if (d < 0.0) return totals_.energy > 0.0 ? std::max(d / t, -options_.recovery) : 0.0;
-  return 2.0 * a * d / (a * t + std::sqrt(a * t * a * t + 2.0 * a * d) + 1e-300);
+  return braked_within(d, a, t);
 }
 
 void EntryBarrier::count(const LeastConstraint& problem, std::span<const double> efforts) noexcept {

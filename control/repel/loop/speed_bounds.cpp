@@ -9,6 +9,13 @@
 
 namespace repel {
 
+double braked_within(double distance, double deceleration, double reaction) noexcept {
+  if (!(distance > 0.0)) return 0.0;
+  const double late = deceleration * reaction;
+  const double square = 2.0 * deceleration * distance;
+  return square / (late + std::sqrt(late * late + square) + 1e-300);
+}
+
 SpeedBounds::SpeedBounds(const ArmModel& model, double horizon) : model_(model), horizon_(horizon) {
   driven_.setZero(static_cast<Eigen::Index>(model.links.size()));
   friction_ = down_ = up_ = driven_;
@@ -31,15 +38,12 @@ void SpeedBounds::observe(std::span<const double> q, const ArmInertia& inertia) 
     const double far = end.late + end.braking * mass;  // [rad] where it may be as fast as anywhere
     const double below = q[joint] - link.lower;
     const double above = link.upper - q[joint];
-    if (below < far) down_.coeffRef(i) = std::min(end.limit, approach(below, end.effort / mass));
-    if (above < far) up_.coeffRef(i) = std::min(end.limit, approach(above, end.effort / mass));
+    const auto within = [&](double distance) {
+      return std::min(end.limit, braked_within(distance, end.effort / mass, 2.0 * horizon_));
+    };
+    if (below < far) down_.coeffRef(i) = within(below);
+    if (above < far) up_.coeffRef(i) = within(above);
   }
-}
-
-double SpeedBounds::approach(double distance, double a) const noexcept {
-  if (!(distance > 0.0)) return 0.0;
-  const double late = 2.0 * horizon_ * a;
-  return 2.0 * a * distance / (late + std::sqrt(late * late + 2.0 * a * distance));
 }
 
 bool SpeedBounds::foresee(const network::dense::Factored& mass, std::span<const double> asked,

@@ -26,6 +26,11 @@ struct ToolSpeed {
   bool is_carried = false;  ///< walls that move themselves push it, as fast as they are
 };
 
+/// [m/s] Greatest speed s of approach that can be braked to rest within `distance` [m]:
+/// distance = reaction s + s^2 / (2 deceleration). 0 where there is no distance.
+/// @param deceleration [m/s^2] @param reaction [s] until it acts
+[[nodiscard]] double braked_within(double distance, double deceleration, double reaction) noexcept;
+
 /// Bounds the speed s of a joint or the tool, of those that a torque would take beyond its limit
 /// within the horizon h:
 ///
@@ -99,8 +104,6 @@ class SpeedBounds {
     if (then > up_.coeff(joint)) return then - up_.coeff(joint);
     return std::min(0.0, then + down_.coeff(joint));
   }
-  // [rad/s] At which a joint can be stopped within `distance` by a deceleration of `a` [rad/s^2].
-  [[nodiscard]] double approach(double distance, double a) const noexcept;
   // Of the ends of the range of a joint.
   struct End {
     double limit = 0.0;    // [rad/s] of the joint
