@@ -101,6 +101,29 @@ TEST(DriveWatch, ADriveThatIsLaterThanToldIsFound) {
   }
 }
 
+// A wrist of 1e-4 kg m^2 on a forearm that turned: what the turning added to it was taken for the
+// work of a drive that runs the wrong way, and sound readings were not believed.
+TEST(DriveWatch, WhatTurningAddsToALightJointIsNoFault) {
+  constexpr double inertia = 1e-4;
+  ArmModel model = test::slider_model(1000.0);
+  for (ArmLink& link : model.links) link.viscous_friction = 0.0;
+  DriveWatch watch(model, 0.0);
+  ArmInertia::Matrix M = 5.0 * ArmInertia::Matrix::Identity(3, 3);
+  M(2, 2) = M(1, 2) = M(2, 1) = inertia;
+  const std::vector<double> weight(3, 0.0);
+  std::vector<double> last(3, 0.0);
+  for (int tick = 0; tick < 4000; ++tick) {
+    const double t = tick * T;
+    const std::vector<double> v{0.0, 4.0, 4.0 + 0.2 * std::sin(40.0 * t)};
+    watch.step(last, v, M, T, {});
+    ASSERT_FALSE(watch.strays()) << "tick " << tick;
+    last = v;
+    DriveWatch::Vector net = DriveWatch::Vector::Zero(3);
+    net(2) = -inertia * 8.0 * std::cos(40.0 * t);  // against the acceleration
+    watch.note_sent(net, weight);
+  }
+}
+
 TEST(DriveWatch, APersonWhoPushesIsNoFault) {
   for (const double push : {-200.0, 30.0, 200.0}) {
     EXPECT_EQ(found_after({.push = push}), -1) << push;

@@ -31,12 +31,18 @@ void DriveWatch::step(const std::vector<double>& last, const std::vector<double>
   const double kept = 1.0 - std::min(1.0, elapsed / memory);
   advance(kept, elapsed);
   const double* row = M.data();  // M is symmetric
+  double fastest = 0.0;          // [rad/s]
+  for (const double rate : v) fastest = std::max(fastest, std::abs(rate));
   strays_ = false;
   for (std::size_t i = 0; i < joints_.size(); ++i, row += v.size()) {
     Joint& joint = joints_[i];
     const ArmLink& link = model_.links[i];
     double change = 0.0;
-    for (std::size_t k = 0; k < v.size(); ++k) change += row[k] * (v[k] - last[k]);
+    double turning = 0.0;  // [N m] at most about so much is added by velocities alone
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      change += row[k] * (v[k] - last[k]);
+      turning += std::abs(row[k] * v[k]) * fastest;
+    }
     const double mean = 0.5 * (v[i] + last[i]);
     const double clear = 0.1 * options.rate_noise;
     const double sign = std::clamp(mean / clear, -1.0, 1.0);
@@ -48,7 +54,7 @@ void DriveWatch::step(const std::vector<double>& last, const std::vector<double>
       const double added = elapsed * (others - joint.steady);
       joint.p = kept * joint.p + added;
       const double rubbed = link.coulomb_friction + 0.5 * link.viscous_friction * std::abs(mean);
-      joint.noise = 0.1 * row[i] * options.rate_noise + memory * rubbed;
+      joint.noise = 0.1 * row[i] * options.rate_noise + memory * (rubbed + 0.5 * turning);
       compare(i, std::min(1.0, elapsed / window), options);
       follow(joint, added, elapsed * sent, w(0.0, i), elapsed, options);
     } else {
