@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "loop/slider.hpp"
@@ -60,8 +61,11 @@ TEST(BarrierRows, LeaveOutWhatIsOfAnotherArm) {
 
 TEST(BarrierRows, HaveTheEndsOfTheJointsAndTheirGreatestSpeeds) {
   Rails rails;
-  const auto rows = rails.gather({}, {9.5, 0.0, -9.7}, {0.0, -0.6, 0.0});
-  ASSERT_EQ(rows.size(), 3U);
+  const std::array<double, 3> q{9.5, 0.0, -9.7};
+  EXPECT_TRUE(rails.gather({}, q, {0.0, -0.6, 0.0}).empty()) << "no wall is near";
+  const auto all = rails.gather(std::array{against_x(0.01, 0.0)}, q, {0.0, -0.6, 0.0});
+  ASSERT_EQ(all.size(), 4U);
+  const auto rows = std::span(all).subspan(1);
   EXPECT_NEAR(rows[0].gap, 0.5, 2e-3);
   EXPECT_EQ(rows[0].h.coeff(0), -1.0);
   EXPECT_NEAR(rows[1].top_speed, 0.65, 1e-12);

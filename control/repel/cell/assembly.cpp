@@ -49,7 +49,7 @@ void CellAssembly::sense(std::span<const ArmReadings> readings,
   world_.carry();
   forces_ = &coprocessor_->exchange();
   contacts_->collect(*coprocessor_);
-  hard_->collect(*coprocessor_, soon());
+  hard_->collect(*coprocessor_, reaction());
 }
 
 std::span<const TickRecord* const> CellAssembly::act(
@@ -87,9 +87,9 @@ int CellAssembly::changes_per_tick() const noexcept {
   return static_cast<int>(std::clamp<std::int64_t>(period_.count() / 400'000, 1, 64));
 }
 
-double CellAssembly::soon() const noexcept {
-  double longest = 0.1;
-  for (const auto& each : controls_) longest = std::max(longest, 0.1 + each.barrier().reaction());
+double CellAssembly::reaction() const noexcept {
+  double longest = 0.0;
+  for (const auto& each : controls_) longest = std::max(longest, each.barrier().reaction());
   return longest;
 }
 

@@ -62,7 +62,7 @@ class CellAssembly {
   [[nodiscard]] int changes_per_tick() const noexcept;
 
   /// [s] In which a gap that closes must be known to the barrier before hard walls.
-  [[nodiscard]] double soon() const noexcept;
+  [[nodiscard]] double reaction() const noexcept;
 
   void lay_out();
 

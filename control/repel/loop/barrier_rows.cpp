@@ -21,7 +21,7 @@ void BarrierRows::gather(std::span<const HardContact> contacts, BodyId tool,
   side_a_ = side_b_ = {};
   soon_ = soon;
   for (const HardContact& contact : contacts) add(contact, tool, jacobian, links, v, untold);
-  for (std::size_t joint = 0; joint < q.size(); ++joint) {
+  for (std::size_t joint = 0; joint < q.size() && used_ > 0; ++joint) {
     add_joint(joint, q[joint], v[joint], untold[joint]);
   }
 }

@@ -27,10 +27,10 @@ HardContacts::HardContacts(const World& world, std::span<const BodyId> moved)
   contacts_.resize(std::min<std::size_t>(static_cast<std::size_t>(hard), most_pairs) * (1 + ring));
 }
 
-void HardContacts::collect(const Coprocessor& coprocessor, double soon) noexcept {
+void HardContacts::collect(const Coprocessor& coprocessor, double reaction) noexcept {
   count_ = 0;
   left_out_ = 0;
-  soon_ = soon;
+  reaction_ = reaction;
   if (!any()) return;
   coprocessor.for_each_near([&](const NearPair& near) {
     const Pair& pair = world_->pair(near.pair);
@@ -76,8 +76,10 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
   const double turns = norm(A.V_WB.angular - B.V_WB.angular);
   const double extent = std::min(part_a.shape.reach(), part_b.shape.reach());
   const double fastest = norm(velocity(A, p_WA) - velocity(B, p_WA)) + 2.0 * turns * extent;
-  if (gap > soon_ * fastest + pair.law.range) return;
-  const double tilt = std::clamp(least_tilt + soon_ * turns, least_tilt, most_tilt);
+  const double soon = reaction_ + braking;
+  near_ = std::min(pair.law.range, acceleration * reaction_ * reaction_);
+  if (gap > soon * fastest + near_) return;
+  const double tilt = std::clamp(least_tilt + soon * turns, least_tilt, most_tilt);
   const Vec3 middle = 0.5 * (p_WA + p_WB);
   push_back(contact, n, middle, gap);
   std::array<Vec3, ring> corners;
@@ -104,16 +106,18 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
 
 void HardContacts::push_back(HardContact contact, const Vec3& n, const Vec3& p_W,
                              double gap) noexcept {
-  if (count_ == contacts_.size()) {
-    ++left_out_;
-    return;
-  }
   const BodyState& A = state(contact.a);
   const BodyState& B = state(contact.b);
   contact.on_a = wrench_of_force(n, p_W - origin(A.X_WB));
   contact.on_b = wrench_of_force(-n, p_W - origin(B.X_WB));
   contact.gap = gap;
   contact.rate = power(contact.on_a, A.V_WB) + power(contact.on_b, B.V_WB);
+  const double closes = -std::min(contact.rate, 0.0);
+  if (contact.at > 0 && gap > near_ + (reaction_ + braking) * closes) return;
+  if (count_ == contacts_.size()) {
+    ++left_out_;
+    return;
+  }
   contact.bending = bending_of(n, p_W, A, B);
   contacts_[count_++] = contact;
 }

@@ -63,8 +63,9 @@ class HardContacts {
 
   /// Collects those of the last exchange. Cost: a look at each near pair; for a hard one that
   /// could be entered soon 18 evaluations of both support maps, about 1 us.
-  /// @param soon [s] a pair that cannot be entered within this time has no points
-  void collect(const Coprocessor& coprocessor, double soon) noexcept;
+  /// @param reaction [s] until a torque acts: what cannot be entered until it has braked an arm,
+  /// from the speed that it has and may gain by then, has no points
+  void collect(const Coprocessor& coprocessor, double reaction) noexcept;
 
   /// The contacts of the last `collect`.
   [[nodiscard]] std::span<const HardContact> all() const noexcept;
@@ -73,9 +74,11 @@ class HardContacts {
 
  private:
   static constexpr std::size_t most_pairs = 512;
-  static constexpr double least_tilt = 0.02;  // [rad]
-  static constexpr double most_tilt = 0.3;    // [rad]
-  static constexpr double same = 1e-4;        // [m] points as near as this are one
+  static constexpr double braking = 0.1;        // [s] from the speed of now to rest
+  static constexpr double acceleration = 50.0;  // [m/s^2] of what begins to move
+  static constexpr double least_tilt = 0.02;    // [rad]
+  static constexpr double most_tilt = 0.3;      // [rad]
+  static constexpr double same = 1e-4;          // [m] points as near as this are one
 
   /// One shape at its pose, and how far it reaches.
   struct Side {
@@ -88,6 +91,7 @@ class HardContacts {
 
   void add(PairId id, const Pair& pair, const Vec3& n) noexcept;
 
+  // Keeps the nearest point of a pair, and others where they may close soon.
   void push_back(HardContact contact, const Vec3& n, const Vec3& p_W, double gap) noexcept;
 
   // [m/s^2] The centripetal part, and the part of the turning normal.
@@ -105,7 +109,8 @@ class HardContacts {
   std::vector<HardContact> contacts_;
   std::size_t count_ = 0;
   int left_out_ = 0;
-  double soon_ = 0.0;
+  double reaction_ = 0.0;  // [s]
+  double near_ = 0.0;      // [m] gaps of this pair that may close suddenly
 };
 
 }  // namespace repel

@@ -74,10 +74,9 @@ class LaneEvaluator {
     const PairTracking& tracking = memory().tracking(slot);
     const bool stale = answer.tick != motion.tick;
     const bool passable = singles_->pair(slot).law.passable;
-    const std::int64_t age = motion.tick - answer.waits_since;
     return {.gradient = passable ? answer.force * answer.gradient : answer.gradient,
             .bound = stale ? singles_->lower_bound(slot, motion) : answer.proven(),
-            .share = stale ? share_of_stale(age, singles_->max_age()) : 1.0,
+            .share = stale ? share_of_stale(answer.age(motion.tick), singles_->max_age()) : 1.0,
             .pair = tracking.pair,
             .a = tracking.body_a,
             .b = tracking.body_b,

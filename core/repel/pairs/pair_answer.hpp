@@ -30,6 +30,7 @@ struct alignas(64) PairAnswer {
   Vec3 p_BA_W{0, 0, 0};       ///< [m] origin of body A from that of body B at the evaluation
   double turn = 0.0;          ///< [m] both bodies' BodyState::turn at the evaluation
   bool in_range = false;      ///< of its law, at the evaluation
+  bool is_watched = false;    ///< out of its range, and within ForceLaw::watched
   bool is_stale = false;      ///< a force was computed from it at a later tick
   double slope = 1.0;         ///< of the distance along the extraction; passable pairs only
   Wrench gradient;            ///< of the patch's distance when A moves, about the origin of body A
@@ -49,6 +50,11 @@ struct alignas(64) PairAnswer {
   /// used.
   [[nodiscard]] double proven() const noexcept {
     return (cut_short() ? last.lower : proven_distance(last.distance, last.lower)) - nearer;
+  }
+
+  /// [ticks] How long the pair has waited for an evaluation; a watched one needs none.
+  [[nodiscard]] std::int64_t age(std::int64_t now) const noexcept {
+    return is_watched ? 0 : now - waits_since;
   }
 
   /// A plane separates the shapes, with the extraction direction as its normal.

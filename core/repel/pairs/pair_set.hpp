@@ -318,7 +318,7 @@ inline void PairSet::find_due(const Motion& motion) noexcept {
 }
 
 inline bool PairSet::is_near(int slot, const Motion& motion, PartPoses& poses) noexcept {
-  const PairAnswer& answer = memory().answer(slot);
+  PairAnswer& answer = memory().answer(slot);
   if (answer.in_range) return true;
   const double reach = singles_.reach(slot);
   double clearance =
@@ -327,8 +327,11 @@ inline bool PairSet::is_near(int slot, const Motion& motion, PartPoses& poses) n
     clearance = singles_.lower_bound_by_shapes(slot, motion, poses) - reach;
   }
   singles_.set_clearance(slot, motion, clearance);
-  if (clearance > 0.0) return false;
-  singles_.clear_history(slot);
+  if (clearance > 0.0) {
+    answer.is_watched = false;
+    return false;
+  }
+  if (!answer.is_watched) singles_.clear_history(slot);
   return true;
 }
 

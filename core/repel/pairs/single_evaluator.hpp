@@ -161,17 +161,14 @@ class SingleEvaluator {
     push_at(lower_bound(slot, motion), share_of_stale(age, max_age_), slot, motion);
   }
 
-  /// The pair for a display; none if at the tick of `motion` it was neither evaluated nor pushed.
+  /// The pair for a display; none if at the tick of `motion` it was neither evaluated, nor pushed,
+  /// nor watched.
   [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
     const PairAnswer& answer = memory_.answer(slot);
     const bool stale = answer.tick != motion.tick;
-    if (stale && answer.pushed_at != now_) return std::nullopt;
-    return NearPair{memory_.tracking(slot).pair,
-                    answer.last,
-                    answer.force,
-                    stale,
-                    stale ? motion.tick - answer.waits_since : 0,
-                    answer.nearer != 0.0};
+    if (stale && answer.pushed_at != now_ && !answer.is_watched) return std::nullopt;
+    return NearPair{memory_.tracking(slot).pair,         answer.last,         answer.force, stale,
+                    stale ? answer.age(motion.tick) : 0, answer.nearer != 0.0};
   }
 
   /// Call before a stale pair is evaluated: notes the bound that its force would come from.
@@ -190,6 +187,9 @@ class SingleEvaluator {
  private:
   /// [m] Exceeds the difference between any two answers to the same query.
   static constexpr double rounding = 1e-9;
+  /// A watched pair is evaluated again when its bodies have moved by this share of its distance to
+  /// where it is near: its direction hardly turns before.
+  static constexpr double share_of_watch = 0.2;
 
   [[nodiscard]] PosedShape posed(PartId part, const Motion& motion,
                                  PartPoses& poses) const noexcept {
@@ -221,7 +221,10 @@ class SingleEvaluator {
     answer.tick = motion.tick;
     answer.evaluated_at = now_;
     answer.in_range = answer.last.lower < p.law.range;
-    set_clearance(slot, motion, answer.last.lower - reach(slot));
+    const double out_of_reach = answer.last.lower - reach(slot);
+    const double out_of_range = out_of_reach + p.law.watched;
+    answer.is_watched = out_of_reach < 0.0 && out_of_range > 0.0;
+    set_clearance(slot, motion, answer.is_watched ? share_of_watch * out_of_range : out_of_reach);
     find_gradient(slot, motion, poses);
     const PairId id = memory_.tracking(slot).pair;
     const double deepest = std::max(0.0, -answer.last.lower);
