@@ -8,8 +8,9 @@
 #include <cstdint>
 #include <cstdio>
 
+#include <repel/host/times.hpp>
+
 #include "distance/markdown.hpp"
-#include "times.hpp"
 
 namespace repel::bench {
 

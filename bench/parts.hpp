@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "command_line.hpp"
+#include <repel/host/command_line.hpp>
 
 namespace repel::bench {
 

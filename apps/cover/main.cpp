@@ -15,10 +15,10 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/cover/cover.hpp>
+#include <repel/host/command_line.hpp>
 #include <repel/robots/read_mesh.hpp>
 #include <repel/scene/part_list.hpp>
 
-#include "command_line.hpp"
 #include "octree.hpp"
 #include "report.hpp"
 

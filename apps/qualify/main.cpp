@@ -3,11 +3,10 @@
 /// Determines whether this machine can hold a tick rate.
 
 #include <repel/base/setup_error.hpp>
-
-#include "advice.hpp"
-#include "command_line.hpp"
-#include "times.hpp"
-#include "trial.hpp"
+#include <repel/host/command_line.hpp>
+#include <repel/host/times.hpp>
+#include <repel/host/trial/advice.hpp>
+#include <repel/host/trial/trial.hpp>
 
 namespace {
 

@@ -13,11 +13,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/host/command_line.hpp>
+#include <repel/host/times.hpp>
 #include <repel/robots/urdf.hpp>
 #include <repel/world/kinematics.hpp>
-
-#include "command_line.hpp"
-#include "times.hpp"
 
 #ifdef REPEL_ROBOT_INFO_COVERS
 #include <repel/scene/part_list.hpp>

@@ -12,24 +12,23 @@
 #include <random>
 #include <sstream>
 
+#include <repel/host/command_line.hpp>
+#include <repel/host/figure.hpp>
+#include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/engine/session.hpp>
+#include <repel/runs/operator/device.hpp>
+#include <repel/runs/options/budget.hpp>
+#include <repel/runs/options/link_choice.hpp>
+#include <repel/runs/options/listening.hpp>
+#include <repel/runs/options/run_options.hpp>
+#include <repel/runs/options/session_options.hpp>
+#include <repel/runs/records/recording.hpp>
+#include <repel/runs/report/html_report.hpp>
+#include <repel/runs/report/report.hpp>
+#include <repel/runs/report/results.hpp>
+#include <repel/runs/station/station.hpp>
+#include <repel/runs/wire/station_program.hpp>
 #include <repel/simulated/changed_arm.hpp>
-
-#include "arm_backend.hpp"
-#include "budget.hpp"
-#include "command_line.hpp"
-#include "device.hpp"
-#include "figure.hpp"
-#include "html_report.hpp"
-#include "link_choice.hpp"
-#include "listening.hpp"
-#include "recording.hpp"
-#include "report.hpp"
-#include "results.hpp"
-#include "run_options.hpp"
-#include "session.hpp"
-#include "session_options.hpp"
-#include "station.hpp"
-#include "station_program.hpp"
 
 namespace {
 
@@ -45,8 +44,8 @@ struct Arguments {
   double rate_hz = 0.0;       ///< 0: the scene's own
   int threads = -1;           ///< -1: the scene's own
   std::string coprocessor;    ///< empty: the scene's own
-  teleop::RunOptions run;
-  teleop::SessionOptions session;
+  runs::RunOptions run;
+  runs::SessionOptions session;
   std::string replay;
   std::string report;
   std::string html;
@@ -152,9 +151,9 @@ void describe_sides(CLI::App& app, Arguments& a) {
                  "What joins them: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), udp or "
                  "udp:ADDRESS:PORT (where the site listens). Without more it is on this machine. "
                  "Who reaches it can drive the robot: docs/two_machines.md")
-      ->default_str(teleop::default_link())
+      ->default_str(runs::default_link())
       ->type_name("LINK")
-      ->check(CLI::Validator(teleop::link_complaint, "LINK"));
+      ->check(CLI::Validator(runs::link_complaint, "LINK"));
 }
 
 /// Text below the options of --help.
@@ -179,7 +178,7 @@ std::string footer() {
 template <class Wanted>
 std::vector<std::string> backend_names(const Wanted& wanted) {
   std::vector<std::string> names;
-  for (const teleop::ArmBackend& backend : teleop::arm_backends()) {
+  for (const runs::ArmBackend& backend : runs::arm_backends()) {
     if (wanted(backend)) names.emplace_back(backend.name);
   }
   return names;
@@ -187,7 +186,7 @@ std::vector<std::string> backend_names(const Wanted& wanted) {
 
 /// @throws CLI::ValidationError if an option asks the back end for what it does not simulate
 void require_able(const Arguments& a) {
-  const teleop::ArmBackend& chosen = teleop::arm_backend(a.run.backend);
+  const runs::ArmBackend& chosen = runs::arm_backend(a.run.backend);
   const auto require = [&](const char* option, const char* trouble, auto&& able) {
     if (able(chosen)) return;
     throw CLI::ValidationError(option, "backend " + a.run.backend + " " + trouble + "; allowed: " +
@@ -279,7 +278,7 @@ void describe(CLI::App& app, Arguments& a) {
       if (app.count(option) == 0 || a.session.link.side || a.apart.value_or(false)) continue;
       throw CLI::RequiresError(option, "--site or --station");
     }
-    const std::string insecure = teleop::settle_secret(a.session);
+    const std::string insecure = runs::settle_secret(a.session);
     if (!insecure.empty()) throw CLI::ValidationError(insecure);
     require_able(a);
   });
@@ -294,7 +293,7 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--budget", a.run.budget,
                  "In place of the scene's budget: support pairs per tick, none, or i860, the "
                  "processor of 1993, on which 4 by 8 parts all but fit at 400 Hz")
-      ->check(CLI::Validator(teleop::budget_complaint, "UNITS, i860 or none"));
+      ->check(CLI::Validator(runs::budget_complaint, "UNITS, i860 or none"));
   describe_measure(app, a);
   app.add_flag("--every-pair", a.run.every_pair,
                "Ask also the pairs that cannot be within range: to compare with");
@@ -310,13 +309,13 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--listen", a.session.listen, "ADDRESS:PORT of the live view; port 0: any")
       ->capture_default_str()
       ->needs(view)
-      ->check(CLI::Validator(teleop::listen_complaint, "ADDRESS:PORT"));
+      ->check(CLI::Validator(runs::listen_complaint, "ADDRESS:PORT"));
   describe_pages(app, a, view);
   app.add_option("--device", a.session.device,
                  "In place of the script: the master that drives, spacenav (a six-axis mouse, "
                  "through spacenavd), evdev:PATH (a motorised lever) or haply[:URL] (an Inverse3, "
                  "through its service). Until it is stopped, unless --seconds is given")
-      ->check(CLI::Validator(teleop::device_complaint, "spacenav, evdev:PATH or haply[:URL]"));
+      ->check(CLI::Validator(runs::device_complaint, "spacenav, evdev:PATH or haply[:URL]"));
   app.get_option("--page-drives")->needs("--device");
   describe_sides(app, a);
   app.add_option("--replay", a.replay,
@@ -331,14 +330,14 @@ void describe(CLI::App& app, Arguments& a) {
 /// The scene or recording to run, and how to run it.
 struct Work {
   scene::Scene scene;
-  teleop::RunOptions options;
-  std::optional<teleop::Recording> recording;
+  runs::RunOptions options;
+  std::optional<runs::Recording> recording;
 };
 
 Work work_of(const Arguments& arguments) {
   Work work;
   if (!arguments.replay.empty()) {
-    work.recording = teleop::load_recording(arguments.replay, find_scene);
+    work.recording = runs::load_recording(arguments.replay, find_scene);
     work.scene = work.recording->scene;
     work.options = work.recording->options;
   } else {
@@ -367,7 +366,7 @@ class StatusLine {
     if (arguments.session.view || !arguments.session.device.empty()) after_ = "by hand, or at rest";
   }
 
-  void show(const teleop::Progress& p) {
+  void show(const runs::Progress& p) {
     if (is_quiet_ || (!is_terminal_ && p.time < next_)) return;
     next_ = p.time + 5.0;
     const network::Script& script = work_.scene.script;
@@ -432,16 +431,16 @@ bool wrote(host::Output& file, const Result& result, Write&& write) {
 /// The operator's side alone.
 int run_station(const Arguments& arguments, const Work& work) {
   host::Output report(arguments.report);
-  teleop::SessionOptions session = arguments.session;
+  runs::SessionOptions session = arguments.session;
   StatusLine status(arguments, work);
-  const teleop::StationResult result =
-      teleop::run_station(work.scene, work.options, session, host::interruption(),
-                          [&](const teleop::Progress& p) { status.show(p); });
+  const runs::StationResult result =
+      runs::run_station(work.scene, work.options, session, host::interruption(),
+                        [&](const runs::Progress& p) { status.show(p); });
   status.clear();
-  if (!arguments.is_quiet) teleop::print_station(result, stdout);
+  if (!arguments.is_quiet) runs::print_station(result, stdout);
   const bool is_printed = host::has_printed();
   if (!is_printed) std::fputs("teleop: the report could not be printed whole\n", stderr);
-  return wrote(report, result, teleop::write_station_json) && is_printed ? 0 : 4;
+  return wrote(report, result, runs::write_station_json) && is_printed ? 0 : 4;
 }
 
 /// Whether to run the scene as two programs.
@@ -451,15 +450,15 @@ bool is_apart(const Arguments& arguments, const Work& work) {
 }
 
 /// Starts the operator's side as a program of its own, for this one to be the site.
-std::unique_ptr<teleop::StationProgram> station_beside(const Work& work,
-                                                       teleop::SessionOptions& session) {
-  if (!teleop::has_line(work.scene)) {
+std::unique_ptr<runs::StationProgram> station_beside(const Work& work,
+                                                     runs::SessionOptions& session) {
+  if (!runs::has_line(work.scene)) {
     throw SetupError("two programs need a module 'line' in the network, to part it there",
                      work.scene.file);
   }
   session.link.is_impaired = true;
   if (session.link.domain == 0) session.link.domain = 1 + std::random_device()() % 100;
-  if (session.link.where.empty()) session.link.where = teleop::default_link();
+  if (session.link.where.empty()) session.link.where = runs::default_link();
   std::vector<std::string> words{work.scene.file,
                                  "--station",
                                  "--impaired",
@@ -476,34 +475,34 @@ std::unique_ptr<teleop::StationProgram> station_beside(const Work& work,
     session.device.clear();
   }
   session.link.side = link::Side::site;
-  return std::make_unique<teleop::StationProgram>(std::move(words));
+  return std::make_unique<runs::StationProgram>(std::move(words));
 }
 
 int run(const Arguments& arguments) {
   const Work work = work_of(arguments);
   require_files_apart(arguments, work);
   if (arguments.session.link.side == link::Side::station) return run_station(arguments, work);
-  const teleop::Recording* recording = work.recording ? &*work.recording : nullptr;
-  teleop::SessionOptions session = arguments.session;
+  const runs::Recording* recording = work.recording ? &*work.recording : nullptr;
+  runs::SessionOptions session = arguments.session;
   host::Output report(arguments.report);
   host::Output html(arguments.html);
   StatusLine status(arguments, work);
-  std::unique_ptr<teleop::StationProgram> station;
+  std::unique_ptr<runs::StationProgram> station;
   if (is_apart(arguments, work)) station = station_beside(work, session);
-  teleop::RunResult result =
-      teleop::run_session(work.scene, work.options, session, recording, host::interruption(),
-                          host::insistence(), [&](const teleop::Progress& p) {
-                            // The robot would only hold. What went wrong with the other program is
-                            // printed at the end.
-                            if (station && station->has_ended()) (void)std::raise(SIGTERM);
-                            status.show(p);
-                          });
+  runs::RunResult result =
+      runs::run_session(work.scene, work.options, session, recording, host::interruption(),
+                        host::insistence(), [&](const runs::Progress& p) {
+                          // The robot would only hold. What went wrong with the other program is
+                          // printed at the end.
+                          if (station && station->has_ended()) (void)std::raise(SIGTERM);
+                          status.show(p);
+                        });
   if (station) result.station = station->stop();
   status.clear();
   if (!arguments.is_quiet) {
-    teleop::print_report(result, stdout);
+    runs::print_report(result, stdout);
     if (result.station) std::fputs(result.station->printed.c_str(), stdout);
-    if (recording != nullptr) teleop::print_replay(*recording, result, stdout);
+    if (recording != nullptr) runs::print_replay(*recording, result, stdout);
   }
   if (result.station && result.station->status != 0) {
     std::fputs(result.station->complaints.c_str(), stderr);
@@ -513,13 +512,13 @@ int run(const Arguments& arguments) {
     std::fputs("teleop: the report could not be printed whole\n", stderr);
     is_whole = false;
   }
-  is_whole = wrote(report, result, teleop::write_json) && is_whole;
-  is_whole = wrote(html, result, teleop::write_html) && is_whole;
+  is_whole = wrote(report, result, runs::write_json) && is_whole;
+  is_whole = wrote(html, result, runs::write_html) && is_whole;
   if (result.station && result.station->status != 0) return 1;
-  const teleop::ReplayReport& replay = result.replay;
+  const runs::ReplayReport& replay = result.replay;
   if (replay.same != replay.ticks) return 3;
   if (!is_whole) return 4;
-  return teleop::gained_energy(result) || teleop::was_often_at_fault(result) ? 5 : 0;
+  return runs::gained_energy(result) || runs::was_often_at_fault(result) ? 5 : 0;
 }
 
 }  // namespace

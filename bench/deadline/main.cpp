@@ -5,9 +5,10 @@
 
 #include <cinttypes>
 
-#include "command_line.hpp"
-#include "times.hpp"
-#include "trial.hpp"
+#include <repel/host/command_line.hpp>
+#include <repel/host/times.hpp>
+#include <repel/host/trial/trial.hpp>
+
 #include "trials_page.hpp"
 
 namespace {

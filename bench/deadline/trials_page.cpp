@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trials_page.hpp"
 
-#include "chart.hpp"
-#include "page.hpp"
+#include <repel/host/page/chart.hpp>
+#include <repel/host/page/page.hpp>
 
 using namespace repel;
 using namespace repel::host::page;

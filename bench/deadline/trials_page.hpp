@@ -6,7 +6,7 @@
 #include <ostream>
 #include <vector>
 
-#include "trial.hpp"
+#include <repel/host/trial/trial.hpp>
 
 /// Writes one self-contained page: a table of all rates, and for each rate the cumulative
 /// distributions of compute time and lateness of its ticks.

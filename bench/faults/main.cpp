@@ -9,9 +9,10 @@
 
 #include <unistd.h>
 
+#include <repel/host/command_line.hpp>
+#include <repel/host/machine.hpp>
+
 #include "../distance/markdown.hpp"
-#include "command_line.hpp"
-#include "machine.hpp"
 #include "trial.hpp"
 
 namespace {

@@ -10,8 +10,7 @@
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/network/modules/guide.hpp>
-
-#include "describe.hpp"
+#include <repel/runs/setup/describe.hpp>
 
 namespace repel::guides {
 
@@ -126,7 +125,7 @@ std::string complaint_of(const network::Network& network, Status seen) {
 class Rig {
  public:
   explicit Rig(const std::string& text) : parsed_(scene::parse(text, "scene")) {
-    teleop::DescribedScene described = teleop::describe(parsed_, rate_hz);
+    runs::DescribedScene described = runs::describe(parsed_, rate_hz);
     described.cell.coprocessor.lock_step = true;
     // Dry friction makes a hand hunt for its place, whatever its unrest and the
     // fixtures.

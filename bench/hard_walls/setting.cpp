@@ -56,8 +56,8 @@ scene::Scene load(const std::string& name) {
   return scene::load(REPEL_SOURCE "/scenes/" + name + ".yaml");
 }
 
-teleop::DescribedScene described(const Setting& setting, const scene::Scene& scene) {
-  teleop::DescribedScene described = teleop::describe(scene, setting.rate, true);
+runs::DescribedScene described(const Setting& setting, const scene::Scene& scene) {
+  runs::DescribedScene described = runs::describe(scene, setting.rate, true);
   const auto change = [&](ForceLaw& law) {
     if (law.passable) return;
     if (setting.way == Way::hard_alone) law.surface_force *= 0.02;

@@ -8,9 +8,8 @@
 #include <vector>
 
 #include <repel/cell/description.hpp>
+#include <repel/runs/setup/describe.hpp>
 #include <repel/scene/scene.hpp>
-
-#include "describe.hpp"
 
 namespace repel::hard_walls {
 
@@ -59,6 +58,6 @@ struct Setting {
 /// The scene of that name.
 [[nodiscard]] scene::Scene load(const std::string& name);
 /// The cell of `scene`, with the hand and the walls of the setting.
-[[nodiscard]] teleop::DescribedScene described(const Setting& setting, const scene::Scene& scene);
+[[nodiscard]] runs::DescribedScene described(const Setting& setting, const scene::Scene& scene);
 
 }  // namespace repel::hard_walls

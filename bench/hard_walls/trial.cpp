@@ -13,14 +13,14 @@
 #include <repel/cell/layout.hpp>
 #include <repel/loop/tick.hpp>
 #include <repel/network/modules.hpp>
+#include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/arms/servoed_arm.hpp>
+#include <repel/runs/watch/chatter.hpp>
 #include <repel/simulated/delayed_arm.hpp>
 
-#include "arm_backend.hpp"
-#include "chatter.hpp"
 #include "command_filter.hpp"
 #include "gaps.hpp"
 #include "libccd_depth.hpp"
-#include "servoed_arm.hpp"
 #include "torque_filter.hpp"
 
 namespace repel::hard_walls {
@@ -52,8 +52,7 @@ class RandomHand {
 
 /// The simulated arms of a cell, and what moves them.
 struct Driven {
-  Driven(const Setting& setting, const scene::Scene& scene,
-         const teleop::DescribedScene& described) {
+  Driven(const Setting& setting, const scene::Scene& scene, const runs::DescribedScene& described) {
     for (std::size_t i = 0; i < described.cell.arms.size(); ++i) {
       const ArmDescription& arm = described.cell.arms[i];
       const ArmModel& model = described.robots[i].arm;
@@ -63,14 +62,14 @@ struct Driven {
         link.I_C_L = setting.inertia * link.I_C_L;
         link.rotor_inertia *= setting.inertia;
       }
-      arms.push_back(teleop::arm_backend("bullet").make(plant, arm.start, 0.1, {}));
+      arms.push_back(runs::arm_backend("bullet").make(plant, arm.start, 0.1, {}));
       if (setting.delay > 0) {
         arms.back() =
             std::make_unique<DelayedArm>(std::move(arms.back()), plant.links.size(), setting.delay);
       }
       if (const auto& admittance = scene.arm_setup(i).robot.admittance) {
-        arms.back() = std::make_unique<teleop::ServoedArm>(
-            std::move(arms.back()), model, arm.model, admittance->response, 1.0 / setting.rate);
+        arms.back() = std::make_unique<runs::ServoedArm>(std::move(arms.back()), model, arm.model,
+                                                         admittance->response, 1.0 / setting.rate);
       }
       ports.emplace_back(*arms.back(), plant.links.size());
       hands.emplace_back(setting.seed + 1000 * hands.size(), setting.hand_speed);
@@ -158,13 +157,13 @@ void note_motion(const Cell& cell, std::size_t arm, const TickRecord& record, Ou
 
 Outcome push(const Setting& setting) {
   const scene::Scene scene = load(setting.scene);
-  teleop::DescribedScene set_up = described(setting, scene);
+  runs::DescribedScene set_up = described(setting, scene);
   Driven driven(setting, scene, set_up);
   Cell cell(std::move(set_up.cell));
   Filter filter(setting, scene);
   LibccdDepth libccd(cell);
   Outcome outcome;
-  std::vector<teleop::ChatterMeter> meters;
+  std::vector<runs::ChatterMeter> meters;
   for (std::size_t i = 0; i < cell.arms(); ++i) meters.emplace_back(1, setting.rate);
   nanoseconds now{0};
   for (std::int64_t tick = 0; tick < setting.ticks; ++tick) {
@@ -207,7 +206,7 @@ Outcome push(const Setting& setting) {
   }
   outcome.filter = filter.time();
   note_pairs(cell, outcome);
-  for (const teleop::ChatterMeter& meter : meters) {
+  for (const runs::ChatterMeter& meter : meters) {
     const double rms = meter.of(0).rms;
     if (rms > outcome.chatter) outcome.chatter = rms;
   }

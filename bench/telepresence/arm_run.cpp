@@ -9,8 +9,8 @@
 #include <repel/bullet/arm.hpp>
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
+#include <repel/runs/setup/describe.hpp>
 
-#include "describe.hpp"
 #include "spectrum.hpp"
 
 namespace repel::telepresence {
@@ -83,7 +83,7 @@ void tell(const ArmScene& scene, ArmDescription& arm) {
 ArmEnd run_arm(const ArmScene& scene, double seconds,
                const std::function<void(const ArmTick&)>& each) {
   const scene::Scene parsed = scene::parse(text_of(scene), "scene");
-  teleop::DescribedScene described = teleop::describe(parsed, scene.rate_hz);
+  runs::DescribedScene described = runs::describe(parsed, scene.rate_hz);
   described.cell.coprocessor.lock_step = true;
   const ArmModel model = described.cell.arms.front().model;
   tell(scene, described.cell.arms.front());

@@ -10,10 +10,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/host/command_line.hpp>
+#include <repel/host/times.hpp>
+#include <repel/runs/engine/session.hpp>
+
 #include "client.hpp"
-#include "command_line.hpp"
-#include "session.hpp"
-#include "times.hpp"
 
 namespace {
 
@@ -96,12 +97,12 @@ int run(const Arguments& arguments) {
   scene::Scene scene = scene::load(arguments.scene);
   // The tool is pressed on the table and held there, so that every tick has the same work.
   scene.script.resize(std::min<std::size_t>(2, scene.script.size()));
-  teleop::RunOptions options;
+  runs::RunOptions options;
   options.rate_hz = scene.rate_hz;
   options.seconds = arguments.seconds;
   options.threads = scene.budget.threads;
   options.keep_records = true;
-  teleop::SessionOptions session;
+  runs::SessionOptions session;
   session.view = true;
   session.listen = "127.0.0.1:" + std::to_string(arguments.port);
   session.page = arguments.page;
@@ -110,9 +111,9 @@ int run(const Arguments& arguments) {
   std::int64_t bytes = 0;
   std::vector<Turn> turns;
   std::thread looking([&] { turns = take_turns(arguments, options.rate_hz, over, bytes); });
-  const teleop::RunResult result = teleop::run_session(
-      scene, options, session, nullptr, host::interruption(), host::insistence(),
-      [](const teleop::Progress& p) { std::fprintf(stderr, "\r%7.2f s", p.time); });
+  const runs::RunResult result =
+      runs::run_session(scene, options, session, nullptr, host::interruption(), host::insistence(),
+                        [](const runs::Progress& p) { std::fprintf(stderr, "\r%7.2f s", p.time); });
   over = true;
   looking.join();
   Summary open, closed;

@@ -18,11 +18,11 @@
 #include <repel/ideal/arm.hpp>
 #include <repel/network/operator.hpp>
 #include <repel/robots/dynamics.hpp>
+#include <repel/runs/setup/describe.hpp>
 #include <repel/scene/build_network.hpp>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "describe.hpp"
 #include "own_cell.hpp"
 
 namespace repel::python {
@@ -142,7 +142,7 @@ std::unique_ptr<OwnCell> cell_of(nb::handle from, std::optional<double> rate_hz,
   }
   try {
     OwnDescription description;
-    description.cell = teleop::describe(scene, rate_hz.value_or(scene.rate_hz), gravity).cell;
+    description.cell = runs::describe(scene, rate_hz.value_or(scene.rate_hz), gravity).cell;
     Budget& budget = description.cell.coprocessor.budget;
     budget.work_units = scene.budget.work_units;
     budget.max_age = scene.budget.max_age;

@@ -182,7 +182,7 @@ TEST(Camera, OfSeveralIsReplayedBitForBit) {
   EXPECT_TRUE(by_the_clock.says("allocations in tick    0")) << by_the_clock;
 }
 
-#ifdef REPEL_TELEOP_OCTREES
+#ifdef REPEL_RUNS_OCTREES
 TEST(Camera, WithAMapKeepsTheArmOffWhatOnlyItSees) {
   constexpr unsigned seed = 321;
   families::Rng rng(seed);

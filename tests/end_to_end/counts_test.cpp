@@ -2,15 +2,16 @@
 // Operations that are forbidden in the tick, counted in every tick of every scene.
 #include <gtest/gtest.h>
 
+#include <repel/host/heap_guard.hpp>
+
 #include "end_to_end/whole_run.hpp"
-#include "heap_guard.hpp"
 #include "realtime/clock.hpp"
 
 namespace repel::test {
 namespace counts_test {
 
 using host::HeapGuard;
-using teleop::SystemCallGuard;
+using runs::SystemCallGuard;
 
 /// The report of a run of that scene.
 nlohmann::json counted(const std::string& arguments) {

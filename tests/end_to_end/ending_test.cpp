@@ -11,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-#include <command_line.hpp>
+#include <repel/host/command_line.hpp>
 
 #include "end_to_end/teleop.hpp"
 

@@ -324,14 +324,14 @@ TEST(FalseSite, ShowsNoMoreThanTheWholeForce) {
     TickRecord record;
     record.gain = told;
     record.pairs.nearest = 1.0;
-    teleop::tell(record, Pose::Identity(), {}, site);
+    runs::tell(record, Pose::Identity(), {}, site);
     site.receive(at(1.0));
     site.send(Vec<any_size>::Zero(1), tick);
     Relay relay(1);
     relay.carry(site, station, {.delay = 0.0}, 1.0);
     station.receive(at(1.0));
-    ASSERT_TRUE(teleop::heard_state(station).is_told);
-    EXPECT_EQ(teleop::heard_state(station).gain, told > 0.0 ? 1.0 : 0.0);
+    ASSERT_TRUE(runs::heard_state(station).is_told);
+    EXPECT_EQ(runs::heard_state(station).gain, told > 0.0 ? 1.0 : 0.0);
   }
 }
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include <chart.hpp>
-#include <page.hpp>
+#include <repel/host/page/chart.hpp>
+#include <repel/host/page/page.hpp>
 
 #include "end_to_end/teleop.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // No part of an arm is deeper in an obstacle than the report states: every scene is recomputed from
 // the joints in its log by Wolfe's algorithm with 113 bits, not by the library's own distance.
-#include <describe.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/cell/layout.hpp>
+#include <repel/runs/setup/describe.hpp>
 #include <repel/world/kinematics.hpp>
 #include <support/wolfe.hpp>
 
@@ -64,7 +64,7 @@ double depth_above(const PlacedPart& a, const PlacedPart& b, families::Rng& rng)
 class Replay {
  public:
   explicit Replay(const scene::Scene& scene, const Columns& log)
-      : log_(log), cell_(teleop::describe(scene, scene.rate_hz).cell), world_(cell_.world()) {
+      : log_(log), cell_(runs::describe(scene, scene.rate_hz).cell), world_(cell_.world()) {
     for (const ArmDescription& arm : cell_.description().arms) kinematics_.emplace_back(arm.model);
   }
 

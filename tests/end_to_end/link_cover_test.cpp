@@ -4,11 +4,11 @@
 #include <fstream>
 
 #include <repel/robots/parts.hpp>
+#include <repel/runs/arms/contact.hpp>
+#include <repel/runs/setup/describe.hpp>
 #include <repel/scene/part_list.hpp>
 #include <repel/scene/scene.hpp>
 
-#include "contact.hpp"
-#include "describe.hpp"
 #include "end_to_end/hook.hpp"
 #include "end_to_end/teleop.hpp"
 
@@ -24,7 +24,7 @@ std::string scene_of(const Folder& folder, const std::string& keys = "",
 
 /// The parts of the hook in the cell of a scene.
 std::vector<ArmPart> hook_parts(const std::string& scene) {
-  teleop::DescribedScene described = teleop::describe(scene::load(scene), 400.0);
+  runs::DescribedScene described = runs::describe(scene::load(scene), 400.0);
   std::vector<ArmPart> parts = described.cell.arms[0].parts;
   std::erase_if(parts, [](const ArmPart& part) { return !part.name.starts_with("hook"); });
   return parts;
@@ -49,7 +49,7 @@ TEST(LinkCover, TellsWhichPartOfTheWorldHasTheGapsOfItsMesh) {
   const Folder folder;
   (void)folder.with("hook.stl.parts.yaml",
                     hook_list("gap_count: 3\ngaps: [{at: 0 0 0.06 m, depth: 2 mm}]\n"));
-  const auto described = teleop::describe(scene::load(scene_of(folder, "", "2 2 2")), 400.0);
+  const auto described = runs::describe(scene::load(scene_of(folder, "", "2 2 2")), 400.0);
   std::size_t part = 0;
   for (const ArmPart& each : described.cell.arms[0].parts) {
     const scene::Gaps& gaps = described.gaps.at(part++);
@@ -66,7 +66,7 @@ TEST(LinkCover, HasTheScaleOfTheMeshInTheRobotFile) {
   for (const double made_for : {1.0, 0.5}) {
     (void)folder.with("hook.stl.parts.yaml", hook_list("", made_for));
     const auto scene = scene::load(scene_of(folder, "", "2 1 -3"));
-    const Robot robot = std::move(teleop::describe(scene, 400.0).robots[0]);
+    const Robot robot = std::move(runs::describe(scene, 400.0).robots[0]);
     Vec3 low = Vec3::Zero();
     Vec3 high = Vec3::Zero();
     std::size_t corners = 0;
@@ -88,7 +88,7 @@ TEST(LinkCover, StandsInContactWithItsParts) {
   const Folder folder;
   (void)folder.with("hook.stl.parts.yaml", hook_list());
   const scene::Scene scene = scene::load(scene_of(folder));
-  const auto parts = teleop::contact_parts(scene, scene, teleop::describe(scene, 400.0).robots[0]);
+  const auto parts = runs::contact_parts(scene, scene, runs::describe(scene, 400.0).robots[0]);
   EXPECT_EQ(std::count_if(parts.begin(), parts.end(),
                           [](const ContactPart& part) { return part.name.starts_with("hook/"); }),
             2);

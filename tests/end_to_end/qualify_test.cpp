@@ -3,9 +3,10 @@
 #include <sstream>
 #include <thread>
 
-#include "advice.hpp"
+#include <repel/host/times.hpp>
+#include <repel/host/trial/advice.hpp>
+
 #include "end_to_end/trial_report.hpp"
-#include "times.hpp"
 
 namespace repel::test {
 namespace qualify_test {

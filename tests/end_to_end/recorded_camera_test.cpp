@@ -4,10 +4,10 @@
 
 #include "end_to_end/teleop.hpp"
 #include "percepts/png.hpp"
-#include "prepared_run.hpp"
-#include "sights.hpp"
 
 #include <repel/percepts/simulated_camera.hpp>
+#include <repel/runs/cameras/sights.hpp>
+#include <repel/runs/setup/prepared_run.hpp>
 
 namespace repel::test {
 namespace recorded_camera_test {
@@ -52,10 +52,10 @@ class Recording {
                                           "look_at: 0.50 -0.10 0.15 m\n");
     const scene::Scene scene =
         scene::parse(still_scene(simulated), REPEL_SOURCE "/scenes/still.yaml");
-    teleop::RunOptions options;
+    runs::RunOptions options;
     options.fast = true;
-    const auto prepared = teleop::prepare(scene, options);
-    teleop::Sights sights(prepared->scene, prepared->robots, prepared->cell);
+    const auto prepared = runs::prepare(scene, options);
+    runs::Sights sights(prepared->scene, prepared->robots, prepared->cell);
     percepts::DepthCamera camera{.width = width, .height = height, .fx = f, .fy = f};
     camera.cx = 159.5, camera.cy = 119.5, camera.nearest = 0.3, camera.farthest = 2.5;
     percepts::SimulatedCamera simulated_camera(camera, sights.meshes());

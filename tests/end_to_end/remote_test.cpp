@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
+#include <repel/runs/station/site_twin.hpp>
 #include <repel/scene/scene.hpp>
 
 #include "end_to_end/program.hpp"
 #include "end_to_end/two_sides.hpp"
 #include "network/remote/relay.hpp"
-#include "site_twin.hpp"
 
 namespace repel::test {
 namespace remote_test {
@@ -225,22 +225,22 @@ TEST(Remote, AStationShowsTheSiteWhereItSaysThatItIs) {
   for (const double delay : {0.0, 0.05}) {
     SCOPED_TRACE("delay " + std::to_string(delay) + " s, seed " + std::to_string(seed));
     Divided divided({.delay = delay, .jitter = 0.0071, .loss = 0.05}, with_parts());
-    teleop::SiteTwin twin(divided.scene, in_step());
+    runs::SiteTwin twin(divided.scene, in_step());
     Tap tap(twin.prepared().cell.world());
-    teleop::StationShot shot = twin.room();
+    runs::StationShot shot = twin.room();
     SiteHistory history;
     Seen seen;
     for (std::int64_t k = 0; k < 1800; ++k) {
       divided.run(tick);
       history.note(*divided.site);
-      const teleop::StationSide& station = divided.station->side;
-      teleop::note(station, k, {}, shot);
+      const runs::StationSide& station = divided.station->side;
+      runs::note(station, k, {}, shot);
       if (k % 7 != 0) continue;
       twin.show(shot, tap);
       ASSERT_TRUE(tap.pictures().take());
       const Snapshot& shown = tap.pictures().newest();
       const TickRecord& record = shown.arms.front();
-      const teleop::SiteState& told = station.site();
+      const runs::SiteState& told = station.site();
       EXPECT_EQ(record.virtual_force.force, told.virtual_force.force);
       EXPECT_EQ(record.gain, station.is_heard() ? told.gain : 0.0);
       EXPECT_EQ((record.status & status::silent_site) != 0U, !station.is_heard());
@@ -255,7 +255,7 @@ TEST(Remote, AStationShowsTheSiteWhereItSaysThatItIs) {
     EXPECT_GT(seen.held, 20);
     EXPECT_GT(seen.late, 100);
     EXPECT_GT(seen.gone, 20);
-    for (const teleop::PartStepResult& each : divided.site->driven->steps().results()) {
+    for (const runs::PartStepResult& each : divided.site->driven->steps().results()) {
       EXPECT_TRUE(each.was_made) << each.step.phase;
     }
   }
@@ -263,11 +263,11 @@ TEST(Remote, AStationShowsTheSiteWhereItSaysThatItIs) {
 
 TEST(Remote, WithoutItsSiteAStationShowsTheLastPictureAndSaysSo) {
   Divided divided({.delay = 0.02});
-  teleop::SiteTwin twin(divided.scene, in_step());
+  runs::SiteTwin twin(divided.scene, in_step());
   Tap tap(twin.prepared().cell.world());
-  teleop::StationShot shot = twin.room();
+  runs::StationShot shot = twin.room();
   const auto shown = [&]() -> const Snapshot& {
-    teleop::note(divided.station->side, 0, {}, shot);
+    runs::note(divided.station->side, 0, {}, shot);
     twin.show(shot, tap);
     (void)tap.pictures().take();
     return tap.pictures().newest();
@@ -339,14 +339,14 @@ TEST(Remote, EveryNumberOfACommandArrives) {
   told.phase = 1000;
   network::RemoteLink station({.session = 1});
   network::RemoteLink site({.session = 2});
-  teleop::tell(told, station);
+  runs::tell(told, station);
   pass(station, site);
-  const network::Command heard = teleop::heard_command(site);
+  const network::Command heard = runs::heard_command(site);
   EXPECT_EQ(numbers_of(heard), numbers_of(told));
   told.second.lever_rate = std::numeric_limits<double>::quiet_NaN();
-  teleop::tell(told, station);
+  runs::tell(told, station);
   pass(station, site);
-  EXPECT_FALSE(teleop::heard_command(site).sound);
+  EXPECT_FALSE(runs::heard_command(site).sound);
 }
 
 TEST(Remote, EveryNumberOfTheSiteArrives) {
@@ -362,15 +362,15 @@ TEST(Remote, EveryNumberOfTheSiteArrives) {
   told.status = status::saturated | status::hold_lost;
   const Pose turned(Eigen::Translation3d(1.0, 2.0, 3.0) *
                     Eigen::AngleAxisd(2.5, Vec3(1.0, 2.0, -3.0).normalized()));
-  teleop::PartState part;
+  runs::PartState part;
   part.part = 7;
-  part.where = teleop::PartState::Where::is_held;
+  part.where = runs::PartState::Where::is_held;
   part.X = turned.inverse();
   network::RemoteLink station({.session = 1});
   network::RemoteLink site({.session = 2});
-  teleop::tell(told, turned, part, site);
+  runs::tell(told, turned, part, site);
   pass(site, station);
-  const teleop::SiteState heard = teleop::heard_state(station);
+  const runs::SiteState heard = runs::heard_state(station);
   EXPECT_TRUE(heard.is_told);
   EXPECT_TRUE(heard.X_WT.isApprox(turned, 1e-12));
   EXPECT_EQ(heard.virtual_force.force, told.virtual_force.force);
@@ -392,7 +392,7 @@ TEST(Remote, ASceneWithoutALineCannotBeDivided) {
   const scene::Scene whole = scene::load(REPEL_SOURCE "/scenes/plates.yaml");
   network::RemoteLink link({.session = 1});
   try {
-    (void)teleop::prepare(whole, in_step(), nullptr, &link);
+    (void)runs::prepare(whole, in_step(), nullptr, &link);
     FAIL();
   } catch (const SetupError& error) {
     EXPECT_NE(std::string(error.what()).find("'line'"), std::string::npos) << error.what();

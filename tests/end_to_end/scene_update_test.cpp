@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <prepared_run.hpp>
 #include <repel/record/mcap_reader.hpp>
 #include <repel/record/mcap_writer.hpp>
 #include <repel/reduction/shape_mesh.hpp>
+#include <repel/runs/setup/prepared_run.hpp>
 #include <repel/scene/scene.hpp>
 
 #include "end_to_end/teleop.hpp"
@@ -83,7 +83,7 @@ TEST(RecordedScene, BodiesAreThePartsOfTheWorldInTheFramesOfThePoses) {
   }
 
   const auto prepared =
-      teleop::prepare(scene::load(REPEL_SOURCE "/scenes/two_arms.yaml"), teleop::RunOptions{});
+      runs::prepare(scene::load(REPEL_SOURCE "/scenes/two_arms.yaml"), runs::RunOptions{});
   const World& world = prepared->cell.world();
   EXPECT_EQ(entities.size(), world.parts().size());
   std::map<std::string, int> groups;

@@ -4,10 +4,10 @@
 #include <fstream>
 
 #include <repel/robots/sdf.hpp>
+#include <repel/runs/arms/contact.hpp>
+#include <repel/runs/setup/describe.hpp>
 #include <repel/scene/scene.hpp>
 
-#include "contact.hpp"
-#include "describe.hpp"
 #include "end_to_end/hook.hpp"
 #include "end_to_end/teleop.hpp"
 
@@ -36,7 +36,7 @@ std::string scene_of(const Folder& folder) {
 TEST(StaticModel, BecomesObstaclesOfItsLinksAndCovers) {
   const Folder folder;
   const scene::Scene scene = scene::load(scene_of(folder));
-  const auto cell = teleop::describe(scene, 400.0).cell;
+  const auto cell = runs::describe(scene, 400.0).cell;
   ASSERT_EQ(cell.obstacles.size(), 3U);
   EXPECT_EQ(cell.obstacles[0].name, "cell/table/plate");
   EXPECT_EQ(cell.obstacles[1].name, "cell/side/side_0/1");
@@ -96,8 +96,8 @@ TEST(StaticModel, OfAnSdfFilePushesAsTheSceneWouldAndIsRecorded) {
   std::string text = text_of(folder / "scene.yaml");
   text.replace(text.find("shape: urdf, file: cell.urdf"), 28, "shape: sdf, file: cell.sdf");
   const std::string scene = folder.with("sdf.yaml", text);
-  const auto cell = teleop::describe(scene::load(scene), 400.0).cell;
-  const auto other = teleop::describe(scene::load(folder / "scene.yaml"), 400.0).cell;
+  const auto cell = runs::describe(scene::load(scene), 400.0).cell;
+  const auto other = runs::describe(scene::load(folder / "scene.yaml"), 400.0).cell;
   ASSERT_EQ(cell.obstacles.size(), 3U);
   EXPECT_EQ(cell.obstacles[0].name, "cell/m::table/plate");
   EXPECT_EQ(cell.obstacles[2].name, "cell/m::side/hook/2");

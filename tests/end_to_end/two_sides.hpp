@@ -8,20 +8,20 @@
 #include <utility>
 #include <vector>
 
+#include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/engine/driven_cell.hpp>
+#include <repel/runs/setup/prepared_run.hpp>
+#include <repel/runs/station/station_side.hpp>
 #include <repel/scene/scene.hpp>
 
-#include "arm_backend.hpp"
-#include "driven_cell.hpp"
 #include "network/remote/relay.hpp"
-#include "prepared_run.hpp"
-#include "station_side.hpp"
 
 namespace repel::test {
 
 inline constexpr double tick = 0.0025;  ///< [s]
 
-inline teleop::RunOptions in_step() {
-  teleop::RunOptions options;
+inline runs::RunOptions in_step() {
+  runs::RunOptions options;
   options.fast = true;
   return options;
 }
@@ -29,20 +29,20 @@ inline teleop::RunOptions in_step() {
 /// The robot's side.
 struct Site {
   network::RemoteLink link;
-  std::unique_ptr<teleop::PreparedRun> prepared;
-  std::unique_ptr<teleop::DrivenCell> driven;
+  std::unique_ptr<runs::PreparedRun> prepared;
+  std::unique_ptr<runs::DrivenCell> driven;
   TickRecord last;
 
   Site(const scene::Scene& scene, std::uint64_t session) : link({.session = session}) {
-    const teleop::RunOptions options = in_step();
-    prepared = teleop::prepare(scene, options, nullptr, &link);
+    const runs::RunOptions options = in_step();
+    prepared = runs::prepare(scene, options, nullptr, &link);
     const ArmDescription& arm = prepared->cell.description().arms.front();
     std::vector<std::unique_ptr<TorqueDrivenArm>> arms;
-    arms.push_back(teleop::arm_backend("bullet").make(arm.model, arm.start, 0.1, {}));
-    std::vector<teleop::OperatorInput> operators;
+    arms.push_back(runs::arm_backend("bullet").make(arm.model, arm.start, 0.1, {}));
+    std::vector<runs::OperatorInput> operators;
     operators.emplace_back(network::Script());
-    driven = std::make_unique<teleop::DrivenCell>(prepared->cell, prepared->scene, std::move(arms),
-                                                  std::move(operators), &link);
+    driven = std::make_unique<runs::DrivenCell>(prepared->cell, prepared->scene, std::move(arms),
+                                                std::move(operators), &link);
   }
   void step(double now) {
     last = *driven->tick(at(now)).front();
@@ -53,7 +53,7 @@ struct Site {
 /// The operator's side of the same scene.
 struct Station {
   network::RemoteLink link;
-  teleop::StationSide side;
+  runs::StationSide side;
 
   Station(const scene::Scene& scene, std::uint64_t session)
       : link({.session = session}), side(scene, in_step(), link, nullptr) {}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The text of reports, also of unusual runs: every number is finite and of readable length, nothing
 // is reported that was not measured, and names are unchanged.
-#include <figure.hpp>
-#include <page.hpp>
+#include <repel/host/figure.hpp>
+#include <repel/host/page/page.hpp>
 
 #include <limits>
 #include <regex>

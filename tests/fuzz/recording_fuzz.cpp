@@ -2,8 +2,8 @@
 // Arbitrary text as the contents of a recording, or arbitrary bytes as its file: loaded, or refused
 // by a SetupError that names a file. A text is divided by lines of %%: metadata of the run, the
 // scene, then messages that begin with the letter of their channel.
-#include <mcap_names.hpp>
-#include <recording.hpp>
+#include <repel/runs/records/mcap_names.hpp>
+#include <repel/runs/records/recording.hpp>
 
 #include <cmath>
 #include <map>
@@ -15,7 +15,7 @@
 #include <fuzz/bytes.hpp>
 #include <repel/record/mcap_writer.hpp>
 
-namespace repel::teleop {
+namespace repel::runs {
 namespace {
 
 using fuzz::require;
@@ -87,9 +87,9 @@ void check_one(const std::string& text) {
 }
 
 }  // namespace
-}  // namespace repel::teleop
+}  // namespace repel::runs
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  repel::teleop::check_one(std::string(data, data + size));
+  repel::runs::check_one(std::string(data, data + size));
   return 0;
 }

@@ -8,15 +8,15 @@
 #include <fstream>
 #include <string>
 
-#include "system_call_guard.hpp"
+#include <repel/runs/watch/system_call_guard.hpp>
 
 namespace repel::test {
 
 /// The clock source of this machine if reading the clock is a system call; empty otherwise, and if
 /// this cannot be determined.
 inline std::string clock_in_the_kernel() {
-  using teleop::SystemCallGuard;
-  SystemCallGuard::arm(teleop::Pauses::none);
+  using runs::SystemCallGuard;
+  SystemCallGuard::arm(runs::Pauses::none);
   const std::int64_t before = SystemCallGuard::calls();
   {
     const SystemCallGuard guard;

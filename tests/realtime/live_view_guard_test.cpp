@@ -5,19 +5,20 @@
 #include <atomic>
 #include <thread>
 
-#include "heap_guard.hpp"
+#include <repel/host/heap_guard.hpp>
+#include <repel/runs/watch/system_call_guard.hpp>
+
 #include "support/web_page.hpp"
-#include "system_call_guard.hpp"
 #include "visual/gantry.hpp"
 
 namespace repel::test {
 namespace live_view_guard_test {
 
 using host::HeapGuard;
-using teleop::SystemCallGuard;
+using runs::SystemCallGuard;
 
 TEST(LiveView, TheTickNeitherAllocatesNorMakesASystemCall) {
-  SystemCallGuard::arm(teleop::Pauses::none);
+  SystemCallGuard::arm(runs::Pauses::none);
   GantryLoop loop;
   loop.own.hand.ball.linear = Vec3(0.15, 0.0, 0.0);
   visual::LiveView view(loop.cell, visual::scene_info_of(loop.cell, "gantry"), free_port());

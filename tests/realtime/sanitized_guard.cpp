@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "heap_guard.hpp"
+#include <repel/host/heap_guard.hpp>
 
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's names
 extern "C" {

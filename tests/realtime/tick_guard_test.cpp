@@ -9,23 +9,23 @@
 
 #include <thread>
 
+#include <repel/host/heap_guard.hpp>
+#include <repel/runs/watch/system_call_guard.hpp>
+#include <repel/runs/watch/tick_usage.hpp>
 #include <repel/schedule/pair_team.hpp>
 
-#include "heap_guard.hpp"
 #include "loop/slider.hpp"
 #include "pairs/boxes.hpp"
 #include "realtime/clock.hpp"
-#include "system_call_guard.hpp"
-#include "tick_usage.hpp"
 
 namespace repel {
 namespace tick_guard_test {
 
 using namespace std::chrono_literals;
 using host::HeapGuard;
-using teleop::Pauses;
-using teleop::SystemCallGuard;
-using teleop::TickUsage;
+using runs::Pauses;
+using runs::SystemCallGuard;
+using runs::TickUsage;
 
 /// Number of the program's guarded sections that made a system call while `work` ran.
 template <class Work>

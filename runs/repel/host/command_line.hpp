@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Shared command line handling of the programs.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include <repel/host/part_file.hpp>
+
+namespace repel::host {
+
+/// Accepts a number from `low` to `high`. Unlike CLI::Range, it rejects NaN.
+[[nodiscard]] CLI::Validator between(double low, double high);
+
+/// Installs handlers for SIGINT, SIGTERM and SIGHUP; the result becomes true at the first such
+/// signal. A SIGHUP that is ignored, as under nohup, stays ignored.
+[[nodiscard]] const std::atomic<bool>& interruption();
+
+/// Becomes true at a second SIGINT or SIGTERM at least 0.1 s after the first signal; an earlier one
+/// is the same request, sent to the program and to its process group. After that, the next one
+/// kills the program.
+[[nodiscard]] const std::atomic<bool>& insistence();
+
+/// An output file. It is opened before the run, so that a long run does not fail at its end, and
+/// moved into its place by close(); see PartFile. An empty path means no output.
+class Output {
+ public:
+  /// @throws SetupError if the file cannot be written
+  explicit Output(const std::string& path);
+  [[nodiscard]] bool wanted() const { return !path_.empty(); }
+  /// The stream, to be written to and closed without other system calls in between: close() takes
+  /// the reason of a failure from errno.
+  [[nodiscard]] std::ostream& stream();
+  /// @throws SetupError if not everything could be written
+  void close();
+
+ private:
+  void check() const;
+
+  std::string path_;
+  PartFile part_;
+  std::ofstream file_;
+};
+
+/// Whether everything printed to stdout was written. True as well when stdout is a pipe whose
+/// reader has exited.
+[[nodiscard]] bool has_printed();
+
+/// The program's name, the version of the library, and the commit it was built from.
+[[nodiscard]] std::string version_of(const char* name);
+
+/// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so that a reader
+/// that exits does not end the program. Returns the exit status: that of `run`, 0 for --help and
+/// --version, 2 for bad usage, `failure` after printing the message of an exception.
+/// @param describe declares the options, which write to the arguments
+template <class Arguments>
+[[nodiscard]] int start(int argc, char** argv, const char* name, const char* about, int failure,
+                        void (*describe)(CLI::App&, Arguments&), int (*run)(const Arguments&)) {
+  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that exits must not end the run
+  try {
+    Arguments arguments;
+    CLI::App app(about, name);
+    app.set_version_flag("--version", version_of(name));
+    describe(app, arguments);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
+    return run(arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return failure;
+  }
+}
+
+}  // namespace repel::host

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// All cameras that look at a running cell.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include <repel/runs/cameras/camera_feed.hpp>
+
+namespace repel::runs {
+
+/// What has become of the images of a run.
+struct CameraResult {
+  ImageResult all;                ///< of all cameras: sums, but for what is most or largest
+  std::vector<ImageResult> each;  ///< in their order
+  Clearance clearance;
+};
+
+/// Takes images of a running cell and makes parts of them: between the ticks, where a run is not by
+/// the clock, which repeats itself; otherwise on one thread of its own for all cameras, since one
+/// thread alone may ask for changes of the world. There the cameras take turns.
+class CameraFeeds {
+ public:
+  /// @param scene with cameras @param cell must outlive this object
+  /// @param in_step between the ticks @param on_add see PerceivedOptions
+  CameraFeeds(const scene::Scene& scene, const std::vector<Robot>& robots, Cell& cell, bool in_step,
+              const std::function<void(PartId, const Shape&)>& on_add);
+  ~CameraFeeds() { stop(); }
+  CameraFeeds(const CameraFeeds&) = delete;
+  CameraFeeds& operator=(const CameraFeeds&) = delete;
+
+  /// After every tick, outside of its time. By the clock it never waits.
+  /// @param scene says in which phases which cameras are blind
+  void follow(const scene::Scene& scene, std::span<const TickRecord* const> records);
+  /// [s] Age of the oldest of the last images, one of each camera, of which parts were made, if
+  /// that camera counts as silent, otherwise 0. Of the thread of the tick.
+  [[nodiscard]] double silent_for() const noexcept;
+  /// Ends the thread. Then what has become of the images.
+  [[nodiscard]] CameraResult finish();
+
+ private:
+  void stop();
+  bool serve_each();
+
+  Sights sights_;
+  std::vector<std::unique_ptr<CameraFeed>> feeds_;
+  std::vector<Pose> X_W_;  ///< [m] at the last tick
+  Clearance clearance_;
+  double period_;        ///< [s] of the tick
+  double silent_ = 0.0;  ///< [s] in which a camera was
+  bool in_step_;
+  std::jthread thread_;
+};
+
+}  // namespace repel::runs

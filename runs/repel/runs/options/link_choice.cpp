@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/runs/options/link_choice.hpp>
+
+#include <algorithm>
+#include <any>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string_view>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/link/impaired.hpp>
+#include <repel/link/udp.hpp>
+#include <repel/network/elements/line.hpp>
+#ifdef REPEL_RUNS_DDS
+#include <repel/dds/dds.hpp>
+#endif
+
+namespace repel::runs {
+namespace {
+
+constexpr const char* forms =
+    "dds, dds:INTERFACE, dds:INTERFACE,PEER, udp, udp:ADDRESS:PORT or udp:[ADDRESS]:PORT";
+
+/// The text behind "NAME:"; empty for NAME alone, none for another name.
+std::optional<std::string> behind(const std::string& text, std::string_view name) {
+  if (text == name) return "";
+  if (!text.starts_with(std::string(name) + ":")) return std::nullopt;
+  return text.substr(name.size() + 1);
+}
+
+/// Address and port of a site; none if it is neither empty nor that.
+std::optional<link::UdpOptions> udp_place(const std::string& text) {
+  link::UdpOptions options;
+  if (text.empty()) return options;
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  options.address = text.substr(0, colon);
+  if (options.address.starts_with('[') && options.address.ends_with(']')) {
+    options.address = options.address.substr(1, options.address.size() - 2);
+  }
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data() + colon + 1, end, options.port);
+  if (error != std::errc() || last != end || options.port == 0) return std::nullopt;
+  return options;
+}
+
+}  // namespace
+
+std::string default_link() {
+#ifdef REPEL_RUNS_DDS
+  return "dds";
+#else
+  return "udp";
+#endif
+}
+
+std::string link_complaint(const std::string& where) {
+  std::string allowed = "'" + where + "' names no link; allowed: " + forms;
+  if (const auto place = behind(where, "udp")) return udp_place(*place) ? "" : allowed;
+  const auto place = behind(where, "dds");
+  if (!place || (where != "dds" && (place->empty() || place->starts_with(',')))) return allowed;
+#ifdef REPEL_RUNS_DDS
+  return "";
+#else
+  return "DDS is not built in; to have it: apt-get install cyclonedds-dev cyclonedds-tools, and "
+         "build again; or use udp";
+#endif
+}
+
+namespace {
+
+/// @param agreement of both sides
+std::unique_ptr<link::Transport> open_place(const LinkChoice& choice, std::uint64_t agreement) {
+  const std::string where = choice.where.empty() ? default_link() : choice.where;
+  if (const std::string complaint = link_complaint(where); !complaint.empty()) {
+    throw SetupError(complaint);
+  }
+  if (const auto place = behind(where, "udp")) {
+    link::UdpOptions options = *udp_place(*place);
+    options.side = *choice.side;
+    options.agreement = agreement;
+    return link::open_udp(options);
+  }
+#ifdef REPEL_RUNS_DDS
+  const std::string place = *behind(where, "dds");
+  dds::DdsOptions options;
+  options.side = *choice.side;
+  options.domain = choice.domain;
+  const std::size_t comma = place.find(',');
+  if (!place.empty()) options.interface = place.substr(0, comma);
+  if (comma != std::string::npos) options.peer = place.substr(comma + 1);
+  return dds::open_dds(options);
+#else
+  return nullptr;
+#endif
+}
+
+/// FNV-1a of the text of the scene: to tell scenes apart, not to keep anybody out.
+std::uint64_t agreement_of(const scene::Scene& scene) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  std::ifstream file(scene.file, std::ios::binary);
+  for (std::istreambuf_iterator<char> it(file), end; it != end; ++it) {
+    hash = (hash ^ static_cast<unsigned char>(*it)) * 0x100000001b3U;
+  }
+  return hash;
+}
+
+/// Of the scene's line; none if it has none.
+const network::LineOptions* line_of(const scene::Scene& scene) {
+  const network::LineOptions* line = nullptr;
+  for (const scene::Module& module : scene.network.modules) {
+    if (const auto* found = std::any_cast<network::LineOptions>(&module.options)) line = found;
+  }
+  return line;
+}
+
+}  // namespace
+
+bool has_line(const scene::Scene& scene) {
+  return line_of(scene) != nullptr;
+}
+
+std::unique_ptr<link::Transport> open_link(const LinkChoice& choice, const scene::Scene& scene) {
+  std::unique_ptr<link::Transport> transport = open_place(choice, agreement_of(scene));
+  const network::LineOptions* const line = line_of(scene);
+  if (!choice.is_impaired || line == nullptr) return transport;
+  network::ChannelOptions channel = line->channel;
+  if (choice.side == link::Side::site) channel.seed = ~channel.seed;
+  return link::impaired(std::move(transport), channel);
+}
+
+network::RemoteOptions remote_options(const scene::Scene& scene) {
+  if (!scene.partners.empty()) {
+    throw SetupError(
+        "a scene with partners cannot be divided between two programs; allowed: one "
+        "arm",
+        scene.file);
+  }
+  network::RemoteOptions options;
+  std::random_device random;
+  do {
+    options.session = static_cast<std::uint64_t>(random()) << 32U | random();
+  } while (options.session == 0);
+  options.agreement = agreement_of(scene);
+  if (const network::LineOptions* line = line_of(scene)) options.playout.buffer = line->buffer;
+  return options;
+}
+
+}  // namespace repel::runs

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The link between the two programs of a scene: how it is chosen on the command line, and opened.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <repel/link/transport.hpp>
+#include <repel/network/remote/link.hpp>
+#include <repel/scene/scene.hpp>
+
+namespace repel::runs {
+
+struct LinkChoice {
+  std::optional<link::Side> side;  ///< of this program; none: it has both
+  std::string where;         ///< "dds:INTERFACE,PEER", "udp:ADDRESS:PORT"; empty: default_link
+  std::uint32_t domain = 0;  ///< of DDS
+  bool is_impaired = false;  ///< what is sent is treated as by the line of the scene
+};
+
+/// DDS if it is built in, else UDP; both on the loopback interface.
+[[nodiscard]] std::string default_link();
+
+/// What is wrong with a place to link to; empty: nothing.
+[[nodiscard]] std::string link_complaint(const std::string& where);
+
+/// @throws SetupError if it is not available, saying what to do
+[[nodiscard]] std::unique_ptr<link::Transport> open_link(const LinkChoice& choice,
+                                                         const scene::Scene& scene);
+
+/// Whether the scene can be divided: its network has a line.
+[[nodiscard]] bool has_line(const scene::Scene& scene);
+
+/// Of this run of the scene: a session drawn at random; the other side must have the same text of
+/// the scene file. @throws SetupError for a scene that cannot be divided
+[[nodiscard]] network::RemoteOptions remote_options(const scene::Scene& scene);
+
+}  // namespace repel::runs

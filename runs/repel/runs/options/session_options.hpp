@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// How a run is watched and driven: its live view and its input device.
+#pragma once
+
+#include <string>
+
+#include <repel/runs/options/link_choice.hpp>
+
+namespace repel::runs {
+
+struct SessionOptions {
+  bool view = false;
+  std::string listen = "127.0.0.1:8448";  ///< ADDRESS:PORT of the live view
+  std::string page;                       ///< folder of the files of the page; empty: found
+  std::string device;                     ///< input device; empty: none
+  std::string secret_file;   ///< its first line is the secret that a page must present; empty: none
+  std::string secret_env;    ///< environment variable with the secret, instead
+  std::string secret;        ///< the secret, once settle_secret has read it
+  bool view_only = false;    ///< pages may only watch
+  bool page_drives = false;  ///< pages may override the device
+  LinkChoice link;           ///< to the other side of the scene
+};
+
+}  // namespace repel::runs

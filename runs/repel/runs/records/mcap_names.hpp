@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Names and message schemas of the channels of a recording. Foxglove reads a channel only if every
+/// property of its schema has one type, every array items, and every object properties.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace repel::runs::mcap {
+
+struct Channel {
+  const char* topic;
+  const char* schema;  ///< its name
+  const char* text;    ///< JSON Schema
+};
+
+inline constexpr const char* profile = "";
+inline constexpr const char* run_metadata = "repel run";
+inline constexpr const char* end_metadata = "repel end";
+inline constexpr const char* scene_attachment = "scene.yaml";
+
+/// The robot of an arm, in the order of Scene::arm_setup().
+inline std::string robot_attachment(std::size_t arm) {
+  std::string name = "robot ";
+  return name.append(std::to_string(arm)).append(".urdf");
+}
+
+/// The file of one of Scene::models.
+inline std::string model_attachment(std::size_t model) {
+  std::string name = "model ";
+  return name.append(std::to_string(model)).append(".urdf");
+}
+
+/// A file of Scene::part_lists; those of meshes in URDF files come after those of the scene.
+inline std::string parts_attachment(std::size_t list) {
+  std::string name = "parts ";
+  return name.append(std::to_string(list)).append(".yaml");
+}
+
+/// The inputs of the tick: what a replay needs.
+inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
+  "title": "repel.Inputs", "type": "object",
+  "description": "What a tick has read. SI units, radians, world axes.",
+  "properties": {
+    "tick": {"type": "integer"}, "time_s": {"type": "number"},
+    "arms": {"type": "array", "items": {"type": "object", "properties": {
+      "q": {"type": "array", "items": {"type": "number"}, "description": "joints [rad] or [m]"},
+      "v": {"type": "array", "items": {"type": "number"}, "description": "their rates"},
+      "status": {"type": "integer", "description": "bits of the tick"},
+      "elapsed_ticks": {"type": "integer", "description": "since the tick before"},
+      "q_read": {"type": "array", "items": {"type": "number"},
+        "description": "as read, where that was not believed"},
+      "v_read": {"type": "array", "items": {"type": "number"},
+        "description": "as read, where that was not believed"},
+      "force_read": {"type": "array", "items": {"type": "number"},
+        "description": "of a force sensor [N], axes of the tool"},
+      "torque_read": {"type": "array", "items": {"type": "number"},
+        "description": "likewise [N m], about its origin"},
+      "phase": {"type": "integer", "description": "of the script"},
+      "linear": {"type": "array", "items": {"type": "number"}, "description": "hand [m/s]"},
+      "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
+      "lever_rate": {"type": "number", "description": "hand at the lever [rad/s]"},
+      "direction": {"type": "array", "items": {"type": "number"}, "description": "of the lever"},
+      "turning": {"type": "array", "items": {"type": "number"},
+        "description": "of a lever that turns the tool [rad/m]"},
+      "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
+      "guides": {"type": "integer", "description": "bits of the fixtures, if not as set up"},
+      "guide_strength": {"type": "number", "description": "of the fixtures, if it is not 1"},
+      "compliant": {"type": "integer", "description": "bits of relief, if not as set up"},
+      "second_linear": {"type": "array", "items": {"type": "number"},
+        "description": "of a second hand, if it moves [m/s]; likewise all that follows"},
+      "second_angular": {"type": "array", "items": {"type": "number"},
+        "description": "[rad/s]"},
+      "second_lever_rate": {"type": "number", "description": "[rad/s]"},
+      "second_direction": {"type": "array", "items": {"type": "number"},
+        "description": "of its lever"},
+      "second_turning": {"type": "array", "items": {"type": "number"},
+        "description": "of its lever [rad/m]"},
+      "second_scale": {"type": "number", "description": "if not 1, or not that of the first"},
+      "second_guides": {"type": "integer"}, "second_guide_strength": {"type": "number"},
+      "second_compliant": {"type": "integer"},
+      "not_finite": {"type": "array", "items": {"type": "string"},
+        "description": "what was no finite number: NAME or NAME/INDEX, then nan, inf or -inf"},
+      "sound": {"type": "boolean"}, "silent_for_s": {"type": "number"}}}}}})"};
+
+inline constexpr Channel forces{"/forces", "repel.Forces", R"({
+  "title": "repel.Forces", "type": "object",
+  "description": "What came out of a tick. Wrenches about the origin of the tool, world axes.",
+  "properties": {
+    "tick": {"type": "integer"},
+    "arms": {"type": "array", "items": {"type": "object", "properties": {
+      "force": {"type": "array", "items": {"type": "number"}, "description": "virtual [N]"},
+      "torque": {"type": "array", "items": {"type": "number"}, "description": "virtual [N m]"},
+      "coupling_force": {"type": "array", "items": {"type": "number"}, "description": "[N]"},
+      "coupling_torque": {"type": "array", "items": {"type": "number"}, "description": "[N m]"},
+      "force_n": {"type": "number", "description": "size of the virtual force [N]"},
+      "lever_torque": {"type": "number", "description": "[N m]"},
+      "held_n": {"type": "number", "description": "with which hard walls held the arm [N]"},
+      "hold_margin_m": {"type": "number", "description":
+        "how far off every hard wall it can be stopped, by the proof, if one is near [m]"},
+      "gain": {"type": "number", "description": "of the fail-safe, 0 to 1"},
+      "stop": {"type": "string", "description": "running, holding, braking or released"},
+      "brakes": {"type": "boolean", "description": "the brakes of the arm are asked for"},
+      "torques": {"type": "array", "items": {"type": "number"},
+                  "description": "to the joints [N m] or [N]"}}}}}})"};
+
+inline constexpr Channel separations{"/separations", "repel.Separations", R"({
+  "title": "repel.Separations", "type": "object",
+  "description": "The pairs that are near, the nearest first. Metres, newtons, world axes.",
+  "properties": {
+    "tick": {"type": "integer"}, "nearest_m": {"type": "number", "description": "left out: none"},
+    "near": {"type": "integer"}, "evaluated": {"type": "integer"},
+    "omitted": {"type": "integer", "description": "near as well, but farther than those here"},
+    "pairs": {"type": "array", "items": {"type": "object", "properties": {
+      "pair": {"type": "string"}, "index": {"type": "integer"},
+      "distance": {"type": "number"},
+      "lower": {"type": "number", "description": "left out: unknown"},
+      "upper": {"type": "number", "description": "left out: unknown"},
+      "a": {"type": "array", "items": {"type": "number"}, "description": "witness point"},
+      "b": {"type": "array", "items": {"type": "number"}, "description": "witness point"},
+      "extraction": {"type": "array", "items": {"type": "number"}},
+      "level": {"type": "integer"}, "force": {"type": "number"},
+      "stale": {"type": "boolean"}, "age": {"type": "integer"}}}}}})"};
+
+inline constexpr Channel energy{"/energy", "repel.Energy", R"({
+  "title": "repel.Energy", "type": "object",
+  "description": "The ledger of each module of the networks [J], by arm/module.",
+  "properties": {"tick": {"type": "integer"},
+    "energy_j": {"type": "object", "properties": {},
+      "additionalProperties": {"type": "number"}}}})"};
+
+inline constexpr Channel timing{"/timing", "repel.Timing", R"({
+  "title": "repel.Timing", "type": "object",
+  "properties": {"tick": {"type": "integer"},
+    "compute_us": {"type": "number", "description": "of the tick"},
+    "late_us": {"type": "number", "description": "how long after it was due it began"}}})"};
+
+/// A schema that Foxglove knows by name.
+inline constexpr Channel poses{"/poses", "foxglove.FrameTransforms", R"({
+  "title": "foxglove.FrameTransforms", "type": "object",
+  "description": "Poses of the bodies in the world.",
+  "properties": {"transforms": {"type": "array", "items": {"type": "object",
+    "title": "foxglove.FrameTransform", "properties": {
+      "timestamp": {"type": "object", "title": "time", "properties": {
+        "sec": {"type": "integer", "minimum": 0},
+        "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}}},
+      "parent_frame_id": {"type": "string"}, "child_frame_id": {"type": "string"},
+      "translation": {"type": "object", "title": "foxglove.Vector3", "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}}},
+      "rotation": {"type": "object", "title": "foxglove.Quaternion", "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
+        "w": {"type": "number"}}}}}}}})"};
+
+/// Likewise; its text is scene_update_schema(). Of two channels, since a viewer that jumps to a
+/// moment knows only the last message of each.
+inline constexpr const char* scene_update = "foxglove.SceneUpdate";
+inline constexpr const char* bodies_topic = "/bodies";
+inline constexpr const char* contacts_topic = "/contacts";
+
+}  // namespace repel::runs::mcap

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What happens in a run as messages foxglove.SceneUpdate: its parts, and what pushes them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <repel/loop/tap.hpp>
+#include <repel/runs/records/dated_shapes.hpp>
+#include <repel/runs/records/heading.hpp>
+#include <repel/world/world.hpp>
+
+namespace repel::runs::mcap {
+
+/// The parts of a world: each an entity with the name of the part, in the frame of its body, which
+/// is in `/poses` by the same name; those that are there already get numbers, see told_apart. Its
+/// triangles are those of the live view, mesh_of(shape).
+class Bodies {
+ public:
+  /// @param world as it is at the start; its names, shapes and pairs are copied
+  Bodies(const World& world, const Heading& heading);
+
+  /// To be called at every tick: notes what has come and gone.
+  /// @param reshaped what DatedShapes::take gave for this tick
+  void follow(const Snapshot& tick, const std::vector<DatedShapes::Entry>& reshaped);
+
+  /// A whole update if parts have come or gone or got another shape since the last one; otherwise
+  /// nothing.
+  [[nodiscard]] std::optional<nlohmann::json> update(const Snapshot& tick, std::uint64_t now_ns);
+
+ private:
+  struct Entity {
+    std::size_t body = 0;
+    nlohmann::json json;
+  };
+
+  std::vector<Entity> entities_;  ///< by PartId
+  /// Of parts that have not gone yet: only then they come with it.
+  std::map<std::int32_t, Shape> waiting_;
+  std::vector<std::uint8_t> there_;  ///< Snapshot::is_there of the last tick
+  bool has_changed_ = true;          ///< since the last update
+};
+
+/// [m/N] length of the arrows of forces.
+inline constexpr double arrow_per_newton = 0.002;
+
+/// The near pairs of a tick and the forces on the tools, in the frame of the world.
+class Contacts {
+ public:
+  Contacts(const World& world, const Heading& heading);
+
+  [[nodiscard]] nlohmann::json update(const Snapshot& tick, std::uint64_t now_ns) const;
+
+ private:
+  std::string world_;               ///< its frame
+  std::vector<std::string> pairs_;  ///< ids by PairId
+  std::vector<std::string> sums_;   ///< ids by arm
+  std::vector<double> ranges_;      ///< [m] of the laws, by PairId
+};
+
+/// The JSON Schema of the messages.
+[[nodiscard]] std::string scene_update_schema();
+
+/// The names, where each that was there before gets a number: "seen", "seen #2", ... Viewers tell
+/// frames and entities apart by their names alone.
+[[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& names);
+
+}  // namespace repel::runs::mcap

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A scene that is ready to run once.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <repel/cell/cell.hpp>
+#include <repel/robots/urdf.hpp>
+#include <repel/runs/options/run_options.hpp>
+#include <repel/runs/records/recording.hpp>
+#include <repel/runs/setup/describe.hpp>
+#include <repel/scene/scene.hpp>
+
+namespace repel::runs {
+
+/// The state that a run starts from and consumes.
+struct PreparedRun {
+  PreparedRun(scene::Scene changed, const RunOptions& run, DescribedScene described)
+      : scene(std::move(changed)),
+        options(run),
+        robots(std::move(described.robots)),
+        gaps(std::move(described.gaps)),
+        cell(std::move(described.cell)) {}
+
+  /// With the changes made by the options, the obstacles of its models, and all lists of parts.
+  scene::Scene scene;
+  RunOptions options;
+  std::vector<Robot> robots;      ///< of the arms, in their order
+  std::vector<scene::Gaps> gaps;  ///< of DescribedScene
+  Cell cell;
+};
+
+/// Builds the cell of a scene, and starts the threads of its coprocessor.
+/// @param recording to be replayed; null: none
+/// @param remote see `describe`
+/// @throws SetupError for a scene that cannot be built, with file and line
+[[nodiscard]] std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene,
+                                                   const RunOptions& options,
+                                                   const Recording* recording = nullptr,
+                                                   network::RemoteLink* remote = nullptr);
+
+}  // namespace repel::runs

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/runs/view/view.hpp>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/runs/options/listening.hpp>
+#include <repel/runs/view/arm_inputs_info.hpp>
+#include <repel/runs/view/visuals_info.hpp>
+
+#ifdef REPEL_RUNS_VISUAL
+
+#include <any>
+#include <cmath>
+#include <vector>
+
+#include <repel/network/modules/spaceball.hpp>
+#include <repel/visual/live_view.hpp>
+
+namespace repel::runs {
+namespace {
+
+/// What is not covered of the meshes, for display.
+std::vector<visual::GapsInfo> gaps_info_of(const std::vector<scene::Gaps>& gaps) {
+  std::vector<visual::GapsInfo> infos;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (gaps[i].count == 0) continue;
+    visual::GapsInfo& info = infos.emplace_back();
+    info.part = PartId{static_cast<std::int32_t>(i)};
+    info.count = gaps[i].count;
+    for (const scene::Gap& gap : gaps[i].deepest) info.deepest.push_back({gap.p_M, gap.depth});
+  }
+  return infos;
+}
+
+visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& heading,
+                                bool is_replay) {
+  const scene::Scene& scene = prepared.scene;
+  const Cell& cell = prepared.cell;
+  const RunOptions& options = prepared.options;
+  visual::SceneInfo info = visual::scene_info_of(cell, scene.name);
+  info.gaps = gaps_info_of(prepared.gaps);
+  info.replay = is_replay;
+  info.duration = info.replay ? options.seconds : 0.0;
+  const auto spare =
+      cell.loose().subspan(scene.loose.size(), static_cast<std::size_t>(scene.spare.count));
+  info.spare.assign(spare.begin(), spare.end());
+  for (std::size_t i = 0; i < heading.arms.size(); ++i) {
+    visual::ArmInfo& added = info.arms[i];
+    added.modules = heading.arms[i].modules;
+    added.phases = heading.arms[i].phases;
+    for (const network::Phase& phase : scene.arm_setup(i).script) {
+      const double rate = std::abs(phase.lever_rate);
+      if (rate > added.max_lever_rate) added.max_lever_rate = rate;
+    }
+    for (const scene::Module& module : scene.arm_setup(i).network.modules) {
+      const auto* ball = std::any_cast<network::SpaceballOptions>(&module.options);
+      if (ball == nullptr) continue;
+      added.max_speed = ball->saturation;
+      added.max_turn = ball->angular_saturation;
+    }
+    note_inputs(scene.arm_setup(i).network, added);
+  }
+  return info;
+}
+
+class ServedView final : public View {
+ public:
+  ServedView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
+             const SessionOptions& session, const std::string& device)
+      : served_(info, world, tap, controls, options_of(session, device, controls)) {
+    announce(session, served_.url());
+  }
+
+ private:
+  static visual::ViewOptions options_of(const SessionOptions& session, const std::string& device,
+                                        const Controls& controls) {
+    const Place place = place_of(session.listen).value_or(Place{});
+    visual::ViewOptions options;
+    options.pages_drive = !session.view_only &&
+                          (device.empty() || session.page_drives || !controls.no_driving.empty());
+    options.master = device;
+    options.page = session.page;
+    options.server.address = place.address;
+    options.server.port = place.port;
+    options.server.secret = session.secret;
+    return options;
+  }
+
+  visual::RunView served_;
+};
+
+}  // namespace
+
+std::unique_ptr<View> open_view(const PreparedRun& prepared, const Heading& heading, bool is_replay,
+                                Tap& tap, Controls& controls, const SessionOptions& session,
+                                const std::string& device) {
+  visual::SceneInfo info = scene_info_of(prepared, heading, is_replay);
+  add_visuals(prepared, info);
+  if (!controls.no_conduct.empty()) info.spare.clear();
+  return std::make_unique<ServedView>(info, prepared.cell.world(), tap, controls, session, device);
+}
+
+}  // namespace repel::runs
+
+#else
+
+namespace repel::runs {
+
+std::unique_ptr<View> open_view(const PreparedRun& /*prepared*/, const Heading& /*heading*/,
+                                bool /*is_replay*/, Tap& /*tap*/, Controls& /*controls*/,
+                                const SessionOptions& /*session*/, const std::string& /*device*/) {
+  throw SetupError("the live view is not built in; to have it: apt-get install libboost-dev");
+}
+
+}  // namespace repel::runs
+
+#endif
