@@ -16,8 +16,9 @@ files() {
 
 breaches() {
   rooms=$(cat "$here/rooms.txt")
+  runs=$(cat "$here/runs.txt")
   files | grep -E '\.(hpp|cpp|cmake|txt|sh|awk|md|yaml|urdf)$|/[^.]*$' | grep -v '/LICENSE$' |
-    tr '\n' '\0' | xargs -0 awk -v rooms="$rooms" -f "$here/lines.awk"
+    tr '\n' '\0' | xargs -0 awk -v rooms="$rooms" -v runs="$runs" -f "$here/lines.awk"
   headers_without_a_test
   headers_of_the_kernel_not_in_the_umbrella
   sources_not_in_the_one
@@ -72,8 +73,8 @@ included_from_the_umbrella() {
 # unit is X.hpp with X.cpp; the header may stand in repel/PART. An include in quotes counts within
 # its folder. What leads nowhere is taken away first: without a circle, nothing is left.
 circles() {
-  find core control robots backends apps bench -name '*.[hc]pp' -exec grep -Hn '^#include' {} + \
-    2>/dev/null | awk -F '[:<">]' '
+  find core control robots backends runs apps bench -name '*.[hc]pp' \
+    -exec grep -Hn '^#include' {} + 2>/dev/null | awk -F '[:<">]' '
       function unit(path) {
         while (sub("[^/]+/[.][.]/", "", path)) {}
         if (!sub("^.*/repel/", "", path)) sub("^backends/", "", path)

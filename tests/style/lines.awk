@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The rules that can be seen line by line. `rooms` names the rooms of the core, left to right.
+# The rules that can be seen line by line. `rooms` names the rooms of the core, left to right, and
+# `runs` the folders of runs/repel/runs.
 
 function breach(rule, what) { printf "%s:%d: [%s] %s\n", FILENAME, FNR, rule, what }
 
@@ -32,9 +33,26 @@ function check_core_include(path, room) {
   }
 }
 
+# The same for the folders of runs/repel/runs.
+function folder_of(path, parts) {
+  if (!sub(/.*repel\/runs\//, "", path)) return 0
+  split(path, parts, "/")
+  return place[parts[1]]
+}
+
+function check_runs_include(path) {
+  if (path !~ /^repel\/runs\//) return
+  if (!own_folder) breach("include-order", path " is of runs, and this is none of their folders")
+  else if (!folder_of(path)) breach("include-order", path " is in no folder of runs.txt")
+  else if (folder_of(path) > own_folder)
+    breach("include-order", path " is to the right of this folder")
+}
+
 BEGIN {
   count = split(rooms, names, " ")
   for (i = 1; i <= count; i++) order[names[i]] = i
+  count = split(runs, names, " ")
+  for (i = 1; i <= count; i++) place[names[i]] = i
   open_work = "(^|[^A-Za-z])(TO" "DO|FIX" "ME|XX" "X)([^A-Za-z]|$)"
   machine_path = "(^|[^A-Za-z0-9_.$}])/(home|work|root|Users|mnt|media)/"
 }
@@ -49,6 +67,10 @@ FNR == 1 {
   is_core = FILENAME ~ /^\.\/(core|control)\//
   is_library = FILENAME ~ /^\.\/(core|control|robots|backends)\//
   own_room = is_core ? room_of(FILENAME) : 0
+  is_runs = FILENAME ~ /^\.\/runs\//
+  own_folder = is_runs ? folder_of(FILENAME) : 0
+  is_outside_apps = FILENAME !~ /^\.\/apps\//
+  is_build = FILENAME ~ /(\/CMakeLists\.txt|\.cmake)$/
   has_pragma = has_file_comment = 0
   if (is_core && is_header && FILENAME !~ /repel\/(repel|control)\.hpp$/ && !own_room)
     breach("core-include", "this header is in no room of the core")
@@ -72,6 +94,11 @@ is_library && /std::(cout|cerr|clog)|[^a-z_:]printf *\(|[^a-z_]puts *\(/ {
   breach("library-output", "a library does not write to the terminal")
 }
 is_core && /^ *# *include/ { check_core_include(included_path($0)) }
+is_runs && /^ *# *include/ { check_runs_include(included_path($0)) }
+is_outside_apps && (/^ *# *include *[<"]([^>"]*\/)?apps\// ||
+    is_build && !/^ *#/ && /(^|[^A-Za-z0-9_])apps\/[^ ]|\/apps([^A-Za-z0-9_\/]|$)/) {
+  breach("arrow-into-apps", "what others need of a program belongs to a library")
+}
 FILENAME ~ /^\.\/robots\// && /^ *# *include.*repel\/(bullet|ode|ideal|scene|visual|devices)\// {
   breach("include-order", "robots know no back end")
 }
