@@ -26,6 +26,7 @@
 #include <repel/runs/report/html_report.hpp>
 #include <repel/runs/report/report.hpp>
 #include <repel/runs/report/results.hpp>
+#include <repel/runs/setup/prepared_run.hpp>
 #include <repel/runs/station/station.hpp>
 #include <repel/runs/wire/station_program.hpp>
 #include <repel/simulated/changed_arm.hpp>
@@ -343,11 +344,11 @@ Work work_of(const Arguments& arguments) {
   } else {
     work.scene = scene::load(find_scene(arguments.scene));
     work.options = arguments.run;
-    if (arguments.rate_hz <= 0.0) work.options.rate_hz = work.scene.rate_hz;
-    if (arguments.rate_hz > 0.0) work.options.rate_hz = arguments.rate_hz;
+    const runs::RunOptions asked = runs::options_of(work.scene);
+    work.options.rate_hz = arguments.rate_hz > 0.0 ? arguments.rate_hz : asked.rate_hz;
     const auto mode = coprocessor_mode_named(arguments.coprocessor);
-    work.options.coprocessor = mode.value_or(work.scene.coprocessor);
-    const int threads = std::max(work.scene.budget.threads, mode ? 1 : 0);
+    work.options.coprocessor = mode.value_or(asked.coprocessor);
+    const int threads = std::max(asked.threads, mode ? 1 : 0);
     work.options.threads = arguments.threads >= 0 ? arguments.threads : threads;
     const bool is_driven = arguments.session.view || !arguments.session.device.empty() ||
                            arguments.session.link.side == link::Side::site;

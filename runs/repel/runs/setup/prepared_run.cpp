@@ -89,6 +89,14 @@ void set_hold(CellDescription& cell, const std::string& word) {
 
 }  // namespace
 
+RunOptions options_of(const scene::Scene& scene) {
+  RunOptions options;
+  options.rate_hz = scene.rate_hz;
+  options.threads = scene.budget.threads;
+  options.coprocessor = scene.coprocessor;
+  return options;
+}
+
 std::unique_ptr<PreparedRun> prepare(const scene::Scene& scene, const RunOptions& options,
                                      const Recording* recording, network::RemoteLink* remote) {
   scene::Scene changed = as_run(scene, options);

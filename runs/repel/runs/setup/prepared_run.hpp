@@ -33,6 +33,9 @@ struct PreparedRun {
   Cell cell;
 };
 
+/// How a scene asks to be run: its rate and its coprocessor; the rest by default.
+[[nodiscard]] RunOptions options_of(const scene::Scene& scene);
+
 /// Builds the cell of a scene, and starts the threads of its coprocessor.
 /// @param recording to be replayed; null: none
 /// @param remote see `describe`
