@@ -12,6 +12,7 @@
 #include <repel/cell/leverage.cpp>
 #include <repel/cell/robot_end.cpp>
 #include <repel/cell/settled_laws.cpp>
+#include <repel/cell/stability_budget.cpp>
 #include <repel/cell/workspace.cpp>
 #include <repel/loop/active_contacts.cpp>
 #include <repel/loop/arm_bodies.cpp>

@@ -310,6 +310,7 @@ RunResult result_of(const PreparedRun& prepared) {
   for (const ArmDescription& arm : cell.description().arms) {
     ArmResult& added = result.arms.emplace_back();
     added.name = arm.name;
+    added.stability = stability_budget(cell, result.arms.size() - 1);
     added.held = prepared.robots[result.arms.size() - 1].held;
     for (const ArmLink& link : arm.model.links) {
       added.joints.push_back(link.type);

@@ -75,11 +75,25 @@ void print_modules(const ArmResult& arm, std::FILE* out) {
   }
 }
 
+void print_stability(const ArmResult& arm, std::FILE* out) {
+  std::fprintf(out,
+               "  stability              %sat the start: K T^2/M, B T/M, needed / its damping\n",
+               arm.name.empty() ? "" : (arm.name + ": ").c_str());
+  for (const StabilityShare& share : arm.stability) {
+    std::fprintf(out, "    %-20s %9.3g %9.3g", share.source.c_str(), share.spring, share.damper);
+    if (share.needed_damping > 0.0) std::fprintf(out, " %9.3g", share.needed_damping);
+    std::fputc('\n', out);
+  }
+}
+
 }  // namespace
 
 void print_network(const RunResult& r, std::FILE* out) {
   host::print_times("network alone", r.network_time, out);
-  for (const ArmResult& arm : r.arms) print_modules(arm, out);
+  for (const ArmResult& arm : r.arms) {
+    print_modules(arm, out);
+    print_stability(arm, out);
+  }
 }
 
 ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
@@ -111,6 +125,17 @@ ordered_json modules_to_json(const std::vector<ModuleResult>& modules) {
                             {"damping_n_s_per_m", m.coupling->damping},
                             {"angular_stiffness_n_m_per_rad", m.coupling->angular_stiffness},
                             {"angular_damping_n_m_s_per_rad", m.coupling->angular_damping}};
+  }
+  return list;
+}
+
+ordered_json stability_to_json(const ArmResult& arm) {
+  ordered_json list = ordered_json::array();
+  for (const StabilityShare& share : arm.stability) {
+    list.push_back({{"source", share.source},
+                    {"spring", share.spring},
+                    {"damper", share.damper},
+                    {"needed_damping", share.needed_damping}});
   }
   return list;
 }

@@ -10,11 +10,15 @@
 
 namespace repel::runs {
 
-/// Prints the computing time of the networks and one line for each module of each arm.
+/// Prints the computing time of the networks, one line for each module of each arm, and one for
+/// each source of its stability budget.
 void print_network(const RunResult& result, std::FILE* out);
 
 /// The modules of one network as JSON.
 [[nodiscard]] nlohmann::ordered_json modules_to_json(const std::vector<ModuleResult>& modules);
+
+/// What each spring and damper takes of the stability of an arm, as JSON.
+[[nodiscard]] nlohmann::ordered_json stability_to_json(const ArmResult& arm);
 
 /// Adds what the force sensor of an arm measured to its report; null without one.
 void add_measured(const ArmResult& arm, nlohmann::ordered_json& report);

@@ -165,7 +165,8 @@ ordered_json partner_list(const RunResult& r) {
                             {"stop", stop_ticks(arm.totals)},
                             {"physical_contact", contact_to_json(r, arm)},
                             {"held_joints", held_list(arm)},
-                            {"modules", modules_to_json(arm.modules)}};
+                            {"modules", modules_to_json(arm.modules)},
+                            {"stability", stability_to_json(arm)}};
     add_payload(r.scene.arm_setup(i).robot, partner);
     add_measured(arm, partner);
     list.push_back(std::move(partner));
@@ -566,6 +567,7 @@ void write_json(const RunResult& r, std::ostream& file) {
   report["hold_gaps_left_out"] = r.totals().gaps_left_out;
   report["held_joints"] = held_list(r.arms.front());
   report["modules"] = modules_to_json(r.arms.front().modules);
+  report["stability"] = stability_to_json(r.arms.front());
   report["partners"] = partner_list(r);
   report["nearest_pair"] = r.nearest_pair;
   report["nearest_wall_m"] = r.walls.nearest;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/cell/stability_budget.hpp>
 #include <repel/common/deadline.hpp>
 #include <repel/host/machine.hpp>
 #include <repel/loop/record.hpp>
@@ -99,7 +100,8 @@ struct ArmResult {
   RunTotals totals;                   ///< of this arm; those on pairs are of the whole world
   std::vector<ModuleResult> modules;  ///< of its network, in the same order
   std::vector<TickRecord> records;
-  ContactReport contact;  ///< physical contacts, with RunOptions::contact
+  std::vector<StabilityShare> stability;  ///< at the start
+  ContactReport contact;                  ///< physical contacts, with RunOptions::contact
   ArmChatter chatter;
 };
 
