@@ -60,7 +60,9 @@ class OwnWorld {
     evaluated().for_each_near([&count](const NearPair&) { ++count; });
     std::vector<NearPair> pairs;
     pairs.reserve(count);
-    coprocessor_->for_each_near([&pairs](const NearPair& near) { pairs.push_back(near); });
+    coprocessor_->for_each_near([&pairs](const NearPair& near) {
+      if (!near.is_watched) pairs.push_back(near);
+    });
     nb::list all;
     for (const NearPair& near : pairs) {
       const Pair& pair = world_.pair(near.pair);

@@ -91,6 +91,7 @@ TEST(PairSet, AWatchedPairIsKnownWithoutAnEvaluationInEachTick) {
       ++near;
       EXPECT_NEAR(pair.separation.extraction_W.z(), 1.0, 1e-9);
       EXPECT_EQ(pair.age, 0);
+      EXPECT_EQ(pair.is_watched, pair.stale);
     });
     const double gap = 0.5 - 1e-3 * tick;
     EXPECT_TRUE(near == 1 || gap > 0.319) << gap << " m";

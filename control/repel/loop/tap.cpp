@@ -66,6 +66,7 @@ void Tap::fill(Snapshot& s, const Coprocessor& coprocessor, std::span<const Tick
   // A heap with the farthest pair on top, which a nearer one replaces.
   const auto begin = s.pairs.begin();
   coprocessor.for_each_near([&](const NearPair& near) {
+    if (near.is_watched) return;
     if (s.pair_count < static_cast<int>(s.pairs.size())) {
       s.pairs[static_cast<std::size_t>(s.pair_count++)] = near;
     } else {

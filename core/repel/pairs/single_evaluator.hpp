@@ -166,9 +166,15 @@ class SingleEvaluator {
   [[nodiscard]] std::optional<NearPair> near_pair(int slot, const Motion& motion) const noexcept {
     const PairAnswer& answer = memory_.answer(slot);
     const bool stale = answer.tick != motion.tick;
-    if (stale && answer.pushed_at != now_ && !answer.is_watched) return std::nullopt;
-    return NearPair{memory_.tracking(slot).pair,         answer.last,         answer.force, stale,
-                    stale ? answer.age(motion.tick) : 0, answer.nearer != 0.0};
+    const bool is_waiting = stale && answer.pushed_at != now_;
+    if (is_waiting && !answer.is_watched) return std::nullopt;
+    return NearPair{.pair = memory_.tracking(slot).pair,
+                    .separation = answer.last,
+                    .force = answer.force,
+                    .stale = stale,
+                    .age = stale ? answer.age(motion.tick) : 0,
+                    .has_patch = answer.nearer != 0.0,
+                    .is_watched = is_waiting};
   }
 
   /// Call before a stale pair is evaluated: notes the bound that its force would come from.
