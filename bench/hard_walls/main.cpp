@@ -173,7 +173,7 @@ bench::Result ways(const bench::Options& options) {
       "Both filter the torques of the cell with springs. That cell has the option `touches`, so it "
       "does not fault joints for being held or moved by the filter. The others have it not: faults "
       "stop them at times, and `tools moved` does not compare.",
-      "The time is that of the filter with the points of its gaps, without that of the distances."};
+      "Times include finding the contact points, not the distance queries."};
   return result;
 }
 

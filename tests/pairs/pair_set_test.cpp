@@ -72,8 +72,8 @@ bool has_one_deepest_point(const World& world, const detail::PairSet& set) {
   return true;
 }
 
-// Walls that hold made a tick five times as dear: every pair within the way of braking was
-// evaluated anew in each tick, where only its direction is needed.
+// Hard walls made a tick up to eight times as dear: it evaluated every pair within the stopping
+// distance. Only the direction of a far pair is needed.
 TEST(PairSet, AWatchedPairIsKnownWithoutAnEvaluationInEachTick) {
   TwoBodies watched(0.3), soft;
   AllPairs of_watched(watched.world), of_soft(soft.world);

@@ -26,9 +26,10 @@ struct StabilityShare {
                                 ///< by d ticks; 0 where damping is added while it acts
 };
 
-/// The sources of an arm of a cell that is at its start: the stiffest of the walls that its tool
-/// can meet, their turning (a patch of half width a, force F and tilt e has F a / e), coupling,
-/// fixtures, and the limits of each joint. Not for the tick.
+/// The stability budget of an arm at its start: the stiffest wall of its tool, the turning of
+/// contact patches (F a / e, of half width a, force F and tilt e), coupling, fixtures, and the
+/// limits of each joint. Not for the tick.
+/// @param cell at its start @param arm its place in the description
 [[nodiscard]] std::vector<StabilityShare> stability_budget(const Cell& cell, std::size_t arm);
 
 }  // namespace repel
