@@ -32,8 +32,6 @@ constexpr Known known[] = {
     {Arm::puma, "drift of 0.1 rad/s, shoulder"},
     {Arm::puma, "readings late by 5 ticks"},
     {Arm::puma, "brake does not release, shoulder"},
-    {Arm::puma, "wrist of 1e-4 kg m^2, damped at its end"},
-    {Arm::puma, "wrist of 2e-5 kg m^2, damped at its end"},
 };
 
 bool is_known(Arm arm, std::string_view name) {

@@ -165,6 +165,38 @@ TEST_F(DrivenTool, AWallThatMovesCarriesItAndAnOperatorDoesNot) {
   EXPECT_NEAR(sent(v, asked, true)[0], 100.0, 1e-3);
 }
 
+// What a hard wall takes off is shared out by mass, so a light joint gets most of it. It was let go
+// by the torque of a stop that the operator withstood, and turned at 80 rad/s.
+TEST(SpeedBounds, WallThatTheOperatorWithstandsLetsNoJointGo) {
+  Rails rails;
+  rails.model.links[0].velocity_limit = 0.2;
+  ArmInertia inertia(rails.model);
+  (void)inertia.update(rails);
+  SpeedBounds speeds(rails.model, 2.0 * period);
+  LeastConstraint problem(3, 8);
+  const std::vector<double> none(3, 0.0), least(3, -1e6), most(3, 1e6);
+  const auto mass = [](Eigen::Index i) { return i == 0 ? 0.01 : i % 4 == 0 ? 1.0 : 0.0; };
+  const auto joint_after = [&](const Vector& walls) {
+    EXPECT_TRUE(problem.begin(3, mass, period));
+    problem.ask(none, none);
+    speeds.observe({}, inertia);
+    (void)speeds.foresee(problem.mass(), none, none, none, {});
+    Vector h = Vector::Zero(3);
+    h(0) = h(1) = 1.0;
+    problem.add(h, 0.0)->least_rate = 0.5;
+    int rounds = 0;
+    do {
+      (void)problem.solve(least, most);
+    } while (rounds++ < 4 && speeds.bound(problem, none, walls, {}));
+    EXPECT_NEAR(period * (problem.acceleration()(0) + problem.acceleration()(1)), 0.5, 1e-3);
+    return period * problem.acceleration()(0);
+  };
+  EXPECT_LE(joint_after(Vector::Zero(3)), 0.2);
+  Vector withstood = Vector::Zero(3);
+  withstood(0) = 100.0;
+  EXPECT_LE(joint_after(withstood), 0.2);
+}
+
 // A bound that forgets dry friction holds back what has not overcome it yet: an arm stayed 20 mm in
 // a wall that pushed it.
 TEST_F(DrivenTool, WhatFrictionTakesMovesNothing) {

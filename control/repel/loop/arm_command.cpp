@@ -20,7 +20,7 @@ ArmCommand::ArmCommand(const ArmModel& model, double period, const TeleoperatorO
       barrier_(model, period, options.drive_delay, options.torques.slew_time, pairs,
                options.barrier) {
   walls_.setZero(static_cast<Eigen::Index>(model.links.size()));
-  asked_ = total_ = walls_;
+  asked_ = total_ = foreseen_ = walls_;
 }
 
 void ArmCommand::judge(TickRecord& record, const JointWatch& watch, ArmState state,
@@ -132,7 +132,8 @@ void ArmCommand::yield(const ArmMotion& motion, const TorqueShares& shares) noex
     total_.coeffRef(i) = shares.walls > 0.0 ? shares.walls * walls_.coeff(i) : 0.0;
     if (share > 0.0) total_.coeffRef(i) += share * (asked_.coeff(i) - walls_.coeff(i));
   }
-  const auto less = motion.network.given_up(total_);
+  foreseen_ = motion.network.foreseen(total_);
+  const auto less = motion.network.given_up(foreseen_);
   asked_ = asked_ - less;
   walls_ = walls_ - less;
 }

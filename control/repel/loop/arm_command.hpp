@@ -62,6 +62,14 @@ class ArmCommand {
   [[nodiscard]] bool has_let_go() const noexcept;
   /// The walls that push the arm out of its start position act at their full share.
   [[nodiscard]] bool pushes_out_whole() const noexcept { return exit_share_ >= 1.0; }
+  /// [N m] That were sent in the last tick, without the weight.
+  [[nodiscard]] const network::Vec<network::any_size>& sent() const noexcept {
+    return torques_.net();
+  }
+  /// [rad/s] By which what was asked for in the last tick is to change the rates.
+  [[nodiscard]] const network::Vec<network::any_size>& foreseen() const noexcept {
+    return foreseen_;
+  }
   /// The last torques were not finite: all states are to be reset.
   [[nodiscard]] bool is_poisoned() const noexcept { return is_poisoned_; }
 
@@ -98,9 +106,10 @@ class ArmCommand {
   StopControl stop_control_;
   JointTorques torques_;
   EntryBarrier barrier_;
-  network::Vec<network::any_size> walls_;  // [N m] of walls and limits on the joints
-  network::Vec<network::any_size> asked_;  // [N m] of the whole network
-  network::Vec<network::any_size> total_;  // [N m] the same, as far as it is sent
+  network::Vec<network::any_size> walls_;     // [N m] of walls and limits on the joints
+  network::Vec<network::any_size> asked_;     // [N m] of the whole network
+  network::Vec<network::any_size> total_;     // [N m] the same, as far as it is sent
+  network::Vec<network::any_size> foreseen_;  // [rad/s] by which that changes the rates
   double exit_share_ = 0.0;
   bool is_poisoned_ = false;
   bool is_enabled_ = true;    // the drive of the arm

@@ -123,11 +123,15 @@ bool SpeedBounds::add(LeastConstraint& problem, const ArmInertia::Vector& h, dou
   row->tag = tag;
   row->least_rate = rate - problem.step() * (limit + rate) / horizon_;
   double by_walls = 0.0;
+  double by_all = 0.0;
   for (Eigen::Index i = 0; i < h.size(); ++i) {
     row->rate += problem.step() * h.coeff(i) * friction_.coeff(i);
+    by_all += problem.step() * h.coeff(i) * problem.asked_acceleration().coeff(i);
     if (walls != nullptr) by_walls += problem.step() * row->moved.coeff(i) * walls->coeff(i);
   }
-  if (walls != nullptr) row->least_rate = std::min(row->least_rate, row->rate + by_walls);
+  // Walls that the operator withstands do not move it.
+  const double pushed_out = std::max(by_walls, by_all);
+  if (walls != nullptr) row->least_rate = std::min(row->least_rate, row->rate + pushed_out);
   return true;
 }
 

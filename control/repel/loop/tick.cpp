@@ -213,6 +213,8 @@ void Teleoperator::run_network() noexcept {
   }
   signals_.rates = flow_.flow();
   signals_.mean_rates = flow_.mean();
+  signals_.sent = command_.sent();
+  signals_.foreseen = command_.foreseen();
   signals_.jacobian = jacobian_;
   signals_.inertia = inertia_.matrix();
   signals_.X_WT = X_WT_;

@@ -193,9 +193,19 @@ double Network::sign_of_end(int index, const Node& node) noexcept {
   return line_on_left == end.root_on_right ? 1.0 : -1.0;
 }
 
-Vec<any_size> Network::given_up(const Vec<any_size>& total) const noexcept {
-  if (prediction_ < 0) return Vec<any_size>::Zero(total.size());
-  return nodes_[static_cast<std::size_t>(prediction_)].module.as<Prediction>()->given_up(total);
+const Prediction* Network::prediction() const noexcept {
+  if (prediction_ < 0) return nullptr;
+  return nodes_[static_cast<std::size_t>(prediction_)].module.as<Prediction>();
+}
+
+Vec<any_size> Network::foreseen(const Vec<any_size>& total) const noexcept {
+  const Prediction* known = prediction();
+  return known != nullptr ? known->foreseen(total) : Vec<any_size>::Zero(total.size());
+}
+
+Vec<any_size> Network::given_up(const Vec<any_size>& change) const noexcept {
+  const Prediction* known = prediction();
+  return known != nullptr ? known->given_up(change) : Vec<any_size>::Zero(change.size());
 }
 
 }  // namespace repel::network

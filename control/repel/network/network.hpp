@@ -11,6 +11,8 @@
 
 namespace repel::network {
 
+class Prediction;
+
 /// A connection of two ports. `shown` and `state` belong to the side away from the root, with
 /// effort into that side.
 struct Connection {
@@ -56,8 +58,9 @@ class Network {
 
   /// Torques of all walls and limits on the joints, as of the last `run` [N m].
   [[nodiscard]] const Vec<any_size>& walls() const noexcept { return walls_; }
-  /// Prediction::given_up of the torques `total` [N m]; zero without a prediction.
-  [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept;
+  /// Prediction::foreseen and given_up; zero without a prediction.
+  [[nodiscard]] Vec<any_size> foreseen(const Vec<any_size>& total) const noexcept;
+  [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& change) const noexcept;
 
   /// The modules, in the order of the plan.
   [[nodiscard]] const std::vector<Node>& nodes() const noexcept { return nodes_; }
@@ -94,6 +97,8 @@ class Network {
   };
 
   void predict(const Signals& signals) noexcept;
+  // Null when there is none.
+  [[nodiscard]] const Prediction* prediction() const noexcept;
   bool stuck(const Step& step) noexcept;
   [[nodiscard]] Connection& at(int index) noexcept;
   [[nodiscard]] Node& node_at(const Step& step) noexcept;

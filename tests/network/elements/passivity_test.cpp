@@ -104,6 +104,22 @@ double left_of_ten(PassivityController<1>& controller, double flow, double suppl
 // A wall that recedes takes energy: 1 W of it with the device behind it, which follows.
 // Regression: what the wall took was forgotten before what the device gave was counted, and the
 // device could have it back.
+// A stop whose damping holds a light joint gives next to nothing of what it asks for. Charged with
+// all of it, it had returned what was stored within two ticks, and let go.
+TEST(Passivity, WhatAnEffortGaveLessIsNotCharged) {
+  for (const double less : {0.0, 9.0, 20.0}) {
+    PassivityController<1> charged({}, Vec<1>::Ones());
+    const Vec<1> in(1.0), effort(10.0);
+    (void)charged.step(effort, in, in, 0.1);
+    EXPECT_NEAR(charged.energy(), 1.0, 1e-12);
+    EXPECT_EQ(charged.step(effort, Vec<1>(-0.5), in, 0.1), 0.0);
+    charged.give_up(Vec<1>(less), Vec<1>(-0.5), 0.1);
+    const double given = 0.05 * std::max(0.0, 10.0 - less);
+    EXPECT_NEAR(charged.energy(), 1.0 - given, 1e-12);
+    EXPECT_EQ(charged.step(effort, Vec<1>(-0.9), Vec<1>(-0.5), 0.1) > 0.0, less == 0.0);
+  }
+}
+
 TEST(Passivity, WhatTheSourceTookIsNotThereToReturn) {
   PassivityController<1> controller({.most_damping = 0.0}, one);
   EXPECT_EQ(left_of_ten(controller, 0.1, -1.0), 10.0);

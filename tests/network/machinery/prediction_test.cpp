@@ -73,7 +73,7 @@ struct Joint {
       signals.arm_power = 1e12;
       EXPECT_TRUE(robot.run(signals));
       const Vec<any_size> torque = robot.find<PumaJoints>()->torques();
-      under_way.push_back((torque - robot.given_up(torque))(0));
+      under_way.push_back((torque - robot.given_up(robot.foreseen(torque)))(0));
       const double acceleration = under_way.front() / mass;
       under_way.pop_front();
       const double before = v(0);
@@ -276,7 +276,8 @@ TEST(Prediction, ShowsTheEffortAtTheMeasuredFlow) {
       const Eigen::VectorXd taken_back = Prediction::leak(0.0) / T * h * signals.tool_flow();
       EXPECT_LE((v - at_root.flow - u - taken_back).norm(), 1e-9 * (1.0 + v.norm()));
       const Eigen::VectorXd less = damping * held.llt().solve(on_arm);
-      EXPECT_LE((prediction.given_up(on_arm) - less).norm(), 1e-9 * (1.0 + less.norm()));
+      EXPECT_LE((prediction.given_up(prediction.foreseen(on_arm)) - less).norm(),
+                1e-9 * (1.0 + less.norm()));
     }
   }
 }

@@ -142,7 +142,7 @@ class Rig {
     direction_ = null_direction(signals_.jacobian, direction_);
     ASSERT_TRUE(network_.run(signals_));
     const Vec<any_size> torque = network_.find<PumaJoints>()->torques();
-    under_way_.push_back(torque - network_.given_up(torque));
+    under_way_.push_back(torque - network_.given_up(network_.foreseen(torque)));
     const Vector drive = under_way_.front() + push * direction_;
     under_way_.pop_front();
     const int steps = std::max(1, static_cast<int>(std::lround(period_ / 0.001)));

@@ -123,6 +123,19 @@ TEST(PumaJoints, ReportTheEnergyThatHoldingATorqueGives) {
   }
 }
 
+// A stop asked 475 N m of a light wrist, got 0.3 of it, and 4 J by sampling were read off the rest.
+TEST(PumaJoints, TorqueThatWasHeldBackGivesNoEnergy) {
+  PumaJoints arm(3);
+  Signals signals = moving(Vector::Zero(3), Vector::Zero(3));
+  arm.read(signals);
+  arm.incident({Vector::Constant(3, 475.0), Vector::Zero(3)});
+  signals = moving(Vector::Ones(3), Vector::Ones(3));
+  signals.sent = Vector::Zero(3);
+  signals.sent << 0.3, -0.3, 500.0;
+  arm.read(signals);
+  EXPECT_NEAR(arm.sampling_energy(), period * (0.3 + 0.0 + 475.0), 1e-9);
+}
+
 TEST(PumaJoints, RefuseNoJointsAndTooMany) {
   EXPECT_THROW(PumaJoints(0), SetupError);
   EXPECT_THROW(PumaJoints(most_joints + 1), SetupError);

@@ -100,6 +100,17 @@ class PassivityController {
     return damping;
   }
 
+  /// Corrects both accounts for what the effort of the last step gave less, as its flow changed in
+  /// the period: to nothing at most. @param flow of that step @param period [s]
+  void give_up(const Vec<N>& less, const Vec<N>& flow, double period) noexcept {
+    for (Eigen::Index i = 0; i < held_.size(); ++i) {
+      double& held = held_.coeffRef(i);
+      const double now = std::clamp(held - less.coeff(i), std::min(0.0, held), std::max(0.0, held));
+      energy_ = std::max(0.0, energy_ + period * (now - held) * flow.coeff(i));
+      held = now;
+    }
+  }
+
   /// Port energy [J], never negative.
   [[nodiscard]] double energy() const noexcept { return energy_; }
   /// Weight of each direction in the damping.

@@ -43,6 +43,8 @@ struct Signals {
   Vec<any_size> joints;          ///< q [rad], [m]
   Vec<any_size> rates;           ///< [rad/s], [m/s] the measured flow
   Vec<any_size> mean_rates;      ///< [rad/s], [m/s] (q - last q) / elapsed
+  Vec<any_size> sent;            ///< [N m], [N] that the joints got in the last period beyond their
+                                 ///< weight; of size 0: what the network returned
   Jacobian jacobian;             ///< of the tool
   Pose X_WT = Pose::Identity();  ///< [m]
   Wrench walls;                ///< [N, N m] of the world model on the tool, about its origin, in W,
@@ -51,6 +53,8 @@ struct Signals {
                                ///< the links on the tool of the same arm
   double walls_power = 0.0;    ///< [W] supplied to the tool by moving obstacles
   double arm_power = 0.0;      ///< [W] and to the links
+  Vec<any_size> foreseen;      ///< [rad/s], [m/s] by which the torques of the last tick were to
+                               ///< change the rates; of size 0: not at all
   Mat<any_size> inertia;       ///< [kg m^2] or [kg] of the joints, symmetric, as the modules move
                                ///< them: 1 / (1 + g) of the arm's with a FORCE SENSOR; of size 0:
                                ///< not known

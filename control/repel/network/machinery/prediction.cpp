@@ -67,14 +67,19 @@ void Prediction::incident(const PortState<any_size>& at_root,
     dense::transposed_product(jacobian_, on_arm, sent_);
   }
   sent_ += walls_;
-  if (has_damping_) sent_ -= given_up(sent_);
+  if (has_damping_) sent_ -= given_up(foreseen(sent_));
 }
 
-Vec<any_size> Prediction::given_up(const Vec<any_size>& total) const noexcept {
-  if (!is_known_ || !has_damping_) return Vec<any_size>::Zero(total.size());
-  Vec<any_size> moved = total;
-  held_.solve(moved);
-  return dense::product<Vec<any_size>>(damping_, moved);
+Vec<any_size> Prediction::foreseen(const Vec<any_size>& total) const noexcept {
+  if (!is_known_) return Vec<any_size>::Zero(total.size());
+  Vec<any_size> change = total;
+  held_.solve(change);
+  return change;
+}
+
+Vec<any_size> Prediction::given_up(const Vec<any_size>& change) const noexcept {
+  if (!is_known_ || !has_damping_) return Vec<any_size>::Zero(change.size());
+  return dense::product<Vec<any_size>>(damping_, change);
 }
 
 void Prediction::observe(const Signals& signals) noexcept {

@@ -85,9 +85,11 @@ class Prediction {
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept;
 
-  /// What is taken off the torques `total` on the joints, those of the walls included, because they
-  /// move the arm within the horizon and its walls and limits then give less: C G total [N m].
-  [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& total) const noexcept;
+  /// [rad/s] By how much the torques `total` [N m] on the joints, those of the walls included,
+  /// change the rates within the horizon: G total.
+  [[nodiscard]] Vec<any_size> foreseen(const Vec<any_size>& total) const noexcept;
+  /// [N m] That walls and limits give less as the rates change by `change` [rad/s]: C change.
+  [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& change) const noexcept;
 
   /// Torques on the joints besides those of network and gravity, as estimated [N m].
   [[nodiscard]] const Vec<any_size>& others() const noexcept { return others_; }

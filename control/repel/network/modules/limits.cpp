@@ -58,6 +58,11 @@ void Limits::read(const Signals& signals) noexcept {
   for (Eigen::Index i = 0; i < effort_.size(); ++i) {
     Joint& joint = joints_[static_cast<std::size_t>(i)];
     const double rate = signals.rates(i);
+    if (signals.foreseen.size() == effort_.size() && joint.damping > 0.0) {
+      const Vec<1> less(-joint.damping * signals.foreseen(i));
+      joint.controller.give_up(less, Vec<1>(joint.rate), signals.period);
+    }
+    joint.rate = rate;
     Vec<1> effort(-joint.law(signals.joints(i), rate, joint.range.lower, joint.range.upper));
     const bool acts = effort(0) != 0.0;
     active_ = active_ || acts;

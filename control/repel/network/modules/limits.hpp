@@ -85,6 +85,7 @@ class Limits {
     JointRange range;
     PassivityController<1> controller;
     double damping = 0.0;  // [N m s/rad] of law and controller in this tick
+    double rate = 0.0;     // [rad/s] of the last tick
     double most = 0.0;     // [N m] torque
   };
   double wall_ticks_ = 0.5;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/modules/puma_joints.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 #include <repel/base/setup_error.hpp>
 
 namespace repel::network {
@@ -37,10 +40,19 @@ PumaJoints::PumaJoints(int joints)
       effort_(flow_) {}
 
 void PumaJoints::read(const Signals& signals) noexcept {
+  if (signals.sent.size() == effort_.size()) limit_to(signals.sent);
   const double gained = signals.period * effort_.dot(signals.mean_rates - flow_) +
                         (signals.since_last() - signals.period) * effort_.dot(signals.mean_rates);
   if (gained - gained == 0.0) sampling_energy_ += gained;  // finite: a fault does not spoil it
   flow_ = signals.rates;
+}
+
+void PumaJoints::limit_to(const Vec<any_size>& sent) noexcept {
+  for (Eigen::Index i = 0; i < sent.size(); ++i) {
+    double& effort = effort_.coeffRef(i);
+    const double most = effort * sent.coeff(i) > 0.0 ? std::abs(sent.coeff(i)) : 0.0;
+    effort = std::clamp(effort, -most, most);
+  }
 }
 
 void PumaJoints::equivalent(Equivalent<any_size>& shown) const noexcept {

@@ -39,7 +39,7 @@ class MeasuredFlow {
 ///
 ///     sum T tau(k) . (mean flow of the period after k - flow at k)
 ///
-/// is observed and reported as `sampling_energy`.
+/// is observed and reported as `sampling_energy`. Here tau is what was sent of the torques.
 class PumaJoints {
  public:
   /// The arm is an energy source: it may return more energy than it absorbed.
@@ -63,6 +63,9 @@ class PumaJoints {
   [[nodiscard]] double sampling_energy() const noexcept { return sampling_energy_; }  ///< [J]
 
  private:
+  // What was held back moved nothing.
+  void limit_to(const Vec<any_size>& sent) noexcept;
+
   Vec<any_size> flow_;    // [rad/s]
   Vec<any_size> effort_;  // [N m]
   double sampling_energy_ = 0.0;
