@@ -2,7 +2,10 @@
 #include "tick.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <string>
+#include <type_traits>
 
 #include <nanobind/nanobind.h>
 
@@ -41,8 +44,6 @@ std::vector<std::shared_ptr<const TickNames>> names_of(const Cell& cell) {
 }
 
 namespace {
-
-using JointNumbers = std::array<double, network::most_joints>;
 
 nb::object joints_of(const Tick& tick, const JointNumbers& values) {
   return to_array(values.data(), {tick.names->joints});
@@ -97,63 +98,54 @@ class TickBinding {
   nb::list names_;
 };
 
-void add_loop(TickBinding& binding) {
-  binding.add("tick", "int", "Its number, from 0.", [](const Tick& t) { return t.record.tick; });
-  binding.add("time", "float", "[s] since the first tick.",
-              [](const Tick& t) { return t.record.time; });
-  binding.add("phase", "int", "Of the operator's script.",
-              [](const Tick& t) { return t.record.phase; });
-  binding.add("status", "tuple[str, ...]",
-              "Faults and limits that were noticed, by their names; empty: none.",
-              [](const Tick& t) { return names_of(t.record.status); });
-  binding.add("stop", "str", "What was done about faults: running, holding, braking or released.",
-              [](const Tick& t) { return to_text(t.record.stop); });
-  binding.add("brakes", "bool", "Engage the brakes of the arm.",
-              [](const Tick& t) { return t.record.brakes; });
-  binding.add("enable", "bool", "Enable the stopped drive of the arm again.",
-              [](const Tick& t) { return t.record.enable; });
-  binding.add("elapsed", "int", "[periods] since the last tick; more after missed ticks.",
-              [](const Tick& t) { return t.record.elapsed; });
+/// Type and doc of a property.
+template <class Value>
+std::pair<const char*, std::string> doc_of(const std::string& what) {
+  if constexpr (std::is_same_v<Value, JointNumbers>) return {"numpy.ndarray", "(joints,) " + what};
+  if constexpr (std::is_same_v<Value, Vec3>) return {"numpy.ndarray", "(3,) " + what};
+  if constexpr (std::is_same_v<Value, Wrench>) return {"numpy.ndarray", "(6,) " + what};
+  if constexpr (std::is_same_v<Value, ModuleEnergies>) return {"dict[str, float]", what};
+  if constexpr (std::is_same_v<Value, Status>) return {"tuple[str, ...]", what};
+  if constexpr (std::is_same_v<Value, Stop>) return {"str", what};
+  if constexpr (std::is_same_v<Value, bool>) return {"bool", what};
+  return {std::is_integral_v<Value> ? "int" : "float", what};
 }
 
-void add_arm(TickBinding& binding) {
-  binding.add("torques", "numpy.ndarray", "[N m] or [N] (joints,) to be sent to the joints.",
-              [](const Tick& t) { return joints_of(t, t.record.torques); });
-  binding.add("q", "numpy.ndarray",
-              "[rad] or [m] (joints,) as read, or predicted where the reading was not believed.",
-              [](const Tick& t) { return joints_of(t, t.record.q); });
-  binding.add("v", "numpy.ndarray", "[rad/s] or [m/s] (joints,) their rates.",
-              [](const Tick& t) { return joints_of(t, t.record.v); });
-  binding.add("p_WT", "numpy.ndarray", "[m] (3,) the tool.",
-              [](const Tick& t) { return to_array(t.record.p_WT); });
-  binding.add("v_WT", "numpy.ndarray", "[m/s] (3,) its velocity.",
-              [](const Tick& t) { return to_array(t.record.v_WT); });
+template <class Value>
+nb::object value_of(const Tick& tick, const Value& x) {
+  if constexpr (std::is_same_v<Value, JointNumbers>) {
+    return joints_of(tick, x);
+  } else if constexpr (std::is_same_v<Value, ModuleEnergies>) {
+    return energy_of(tick);
+  } else if constexpr (std::is_same_v<Value, Status>) {
+    return names_of(x);
+  } else if constexpr (std::is_same_v<Value, Stop>) {
+    return nb::cast(to_text(x));
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    return nb::cast(x);
+  } else {
+    return to_array(x);
+  }
 }
 
-void add_forces(TickBinding& binding) {
-  binding.add("virtual_force", "numpy.ndarray",
-              "(6,) force [N] and torque [N m] of the walls on the tool, about its origin, world "
-              "axes.",
-              [](const Tick& t) { return to_array(t.record.virtual_force); });
-  binding.add("coupling", "numpy.ndarray",
-              "(6,) force [N] and torque [N m] from the operator's side on the tool.",
-              [](const Tick& t) { return to_array(t.record.coupling); });
-  binding.add("lever_torque", "float", "[N m] reflected to the lever; times `gain`.",
-              [](const Tick& t) { return t.record.lever_torque; });
-  binding.add(
-      "grip", "numpy.ndarray",
-      "(6,) force [N] and torque [N m] of a master with six axes on the hand; times `gain`.",
-      [](const Tick& t) { return to_array(t.record.grip); });
-  binding.add("gain", "float", "Of the fail-safe, 0 to 1.",
-              [](const Tick& t) { return t.record.gain; });
-  binding.add("held_force", "float", "[N] with which hard walls held the arm.",
-              [](const Tick& t) { return t.record.held_force; });
-  binding.add("hold_margin", "float",
-              "[m] How far off every hard wall the arm can still be stopped, by the proof; "
-              "infinite where none is near.",
-              [](const Tick& t) { return t.record.hold.margin; });
-  binding.add("energy", "dict[str, float]", "[J] the ledger of each module of the network.",
-              &energy_of);
+void add_fields(TickBinding& binding) {
+  const TickRecord none;
+  for_each_field(
+      [&](const TickField& field, const auto& x) {
+        const std::string name = field.name;
+        if (name.empty()) return;
+        const auto [type, doc] = doc_of<std::remove_cvref_t<decltype(x)>>(field.what);
+        binding.add(field.name, type, doc.c_str(), [name](const Tick& tick) {
+          nb::object found;
+          for_each_field(
+              [&](const TickField& each, const auto& y) {
+                if (each.name == name) found = value_of(tick, y);
+              },
+              tick.record);
+          return found;
+        });
+      },
+      none);
 }
 
 void add_pairs(TickBinding& binding) {
@@ -175,58 +167,109 @@ void add_pairs(TickBinding& binding) {
               [](const Tick& t) { return t.record.pairs.stale; });
 }
 
-network::Command command_of(nb::handle linear, nb::handle angular, double lever_rate,
-                            nb::handle direction_W, double silent_for, bool sound) {
-  // Not vector_of: what a master reports may be NaN, and the tick has its own reaction to that.
-  const auto row = [](nb::handle value, const char* name) -> Vec3 {
-    constexpr const char* expected = "three numbers (3,)";
-    const Array v = array_of(value, name, expected);
-    if (v.ndim() != 1 || v.size() != 3) refuse_shape(v, name, expected);
-    return {v.data()[0], v.data()[1], v.data()[2]};
-  };
+// Not vector_of: what a master reports may be NaN, and the tick has its own reaction to that.
+Vec3 row_of(nb::handle value, const char* name) {
+  constexpr const char* expected = "three numbers (3,)";
+  const Array v = array_of(value, name, expected);
+  if (v.ndim() != 1 || v.size() != 3) refuse_shape(v, name, expected);
+  return {v.data()[0], v.data()[1], v.data()[2]};
+}
+
+/// Calls visit(name, field, x) for what both hands of a command do.
+template <class Command, class Visit>
+void for_each_of_hands(Command& command, const Visit& visit) {
+  for (auto* hand : {&command.hand, &command.second}) {
+    const std::string prefix = hand == &command.hand ? "" : "second_";
+    network::for_each_field(
+        [&](const network::HandField& field, auto& x) { visit(prefix + field.name, field, x); },
+        *hand);
+  }
+}
+
+/// The arguments of a command, as a signature states them.
+std::string arguments() {
+  std::string text;
+  const network::Command rest;
+  for_each_of_hands(rest, [&](const std::string& name, const auto& /*field*/, const auto& x) {
+    using Value = std::remove_cvref_t<decltype(x)>;
+    if constexpr (std::is_same_v<Value, Vec3>) {
+      text +=
+          name + ": numpy.typing.ArrayLike = (" + std::to_string(std::lround(x.x())) + ", 0, 0)";
+    } else if constexpr (std::is_integral_v<Value>) {
+      text += name + ": int = " + std::to_string(x);
+    } else {
+      text += name + ": float = " + std::to_string(std::lround(x)) + ".0";
+    }
+    text += ", ";
+  });
+  return text + "silent_for: float = 0.0, sound: bool = True";
+}
+
+network::Command command_of(const nb::kwargs& given) {
   network::Command command;
-  command.hand.ball = {row(linear, "linear"), row(angular, "angular")};
-  command.hand.lever_rate = lever_rate;
-  command.hand.direction_W = row(direction_W, "direction_W");
-  command.silent_for = silent_for;
-  command.sound = sound;
+  nb::dict left;
+  left.update(given);
+  const auto take = [&left](const std::string& name, auto& x) {
+    if (!left.contains(name.c_str())) return;
+    const nb::object value = left[name.c_str()];
+    nb::del(left[name.c_str()]);
+    if constexpr (std::is_same_v<std::remove_reference_t<decltype(x)>, Vec3>) {
+      x = row_of(value, name.c_str());
+    } else if (!nb::try_cast(value, x)) {
+      throw nb::type_error((name + ": expected a number").c_str());
+    }
+  };
+  for_each_of_hands(
+      command, [&](const std::string& name, const auto& /*field*/, auto& x) { take(name, x); });
+  take("silent_for", command.silent_for);
+  take("sound", command.sound);
+  for (const auto& [name, value] : left) {
+    throw nb::type_error(
+        ("Command has no argument '" + nb::cast<std::string>(name) + "'; allowed: " + arguments())
+            .c_str());
+  }
   return command;
 }
 
 void bind_command(nb::module_& m) {
   using network::Command;
-  nb::class_<Command>(m, "Command", "What the operator's master reports in one tick.")
-      .def(
-          "__init__",
-          [](Command* command, nb::handle linear, nb::handle angular, double lever_rate,
-             nb::handle direction_W, double silent_for, bool sound) {
-            new (command)
-                Command(command_of(linear, angular, lever_rate, direction_W, silent_for, sound));
-          },
-          nb::kw_only(), nb::arg("linear") = nb::make_tuple(0.0, 0.0, 0.0),
-          nb::arg("angular") = nb::make_tuple(0.0, 0.0, 0.0), nb::arg("lever_rate") = 0.0,
-          nb::arg("direction_W") = nb::make_tuple(1.0, 0.0, 0.0), nb::arg("silent_for") = 0.0,
-          nb::arg("sound") = true,
-          nb::sig("def __init__(self, *, linear: numpy.typing.ArrayLike = (0, 0, 0), angular: "
-                  "numpy.typing.ArrayLike = (0, 0, 0), lever_rate: float = 0.0, direction_W: "
-                  "numpy.typing.ArrayLike = (1, 0, 0), silent_for: float = 0.0, sound: bool = "
-                  "True) -> None"),
-          "linear [m/s], angular [rad/s]: rates of a hand, world axes. lever_rate [rad/s] of a "
-          "lever that is felt, which drives the tool along the unit vector direction_W. "
-          "silent_for [s]: age of the sample. sound: false if the source reports that its data "
-          "are invalid.")
-      .def_prop_ro(
-          "linear", [](const Command& c) { return to_array(c.hand.ball.linear); },
-          nb::sig("def linear(self) -> numpy.ndarray"), "[m/s] (3,)")
-      .def_prop_ro(
-          "angular", [](const Command& c) { return to_array(c.hand.ball.angular); },
-          nb::sig("def angular(self) -> numpy.ndarray"), "[rad/s] (3,)")
-      .def_prop_ro(
-          "direction_W", [](const Command& c) { return to_array(c.hand.direction_W); },
-          nb::sig("def direction_W(self) -> numpy.ndarray"), "(3,) unit")
-      .def_prop_ro(
-          "lever_rate", [](const Command& c) { return c.hand.lever_rate; }, "[rad/s]")
-      .def_ro("silent_for", &Command::silent_for, "[s]")
+  nb::class_<Command> bound(m, "Command", "What the operator's master reports in one tick.");
+  const std::string signature = "def __init__(self, *, " + arguments() + ") -> None";
+  bound.def(
+      "__init__",
+      [](Command* command, const nb::kwargs& given) { new (command) Command(command_of(given)); },
+      nb::sig(signature.c_str()),
+      "What hands do and choose, in world axes; each is told at its property. silent_for [s]: age "
+      "of the sample. sound: false if the source reports that its data are invalid.");
+  const Command rest;
+  for_each_of_hands(rest, [&](const std::string& name, const auto& field, const auto& x) {
+    using Value = std::remove_cvref_t<decltype(x)>;
+    const char* type = std::is_same_v<Value, Vec3> ? "numpy.ndarray"
+                       : std::is_integral_v<Value> ? "int"
+                                                   : "float";
+    std::string told;
+    if (*field.unit != '\0') told.append("[").append(field.unit).append("] ");
+    if constexpr (std::is_same_v<Value, Vec3>) told += "(3,) ";
+    told += field.what;
+    bound.def_prop_ro(
+        name.c_str(),
+        [name](const Command& c) {
+          nb::object found;
+          for_each_of_hands(c, [&](const std::string& each, const auto& /*field*/, const auto& y) {
+            if (each != name) return;
+            if constexpr (std::is_same_v<Value, std::remove_cvref_t<decltype(y)>>) {
+              if constexpr (std::is_same_v<Value, Vec3>) {
+                found = to_array(y);
+              } else {
+                found = nb::cast(y);
+              }
+            }
+          });
+          return found;
+        },
+        nb::sig(("def " + name + "(self) -> " + type).c_str()), told.c_str());
+  });
+  bound.def_ro("silent_for", &Command::silent_for, "[s]")
       .def_ro("sound", &Command::sound)
       .def_ro("phase", &Command::phase, "Of a script.");
 }
@@ -235,9 +278,7 @@ void bind_command(nb::module_& m) {
 
 void bind_ticks(nb::module_& m) {
   TickBinding binding(m);
-  add_loop(binding);
-  add_arm(binding);
-  add_forces(binding);
+  add_fields(binding);
   add_pairs(binding);
   binding.finish();
   bind_command(m);

@@ -293,16 +293,20 @@ TEST(Remote, WithoutItsSiteAStationShowsTheLastPictureAndSaysSo) {
   EXPECT_NEAR(silent.q[1], heard.q[1], 0.02);
 }
 
-/// Every number of a command; a member that is added does not compile here before it is told.
 std::vector<double> numbers_of(const network::HandInput& hand) {
-  const auto& [ball, lever_rate, direction, turning, scale, guides, strength, compliant] = hand;
-  std::vector<double> all{lever_rate, scale, static_cast<double>(guides), strength,
-                          static_cast<double>(compliant)};
-  for (const Vec3& v : {ball.linear, ball.angular, direction, turning}) {
-    all.insert(all.end(), v.data(), v.data() + 3);
-  }
+  std::vector<double> all;
+  network::for_each_field(
+      [&all](const network::HandField& /*field*/, const auto& x) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(x)>>) {
+          all.push_back(static_cast<double>(x));
+        } else {
+          all.insert(all.end(), x.begin(), x.end());
+        }
+      },
+      hand);
   return all;
 }
+/// Every number of a command; a member that is added does not compile here before it is told.
 std::vector<double> numbers_of(const network::Command& command) {
   const auto& [hand, second, sound, silent_for, phase] = command;
   std::vector<double> all = numbers_of(hand);
@@ -327,13 +331,16 @@ TEST(Remote, EveryNumberOfACommandArrives) {
   network::Command told;
   double next = 0.0;
   for (network::HandInput* hand : {&told.hand, &told.second}) {
-    for (Vec3* v :
-         {&hand->ball.linear, &hand->ball.angular, &hand->direction_W, &hand->turning_W}) {
-      for (double& x : *v) x = next += 0.125;
-    }
-    for (double* x : {&hand->lever_rate, &hand->scale, &hand->guide_strength}) *x = next += 0.125;
-    hand->guides = static_cast<std::int32_t>(8.0 * (next += 0.125));
-    hand->compliant = static_cast<std::int32_t>(8.0 * (next += 0.125));
+    network::for_each_field(
+        [&next](const network::HandField& /*field*/, auto& x) {
+          using Value = std::remove_cvref_t<decltype(x)>;
+          if constexpr (std::is_same_v<Value, Vec3>) {
+            for (double& each : x) each = next += 0.125;
+          } else {
+            x = static_cast<Value>((std::is_integral_v<Value> ? 8.0 : 1.0) * (next += 0.125));
+          }
+        },
+        *hand);
   }
   told.silent_for = next + 0.125;
   told.phase = 1000;

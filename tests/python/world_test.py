@@ -100,6 +100,19 @@ def test_an_own_controller_stops_before_the_wall():
     assert ticks[0].q[0] < ticks[1000].q[0]  # records are copies, not the last one
 
 
+def test_a_command_keeps_all_that_hands_do():
+    command = repel.Command(linear=[1, 2, 3], guides=5, guide_strength=0.5, scale=2.0,
+                            second_angular=[0, 0, 0.5], second_compliant=3)
+    assert list(command.linear) == [1, 2, 3] and command.guides == 5
+    assert command.guide_strength == 0.5 and command.scale == 2.0
+    assert list(command.second_angular) == [0, 0, 0.5] and command.second_compliant == 3
+    assert list(command.direction_W) == [1, 0, 0] and command.second_guides == -1
+    with pytest.raises(TypeError, match="no argument 'liner'.*linear"):
+        repel.Command(liner=[1, 2, 3])
+    with pytest.raises(TypeError, match="scale"):
+        repel.Command(scale="large")
+
+
 def test_two_halves_make_a_tick():
     whole, halves = gantry_cell(), gantry_cell()
     q, v = np.array([0.1, 0, 0]), np.zeros(3)

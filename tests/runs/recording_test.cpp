@@ -38,8 +38,8 @@ RunOptions options() {
   return options;
 }
 
-/// A log of a run of the scene `empty` in which these were the commands.
-void record(const std::string& path, const std::vector<Command>& commands) {
+/// A log of a run of the scene `empty` in which these were the ticks.
+void record(const std::string& path, const std::vector<TickRecord>& ticks) {
   const auto prepared = prepare(scene::load(scene_file("empty")), options());
   const World& world = prepared->cell.world();
   DatedShapes shapes;
@@ -49,12 +49,20 @@ void record(const std::string& path, const std::vector<Command>& commands) {
   snapshot.arms.resize(1);
   snapshot.X_WB.assign(world.motion().bodies.size(), Pose::Identity());
   snapshot.is_there.assign(world.motion().bodies.size(), 1);
-  for (const Command& command : commands) {
-    snapshot.arms.front().command = command;
+  std::int64_t number = 0;
+  for (const TickRecord& tick : ticks) {
+    snapshot.arms.front() = tick;
+    snapshot.arms.front().tick = number++;
     log->write(snapshot);
-    ++snapshot.arms.front().tick;
   }
   log->close(0);
+}
+
+/// Likewise, in which these were the commands.
+void record(const std::string& path, const std::vector<Command>& commands) {
+  std::vector<TickRecord> ticks(commands.size());
+  for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i].command = commands[i];
+  record(path, ticks);
 }
 
 std::vector<Command> commands_in(const std::string& path) {
@@ -66,25 +74,32 @@ std::vector<Command> commands_in(const std::string& path) {
   return commands;
 }
 
-/// All numbers of a hand.
-std::vector<double> numbers_of(const HandInput& hand) {
-  std::vector<double> all{hand.lever_rate, hand.scale, hand.guide_strength,
-                          static_cast<double>(hand.guides), static_cast<double>(hand.compliant)};
-  for (const Vec3& v : {hand.ball.linear, hand.ball.angular, hand.direction_W, hand.turning_W}) {
-    all.insert(all.end(), {v.x(), v.y(), v.z()});
-  }
+/// All numbers of a hand, under their names.
+std::vector<std::pair<std::string, double>> numbers_of(const HandInput& hand) {
+  std::vector<std::pair<std::string, double>> all;
+  network::for_each_field(
+      [&all](const network::HandField& field, const auto& x) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(x)>>) {
+          all.emplace_back(field.name, static_cast<double>(x));
+        } else {
+          for (const double each : x) all.emplace_back(field.name, each);
+        }
+      },
+      hand);
   return all;
 }
 
 /// A NaN is the same as any other.
 void expect_same(const HandInput& then, const HandInput& now, const std::string& which) {
-  const std::vector<double> a = numbers_of(then);
-  const std::vector<double> b = numbers_of(now);
+  const auto a = numbers_of(then);
+  const auto b = numbers_of(now);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const bool same =
-        std::isnan(a[i]) ? std::isnan(b[i])
-                         : std::bit_cast<std::uint64_t>(a[i]) == std::bit_cast<std::uint64_t>(b[i]);
-    EXPECT_TRUE(same) << which << ", number " << i << ": " << a[i] << " became " << b[i];
+    const auto& [name, x] = a[i];
+    const double y = b[i].second;
+    const bool same = std::isnan(x)
+                          ? std::isnan(y)
+                          : std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+    EXPECT_TRUE(same) << which << ", " << name << ": " << x << " became " << y;
   }
 }
 
@@ -98,13 +113,18 @@ HandInput some_hand(std::mt19937_64& rng, bool is_sound) {
     if (rng() % 8 == 0) x = -0.0;
     if (!is_sound && rng() % 4 == 0) x = std::array{nan, infinity, -infinity}[rng() % 3];
   };
-  for (Vec3* v : {&hand.ball.linear, &hand.ball.angular, &hand.direction_W, &hand.turning_W}) {
-    for (int i = 0; i < 3; ++i) draw((*v)[i]);
-  }
-  for (double* x : {&hand.lever_rate, &hand.scale, &hand.guide_strength}) draw(*x);
-  for (std::int32_t* bits : {&hand.guides, &hand.compliant}) {
-    if (rng() % 2 == 0) *bits = static_cast<std::int32_t>(rng() % 128);
-  }
+  network::for_each_field(
+      [&](const network::HandField& /*field*/, auto& x) {
+        using Value = std::remove_cvref_t<decltype(x)>;
+        if constexpr (std::is_same_v<Value, double>) {
+          draw(x);
+        } else if constexpr (std::is_same_v<Value, Vec3>) {
+          for (double& each : x) draw(each);
+        } else if (rng() % 2 == 0) {
+          x = static_cast<Value>(rng() % 128);
+        }
+      },
+      hand);
   return hand;
 }
 
@@ -155,6 +175,47 @@ void rewrite(const std::string& path, const std::function<void(nlohmann::json&)>
   }
   writer.close();
   test::fs::rename(changed, path);
+}
+
+/// Another value than it had.
+void change(double& x, double& next) {
+  x = next += 0.125;
+}
+void change(bool& x, double& /*next*/) {
+  x = !x;
+}
+void change(Vec3& v, double& next) {
+  for (double& x : v) change(x, next);
+}
+void change(JointNumbers& numbers, double& next) {
+  for (std::size_t i = 0; i < 6; ++i) change(numbers[i], next);
+}
+
+TEST(RecordedForces, AreAllThatHaveAnEntry) {
+  const test::Folder folder;
+  TickRecord told;
+  double next = 0.0;
+  int entries = 0;
+  const auto has_entry = [](const TickField& field) { return *field.entry != '\0'; };
+  for_each_field(
+      [&](const TickField& field, auto& x) {
+        if (!has_entry(field)) return;
+        ++entries;
+        if constexpr (requires { change(x, next); }) change(x, next);
+      },
+      told);
+  record(folder / "run.mcap", std::vector<TickRecord>{told});
+  const Recording recording = load_recording(folder / "run.mcap", scene_file);
+  for_each_field(
+      [&](const TickField& field, const auto& x, const auto& now) {
+        if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(x)>, Wrench>) {
+          if (has_entry(field)) {
+            EXPECT_EQ(x, now) << field.entry;
+          }
+        }
+      },
+      told, recording.arms.front().front());
+  EXPECT_GE(entries, 10);
 }
 
 TEST(RecordedCommands, OfOlderRecordingsAreReadAsTheyWereMeant) {

@@ -23,8 +23,7 @@ namespace repel {
 
 bool rest_unless_finite(network::HandInput& hand, const network::HandInput& last) noexcept {
   if (hand.is_finite()) return true;
-  hand.ball = {};
-  hand.lever_rate = 0.0;
+  hand.rest();
   hand.direction_W = last.direction_W;
   hand.turning_W = last.turning_W;
   return false;

@@ -31,6 +31,9 @@ struct HoldProof {
   std::int32_t left_out = 0;  ///< gaps for which there was no room, so the proof is not of them
 };
 
+using JointNumbers = std::array<double, network::most_joints>;        ///< zeros beyond the last
+using ModuleEnergies = std::array<float, network::Plan::most_nodes>;  ///< likewise
+
 /// One tick, as logged.
 struct TickRecord {
   std::int64_t tick = 0;      ///< its number, from 0
@@ -42,10 +45,10 @@ struct TickRecord {
   bool enable = false;        ///< the stopped drive of the arm is to be enabled again
   std::int64_t elapsed = 1;   ///< [periods] since the last tick; more after missed ticks
   /// [rad] or [m] joints as read, or predicted where the reading was not believed.
-  std::array<double, network::most_joints> q{};
-  std::array<double, network::most_joints> v{};       ///< [rad/s] or [m/s] their rates
-  std::array<double, network::most_joints> q_read{};  ///< as read, believed or not
-  std::array<double, network::most_joints> v_read{};  ///< likewise
+  JointNumbers q{};
+  JointNumbers v{};       ///< [rad/s] or [m/s] their rates
+  JointNumbers q_read{};  ///< as read, believed or not
+  JointNumbers v_read{};  ///< likewise
   /// [N, N m] of the force sensor, as read; empty without a reading or a module for it.
   std::optional<Wrench> wrench_read{};
   network::Command command;   ///< of the operator
@@ -60,13 +63,78 @@ struct TickRecord {
   double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
   PairId held_pair;           ///< that of the hardest one; invalid: none did
   HoldProof hold;             ///< what is proven of hard walls
-  std::array<double, network::most_joints> torques{};  ///< [N m] or [N] sent to the joints
-  /// [J] ledger of each module of the network, in its order.
-  std::array<float, network::Plan::most_nodes> energy{};
+  JointNumbers torques{};     ///< [N m] or [N] sent to the joints
+  ModuleEnergies energy{};    ///< [J] ledger of each module of the network, in its order
   std::chrono::nanoseconds network_time{0};  ///< compute time of the network; not reproducible
   PairTotals pairs;                          ///< of all pairs of the world
   WorkerReport workers;                      ///< the coprocessor's threads
 };
+
+/// What is known of a number of a tick besides its value: where it is written, and as what.
+struct TickField {
+  const char* name;         ///< in Python; empty: not there
+  const char* column = "";  ///< of CSV, with its unit; `*` is x, y and z, the number of the joint
+                            ///< or the module; of joints for those that turn, a blank, and for
+                            ///< those that slide; empty: none
+  const char* entry = "";   ///< in the forces of a recording; empty: none
+  const char* what = "";    ///< it is, with its unit
+  bool may_lack = false;    ///< there is none where it is not finite, and in older recordings
+};
+
+/// Calls visit(TickField, x...) for every number of a tick that is written somewhere, with that of
+/// each of `records`, in the order of the columns of CSV. A new one is entered here and in the
+/// record; files and Python follow. What a replay reads besides is in the inputs of a recording.
+template <class Visit, class... Records>
+constexpr void for_each_field(const Visit& visit, Records&... records) {
+  using Field = TickField;
+  visit(Field{"tick", "", "", "Its number, from 0."}, records.tick...);
+  visit(Field{"time", "", "", "[s] since the first tick."}, records.time...);
+  visit(Field{"elapsed", "", "", "[periods] since the last tick; more after missed ticks."},
+        records.elapsed...);
+  visit(Field{"enable", "", "", "Enable the stopped drive of the arm again."}, records.enable...);
+  visit(Field{"phase", "phase", "", "Of the operator's script."}, records.phase...);
+  visit(Field{"status", "status", "",
+              "Faults and limits that were noticed, by their names; empty: none."},
+        records.status...);
+  visit(Field{"p_WT", "*_m", "", "[m] the tool."}, records.p_WT...);
+  visit(Field{"v_WT", "v*_m_s", "", "[m/s] its velocity."}, records.v_WT...);
+  visit(Field{"virtual_force", "", "",
+              "force [N] and torque [N m] of the walls on the tool, about its origin, world axes."},
+        records.virtual_force...);
+  visit(Field{"", "virtual_f*_n", "force", "virtual [N]"}, records.virtual_force.force...);
+  visit(Field{"", "virtual_t*_nm", "torque", "virtual [N m]"}, records.virtual_force.torque...);
+  visit(
+      Field{"coupling", "", "", "force [N] and torque [N m] from the operator's side on the tool."},
+      records.coupling...);
+  visit(Field{"", "coupling_f*_n", "coupling_force", "[N]"}, records.coupling.force...);
+  visit(Field{"", "", "coupling_torque", "[N m]"}, records.coupling.torque...);
+  visit(Field{"grip", "", "",
+              "force [N] and torque [N m] of a master with six axes on the hand; times `gain`."},
+        records.grip...);
+  visit(Field{"lever_torque", "lever_torque_nm", "lever_torque",
+              "[N m] reflected to the lever; times `gain`."},
+        records.lever_torque...);
+  visit(Field{"gain", "gain", "gain", "Of the fail-safe, 0 to 1."}, records.gain...);
+  visit(Field{"q", "q*_rad q*_m", "",
+              "[rad] or [m] as read, or predicted where the reading was not believed."},
+        records.q...);
+  visit(Field{"energy", "energy_*_j", "", "[J] the ledger of each module of the network."},
+        records.energy...);
+  visit(Field{"stop", "stop", "stop",
+              "What was done about faults: running, holding, braking or released."},
+        records.stop...);
+  visit(Field{"brakes", "brakes", "brakes", "Engage the brakes of the arm."}, records.brakes...);
+  visit(Field{"torques", "tau*_nm tau*_n", "torques", "[N m] or [N] to be sent to the joints."},
+        records.torques...);
+  visit(Field{"v", "v*_rad_s v*_m_s", "", "[rad/s] or [m/s] their rates."}, records.v...);
+  visit(Field{"held_force", "held_n", "held_n", "[N] with which hard walls held the arm.", true},
+        records.held_force...);
+  visit(Field{"hold_margin", "hold_margin_m", "hold_margin_m",
+              "[m] How far off every hard wall the arm can still be stopped, by the proof; "
+              "infinite where none is near.",
+              true},
+        records.hold.margin...);
+}
 
 /// Notes what the masters of the network do to the hands that hold them; zero where there is none.
 void note_masters(const network::Network& network, TickRecord& record) noexcept;

@@ -27,8 +27,8 @@ const Command& ScriptedOperator::step(const Mat3& R_WT, double period) noexcept 
     command_.silent_for += period;
     return command_;
   }
-  command_.hand.ball = command_.second.ball = {};
-  command_.hand.lever_rate = command_.second.lever_rate = 0.0;
+  command_.hand.rest();
+  command_.second.rest();
   if (!over()) switch_over(script_[phase_]);
   command_.silent_for = 0.0;
   command_.sound = over() || read(script_[phase_], R_WT, period);

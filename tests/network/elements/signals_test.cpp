@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+
 #include "network/drawn.hpp"
 
 namespace repel::network {
@@ -22,6 +25,39 @@ TEST(Signals, FlowOfTheToolIsTheJacobianTimesTheRates) {
     }
     EXPECT_GT(drawn.signals.jacobian.norm(), 0.5);
   }
+}
+
+// What is not among the fields is neither recorded nor sent: of a second hand that was so for five
+// numbers of nine.
+TEST(Signals, EveryNumberOfAHandIsAmongItsFields) {
+  HandInput hand;
+  const HandInput none;
+  std::set<std::string> names;
+  std::size_t bytes = 0;
+  std::size_t padding = 0;
+  for_each_field(
+      [&](const HandField& field, auto& x, const auto& other) {
+        EXPECT_TRUE(names.insert(field.name).second) << field.name;
+        EXPECT_STRNE(field.what, "") << field.name;
+        EXPECT_GE(reinterpret_cast<const char*>(&x), reinterpret_cast<const char*>(&hand));
+        EXPECT_EQ(x, other);
+        bytes += sizeof x;
+        padding += (8 - sizeof x % 8) % 8;
+      },
+      hand, none);
+  EXPECT_EQ(bytes + padding, sizeof(HandInput));
+}
+
+TEST(Signals, HandThatRestsKeepsWhatItChose) {
+  HandInput hand;
+  hand.ball.linear.x() = hand.lever_rate = 1.0;
+  hand.direction_W = Vec3(0, 1, 0);
+  hand.scale = 2.0;
+  hand.rest();
+  EXPECT_EQ(hand.ball.linear, Vec3::Zero());
+  EXPECT_EQ(hand.lever_rate, 0.0);
+  EXPECT_EQ(hand.direction_W, Vec3(0, 1, 0));
+  EXPECT_EQ(hand.scale, 2.0);
 }
 
 TEST(Signals, BeginAtRestWithNothingInTheHand) {

@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/network/elements/signals.hpp>
 
+#include <type_traits>
+
 namespace repel::network {
 
 bool HandInput::is_finite() const noexcept {
-  return repel::is_finite(ball) && repel::is_finite(direction_W) && repel::is_finite(turning_W) &&
-         lever_rate - lever_rate == 0.0;
+  bool all = true;
+  for_each_field(
+      [&all](const HandField& field, const auto& x) {
+        using Number = std::remove_cvref_t<decltype(x)>;
+        if constexpr (std::is_same_v<Number, double>) {
+          all = all && (field.is_settled || x - x == 0.0);
+        } else if constexpr (std::is_same_v<Number, Vec3>) {
+          all = all && repel::is_finite(x);
+        }
+      },
+      *this);
+  return all;
 }
 
 const HandInput& Signals::of(Hand which) const noexcept {

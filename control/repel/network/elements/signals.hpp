@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include <repel/network/elements/port.hpp>
 
@@ -30,9 +31,58 @@ struct HandInput {
   /// those of the world, else of the tool; below 0: as set up.
   std::int32_t compliant = -1;
 
-  /// Every number but the scale, of which ChangingScale takes care.
+  /// Every number but those that their module settles (HandField::is_settled).
   [[nodiscard]] bool is_finite() const noexcept;
+  /// Ball and lever stand still; what was chosen stays.
+  void rest() noexcept { ball = {}, lever_rate = 0.0; }
 };
+
+/// What is known of a number of a hand besides its value.
+struct HandField {
+  const char* name;    ///< in C++ and Python; in recordings without the frame, `_W`
+  const char* unit;    ///< empty: it has none
+  const char* what;    ///< it is
+  bool moves = false;  ///< recorded of a first hand in any case; others where they are not as
+                       ///< without a hand
+  bool is_settled =
+      false;  ///< what is no number in it is taken care of by the module that reads it
+  /// Greatest length that is believed of another program, in its unit. Speeds and scales are
+  /// bounded where they are used.
+  double most = std::numeric_limits<double>::infinity();
+};
+
+/// Calls visit(HandField, x...) for every number of a hand, with that of each of `hands`: a double,
+/// a Vec3, or bits that are below 0 as set up. Whoever records, sends or shows hands goes through
+/// them here, so that a new one is entered above and below and nowhere else. They are sent in this
+/// order.
+template <class Visit, class... Hands>
+constexpr void for_each_field(const Visit& visit, Hands&... hands) {
+  using Field = HandField;
+  visit(Field{"lever_rate", "rad/s", "rate of a lever that is felt", true}, hands.lever_rate...);
+  visit(Field{"direction_W", "", "in which the lever drives the tool; unit", true},
+        hands.direction_W...);
+  visit(Field{.name = "turning_W",
+              .unit = "rad/m",
+              .what = "how far the lever turns the tool",
+              .most = 10.0},
+        hands.turning_W...);
+  visit(Field{"linear", "m/s", "rate of the hand", true}, hands.ball.linear...);
+  visit(Field{.name = "angular",
+              .unit = "rad/s",
+              .what = "rate of the hand",
+              .moves = true,
+              .most = 100.0},
+        hands.ball.angular...);
+  visit(Field{.name = "scale", .unit = "", .what = "of a master that is felt", .is_settled = true},
+        hands.scale...);
+  visit(Field{"guides", "", "bits of the fixtures that are on"}, hands.guides...);
+  visit(Field{.name = "guide_strength",
+              .unit = "",
+              .what = "share of the fixtures' force, 0 to 1",
+              .is_settled = true},
+        hands.guide_strength...);
+  visit(Field{"compliant", "", "bits of the directions of relief"}, hands.compliant...);
+}
 
 /// Which of the hands that hold one tool.
 enum class Hand { first, second };

@@ -75,8 +75,8 @@ class OperatorInput {
  private:
   /// Keeps the direction of the lever, so that the force of its spring does not change direction.
   void rest(double period) noexcept {
-    command_.hand.ball = command_.second.ball = {};
-    command_.hand.lever_rate = command_.second.lever_rate = 0.0;
+    command_.hand.rest();
+    command_.second.rest();
     command_.sound = true;
     command_.silent_for = std::max(silent_after, command_.silent_for + period);
   }
@@ -101,8 +101,7 @@ class OperatorInput {
     const devices::Measured& m = device_->measured(period);
     if (taken) return follower_.rest();
     driver_ = Driver::device;
-    command_.second.ball = {};
-    command_.second.lever_rate = 0.0;
+    command_.second.rest();
     command_.sound = true;
     command_.hand.ball = follower_.step(m, period);
     command_.hand.lever_rate = m.lever_rate;

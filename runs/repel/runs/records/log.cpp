@@ -6,9 +6,11 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <cstdio>
 #include <fstream>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include <repel/common/complaint.hpp>
@@ -30,50 +32,76 @@ std::string or_nothing(double value) {
   return std::isfinite(value) ? to_text(value) : std::string();
 }
 
-/// Writes the names of the columns that every arm has.
-void write_names(const ArmHeading& arm, std::ostream& file) {
-  const std::string prefix = arm.prefix();
-  const auto write = [&](const std::string& name, const std::string& more = {},
-                         const char* unit = "") {
-    file << ',' << cell_of(std::string(prefix).append(name).append(more).append(unit));
+/// The columns of a field of every arm.
+template <class Value>
+std::vector<std::string> columns_of(const TickField& field, const ArmHeading& arm) {
+  const std::string pattern = field.column;
+  std::vector<std::string> names;
+  const auto add = [&names](std::string of, const std::string& name) {
+    const std::size_t star = of.find('*');
+    names.push_back(star == std::string::npos ? of : of.replace(star, 1, name));
   };
-  for (const char* name :
-       {"phase", "status", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "virtual_fx_n",
-        "virtual_fy_n", "virtual_fz_n", "virtual_tx_nm", "virtual_ty_nm", "virtual_tz_nm",
-        "coupling_fx_n", "coupling_fy_n", "coupling_fz_n", "lever_torque_nm", "gain"}) {
-    write(name);
+  if (pattern.empty()) return names;
+  if constexpr (std::is_same_v<Value, JointNumbers>) {
+    const std::size_t blank = pattern.find(' ');
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+      const bool turns = arm.joints[i] == JointType::revolute;
+      add(turns ? pattern.substr(0, blank) : pattern.substr(blank + 1), std::to_string(i + 1));
+    }
+  } else if constexpr (std::is_same_v<Value, ModuleEnergies>) {
+    for (const std::string& module : arm.modules) add(pattern, module);
+  } else if constexpr (std::is_same_v<Value, Vec3>) {
+    for (const char* axis : {"x", "y", "z"}) add(pattern, axis);
+  } else {
+    add(pattern, {});
   }
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    write("q", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad" : "_m");
-  }
-  for (const std::string& module : arm.modules) write("energy_", module, "_j");
-  write("stop");
-  write("brakes");
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    write("tau", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_nm" : "_n");
-  }
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    write("v", std::to_string(i + 1), arm.joints[i] == JointType::revolute ? "_rad_s" : "_m_s");
-  }
-  write("held_n");
-  write("hold_margin_m");
+  return names;
+}
+
+void write_value(bool x, std::ostream& file) {
+  file << ',' << (x ? 1 : 0);
+}
+void write_value(std::integral auto x, std::ostream& file) {
+  file << ',' << x;
+}
+void write_value(std::floating_point auto x, std::ostream& file) {
+  file << ',' << or_nothing(double{x});
+}
+void write_value(Stop stop, std::ostream& file) {
+  file << ',' << to_text(stop);
+}
+void write_value(const Vec3& v, std::ostream& file) {
+  for (const double x : v) write_value(x, file);
+}
+
+void write_names(const ArmHeading& arm, std::ostream& file) {
+  const TickRecord none;
+  for_each_field(
+      [&](const TickField& field, const auto& x) {
+        for (const std::string& name : columns_of<std::remove_cvref_t<decltype(x)>>(field, arm)) {
+          file << ',' << cell_of(arm.prefix() + name);
+        }
+      },
+      none);
 }
 
 void write_values(const TickRecord& k, const ArmHeading& arm, std::ostream& file) {
-  file << ',' << k.phase << ',' << k.status;
-  for (const Vec3& v :
-       {k.p_WT, k.v_WT, k.virtual_force.force, k.virtual_force.torque, k.coupling.force}) {
-    for (int axis = 0; axis < 3; ++axis) file << ',' << or_nothing(v[axis]);
-  }
-  const std::size_t joints = arm.joints.size();
-  file << ',' << or_nothing(k.lever_torque) << ',' << or_nothing(k.gain);
-  for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.q[i]);
-  for (std::size_t i = 0; i < arm.modules.size(); ++i)
-    file << ',' << or_nothing(double{k.energy[i]});
-  file << ',' << to_text(k.stop) << ',' << (k.brakes ? 1 : 0);
-  for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.torques[i]);
-  for (std::size_t i = 0; i < joints; ++i) file << ',' << or_nothing(k.v[i]);
-  file << ',' << or_nothing(k.held_force) << ',' << or_nothing(k.hold.margin);
+  for_each_field(
+      [&](const TickField& field, const auto& x) {
+        using Value = std::remove_cvref_t<decltype(x)>;
+        if (*field.column == '\0') return;
+        const auto write_first = [&](const auto& all, std::size_t count) {
+          for (std::size_t i = 0; i < count; ++i) write_value(all[i], file);
+        };
+        if constexpr (std::is_same_v<Value, JointNumbers>) {
+          write_first(x, arm.joints.size());
+        } else if constexpr (std::is_same_v<Value, ModuleEnergies>) {
+          write_first(x, arm.modules.size());
+        } else if constexpr (!std::is_same_v<Value, Wrench>) {
+          write_value(x, file);
+        }
+      },
+      k);
 }
 
 class CsvLog final : public TickLog {

@@ -34,27 +34,55 @@ Json first_of(const std::array<double, N>& values, std::size_t count) {
   return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
+/// A JSON Schema of a value.
+template <class Value>
+Json schema_of(const Value& /*value*/, const std::string& description) {
+  if constexpr (std::is_same_v<Value, bool>) {
+    return {{"type", "boolean"}, {"description", description}};
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    const char* type = std::is_integral_v<Value> ? "integer" : "number";
+    return {{"type", type}, {"description", description}};
+  } else if constexpr (std::is_same_v<Value, Stop>) {
+    return {{"type", "string"}, {"description", description}};
+  } else {
+    return {{"type", "array"}, {"items", {{"type", "number"}}}, {"description", description}};
+  }
+}
+
+/// The schema of the inputs, with what both hands do.
+std::string schema_of_inputs() {
+  Json schema = Json::parse(mcap::inputs.text);
+  Json& fields = schema["properties"]["arms"]["items"]["properties"];
+  const network::HandInput hand;
+  for (const std::string prefix : {"", "second_"}) {
+    network::for_each_field(
+        [&](const network::HandField& field, const auto& x) {
+          std::string told = prefix.empty() ? "" : "of a second hand: ";
+          told += field.what;
+          if (*field.unit != '\0') told.append(" [").append(field.unit).append("]");
+          fields[prefix + mcap::name_of(field)] = schema_of(x, told);
+        },
+        hand);
+  }
+  return schema.dump();
+}
+
 /// Enters what a hand does, each number under its name behind `prefix`. What is, to the last bit,
 /// as if there were no hand is left out. @param moves its rates and its direction are there anyway
 void add_hand(const network::HandInput& hand, const std::string& prefix, bool moves, Json& inputs) {
   const network::HandInput none;
-  const auto add = [&](const char* name, const auto& value, const auto& otherwise, bool anyway) {
-    if (!anyway && std::memcmp(&value, &otherwise, sizeof value) == 0) return;
-    if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
-      inputs[prefix + name] = value;
-    } else {
-      inputs[prefix + name] = to_json(value);
-    }
-  };
-  add("linear", hand.ball.linear, none.ball.linear, moves);
-  add("angular", hand.ball.angular, none.ball.angular, moves);
-  add("lever_rate", hand.lever_rate, none.lever_rate, moves);
-  add("direction", hand.direction_W, none.direction_W, moves);
-  add("turning", hand.turning_W, none.turning_W, false);
-  add("scale", hand.scale, none.scale, false);
-  add("guides", hand.guides, none.guides, false);
-  add("guide_strength", hand.guide_strength, none.guide_strength, false);
-  add("compliant", hand.compliant, none.compliant, false);
+  network::for_each_field(
+      [&](const network::HandField& field, const auto& x, const auto& otherwise) {
+        const bool is_there = (moves && field.moves) || std::memcmp(&x, &otherwise, sizeof x) != 0;
+        if (!is_there) return;
+        Json& entry = inputs[prefix + mcap::name_of(field)];
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(x)>>) {
+          entry = x;
+        } else {
+          entry = to_json(x);
+        }
+      },
+      hand, none);
 }
 
 /// JSON has no number that is not finite: there is 0 in its place, and its name and what it is in
@@ -99,19 +127,41 @@ Json inputs_of(const TickRecord& k, std::size_t joints) {
   return inputs;
 }
 
+/// The schema of the forces.
+std::string schema_of_forces() {
+  Json schema = Json::parse(mcap::forces.text);
+  Json& fields = schema["properties"]["arms"]["items"]["properties"];
+  const TickRecord none;
+  for_each_field(
+      [&](const TickField& field, const auto& x) {
+        if (*field.entry != '\0') fields[field.entry] = schema_of(x, field.what);
+      },
+      none);
+  return schema.dump();
+}
+
 Json forces_of(const TickRecord& k, std::size_t joints) {
-  Json forces = {{"force", to_json(k.virtual_force.force)},
-                 {"torque", to_json(k.virtual_force.torque)},
-                 {"coupling_force", to_json(k.coupling.force)},
-                 {"coupling_torque", to_json(k.coupling.torque)},
-                 {"force_n", k.virtual_force.force.norm()},
-                 {"lever_torque", k.lever_torque},
-                 {"held_n", k.held_force},
-                 {"gain", k.gain},
-                 {"stop", to_text(k.stop)},
-                 {"brakes", k.brakes},
-                 {"torques", first_of(k.torques, joints)}};
-  if (std::isfinite(k.hold.margin)) forces["hold_margin_m"] = k.hold.margin;
+  Json forces = {{"force_n", k.virtual_force.force.norm()}};
+  for_each_field(
+      [&](const TickField& field, const auto& x) {
+        using Value = std::remove_cvref_t<decltype(x)>;
+        if (*field.entry == '\0') return;
+        Json entry;
+        if constexpr (std::is_same_v<Value, Vec3>) {
+          entry = to_json(x);
+        } else if constexpr (std::is_same_v<Value, JointNumbers>) {
+          entry = first_of(x, joints);
+        } else if constexpr (std::is_same_v<Value, Stop>) {
+          entry = to_text(x);
+        } else if constexpr (std::is_same_v<Value, double>) {
+          if (field.may_lack && !std::isfinite(x)) return;
+          entry = x;
+        } else if constexpr (std::is_arithmetic_v<Value>) {
+          entry = x;
+        }
+        forces[field.entry] = std::move(entry);
+      },
+      k);
   return forces;
 }
 
@@ -145,8 +195,8 @@ class McapLog final : public TickLog {
     for (std::size_t i = 0; i < scene.part_lists.size(); ++i) {
       attach(mcap::parts_attachment(i), "application/yaml", scene.part_lists[i]);
     }
-    inputs_ = add(mcap::inputs);
-    forces_ = add(mcap::forces);
+    inputs_ = add(mcap::inputs, schema_of_inputs());
+    forces_ = add(mcap::forces, schema_of_forces());
     separations_ = add(mcap::separations);
     energy_ = add(mcap::energy);
     timing_ = add(mcap::timing);
@@ -227,8 +277,9 @@ class McapLog final : public TickLog {
     writer_.attach(name, type, read_file(path), begin_ns_);
   }
 
-  std::uint16_t add(const mcap::Channel& channel) {
-    const std::uint16_t schema = writer_.add_schema(channel.schema, "jsonschema", channel.text);
+  std::uint16_t add(const mcap::Channel& channel) { return add(channel, channel.text); }
+  std::uint16_t add(const mcap::Channel& channel, const std::string& text) {
+    const std::uint16_t schema = writer_.add_schema(channel.schema, "jsonschema", text);
     return writer_.add_channel(channel.topic, schema, "json");
   }
 

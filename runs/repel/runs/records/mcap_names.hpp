@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <string>
 
+#include <repel/network/elements/signals.hpp>
+
 namespace repel::runs::mcap {
 
 struct Channel {
@@ -38,7 +40,14 @@ inline std::string parts_attachment(std::size_t list) {
   return name.append(std::to_string(list)).append(".yaml");
 }
 
-/// The inputs of the tick: what a replay needs.
+/// The name of a field of a hand: that of its C++ member, without its frame.
+inline std::string name_of(const network::HandField& field) {
+  const std::string name = field.name;
+  return name.ends_with("_W") ? name.substr(0, name.size() - 2) : name;
+}
+
+/// The inputs of the tick: what a replay needs. What hands do is added
+/// to it from their fields.
 inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
   "title": "repel.Inputs", "type": "object",
   "description": "What a tick has read. SI units, radians, world axes.",
@@ -58,52 +67,18 @@ inline constexpr Channel inputs{"/inputs", "repel.Inputs", R"({
       "torque_read": {"type": "array", "items": {"type": "number"},
         "description": "likewise [N m], about its origin"},
       "phase": {"type": "integer", "description": "of the script"},
-      "linear": {"type": "array", "items": {"type": "number"}, "description": "hand [m/s]"},
-      "angular": {"type": "array", "items": {"type": "number"}, "description": "hand [rad/s]"},
-      "lever_rate": {"type": "number", "description": "hand at the lever [rad/s]"},
-      "direction": {"type": "array", "items": {"type": "number"}, "description": "of the lever"},
-      "turning": {"type": "array", "items": {"type": "number"},
-        "description": "of a lever that turns the tool [rad/m]"},
-      "scale": {"type": "number", "description": "of a master that is felt, if it is not 1"},
-      "guides": {"type": "integer", "description": "bits of the fixtures, if not as set up"},
-      "guide_strength": {"type": "number", "description": "of the fixtures, if it is not 1"},
-      "compliant": {"type": "integer", "description": "bits of relief, if not as set up"},
-      "second_linear": {"type": "array", "items": {"type": "number"},
-        "description": "of a second hand, if it moves [m/s]; likewise all that follows"},
-      "second_angular": {"type": "array", "items": {"type": "number"},
-        "description": "[rad/s]"},
-      "second_lever_rate": {"type": "number", "description": "[rad/s]"},
-      "second_direction": {"type": "array", "items": {"type": "number"},
-        "description": "of its lever"},
-      "second_turning": {"type": "array", "items": {"type": "number"},
-        "description": "of its lever [rad/m]"},
-      "second_scale": {"type": "number", "description": "if not 1, or not that of the first"},
-      "second_guides": {"type": "integer"}, "second_guide_strength": {"type": "number"},
-      "second_compliant": {"type": "integer"},
       "not_finite": {"type": "array", "items": {"type": "string"},
         "description": "what was no finite number: NAME or NAME/INDEX, then nan, inf or -inf"},
       "sound": {"type": "boolean"}, "silent_for_s": {"type": "number"}}}}}})"};
 
+/// The fields of a tick that have an entry are added to it.
 inline constexpr Channel forces{"/forces", "repel.Forces", R"({
   "title": "repel.Forces", "type": "object",
   "description": "What came out of a tick. Wrenches about the origin of the tool, world axes.",
   "properties": {
     "tick": {"type": "integer"},
     "arms": {"type": "array", "items": {"type": "object", "properties": {
-      "force": {"type": "array", "items": {"type": "number"}, "description": "virtual [N]"},
-      "torque": {"type": "array", "items": {"type": "number"}, "description": "virtual [N m]"},
-      "coupling_force": {"type": "array", "items": {"type": "number"}, "description": "[N]"},
-      "coupling_torque": {"type": "array", "items": {"type": "number"}, "description": "[N m]"},
-      "force_n": {"type": "number", "description": "size of the virtual force [N]"},
-      "lever_torque": {"type": "number", "description": "[N m]"},
-      "held_n": {"type": "number", "description": "with which hard walls held the arm [N]"},
-      "hold_margin_m": {"type": "number", "description":
-        "how far off every hard wall it can be stopped, by the proof, if one is near [m]"},
-      "gain": {"type": "number", "description": "of the fail-safe, 0 to 1"},
-      "stop": {"type": "string", "description": "running, holding, braking or released"},
-      "brakes": {"type": "boolean", "description": "the brakes of the arm are asked for"},
-      "torques": {"type": "array", "items": {"type": "number"},
-                  "description": "to the joints [N m] or [N]"}}}}}})"};
+      "force_n": {"type": "number", "description": "size of the virtual force [N]"}}}}}})"};
 
 inline constexpr Channel separations{"/separations", "repel.Separations", R"({
   "title": "repel.Separations", "type": "object",

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <type_traits>
 
 #include <nlohmann/json.hpp>
 
@@ -94,29 +95,24 @@ class Fields {
   const std::string& file_;
 };
 
-/// Reads those of a hand's numbers that there are, under their names behind `prefix`.
-void read_hand(const Fields& arm, const std::string& prefix, network::HandInput& hand) {
-  const auto read = [&](const char* name, auto take) {
-    if (arm.has(prefix + name)) take(arm.at(prefix + name));
-  };
-  const auto read_number = [&](const char* name, double& x) {
-    read(name, [&](const Fields& value) { x = value.number(); });
-  };
-  const auto read_vector = [&](const char* name, Vec3& v) {
-    read(name, [&](const Fields& value) { v = value.vector(); });
-  };
-  const auto read_bits = [&](const char* name, std::int32_t& bits) {
-    read(name, [&](const Fields& value) { bits = static_cast<std::int32_t>(value.integer()); });
-  };
-  read_vector("linear", hand.ball.linear);
-  read_vector("angular", hand.ball.angular);
-  read_number("lever_rate", hand.lever_rate);
-  read_vector("direction", hand.direction_W);
-  read_vector("turning", hand.turning_W);
-  read_number("scale", hand.scale);
-  read_bits("guides", hand.guides);
-  read_number("guide_strength", hand.guide_strength);
-  read_bits("compliant", hand.compliant);
+/// Reads those of a hand's numbers that there are, under their names behind `prefix`. @param all
+/// those that are always recorded must be there
+void read_hand(const Fields& arm, const std::string& prefix, bool all, network::HandInput& hand) {
+  network::for_each_field(
+      [&](const network::HandField& field, auto& x) {
+        const std::string name = prefix + mcap::name_of(field);
+        if (!arm.has(name) && !(all && field.moves)) return;
+        const Fields value = arm.at(name);
+        using Value = std::remove_cvref_t<decltype(x)>;
+        if constexpr (std::is_same_v<Value, double>) {
+          x = value.number();
+        } else if constexpr (std::is_same_v<Value, Vec3>) {
+          x = value.vector();
+        } else {
+          x = static_cast<Value>(value.integer());
+        }
+      },
+      hand);
 }
 
 void read_inputs(const Fields& arm, TickRecord& k) {
@@ -135,22 +131,31 @@ void read_inputs(const Fields& arm, TickRecord& k) {
   }
   k.status = static_cast<Status>(arm.at("status").integer());
   k.phase = static_cast<std::int32_t>(arm.at("phase").integer());
-  for (const char* const name : {"linear", "angular", "lever_rate", "direction"})
-    (void)arm.at(name);
-  read_hand(arm, "", k.command.hand);
+  read_hand(arm, "", true, k.command.hand);
   // Older recordings have no `second_scale`. A second hand used the scale of the first.
   if (arm.has("second_linear")) k.command.second.scale = k.command.hand.scale;
-  read_hand(arm, "second_", k.command.second);
+  read_hand(arm, "second_", false, k.command.second);
   k.command.sound = arm.at("sound").yes();
   k.command.silent_for = arm.at("silent_for_s").number();
 }
 
 void read_forces(const Fields& arm, TickRecord& k) {
-  k.virtual_force = {arm.at("force").vector(), arm.at("torque").vector()};
-  k.coupling = {arm.at("coupling_force").vector(), arm.at("coupling_torque").vector()};
-  k.lever_torque = arm.at("lever_torque").number();
-  k.gain = arm.at("gain").number();
-  arm.at("torques").read(k.torques);
+  for_each_field(
+      [&](const TickField& field, auto& x) {
+        using Value = std::remove_cvref_t<decltype(x)>;
+        if (*field.entry == '\0' || (field.may_lack && !arm.has(field.entry))) return;
+        const Fields value = arm.at(field.entry);
+        if constexpr (std::is_same_v<Value, Vec3>) {
+          x = value.vector();
+        } else if constexpr (std::is_same_v<Value, JointNumbers>) {
+          value.read(x);
+        } else if constexpr (std::is_same_v<Value, double>) {
+          x = value.number();
+        } else if constexpr (std::is_same_v<Value, bool>) {
+          x = value.yes();
+        }
+      },
+      k);
 }
 
 /// Assembles ticks from messages: a tick is complete when all three of its messages have been read.

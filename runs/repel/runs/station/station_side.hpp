@@ -67,8 +67,8 @@ class StationSide {
       signals_.hand = command.hand;
       signals_.second = command.second;
     } else {
-      signals_.hand.ball = signals_.second.ball = {};
-      signals_.hand.lever_rate = signals_.second.lever_rate = 0.0;
+      signals_.hand.rest();
+      signals_.second.rest();
     }
     // Nobody holds against the hand: its spring begins anew.
     signals_.at_rest = !is_heard();

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include <Eigen/Geometry>
 
@@ -87,35 +88,42 @@ class Row {
   return told >= 0.0 && told < 2147483648.0 ? static_cast<std::int32_t>(told) : -1;
 }
 
-/// @param hand finite
+/// A number, bits or a vector; what is not finite as `none`.
+template <class Value, class Numbers>
+void put(const Value& value, const Value& none, Row<Numbers>& row) noexcept {
+  if constexpr (std::is_same_v<Value, Vec3>) {
+    row.put(value);
+  } else {
+    const auto number = static_cast<double>(value);
+    row.next() = std::isfinite(number) ? number : static_cast<double>(none);
+  }
+}
+
+/// @param hand HandInput::is_finite
 template <class Numbers>
 void put(const network::HandInput& hand, Row<Numbers>& row) noexcept {
-  row.next() = hand.lever_rate;
-  row.put(hand.direction_W);
-  row.put(hand.turning_W);
-  row.put(hand.ball.linear);
-  row.put(hand.ball.angular);
-  row.next() = std::isfinite(hand.scale) ? hand.scale : 1.0;
-  row.next() = static_cast<double>(hand.guides);
-  row.next() = std::isfinite(hand.guide_strength) ? hand.guide_strength : 1.0;
-  row.next() = static_cast<double>(hand.compliant);
+  const network::HandInput none;
+  network::for_each_field([&row](const network::HandField& /*field*/, const auto& x,
+                                 const auto& otherwise) { put(x, otherwise, row); },
+                          hand, none);
 }
 
 template <class Numbers>
 [[nodiscard]] network::HandInput read_hand(Row<Numbers>& row) noexcept {
   network::HandInput hand;
-  hand.lever_rate = row.next();
-  hand.direction_W = row.vec3();
-  hand.turning_W = row.vec3();
-  hand.ball.linear = row.vec3();
-  hand.ball.angular = row.vec3();
-  hand.scale = row.next();
-  hand.guides = bits_of(row.next());
-  hand.guide_strength = row.next();
-  hand.compliant = bits_of(row.next());
-  // What no hand does. Speeds and scales are bounded where they are used.
-  hand.turning_W = within(hand.turning_W, 1.0 / network::Screw::arm);
-  hand.ball.angular = within(hand.ball.angular, 100.0);
+  network::for_each_field(
+      [&row](const network::HandField& field, auto& x) {
+        using Value = std::remove_cvref_t<decltype(x)>;
+        if constexpr (std::is_same_v<Value, Vec3>) {
+          x = row.vec3();
+          if (std::isfinite(field.most)) x = within(x, field.most);
+        } else if constexpr (std::is_same_v<Value, double>) {
+          x = row.next();
+        } else {
+          x = bits_of(row.next());
+        }
+      },
+      hand);
   return hand;
 }
 
@@ -175,8 +183,8 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   if (!link.is_linked() || link.silent_for() > network::WavePlayer::silence) {
     command.silent_for = std::max(OperatorInput::silent_after, link.silent_for());
     // The hand that moved when the line went silent is not known to move on.
-    command.hand.ball = command.second.ball = {};
-    command.hand.lever_rate = command.second.lever_rate = 0.0;
+    command.hand.rest();
+    command.second.rest();
   }
   return command;
 }
