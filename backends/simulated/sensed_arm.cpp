@@ -13,7 +13,7 @@ bool SensorErrors::none() const noexcept {
 }
 
 SensedArm::SensedArm(std::unique_ptr<TorqueDrivenArm> arm, const SensorErrors& errors)
-    : arm_(std::move(arm)), errors_(errors), rng_(errors.seed) {
+    : WrappedArm(std::move(arm)), errors_(errors), rng_(errors.seed) {
   checked("noise of the force", errors.force_noise, 0.0, 1e6, "N");
   checked("noise of the torque", errors.torque_noise, 0.0, 1e6, "N m");
   checked("bias of the force", errors.bias.force.norm(), 0.0, 1e7, "N");
@@ -22,12 +22,12 @@ SensedArm::SensedArm(std::unique_ptr<TorqueDrivenArm> arm, const SensorErrors& e
 }
 
 void SensedArm::step(double period) noexcept {
-  arm_->step(period);
+  inside().step(period);
   draw();
 }
 
 std::optional<Wrench> SensedArm::read_wrench() const noexcept {
-  const std::optional<Wrench> exact = arm_->read_wrench();
+  const std::optional<Wrench> exact = inside().read_wrench();
   return exact ? std::optional(*exact + error_) : std::nullopt;
 }
 

@@ -100,7 +100,6 @@ TEST(FixturePath, FollowsDownhillAndNoFasterThanAsked) {
 TEST(FixturePath, TurnsItsFramesAndStandsAtItsPoints) {
   const Mat3 half = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
   const FixturePath path({{0, 0, 0}, {0.1, 0, 0}}, {Mat3::Identity(), half}, Course::straight);
-  EXPECT_TRUE(path.has_frames());
   EXPECT_TRUE(path.frame({0, 0.1}).isApprox(half, 1e-12));
   EXPECT_TRUE(path.frame({0, 0.05}).isApprox(
       Mat3(Eigen::AngleAxisd(0.25, Vec3::UnitX()).toRotationMatrix()), 1e-12));

@@ -11,7 +11,7 @@
 
 #include <repel/base/spatial.hpp>
 #include <repel/simulated/built_alike.hpp>
-#include <repel/world/arm.hpp>
+#include <repel/simulated/wrapped_arm.hpp>
 
 namespace repel {
 
@@ -28,25 +28,12 @@ struct SensorErrors {
 
 /// An arm whose readings of force have errors, the same for the same seed. Everything else is that
 /// of the arm it holds. Allocates at construction only.
-class SensedArm final : public TorqueDrivenArm {
+class SensedArm final : public WrappedArm {
  public:
   /// @throws SetupError for an error that is negative or not finite
   SensedArm(std::unique_ptr<TorqueDrivenArm> arm, const SensorErrors& errors);
 
-  void set_torques(std::span<const double> torques) noexcept override {
-    arm_->set_torques(torques);
-  }
   void step(double period) noexcept override;
-  void read_positions(std::span<double> out) const noexcept override { arm_->read_positions(out); }
-  void read_velocities(std::span<double> out) const noexcept override {
-    arm_->read_velocities(out);
-  }
-  void enable() noexcept override { arm_->enable(); }
-  void stop() noexcept override { arm_->stop(); }
-  void engage_brakes(bool on) noexcept override { arm_->engage_brakes(on); }
-  /// That of the arm.
-  [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
-  [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
   [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override;
 
  private:
@@ -54,7 +41,6 @@ class SensedArm final : public TorqueDrivenArm {
   // -1 to 1, the same with every standard library.
   [[nodiscard]] double uniform() noexcept;
 
-  std::unique_ptr<TorqueDrivenArm> arm_;
   SensorErrors errors_;
   std::mt19937_64 rng_;
   Wrench error_;  // [N, N m] of this step

@@ -44,8 +44,6 @@ class FixturePath {
   /// @throws SetupError otherwise
   FixturePath(const std::vector<Vec3>& points, const std::vector<Mat3>& frames, Course course);
 
-  /// It has a frame at each point.
-  [[nodiscard]] bool has_frames() const noexcept { return has_frames_; }
   /// One fewer than points.
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_.size(); }
 

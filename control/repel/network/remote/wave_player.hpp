@@ -66,8 +66,6 @@ class WavePlayer {
   [[nodiscard]] double buffer() const noexcept { return playout_.buffer(); }  ///< [s]
   /// The newest packet; 0 before the first.
   [[nodiscard]] std::int64_t newest() const noexcept { return newest_; }
-  /// [s] when it came.
-  [[nodiscard]] double last_arrival() const noexcept { return last_arrival_; }
 
  private:
   struct Entry {

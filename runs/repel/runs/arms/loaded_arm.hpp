@@ -14,17 +14,18 @@
 #include <repel/cell/layout.hpp>
 #include <repel/loop/held_weight.hpp>
 #include <repel/network/elements/port.hpp>
+#include <repel/simulated/wrapped_arm.hpp>
 #include <repel/world/kinematics.hpp>
 
 namespace repel::runs {
 
 /// An arm whose joints feel the weight of what the tool holds, whether the controller knows it or
 /// not. Everything else is that of the arm inside. Allocates at construction only.
-class LoadedArm final : public TorqueDrivenArm {
+class LoadedArm final : public WrappedArm {
  public:
   /// @param cell that the arm is the arm `index` of
   LoadedArm(std::unique_ptr<TorqueDrivenArm> arm, const Cell& cell, std::size_t index)
-      : arm_(std::move(arm)),
+      : WrappedArm(std::move(arm)),
         cell_(cell),
         index_(index),
         gravity_W_(cell.description().arms[index].model.gravity_W),
@@ -33,34 +34,20 @@ class LoadedArm final : public TorqueDrivenArm {
         jacobian_(Jacobian::Zero(6, static_cast<Eigen::Index>(joints_))) {}
 
   void set_torques(std::span<const double> torques) noexcept override {
-    if (torques.size() != joints_) return arm_->set_torques(torques);
+    if (torques.size() != joints_) return inside().set_torques(torques);
     const std::span<double> q = std::span(q_).first(joints_);
     const std::span<double> pulls = std::span(pulls_).first(joints_);
-    arm_->read_positions(q);
+    inside().read_positions(q);
     kinematics_.update(q);
     kinematics_.tool_jacobian(jacobian_);
     std::fill(pulls.begin(), pulls.end(), 0.0);
     add_held_weight(cell_.world(), cell_.layout(index_).tool, jacobian_, -gravity_W_, Masses::all,
                     pulls);
     for (std::size_t i = 0; i < joints_; ++i) pulls[i] += torques[i];
-    arm_->set_torques(pulls);
-  }
-  void step(double period) noexcept override { arm_->step(period); }
-  void read_positions(std::span<double> out) const noexcept override { arm_->read_positions(out); }
-  void read_velocities(std::span<double> out) const noexcept override {
-    arm_->read_velocities(out);
-  }
-  void enable() noexcept override { arm_->enable(); }
-  void stop() noexcept override { arm_->stop(); }
-  void engage_brakes(bool on) noexcept override { arm_->engage_brakes(on); }
-  [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
-  [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
-  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
-    return arm_->read_wrench();
+    inside().set_torques(pulls);
   }
 
  private:
-  std::unique_ptr<TorqueDrivenArm> arm_;
   const Cell& cell_;
   std::size_t index_;
   Vec3 gravity_W_;  // [m/s^2]

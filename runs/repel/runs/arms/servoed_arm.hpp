@@ -16,6 +16,7 @@
 #include <repel/cell/admittance.hpp>
 #include <repel/loop/arm_inertia.hpp>
 #include <repel/network/plan.hpp>
+#include <repel/simulated/wrapped_arm.hpp>
 #include <repel/world/kinematics.hpp>
 
 namespace repel::runs {
@@ -28,14 +29,14 @@ namespace repel::runs {
 /// critically damped and as slow as the rest of the response, w = 2 / (0.6 response), with F the
 /// dry friction. Between two commands it goes on at the commanded rate v_d. Everything else is that
 /// of the arm inside. Allocates at construction only.
-class ServoedArm final : public TorqueDrivenArm {
+class ServoedArm final : public WrappedArm {
  public:
   /// @param model of the arm, which its controller knows
   /// @param shown the model as its admittance shows it: see `admitted`
   /// @param response [s] at least 0.01 @param period [s] of the tick
   ServoedArm(std::unique_ptr<TorqueDrivenArm> arm, ArmModel model, const ArmModel& shown,
              double response, double period)
-      : arm_(std::move(arm)),
+      : WrappedArm(std::move(arm)),
         model_(std::move(model)),
         kinematics_(model_),
         inertia_(model_),
@@ -54,8 +55,8 @@ class ServoedArm final : public TorqueDrivenArm {
 
   void set_torques(std::span<const double> torques) noexcept override {
     read();
-    end_.step({std::span(q_).first(joints_), std::span(v_).first(joints_), arm_->state()}, torques,
-              brakes_on_);
+    end_.step({std::span(q_).first(joints_), std::span(v_).first(joints_), inside().state()},
+              torques, brakes_on_);
     newest_ = (newest_ + 1) % commands_.size();
     Command& command = commands_[newest_];
     std::copy(end_.positions().begin(), end_.positions().end(), command.q.begin());
@@ -67,24 +68,13 @@ class ServoedArm final : public TorqueDrivenArm {
     for (int i = 0; i < steps; ++i) {
       const double part = period / steps;
       drive();
-      arm_->step(part);
+      inside().step(part);
       time_ += part;
     }
   }
-  void read_positions(std::span<double> out) const noexcept override { arm_->read_positions(out); }
-  void read_velocities(std::span<double> out) const noexcept override {
-    arm_->read_velocities(out);
-  }
-  void enable() noexcept override { arm_->enable(); }
-  void stop() noexcept override { arm_->stop(); }
   void engage_brakes(bool on) noexcept override {
     brakes_on_ = on;
-    arm_->engage_brakes(on);
-  }
-  [[nodiscard]] ArmState state() const noexcept override { return arm_->state(); }
-  [[nodiscard]] ContactReport contact() const noexcept override { return arm_->contact(); }
-  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override {
-    return arm_->read_wrench();
+    inside().engage_brakes(on);
   }
 
  private:
@@ -96,8 +86,8 @@ class ServoedArm final : public TorqueDrivenArm {
   };
 
   void read() noexcept {
-    arm_->read_positions(std::span(q_).first(joints_));
-    arm_->read_velocities(std::span(v_).first(joints_));
+    inside().read_positions(std::span(q_).first(joints_));
+    inside().read_velocities(std::span(v_).first(joints_));
   }
 
   /// The last command that has arrived.
@@ -133,10 +123,9 @@ class ServoedArm final : public TorqueDrivenArm {
       torques[i] += friction_[i] * std::tanh(command.v[i] / creeping);
       torques[i] = std::clamp(torques[i], -efforts_[i], efforts_[i]);
     }
-    arm_->set_torques(torques);
+    inside().set_torques(torques);
   }
 
-  std::unique_ptr<TorqueDrivenArm> arm_;
   ArmModel model_;
   Kinematics kinematics_;
   ArmInertia inertia_;
