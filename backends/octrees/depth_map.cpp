@@ -98,8 +98,8 @@ void DepthMap::mark_ends(std::span<const float> depth, const Pose& X_WC) {
       octomap::OcTreeKey key;
       if (!tree_.coordToKeyChecked(end, key)) continue;
       mark(is_hit ? taken_for(end, key) : key, is_hit ? Mark::hit : Mark::hidden);
-      // At this depth every so many pixels are half a cube; a power of two, so that the rays of
-      // what is farther are between those of what is nearer.
+      // Pixel stride whose footprint at this depth is half a cube. It is a power of two, so that the
+      // rays of farther surfaces are between those of nearer ones.
       const double pixels = 0.5 * options_.cube * std::min(camera_.fx, camera_.fy) / far;
       const auto step =
           static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(pixels, 1.0, 64.0))));

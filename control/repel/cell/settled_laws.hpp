@@ -21,14 +21,14 @@ namespace repel {
 /// the coprocessor works beside.
 [[nodiscard]] double wall_delay(const CellDescription& cell) noexcept;
 
-/// The distance [m], up to 1 m, in which arms and moving obstacles stop that approach each other
-/// at half as much again as the tools may be driven at: with 2 m/s^2, which most arms are capable
-/// of, after their slew time and the delay of the slowest drive. What comes faster is braked later,
-/// as hard as the efforts allow.
+/// The stopping distance [m], up to 1 m, of arms and moving obstacles that approach each other at
+/// 1.5 times the speed limits: with 2 m/s^2, which most arms are capable of, after their slew time
+/// and the delay of the slowest drive. What comes faster is braked later, as hard as the efforts
+/// allow.
 [[nodiscard]] double stopping_distance(const CellDescription& cell) noexcept;
 
-/// Raises the damping of each law where it may rise, and where a wall is stable but for the tick by
-/// which answers are older beside; and `watched` of hard walls to the stopping distance. Not for
+/// Raises the damping of each law where it may rise, and where a wall is stable without the extra
+/// tick of asynchronous results. Raises `watched` of hard walls to the stopping distance. Not for
 /// the tick.
 /// @return one sentence for each damping that was raised beyond what it was given
 std::vector<std::string> settle_laws(CellDescription& cell);

@@ -96,7 +96,7 @@ class ArmCommand {
   [[nodiscard]] static TorqueShares without_brakes(TorqueShares shares,
                                                    const JointWatch& watch) noexcept;
 
-  // Takes off the walls what they will not give where the arm moves within the horizon.
+  // Subtracts the share of the wall torques that the predicted motion cancels.
   void yield(const ArmMotion& motion, const TorqueShares& shares) noexcept;
 
   TeleoperatorOptions options_;

@@ -71,8 +71,8 @@ class BarrierRows {
   static bool add_side(Side& side, const Jacobian* jacobian, const Wrench& F,
                        std::span<const double> v, BarrierRow& row) noexcept;
 
-  // What stops a joint at the end of its range, or at its greatest speed, would leave the others to
-  // the wall.
+  // A joint at its stop or at its greatest speed transmits no torque, so its limit is a constraint
+  // too.
   void add_joint(std::size_t joint, double q, double v, double untold) noexcept;
 
   // The row after those kept, without a gap.

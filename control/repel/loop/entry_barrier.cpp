@@ -121,7 +121,7 @@ void EntryBarrier::add(LeastConstraint& problem, const BarrierRow& row, Stopping
   }
   double gap = row.gap + late * std::min({row.rate, bound->rate, 0.0});
   if (row.is_shared) {
-    // Either arm stops within its half; what the other exceeds it by is made up for.
+    // Each arm gets half of the gap, plus what the other one overshoots.
     gap = gap > 0.0 ? 0.5 * gap : gap;
     bound->rate += std::min(0.0, row.others + allowed(gap, stop.surely)) - row.others;
   }

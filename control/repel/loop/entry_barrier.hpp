@@ -89,7 +89,7 @@ class EntryBarrier {
   /// To be called in every tick, with the torques that were sent less those of the weight [N m].
   void note_sent(const Vector& net) noexcept { forecast_.note_sent(net); }
 
-  /// [N] With which it pushed at the last tick on the pair on which it did so hardest.
+  /// [N] Largest constraint force of the last tick.
   [[nodiscard]] double force() const noexcept { return force_; }
   /// The pair of the hardest contact; invalid where none held.
   [[nodiscard]] PairId pushed() const noexcept { return pushed_; }

@@ -66,7 +66,7 @@ void HardContacts::add(PairId id, const Pair& pair, const Vec3& n) noexcept {
   const BodyId arm_a = state(contact.a).arm;
   const BodyId arm_b = state(contact.b).arm;
   contact.is_between_arms = arm_a.valid() && arm_b.valid() && arm_a != arm_b;
-  // What is still coming pushes by its law, in the time that it takes.
+  // Parts that are fading in use the soft law only.
   if (share_between(A, B).now < 1.0 || !(dot(n, n) > 0.5)) return;
   const Side a{part_a.shape.level(0), composed(A.X_WB, part_a.X_BP)};
   const Side b{part_b.shape.level(0), composed(B.X_WB, part_b.X_BP)};

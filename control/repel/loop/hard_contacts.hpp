@@ -41,14 +41,14 @@ struct Contacts {
 /// Some pair of the world is hard.
 [[nodiscard]] bool has_hard(const World& world) noexcept;
 
-/// Collects the points of the hard pairs that are near, at the present poses, whatever the age of
-/// the answer of the pair: its direction alone is used, and the shapes are apart by at least what
-/// they are apart along it.
+/// Collects the points of the hard pairs that are near, at the present poses. The answer of a pair
+/// may be old. Only its direction is used: the separation along any direction is a lower bound of
+/// the distance.
 ///
 /// The nearest point is not enough: where two faces are nearly parallel, a small turn moves it to
 /// the other end of the face, which may approach as the first one retreats. So for a ring of
-/// directions along the plane, the corner of what lies between both shapes is taken where the
-/// plane, tilted by what the bodies turn soon, would touch.
+/// directions along the plane, the plane is tilted by what the bodies turn soon, and the corner
+/// that it would touch is taken.
 ///
 /// Allocates at construction only; points beyond its capacity are left out and counted.
 class HardContacts {

@@ -29,9 +29,9 @@ struct Screw {
   double pitch = 0.0;  ///< [m/rad] motion along the axis per turning about it
   Vec3 axis{0, 0, 0};  ///< [m] from the origin of the tool to a point of the axis
 
-  /// [m] What the lever moves by its scale is the faster of two points: the origin of the tool, and
-  /// one so far off an axis without pitch. With the scale of 0.1 m/rad the tool turns by as much as
-  /// the lever.
+  /// [m] Lever arm used to scale pure rotation: the scale of the lever moves the origin of the tool
+  /// or a point so far off the axis, whichever is faster. With a scale of 0.1 m/rad the tool turns
+  /// by as much as the lever.
   static constexpr double arm = 0.1;
 
   /// The motion of the tool per motion that the lever's scale states: the linear part without unit,
@@ -45,7 +45,7 @@ struct LeverMotion {
   double rate = 0.0;        ///< [rad/s] of the hand
 };
 
-/// In place of a set of bits in a phase: that of the phase before.
+/// Sentinel for a set of bits: keep that of the previous phase.
 inline constexpr std::int32_t as_before = -2;
 
 /// One phase of the script.

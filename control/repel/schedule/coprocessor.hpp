@@ -54,8 +54,8 @@ class Coprocessor {
 
   /// Number of exchanges since set-up.
   [[nodiscard]] std::int64_t exchanges() const noexcept { return exchanges_; }
-  /// No thread uses a motion older than that of the exchange of this number, nor will: a part that
-  /// has been absent since then may get another shape. Call it just before an exchange.
+  /// All workers have passed this exchange: none uses an older motion any more. A part that has been
+  /// absent since then may get another shape. Call it just before an exchange.
   [[nodiscard]] bool is_past(std::int64_t exchange) noexcept;
 
   /// True when some thread was late at the last exchange, and the caller did its work.

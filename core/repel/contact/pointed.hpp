@@ -56,7 +56,7 @@ class PointedSearch {
   }
 
  private:
-  /// The two edges that are nearest to perpendicular to n, by how much they are not.
+  /// The two edges with the smallest abs(edge . n).
   struct TwoLeast {
     Vec<double> along{0.0, 0.0, 0.0};
     double least = std::numeric_limits<double>::infinity();

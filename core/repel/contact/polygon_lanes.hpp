@@ -100,7 +100,7 @@ struct PolygonLanes {
     slope = (-1.0 / either(valid, dot(side, axes.n), one)) * axes.in_plane(side);
   }
 
-  /// As how many sides a polygon is held: the last one is divided into as many as are missing.
+  /// Number of sides it is padded to, by splitting the last one.
   [[nodiscard]] static constexpr std::size_t sides_for(std::size_t corners) noexcept {
     return corners > 4 ? most : 4;
   }

@@ -48,8 +48,8 @@ class TiltMean {
     }
   }
 
-  /// H - w H(0) [m]: how much the mean gap is less than that at r = 0, but for what it is less
-  /// where s is 0. So it is 0 where the features are parallel.
+  /// H(s) - w H(0) [m], see above: by how much the mean gap is less than that at r = 0, beyond what
+  /// it is at s = 0. Parallel features give 0.
   [[nodiscard]] double nearer() const noexcept { return nearer_; }
   /// [m] Its gradient by s: the mean nearest point, and up to a seventh of the size of P beyond.
   [[nodiscard]] const Planar& point() const noexcept { return point_; }

@@ -65,8 +65,8 @@ struct PairForces {
   std::int64_t tick = -1;       ///< of the motion they belong to
   std::vector<Wrench> on_body;  ///< [N, N m] by BodyId, about each body's origin, world axes; of
                                 ///< bodies that are not of the same arm
-  /// The same, of bodies of the same arm. What they do to the arm is one work of its joints; so
-  /// their motion is none that could be supplied from outside.
+  /// The same, of bodies of the same arm. These are internal forces: they bring in no external
+  /// power.
   std::vector<Wrench> from_own;
   bool has_own = false;  ///< some of `from_own` may differ from zero
   /// [W] by BodyId: the power delivered to it by the motion of the bodies acting on it that are not

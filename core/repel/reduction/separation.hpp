@@ -72,8 +72,8 @@ namespace detail {
   const PosedPlanes planes_b{B.shape.planes(), B.X_W, b.core.reach()};
   DeepestPoint deepest(planes_a, planes_b);
   if (!deepest.solve(warm, most_pivots, doubted)) return false;
-  // The planes may enclose more than the shape, by their margin, and by rounding the point may be
-  // outside: by so much less is a point of both shapes as deep.
+  // The planes may enclose more than the shape, by their margin, and rounding may put the point
+  // outside. Both are subtracted from the depth.
   const double found = std::max(0.0, deepest.depth(0)) + std::max(0.0, deepest.depth(1));
   const double margins = A.shape.planes().margin() + B.shape.planes().margin();
   const double sure = 1.0 - (margins + deepest.outside()) / found;

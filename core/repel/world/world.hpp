@@ -267,7 +267,7 @@ class World {
   detail::LooseParts loose_;
 };
 
-/// A force of the pair can act at all: its bodies are there, and not in one hand.
+/// A force of the pair can act at all: both bodies exist and are not held by the same tool.
 [[nodiscard]] inline bool acts(const World& world, PairId id, const Motion& motion) noexcept {
   const auto state_of = [&](PartId part) -> const BodyState& {
     return motion.bodies[static_cast<std::size_t>(world.part(part).body.index)];

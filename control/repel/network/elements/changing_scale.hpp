@@ -19,7 +19,7 @@ class ChangingScale {
 
   /// @param period [s]
   void prepare(double period) noexcept { share_ = -std::expm1(-period / time); }
-  /// A number that is none, or out of range, leaves it as it is. The first is taken over at once.
+  /// NaN or out of range: ignored. The first value is taken over at once.
   void step(double wanted) noexcept;
   [[nodiscard]] double value() const noexcept { return value_; }  ///< in this tick
 

@@ -57,7 +57,7 @@ struct FixtureOptions {
   [[nodiscard]] AttractionLimits along(double k) const noexcept;
   /// Of the torque, for the stiffness `k` [N m/rad].
   [[nodiscard]] AttractionLimits about(double k) const noexcept;
-  /// Whether the force begins at a surface around which there is none within.
+  /// Whether the force is zero inside the surface.
   [[nodiscard]] bool has_inside() const noexcept;
 };
 

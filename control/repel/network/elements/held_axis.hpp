@@ -54,8 +54,8 @@ class HeldAxis {
   /// docs/network/six_axes.md derives it. @param late [s] from a motion to the force against it,
   /// in addition to the sampling
   [[nodiscard]] double device_damping(double late) const noexcept;
-  /// [N s/m, N m s/rad] The damping of the grip for which `device_damping` is least, and is twice
-  /// as much.
+  /// [N s/m, N m s/rad] Optimal damping of the grip; `device_damping` is then least, and twice as
+  /// much.
   [[nodiscard]] double best_grip_damping(double late) const noexcept;
   [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] by the hand
   /// The motor was at its limit in this tick.

@@ -37,7 +37,7 @@ double Playout::advance(double now) noexcept {
   const double aim = now - least - buffer_;
   const double elapsed = now - last_;
   const double off = aim - (moment_ + elapsed);
-  // What is off by less than a period is left alone: when a packet arrives is known no better.
+  // Less than a period is left alone: arrival times have a resolution of one period.
   const double by = off - std::clamp(off, -period_, period_);
   if (has_begun_ && std::abs(off) < most_off) {
     moment_ += elapsed +

@@ -72,8 +72,8 @@ const Vec<any_size>& WavePlayer::step(double now, bool at_rest) noexcept {
     begins_anew_ = false;
     return wave_;
   }
-  // Both by what is known now: what a packet tells that came too late for it is missing, and is
-  // made up for slowly.
+  // Both by what is known now. Late data are added later, at a limited rate, so that nothing jumps
+  // when they come.
   const WaveAccount last = account(before);
   const double share = std::min(1.0, period_ / catch_up);
   const Vec<any_size> wanted = due.sum - last.sum + share * (last.sum - played_.sum);
