@@ -98,8 +98,8 @@ void DepthMap::mark_ends(std::span<const float> depth, const Pose& X_WC) {
       octomap::OcTreeKey key;
       if (!tree_.coordToKeyChecked(end, key)) continue;
       mark(is_hit ? taken_for(end, key) : key, is_hit ? Mark::hit : Mark::hidden);
-      // Pixel stride whose footprint at this depth is half a cube. It is a power of two, so that the
-      // rays of farther surfaces are between those of nearer ones.
+      // Pixel stride whose footprint at this depth is half a cube. A power of two puts the rays of
+      // farther surfaces between those of nearer ones.
       const double pixels = 0.5 * options_.cube * std::min(camera_.fx, camera_.fy) / far;
       const auto step =
           static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(pixels, 1.0, 64.0))));

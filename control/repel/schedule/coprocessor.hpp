@@ -54,7 +54,7 @@ class Coprocessor {
 
   /// Number of exchanges since set-up.
   [[nodiscard]] std::int64_t exchanges() const noexcept { return exchanges_; }
-  /// All workers have passed this exchange: none uses an older motion any more. A part that has been
+  /// All workers have passed this exchange: none uses an older motion any more. A part that was
   /// absent since then may get another shape. Call it just before an exchange.
   [[nodiscard]] bool is_past(std::int64_t exchange) noexcept;
 

@@ -87,7 +87,7 @@ void print_times(const char* name, const DurationHistogram& times, std::FILE* ou
     std::fprintf(out, "  %-22s none\n", name);
     return;
   }
-  std::fprintf(out, "  %-22s p50 %8.2f   p99 %8.2f   p99.9 %8.2f   max %9.2f us\n", name,
+  std::fprintf(out, "  %-22s p50 %8.2f   p99 %8.2f   p99.9 %8.2f   max %9.2f µs\n", name,
                times.percentile_us(0.5), times.percentile_us(0.99), times.percentile_us(0.999),
                times.max_us());
 }

@@ -210,7 +210,7 @@ std::string data_of(const PercentileChart& chart) {
   std::string text;
   for (const double share : shares) text += (text.empty() ? "" : ",") + repel::to_text(share, 7);
   return "{\"shares\":[" + text + "]," +
-         common_json("share", "us", chart.lines, values_of, lines, {}) + "}";
+         common_json("share", "µs", chart.lines, values_of, lines, {}) + "}";
 }
 
 /// Minimum and maximum of a curve in each column; not finite for columns without a sample.
@@ -329,7 +329,7 @@ std::string to_html(const PercentileChart& chart) {
   // Logarithmic in 1 - share: each decade of the remaining tail has the same width.
   const auto decades = [](double share) { return -std::log10(std::max(1.0 - share, 1e-5)); };
   const Axis x{decades(0.5), 5.0, left, width};
-  std::string drawing = label(4.0, top + 8.0, "start", "us");
+  std::string drawing = label(4.0, top + 8.0, "start", "µs");
   for (double decade = y.low; decade <= y.high; decade += 1.0) {
     drawing += line(left, y(decade), width, y(decade), "grid");
     drawing += label(left - 6.0, y(decade) + 4.0, "end", repel::to_text(std::pow(10.0, decade), 4));

@@ -42,13 +42,13 @@ void print_hiccups(const Trial& t, std::FILE* out) {
     return;
   }
   const Hiccups& h = *t.hiccups;
-  std::fprintf(out, "  hiccups over 10 us     %" PRId64 ", together %.2f ms, longest %.2f us\n",
+  std::fprintf(out, "  hiccups over 10 µs     %" PRId64 ", together %.2f ms, longest %.2f µs\n",
                h.count(), 1e-3 * in_us(h.total()), in_us(h.longest()));
   const auto& edges = Hiccups::edges_us;
   for (std::size_t bin = 0; bin < edges.size(); ++bin) {
     if (h.bins()[bin] == 0) continue;
     const bool open = bin + 1 == edges.size();
-    const std::string to = open ? "us or more" : "to " + std::to_string(edges[bin + 1]) + " us";
+    const std::string to = open ? "µs or more" : "to " + std::to_string(edges[bin + 1]) + " µs";
     std::fprintf(out, "    %5d %-14s %" PRId64 "\n", edges[bin], to.c_str(), h.bins()[bin]);
   }
   std::fprintf(out, "  ticks with a hiccup    %" PRId64 " of %" PRId64 "\n", h.ticks(),

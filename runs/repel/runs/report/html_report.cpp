@@ -45,13 +45,13 @@ std::string tiles(const RunResult& r) {
   const RunTotals& t = r.totals();
   const DurationHistogram& compute = r.deadline.compute();
   std::string html = "<dl class='tiles'>\n";
-  html += word_tile("compute time, p99", with_unit(compute.percentile_us(0.99), "us"));
-  html += word_tile("compute time, longest", with_unit(compute.max_us(), "us"));
+  html += word_tile("compute time, p99", with_unit(compute.percentile_us(0.99), "µs"));
+  html += word_tile("compute time, longest", with_unit(compute.max_us(), "µs"));
   if (!r.options.fast) {
     html += word_tile("deadline misses", std::to_string(r.deadline.misses()) + " of " +
                                              std::to_string(r.deadline.ticks()));
-    html += word_tile("response time, longest", with_unit(us(r.deadline.longest_response()), "us"));
-    html += word_tile("lateness, p99", with_unit(r.deadline.wakeup().percentile_us(0.99), "us"));
+    html += word_tile("response time, longest", with_unit(us(r.deadline.longest_response()), "µs"));
+    html += word_tile("lateness, p99", with_unit(r.deadline.wakeup().percentile_us(0.99), "µs"));
   }
   html += word_tile("nearest of all pairs", nearest_text(t.nearest));
   html += word_tile("nearest of walls", nearest_text(r.walls.nearest));
@@ -153,7 +153,7 @@ std::string charts_of(const RunResult& r, const ArmResult& arm) {
 }
 
 std::string charts_of_time(const RunResult& r) {
-  host::Chart times = chart_of(r, "Compute time and lateness of each tick", "us");
+  host::Chart times = chart_of(r, "Compute time and lateness of each tick", "µs");
   times.curves = {{"compute time", [&r](std::size_t i) { return us(r.times[i].compute); }}};
   host::PercentileChart shares{
       .title = "Share of the ticks that took no longer",
@@ -199,7 +199,7 @@ std::string slowest(const RunResult& r) {
       order.begin(), order.begin() + shown_ticks, order.end(),
       [&](std::size_t a, std::size_t b) { return r.times[a].compute > r.times[b].compute; });
   std::vector<std::vector<std::string>> rows{{"phase", "pair of the largest force", "at [s]",
-                                              "compute [us]", "late [us]", "evaluated pairs",
+                                              "compute [µs]", "late [µs]", "evaluated pairs",
                                               "support steps"}};
   order.resize(static_cast<std::size_t>(shown_ticks));
   for (const std::size_t i : order) {

@@ -25,8 +25,8 @@ inline constexpr auto html_words = std::to_array<Word>({
      "From when a tick was due until it was finished: lateness and "
      "compute time together."},
     {"lateness, p99", "How long after it was due a tick began: 99 % of the ticks began no later."},
-    {"compute [us]", "Compute time of that tick: its work, from when it began."},
-    {"late [us]", "Lateness of that tick: how long after it was due it began. No miss by itself."},
+    {"compute [µs]", "Compute time of that tick: its work, from when it began."},
+    {"late [µs]", "Lateness of that tick: how long after it was due it began. No miss by itself."},
     {"allocations in a tick", "Requests for memory while a tick worked, of all ticks."},
     {"system calls in a tick", "Calls of the operating system while a tick worked, of all ticks."},
     // Distances.

@@ -469,7 +469,7 @@ void print_report(const RunResult& r, std::FILE* out) {
       t.most_stale, static_cast<long long>(t.oldest_age), t.refresh_energy);
   if (r.threads > 0) print_workers(r, out);
   if (r.scene.budget.wall_us > 0.0 && !r.options.fast) {
-    std::fprintf(out, "  wall budget            %g us, exceeded by the whole tick %lld times\n",
+    std::fprintf(out, "  wall budget            %g µs, exceeded by the whole tick %lld times\n",
                  r.scene.budget.wall_us, static_cast<long long>(r.over_budget));
   }
   print_work(r, out);
