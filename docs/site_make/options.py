@@ -12,6 +12,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/options.md"
+GROUPS = {f"{name}:" for name in ("Positionals", "Options", "Commands", "Run", "Arm", "Walls",
+                                  "View", "Link", "Files")}
 PROGRAMS = ["teleop", "qualify", "robot_info", "cover", "deadline"]
 HEAD = """<!-- SPDX-License-Identifier: BSD-3-Clause -->
 
@@ -24,23 +26,33 @@ builds `teleop` and passes its arguments on. The keys of scene files are on
 
 
 def help_of(folder, program):
-    out = subprocess.run([Path(folder) / program, "--help"], text=True, capture_output=True)
+    """Of a program, or of one of its commands."""
+    words = program.split()
+    out = subprocess.run([Path(folder) / words[0], *words[1:], "--help"], text=True,
+                         capture_output=True)
     if out.returncode or not out.stdout:
         sys.exit(f"options.py: {folder}/{program} --help: {out.stderr or 'says nothing'}")
     return out.stdout
 
 
+def with_commands(folder, program):
+    """The program, and its commands as `teleop run`."""
+    block = re.search(r"(?m)^Commands:\n((?:  .*\n)+)", help_of(folder, program))
+    commands = re.findall(r"(?m)^  (\S+)", block[1]) if block else []
+    return [program, *(f"{program} {command}" for command in commands)]
+
+
 def entries(lines):
-    """Options and what is said of them: beside each from column 30, or on the next line."""
+    """Options and what is said of them, from column 30, beside each or below it."""
+    found = []
     for line in lines:
         if re.match(r"  \S", line):
-            parts = re.split(r"  +", line.strip(), maxsplit=1)
-            head, text = parts if len(parts) == 2 and line.find(parts[1]) >= 28 else (
-                line.strip(), None)
-            if text is not None:
-                yield head, text
-        elif re.match(r" {28,}\S", line):
-            yield head, line.strip()
+            found.append((line[2:], "") if line[28:30].strip() or len(line) < 30 else
+                         (line[:30].strip(), line[30:]))
+        else:
+            head, text = found.pop()
+            found.append((head, f"{text} {line.strip()}".strip()))
+    return found
 
 
 def in_words(value):
@@ -79,7 +91,7 @@ def section(program, said):
     below = []
     for block in blocks[1:]:
         title = block.split("\n")[0]
-        if title in {"Positionals:", "Options:"}:
+        if title in GROUPS:
             text += [row(head, said) for head, said in entries(block.split("\n")[1:])]
         elif title != "Scenes:":  # those that are installed: scenes/README.md
             below += [*(f"    {line}".rstrip() for line in block.split("\n")), ""]
@@ -89,7 +101,8 @@ def section(program, said):
 def main(arguments):
     check = "--check" in arguments
     folder = Path(([a for a in arguments if a != "--check"] or [ROOT / "build/release/bin"])[0])
-    programs = [p for p in PROGRAMS if not check or (folder / p).is_file()]
+    programs = [each for program in PROGRAMS if not check or (folder / program).is_file()
+                for each in with_commands(folder, program)]
     sections = [section(p, help_of(folder, p)) for p in programs]
     if not check:
         PAGE.write_text("\n".join([HEAD, *sections]))

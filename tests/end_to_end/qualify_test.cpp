@@ -32,6 +32,13 @@ TEST(Qualify, VerdictReportAndExitStatusAgree) {
   }
 }
 
+TEST(Qualify, AMistypedOptionIsToldWhichOneWasMeant) {
+  const Ending ending = qualify("--rat 500");
+  EXPECT_EQ(ending.status, 2) << ending;
+  EXPECT_EQ(ending.err.rfind("qualify: unknown option --rat; did you mean --rate?\n", 0), 0U)
+      << ending;
+}
+
 TEST(Qualify, HelpNamesOptionsAndExitStatus) {
   const Ending ending = qualify("--help");
   EXPECT_EQ(ending.status, 0) << ending;

@@ -4,11 +4,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <repel/host/part_file.hpp>
 
@@ -54,21 +58,35 @@ class Output {
 /// The program's name, the version of the library, and the commit it was built from.
 [[nodiscard]] std::string version_of(const char* name);
 
+/// The one of `words` that was likely meant by `word`: that which the fewest letters, added, left
+/// out, replaced or swapped with the next, make of it; the first of several. Empty if these are
+/// more than a third of its letters, and more than one.
+[[nodiscard]] std::string closest(const std::string& word, std::span<const std::string> words);
+
+/// Gives a program --version, a help of 100 columns, and complaints that begin with its name and
+/// say which option was meant or what command has it. Before its options and commands are added.
+void set_up(CLI::App& app);
+
 /// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so that a reader
 /// that exits does not end the program. Returns the exit status: that of `run`, 0 for --help and
 /// --version, 2 for bad usage, `failure` after printing the message of an exception.
 /// @param describe declares the options, which write to the arguments
+/// @param reword changes the words of the command line before they are parsed; null: nothing does
 template <class Arguments>
 [[nodiscard]] int start(int argc, char** argv, const char* name, const char* about, int failure,
-                        void (*describe)(CLI::App&, Arguments&), int (*run)(const Arguments&)) {
+                        void (*describe)(CLI::App&, Arguments&), int (*run)(const Arguments&),
+                        void (*reword)(const CLI::App&, std::vector<std::string>&) = nullptr) {
   (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that exits must not end the run
   try {
     Arguments arguments;
     CLI::App app(about, name);
-    app.set_version_flag("--version", version_of(name));
+    set_up(app);
     describe(app, arguments);
     try {
-      app.parse(argc, argv);
+      std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+      if (reword != nullptr) reword(app, words);
+      std::reverse(words.begin(), words.end());  // as CLI11 wants them
+      app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
       return app.exit(error) == 0 ? 0 : 2;
     }
