@@ -87,7 +87,7 @@ class Program:
         for old in (report, log):
             old.unlink(missing_ok=True)
         done = subprocess.run(
-            [self.path, file, "--fast", "--tool-alone", "--seconds", str(seconds),
+            [self.path, "run", file, "--fast", "--tool-alone", "--seconds", str(seconds),
              "--report", report, "--log", log, *options], capture_output=True, text=True, check=False)
         if not report.exists():
             sys.exit(f"calm.py: {done.stderr.strip()}")

@@ -83,7 +83,7 @@ class Program:
     def run(self, file, *options):
         """The report, and the log as text."""
         report, log = self.folder / "report.json", self.folder / "log.csv"
-        done = subprocess.run([self.path, file, "--fast", "--report", report, "--log", log,
+        done = subprocess.run([self.path, "run", file, "--fast", "--report", report, "--log", log,
                                *options], capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise SystemExit(f"compare.py: {file}: {done.stderr.strip()}")

@@ -65,11 +65,11 @@ def instructions(profile, ticks):
 def measure(teleop, scene):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        timed = report_of([teleop, scene, "--fast"], folder)
+        timed = report_of([teleop, "run", scene, "--fast"], folder)
         profile = folder / "profile"
         counted = report_of(["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile}",
                              *(f"--toggle-collect={half}" for half in halves),
-                             teleop, scene, "--fast"], folder)
+                             teleop, "run", scene, "--fast"], folder)
         split = instructions(profile, counted["ticks"])
     if missing := [call for call, _ in calls if call not in split]:
         sys.exit(f"{scene}: not in the profile: {', '.join(missing)}")

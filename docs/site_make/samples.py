@@ -187,8 +187,7 @@ def check_scene(fence):
     # A file that is only named is like one that is there.
     mesh = ROOT / "scenes/meshes/glove_box_glass.stl"
     path.write_text(re.sub(r"file: \w+\.stl", f"file: {mesh}", text))
-    run = subprocess.run([teleop, path, "--fast", "--seconds", "0", "--quiet"], text=True,
-                         capture_output=True)
+    run = subprocess.run([teleop, "check", path], text=True, capture_output=True)
     return f"{fence}: {run.stderr}" if run.returncode else ""
 
 
@@ -224,6 +223,9 @@ def check_commands(known):
             except ValueError:
                 words = command.split()
             program = PROGRAMS[words[0]]
+            if program == "teleop":  # without a command it is run
+                named = f"teleop {words[1]}"
+                program = named if named in known else "teleop run"
             count += 1
             wrong += [f"{page}:{number}: {program} has no option {word.split('=')[0]}"
                       for word in words[1:] if word.startswith("--")

@@ -58,14 +58,14 @@ def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float 
     scene: a Scene, the path of a scene file, or the name of one that comes with the program.
     seconds [s] of scene time. fast: not by the clock, bitwise repeatable. log: a file for every
     tick, a recording if its name ends in .mcap, else CSV; see read_recording. arguments: further
-    ones of `teleop --help`.
+    ones of `teleop run --help`.
 
     The report has the key `exit_status`: 0, or 3 to 5 where docs/recording.md says what happened.
     Raises SetupError with the text of the program if it refuses.
     """
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
-        command = [program(), _path_of(scene), "--seconds", repr(float(seconds)), "--report",
+        command = [program(), "run", _path_of(scene), "--seconds", repr(float(seconds)), "--report",
                    str(report)]
         command += ["--fast"] if fast else []
         command += ["--rate", repr(float(rate_hz))] if rate_hz is not None else []
@@ -80,7 +80,7 @@ def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float 
 def view(scene: Any, arguments: Sequence[str] = (), browser: bool = True) -> int:
     """Runs a scene in the live view until it is stopped, with the page in the browser. Returns the
     exit status of the program."""
-    command = [program(), _path_of(scene), "--view", *arguments]
+    command = [program(), "run", _path_of(scene), "--view", *arguments]
     shown = not browser
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True) as running:

@@ -81,15 +81,15 @@ class Station(OwnProgram):
     def begin(self, side):
         link = f"udp:127.0.0.1:{20000 + os.getpid() % 20000}"
         scene = live.scene("remote")
-        program, url = live.listening(scene, side, "--impaired", "--link", link)
+        program, url = live.listening(side, scene, "--impaired", "--link", link)
         self.addCleanup(live.stop_program, program)
         return program, url
 
     @by_the_clock
     def test_it_shows_the_site_and_drives_it_and_says_when_it_is_gone(self):
-        page = self.open(self.begin("--station")[1])
+        page = self.open(self.begin("station")[1])
         page.until_text("status", "the site is silent")
-        site, _ = self.begin("--site")
+        site, _ = self.begin("site")
         page.until_text("status", "^ok")
         self.assertEqual(page.state()["operator"]["by"], "script")
         before = page.state()["toolPosition"]

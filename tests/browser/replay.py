@@ -16,7 +16,7 @@ class Replay(SharedProgram):
         cls.addClassCleanup(folder.cleanup)
         recording = os.path.join(folder.name, "recording.mcap")
         live.run(live.SCENE, "--seconds", "6", "--log", recording)
-        return live.listening("--replay", recording)
+        return live.listening("replay", recording)
 
     def setUp(self):
         super().setUp()

@@ -46,7 +46,7 @@ class Script(OwnProgram):
     def test_a_replay_says_when_it_is_over(self):
         recording = os.path.join(self.folder(), "run.mcap")
         live.run(live.scene("empty"), "--seconds", "6", "--log", recording)
-        page = self.open(self.start("--replay", recording))
+        page = self.open(self.start("replay", recording))
         for seconds, words in ((5, "^The script is over$"), (1, "^move freely$")):
             page.say("pause")
             page.say("seek", time_s=seconds)

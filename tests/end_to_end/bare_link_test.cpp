@@ -128,7 +128,7 @@ TEST(BareLink, IsShownInAReplay) {
   const Ending ending =
       teleop(quoted(scene_in(folder, "two_arms")) + " --fast --seconds 6 --log " + quoted(log));
   ASSERT_EQ(ending.status, 0) << ending;
-  LiveTeleop program({"--replay", log});
+  LiveTeleop program({"replay", log});
   LivePage page(program);
   expect_link_moves(page, folder);
 }
@@ -137,8 +137,8 @@ TEST(BareLink, IsShownAtAStation) {
   const Folder folder;
   const std::string scene = scene_in(folder, "remote");
   const std::string link = "udp:127.0.0.1:" + std::to_string(22000 + (getpid() + 9000) % 20000);
-  LiveTeleop station({scene, "--station", "--impaired", "--link", link});
-  LiveTeleop site({scene, "--site", "--impaired", "--link", link});
+  LiveTeleop station({"station", scene, "--impaired", "--link", link});
+  LiveTeleop site({"site", scene, "--impaired", "--link", link});
   LivePage page(station);
   EXPECT_EQ(page.await("scene").at("arms")[0].at("links"), Json::parse("[1]"));
   const auto is_told = [](const Json& frame) { return !has_status(frame, "silent_site"); };

@@ -94,7 +94,7 @@ TEST(Camera, IsReplayedBitForBitUnlessTheRunWasByTheClock) {
   const std::string file = quoted(folder / "seen.mcap");
   const Ending recorded = teleop("seen --fast --seconds 4 --log " + file);
   ASSERT_EQ(recorded.status, 0) << recorded;
-  const Ending again = teleop("--replay " + file);
+  const Ending again = teleop("replay " + file);
   ASSERT_EQ(again.status, 0) << again;
   EXPECT_TRUE(again.says("1600 of 1600 ticks, bit for bit")) << again;
   const Ending refused = teleop("seen --seconds 1 --log " + file);
@@ -174,7 +174,7 @@ TEST(Camera, OfSeveralIsReplayedBitForBit) {
   const Ending recorded = teleop(scene + " --fast --seconds 2 --log " + file);
   ASSERT_EQ(recorded.status, 0) << recorded;
   EXPECT_TRUE(recorded.says("  left                   ")) << recorded;
-  const Ending again = teleop("--replay " + file);
+  const Ending again = teleop("replay " + file);
   ASSERT_EQ(again.status, 0) << again;
   EXPECT_TRUE(again.says("800 of 800 ticks, bit for bit")) << again;
   const Ending by_the_clock = teleop(scene + " --seconds 2");
@@ -222,7 +222,7 @@ TEST(Camera, WithAMapIsReplayedBitForBit) {
   const std::string file = quoted(folder / "seen.mcap");
   const Ending recorded = teleop(scene + " --fast --seconds 2 --log " + file);
   ASSERT_EQ(recorded.status, 0) << recorded;
-  const Ending again = teleop("--replay " + file);
+  const Ending again = teleop("replay " + file);
   ASSERT_EQ(again.status, 0) << again;
   EXPECT_TRUE(again.says("800 of 800 ticks, bit for bit")) << again;
   const Ending by_the_clock = teleop(scene + " --seconds 2");

@@ -128,7 +128,7 @@ TEST(Chatter, OfAReplayIsThatOfItsRecording) {
   const Folder folder;
   const std::string file = folder / "run.mcap";
   for (const std::string& arguments :
-       {"plates --fast --seconds 4 --log " + quoted(file), "--replay " + quoted(file)}) {
+       {"plates --fast --seconds 4 --log " + quoted(file), "replay " + quoted(file)}) {
     const Ending ending = teleop(arguments + " --report " +
                                  quoted(folder / (arguments[0] == '-' ? "b.json" : "a.json")));
     ASSERT_EQ(ending.status, 0) << ending;

@@ -1,21 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <repel/host/command_line.hpp>
 
 #include "end_to_end/teleop.hpp"
+#include "end_to_end/whole_run.hpp"
 
 namespace repel::test {
 namespace command_line_test {
 
-TEST(CommandLine, HelpNamesScenesBackEndsDevicesAndExitStatus) {
+TEST(CommandLine, HelpNamesCommandsCommonUsageAndWhatASceneIsRunWith) {
   const Ending ending = teleop("--help");
   EXPECT_EQ(ending.status, 0) << ending;
   for (const char* words :
-       {"anderson_4x8", "--tool-alone", "bullet",          "ode",         "reference",
-        "ideal",        "spaceball",    "torque_arm",      "Exit status", "--fast",
-        "--report",     "--log",        "--threads",       "--budget",    "i860",
-        "--every-pair", "--contact",    "--plant-inertia", "--html",      "--site",
-        "--station",    "--link"}) {
+       {"\nCommands:\n  run ", "\n  replay ", "\n  site ", "\n  station ", "\n  check ",
+        "\n  list ", "teleop plates --view", "--report", "--rate", "anderson_4x8", "bullet", "ode",
+        "reference", "ideal", "spaceball", "torque_arm", "six_axes"}) {
     EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
+  }
+}
+
+TEST(CommandLine, HelpOfRunNamesScenesBackEndsDevicesAndExitStatusInGroups) {
+  for (const char* arguments : {"run --help", "plates --help", "--fast --help"}) {
+    const Ending ending = teleop(arguments);
+    EXPECT_EQ(ending.status, 0) << ending;
+    for (const char* words :
+         {"anderson_4x8", "--tool-alone", "bullet",          "ode",         "reference",
+          "ideal",        "spaceball",    "torque_arm",      "Exit status", "--fast",
+          "--report",     "--log",        "--threads",       "--budget",    "i860",
+          "--every-pair", "--contact",    "--plant-inertia", "--html",      "--programs",
+          "--walls",      "--link",       "--device",        "\nRun:\n",    "\nArm:\n",
+          "\nWalls:\n",   "\nView:\n",    "\nLink:\n",       "\nFiles:\n"}) {
+      EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
+    }
+    for (const char* words : {"--hold", "--apart", "--together", "--station", "--impaired"}) {
+      EXPECT_FALSE(ending.says(words)) << words << '\n' << ending;
+    }
+  }
+}
+
+TEST(CommandLine, HelpIsAtMost100ColumnsWide) {
+  for (const std::string command : {"", "run", "replay", "site", "station", "check", "list"}) {
+    const Ending ending = teleop(command + " --help");
+    EXPECT_EQ(ending.status, 0) << ending;
+    std::istringstream lines(ending.out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
   }
 }
 
@@ -64,6 +97,181 @@ TEST(CommandLine, BadUsageEndsWithTwoAndSaysWhy) {
     EXPECT_EQ(ending.status, 2) << arguments << '\n' << ending;
     EXPECT_FALSE(ending.err.empty()) << arguments;
   }
+}
+
+TEST(CommandLine, TheClosestWordIsTheOneOfFewestStepsIfTheyAreFew) {
+  const std::vector<std::string> words{"list", "lost", "check", "--backend"};
+  EXPECT_EQ(host::closest("list", words), "list");
+  EXPECT_EQ(host::closest("lsit", words), "list") << "a swap is one step";
+  EXPECT_EQ(host::closest("lst", words), "list") << "the first of several";
+  EXPECT_EQ(host::closest("losst", words), "lost");
+  EXPECT_EQ(host::closest("xheck", words), "check");
+  EXPECT_EQ(host::closest("xheckk", words), "check") << "two steps in six letters";
+  EXPECT_EQ(host::closest("xhekk", words), "") << "two steps in five";
+  EXPECT_EQ(host::closest("--bac", words), "");
+  EXPECT_EQ(host::closest("", words), "");
+}
+
+TEST(CommandLine, WhatIsMistypedIsToldWhatWasMeant) {
+  const struct {
+    const char* arguments;
+    int status;
+    const char* words;
+  } cases[] = {
+      {"--bakend ode", 2, "teleop: unknown option --bakend; did you mean --backend?\n"},
+      {"plates --fats", 2, "teleop: unknown option --fats; did you mean --fast?\n"},
+      {"run plates --bakend=ode", 2, "teleop: unknown option --bakend; did you mean --backend?\n"},
+      {"station delayed --impared", 2, "did you mean --impaired?\n"},
+      {"--zzzzzzzzzzz", 2, "teleop: unknown option --zzzzzzzzzzz\n"},
+      {"chek plates", 2, "teleop: unknown command chek; did you mean check?\n"},
+      {"lsit", 2, "teleop: unknown command lsit; did you mean list?\n"},
+      {"plate --fast", 1, "plate: no such scene (did you mean plates?)"},
+  };
+  for (const auto& each : cases) {
+    const Ending ending = teleop(each.arguments);
+    EXPECT_EQ(ending.status, each.status) << each.arguments << '\n' << ending;
+    EXPECT_TRUE(ending.says(each.words)) << each.arguments << '\n' << ending;
+  }
+}
+
+TEST(CommandLine, AnOptionOfAnotherCommandIsToldWhereItBelongs) {
+  const struct {
+    const char* arguments;
+    const char* words;
+  } cases[] = {
+      {"check plates --domain 3", "--domain belongs to: teleop run, teleop site, teleop station\n"},
+      {"plates --domain 3", "--domain belongs to: teleop site, teleop station"},
+      {"plates --impaired", "--impaired belongs to: teleop site, teleop station\n"},
+      {"replay x.mcap --walls hard", "--walls belongs to: teleop run, teleop site, teleop check\n"},
+      {"replay x.mcap --seconds=3", "--seconds belongs to: teleop run, teleop site"},
+      {"station delayed --html x.html",
+       "--html belongs to: teleop run, teleop replay, teleop site\n"},
+      {"list --fast", "--fast belongs to: teleop run\n"},
+  };
+  for (const auto& each : cases) {
+    const Ending ending = teleop(each.arguments);
+    EXPECT_EQ(ending.status, 2) << each.arguments << '\n' << ending;
+    EXPECT_TRUE(ending.says(each.words)) << each.arguments << '\n' << ending;
+  }
+}
+
+TEST(CommandLine, OldSpellingsOfOptionsWorkAndSayTheNewOnes) {
+  const Ending soft = teleop("two_arms --fast --seconds 2 --quiet --report - --hold soft");
+  ASSERT_EQ(soft.status, 0) << soft;
+  EXPECT_EQ(soft.err, "teleop: --hold is --walls by now\n");
+  const Ending hard = teleop("two_arms --fast --seconds 2 --quiet --report - --hold=hard");
+  ASSERT_EQ(hard.status, 0) << hard;
+  EXPECT_EQ(hard.err, "teleop: --hold is --walls by now\n");
+  const auto hardness = [](const Ending& ending) {
+    return nlohmann::json::parse(ending.out).at("obstacles").at(0).at("hold");
+  };
+  EXPECT_EQ(hardness(soft), "soft");
+  EXPECT_EQ(hardness(hard), "hard");
+  EXPECT_EQ(teleop("plates --hold firm").status, 2);
+  const Ending one = teleop("remote --together --seconds 0.1 --quiet");
+  EXPECT_EQ(one.status, 0) << one;
+  EXPECT_EQ(one.err, "teleop: --together is --programs one by now\n");
+  const Ending two = teleop("plates --apart");
+  EXPECT_EQ(two.status, 1) << two;
+  EXPECT_TRUE(two.says("teleop: --apart is --programs two by now\n")) << two;
+  EXPECT_TRUE(two.says("two programs need a module 'line'")) << two;
+}
+
+TEST(CommandLine, OptionsThatAreCommandsByNowAreAnsweredWithThem) {
+  const struct {
+    const char* arguments;
+    const char* words;
+  } cases[] = {
+      {"--replay run.mcap", "teleop: --replay FILE is by now: teleop replay FILE\n"},
+      {"--replay=run.mcap --view", "teleop: --replay FILE is by now: teleop replay FILE\n"},
+      {"delayed --site --seconds 1", "teleop: --site is by now: teleop site SCENE\n"},
+      {"delayed --station", "teleop: --station is by now: teleop station SCENE\n"}};
+  for (const auto& each : cases) {
+    const Ending ending = teleop(each.arguments);
+    EXPECT_EQ(ending.status, 2) << each.arguments << '\n' << ending;
+    EXPECT_EQ(ending.err.rfind(each.words, 0), 0U) << each.arguments << '\n' << ending;
+  }
+}
+
+TEST(CommandLine, RunIsTheCommandWhereNoneIsNamed) {
+  const std::string how = " --fast --seconds 0.1 --report -";
+  for (const std::string& arguments : {"run empty" + how, "empty" + how, how + " empty"}) {
+    const Ending ending = teleop(arguments);
+    ASSERT_EQ(ending.status, 0) << ending;
+    EXPECT_EQ(nlohmann::json::parse(ending.out).at("scene"), "empty");
+  }
+  // The command wins over a file of its name, which run takes.
+  const Folder folder;
+  (void)folder.with("list", robot_text() + "obstacles: []\n");
+  const std::string there = "cd " + quoted(folder / "") + " && $T ";
+  EXPECT_EQ(shell(there + "list").out, teleop("list").out);
+  const Ending run = shell(there + "run list --fast --seconds 0.1 --report -");
+  ASSERT_EQ(run.status, 0) << run;
+  EXPECT_EQ(nlohmann::json::parse(run.out).at("ticks"), 40);
+}
+
+TEST(CommandLine, ListSaysOfEachSceneWhatItIsAbout) {
+  const Ending ending = teleop("list");
+  EXPECT_EQ(ending.status, 0) << ending;
+  std::istringstream lines(ending.out);
+  std::map<std::string, std::string> about;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t end = line.find(' ');
+    about[line.substr(0, end)] =
+        line.substr(std::min(line.size(), line.find_first_not_of(' ', end)));
+  }
+  std::set<std::string> names;
+  for (const auto& [name, text] : about) {
+    names.insert(name);
+    EXPECT_FALSE(text.empty()) << name;
+  }
+  EXPECT_EQ(names, scene_names());
+  EXPECT_EQ(about["anderson_4x8"], "The experiment of Anderson (1993), section 4");
+  EXPECT_EQ(about["empty"], "A robot in an empty room");
+}
+
+TEST(CommandLine, CheckSaysThatASceneIsSoundAndHowLargeItIs) {
+  const std::string count = " [0-9]+ parts, [0-9]+ pairs, ";
+  EXPECT_TRUE(std::regex_match(teleop("check empty").out,
+                               std::regex(".*empty\\.yaml: sound: 1 arm, [0-9]+ parts, 0 pairs, "
+                                          "400 Hz\n")));
+  const Ending two = teleop("check two_arms --rate 1000");
+  EXPECT_EQ(two.status, 0) << two;
+  EXPECT_TRUE(std::regex_match(
+      two.out, std::regex(".*two_arms\\.yaml: sound: 2 arms," + count + "1000 Hz\n")))
+      << two;
+  const Folder folder;
+  const Ending run =
+      teleop("anderson_4x8 --fast --seconds 0 --quiet --report " + quoted(folder / "report.json"));
+  ASSERT_EQ(run.status, 0) << run;
+  const Ending checked = teleop("check");
+  EXPECT_TRUE(checked.says(" " + report_of(folder / "report.json").at("pairs").dump() + " pairs"))
+      << checked;
+  for (const std::string& name : scene_names()) {
+    const Ending ending = teleop("check " + name);
+    EXPECT_EQ(ending.status, 0) << ending;
+    EXPECT_TRUE(ending.says(": sound: ")) << ending;
+  }
+}
+
+TEST(CommandLine, CheckSaysWhatIsWrongAndWhere) {
+  const Folder folder;
+  const std::string bad = quoted(folder.with(
+      "bad.yaml", robot_text() + "obstacles:\n  - {name: b, shape: sphere, radius: 0.1}\n"));
+  const Ending unread = teleop("check " + bad);
+  EXPECT_EQ(unread.status, 1) << unread;
+  EXPECT_TRUE(unread.says("bad.yaml:9: ")) << unread;
+  EXPECT_EQ(unread.out, "");
+  // What is found by building the cell, and what is in another file.
+  std::string text = robot_text() + "obstacles: []\n";
+  text.replace(text.find("0 45 -180 0 -45 0 deg"), 21, "0 45 -180 0 -45 400 deg");
+  const Ending unbuilt = teleop("check " + quoted(folder.with("start.yaml", text)));
+  EXPECT_EQ(unbuilt.status, 1) << unbuilt;
+  EXPECT_TRUE(unbuilt.says("start.yaml") && unbuilt.says("start")) << unbuilt;
+  const Ending absent = teleop(
+      "check " + quoted(folder.with("absent.yaml", robot_text("no.urdf") + "obstacles: []\n")));
+  EXPECT_EQ(absent.status, 1) << absent;
+  EXPECT_TRUE(absent.says("no.urdf")) << absent;
 }
 
 TEST(CommandLine, BudgetThatIsNoneSaysWhichThereAre) {

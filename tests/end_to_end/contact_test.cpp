@@ -122,7 +122,7 @@ TEST(Contact, IsMeasuredAndItsRunRepeatsBitForBit) {
     EXPECT_GT(touched.at("peak_measured_force_n"), 20.0) << backend;
     EXPECT_EQ(touched.at("sensor_saturated_ticks"), 0) << backend;
     EXPECT_EQ(touched.at("sensor_lost_ticks"), 0) << backend;
-    const Ending again = teleop("--replay " + quoted(folder / "log.mcap") + " --report " +
+    const Ending again = teleop("replay " + quoted(folder / "log.mcap") + " --report " +
                                 quoted(folder / "again.json"));
     ASSERT_EQ(again.status, 0) << again;
     const json replayed = report_of(folder / "again.json");

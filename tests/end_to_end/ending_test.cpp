@@ -58,7 +58,7 @@ TEST(Ending, LogThatCannotBeWrittenOnIsSaidAndCostsNeitherRunNorReport) {
     EXPECT_EQ(text_of(log), "what stood there before");
     EXPECT_EQ(names_in(folder / ""), (Names{"report.json", name, name + ".part"}));
     if (name != "run.mcap") continue;
-    const Ending replay = teleop("--replay " + quoted(log + ".part"));
+    const Ending replay = teleop("replay " + quoted(log + ".part"));
     EXPECT_EQ(replay.status, 0) << "what there is of it can be gone through\n" << replay;
     EXPECT_TRUE(replay.says("ends early")) << replay;
   }
@@ -182,7 +182,7 @@ TEST(Ending, RunThatFadedReplaysBitForBit) {
               " & holds " + quoted(folder / "run.mcap.part") + " 400000; kill $!; wait $!");
     ASSERT_EQ(ending.status, 0) << ending;
     ASSERT_EQ(names_in(folder / ""), Names{"run.mcap"}) << ending;
-    const Ending replay = teleop("--replay " + quoted(folder / "run.mcap") + " --report " +
+    const Ending replay = teleop("replay " + quoted(folder / "run.mcap") + " --report " +
                                  quoted(folder / "report.json"));
     EXPECT_EQ(replay.status, 0) << replay;
     const auto report = report_of(folder / "report.json");
@@ -229,10 +229,10 @@ TEST(Ending, KillLeavesWhatStoodThereAndAPartThatReplays) {
   };
   ASSERT_EQ(kill_with("run.mcap.part").status, 137);
   EXPECT_EQ(names_in(folder / ""), Names{"run.mcap.part"});
-  const Ending absent = teleop("--replay " + quoted(log));
+  const Ending absent = teleop("replay " + quoted(log));
   EXPECT_EQ(absent.status, 1) << absent;
   EXPECT_TRUE(absent.says("run.mcap.part")) << "where it is\n" << absent;
-  EXPECT_EQ(teleop("--replay " + quoted(log + ".part")).status, 0);
+  EXPECT_EQ(teleop("replay " + quoted(log + ".part")).status, 0);
   const std::string first = text_of(log + ".part");
   ASSERT_EQ(kill_with("run.mcap.2.part").status, 137);
   EXPECT_TRUE(text_of(log + ".part") == first) << "nor is an earlier one lost";
@@ -312,7 +312,7 @@ TEST(Ending, NoFileIsWrittenOverOneThatIsReadOrAnother) {
        "--html would write over --report"},
       {run + "--log " + quoted(folder / "a") + " --report " + quoted(folder / "a.part"),
        "--report would write over --log"},
-      {"--replay " + quoted(recording) + " --log " + quoted(recording),
+      {"replay " + quoted(recording) + " --log " + quoted(recording),
        "--log would write over the recording"}};
   for (const auto& each : refused) {
     const Ending ending = teleop(each.arguments);

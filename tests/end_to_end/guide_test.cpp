@@ -99,7 +99,7 @@ TEST(Guide, ARunWithFixturesAndChangingComplianceIsReplayedBitForBit) {
   const std::string log = quoted(folder / "run.mcap");
   const Ending run = teleop("follow_a_seam --fast --seconds 16 --log " + log);
   ASSERT_EQ(run.status, 0) << run;
-  const Ending again = teleop("--replay " + log + " --report " + quoted(folder / "replay.json"));
+  const Ending again = teleop("replay " + log + " --report " + quoted(folder / "replay.json"));
   ASSERT_EQ(again.status, 0) << again;
   const json result = report_of(folder / "replay.json").at("replay");
   EXPECT_EQ(result.at("same"), result.at("ticks"));

@@ -136,10 +136,10 @@ TEST(Haply, AHandFeelsATableInAnotherProgram) {
     hand = Hand();
     devices::FakeHaply service;
     service.feel_by([&](const Vec3& force, FakeHandle& handle) { hand.feel(force, handle); });
-    const Ending ending = teleop(
-        quoted(scene) + " --apart --seconds 8 --backend ideal --device haply:" + service.url() +
-        " --link udp:127.0.0.1:" + std::to_string(22000 + getpid() % 20000) + " --report " +
-        quoted(folder / "report.json"));
+    const Ending ending =
+        teleop(quoted(scene) + " --programs two --seconds 8 --backend ideal --device haply:" +
+               service.url() + " --link udp:127.0.0.1:" + std::to_string(22000 + getpid() % 20000) +
+               " --report " + quoted(folder / "report.json"));
     EXPECT_EQ(ending.status, 0) << ending;
     EXPECT_TRUE(service.force().isZero(0.0)) << "it is let go at the end";
     EXPECT_LE(hand.most_, 3.0 + 1e-4);

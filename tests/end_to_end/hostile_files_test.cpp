@@ -144,7 +144,7 @@ TEST(HostileFiles, DoNotEndTheProgramThatRunsScenes) {
     names.push_back(name);
     const std::string path = folder.with(name, text);
     expect_an_end(run(REPEL_TELEOP, quoted(path) + " --fast --seconds 0"), name + " as a scene");
-    expect_an_end(run(REPEL_TELEOP, "--replay " + quoted(path)), name + " as a recording");
+    expect_an_end(run(REPEL_TELEOP, "replay " + quoted(path)), name + " as a recording");
   }
   const auto expect_an_end_of = [&](const std::string& lines, const std::string& urdf,
                                     const std::string& what) {

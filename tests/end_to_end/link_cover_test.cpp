@@ -116,7 +116,7 @@ TEST(LinkCover, IsRecordedAndAnotherOneIsRefused) {
   const Ending ending =
       teleop(quoted(scene_of(folder)) + " --fast --seconds 1 --log " + quoted(recording));
   ASSERT_EQ(ending.status, 0) << ending;
-  const auto replay = [&] { return teleop("--replay " + quoted(recording)); };
+  const auto replay = [&] { return teleop("replay " + quoted(recording)); };
   const Ending same = replay();
   EXPECT_EQ(same.status, 0) << same;
   std::ofstream(list, std::ios::app) << "      - 0 0 0.1 m\n";
@@ -139,7 +139,7 @@ TEST(LinkCover, ThatCameAfterTheRecordingIsRefused) {
       teleop(quoted(scene_of(folder)) + " --fast --seconds 1 --log " + quoted(recording));
   ASSERT_EQ(ending.status, 0) << ending;
   (void)folder.with("hook.stl.parts.yaml", hook_list());
-  const Ending late = teleop("--replay " + quoted(recording));
+  const Ending late = teleop("replay " + quoted(recording));
   EXPECT_EQ(late.status, 1) << late;
   EXPECT_TRUE(late.says("was not there when")) << late;
 }

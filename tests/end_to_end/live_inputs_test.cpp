@@ -257,7 +257,7 @@ TEST(LiveInputs, ARunInWhichAPageSwitchedIsGoneThroughAgainBitForBit) {
     const Ending ending = program.interrupt();
     ASSERT_EQ(ending.status, 0) << ending;
   }
-  const Ending again = teleop("--replay " + quoted(folder / "run.mcap") + " --report " +
+  const Ending again = teleop("replay " + quoted(folder / "run.mcap") + " --report " +
                               quoted(folder / "report.json"));
   EXPECT_EQ(again.status, 0) << again;
   const Json replay = report_of(folder / "report.json").at("replay");

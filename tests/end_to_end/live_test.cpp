@@ -368,7 +368,7 @@ void record(const std::string& path) {
 TEST(Live, ARunThatWasDrivenCanBeGoneThroughAgain) {
   const Folder folder;
   record(folder / "run.mcap");
-  const Ending ending = teleop("--replay " + quoted(folder / "run.mcap") + " --report " +
+  const Ending ending = teleop("replay " + quoted(folder / "run.mcap") + " --report " +
                                quoted(folder / "report.json"));
   EXPECT_EQ(ending.status, 0) << ending;
   const Json replay = report_of(folder / "report.json").at("replay");
@@ -380,7 +380,7 @@ TEST(Live, ARunThatWasDrivenCanBeGoneThroughAgain) {
 TEST(Live, ARecordingCanBeWoundToItsEndAndBack) {
   const Folder folder;
   record(folder / "run.mcap");
-  LiveTeleop program({"--replay", folder / "run.mcap"});
+  LiveTeleop program({"replay", folder / "run.mcap"});
   LivePage page(program);
   const Json scene = page.await("scene");
   ASSERT_FALSE(scene.is_null());

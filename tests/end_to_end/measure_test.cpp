@@ -92,7 +92,7 @@ TEST(MeasureOfOverlaps, ComesAgainInAReplayBitForBit) {
   (void)run_of(quoted(scene) + " --fast --seconds 2 --measure reduction --levels 5 --log " +
                quoted(file));
   const auto expect_same = [](const std::string& recording, const std::string& measure) {
-    const Outcome replay = run_of("--replay " + quoted(recording));
+    const Outcome replay = run_of("replay " + quoted(recording));
     EXPECT_EQ(replay.report.at("measure"), measure);
     EXPECT_EQ(replay.report.at("replay").at("ticks"), 800);
     EXPECT_EQ(replay.report.at("replay").at("same"), 800);
@@ -111,7 +111,7 @@ TEST(MeasureOfOverlaps, ComesAgainInAReplayBitForBit) {
 TEST(MeasureOfOverlaps, ThatIsNoneIsRefusedWithThoseThereAre) {
   for (const char* arguments :
        {"--measure tree", "--measure ''", "--measure", "--levels 0", "--levels 65", "--levels many",
-        "--replay x.mcap --measure exact", "--replay x.mcap --levels 8"}) {
+        "replay x.mcap --measure exact", "replay x.mcap --levels 8"}) {
     const Ending ending = teleop(arguments);
     EXPECT_EQ(ending.status, 2) << arguments << '\n' << ending;
   }
@@ -125,7 +125,7 @@ TEST(MeasureOfOverlaps, ThatIsNoneIsRefusedWithThoseThereAre) {
   const auto expect_refused = [&](const char* key, const char* value, const char* allowed) {
     const std::string other = folder / "other.mcap";
     rewrite(file, other, {.options = [&](Entries& options) { options[key] = value; }});
-    const Ending refused = teleop("--replay " + quoted(other));
+    const Ending refused = teleop("replay " + quoted(other));
     EXPECT_EQ(refused.status, 1) << refused;
     for (const char* words : {"other.mcap", key, value, allowed}) {
       EXPECT_TRUE(refused.says(words)) << words << refused;

@@ -114,7 +114,7 @@ TEST(NetworkOfAScene, TwoLeversLeadOneTool) {
   EXPECT_LT(moved("z_m"), -0.005);
   const Ending recorded = teleop(run + " --log " + quoted(folder / "run.mcap"));
   ASSERT_EQ(recorded.status, 0) << recorded;
-  const Ending replayed = teleop("--replay " + quoted(folder / "run.mcap"));
+  const Ending replayed = teleop("replay " + quoted(folder / "run.mcap"));
   EXPECT_EQ(replayed.status, 0) << replayed;
 }
 
@@ -153,7 +153,7 @@ TEST(NetworkOfAScene, TwoHandsLeadOneToolIntoATable) {
   EXPECT_NEAR(log.at("y_m").back(), log.at("y_m").front(), 0.004);
   const Ending recorded = teleop(run + " --log " + quoted(folder / "run.mcap"));
   ASSERT_EQ(recorded.status, 0) << recorded;
-  const Ending replayed = teleop("--replay " + quoted(folder / "run.mcap"));
+  const Ending replayed = teleop("replay " + quoted(folder / "run.mcap"));
   EXPECT_EQ(replayed.status, 0) << replayed;
 }
 

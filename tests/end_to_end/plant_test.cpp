@@ -112,13 +112,13 @@ TEST(Plant, ARecordingKnowsItAndIsReplayedBitForBit) {
   const std::string file = quoted(folder / "run.mcap");
   const Ending run = teleop(scene + " --fast --seconds 2 --plant-inertia 0.5 --log " + file);
   ASSERT_EQ(run.status, 0) << run;
-  const Ending again = teleop("--replay " + file + " --report " + quoted(folder / "r.json"));
+  const Ending again = teleop("replay " + file + " --report " + quoted(folder / "r.json"));
   ASSERT_EQ(again.status, 0) << again;
   const json report = report_of(folder / "r.json");
   EXPECT_EQ(report.at("plant_inertia"), 0.5);
   EXPECT_EQ(report.at("payload_kg"), 2.0);
   EXPECT_EQ(report.at("replay").at("same"), 800);
-  EXPECT_EQ(teleop("--replay " + file + " --plant-inertia 2").status, 2);
+  EXPECT_EQ(teleop("replay " + file + " --plant-inertia 2").status, 2);
 }
 
 TEST(Plant, AFactorOutOfRangeOrForABackEndWithoutMassesIsRefused) {

@@ -24,7 +24,7 @@ void record(const std::string& arguments, const std::string& file) {
 nlohmann::json replay(const std::string& file, int status = 0) {
   const Folder folder;
   const Ending ending =
-      teleop("--replay " + quoted(file) + " --report " + quoted(folder / "report.json"));
+      teleop("replay " + quoted(file) + " --report " + quoted(folder / "report.json"));
   EXPECT_EQ(ending.status, status) << ending;
   return report_of(folder / "report.json").at("replay");
 }
@@ -134,7 +134,7 @@ TEST(Recording, FileThatIsCutOffReplaysUpToThere) {
   const std::string file = folder / "run.mcap";
   record("anderson_4x8 --fast --seconds 4", file);
   std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  const Ending ending = teleop("--replay " + quoted(file));
+  const Ending ending = teleop("replay " + quoted(file));
   EXPECT_EQ(ending.status, 0) << ending;
   EXPECT_TRUE(ending.says("ends early")) << ending;
   const auto result = replay(file);
@@ -184,11 +184,11 @@ TEST(Recording, WhatIsNoRecordingIsRefusedByName) {
   const Folder folder;
   const std::string text = folder.with("text.mcap", "no recording at all, but long enough to read");
   for (const std::string& file : {text, folder / "absent.mcap"}) {
-    const Ending ending = teleop("--replay " + quoted(file));
+    const Ending ending = teleop("replay " + quoted(file));
     EXPECT_EQ(ending.status, 1) << ending;
     EXPECT_TRUE(ending.says(file)) << ending;
   }
-  EXPECT_EQ(teleop("--replay " + quoted(text) + " --seconds 3").status, 2);
+  EXPECT_EQ(teleop("replay " + quoted(text) + " --seconds 3").status, 2);
   EXPECT_EQ(teleop("plates --log " + quoted(folder / "no/such.mcap")).status, 1);
 }
 
@@ -199,7 +199,7 @@ TEST(Recording, AnotherRobotIsRefused) {
       folder.with("scene.yaml", robot_text(urdf) + table_text() + push_text());
   record(quoted(scene) + " --fast --seconds 1", folder / "run.mcap");
   std::ofstream(urdf, std::ios::app) << "<!-- changed -->\n";
-  const Ending ending = teleop("--replay " + quoted(folder / "run.mcap"));
+  const Ending ending = teleop("replay " + quoted(folder / "run.mcap"));
   EXPECT_EQ(ending.status, 1) << ending;
   EXPECT_TRUE(ending.says("arm.urdf")) << ending;
 }
@@ -221,11 +221,11 @@ TEST(Recording, OtherPartsOfAMeshAreRefused) {
       "  - {name: table, shape: mesh, file: table.stl, position: 0.6 -0.15 0.45 m}\n";
   const std::string scene = folder.with("scene.yaml", robot_text() + obstacles + push_text());
   record(quoted(scene) + " --fast --seconds 1", folder / "run.mcap");
-  const Ending same = teleop("--replay " + quoted(folder / "run.mcap"));
+  const Ending same = teleop("replay " + quoted(folder / "run.mcap"));
   EXPECT_EQ(same.status, 0) << same;
   EXPECT_TRUE(same.says("table/1")) << same;
   std::ofstream(list, std::ios::app) << "      - 0 0 1 m\n";
-  const Ending other = teleop("--replay " + quoted(folder / "run.mcap"));
+  const Ending other = teleop("replay " + quoted(folder / "run.mcap"));
   EXPECT_EQ(other.status, 1) << other;
   EXPECT_TRUE(other.says("table.stl.parts.yaml")) << other;
 }

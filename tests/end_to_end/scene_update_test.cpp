@@ -271,7 +271,7 @@ TEST(RecordedScene, TheForceAndTheMarginOfHardWallsAreThoseOfTheTable) {
   const Folder folder;
   const std::string scene = folder.with("scene.yaml", robot_text() + table_text() + push_text());
   for (const char* name : {"run.csv", "run.mcap"}) {
-    record(quoted(scene) + " --hold hard --fast --seconds 2", folder / name);
+    record(quoted(scene) + " --walls hard --fast --seconds 2", folder / name);
   }
   const Columns table = columns_of(folder / "run.csv");
   const auto forces = by_tick(folder / "run.mcap", "/forces");

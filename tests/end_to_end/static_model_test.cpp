@@ -68,7 +68,7 @@ TEST(StaticModel, IsRecordedAndAnotherOneIsRefused) {
   const Ending ending =
       teleop(quoted(scene_of(folder)) + " --fast --seconds 1 --log " + quoted(recording));
   ASSERT_EQ(ending.status, 0) << ending;
-  const auto replay = [&] { return teleop("--replay " + quoted(recording)); };
+  const auto replay = [&] { return teleop("replay " + quoted(recording)); };
   const Ending same = replay();
   EXPECT_EQ(same.status, 0) << same;
   EXPECT_TRUE(same.says("cell/table/plate")) << same;
@@ -107,9 +107,9 @@ TEST(StaticModel, OfAnSdfFilePushesAsTheSceneWouldAndIsRecorded) {
   const std::string recording = folder / "run.mcap";
   const Ending ending = teleop(quoted(scene) + " --fast --seconds 1 --log " + quoted(recording));
   ASSERT_EQ(ending.status, 0) << ending;
-  EXPECT_EQ(teleop("--replay " + quoted(recording)).status, 0);
+  EXPECT_EQ(teleop("replay " + quoted(recording)).status, 0);
   std::ofstream(file, std::ios::app) << "<!-- changed -->\n";
-  const Ending changed = teleop("--replay " + quoted(recording));
+  const Ending changed = teleop("replay " + quoted(recording));
   EXPECT_EQ(changed.status, 1) << changed;
   EXPECT_TRUE(changed.says("cell.sdf")) << changed;
 }

@@ -25,8 +25,8 @@ std::string scene_text() {
 /// waits until the site is there.
 class Both {
  public:
-  Both() { station_.emplace(arguments("--station")); }
-  void begin_site() { site_.emplace(arguments("--site")); }
+  Both() { station_.emplace(arguments("station")); }
+  void begin_site() { site_.emplace(arguments("site")); }
   void kill_site() { site_.reset(); }
   [[nodiscard]] LiveTeleop& site() { return *site_; }
   [[nodiscard]] LiveTeleop& station() { return *station_; }
@@ -34,8 +34,8 @@ class Both {
 
  private:
   [[nodiscard]] std::vector<std::string> arguments(const std::string& side) const {
-    std::vector<std::string> all{scene_, side, "--impaired", "--link", link_};
-    if (side == "--station") all.insert(all.end(), {"--report", folder_ / "report.json"});
+    std::vector<std::string> all{side, scene_, "--impaired", "--link", link_};
+    if (side == "station") all.insert(all.end(), {"--report", folder_ / "report.json"});
     return all;
   }
 

@@ -29,7 +29,7 @@ std::string own_port() {
 /// The links that this build has.
 std::vector<std::string> links() {
   std::vector<std::string> all{"udp:127.0.0.1:" + own_port(), "'udp:[::1]:" + own_port() + "'"};
-  if (teleop("--help").says("LINK=dds")) all.emplace_back("dds");
+  if (teleop("site --help").says("LINK=dds")) all.emplace_back("dds");
   return all;
 }
 
@@ -41,11 +41,11 @@ TEST(TwoPrograms, ShareASceneOverEachLink) {
       const Folder folder;
       Ending of_site;
       std::thread site([&] {
-        of_site = teleop("delayed --site --seconds 6 --link " + link + " --report " +
+        of_site = teleop("site delayed --seconds 6 --link " + link + " --report " +
                          quoted(folder / "site.json"));
       });
-      const Ending of_station = teleop("delayed --station --seconds 5 --link " + link +
-                                       " --report " + quoted(folder / "station.json"));
+      const Ending of_station = teleop("station delayed --seconds 5 --link " + link + " --report " +
+                                       quoted(folder / "station.json"));
       site.join();
       has_address = !of_site.says("Cannot assign requested address");
       if (!has_address) return {};
@@ -90,7 +90,7 @@ TEST(TwoPrograms, ASiteThatOthersCanReachSaysSoAtTheStartAndInTheReport) {
   for (const bool is_open : {true, false}) {
     const Folder folder;
     const std::string address = is_open ? "0.0.0.0:" : "127.0.0.1:";
-    const Ending ending = teleop("delayed --site --seconds 0.2 --link udp:" + address + own_port() +
+    const Ending ending = teleop("site delayed --seconds 0.2 --link udp:" + address + own_port() +
                                  " --report " + quoted(folder / "site.json"));
     ASSERT_EQ(ending.status, 0) << ending;
     const json report = report_of(folder / "site.json");
@@ -109,7 +109,7 @@ TEST(TwoPrograms, RunInOneCommand) {
     const Folder folder;
     const Ending ending =
         teleop("remote --link udp:127.0.0.1:" + std::to_string(21000 + getpid() % 20000) +
-               " --apart --seconds 10 --report " + quoted(folder / "report.json"));
+               " --programs two --seconds 10 --report " + quoted(folder / "report.json"));
     EXPECT_EQ(ending.status, 0) << ending;
     EXPECT_TRUE(ending.says("delayed by 50 to 55 ms, 2 % lost")) << ending;
     EXPECT_TRUE(ending.says("felt at the handle")) << ending;
@@ -141,7 +141,7 @@ TEST(TwoPrograms, RunInOneCommand) {
 
 TEST(TwoPrograms, WhatTheOtherProgramCannotDoEndsBoth) {
   const Ending ending =
-      teleop("remote --apart --device evdev:/dev/null --link udp:127.0.0.1:" + own_port());
+      teleop("remote --programs two --device evdev:/dev/null --link udp:127.0.0.1:" + own_port());
   EXPECT_EQ(ending.status, 1) << ending;
   EXPECT_TRUE(ending.says("/dev/null")) << ending;
 }
@@ -265,7 +265,7 @@ void expect_linked(const json& site, const json& station, int delay_ms) {
 std::vector<std::pair<std::string, std::string>> links_of(const TwoMachines& machines) {
   std::vector<std::pair<std::string, std::string>> both{
       {"udp:10.77.9.1:7411", "udp:10.77.9.1:7411"}};
-  if (teleop("--help").says("LINK=dds")) {
+  if (teleop("site --help").says("LINK=dds")) {
     both.emplace_back("dds:" + machines.interface("a"), "dds:" + machines.interface("b"));
   }
   return both;
@@ -285,16 +285,16 @@ TEST(TwoPrograms, BetweenTwoMachinesAStationMayBeKilledAndAnotherMayCome) {
       const std::string scene = " " + quoted(delayed_by(delay_ms, folder));
       Ending of_site;
       std::thread site([&, at = at_a] {
-        of_site = machines.teleop_on("a", "--site --impaired --seconds 12 --link " + at + scene +
+        of_site = machines.teleop_on("a", "site --impaired --seconds 12 --link " + at + scene +
                                               " --report " + quoted(folder / "site.json") +
                                               " --log " + quoted(folder / "site.csv"));
       });
-      const Ending killed = machines.teleop_on("b", "--station --impaired --link " + at_b + scene,
+      const Ending killed = machines.teleop_on("b", "station --impaired --link " + at_b + scene,
                                                "timeout --signal=KILL 4 ");
       // As long as it takes to see the robot at rest.
       std::this_thread::sleep_for(std::chrono::seconds(2));
       const Ending another =
-          machines.teleop_on("b", "--station --impaired --seconds 4 --link " + at_b + scene +
+          machines.teleop_on("b", "station --impaired --seconds 4 --link " + at_b + scene +
                                       " --report " + quoted(folder / "station.json"));
       site.join();
       EXPECT_EQ(of_site.status, 0) << of_site;
@@ -328,13 +328,13 @@ TEST(TwoPrograms, BetweenTwoMachinesASiteMayBeKilledAndAnotherMayCome) {
     Ending of_station;
     std::thread station([&] {
       of_station =
-          machines.teleop_on("b", "--station --impaired --seconds 11 --link " + link + scene +
+          machines.teleop_on("b", "station --impaired --seconds 11 --link " + link + scene +
                                       " --report " + quoted(folder / "station.json"));
     });
-    const Ending killed = machines.teleop_on("a", "--site --impaired --link " + link + scene,
+    const Ending killed = machines.teleop_on("a", "site --impaired --link " + link + scene,
                                              "timeout --signal=KILL 5 ");
     const Ending another =
-        machines.teleop_on("a", "--site --impaired --seconds 6 --link " + link + scene +
+        machines.teleop_on("a", "site --impaired --seconds 6 --link " + link + scene +
                                     " --report " + quoted(folder / "site.json"));
     station.join();
     EXPECT_NE(killed.status, 0) << killed;
@@ -352,8 +352,7 @@ TEST(TwoPrograms, BetweenTwoMachinesASiteMayBeKilledAndAnotherMayCome) {
 }
 
 TEST(TwoPrograms, AStationAloneSaysThatNobodyWasThere) {
-  const Ending ending =
-      teleop("delayed --station --seconds 0.5 --link udp:127.0.0.1:" + own_port());
+  const Ending ending = teleop("station delayed --seconds 0.5 --link udp:127.0.0.1:" + own_port());
   EXPECT_EQ(ending.status, 0) << ending;
   EXPECT_TRUE(ending.says("NOT heard")) << ending;
 }
@@ -364,24 +363,28 @@ TEST(TwoPrograms, WhatCannotBeDividedIsRefused) {
     int status;
     const char* words;
   } cases[] = {
-      {"plates --site", 1, "'line'"},
-      {"plates --station", 1, "'line'"},
-      {"two_arms --site", 1, "partners"},
-      {"delayed --site --station", 2, "--station"},
-      {"delayed --site --fast", 2, "--fast"},
-      {"delayed --station --view --log x.csv", 2, "--log"},
-      {"plates --station --view", 1, "'line'"},
-      {"delayed --link udp", 2, "--site or --station"},
-      {"delayed --site --link smoke", 2, "dds:INTERFACE"},
-      {"delayed --site --link udp:127.0.0.1:0", 2, "udp:ADDRESS:PORT"},
-      {"delayed --site --link udp:127.0.0.1:1e3", 2, "udp:ADDRESS:PORT"},
-      {"delayed --site --seconds 1 --link udp:no.such.name:7411", 1, "no.such.name"},
-      {"delayed --site --log x.mcap", 1, "--together"},
-      {"plates --apart", 1, "'line'"},
-      {"delayed --apart --fast", 2, "--fast"},
-      {"delayed --apart --together", 2, "--apart"},
-      {"delayed --impaired", 2, "--site or --station"},
-      {"delayed --site --domain 231", 2, "--domain"},
+      {"site plates", 1, "'line'"},
+      {"station plates", 1, "'line'"},
+      {"site two_arms", 1, "partners"},
+      {"site delayed --fast", 2, "--fast belongs to: teleop run"},
+      {"site delayed --device spacenav", 2, "--device belongs to: teleop run, teleop station"},
+      {"station delayed --view --log x.csv", 2,
+       "--log belongs to: teleop run, teleop replay, teleop site"},
+      {"station plates --view", 1, "'line'"},
+      {"delayed --link udp", 2, "--link belongs to: teleop site, teleop station"},
+      {"delayed --domain 3", 2, "--domain belongs to: teleop site, teleop station"},
+      {"delayed --programs one --domain 3", 2, "--programs two"},
+      {"site delayed --link smoke", 2, "dds:INTERFACE"},
+      {"site delayed --link udp:127.0.0.1:0", 2, "udp:ADDRESS:PORT"},
+      {"site delayed --link udp:127.0.0.1:1e3", 2, "udp:ADDRESS:PORT"},
+      {"site delayed --seconds 1 --link udp:no.such.name:7411", 1, "no.such.name"},
+      {"site delayed --log x.mcap", 1, "--programs one"},
+      {"plates --programs two", 1, "'line'"},
+      {"delayed --programs two --fast", 2, "--fast"},
+      {"delayed --programs two --programs one", 2, "--programs"},
+      {"delayed --impaired", 2, "--impaired belongs to: teleop site, teleop station"},
+      {"delayed --programs two --impaired", 2, "--impaired belongs to"},
+      {"site delayed --domain 231", 2, "--domain"},
   };
   for (const auto& each : cases) {
     const Ending ending = teleop(each.arguments);

@@ -118,7 +118,7 @@ TEST(WholeArm, APostNearTheBaseIsEnteredFarLessWithALawGivenAtTheTool) {
 TEST(WholeArm, AHardPostIsNotEnteredWhateverTheLeverage) {
   const Folder folder;
   const std::string scene = folder.with("swing.yaml", swing_scene(""));
-  const Ending ending = teleop(quoted(scene) + " --fast --seconds 8 --hold hard --report " +
+  const Ending ending = teleop(quoted(scene) + " --fast --seconds 8 --walls hard --report " +
                                quoted(folder / "r.json"));
   ASSERT_EQ(ending.status, 0) << ending;
   const json report = report_of(folder / "r.json");

@@ -158,6 +158,9 @@ if [ -e "$prefix/bin/teleop" ]; then
   step "completion of an option" completes --backend --back
   step "completion of its words" completes ode --backend o
   step "completion of a scene" completes anderson_4x8 anderson
+  step "completion of a command" completes replay repl
+  step "completion of an option of a command" completes --impaired site --imp
+  step "completion of a scene of a command" completes anderson_4x8 check anderson
 fi
 
 sources="$here/main.cpp $here/elsewhere.cpp"

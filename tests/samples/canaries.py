@@ -80,10 +80,10 @@ class Canaries(unittest.TestCase):
 
     def test_commands_have_options_that_exist(self):
         known = samples.known_options()
-        self.assertIn("--view", known["teleop"])
+        self.assertIn("--view", known["teleop run"])
         self.assertIn("--rate", known["qualify"])
         self.assertEqual(samples.check_commands(known)[0], [])
-        known["teleop"].remove("--view")
+        known["teleop run"].remove("--view")
         self.assertTrue(any("no option --view" in text
                             for text in samples.check_commands(known)[0]))
 

@@ -67,7 +67,7 @@ class RemoteEnd {
     if (!options.log.ends_with(".mcap")) return;
     throw SetupError("--log " + options.log +
                      ": what a station sent is not in a recording, so it could not be replayed; "
-                     "allowed: a CSV file, or one program, --together");
+                     "allowed: a CSV file, or one program, --programs one");
   }
   void open(const LinkChoice& choice, const scene::Scene& scene) {
     thread_.emplace(link, open_link(choice, scene));

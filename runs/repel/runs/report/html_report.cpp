@@ -176,7 +176,7 @@ std::string links_to_replay(const RunResult& r, const std::vector<std::size_t>& 
   if (!r.options.log.ends_with(".mcap")) {
     return "<p class='soft'>With --log FILE.mcap the replay can be opened at each of them.</p>\n";
   }
-  std::string html = "<p>While <code>./run --replay ";
+  std::string html = "<p>While <code>./run replay ";
   html += escaped(r.options.log) + " --view</code> is running, they are shown at";
   for (const std::size_t i : ticks) {
     const std::string time = to_text(r.arms.front().records[i].time, 6);

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options.hpp"
+
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <repel/runs/arms/arm_backend.hpp>
+#include <repel/runs/operator/device.hpp>
+#include <repel/runs/options/budget.hpp>
+#include <repel/runs/options/link_choice.hpp>
+#include <repel/runs/options/listening.hpp>
+#include <repel/simulated/changed_arm.hpp>
+
+#include "scenes.hpp"
+
+namespace repel::teleop {
+namespace {
+
+struct CommandEntry {
+  Command command;
+  const char* name;
+  const char* about;
+};
+constexpr CommandEntry commands[] = {
+    {Command::run, "run", "Run a scene: an operator drives a simulated arm"},
+    {Command::replay, "replay", "Go through a recording again, and compare the forces"},
+    {Command::site, "site", "Run the robot's side of a scene, until it is stopped"},
+    {Command::station, "station", "Run the operator's side of a scene, up to its line"},
+    {Command::check, "check", "Read a scene and build its cell: is it sound, or what is wrong?"},
+    {Command::list, "list", "List the scenes that come with the program"}};
+
+/// The names of the simulated arms that satisfy `wanted`.
+template <class Wanted>
+std::vector<std::string> backend_names(const Wanted& wanted) {
+  std::vector<std::string> names;
+  for (const runs::ArmBackend& backend : runs::arm_backends()) {
+    if (wanted(backend)) names.emplace_back(backend.name);
+  }
+  return names;
+}
+
+/// @throws CLI::ValidationError if an option asks the back end for what it does not simulate
+void require_able(const Arguments& a) {
+  const runs::ArmBackend& chosen = runs::arm_backend(a.run.backend);
+  const auto require = [&](const char* option, const char* trouble, auto&& able) {
+    if (able(chosen)) return;
+    throw CLI::ValidationError(option, "backend " + a.run.backend + " " + trouble + "; allowed: " +
+                                           CLI::detail::join(backend_names(able), ", "));
+  };
+  if (a.run.contact) {
+    require("--contact", "knows no contact",
+            [](const auto& backend) { return backend.has_contact; });
+  }
+  if (a.run.plant_inertia != 1.0) {
+    require("--plant-inertia", "has links without mass",
+            [](const auto& backend) { return backend.has_gravity; });
+  }
+}
+
+/// What is run, and how fast.
+void describe_run(CLI::App& app, Command command, Arguments& a) {
+  app.option_defaults()->group("Run");
+  if (command == Command::replay) {
+    app.add_option("file", a.recording, "Recording, as run --log FILE.mcap writes it")
+        ->required()
+        ->type_name("FILE");
+    return;
+  }
+  app.add_option("scene", a.scene, "Scene file, or the name of one that comes with the program")
+      ->capture_default_str();
+  app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
+      ->check(host::between(1.0, 1e5));
+  if (command == Command::check) return;
+  app.add_option("--seconds", a.run.seconds,
+                 "Scene time to run [s]; with --view, --device or at a site until it is stopped, "
+                 "unless it is given")
+      ->capture_default_str()
+      ->each([&a](const std::string&) { a.has_seconds = true; })
+      ->check(host::between(0.0, 1e6));
+  if (command != Command::run) return;
+  app.add_flag(
+      "--fast", a.run.fast,
+      "As fast as it goes, not by the clock; bitwise repeatable. Wall-clock budgets of the "
+      "scene do not apply, counted ones do");
+}
+
+/// How the pairs are computed.
+void describe_coprocessor(CLI::App& app, Arguments& a) {
+  app.add_option("--threads", a.threads,
+                 "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
+      ->check(CLI::Range(0, 16));
+  app.add_option("--coprocessor", a.coprocessor,
+                 "What its threads do, at least one then: together, share the pairs of a tick with "
+                 "the tick's own thread, or beside, answer the last tick while this one goes on: "
+                 "the paper's way (default: the scene's)")
+      ->check(CLI::IsMember({"together", "beside"}));
+  app.add_option("--budget", a.run.budget,
+                 "In place of the scene's budget: support pairs per tick, none, or i860, the "
+                 "processor of 1993, on which 4 by 8 parts all but fit at 400 Hz")
+      ->check(CLI::Validator(runs::budget_complaint, "UNITS, i860 or none"));
+  app.add_flag("--every-pair", a.run.every_pair,
+               "Ask also the pairs that cannot be within range: to compare with");
+}
+
+/// The simulated arm.
+void describe_arm(CLI::App& app, Arguments& a) {
+  app.option_defaults()->group("Arm");
+  app.add_option(
+         "--backend", a.run.backend,
+         "Simulated arm: bullet or ode (dynamics, gravity, friction, stops), reference (the "
+         "same without stops, by a higher order, slow) or ideal (free joints)")
+      ->capture_default_str()
+      ->check(CLI::IsMember(backend_names([](const auto&) { return true; })));
+  app.add_flag("--contact", a.run.contact,
+               "Of bullet and ode: obstacles that are not passable stop the arm by themselves, "
+               "too, where no virtual force does it first");
+  app.add_option("--plant-inertia", a.run.plant_inertia,
+                 "Of bullet, ode and reference: how many times the inertia of its model a "
+                 "simulated arm has, at the same weight; to test the controller, which knows the "
+                 "model")
+      ->capture_default_str()
+      ->type_name("FACTOR")
+      ->check(host::between(least_inertia_factor, most_inertia_factor));
+  app.add_flag("!--no-prediction", a.run.prediction,
+               "Solve the network for the measured rates, without the mass of the arm: to compare "
+               "with; arms with light wrists then explode");
+}
+
+void describe_walls(CLI::App& app, Arguments& a) {
+  app.option_defaults()->group("Walls");
+  app.add_option("--walls", a.run.hold,
+                 "hard: no wall may be entered, whoever pushes; soft: walls are springs (default: "
+                 "as the laws of the scene say)")
+      ->check(CLI::IsMember({"hard", "soft"}));
+  app.add_flag("--tool-alone", a.run.tool_alone,
+               "Keep only the tools off the obstacles, not the links of the arms: the paper's way");
+  std::vector<std::string> names;
+  names.reserve(std::size(all_measures));
+  for (const Measure measure : all_measures) names.emplace_back(to_text(measure));
+  app.add_option("--measure", a.run.measure,
+                 "How the depth of an overlap is measured: by the deepest common point, by the "
+                 "reduction, which is the paper's way, or exactly (default: the scene's)")
+      ->check(CLI::IsMember(names));
+  app.add_option("--levels", a.run.levels,
+                 "Steps in which shapes are reduced, where the measure needs them (default: the "
+                 "scene's)")
+      ->check(CLI::Range(1, ReductionOptions::most_levels));
+}
+
+/// The live view, and a master in its place.
+void describe_view(CLI::App& app, Command command, Arguments& a) {
+  app.option_defaults()->group("View");
+  CLI::Option* view = app.add_flag("--view", a.session.view,
+                                   "Serve the live view: a page to look on and to drive from");
+  app.add_option("--listen", a.session.listen, "ADDRESS:PORT of the live view; port 0: any")
+      ->capture_default_str()
+      ->needs(view)
+      ->check(CLI::Validator(runs::listen_complaint, "ADDRESS:PORT"));
+  CLI::Option* file =
+      app.add_option("--secret", a.session.secret_file,
+                     "What a page must present, #secret=... behind its address: the first line of "
+                     "FILE, 16 characters or more. Wanted where other machines reach the view")
+          ->needs(view)
+          ->type_name("FILE");
+  app.add_option("--secret-env", a.session.secret_env,
+                 "The same from the environment variable NAME")
+      ->needs(view)
+      ->excludes(file)
+      ->type_name("NAME");
+  CLI::Option* only = app.add_flag("--view-only", a.session.view_only,
+                                   "Pages look on: they do not drive, pause, step or restart")
+                          ->needs(view);
+  if (command != Command::run && command != Command::station) return;
+  CLI::Option* device = app.add_option(
+      "--device", a.session.device,
+      "In place of the script: the master that drives, spacenav (a six-axis mouse, through "
+      "spacenavd), evdev:PATH (a motorised lever) or haply[:URL] (an Inverse3, through its "
+      "service). Until it is stopped, unless --seconds is given");
+  device->check(CLI::Validator(runs::device_complaint, "spacenav, evdev:PATH or haply[:URL]"));
+  app.add_flag("--page-drives", a.session.page_drives,
+               "With --device, while which pages look on: they may take the controls from it")
+      ->needs(view)
+      ->needs(device)
+      ->excludes(only);
+}
+
+/// The two sides of a scene, and what joins them.
+void describe_link(CLI::App& app, Command command, Arguments& a) {
+  app.option_defaults()->group("Link");
+  if (command == Command::run) {
+    app.add_option("--programs", a.programs,
+                   "two: run both sides as two programs that are joined by the link, on which "
+                   "packets are delayed and lost as by the line of the scene; one: never (default: "
+                   "two if the scene says so, and it is neither --fast nor recorded)")
+        ->check(CLI::IsMember({"two", "one"}));
+  } else {
+    app.add_flag("--impaired", a.session.link.is_impaired,
+                 "Delay and lose what is sent as the line of the scene does, to try a far link "
+                 "nearby");
+  }
+  app.add_option(
+         "--domain", a.session.link.domain,
+         "DDS domain of the link, the same on both sides (default: 0; with --programs two a "
+         "random one)")
+      ->check(CLI::Range(0, 230));
+  app.add_option(
+         "--link", a.session.link.where,
+         "What joins the sides: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), udp "
+         "or udp:ADDRESS:PORT (where the site listens). Without more it is on this machine. "
+         "Who reaches it can drive the robot: docs/two_machines.md")
+      ->default_str(runs::default_link())
+      ->type_name("LINK")
+      ->check(CLI::Validator(runs::link_complaint, "LINK"));
+}
+
+/// What a run prints and writes.
+void describe_files(CLI::App& app, Command command, Arguments& a) {
+  app.option_defaults()->group("Files");
+  app.add_flag("--quiet", a.is_quiet, "No progress and no report on the terminal");
+  const auto take = [&a](std::string& file) {
+    if (file == "-") {
+      file = "/dev/stdout";
+      a.is_quiet = true;
+    }
+    return std::string();
+  };
+  app.add_option("--report", a.report,
+                 "Write the report as JSON to FILE; -: print it, in place of the text")
+      ->transform(CLI::Validator(take, ""));
+  if (command == Command::station) return;
+  app.add_option("--html", a.html, "Write the report as a page with curves to FILE");
+  app.add_option("--log", a.run.log,
+                 "Write every tick to FILE: a recording if its name ends in .mcap, else CSV");
+}
+
+/// What stands in scene files and behind options.
+std::string names_text() {
+  return "Scenes:" + scene_list() +
+         "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
+         "scene):\n"
+         "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
+         "  six_axes    six rates of a hand, with force feedback, scripted\n"
+         "or, in place of the script, the page of --view and what --device names\n\n";
+}
+
+constexpr const char* ending_text =
+    "What is written stands beside its place as FILE.part until it is whole. Ctrl-C, SIGTERM and\n"
+    "SIGHUP fade the forces, then the run ends with its report; a second Ctrl-C ends it at "
+    "once.\n\n"
+    "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
+    "4 it ran, but a file or the output could not be written whole, 5 it ran, but an arm gained\n"
+    "energy from its own control, or had a fault in more than a tenth of its ticks.";
+
+constexpr const char* usage_text =
+    "Without a command it is run: teleop SCENE [OPTIONS]. A file that is named as a command is, "
+    "too:\n"
+    "teleop run NAME. The options of a command: teleop COMMAND --help\n\n"
+    "Common usage:\n"
+    "  teleop plates --view                in the live view, driven from the browser\n"
+    "  teleop plates --fast --seconds 5    as fast as it goes\n"
+    "  teleop plates --rate 1000           at another tick rate [Hz]\n"
+    "  teleop plates --backend ode         with another simulated arm\n"
+    "  teleop plates --device spacenav     driven by a master in the hand\n"
+    "  teleop plates --report report.json  with its report in a file\n"
+    "  teleop plates --log run.mcap        recorded, for teleop replay run.mcap\n\n";
+
+/// After all options of a command. @throws CLI::ParseError if they contradict each other
+void settle(const CLI::App& app, Command command, Arguments& a) {
+  a.command = command;
+  if (command == Command::site) a.session.link.side = link::Side::site;
+  if (command == Command::station) a.session.link.side = link::Side::station;
+  for (const char* option : {"--link", "--domain"}) {
+    if (command != Command::run || a.programs == "two" || app.count(option) == 0) continue;
+    throw CLI::ValidationError(std::string(option) +
+                               " belongs to: teleop site, teleop station, or "
+                               "teleop run with --programs two");
+  }
+  if (a.programs == "two" && a.run.fast) throw CLI::ExcludesError("--programs two", "--fast");
+  const std::string insecure = runs::settle_secret(a.session);
+  if (!insecure.empty()) throw CLI::ValidationError(insecure);
+  require_able(a);
+}
+
+}  // namespace
+
+void describe(CLI::App& app, Arguments& a) {
+  app.require_subcommand(0, 1);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  for (const auto& [command, name, about] : commands) {
+    CLI::App& added = *app.add_subcommand(name, about)->group("Commands");
+    added.final_callback([&added, &a, command = command] { settle(added, command, a); });
+    if (command == Command::list) continue;
+    const bool has_robot = command == Command::run || command == Command::site;
+    describe_run(added, command, a);
+    if (has_robot) describe_coprocessor(added, a);
+    if (has_robot || command == Command::check) {
+      describe_arm(added, a);
+      describe_walls(added, a);
+    }
+    if (command == Command::check) {
+      added.footer("Exit status: 0 it is sound, 1 it is not, 2 bad usage.");
+      continue;
+    }
+    added.footer((command == Command::run ? names_text() : std::string()) + ending_text);
+    describe_view(added, command, a);
+    if (command != Command::replay) describe_link(added, command, a);
+    describe_files(added, command, a);
+  }
+  app.footer(usage_text + names_text() + ending_text);  // last: commands inherit it
+}
+
+}  // namespace repel::teleop

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The command line of teleop: its commands, and the options of each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <repel/host/command_line.hpp>
+#include <repel/runs/options/run_options.hpp>
+#include <repel/runs/options/session_options.hpp>
+
+namespace repel::teleop {
+
+enum class Command { run, replay, site, station, check, list };
+
+/// What the command line says.
+struct Arguments {
+  Command command = Command::run;
+  std::string scene = "anderson_4x8";  ///< file or name
+  std::string recording;               ///< to replay; empty: none
+  bool has_seconds = false;            ///< --seconds was given
+  std::string programs;     ///< "two" or "one", to run the sides in; empty: as the scene says
+  double rate_hz = 0.0;     ///< 0: the scene's own
+  int threads = -1;         ///< -1: the scene's own
+  std::string coprocessor;  ///< empty: the scene's own
+  runs::RunOptions run;
+  runs::SessionOptions session;
+  std::string report;  ///< file for the JSON report; empty: none
+  std::string html;    ///< file for the page; empty: none
+  bool is_quiet = false;
+};
+
+/// Declares the commands and their options, which write to the arguments.
+void describe(CLI::App& app, Arguments& arguments);
+
+/// Puts `run` in front of a command line without a command, and options that have been renamed in
+/// their present spelling, which is told on stderr.
+/// @throws CLI::ValidationError for a mistyped command and for an option that has become one
+void reword(const CLI::App& app, std::vector<std::string>& words);
+
+}  // namespace repel::teleop
