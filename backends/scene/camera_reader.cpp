@@ -5,18 +5,19 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/common/text_file.hpp>
-#include <repel/reduction/shape.hpp>
+
+#include "pose_reader.hpp"
 
 namespace repel::scene::detail {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Rule camera_position{unit::length, -Shape::largest, Shape::largest};
 constexpr std::size_t most_images = 1'000'000;
 constexpr double most_seconds = 1e10;  // of a time stamp: those of Unix time, to a microsecond
 
@@ -62,11 +63,11 @@ std::vector<RecordedImage> images_in(const fs::path& folder) {
   return images;
 }
 
-}  // namespace
-
+/// A camera at `position` that looks at a point, `look_at`, its image upright; or with
+/// `orientation`, a quaternion x y z w of its axes.
 Pose pose_of_camera(const Map& map) {
   Pose X = Pose::Identity();
-  X.translation() = map.at("position").vector(camera_position);
+  X.translation() = map.at("position").vector(position);
   if (const Value* const orientation = map.find("orientation")) {
     if (const Value* const look_at = map.find("look_at")) {
       look_at->fail("'look_at' beside 'orientation'; allowed: one of the two");
@@ -80,7 +81,7 @@ Pose pose_of_camera(const Map& map) {
     return X;
   }
   const Value& at = map.at("look_at");
-  const Vec3 axis = at.vector(camera_position) - X.translation();
+  const Vec3 axis = at.vector(position) - X.translation();
   if (axis.norm() < 1e-3) at.fail_with_value("a point 1 mm or more from the camera");
   const Vec3 z = axis.normalized();
   // Looking straight up or down, the top of the image is towards x.
@@ -90,6 +91,10 @@ Pose pose_of_camera(const Map& map) {
   return X;
 }
 
+/// Reads `camera.yaml` of a folder, and lists the images beside it in `depth`, in the order of
+/// their time stamps, which are their names. Sets the pose, the size, the focal lengths, and the
+/// mean rate of `camera`.
+/// @throws SetupError naming file, line and value of what is wrong
 RecordingChoice recording_of(const std::string& folder, CameraChoice& camera) {
   const std::string file = (fs::path(folder) / "camera.yaml").string();
   std::error_code error;
@@ -121,6 +126,152 @@ RecordingChoice recording_of(const std::string& folder, CameraChoice& camera) {
     }
   }
   return recording;
+}
+
+constexpr std::size_t most_cameras = 8;
+constexpr int most_seen = 2000;  // parts that are reserved for what all cameras see
+
+/// What is wrong with the images of a camera.
+void read_faults(const Map& map, CameraChoice& camera) {
+  map.read("noise", {unit::length, 0.0, 0.1}, camera.noise);
+  map.read("lost", {unit::none, 0.0, 1.0}, camera.lost);
+  map.read("seed", 0, 1'000'000'000, camera.seed);
+}
+
+/// The rays through the corners of the image, with z = 1.
+std::array<Vec3, 4> corner_rays(const CameraChoice& camera) {
+  double left = -std::tan(0.5 * camera.view);
+  double right = -left;
+  double top = left * camera.height / camera.width;
+  double bottom = -top;
+  if (camera.recording) {
+    const RecordingChoice& from = *camera.recording;
+    left = (-0.5 - from.cx) / from.fx;
+    right = (camera.width - 0.5 - from.cx) / from.fx;
+    top = (-0.5 - from.cy) / from.fy;
+    bottom = (camera.height - 0.5 - from.cy) / from.fy;
+  }
+  return {{{left, top, 1.0}, {right, top, 1.0}, {left, bottom, 1.0}, {right, bottom, 1.0}}};
+}
+
+/// The map of a camera, in which all that it can see has a place.
+std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera) {
+  const Value* const value = of_camera.find("map");
+  if (value == nullptr) return {};
+  const Map map(*value);
+  map.allow({"cube", "keeps"});
+  MapChoice choice;
+  map.read("cube", {unit::length, 0.005, 1.0}, choice.cube);
+  map.read("keeps", {unit::time, 0.0, 1e6}, choice.keeps);
+  choice.low = choice.high = camera.X_WC.translation();
+  for (const Vec3& ray : corner_rays(camera)) {
+    const Vec3 corner = camera.X_WC * (camera.farthest * ray);
+    choice.low = choice.low.cwiseMin(corner);
+    choice.high = choice.high.cwiseMax(corner);
+  }
+  constexpr double most = 16e6;
+  const double cubes = ((choice.high - choice.low) / choice.cube).array().ceil().prod();
+  if (!(cubes <= most)) {
+    value->fail("a map of all that the camera can see has " + to_text(cubes, 3) +
+                " cubes; allowed: up to " + to_text(most) + ", by larger ones, or less 'farthest'");
+  }
+  if (camera.is_unseen_solid) {
+    of_camera.at("unseen").fail(
+        "what is unseen is solid beside 'map'; allowed: 'free', since the arm is in it");
+  }
+  return choice;
+}
+
+/// Where a simulated camera is and what its images are like.
+void read_simulated(const Map& map, CameraChoice& camera) {
+  camera.X_WC = pose_of_camera(map);
+  map.read("width", 16, 1920, camera.width);
+  map.read("height", 16, 1080, camera.height);
+  map.read("view", {unit::angle, 0.1, 2.6}, camera.view);
+  map.read("rate", {unit::frequency, 0.1, most_camera_rate_hz}, camera.rate_hz);
+  read_faults(map, camera);
+}
+
+/// The same of recorded images.
+void read_recorded(const Map& map, CameraChoice& camera) {
+  const Value& value = map.at("recording");
+  try {
+    camera.recording = recording_of(value.folder(), camera);
+  } catch (const SetupError& error) {
+    if (!error.file().empty()) throw;
+    value.fail(error.what());
+  }
+  map.read("repeat", camera.recording->repeats);
+}
+
+/// @param more keys beside those of the camera itself
+CameraChoice camera_of(const Value& value, const Laws& laws,
+                       std::initializer_list<std::string_view> more) {
+  const Map map(value);
+  const bool is_recorded = map.find("recording") != nullptr;
+  std::vector<std::string_view> keys{"nearest", "farthest",     "latency", "unseen", "margin",
+                                     "parts",   "silent_after", "law",     "map"};
+  keys.insert(keys.end(), more);
+  // What a recording says of itself the scene does not say.
+  keys.emplace_back("recording");
+  if (is_recorded) {
+    keys.emplace_back("repeat");
+  } else {
+    keys.insert(keys.end(), {"position", "look_at", "orientation", "width", "height", "view",
+                             "rate", "noise", "lost", "seed"});
+  }
+  map.allow(keys);
+  CameraChoice camera;
+  if (is_recorded) {
+    read_recorded(map, camera);
+  } else {
+    read_simulated(map, camera);
+  }
+  map.read("nearest", {unit::length, 1e-3, 100.0}, camera.nearest);
+  map.read("farthest", {unit::length, camera.nearest, 1000.0}, camera.farthest);
+  map.read("latency", {unit::time, 0.0, 10.0}, camera.latency);
+  if (const Value* unseen = map.find("unseen")) {
+    camera.is_unseen_solid = unseen->word_of({"free", "solid"}) == "solid";
+  }
+  map.read("margin", {unit::length, 0.0, 1.0}, camera.margin);
+  map.read("parts", 80, most_seen, camera.parts);
+  map.read("silent_after", {unit::time, 1e-3, 1e3}, camera.silent_after);
+  if (!(camera.silent_after > camera.latency + 1.0 / camera.rate_hz)) {
+    value.fail(
+        "the camera would be silent between two images; allowed: silent_after above "
+        "latency and 1 / rate together");
+  }
+  camera.law = law_called(laws, map);
+  camera.map = map_of(map, camera);
+  return camera;
+}
+
+}  // namespace
+
+std::vector<CameraChoice> cameras_of(const Map& scene, const Laws& laws) {
+  std::vector<CameraChoice> cameras;
+  const Value* const only = scene.find("camera");
+  if (only != nullptr) cameras.push_back(camera_of(*only, laws, {}));
+  const Value* const all = scene.find("cameras");
+  if (all == nullptr) return cameras;
+  if (only != nullptr) all->fail("'cameras' beside 'camera'; allowed: one of the two");
+  std::set<std::string> names;
+  int parts = 0;
+  for (const Value& entry : all->list(most_cameras)) {
+    CameraChoice& camera = cameras.emplace_back(camera_of(entry, laws, {"name"}));
+    const Map map(entry);
+    const Value& name = map.at("name");
+    camera.name = name.text();
+    // `blind` takes them for something else.
+    if (camera.name == "yes" || camera.name == "no") name.fail_with_value("another name");
+    require_new(names, map);
+    parts += camera.parts;
+  }
+  if (parts > most_seen) {
+    all->fail("the cameras reserve " + std::to_string(parts) + " parts; allowed: up to " +
+              std::to_string(most_seen) + " together");
+  }
+  return cameras;
 }
 
 }  // namespace repel::scene::detail

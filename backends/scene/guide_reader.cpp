@@ -90,7 +90,7 @@ FixtureOptions fixture_of(const Value& value) {
   map.read("angular_damping", gain(unit::angular_damping, 1e6), fixture.angular_damping);
   map.read("most_torque", {unit::torque, 1e-9, 1e6}, fixture.most_torque);
   map.read("angular_range", {unit::angle, 1e-6, 2.0}, fixture.angular_range);
-  if (const Value* on = map.find("on")) fixture.is_on = on->word_of({"yes", "no"}) == "yes";
+  map.read("on", fixture.is_on);
   try {
     (void)network::checked_fixture(fixture);
   } catch (const SetupError& error) {

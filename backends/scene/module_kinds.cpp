@@ -283,8 +283,7 @@ ReadModule posture_of(const Map& map) {
   const Value* const joints = map.find("joints");
   if (joints == nullptr) return made_of(options, make<network::Posture>);
   std::vector<JointType> types;
-  for (const Value& entry :
-       joints->is_list() ? joints->list(network::most_joints) : std::vector<Value>{*joints}) {
+  for (const Value& entry : joints->one_or_list(network::most_joints)) {
     const bool slides = quantity(entry.text(), unit::length).has_value();
     const Rule rule{slides ? Units(unit::length) : Units(unit::angle), -1e3, 1e3};
     for (const double q : entry.numbers(rule, 1, network::most_joints)) {
@@ -312,9 +311,7 @@ ReadModule line_of(const Map& map) {
   map.read("jitter", {unit::time, 0.0, 10.0}, options.channel.jitter);
   map.read("buffer", {unit::time, 0.0, 10.0}, options.buffer);
   map.read("loss", {unit::share, 0.0, 1.0}, options.channel.loss);
-  if (const Value* seed = map.find("seed")) {
-    options.channel.seed = static_cast<std::uint64_t>(seed->integer(0, 1'000'000'000));
-  }
+  map.read("seed", 0, 1'000'000'000, options.channel.seed);
   return made_of(options, make<network::Line>);
 }
 

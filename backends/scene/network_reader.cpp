@@ -26,11 +26,8 @@ Module module_of(const Value& value, const ModuleKinds& kinds) {
   map.read("name", module.name);
   if (const Value* to = map.find("to")) {
     module.to.next = false;
-    if (to->is_list()) {
-      for (const Value& name : to->list(input_limits.modules))
-        module.to.names.push_back(name.text());
-    } else {
-      module.to.names.push_back(to->text());
+    for (const Value& name : to->one_or_list(input_limits.modules)) {
+      module.to.names.push_back(name.text());
     }
   }
   return module;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <numeric>
 
 #include <repel/base/setup_error.hpp>
@@ -50,6 +51,18 @@ std::string shown(const std::string& text) {
              : in_quotes(text.substr(0, most)) + "... (" + std::to_string(text.size()) + " bytes)";
 }
 
+/// The path of what `value` names relative to `file`, a regular file or a directory as `type` says.
+std::string existing(const Value& value, const std::string& file, std::filesystem::file_type type) {
+  const auto path = std::filesystem::path(file).parent_path() / value.text();
+  const std::string normal = path.lexically_normal().string();
+  std::error_code unused;
+  if (std::filesystem::status(path, unused).type() != type) {
+    const bool is_folder = type == std::filesystem::file_type::directory;
+    value.fail_with_value((is_folder ? "a folder" : "a file") + ("; there is none at " + normal));
+  }
+  return normal;
+}
+
 }  // namespace
 
 Value Value::document(std::string_view yaml, const std::string& file) {
@@ -80,6 +93,20 @@ std::string Value::word_of(std::span<const std::string_view> words) const {
       is_scalar() && std::find(words.begin(), words.end(), node_->text) != words.end();
   if (!known) fail_with_value(listed(words));
   return node_->text;
+}
+
+std::string Value::path() const {
+  return existing(*this, document_->file, std::filesystem::file_type::regular);
+}
+
+std::string Value::folder() const {
+  return existing(*this, document_->file, std::filesystem::file_type::directory);
+}
+
+std::vector<std::string> Value::folders() const {
+  std::vector<std::string> folders;
+  for (const Value& each : one_or_list()) folders.push_back(each.folder());
+  return folders;
 }
 
 std::int64_t Value::integer(std::int64_t low, std::int64_t high) const {
@@ -190,6 +217,15 @@ void Map::read(std::string_view key, const Rule& rule, Vec3& out) const {
 
 void Map::read(std::string_view key, std::string& out) const {
   if (const Value* value = find(key)) out = value->text();
+}
+
+void Map::read(std::string_view key, bool& out) const {
+  if (const Value* value = find(key)) out = value->boolean();
+}
+
+void require_new(std::set<std::string>& names, const Map& map) {
+  const Value& name = map.at("name");
+  if (!names.insert(name.text()).second) name.fail_with_value("a name no other entry has");
 }
 
 }  // namespace repel::scene

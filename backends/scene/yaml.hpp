@@ -3,11 +3,14 @@
 /// Strict access to YAML: every value knows its name and line; nothing is guessed or ignored.
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <functional>
 #include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -44,6 +47,14 @@ class Value {
   [[nodiscard]] std::string word_of(std::initializer_list<std::string_view> words) const {
     return word_of(std::span<const std::string_view>(words.begin(), words.size()));
   }
+  /// `yes` or `no`.
+  [[nodiscard]] bool boolean() const { return word_of({"yes", "no"}) == "yes"; }
+  /// The path of an existing file, which the text gives relative to the file of this value.
+  [[nodiscard]] std::string path() const;
+  /// The same of a folder.
+  [[nodiscard]] std::string folder() const;
+  /// The same of one folder, or of each in a list.
+  [[nodiscard]] std::vector<std::string> folders() const;
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] double number(const Rule& rule) const;
   [[nodiscard]] Vec3 vector(const Rule& rule) const;
@@ -52,6 +63,10 @@ class Value {
   [[nodiscard]] bool is_list() const { return node_->kind == Node::Kind::list; }
   /// The entries of a list with at most `most`.
   [[nodiscard]] std::vector<Value> list(std::size_t most = input_limits.entries) const;
+  /// The same; of what is no list, the value itself.
+  [[nodiscard]] std::vector<Value> one_or_list(std::size_t most = input_limits.entries) const {
+    return is_list() ? list(most) : std::vector{*this};
+  }
 
  private:
   friend class Map;
@@ -86,6 +101,11 @@ class Map {
   void read(std::string_view key, const Rule& rule, double& out) const;
   void read(std::string_view key, const Rule& rule, Vec3& out) const;
   void read(std::string_view key, std::string& out) const;
+  void read(std::string_view key, bool& out) const;
+  template <std::integral Integer>
+  void read(std::string_view key, std::int64_t low, std::int64_t high, Integer& out) const {
+    if (const Value* value = find(key)) out = static_cast<Integer>(value->integer(low, high));
+  }
 
   [[nodiscard]] const std::vector<std::pair<std::string, Value>>& entries() const {
     return entries_;
@@ -96,5 +116,9 @@ class Map {
   std::vector<std::pair<std::string, Value>> entries_;
   std::map<std::string, std::size_t, std::less<>> index_;  // index of the entry by key
 };
+
+/// Adds the `name` of a map to `names`.
+/// @throws SetupError if it is there already
+void require_new(std::set<std::string>& names, const Map& map);
 
 }  // namespace repel::scene

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "obstacle_reader.hpp"
+
+#include <set>
+
+#include <repel/base/setup_error.hpp>
+
+#include "pose_reader.hpp"
+
+namespace repel::scene::detail {
+namespace {
+
+/// Each has a pair with every other one.
+constexpr std::size_t most_loose = 200;
+/// Each may have as many parts and meshes as a robot.
+constexpr std::size_t most_models = 64;
+
+ForceLaw law_of(const Value& value) {
+  const Map map(value);
+  map.allow({"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "hold", "passable",
+             "depth", "plateau"});
+  ForceLaw law;
+  map.read("passable", law.passable);
+  if (!law.passable) {
+    map.allow(
+        {"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "hold", "passable"});
+  }
+  if (const Value* at = map.find("given_at")) {
+    law.given_at = at->word_of({"part", "tool"}) == "tool" ? GivenAt::tool : GivenAt::part;
+  }
+  if (const Value* hold = map.find("hold")) {
+    law.hold = hold->word_of({"hard", "soft"}) == "hard" ? HoldKind::hard : HoldKind::soft;
+  }
+  map.read("range", {unit::length, 1e-6, 1e3}, law.range);
+  map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
+  const Value* damping = map.find("damping");
+  law.damping_may_rise = damping == nullptr || damping->text() == "auto";
+  law.damping_is_meant = !law.damping_may_rise;
+  if (law.damping_is_meant) {
+    law.damping = damping->number({.units = unit::damping, .high = 1e6, .may_be_auto = true});
+  }
+  map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
+  map.read("depth", {unit::length, 0.0, 1e6}, law.depth);
+  map.read("tilt", {unit::angle, 0.0, ForceLaw::most_tilt}, law.tilt);
+  map.read("plateau", {unit::none, 0.0, 1.0}, law.plateau);
+  try {
+    return checked(law);
+  } catch (const SetupError& error) {
+    value.fail(error.what());
+  }
+}
+
+std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
+  const Value* value = obstacle.find("motion");
+  if (!value) return {};
+  const Map map(*value);
+  map.allow({"along", "duration"});
+  return ReciprocatingMotion{map.at("along").vector(position),
+                             map.at("duration").number({unit::time, 1e-3, 86400.0})};
+}
+
+StaticModel model_of(const Map& map, const Laws& laws) {
+  map.allow({"name", "shape", "position", "rpy", "law", "file", "packages", "covers"});
+  StaticModel model;
+  model.name = map.at("name").text();
+  model.is_sdf = map.at("shape").text() == "sdf";
+  model.file = map.at("file").path();
+  if (const Value* packages = map.find("packages")) model.packages = packages->folders();
+  map.read("covers", model.covers);
+  model.X_WM = pose_of(map);
+  model.law = law_called(laws, map);
+  return model;
+}
+
+}  // namespace
+
+Laws laws_of(const Map& scene) {
+  Laws laws{{"default", {.damping_may_rise = true}}};
+  if (const Value* value = scene.find("laws")) {
+    const Map map(*value);
+    for (const auto& [name, law] : map.entries()) laws[name] = law_of(law);
+  }
+  return laws;
+}
+
+const ForceLaw& law_called(const Laws& laws, const Map& map, std::string_view key) {
+  const Value* name = map.find(key);
+  const auto found = laws.find(name ? name->text() : "default");
+  if (found != laws.end()) return found->second;
+  std::string defined;
+  for (const auto& [known, law] : laws) {
+    if (defined.size() > 500) {
+      defined += ", and more";
+      break;
+    }
+    defined += (defined.empty() ? "" : ", ") + known;
+  }
+  name->fail_with_value("a law under 'laws': " + defined);
+}
+
+std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const ShapeFile& shapes,
+                                   std::vector<StaticModel>& models) {
+  constexpr std::string_view keys[] = {"law", "motion"};
+  std::vector<Obstacle> obstacles;
+  std::set<std::string> names;
+  for (const Value& entry : value.list()) {
+    const Map map(entry);
+    const Value* const shape = map.find("shape");
+    const std::string kind = shape == nullptr ? "" : shape->word_of(obstacle_shapes);
+    if (kind == "urdf" || kind == "sdf") {
+      if (models.size() == most_models) {
+        entry.fail("more than " + std::to_string(most_models) + " obstacles of shape urdf or sdf");
+      }
+      models.push_back(model_of(map, laws));
+      require_new(names, map);
+      continue;
+    }
+    for (Part& part : parts_of(entry, map, keys, shapes)) {
+      obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
+                           part.X_BP, law_called(laws, map), motion_of(map), std::move(part.gaps)});
+    }
+    require_new(names, map);
+  }
+  return obstacles;
+}
+
+std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeFile& shapes) {
+  std::vector<LoosePart> loose;
+  const Value* value = scene.find("loose");
+  if (!value) return loose;
+  constexpr std::string_view keys[] = {"law", "at_start", "mass", "known"};
+  std::set<std::string> names;
+  for (const Value& entry : value->list(most_loose)) {
+    const Map map(entry);
+    std::vector<Part> parts = parts_of(entry, map, keys, shapes);
+    require_new(names, map);
+    if (parts.size() > 1) {
+      map.at("file").fail("a mesh of " + std::to_string(parts.size()) +
+                          " convex parts; allowed: one of 1, for what can come and go");
+    }
+    LoosePart& part = loose.emplace_back();
+    part.name = map.at("name").text();
+    part.shape = std::move(parts.front().shape);
+    part.kind = std::move(parts.front().kind);
+    part.X_WP = parts.front().X_BP;
+    part.gaps = std::move(parts.front().gaps);
+    part.law = law_called(laws, map);
+    map.read("at_start", part.at_start);
+    map.read("mass", {unit::mass, 0.0, Payload::heaviest}, part.mass);
+    map.read("known", part.is_mass_known);
+  }
+  return loose;
+}
+
+SpareParts spare_of(const Map& scene, const Laws& laws) {
+  SpareParts spare;
+  const Value* value = scene.find("spare");
+  if (!value) return spare;
+  const Map map(*value);
+  map.allow({"count", "room", "law"});
+  spare.count = static_cast<int>(map.at("count").integer(0, 50));
+  map.read("room", {unit::length, 1e-3, 100.0}, spare.room);
+  spare.law = law_called(laws, map);
+  return spare;
+}
+
+std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes, bool has_camera) {
+  std::vector<HiddenPart> hidden;
+  const Value* value = scene.find("hidden");
+  if (!value) return hidden;
+  if (!has_camera) {
+    value->fail("'hidden' without 'camera'; allowed: a scene with a camera, which sees it");
+  }
+  constexpr std::string_view keys[] = {"motion"};
+  std::set<std::string> names;
+  for (const Value& entry : value->list()) {
+    const Map map(entry);
+    for (Part& part : parts_of(entry, map, keys, shapes)) {
+      hidden.push_back({std::move(part.name), std::move(part.shape), part.X_BP, motion_of(map)});
+    }
+    require_new(names, map);
+  }
+  return hidden;
+}
+
+}  // namespace repel::scene::detail

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <repel/scene/scene.hpp>
+
+#include <algorithm>
+#include <any>
+#include <filesystem>
+#include <set>
+
+#include <repel/base/capacities.hpp>
+#include <repel/common/text_file.hpp>
+#include <repel/network/elements/line.hpp>
+
+#include "camera_reader.hpp"
+#include "network_reader.hpp"
+#include "obstacle_reader.hpp"
+#include "robot_reader.hpp"
+#include "script_reader.hpp"
+#include "shape_reader.hpp"
+#include "yaml.hpp"
+
+namespace repel::scene {
+namespace {
+
+/// Context shared by all arm setups of a file.
+struct Shared {
+  const detail::Laws& laws;
+  const ModuleKinds& kinds;
+  detail::ShapeFile shapes;
+  const Scene& scene;  ///< with what can come and go, and cameras
+};
+
+void read_station(const Map& map, const Shared& shared, ArmSetup& setup) {
+  setup.robot = detail::robot_of(map.at("robot"), shared.laws);
+  setup.tool = detail::tool_of(map.at("tool"), shared.shapes);
+  setup.network = detail::network_of(map.find("network"), shared.kinds);
+  detail::read_script(map, shared.scene.loose, shared.scene.cameras, setup);
+}
+
+std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
+  std::vector<OtherArm> partners;
+  const Value* value = scene.find("partners");
+  if (!value) return partners;
+  std::set<std::string> names;
+  for (const Value& entry : value->list(static_cast<std::size_t>(Capacities{}.bodies))) {
+    const Map map(entry);
+    map.allow({"name", "law", "robot", "tool", "network", "script"});
+    OtherArm& partner = partners.emplace_back();
+    partner.name = map.at("name").text();
+    require_new(names, map);
+    partner.law = detail::law_called(shared.laws, map);
+    read_station(map, shared, partner);
+  }
+  return partners;
+}
+
+void read_measure(const Map& map, Scene& scene) {
+  if (const Value* measure = map.find("measure")) {
+    std::vector<std::string> names;
+    names.reserve(std::size(all_measures));
+    for (const Measure each : all_measures) names.emplace_back(to_text(each));
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    scene.measure = *measure_named(measure->word_of(words));
+  }
+  map.read("levels", 1, ReductionOptions::most_levels, scene.levels);
+}
+
+Budget budget_of(const Map& scene) {
+  Budget budget;
+  const Value* value = scene.find("budget");
+  if (!value) return budget;
+  const Map map(*value);
+  map.allow({"wall", "work", "threads", "max_age"});
+  if (const Value* wall = map.find("wall")) {
+    budget.wall_us = 1e6 * wall->number({unit::time, 0.0, 1.0});
+  }
+  map.read("work", 0, 1'000'000'000, budget.work_units);
+  map.read("threads", 0, Capacities{}.threads, budget.threads);
+  map.read("max_age", 1, 1'000'000'000, budget.max_age);
+  return budget;
+}
+
+/// Whether the scene is to be run as two programs.
+bool apart_of(const Value& value, const Scene& scene) {
+  if (!value.boolean()) return false;
+  const std::vector<Module>& modules = scene.network.modules;
+  const bool has_line = std::any_of(modules.begin(), modules.end(), [](const Module& module) {
+    return std::any_cast<network::LineOptions>(&module.options) != nullptr;
+  });
+  if (!has_line) value.fail("two programs need a module 'line' in the network, to part it there");
+  if (!scene.partners.empty()) value.fail("'apart' beside 'partners'; allowed: one arm");
+  return true;
+}
+
+}  // namespace
+
+Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
+  const Value document = Value::document(yaml, file);
+  const Map map(document);
+  map.allow({"name",    "rate",     "robot",  "tool",        "laws",         "obstacles",
+             "loose",   "spare",    "camera", "cameras",     "hidden",       "network",
+             "script",  "partners", "budget", "coprocessor", "start_inside", "tool_speed",
+             "measure", "levels",   "apart"});
+  Scene scene;
+  scene.file = file;
+  scene.name = std::filesystem::path(file).stem().string();
+  map.read("name", scene.name);
+  map.read("tool_speed", {unit::speed, 1e-3, 10.0}, scene.tool_speed);
+  if (const Value* inside = map.find("start_inside")) {
+    const bool out = inside->word_of({"refuse", "push_out"}) == "push_out";
+    scene.start_inside = out ? StartInside::push_out : StartInside::refuse;
+  }
+  map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
+  read_measure(map, scene);
+  const detail::Laws laws = detail::laws_of(map);
+  std::size_t hull_points = 0;
+  const detail::ShapeFile shapes{hull_points, scene.part_lists};
+  scene.loose = detail::loose_of(map, laws, shapes);
+  scene.spare = detail::spare_of(map, laws);
+  scene.cameras = detail::cameras_of(map, laws);
+  scene.hidden = detail::hidden_of(map, shapes, !scene.cameras.empty());
+  if (!scene.cameras.empty() && scene.spare.count > 0) {
+    map.at("spare").fail("'spare' beside a camera; allowed: one of the two");
+  }
+  const Shared shared{laws, kinds, shapes, scene};
+  read_station(map, shared, scene);
+  scene.obstacles = detail::obstacles_of(map.at("obstacles"), laws, shapes, scene.models);
+  scene.partners = partners_of(map, shared);
+  if (const Value* apart = map.find("apart")) scene.apart = apart_of(*apart, scene);
+  scene.budget = budget_of(map);
+  if (const Value* mode = map.find("coprocessor")) {
+    const auto& names = coprocessor_mode_names;
+    const std::string word = mode->word_of({names.begin(), names.end()});
+    scene.coprocessor = *coprocessor_mode_named(word);
+    // Whoever names it wants it; how many threads it has may still be said.
+    const bool has_threads =
+        map.find("budget") != nullptr && Map(*map.find("budget")).find("threads");
+    if (!has_threads) scene.budget.threads = 1;
+  }
+  return scene;
+}
+
+Scene load(const std::string& path, const ModuleKinds& kinds) {
+  return parse(text_of_file(path, "a scene file"), path, kinds);
+}
+
+void is_built_for(EigenAlignmentHere /*alignment*/, VectorRegisterHere /*size*/) noexcept {}
+
+}  // namespace repel::scene

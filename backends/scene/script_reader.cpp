@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "script_reader.hpp"
+
+#include <algorithm>
+#include <any>
+#include <array>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <repel/network/elements/changing_scale.hpp>
+#include <repel/network/modules/guide.hpp>
+#include <repel/network/modules/relief.hpp>
+
+#include "guide_reader.hpp"
+
+namespace repel::scene {
+namespace {
+
+Vec3 direction_of(const Value& value) {
+  const Vec3 direction = value.vector({unit::none, -1e3, 1e3});
+  if (direction.norm() < 1e-6) value.fail_with_value("a direction, longer than 1e-6");
+  return direction.normalized();
+}
+
+/// In the order of PartStep::What.
+constexpr std::array<std::string_view, 4> step_words{"spawn", "grip", "release", "remove"};
+
+/// Those of what a phase changes in the modules `guide` and `relief`.
+constexpr std::array<std::string_view, 4> guiding_keys{"guides", "guide_strength", "compliant",
+                                                       "compliant_frame"};
+
+/// Keys of a phase of any device.
+std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
+  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent",
+                                     "over", "blind",  "scale", "second"};
+  keys.insert(keys.end(), step_words.begin(), step_words.end());
+  keys.insert(keys.end(), guiding_keys.begin(), guiding_keys.end());
+  keys.insert(keys.end(), more);
+  return keys;
+}
+
+constexpr Rule lever_rates{unit::angular_speed, -100.0, 100.0, true};
+
+/// What a second hand does in a phase: with six axes, or with a lever.
+void read_second(const Map& map, network::Phase& phase) {
+  map.allow({"linear", "angular", "direction", "lever"});
+  map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.second.linear);
+  map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.second.angular);
+  if (map.find("direction") == nullptr && map.find("lever") == nullptr) return;
+  phase.second_lever = {direction_of(map.at("direction")), map.at("lever").number(lever_rates)};
+}
+
+network::Phase phase_of(const Value& value) {
+  const Map map(value);
+  map.allow(phase_keys({"linear", "angular", "direction", "lever", "pitch", "axis"}));
+  network::Phase phase;
+  phase.name = map.at("name").text();
+  phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
+  if (const Value* frame = map.find("frame")) {
+    const bool is_tool = frame->word_of({"world", "tool"}) == "tool";
+    phase.frame = is_tool ? network::PhaseFrame::tool : network::PhaseFrame::world;
+  }
+  map.read("silent", phase.silent);
+  map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
+           phase.scale);
+  if (const Value* second = map.find("second")) read_second(Map(*second), phase);
+  const std::string device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
+  if (device != "torque_arm") {
+    if (device == "six_axes") phase.master = network::Master::six_axes;
+    map.allow(phase_keys({"linear", "angular"}));
+    map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
+    map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
+  } else {
+    map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
+    phase.master = network::Master::torque_arm;
+    phase.direction = direction_of(map.at("direction"));
+    phase.lever_rate = map.at("lever").number(lever_rates);
+    if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
+      phase.screw.emplace();
+      map.read("pitch", {unit::length_per_angle, -10.0, 10.0}, phase.screw->pitch);
+      map.read("axis", {unit::length, -10.0, 10.0}, phase.screw->axis);
+    }
+  }
+  return phase;
+}
+
+/// The options of the only module of a kind in the network; null if there is none.
+template <class Options>
+const Options* options_of(const Network& network, std::string_view kind) {
+  const Options* found = nullptr;
+  for (const Module& module : network.modules) {
+    if (module.kind == kind && found == nullptr) found = std::any_cast<Options>(&module.options);
+  }
+  return found;
+}
+
+std::int32_t bits_of(const std::array<bool, 6>& directions) {
+  std::int32_t bits = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (directions[static_cast<std::size_t>(i)]) bits |= 1 << i;
+  }
+  return bits;
+}
+
+void read_guides(const Value& names, const Network& network, network::Phase& out) {
+  const auto* guide = options_of<network::GuideOptions>(network, "guide");
+  if (guide == nullptr) names.fail("'guides' without a module 'guide' in the network");
+  out.guides = 0;
+  for (const Value& name : names.list(network::Guide::most_fixtures)) {
+    const std::string wanted = name.text();
+    const auto found = std::find_if(guide->fixtures.begin(), guide->fixtures.end(),
+                                    [&](const auto& each) { return each.name == wanted; });
+    if (found == guide->fixtures.end()) name.fail_with_value("the name of a fixture");
+    out.guides |= 1 << (found - guide->fixtures.begin());
+  }
+}
+
+/// Reads guiding_keys into a phase. @param network of the arm of the script
+void read_guiding(const Map& phase, const Network& network, network::Phase& out) {
+  if (const Value* names = phase.find("guides")) read_guides(*names, network, out);
+  phase.read("guide_strength", {unit::share, 0.0, 1.0}, out.guide_strength);
+  const Value* directions = phase.find("compliant");
+  const Value* frame = phase.find("compliant_frame");
+  if (directions == nullptr && frame == nullptr) return;
+  const auto* relief = options_of<network::ReliefOptions>(network, "relief");
+  if (relief == nullptr) {
+    (directions != nullptr ? directions : frame)
+        ->fail("'compliant' without a module 'relief' in the network");
+  }
+  if (directions == nullptr) frame->fail("'compliant_frame' without 'compliant'; allowed: both");
+  out.compliant = bits_of(detail::directions_of(*directions));
+  const bool is_world = frame != nullptr ? frame->word_of({"tool", "world"}) == "world"
+                                         : relief->frame == network::ReliefFrame::world;
+  if (is_world) out.compliant |= network::Relief::world_bit;
+}
+
+/// The place of a part in the list of those that can come and go.
+std::size_t part_called(const Value& name, const std::vector<LoosePart>& loose) {
+  const std::string wanted = name.text();
+  const auto found = std::find_if(loose.begin(), loose.end(),
+                                  [&](const LoosePart& part) { return part.name == wanted; });
+  if (found == loose.end()) name.fail_with_value("the name of a part under 'loose'");
+  return static_cast<std::size_t>(found - loose.begin());
+}
+
+/// What happens to parts at the beginning of a phase.
+void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart>& loose,
+                std::vector<PartStep>& steps) {
+  double over = PartStep{}.over;
+  phase.read("over", {unit::time, 0.0, 60.0}, over);
+  for (std::size_t i = 0; i < step_words.size(); ++i) {
+    const Value* names = phase.find(step_words[i]);
+    if (!names) continue;
+    for (const Value& name : names->one_or_list()) {
+      steps.push_back({static_cast<PartStep::What>(i), index, part_called(name, loose), over});
+    }
+  }
+}
+
+/// Which cameras are silent in a phase.
+std::vector<bool> blind_in(const Map& phase, const std::vector<CameraChoice>& cameras) {
+  std::vector<bool> blind;
+  const Value* const value = phase.find("blind");
+  if (value == nullptr) return blind;
+  if (!value->is_list()) {
+    const std::string word = value->text();
+    if (word == "no") return blind;
+    if (word == "yes") return std::vector<bool>(cameras.size(), true);
+  }
+  blind.resize(cameras.size());
+  for (const Value& name : value->one_or_list()) {
+    const std::string wanted = name.text();
+    const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                    [&](const CameraChoice& each) { return each.name == wanted; });
+    if (found == cameras.end()) name.fail_with_value("yes, no, or the name of a camera");
+    blind[static_cast<std::size_t>(found - cameras.begin())] = true;
+  }
+  return blind;
+}
+
+}  // namespace
+
+std::string_view word_for(PartStep::What what) noexcept {
+  return step_words[static_cast<std::size_t>(what)];
+}
+
+void detail::read_script(const Map& of_arm, const std::vector<LoosePart>& loose,
+                         const std::vector<CameraChoice>& cameras, ArmSetup& setup) {
+  const Value* value = of_arm.find("script");
+  if (!value) return;
+  std::set<std::string> names;
+  for (const Value& entry : value->list()) {
+    const Map map(entry);
+    read_steps(map, setup.script.size(), loose, setup.steps);
+    setup.blind.push_back(blind_in(map, cameras));
+    setup.script.push_back(phase_of(entry));
+    read_guiding(map, setup.network, setup.script.back());
+    require_new(names, map);
+  }
+}
+
+}  // namespace repel::scene

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shape_reader.hpp"
+
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/reduction/shape.hpp>
+#include <repel/scene/part_list.hpp>
+
+#include "pose_reader.hpp"
+
+namespace repel::scene::detail {
+namespace {
+
+constexpr Rule extent{unit::length, 0.0, Shape::largest};
+constexpr std::size_t part_shapes = 7;  // so many obstacle_shapes are those of tools too
+
+/// Limits the total number of hull points in a scene, since each costs time in the reduction.
+/// @param where the error is, if there are too many
+void count_hull(const Value& where, std::size_t points, const ShapeFile& shapes) {
+  shapes.hull_points += points;
+  if (shapes.hull_points <= input_limits.hull_points) return;
+  where.fail("the hulls of the scene up to this one have " + std::to_string(shapes.hull_points) +
+             " points; allowed: up to " + std::to_string(input_limits.hull_points) + " in all");
+}
+
+/// The size keys of a shape of this kind.
+std::vector<std::string_view> size_keys(std::string_view kind) {
+  if (kind == "box") return {"size"};
+  if (kind == "sphere") return {"radius"};
+  if (kind == "hull") return {"points"};
+  if (kind == "mesh") return {"file", "parts"};
+  return {"radius", "length"};
+}
+
+/// With as few levels as possible: whoever needs more reduces it again.
+Shape shape_of(const Map& map, std::string_view kind, const ShapeFile& shapes) {
+  constexpr ReductionOptions coarse{.levels = 1};
+  if (kind == "box") return Shape::box(0.5 * map.at("size").vector(extent), coarse);
+  if (kind == "hull") {
+    const Value& list = map.at("points");
+    std::vector<Vec3> points;
+    for (const Value& point : list.list(input_limits.values)) {
+      points.push_back(point.vector(position));
+    }
+    // A single hull that is too large is refused by the shape itself.
+    if (points.size() <= input_limits.entries) count_hull(list, points.size(), shapes);
+    return Shape::hull(points, coarse);
+  }
+  const double radius = map.at("radius").number(extent);
+  if (kind == "sphere") return Shape::sphere(radius, coarse);
+  const double half_length = 0.5 * map.at("length").number(extent);
+  if (kind == "capsule") return Shape::capsule(radius, half_length, coarse);
+  if (kind == "cone") return Shape::cone(radius, half_length, coarse);
+  if (kind == "cylinder") return Shape::cylinder(radius, half_length, coarse);
+  map.at("shape").fail_with_value("a shape that is made of sizes");
+}
+
+/// part_list_of(), with the line of `mesh` for what is wrong of the list as a whole.
+PartList checked_list(const Value& mesh, const std::string& mesh_path, const std::string& path) {
+  try {
+    return part_list_of(mesh_path, path);
+  } catch (const SetupError& error) {
+    if (error.line() > 0) throw;
+    mesh.fail(error.what());
+  }
+}
+
+/// The convex parts of a mesh, from the list that `parts` names or that lies beside the mesh.
+std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
+  const Value& mesh = map.at("file");
+  const std::string mesh_path = mesh.path();
+  const Value* const named = map.find("parts");
+  const bool is_beside = named == nullptr || named->text() == "auto";
+  const std::string path = is_beside ? part_list_beside(mesh_path) : named->path();
+  std::error_code unused;
+  if (!std::filesystem::is_regular_file(path, unused)) {
+    mesh.fail("the mesh '" + mesh_path + "' has no convex parts yet: there is no file '" + path +
+              "'; to have it: cover '" + mesh_path + "'");
+  }
+  const PartList list = checked_list(mesh, mesh_path, path);
+  shapes.part_lists.push_back(path);
+  std::vector<Part> parts;
+  for (const std::vector<Vec3>& points : list.parts) {
+    count_hull(mesh, points.size(), shapes);
+    std::string name = map.at("name").text();
+    name.append(1, '/').append(std::to_string(parts.size() + 1));
+    try {
+      parts.push_back({name, Shape::hull(points, {.levels = 1}), "hull", pose_of(map), {}});
+    } catch (const SetupError& error) {
+      std::string text = name;
+      mesh.fail(text.append(" in '").append(path).append("': ").append(error.what()));
+    }
+  }
+  parts.front().gaps = list.gaps;
+  return parts;
+}
+
+}  // namespace
+
+std::vector<Part> parts_of(const Value& value, const Map& map,
+                           std::span<const std::string_view> keys, const ShapeFile& shapes) {
+  std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
+  common.insert(common.end(), keys.begin(), keys.end());
+  auto any = common;
+  any.insert(any.end(), {"size", "radius", "length", "points", "file", "parts"});
+  map.allow(any);
+  const std::string name = map.at("name").text();
+  const std::string kind = map.at("shape").word_of(std::span(obstacle_shapes).first<part_shapes>());
+  const auto sizes = size_keys(kind);
+  common.insert(common.end(), sizes.begin(), sizes.end());
+  map.allow(common);
+  if (kind == "mesh") return parts_of_mesh(map, shapes);
+  try {
+    return {{name, shape_of(map, kind, shapes), kind, pose_of(map), {}}};
+  } catch (const SetupError& error) {
+    if (error.line() > 0) throw;
+    value.fail(kind + " '" + name + "': " + error.what());
+  }
+}
+
+std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {
+  std::vector<Part> parts;
+  std::set<std::string> names;
+  for (const Value& entry : value.list()) {
+    const Map map(entry);
+    for (Part& part : parts_of(entry, map, {}, shapes)) parts.push_back(std::move(part));
+    require_new(names, map);
+  }
+  if (parts.empty()) value.fail("'tool' has no part; allowed: 1 or more");
+  return parts;
+}
+
+}  // namespace repel::scene::detail

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Reads the shapes of a scene file, and tools, which are made of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <repel/scene/scene.hpp>
+
+#include "yaml.hpp"
+
+namespace repel::scene::detail {
+
+inline constexpr std::array<std::string_view, 9> obstacle_shapes{
+    "box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh", "urdf", "sdf"};
+
+/// What the shapes of a file add up to.
+struct ShapeFile {
+  std::size_t& hull_points;              ///< of all hulls
+  std::vector<std::string>& part_lists;  ///< paths of the lists that parts of meshes are from
+};
+
+/// Reads the keys common to tool parts and obstacles: one part, or those of a mesh.
+/// @param keys further keys that are allowed
+[[nodiscard]] std::vector<Part> parts_of(const Value& value, const Map& map,
+                                         std::span<const std::string_view> keys,
+                                         const ShapeFile& shapes);
+
+/// The parts of a `tool`.
+[[nodiscard]] std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes);
+
+}  // namespace repel::scene::detail
