@@ -14,7 +14,6 @@
 #include <repel/host/command_line.hpp>
 #include <repel/host/figure.hpp>
 #include <repel/runs/engine/session.hpp>
-#include <repel/runs/operator/device.hpp>
 #include <repel/runs/options/link_choice.hpp>
 #include <repel/runs/options/run_options.hpp>
 #include <repel/runs/options/session_options.hpp>

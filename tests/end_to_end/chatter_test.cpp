@@ -129,8 +129,9 @@ TEST(Chatter, OfAReplayIsThatOfItsRecording) {
   const std::string file = folder / "run.mcap";
   for (const std::string& arguments :
        {"plates --fast --seconds 4 --log " + quoted(file), "replay " + quoted(file)}) {
-    const Ending ending = teleop(arguments + " --report " +
-                                 quoted(folder / (arguments[0] == '-' ? "b.json" : "a.json")));
+    const Ending ending =
+        teleop(arguments + " --report " +
+               quoted(folder / (arguments.starts_with("replay") ? "b.json" : "a.json")));
     ASSERT_EQ(ending.status, 0) << ending;
   }
   EXPECT_EQ(report_of(folder / "a.json").at("chatter"), report_of(folder / "b.json").at("chatter"));

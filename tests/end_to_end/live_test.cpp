@@ -186,7 +186,7 @@ TEST(Live, WhoMayDriveIsSaidOnTheCommandLine) {
     const Ending ending = teleop(std::string("plates ") + wrong);
     EXPECT_EQ(ending.status, 2) << ending;
   }
-  const Ending help = teleop("--help");
+  const Ending help = teleop("run --help");
   for (const char* option : {"--secret", "--secret-env", "--view-only", "--page-drives"}) {
     EXPECT_TRUE(help.says(option)) << option;
   }
