@@ -217,10 +217,8 @@ int run_session(const Arguments& arguments, const Work& work) {
   is_whole = wrote(report, result, runs::write_json) && is_whole;
   is_whole = wrote(html, result, runs::write_html) && is_whole;
   if (result.station && result.station->status != 0) return 1;
-  const runs::ReplayReport& replay = result.replay;
-  if (replay.same != replay.ticks) return 3;
-  if (!is_whole) return 4;
-  return runs::gained_energy(result) || runs::was_often_at_fault(result) ? 5 : 0;
+  const int status = runs::exit_status(result);
+  return is_whole || status == 3 ? status : 4;
 }
 
 /// Everything that a run of the scene does before its first tick.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs scenes by the program `teleop`."""
+"""Runs scenes."""
 
 from __future__ import annotations
 
@@ -10,11 +10,16 @@ import shutil
 import subprocess
 import tempfile
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from . import _repel
 from ._errors import SetupError, how_to_have
+from ._scenes import path_of
+
+if TYPE_CHECKING:
+    from ._repel import Tick
 
 #: What the exit codes of the program say beside "it ran".
 _REFUSED = (1, 2)
@@ -52,17 +57,35 @@ def _refusal(text: str, status: int) -> SetupError:
 
 def run(scene: Any, *, seconds: float = 20.0, fast: bool = True, rate_hz: float | None = None,
         backend: str | None = None, log: str | os.PathLike[str] | None = None,
+        on_tick: Callable[[list[Tick]], object] | None = None, stop: Any = None,
         arguments: Sequence[str] = ()) -> dict[str, Any]:
-    """Runs a scene and returns its report, the object that `teleop --report` writes.
+    """Runs a scene and returns its report, the object that `teleop run --report` writes.
 
-    scene: a Scene, the path of a scene file, or the name of one that comes with the program.
-    seconds [s] of scene time. fast: not by the clock, bitwise repeatable. log: a file for every
-    tick, a recording if its name ends in .mcap, else CSV; see read_recording. arguments: further
-    ones of `teleop run --help`.
+    scene: a Scene, the path of a scene file, or the name of one that comes with the package.
+    seconds [s] of scene time. fast: not by the clock, bitwise repeatable, and the same bits as
+    `teleop run --fast`. log: a file for every tick, a recording if its name ends in .mcap, else
+    CSV; see read_recording. on_tick: called after each tick with the list of the ticks of all arms;
+    what it raises ends the run and is raised here. stop: an Event of threading; once it is set the
+    forces fade and the run ends. arguments: further ones of `teleop run --help`; with them, and in
+    a build without runs, the program runs as a child, without on_tick and stop.
 
     The report has the key `exit_status`: 0, or 3 to 5 where docs/recording.md says what happened.
-    Raises SetupError with the text of the program if it refuses.
+    Raises SetupError if the scene cannot be run.
     """
+    has_runs = hasattr(_repel, "run_scene")
+    if arguments or not has_runs:
+        if on_tick is not None or stop is not None:
+            raise SetupError("on_tick and stop go without arguments" if has_runs else
+                             f"on_tick and stop are not in this build: {how_to_have('teleop')}")
+        return _run_child(scene, seconds, fast, rate_hz, backend, log, arguments)
+    text, status = _repel.run_scene(
+        path_of(getattr(scene, "file", scene)), seconds=seconds, fast=fast, rate_hz=rate_hz,
+        backend=backend, log="" if log is None else os.fspath(log), on_tick=on_tick, stop=stop)
+    return {**json.loads(text), "exit_status": status}
+
+
+def _run_child(scene: Any, seconds: float, fast: bool, rate_hz: float | None, backend: str | None,
+               log: str | os.PathLike[str] | None, arguments: Sequence[str]) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         command = [program(), "run", _path_of(scene), "--seconds", repr(float(seconds)), "--report",

@@ -23,6 +23,7 @@ void bind_world(nb::module_& m);
 void bind_ticks(nb::module_& m);
 void bind_cell(nb::module_& m);
 void bind_scenes(nb::module_& m);
+void bind_runs(nb::module_& m);
 void bind_recordings(nb::module_& m);
 void bind_covers(nb::module_& m);
 

@@ -33,6 +33,9 @@ NB_MODULE(_repel, m) {
 #ifdef REPEL_PYTHON_SCENES
   bind_scenes(m);
 #endif
+#ifdef REPEL_PYTHON_RUNS
+  bind_runs(m);
+#endif
 #ifdef REPEL_PYTHON_RECORDINGS
   bind_recordings(m);
 #endif

@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -91,12 +92,42 @@ def test_a_run_gives_its_report(teleop, scenes):
     assert again["ticks"] == 500
 
 
+def test_a_run_is_that_of_the_program_bit_for_bit(teleop, tmp_path):
+    here, child = tmp_path / "here.csv", tmp_path / "child.csv"
+    report = repel.run("plates", seconds=2.0, log=here)
+    assert report["exit_status"] == 0
+    repel.run("plates", seconds=2.0, log=child, arguments=["--quiet"])
+    assert here.read_bytes() == child.read_bytes()
+
+
+def test_a_run_tells_its_ticks_and_stops_when_it_is_told_to(scenes):
+    seen = []
+    report = repel.run("two_arms", seconds=0.5, on_tick=seen.append)
+    assert [ticks[0].tick for ticks in seen] == list(range(200)) and len(seen[0]) == 2
+    assert report["ticks"] == 200 and report["exit_status"] == 0
+    stop, count = threading.Event(), []
+
+    def look(ticks):
+        count.append(ticks[0].gain)
+        if len(count) == 100:
+            stop.set()
+    repel.run(scenes / "plates.yaml", seconds=20.0, on_tick=look, stop=stop)
+    assert 100 < len(count) < 1000 and count[99] == 1.0 and count[-1] == 0.0  # it faded
+
+
+def test_what_a_callback_raises_ends_the_run(scenes):
+    with pytest.raises(ZeroDivisionError):
+        repel.run(scenes / "empty.yaml", seconds=1e5, on_tick=lambda ticks: 1 / 0)
+    with pytest.raises(repel.SetupError, match="without arguments"):
+        repel.run(scenes / "empty.yaml", on_tick=print, arguments=["--quiet"])
+
+
 def test_what_the_program_refuses_is_an_error(teleop, tmp_path, monkeypatch):
     with pytest.raises(repel.SetupError, match="no such scene; allowed: a file or one of"):
         repel.run("nonesuch")
     with pytest.raises(repel.SetupError, match="--nonesuch"):
         repel.run("empty", arguments=["--nonesuch"])
-    with pytest.raises(repel.SetupError, match="--backend"):
+    with pytest.raises(repel.SetupError, match="backend"):
         repel.run("empty", backend="marble")
     bad = tmp_path / "bad.yaml"
     bad.write_text("rate: fast\n")

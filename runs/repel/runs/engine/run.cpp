@@ -208,6 +208,7 @@ void make_ticks(DrivenCell& driven, CameraFeeds* cameras, const Attachments& att
     show_force(attached.device, *records.front(), has_handle);
     show_tick(attached, coprocessor, options.fast, records,
               recording == nullptr ? times : recording->times[tick]);
+    if (attached.on_tick) attached.on_tick(driven.cell(), records);
     if (pace.has_arrived()) show_last();
     progress.draft() = progress_of(*records.front(), result);
     progress.post();

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <span>
 
 #include <repel/loop/tap.hpp>
 #include <repel/network/remote/link.hpp>
@@ -27,6 +28,8 @@ struct Attachments {
   network::RemoteLink* remote = nullptr;  ///< over which the operator of the arm is
   const std::atomic<bool>* at_once = nullptr;  ///< request to end without fading the forces
   DatedShapes* shapes = nullptr;  ///< receives those of new parts, if a recording shows them
+  /// SessionOptions::on_tick
+  std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
 };
 
 /// Runs a prepared scene, once. `show` is called from a separate thread, a few times a second. When

@@ -103,6 +103,7 @@ RunResult run_session(const scene::Scene& scene, const RunOptions& options,
       prepare(scene, options, recording, remote ? &remote->link : nullptr);
   require_passive_grip(device, prepared->cell.network(0));
   Attachments attached{nullptr, nullptr, device.link.get(), recording, nullptr, &at_once};
+  attached.on_tick = session.on_tick;
   if (remote) {
     remote->open(session.link, scene);
     attached.remote = &remote->link;

@@ -3,11 +3,16 @@
 /// How a run is watched and driven: its live view and its input device.
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 
+#include <repel/cell/cell.hpp>
 #include <repel/runs/options/link_choice.hpp>
 
 namespace repel::runs {
+
+/// How a run is watched and driven.
 
 struct SessionOptions {
   bool view = false;
@@ -20,6 +25,8 @@ struct SessionOptions {
   bool view_only = false;    ///< pages may only watch
   bool page_drives = false;  ///< pages may override the device
   LinkChoice link;           ///< to the other side of the scene
+  /// Called after each tick, outside of its measured time, with the records of all arms; null: not.
+  std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
 };
 
 }  // namespace repel::runs

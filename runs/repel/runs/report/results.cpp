@@ -142,4 +142,10 @@ bool was_often_at_fault(const RunResult& result) {
   });
 }
 
+int exit_status(const RunResult& result) {
+  if (result.replay.same != result.replay.ticks) return 3;
+  if (!result.log_trouble.empty()) return 4;
+  return gained_energy(result) || was_often_at_fault(result) ? 5 : 0;
+}
+
 }  // namespace repel::runs

@@ -157,6 +157,9 @@ struct RunResult {
 /// True when an arm had a fault in more than a tenth of its ticks (`status::unsound`). Ten ticks
 /// are excused for each that the machine skipped: it held up the loop, and the drive stopped.
 [[nodiscard]] bool was_often_at_fault(const RunResult& result);
+/// Of teleop: 3 a replay came out otherwise, 4 the log is not whole, 5 an arm gained energy or was
+/// often at fault; else 0.
+[[nodiscard]] int exit_status(const RunResult& result);
 
 /// How many support pairs this machine computes in one period, extrapolated from the support pairs
 /// and the computing time of the run, which includes all other work of the ticks. 0 if unknown.

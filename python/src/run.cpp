@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <repel/runs/engine/session.hpp>
+#include <repel/runs/report/report.hpp>
+#include <repel/scene/scene.hpp>
+
+#include "bindings.hpp"
+#include "tick.hpp"
+
+namespace repel::python {
+namespace {
+
+/// What Python wants from a run while it goes on.
+class Watcher {
+ public:
+  /// @param on_tick called with the list of the ticks of all arms; None: it is not
+  /// @param stop has `is_set()`, as threading.Event; None: the run ends by itself
+  Watcher(nb::object on_tick, nb::object stop)
+      : on_tick_(std::move(on_tick)), stop_(std::move(stop)) {}
+
+  /// After each tick, in its thread. An exception ends the run at once and is kept.
+  void look(const Cell& cell, std::span<const TickRecord* const> records) {
+    // Who wants nothing can still press Ctrl-C.
+    const bool wants = !on_tick_.is_none() || !stop_.is_none();
+    if (!wants && records.front()->tick % 64 != 0) return;
+    const nb::gil_scoped_acquire holds;
+    try {
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      if (!stop_.is_none() && nb::cast<bool>(stop_.attr("is_set")())) ends = true;
+      if (on_tick_.is_none()) return;
+      if (names_.empty()) names_ = names_of(cell);
+      nb::list ticks;
+      for (std::size_t i = 0; i < records.size(); ++i) ticks.append(Tick{*records[i], names_[i]});
+      on_tick_(ticks);
+    } catch (...) {
+      trouble = std::current_exception();
+      ends = at_once = true;
+    }
+  }
+
+  std::atomic<bool> ends{false};
+  std::atomic<bool> at_once{false};
+  std::exception_ptr trouble;
+
+ private:
+  nb::object on_tick_, stop_;
+  std::vector<std::shared_ptr<const TickNames>> names_;
+};
+
+nb::tuple run_scene(const std::string& file, double seconds, bool fast,
+                    std::optional<double> rate_hz, std::optional<std::string> backend,
+                    const std::string& log, nb::object on_tick, nb::object stop) {
+  const scene::Scene scene = scene::load(file);
+  runs::RunOptions options = runs::options_of(scene);
+  options.seconds = checked("seconds", seconds, 0.0, 1e6, "s");
+  options.fast = fast;
+  options.rate_hz = checked("rate_hz", rate_hz.value_or(options.rate_hz), 1.0, 1e5, "Hz");
+  options.backend = backend.value_or(options.backend);
+  options.log = log;
+  Watcher watcher(std::move(on_tick), std::move(stop));
+  runs::SessionOptions session;
+  session.on_tick = [&watcher](const Cell& cell, std::span<const TickRecord* const> records) {
+    watcher.look(cell, records);
+  };
+  runs::RunResult result;
+  {
+    const nb::gil_scoped_release others_go_on;
+    result = runs::run_session(scene, options, session, nullptr, watcher.ends, watcher.at_once,
+                               [](const runs::Progress&) {});
+  }
+  if (watcher.trouble) std::rethrow_exception(watcher.trouble);
+  std::ostringstream report;
+  runs::write_json(result, report);
+  return nb::make_tuple(report.str(), runs::exit_status(result));
+}
+
+}  // namespace
+
+void bind_runs(nb::module_& m) {
+  m.def("run_scene", &run_scene, nb::arg("file"), nb::kw_only(), nb::arg("seconds"),
+        nb::arg("fast"), nb::arg("rate_hz").none(), nb::arg("backend").none(), nb::arg("log"),
+        nb::arg("on_tick").none(), nb::arg("stop").none(),
+        nb::sig("def run_scene(file: str, *, seconds: float, fast: bool, rate_hz: float | None, "
+                "backend: str | None, log: str, on_tick: typing.Any, stop: typing.Any) -> "
+                "tuple[str, int]"),
+        "See repel.run: the report as JSON, and the exit status of teleop.");
+}
+
+}  // namespace repel::python
