@@ -58,8 +58,8 @@
 #include <repel/network/elements/one_ports.cpp>
 #include <repel/network/elements/port.cpp>
 #include <repel/network/elements/robot_end.cpp>
+#include <repel/network/elements/series_source.cpp>
 #include <repel/network/elements/signals.cpp>
-#include <repel/network/elements/two_port.cpp>
 #include <repel/network/elements/wave_account.cpp>
 #include <repel/network/machinery/clean_stiffness.cpp>
 #include <repel/network/machinery/ledger.cpp>

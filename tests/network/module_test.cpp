@@ -121,20 +121,10 @@ TEST(Module, OfAnotherProgramStandsInANetworkLikeAnyOther) {
 }
 
 /// A custom wall in the space of joints, with the functions for walls.
-struct Fence {
+struct Fence : JointSource {
   static constexpr Traits traits{
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
-  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
-                               Equivalent<any_size>& shown) const noexcept {
-    return series::shown(behind, Vector::Constant(2, -3.0), shown);
-  }
-  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                PortState<any_size>& at_leaf) const noexcept {
-    series::pass(at_root, Vector::Constant(2, -3.0), at_leaf);
-  }
-  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
-    torques += Vector::Constant(2, 3.0);
-  }
+  Fence() { effort_ = Vector::Constant(2, -3.0); }
   [[nodiscard]] bool saturated() const noexcept { return true; }
   [[nodiscard]] PassivityReport passivity() const noexcept { return {.dissipated = 1.0}; }
 };

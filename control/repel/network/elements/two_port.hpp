@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Building blocks of two-ports: transformers and series sources.
+/// The building block of two-ports that connect two spaces.
 #pragma once
 
 #include <repel/network/elements/equivalent.hpp>
@@ -57,17 +57,5 @@ void to_b(const PortState<any_size>& at_a, const Equivalent<any_size>& at_b, con
 }
 
 }  // namespace transformer
-
-/// An effort in series, at the same flow of both ports: f_root = f_leaf + effort.
-namespace series {
-
-/// Equivalent of what is behind together with an effort source in series. Always true.
-[[nodiscard]] bool shown(const Equivalent<any_size>& behind, const Vec<any_size>& effort,
-                         Equivalent<any_size>& shown) noexcept;
-/// State behind the source from that at the root: the same flow, less the effort of the source.
-void pass(const PortState<any_size>& at_root, const Vec<any_size>& effort,
-          PortState<any_size>& at_leaf) noexcept;
-
-}  // namespace series
 
 }  // namespace repel::network

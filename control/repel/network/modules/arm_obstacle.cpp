@@ -2,7 +2,6 @@
 #include <repel/network/modules/arm_obstacle.hpp>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
 
@@ -29,21 +28,6 @@ void ArmObstacle::read(const Signals& signals) noexcept {
   damping_ = controller_.step(effort_, signals.rates, signals.mean_rates, signals.period, supplied_,
                               signals.since_last());
   if (damping_ > 0.0) effort_ += damping_ * signals.rates;
-}
-
-bool ArmObstacle::reflected(const Equivalent<any_size>& behind,
-                            Equivalent<any_size>& shown) const noexcept {
-  return series::shown(behind, effort_, shown);
-}
-
-void ArmObstacle::incident(const PortState<any_size>& at_root,
-                           const Equivalent<any_size>& /*behind*/,
-                           PortState<any_size>& at_leaf) const noexcept {
-  series::pass(at_root, effort_, at_leaf);
-}
-
-void ArmObstacle::add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
-  torques += this->torques();
 }
 
 void ArmObstacle::add_wall_damping(const Jacobian& /*of_tool*/,

@@ -3,9 +3,7 @@
 /// ARM_OBSTACLE: the virtual forces of the world model on the links of the arm.
 #pragma once
 
-#include <repel/network/elements/equivalent.hpp>
-#include <repel/network/elements/passivity.hpp>
-#include <repel/network/elements/signals.hpp>
+#include <repel/network/elements/series_source.hpp>
 
 namespace repel::network {
 
@@ -21,7 +19,7 @@ struct ArmObstacleOptions {
 /// OBSTACLE for the links. It must stand between PUMA_KIN and the robot, with nothing compliant on
 /// its right. One passivity controller observes the energy of all joints together: one joint may
 /// return energy that another has absorbed.
-class ArmObstacle {
+class ArmObstacle : public JointSource {
  public:
   /// For the planner.
   static constexpr Traits traits{.left = Space::joints,
@@ -39,17 +37,6 @@ class ArmObstacle {
   /// Takes the torques of the walls on the links, corrected by the passivity controller.
   void read(const Signals& signals) noexcept;
 
-  /// What is behind, and the torques in series. Always true.
-  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
-                               Equivalent<any_size>& shown) const noexcept;
-  /// The same rates; the torques of the walls have been taken off.
-  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                PortState<any_size>& at_leaf) const noexcept;
-
-  /// Torques of the walls on the joints, after the passivity controller [N m].
-  [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
-  /// Adds the torques of the walls [N m].
-  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept;
   /// Adds the damping of the passivity controller.
   void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept;
   /// Energy balance of all joints together.
@@ -61,7 +48,6 @@ class ArmObstacle {
 
   ArmObstacleOptions options_;
   PassivityController<any_size> controller_;
-  Vec<any_size> effort_;  // into the module [N m]
   double supplied_ = 0.0;
   double damping_ = 0.0;  // [N m s/rad] of the passivity controller in this tick
 };

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
 
@@ -15,9 +14,9 @@ double Guide::Held::stored() const noexcept {
 }
 
 Guide::Guide(const GuideOptions& options)
-    : ramp_(checked("ramp", options.ramp, 1e-3, 100.0, "s")),
-      entry_(checked("entry energy", options.entry_energy, 1e-3, 1e3, "J")),
-      controller_(with_room(options), weight_of(options.passivity)) {
+    : ToolSource(with_room(options)),
+      ramp_(checked("ramp", options.ramp, 1e-3, 100.0, "s")),
+      entry_(checked("entry energy", options.entry_energy, 1e-3, 1e3, "J")) {
   const auto count = static_cast<double>(options.fixtures.size());
   checked("number of fixtures", count, 0, most_fixtures, "");
   for (const FixtureOptions& fixture : options.fixtures) {
@@ -53,31 +52,13 @@ void Guide::read(const Signals& signals) noexcept {
   for (Held& held : held_) {
     if (held.acts()) push(held, flow);
   }
-  damping_ = controller_.step(effort_, flow, signals.mean_tool_flow(), signals.period, supplied_,
-                              signals.since_last());
-  if (damping_ > 0.0) effort_ += damping_ * product(Vec<any_size>(controller_.weight()), flow);
-}
-
-bool Guide::reflected(const Equivalent<any_size>& behind,
-                      Equivalent<any_size>& shown) const noexcept {
-  return series::shown(behind, effort_, shown);
-}
-
-void Guide::incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                     PortState<any_size>& at_leaf) const noexcept {
-  series::pass(at_root, effort_, at_leaf);
+  keep_passive(signals, flow);
 }
 
 double Guide::stored() const noexcept {
   double sum = 0.0;
   for (const Held& held : held_) sum += held.stored();
   return sum;
-}
-
-void Guide::add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept {
-  Vec<any_size> at_joints;
-  dense::transposed_product(jacobian, effort_, at_joints);
-  torques -= at_joints;
 }
 
 void Guide::add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept {
@@ -96,18 +77,8 @@ void Guide::add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) c
   }
 }
 
-Guide::Six Guide::weight_of(const PassivityOptions& options) {
-  const double square = options.lever * options.lever;
-  Six weight;
-  for (int i = 0; i < 6; ++i) weight[i] = i < 3 ? 1.0 : square;
-  return weight;
-}
-
 PassivityOptions Guide::with_room(const GuideOptions& options) {
-  PassivityOptions passivity = options.passivity;
-  checked("most energy", passivity.most_energy, 0.0, 1e6, "J");
-  checked("most damping", passivity.most_damping, 0.0, 1e6, "N s/m");
-  checked("lever", passivity.lever, 1e-6, 100.0, "m");
+  PassivityOptions passivity = checked_passivity(options.passivity);
   passivity.keeps_energy = true;
   for (const FixtureOptions& fixture : options.fixtures) {
     passivity.most_energy += 2.0 * fixture.most_energy;

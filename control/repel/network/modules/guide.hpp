@@ -8,10 +8,8 @@
 #include <vector>
 
 #include <repel/network/elements/entry_energy.hpp>
-#include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/fixture.hpp>
-#include <repel/network/elements/passivity.hpp>
-#include <repel/network/elements/signals.hpp>
+#include <repel/network/elements/series_source.hpp>
 
 namespace repel::network {
 
@@ -32,7 +30,7 @@ struct GuideOptions {
 /// faster than the energy for it is there: what the damper and falling gains took from motion, then
 /// `entry_energy`, which counts as supplied. Where the tool is at the fixture U is zero and so is
 /// the cost. A passivity controller watches the port.
-class Guide {
+class Guide : public ToolSource {
  public:
   /// For the planner.
   static constexpr Traits traits{
@@ -69,31 +67,16 @@ class Guide {
   void prepare(double period);
   /// Takes pose and motion of the tool, and what the hand has switched.
   void read(const Signals& signals) noexcept;
-  /// What is behind, and the wrench in series. Always true.
-  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
-                               Equivalent<any_size>& shown) const noexcept;
-  /// The same flow, less the wrench.
-  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                PortState<any_size>& at_leaf) const noexcept;
-  /// Wrench of all fixtures on the tool, after the passivity controller [N, N m].
-  [[nodiscard]] Wrench on_tool() const noexcept { return to_wrench(-effort_); }
   /// The fixtures, in the order of the options.
   [[nodiscard]] std::span<const Held> fixtures() const noexcept {
     return {held_.data(), held_.size()};
   }
   /// Energy in the springs [J].
   [[nodiscard]] double stored() const noexcept;
-  /// Adds the torques of the wrench [N m].
-  void add_walls(const Jacobian& jacobian, Vec<any_size>& torques) const noexcept;
   /// Adds J' D J, D the damping of fixtures and passivity controller.
   void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept;
-  /// Energy balance of the whole wrench.
-  [[nodiscard]] const PassivityReport& passivity() const noexcept { return controller_.report(); }
-  [[nodiscard]] double supplied() const noexcept { return supplied_; }  ///< [W] of entry energy
 
  private:
-  using Six = Eigen::Matrix<double, 6, 1>;
-  static Six weight_of(const PassivityOptions& options);
   // What the springs hold must fit into the account beside what the damper took.
   static PassivityOptions with_room(const GuideOptions& options);
   // As of a wall: B >= wall_ticks T K.
@@ -116,11 +99,7 @@ class Guide {
   double turn_share_ = 1.0;
   bool has_position_ = false;
   Vec3 x_{0, 0, 0};  // of the tool in the last tick
-  PassivityController<6> controller_;
-  Vec<any_size> effort_ = Vec<any_size>::Zero(6);  // into the module
   Mat3 linear_damping_ = Mat3::Zero(), angular_damping_ = Mat3::Zero();
-  double supplied_ = 0.0;
-  double damping_ = 0.0;  // [N s/m] of the passivity controller in this tick
 };
 
 }  // namespace repel::network

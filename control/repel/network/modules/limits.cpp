@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
 
@@ -74,20 +73,6 @@ void Limits::read(const Signals& signals) noexcept {
     joint.most = std::max(joint.most, std::abs(effort(0)));
     joint.damping = damping + (acts ? joint.law.damping : 0.0);
   }
-}
-
-bool Limits::reflected(const Equivalent<any_size>& behind,
-                       Equivalent<any_size>& shown) const noexcept {
-  return series::shown(behind, effort_, shown);
-}
-
-void Limits::incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                      PortState<any_size>& at_leaf) const noexcept {
-  series::pass(at_root, effort_, at_leaf);
-}
-
-void Limits::add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
-  torques += this->torques();
 }
 
 void Limits::add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept {

@@ -6,10 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include <repel/network/elements/equivalent.hpp>
-#include <repel/network/elements/passivity.hpp>
 #include <repel/network/elements/robot_end.hpp>
-#include <repel/network/elements/signals.hpp>
+#include <repel/network/elements/series_source.hpp>
 
 namespace repel::network {
 
@@ -37,7 +35,7 @@ struct JointRange {
 /// Adds the torques of the limits to those from the left, at the same joint rates; each joint
 /// separately and with its own passivity controller. Where the zones of both limits overlap, the
 /// lower limit acts.
-class Limits {
+class Limits : public JointSource {
  public:
   /// For the planner.
   static constexpr Traits traits{
@@ -57,17 +55,6 @@ class Limits {
   /// Takes the torques of the limits, corrected by the passivity controllers.
   void read(const Signals& signals) noexcept;
 
-  /// What is behind, and the torques in series. Always true.
-  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
-                               Equivalent<any_size>& shown) const noexcept;
-  /// The same rates, less the torques.
-  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                PortState<any_size>& at_leaf) const noexcept;
-
-  /// Torques of the limits on the joints [N m].
-  [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
-  /// Adds the torques of the limits [N m].
-  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept;
   /// Adds the damping of laws and passivity controllers [N m s/rad], on the diagonal.
   void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept;
   /// The law of a joint, with the gains in use.
@@ -90,7 +77,6 @@ class Limits {
   };
   double wall_ticks_ = 0.5;
   std::vector<Joint> joints_;
-  Vec<any_size> effort_;  // into the module [N m]
   bool active_ = false;
 };
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/network/elements/two_port.hpp>
 
 namespace repel::network {
 namespace {
@@ -67,20 +66,6 @@ void Posture::read(const Signals& signals) noexcept {
   const Vec<any_size> corrected = effort + damping * rates;
   effort_ = dense::product<Vec<any_size>>(projector_, corrected);
   damping_ = share * options_.damping + damping;
-}
-
-bool Posture::reflected(const Equivalent<any_size>& behind,
-                        Equivalent<any_size>& shown) const noexcept {
-  return series::shown(behind, effort_, shown);
-}
-
-void Posture::incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                       PortState<any_size>& at_leaf) const noexcept {
-  series::pass(at_root, effort_, at_leaf);
-}
-
-void Posture::add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept {
-  torques += this->torques();
 }
 
 void Posture::add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept {

@@ -5,10 +5,8 @@
 
 #include <vector>
 
-#include <repel/network/elements/equivalent.hpp>
-#include <repel/network/elements/passivity.hpp>
 #include <repel/network/elements/robot_end.hpp>
-#include <repel/network/elements/signals.hpp>
+#include <repel/network/elements/series_source.hpp>
 
 namespace repel::network {
 
@@ -38,7 +36,7 @@ struct PostureOptions {
 /// has no potential, so it gives back what was stored and what the damper took, up to
 /// `most_energy`. With positions that are given it begins charged, which counts as supplied. It
 /// must stand between PUMA_KIN and the robot, with nothing compliant on its right.
-class Posture {
+class Posture : public JointSource {
  public:
   /// For the planner.
   static constexpr Traits traits{
@@ -63,17 +61,6 @@ class Posture {
   /// few microseconds for seven joints.
   void read(const Signals& signals) noexcept;
 
-  /// What is behind, and the torques in series. Always true.
-  [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
-                               Equivalent<any_size>& shown) const noexcept;
-  /// The same rates, less the torques.
-  void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
-                PortState<any_size>& at_leaf) const noexcept;
-
-  /// Torques on the joints [N m].
-  [[nodiscard]] Vec<any_size> torques() const noexcept { return -effort_; }
-  /// Adds the torques [N m].
-  void add_walls(const Jacobian& /*of_tool*/, Vec<any_size>& torques) const noexcept;
   /// Adds the damping of law and passivity controller, through P on both sides.
   void add_wall_damping(const Jacobian& /*of_tool*/, Mat<any_size>& damping) const noexcept;
   /// P of this tick.
@@ -95,7 +82,6 @@ class Posture {
   bool has_begun_ = false;
   Vec<any_size> slack_;      // q0
   Mat<any_size> projector_;  // P
-  Vec<any_size> effort_;     // into the module [N m]
   double damping_ = 0.0;     // [N m s/rad] of law and controller in this tick
   double supplied_ = 0.0;
 };
