@@ -95,7 +95,7 @@ const ForceLaw& law_called(const Laws& laws, const Map& map, std::string_view ke
     }
     defined += (defined.empty() ? "" : ", ") + known;
   }
-  name->fail_with_value("a law under 'laws': " + defined);
+  map.at(key).fail_with_value("a law under 'laws': " + defined);
 }
 
 std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const ShapeFile& shapes,

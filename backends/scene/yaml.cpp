@@ -54,7 +54,7 @@ std::string shown(const std::string& text) {
 /// The path of what `value` names relative to `file`, a regular file or a directory as `type` says.
 std::string existing(const Value& value, const std::string& file, std::filesystem::file_type type) {
   const auto path = std::filesystem::path(file).parent_path() / value.text();
-  const std::string normal = path.lexically_normal().string();
+  std::string normal = path.lexically_normal().string();
   std::error_code unused;
   if (std::filesystem::status(path, unused).type() != type) {
     const bool is_folder = type == std::filesystem::file_type::directory;
