@@ -217,8 +217,8 @@ int run_session(const Arguments& arguments, const Work& work) {
   is_whole = wrote(report, result, runs::write_json) && is_whole;
   is_whole = wrote(html, result, runs::write_html) && is_whole;
   if (result.station && result.station->status != 0) return 1;
-  const int status = runs::exit_status(result);
-  return is_whole || status == 3 ? status : 4;
+  const int ended_with = runs::exit_status(result);
+  return is_whole || ended_with == 3 ? ended_with : 4;
 }
 
 /// Everything that a run of the scene does before its first tick.
