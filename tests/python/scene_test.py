@@ -123,7 +123,7 @@ def test_what_a_callback_raises_ends_the_run(scenes):
 
 
 def test_what_the_program_refuses_is_an_error(teleop, tmp_path, monkeypatch):
-    with pytest.raises(repel.SetupError, match="no such scene; allowed: a file or one of"):
+    with pytest.raises(repel.SetupError, match="no such scene; allowed: a file, or one of"):
         repel.run("nonesuch")
     with pytest.raises(repel.SetupError, match="--nonesuch"):
         repel.run("empty", arguments=["--nonesuch"])
