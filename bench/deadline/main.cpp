@@ -36,7 +36,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->type_name("FILE");
   app.footer(
       "A tick evaluates 32 pairs of boxes, and is woken and rehearsed as in teleop. A hiccup is\n"
-      "more than 10 us between two readings of the clock in another thread on another processor,\n"
+      "more than 10 µs between two readings of the clock in another thread on another processor,\n"
       "of the ticks' scheduling class where that is granted. Ticks that met one are counted and\n"
       "stay in all figures. Ctrl-C ends the run early with what is measured.\n\n"
       "Exit status: 0 it ran, 1 bad file, 2 bad usage.");

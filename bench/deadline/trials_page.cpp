@@ -43,7 +43,7 @@ void write_page(const std::vector<host::Trial>& trials, std::ostream& out) {
                                               "ticks with a hiccup"}};
   for (const host::Trial& trial : trials) rows.push_back(row_of(trial));
   out << table(rows, 0)
-      << "<p class='soft'>A hiccup is more than 10 us between two readings of the clock in another "
+      << "<p class='soft'>A hiccup is more than 10 µs between two readings of the clock in another "
          "thread.</p>\n";
   for (const host::Trial& trial : trials) out << to_html(chart_of(trial));
   out << "<h2>Where it ran</h2>\n" << where(host::describe_machine(host::granted(trials.front())));
