@@ -31,12 +31,12 @@ struct Arguments {
   bool is_quiet = false;
 };
 
-/// Declares the commands and their options, which write to the arguments.
+/// Declares the commands and their options. They write to the arguments.
 void describe(CLI::App& app, Arguments& arguments);
 
-/// Puts `run` in front of a command line without a command, and options that have been renamed in
-/// their present spelling, which is told on stderr.
-/// @throws CLI::ValidationError for a mistyped command and for an option that has become one
+/// Puts `run` in front of a command line without a command. Replaces old spellings of options by
+/// their present ones, and says so on stderr.
+/// @throws CLI::ValidationError for a mistyped command, and for an old option that is a command now
 void reword(const CLI::App& app, std::vector<std::string>& words);
 
 }  // namespace repel::teleop

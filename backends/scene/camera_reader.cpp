@@ -92,8 +92,8 @@ Pose pose_of_camera(const Map& map) {
 }
 
 /// Reads `camera.yaml` of a folder, and lists the images beside it in `depth`, in the order of
-/// their time stamps, which are their names. Sets the pose, the size, the focal lengths, and the
-/// mean rate of `camera`.
+/// their time stamps. An image is named by its time stamp. Sets the pose, the size, the focal
+/// lengths, and the mean rate of `camera`.
 /// @throws SetupError naming file, line and value of what is wrong
 RecordingChoice recording_of(const std::string& folder, CameraChoice& camera) {
   const std::string file = (fs::path(folder) / "camera.yaml").string();

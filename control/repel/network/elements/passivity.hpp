@@ -100,8 +100,9 @@ class PassivityController {
     return damping;
   }
 
-  /// Corrects both accounts for what the effort of the last step gave less, as its flow changed in
-  /// the period: to nothing at most. @param flow of that step @param period [s]
+  /// Takes from both accounts what the effort of the last step did not give, because its flow
+  /// changed within the period. An effort is reduced to zero at most.
+  /// @param less [N], [N m] of that effort @param flow of that step @param period [s]
   void give_up(const Vec<N>& less, const Vec<N>& flow, double period) noexcept {
     for (Eigen::Index i = 0; i < held_.size(); ++i) {
       double& held = held_.coeffRef(i);
