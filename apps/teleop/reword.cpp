@@ -37,15 +37,15 @@ std::string in_present_words(const std::string& word) {
 
 void reword(const CLI::App& app, std::vector<std::string>& words) {
   std::transform(words.begin(), words.end(), words.begin(), in_present_words);
-  std::vector<std::string> commands, names;
-  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  std::vector<std::string> known, names;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   const auto is_command = [&](const std::string& word) {
-    return std::find(commands.begin(), commands.end(), word) != commands.end();
+    return std::find(known.begin(), known.end(), word) != known.end();
   };
   const std::string first = words.empty() ? "" : words.front();
   if (is_command(first) || first == "--help" || first == "-h" || first == "--version") return;
   for (const auto& scene : shipped_scenes()) names.push_back(scene.first);
-  names.insert(names.end(), commands.begin(), commands.end());
+  names.insert(names.end(), known.begin(), known.end());
   const std::string meant = host::closest(first, names);
   if (is_command(meant) && !first.starts_with('-') && !std::filesystem::exists(first)) {
     throw CLI::ValidationError("unknown command " + first + "; did you mean " + meant + "?");
