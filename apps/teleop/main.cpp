@@ -245,8 +245,14 @@ int list() {
   return host::has_printed() ? 0 : 4;
 }
 
+int print_schema() {
+  std::printf("%s\n", scene::schema().c_str());
+  return host::has_printed() ? 0 : 4;
+}
+
 int execute(const Arguments& arguments) {
   if (arguments.command == Command::list) return list();
+  if (arguments.schema) return print_schema();
   const Work work = work_of(arguments);
   if (arguments.command == Command::check) return check(work);
   require_files_apart(arguments, work);

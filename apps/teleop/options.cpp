@@ -71,7 +71,10 @@ void describe_run(CLI::App& app, Command command, Arguments& a) {
       ->capture_default_str();
   app.add_option("--rate", a.rate_hz, "Tick rate [Hz] (default: the scene's)")
       ->check(host::between(1.0, 1e5));
-  if (command == Command::check) return;
+  if (command == Command::check) {
+    app.add_flag("--schema", a.schema, "Print the JSON Schema of scene files, for editors");
+    return;
+  }
   app.add_option("--seconds", a.run.seconds,
                  "Scene time to run [s]; with --view, --device or at a site until it is stopped, "
                  "unless it is given")

@@ -29,6 +29,7 @@ struct Arguments {
   std::string report;  ///< file for the JSON report; empty: none
   std::string html;    ///< file for the page; empty: none
   bool is_quiet = false;
+  bool schema = false;  ///< print it and stop
 };
 
 /// Declares the commands and their options. They write to the arguments.

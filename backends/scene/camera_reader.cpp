@@ -11,6 +11,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/common/text_file.hpp>
 
+#include "grammar.hpp"
 #include "pose_reader.hpp"
 
 namespace repel::scene::detail {
@@ -67,7 +68,7 @@ std::vector<RecordedImage> images_in(const fs::path& folder) {
 /// `orientation`, a quaternion x y z w of its axes.
 Pose pose_of_camera(const Map& map) {
   Pose X = Pose::Identity();
-  X.translation() = map.at("position").vector(position);
+  X.translation() = map.vector("position");
   if (const Value* const orientation = map.find("orientation")) {
     if (const Value* const look_at = map.find("look_at")) {
       look_at->fail("'look_at' beside 'orientation'; allowed: one of the two");
@@ -102,18 +103,26 @@ RecordingChoice recording_of(const std::string& folder, CameraChoice& camera) {
     throw SetupError("there is no such file; allowed: what the images do not say", file);
   }
   const Value document = Value::document(text_of_file(file, "a recorded camera"), file);
-  const Map map(document);
-  map.allow(
-      {"width", "height", "fx", "fy", "cx", "cy", "unit", "position", "look_at", "orientation"});
+  static const Keys keys{key::integer("width", 16, 1920).required(),
+                         key::integer("height", 16, 1080).required(),
+                         key::number("fx", unit::none, 1.0, 1e5).required(),
+                         key::number("fy", unit::none, 1.0, 1e5).required(),
+                         key::number("cx", unit::none, -1e5, 1e5).required(),
+                         key::number("cy", unit::none, -1e5, 1e5).required(),
+                         key::number("unit", unit::length, 1e-6, 1.0),
+                         key::vector("position", position),
+                         key::vector("look_at", position),
+                         key::any("orientation")};
+  const Map map(document, keys);
   RecordingChoice recording;
   recording.folder = folder;
-  camera.width = static_cast<int>(map.at("width").integer(16, 1920));
-  camera.height = static_cast<int>(map.at("height").integer(16, 1080));
-  recording.fx = map.at("fx").number({unit::none, 1.0, 1e5});
-  recording.fy = map.at("fy").number({unit::none, 1.0, 1e5});
-  recording.cx = map.at("cx").number({unit::none, -1e5, 1e5});
-  recording.cy = map.at("cy").number({unit::none, -1e5, 1e5});
-  map.read("unit", {unit::length, 1e-6, 1.0}, recording.unit);
+  camera.width = static_cast<int>(map.integer("width"));
+  camera.height = static_cast<int>(map.integer("height"));
+  recording.fx = map.number("fx");
+  recording.fy = map.number("fy");
+  recording.cx = map.number("cx");
+  recording.cy = map.number("cy");
+  map.read("unit", recording.unit);
   camera.X_WC = pose_of_camera(map);
   recording.images = images_in(fs::path(folder) / "depth");
   const std::size_t count = recording.images.size();
@@ -133,9 +142,9 @@ constexpr int most_seen = 2000;  // parts that are reserved for what all cameras
 
 /// What is wrong with the images of a camera.
 void read_faults(const Map& map, CameraChoice& camera) {
-  map.read("noise", {unit::length, 0.0, 0.1}, camera.noise);
-  map.read("lost", {unit::none, 0.0, 1.0}, camera.lost);
-  map.read("seed", 0, 1'000'000'000, camera.seed);
+  map.read("noise", camera.noise);
+  map.read("lost", camera.lost);
+  map.read("seed", camera.seed);
 }
 
 /// The rays through the corners of the image, with z = 1.
@@ -158,11 +167,10 @@ std::array<Vec3, 4> corner_rays(const CameraChoice& camera) {
 std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera) {
   const Value* const value = of_camera.find("map");
   if (value == nullptr) return {};
-  const Map map(*value);
-  map.allow({"cube", "keeps"});
+  const Map map(*value, grammar::camera_map());
   MapChoice choice;
-  map.read("cube", {unit::length, 0.005, 1.0}, choice.cube);
-  map.read("keeps", {unit::time, 0.0, 1e6}, choice.keeps);
+  map.read("cube", choice.cube);
+  map.read("keeps", choice.keeps);
   choice.low = choice.high = camera.X_WC.translation();
   for (const Vec3& ray : corner_rays(camera)) {
     const Vec3 corner = camera.X_WC * (camera.farthest * ray);
@@ -185,10 +193,10 @@ std::optional<MapChoice> map_of(const Map& of_camera, const CameraChoice& camera
 /// Where a simulated camera is and what its images are like.
 void read_simulated(const Map& map, CameraChoice& camera) {
   camera.X_WC = pose_of_camera(map);
-  map.read("width", 16, 1920, camera.width);
-  map.read("height", 16, 1080, camera.height);
-  map.read("view", {unit::angle, 0.1, 2.6}, camera.view);
-  map.read("rate", {unit::frequency, 0.1, most_camera_rate_hz}, camera.rate_hz);
+  map.read("width", camera.width);
+  map.read("height", camera.height);
+  map.read("view", camera.view);
+  map.read("rate", camera.rate_hz);
   read_faults(map, camera);
 }
 
@@ -204,38 +212,41 @@ void read_recorded(const Map& map, CameraChoice& camera) {
   map.read("repeat", camera.recording->repeats);
 }
 
-/// @param more keys beside those of the camera itself
-CameraChoice camera_of(const Value& value, const Laws& laws,
-                       std::initializer_list<std::string_view> more) {
-  const Map map(value);
-  const bool is_recorded = map.find("recording") != nullptr;
-  std::vector<std::string_view> keys{"nearest", "farthest",     "latency", "unseen", "margin",
-                                     "parts",   "silent_after", "law",     "map"};
-  keys.insert(keys.end(), more);
-  // What a recording says of itself the scene does not say.
-  keys.emplace_back("recording");
-  if (is_recorded) {
-    keys.emplace_back("repeat");
-  } else {
-    keys.insert(keys.end(), {"position", "look_at", "orientation", "width", "height", "view",
-                             "rate", "noise", "lost", "seed"});
+/// Refuses what a recording says of itself; without one, that it is repeated.
+void allow_of_images(const Map& map, const Keys& keys, bool is_recorded) {
+  constexpr std::string_view of_simulated[] = {"position", "look_at", "orientation", "width",
+                                               "height",   "view",    "rate",        "noise",
+                                               "lost",     "seed"};
+  std::vector<std::string_view> allowed;
+  for (const Key& key : keys) {
+    const bool is_refused = is_recorded
+                                ? std::find(std::begin(of_simulated), std::end(of_simulated),
+                                            key.name) != std::end(of_simulated)
+                                : key.name == "repeat";
+    if (!is_refused) allowed.push_back(key.name);
   }
-  map.allow(keys);
+  map.allow(allowed);
+}
+
+CameraChoice camera_of(const Value& value, const Laws& laws, const Keys& keys) {
+  const Map map(value, keys);
+  const bool is_recorded = map.find("recording") != nullptr;
+  allow_of_images(map, keys, is_recorded);
   CameraChoice camera;
   if (is_recorded) {
     read_recorded(map, camera);
   } else {
     read_simulated(map, camera);
   }
-  map.read("nearest", {unit::length, 1e-3, 100.0}, camera.nearest);
-  map.read("farthest", {unit::length, camera.nearest, 1000.0}, camera.farthest);
-  map.read("latency", {unit::time, 0.0, 10.0}, camera.latency);
-  if (const Value* unseen = map.find("unseen")) {
-    camera.is_unseen_solid = unseen->word_of({"free", "solid"}) == "solid";
+  map.read("nearest", camera.nearest);
+  if (const Value* farthest = map.find("farthest")) {
+    camera.farthest = farthest->number({unit::length, camera.nearest, 1000.0});
   }
-  map.read("margin", {unit::length, 0.0, 1.0}, camera.margin);
-  map.read("parts", 80, most_seen, camera.parts);
-  map.read("silent_after", {unit::time, 1e-3, 1e3}, camera.silent_after);
+  map.read("latency", camera.latency);
+  if (map.find("unseen") != nullptr) camera.is_unseen_solid = map.word("unseen") == "solid";
+  map.read("margin", camera.margin);
+  map.read("parts", camera.parts);
+  map.read("silent_after", camera.silent_after);
   if (!(camera.silent_after > camera.latency + 1.0 / camera.rate_hz)) {
     value.fail(
         "the camera would be silent between two images; allowed: silent_after above "
@@ -251,14 +262,14 @@ CameraChoice camera_of(const Value& value, const Laws& laws,
 std::vector<CameraChoice> cameras_of(const Map& scene, const Laws& laws) {
   std::vector<CameraChoice> cameras;
   const Value* const only = scene.find("camera");
-  if (only != nullptr) cameras.push_back(camera_of(*only, laws, {}));
+  if (only != nullptr) cameras.push_back(camera_of(*only, laws, grammar::camera()));
   const Value* const all = scene.find("cameras");
   if (all == nullptr) return cameras;
   if (only != nullptr) all->fail("'cameras' beside 'camera'; allowed: one of the two");
   std::set<std::string> names;
   int parts = 0;
   for (const Value& entry : all->list(most_cameras)) {
-    CameraChoice& camera = cameras.emplace_back(camera_of(entry, laws, {"name"}));
+    CameraChoice& camera = cameras.emplace_back(camera_of(entry, laws, grammar::named_camera()));
     const Map map(entry);
     const Value& name = map.at("name");
     camera.name = name.text();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "grammar.hpp"
 #include "pose_reader.hpp"
 
 namespace repel::scene {
@@ -27,10 +28,6 @@ void allow_fixture(const Map& map, std::initializer_list<std::string_view> own) 
   map.allow(keys);
 }
 
-Rule gain(Units units, double high) {
-  return {.units = units, .low = 0.0, .high = high, .may_be_auto = true};
-}
-
 void read_path(const Map& map, FixtureOptions& fixture) {
   fixture.kind = FixtureKind::path;
   allow_fixture(map, {"points", "frames", "course", "radius"});
@@ -43,21 +40,17 @@ void read_path(const Map& map, FixtureOptions& fixture) {
     }
     fixture.alignment = Alignment::all;
   }
-  if (const Value* course = map.find("course")) {
-    const bool is_spline = course->word_of({"spline", "straight"}) == "spline";
-    fixture.course = is_spline ? network::Course::spline : network::Course::straight;
-  }
+  map.read("course", fixture.course);
 }
 
 void read_shape(const Map& map, FixtureOptions& fixture) {
-  const std::string shape =
-      map.at("shape").word_of({"point", "line", "axis", "plane", "path", "tube", "cone"});
+  const std::string_view shape = map.word("shape");
   if (shape == "path" || (shape == "tube" && map.find("points") != nullptr)) {
     read_path(map, fixture);
   } else if (shape == "cone") {
     fixture.kind = FixtureKind::cone;
     allow_fixture(map, {"position", "rpy", "half_angle"});
-    fixture.half_angle = map.at("half_angle").number({unit::angle, 0.01, 1.56});
+    fixture.half_angle = map.number("half_angle");
   } else {
     allow_fixture(map, {"position", "rpy", "radius"});
     fixture.kind = shape == "point"   ? FixtureKind::point
@@ -67,29 +60,15 @@ void read_shape(const Map& map, FixtureOptions& fixture) {
   }
   if (fixture.kind != FixtureKind::path) fixture.X_WF = detail::pose_of(map);
   if (shape == "tube") (void)map.at("radius");
-  map.read("radius", {unit::length, 0.0, 1e3}, fixture.radius);
+  map.read("radius", fixture.radius);
 }
 
 FixtureOptions fixture_of(const Value& value) {
-  const Map map(value);
+  const Map map(value, grammar::fixture());
   FixtureOptions fixture;
   fixture.name = map.at("name").text();
   read_shape(map, fixture);
-  map.read("stiffness", gain(unit::stiffness, 1e7), fixture.stiffness);
-  map.read("damping", gain(unit::damping, 1e6), fixture.damping);
-  map.read("most_force", {unit::force, 1e-9, 1e6}, fixture.most_force);
-  map.read("range", {unit::length, 1e-6, 1e3}, fixture.range);
-  map.read("most_energy", {unit::energy, 1e-9, 1e6}, fixture.most_energy);
-  if (const Value* alignment = map.find("alignment")) {
-    const std::string word = alignment->word_of({"free", "axis", "all"});
-    fixture.alignment = word == "free"   ? Alignment::free
-                        : word == "axis" ? Alignment::axis
-                                         : Alignment::all;
-  }
-  map.read("angular_stiffness", gain(unit::angular_stiffness, 1e6), fixture.angular_stiffness);
-  map.read("angular_damping", gain(unit::angular_damping, 1e6), fixture.angular_damping);
-  map.read("most_torque", {unit::torque, 1e-9, 1e6}, fixture.most_torque);
-  map.read("angular_range", {unit::angle, 1e-6, 2.0}, fixture.angular_range);
+  map.read_fields(fixture);
   map.read("on", fixture.is_on);
   try {
     (void)network::checked_fixture(fixture);
@@ -109,10 +88,7 @@ network::GuideOptions detail::guide_of(const Map& map) {
     if (names.insert(options.fixtures.back().name).second) continue;
     Map(entry).at("name").fail_with_value("a name that no other fixture has");
   }
-  map.read("ramp", {unit::time, 1e-3, 100.0}, options.ramp);
-  map.read("entry_energy", {unit::energy, 1e-3, 1e3}, options.entry_energy);
-  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.passivity.most_energy);
-  map.read("most_damping", {unit::damping, 0.0, 1e6}, options.passivity.most_damping);
+  map.read_fields(options);
   return options;
 }
 

@@ -13,9 +13,6 @@
 namespace repel::scene::detail {
 
 /// The keys of a module `guide`.
-inline constexpr std::array<std::string_view, 5> guide_keys{"fixtures", "ramp", "entry_energy",
-                                                            "most_energy", "most_damping"};
-
 [[nodiscard]] network::GuideOptions guide_of(const Map& map);
 
 /// The directions listed, of x, y, z, rx, ry and rz.

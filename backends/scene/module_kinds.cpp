@@ -9,27 +9,12 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/network/modules.hpp>
 
+#include "grammar.hpp"
 #include "guide_reader.hpp"
 #include "yaml.hpp"
 
 namespace repel::scene {
 namespace {
-
-using Keys = std::initializer_list<std::string_view>;
-
-constexpr std::string_view common_keys[] = {"module", "name", "to"};
-
-/// Allows the keys that every module has and those of this one.
-void allow(const Map& map, Keys keys) {
-  std::vector<std::string_view> all(std::begin(common_keys), std::end(common_keys));
-  all.insert(all.end(), keys.begin(), keys.end());
-  map.allow(all);
-}
-
-/// The rule of a gain that may be left to the arm.
-Rule gain(Units units, double low, double high) {
-  return {.units = units, .low = low, .high = high, .may_be_auto = true};
-}
 
 template <class M, class Options>
 network::Module make(const Options& options) {
@@ -43,141 +28,44 @@ ReadModule made_of(const Options& options, network::Module (*from)(const Options
   return {options, [=](const ArmModel& /*arm*/) { return from(options); }, walls};
 }
 
-void read_hand(const Map& map, network::Hand& hand) {
-  const Value* const word = map.find("hand");
-  if (word == nullptr) return;
-  const bool is_second = word->word_of({"first", "second"}) == "second";
-  hand = is_second ? network::Hand::second : network::Hand::first;
-}
-
-ReadModule torque_arm_of(const Map& map) {
-  allow(map, {"inertia", "friction", "hand_stiffness", "hand_damping", "torque_limit", "hand"});
-  network::TorqueArmOptions options;
-  map.read("inertia", {unit::inertia, 1e-6, 1e3}, options.inertia);
-  map.read("friction", {unit::angular_damping, 0.0, 1e3}, options.friction);
-  map.read("hand_stiffness", {unit::angular_stiffness, 0.0, 1e5}, options.hand_stiffness);
-  map.read("hand_damping", {unit::angular_damping, 0.0, 1e4}, options.hand_damping);
-  map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
-  read_hand(map, options.hand);
-  return made_of(options, make<network::TorqueArm>);
-}
-
-ReadModule six_axes_of(const Map& map) {
-  allow(map, {"mass", "inertia", "friction", "angular_friction", "hand_stiffness", "hand_damping",
-              "angular_hand_stiffness", "angular_hand_damping", "force_limit", "torque_limit",
-              "motion_scale", "hand"});
-  network::SixAxesOptions options;
-  map.read("mass", {unit::mass, 1e-6, 1e3}, options.mass);
-  map.read("inertia", {unit::inertia, 1e-9, 1e3}, options.inertia);
-  map.read("friction", {unit::damping, 0.0, 1e4}, options.friction);
-  map.read("angular_friction", {unit::angular_damping, 0.0, 1e3}, options.angular_friction);
-  map.read("hand_stiffness", {unit::stiffness, 0.0, 1e6}, options.hand_stiffness);
-  map.read("hand_damping", {unit::damping, 0.0, 1e5}, options.hand_damping);
-  map.read("angular_hand_stiffness", {unit::angular_stiffness, 0.0, 1e5},
-           options.angular_hand_stiffness);
-  map.read("angular_hand_damping", {unit::angular_damping, 0.0, 1e4}, options.angular_hand_damping);
-  map.read("force_limit", {unit::force, 0.0, 1e5}, options.force_limit);
-  map.read("torque_limit", {unit::torque, 0.0, 1e4}, options.torque_limit);
-  map.read("motion_scale", {unit::share, 1e-3, 1e3}, options.motion_scale);
-  read_hand(map, options.hand);
-  return made_of(options, make<network::SixAxes>);
+/// A module all of whose keys are the fields of its options.
+template <class M, class Options>
+ReadModule fields_of(const Map& map) {
+  Options options;
+  map.read_fields(options);
+  return made_of(options, make<M, Options>, M::traits.walls);
 }
 
 ReadModule multiplex_of(const Map& map) {
-  allow(map, {"velocity_scale", "force_scale", "turning_time", "hand"});
   network::MultiplexOptions options;
-  map.read("velocity_scale", {unit::length_per_angle, 1e-6, 100.0}, options.velocity_scale);
-  options.force_scale = options.velocity_scale;  // lossless unless the file says otherwise
-  map.read("force_scale", {unit::length, 1e-6, 100.0}, options.force_scale);
-  map.read("turning_time", {unit::time, 0.0, 100.0}, options.turning_time);
-  read_hand(map, options.hand);
+  map.read_fields(options);
+  // Lossless unless the file says otherwise.
+  if (map.find("force_scale") == nullptr) options.force_scale = options.velocity_scale;
   return made_of(options, make<network::Multiplex>);
 }
 
-ReadModule spaceball_of(const Map& map) {
-  allow(map,
-        {"dead_band", "saturation", "angular_dead_band", "angular_saturation", "time_constant"});
-  network::SpaceballOptions options;
-  map.read("dead_band", {unit::speed, 0.0, 10.0}, options.dead_band);
-  map.read("saturation", {unit::speed, 0.0, 10.0}, options.saturation);
-  map.read("angular_dead_band", {unit::angular_speed, 0.0, 100.0}, options.angular_dead_band);
-  map.read("angular_saturation", {unit::angular_speed, 0.0, 100.0}, options.angular_saturation);
-  map.read("time_constant", {unit::time, 0.0, 100.0}, options.time_constant);
-  return made_of(options, make<network::Spaceball>);
-}
-
 ReadModule relief_of(const Map& map) {
-  allow(map,
-        {"compliant", "frame", "stiffness", "damping", "angular_stiffness", "angular_damping"});
   network::ReliefOptions options;
   if (const Value* list = map.find("compliant")) {
     options.compliant = detail::directions_of(*list);
   }
-  if (const Value* frame = map.find("frame")) {
-    const bool world = frame->word_of({"world", "tool"}) == "world";
-    options.frame = world ? network::ReliefFrame::world : network::ReliefFrame::tool;
-  }
-  map.read("stiffness", {unit::stiffness, 0.0, 1e7}, options.stiffness);
-  map.read("damping", gain(unit::damping, 0.0, 1e6), options.damping);
-  map.read("angular_stiffness", {unit::angular_stiffness, 0.0, 1e6}, options.angular_stiffness);
-  map.read("angular_damping", gain(unit::angular_damping, 0.0, 1e6), options.angular_damping);
+  map.read_fields(options);
   return made_of(options, make<network::Relief>);
 }
 
 ReadModule guide_of(const Map& map) {
-  std::vector<std::string_view> keys(std::begin(common_keys), std::end(common_keys));
-  keys.insert(keys.end(), detail::guide_keys.begin(), detail::guide_keys.end());
-  map.allow(keys);
   return made_of(detail::guide_of(map), make<network::Guide>);
 }
 
-ReadModule kbb2_of(const Map& map) {
-  allow(map, {"stiffness", "damping", "shunt", "force_limit", "angular_stiffness",
-              "angular_damping", "angular_shunt", "torque_limit"});
-  network::Kbb2Options options;
-  map.read("stiffness", gain(unit::stiffness, 1e-3, 1e7), options.stiffness);
-  map.read("damping", gain(unit::damping, 0.0, 1e6), options.damping);
-  map.read("shunt", {unit::damping, 0.0, 1e6}, options.shunt);
-  map.read("force_limit", {unit::force, 0.0, 1e6}, options.force_limit);
-  map.read("angular_stiffness", gain(unit::angular_stiffness, 1e-3, 1e6),
-           options.angular_stiffness);
-  map.read("angular_damping", gain(unit::angular_damping, 0.0, 1e6), options.angular_damping);
-  map.read("angular_shunt", {unit::angular_damping, 0.0, 1e6}, options.angular_shunt);
-  map.read("torque_limit", {unit::torque, 0.0, 1e6}, options.torque_limit);
-  return made_of(options, make<network::Kbb2>);
-}
-
-ReadModule arm_obstacle_of(const Map& map) {
-  allow(map, {"most_energy", "most_damping"});
-  network::ArmObstacleOptions options;
-  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.most_energy);
-  map.read("most_damping", {unit::angular_damping, 0.0, 1e6}, options.most_damping);
-  return made_of(options, make<network::ArmObstacle>, network::ArmObstacle::traits.walls);
-}
-
 ReadModule force_sensor_of(const Map& map) {
-  allow(map, {"gain", "cutoff", "force_range", "torque_range", "tare", "mass", "position"});
   network::ForceSensorOptions options;
-  map.read("gain", {unit::share, 0.0, network::ForceSensor::most_gain}, options.gain);
-  map.read("cutoff", {unit::frequency, 0.0, 1e5}, options.cutoff);
-  map.read("force_range", {unit::force, 1e-3, 1e6}, options.force_range);
-  map.read("torque_range", {unit::torque, 1e-3, 1e6}, options.torque_range);
-  map.read("tare", {unit::time, 0.0, 100.0}, options.tare);
-  map.read("mass", {unit::mass, 0.0, 1e3}, options.mass);
-  map.read("position", {unit::length, -5.0, 5.0}, options.p_TC);
+  map.read_fields(options);
+  map.read("position", options.p_TC);
   return {options, [options](const ArmModel& arm) {
             network::ForceSensorOptions own = options;
             own.gravity_W = arm.gravity_W;
             return network::ForceSensor(own);
           }};
-}
-
-ReadModule obstacle_of(const Map& map) {
-  allow(map, {"gain_check", "most_energy", "most_damping"});
-  network::ObstacleOptions options;
-  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.passivity.most_energy);
-  map.read("most_damping", {unit::damping, 0.0, 1e6}, options.passivity.most_damping);
-  return made_of(options, make<network::Obstacle>, network::Obstacle::traits.walls);
 }
 
 /// The key `range` of the joint limits. Which kind each number has to be is known with the arm
@@ -245,11 +133,9 @@ class LimitZones {
 };
 
 ReadModule limits_of(const Map& map) {
-  allow(map, {"range", "stiffness", "damping"});
   network::JointLimits law;
   const LimitZones zones(map);
-  map.read("stiffness", gain(unit::angular_stiffness, 0.0, 1e6), law.stiffness);
-  map.read("damping", gain(unit::angular_damping, 0.0, 1e6), law.damping);
+  map.read_fields(law);
   return {law,
           [law, zones](const ArmModel& arm) { return network::Limits(law, zones.ranges(arm)); }};
 }
@@ -273,13 +159,8 @@ void require_positions(const Value& value, const std::vector<JointType>& types,
 }
 
 ReadModule posture_of(const Map& map) {
-  allow(map, {"stiffness", "damping", "torque_limit", "most_energy", "most_damping", "joints"});
   network::PostureOptions options;
-  map.read("stiffness", {unit::angular_stiffness, 0.0, 1e6}, options.stiffness);
-  map.read("damping", {unit::angular_damping, 0.0, 1e6}, options.damping);
-  map.read("torque_limit", {unit::torque, 0.0, 1e6}, options.torque_limit);
-  map.read("most_energy", {unit::energy, 0.0, 1e6}, options.most_energy);
-  map.read("most_damping", {unit::angular_damping, 0.0, 1e6}, options.most_damping);
+  map.read_fields(options);
   const Value* const joints = map.find("joints");
   if (joints == nullptr) return made_of(options, make<network::Posture>);
   std::vector<JointType> types;
@@ -298,20 +179,10 @@ ReadModule posture_of(const Map& map) {
 }
 
 ReadModule line_of(const Map& map) {
-  allow(map,
-        {"kind", "impedance", "angular_impedance", "delay", "jitter", "loss", "seed", "buffer"});
   network::LineOptions options;
-  if (const Value* kind = map.find("kind")) {
-    const bool waves = kind->word_of({"waves", "force_velocity"}) == "waves";
-    options.kind = waves ? network::LineKind::waves : network::LineKind::force_velocity;
-  }
-  map.read("impedance", {unit::damping, 1e-6, 1e6}, options.impedance);
-  map.read("angular_impedance", {unit::angular_damping, 1e-6, 1e6}, options.angular_impedance);
-  map.read("delay", {unit::time, 0.0, 10.0}, options.channel.delay);
-  map.read("jitter", {unit::time, 0.0, 10.0}, options.channel.jitter);
-  map.read("buffer", {unit::time, 0.0, 10.0}, options.buffer);
-  map.read("loss", {unit::share, 0.0, 1.0}, options.channel.loss);
-  map.read("seed", 0, 1'000'000'000, options.channel.seed);
+  map.read_fields(options);
+  map.read("buffer", options.buffer);
+  map.read("seed", options.channel.seed);
   return made_of(options, make<network::Line>);
 }
 
@@ -323,20 +194,13 @@ Element element_of(const Map& map, Element::Kind kind) {
                                    : spring ? "angular_stiffness"
                                             : "angular_damping";
   Element element{.kind = kind};
-  allow(map, {"space", linear, angular});
-  if (const Value* space = map.find("space")) {
-    const bool lever = space->word_of({"tool", "lever"}) == "lever";
-    element.space = lever ? network::Space::lever : network::Space::tool;
+  if (map.find("space") != nullptr && map.word("space") == "lever") {
+    element.space = network::Space::lever;
+    map.allow({"module", "name", "to", "space", angular});
+  } else {
+    element.linear = map.number(linear);
   }
-  const bool tool = element.space == network::Space::tool;
-  if (!tool) allow(map, {"space", angular});
-  const auto pick = [&](Units of_mass, Units of_spring, Units of_damper) {
-    return mass ? of_mass : spring ? of_spring : of_damper;
-  };
-  const Units linear_units = pick(unit::mass, unit::stiffness, unit::damping);
-  const Units angular_units = pick(unit::inertia, unit::angular_stiffness, unit::angular_damping);
-  if (tool) element.linear = map.at(linear).number({linear_units, 1e-9, 1e7});
-  element.angular = map.at(angular).number({angular_units, 1e-9, 1e7});
+  element.angular = map.number(angular);
   return element;
 }
 
@@ -355,26 +219,22 @@ ReadModule read_element(const Map& map) {
 }
 
 ReadModule junction_of(const Map& map) {
-  allow(map, {"common"});
-  const Value* common = map.find("common");
-  const bool effort = common && common->word_of({"flow", "effort"}) == "effort";
-  return made_of(effort ? network::Common::effort : network::Common::flow, make<network::Junction>);
+  network::Common common = network::Common::flow;
+  map.read("common", common);
+  return made_of(common, make<network::Junction>);
 }
 
 /// A module without options.
 template <class M>
-ReadModule plain_of(const Map& map) {
-  allow(map, {});
+ReadModule plain_of(const Map& /*map*/) {
   return {{}, [](const ArmModel& /*arm*/) { return M(); }};
 }
 
-ReadModule ground_of(const Map& map) {
-  allow(map, {});
+ReadModule ground_of(const Map& /*map*/) {
   return {{}, [](const ArmModel& /*arm*/) { return network::Ground(); }};
 }
 
-ReadModule joints_of(const Map& map) {
-  allow(map, {});
+ReadModule joints_of(const Map& /*map*/) {
   return {{}, [](const ArmModel& arm) {
             return network::PumaJoints(static_cast<int>(arm.links.size()));
           }};
@@ -386,8 +246,8 @@ double ModuleEntry::number(std::string_view key, std::string_view unit, double l
                            double otherwise) const {
   asked_.emplace_back(key);
   const Units units = unit::of_dimension(unit);
-  map_.read(key, {units, low, high}, otherwise);
-  return otherwise;
+  const Value* const value = map_.find(key);
+  return value == nullptr ? otherwise : value->number({units, low, high});
 }
 
 std::string ModuleEntry::word(std::string_view key,
@@ -398,22 +258,23 @@ std::string ModuleEntry::word(std::string_view key,
 }
 
 void ModuleEntry::finish() const {
-  std::vector<std::string_view> all(std::begin(common_keys), std::end(common_keys));
+  std::vector<std::string_view> all;
+  for (const Key& key : grammar::any_module()) all.push_back(key.name);
   all.insert(all.end(), asked_.begin(), asked_.end());
   map_.allow(all);
 }
 
 ModuleKinds::ModuleKinds() {
   const std::pair<const char*, ReadModule (*)(const Map&)> own[] = {
-      {"torque_arm", torque_arm_of},
+      {"torque_arm", fields_of<network::TorqueArm, network::TorqueArmOptions>},
       {"multiplex", multiplex_of},
-      {"spaceball", spaceball_of},
+      {"spaceball", fields_of<network::Spaceball, network::SpaceballOptions>},
       {"relief", relief_of},
-      {"kbb2", kbb2_of},
+      {"kbb2", fields_of<network::Kbb2, network::Kbb2Options>},
       {"guide", guide_of},
-      {"obstacle", obstacle_of},
+      {"obstacle", fields_of<network::Obstacle, network::ObstacleOptions>},
       {"puma_kin", plain_of<network::PumaKin>},
-      {"arm_obstacle", arm_obstacle_of},
+      {"arm_obstacle", fields_of<network::ArmObstacle, network::ArmObstacleOptions>},
       {"limits", limits_of},
       {"posture", posture_of},
       {"force_sensor", force_sensor_of},
@@ -421,13 +282,15 @@ ModuleKinds::ModuleKinds() {
       {"puma_joints", joints_of},
       {"ground", ground_of},
       {"line", line_of},
-      {"six_axes", six_axes_of},
+      {"six_axes", fields_of<network::SixAxes, network::SixAxesOptions>},
       {"junction", junction_of},
       {"spring", read_element<Element::Kind::spring>},
       {"damper", read_element<Element::Kind::damper>},
       {"mass", read_element<Element::Kind::mass>}};
   for (const auto& [word, read] : own) {
-    insert(word, [read = read](const ModuleEntry& entry) { return read(entry.map()); });
+    insert(word, [read = read, &keys = grammar::module(word)](const ModuleEntry& entry) {
+      return read(entry.map().with(keys));
+    });
   }
 }
 

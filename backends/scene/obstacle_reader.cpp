@@ -5,6 +5,7 @@
 
 #include <repel/base/setup_error.hpp>
 
+#include "grammar.hpp"
 #include "pose_reader.hpp"
 
 namespace repel::scene::detail {
@@ -16,33 +17,25 @@ constexpr std::size_t most_loose = 200;
 constexpr std::size_t most_models = 64;
 
 ForceLaw law_of(const Value& value) {
-  const Map map(value);
-  map.allow({"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "hold", "passable",
-             "depth", "plateau"});
+  const Map map(value, grammar::law());
   ForceLaw law;
   map.read("passable", law.passable);
   if (!law.passable) {
     map.allow(
         {"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "hold", "passable"});
   }
-  if (const Value* at = map.find("given_at")) {
-    law.given_at = at->word_of({"part", "tool"}) == "tool" ? GivenAt::tool : GivenAt::part;
-  }
-  if (const Value* hold = map.find("hold")) {
-    law.hold = hold->word_of({"hard", "soft"}) == "hard" ? HoldKind::hard : HoldKind::soft;
-  }
-  map.read("range", {unit::length, 1e-6, 1e3}, law.range);
-  map.read("surface_force", {unit::force, 0.0, 1e6}, law.surface_force);
+  map.read("given_at", law.given_at);
+  map.read("hold", law.hold);
+  map.read("range", law.range);
+  map.read("surface_force", law.surface_force);
   const Value* damping = map.find("damping");
   law.damping_may_rise = damping == nullptr || damping->text() == "auto";
   law.damping_is_meant = !law.damping_may_rise;
-  if (law.damping_is_meant) {
-    law.damping = damping->number({.units = unit::damping, .high = 1e6, .may_be_auto = true});
-  }
-  map.read("ceiling", {unit::force, 0.0, 1e6}, law.ceiling);
-  map.read("depth", {unit::length, 0.0, 1e6}, law.depth);
-  map.read("tilt", {unit::angle, 0.0, ForceLaw::most_tilt}, law.tilt);
-  map.read("plateau", {unit::none, 0.0, 1.0}, law.plateau);
+  if (law.damping_is_meant) law.damping = map.number("damping");
+  map.read("ceiling", law.ceiling);
+  map.read("depth", law.depth);
+  map.read("tilt", law.tilt);
+  map.read("plateau", law.plateau);
   try {
     return checked(law);
   } catch (const SetupError& error) {
@@ -53,10 +46,8 @@ ForceLaw law_of(const Value& value) {
 std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
   const Value* value = obstacle.find("motion");
   if (!value) return {};
-  const Map map(*value);
-  map.allow({"along", "duration"});
-  return ReciprocatingMotion{map.at("along").vector(position),
-                             map.at("duration").number({unit::time, 1e-3, 86400.0})};
+  const Map map(*value, grammar::motion());
+  return ReciprocatingMotion{map.vector("along"), map.number("duration")};
 }
 
 StaticModel model_of(const Map& map, const Laws& laws) {
@@ -104,9 +95,8 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
   std::vector<Obstacle> obstacles;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
-    const Map map(entry);
-    const Value* const shape = map.find("shape");
-    const std::string kind = shape == nullptr ? "" : shape->word_of(obstacle_shapes);
+    const Map map(entry, grammar::obstacle());
+    const std::string_view kind = map.find("shape") == nullptr ? "" : map.word("shape");
     if (kind == "urdf" || kind == "sdf") {
       if (models.size() == most_models) {
         entry.fail("more than " + std::to_string(most_models) + " obstacles of shape urdf or sdf");
@@ -131,7 +121,7 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
   constexpr std::string_view keys[] = {"law", "at_start", "mass", "known"};
   std::set<std::string> names;
   for (const Value& entry : value->list(most_loose)) {
-    const Map map(entry);
+    const Map map(entry, grammar::loose());
     std::vector<Part> parts = parts_of(entry, map, keys, shapes);
     require_new(names, map);
     if (parts.size() > 1) {
@@ -146,7 +136,7 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
     part.gaps = std::move(parts.front().gaps);
     part.law = law_called(laws, map);
     map.read("at_start", part.at_start);
-    map.read("mass", {unit::mass, 0.0, Payload::heaviest}, part.mass);
+    map.read("mass", part.mass);
     map.read("known", part.is_mass_known);
   }
   return loose;
@@ -156,10 +146,9 @@ SpareParts spare_of(const Map& scene, const Laws& laws) {
   SpareParts spare;
   const Value* value = scene.find("spare");
   if (!value) return spare;
-  const Map map(*value);
-  map.allow({"count", "room", "law"});
-  spare.count = static_cast<int>(map.at("count").integer(0, 50));
-  map.read("room", {unit::length, 1e-3, 100.0}, spare.room);
+  const Map map(*value, grammar::spare());
+  spare.count = static_cast<int>(map.integer("count"));
+  map.read("room", spare.room);
   spare.law = law_called(laws, map);
   return spare;
 }
@@ -174,7 +163,7 @@ std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes, boo
   constexpr std::string_view keys[] = {"motion"};
   std::set<std::string> names;
   for (const Value& entry : value->list()) {
-    const Map map(entry);
+    const Map map(entry, grammar::hidden());
     for (Part& part : parts_of(entry, map, keys, shapes)) {
       hidden.push_back({std::move(part.name), std::move(part.shape), part.X_BP, motion_of(map)});
     }

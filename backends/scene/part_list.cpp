@@ -65,16 +65,23 @@ void write_part_list(const PartList& list, std::ostream& out) {
 
 PartList read_part_list(const std::string& path) {
   const Value document = Value::document(text_of_file(path, "a list of parts"), path);
-  const Map map(document);
-  map.allow(
-      {"mesh", "checksum", "scale", "uncovered", "excess", "seam", "gap_count", "gaps", "parts"});
+  static const Keys keys{key::text("mesh"),
+                         key::text("checksum"),
+                         key::vector("scale", {unit::none, -1e6, 1e6}),
+                         {"uncovered", Key::Kind::number, bound},
+                         {"excess", Key::Kind::number, bound},
+                         {"seam", Key::Kind::number, bound},
+                         key::any("gap_count"),
+                         key::any("gaps"),
+                         key::any("parts").required()};
+  const Map map(document, keys);
   PartList list;
   map.read("mesh", list.mesh);
   map.read("checksum", list.checksum);
-  map.read("scale", {unit::none, -1e6, 1e6}, list.scale);
-  map.read("uncovered", bound, list.uncovered);
-  map.read("excess", bound, list.excess);
-  if (const Value* seam = map.find("seam")) list.seam = seam->number(bound);
+  map.read("scale", list.scale);
+  map.read("uncovered", list.uncovered);
+  map.read("excess", list.excess);
+  if (map.find("seam") != nullptr) list.seam = map.number("seam");
   list.gaps = gaps_of(map);
   for (const Value& entry : map.at("parts").list()) {
     const Map part(entry);

@@ -12,8 +12,8 @@ Mat3 detail::rotation_of(const Vec3& rpy) {
 Pose detail::pose_of(const Map& map) {
   Vec3 p = Vec3::Zero();
   Vec3 rpy = Vec3::Zero();
-  map.read("position", position, p);
-  map.read("rpy", angles, rpy);
+  map.read("position", p);
+  map.read("rpy", rpy);
   Pose X = Pose::Identity();
   X.translation() = p;
   X.linear() = rotation_of(rpy);

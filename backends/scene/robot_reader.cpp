@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_reader.hpp"
 
+#include "grammar.hpp"
 #include "pose_reader.hpp"
 
 namespace repel::scene::detail {
@@ -8,10 +9,7 @@ namespace {
 
 Pose pose_at(const Map& parent, std::string_view key) {
   const Value* value = parent.find(key);
-  if (!value) return Pose::Identity();
-  const Map map(*value);
-  map.allow({"position", "rpy"});
-  return pose_of(map);
+  return value != nullptr ? pose_of(Map(*value, grammar::frame())) : Pose::Identity();
 }
 
 /// Angles, or a list of angles and, for prismatic joints, lengths.
@@ -34,30 +32,26 @@ void read_start(const Value& value, RobotChoice& robot) {
 }
 
 void read_payload(const Value& value, RobotChoice& robot) {
-  constexpr double furthest = Payload::furthest;
-  const Map map(value);
-  map.allow({"mass", "position", "known"});
-  robot.payload.mass = map.at("mass").number({unit::mass, 0.0, Payload::heaviest});
-  map.read("position", {unit::length, -furthest, furthest}, robot.payload.p_TC);
+  const Map map(value, grammar::payload());
+  robot.payload.mass = map.number("mass");
+  map.read("position", robot.payload.p_TC);
   map.read("known", robot.payload_known);
 }
 
 void read_admittance(const Value& value, AdmittanceOptions& admittance) {
-  const Map map(value);
-  map.allow({"response", "scale", "rest_time"});
-  map.read("response", {unit::time, 0.01, 1.0}, admittance.response);
-  map.read("scale", {unit::share, 1e-3, 1e3}, admittance.scale);
-  map.read("rest_time", {unit::time, 1e-3, 1e3}, admittance.rest_time);
+  const Map map(value, grammar::admittance());
+  map.read("response", admittance.response);
+  map.read("scale", admittance.scale);
+  map.read("rest_time", admittance.rest_time);
 }
 
 void read_sensor_errors(const Value& value, SensorErrors& errors) {
-  const Map map(value);
-  map.allow({"force_noise", "torque_noise", "force_bias", "torque_bias", "seed"});
-  map.read("force_noise", {unit::force, 0.0, 1e6}, errors.force_noise);
-  map.read("torque_noise", {unit::torque, 0.0, 1e6}, errors.torque_noise);
-  map.read("force_bias", {unit::force, -1e6, 1e6}, errors.bias.force);
-  map.read("torque_bias", {unit::torque, -1e6, 1e6}, errors.bias.torque);
-  map.read("seed", 0, 1'000'000'000, errors.seed);
+  const Map map(value, grammar::sensor_errors());
+  map.read("force_noise", errors.force_noise);
+  map.read("torque_noise", errors.torque_noise);
+  map.read("force_bias", errors.bias.force);
+  map.read("torque_bias", errors.bias.torque);
+  map.read("seed", errors.seed);
 }
 
 /// A list of joints, or a map from joints to angles and lengths.
@@ -81,10 +75,7 @@ std::vector<JointHold> holds_of(const Value& value) {
 }  // namespace
 
 RobotChoice robot_of(const Value& value, const Laws& laws) {
-  const Map map(value);
-  map.allow({"urdf", "tip_link", "start", "base", "tool_frame", "links", "self_law", "srdf",
-             "payload", "hold", "packages", "drive_delay", "covers", "admittance",
-             "sensor_errors"});
+  const Map map(value, grammar::robot());
   RobotChoice robot;
   robot.urdf = map.at("urdf").path();
   if (const Value* srdf = map.find("srdf")) robot.srdf = srdf->path();
@@ -100,7 +91,7 @@ RobotChoice robot_of(const Value& value, const Laws& laws) {
   if (const Value* admittance = map.find("admittance")) {
     read_admittance(*admittance, robot.admittance.emplace());
   }
-  map.read("drive_delay", 0, 100, robot.drive_delay);
+  map.read("drive_delay", robot.drive_delay);
   if (const Value* errors = map.find("sensor_errors")) read_sensor_errors(*errors, robot.sensor);
   if (const Value* links = map.find("links")) {
     robot.links.emplace();

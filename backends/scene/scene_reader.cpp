@@ -11,6 +11,7 @@
 #include <repel/network/elements/line.hpp>
 
 #include "camera_reader.hpp"
+#include "grammar.hpp"
 #include "network_reader.hpp"
 #include "obstacle_reader.hpp"
 #include "robot_reader.hpp"
@@ -42,8 +43,7 @@ std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
   if (!value) return partners;
   std::set<std::string> names;
   for (const Value& entry : value->list(static_cast<std::size_t>(Capacities{}.bodies))) {
-    const Map map(entry);
-    map.allow({"name", "law", "robot", "tool", "network", "script"});
+    const Map map(entry, grammar::partner());
     OtherArm& partner = partners.emplace_back();
     partner.name = map.at("name").text();
     require_new(names, map);
@@ -54,28 +54,19 @@ std::vector<OtherArm> partners_of(const Map& scene, const Shared& shared) {
 }
 
 void read_measure(const Map& map, Scene& scene) {
-  if (const Value* measure = map.find("measure")) {
-    std::vector<std::string> names;
-    names.reserve(std::size(all_measures));
-    for (const Measure each : all_measures) names.emplace_back(to_text(each));
-    const std::vector<std::string_view> words(names.begin(), names.end());
-    scene.measure = *measure_named(measure->word_of(words));
-  }
-  map.read("levels", 1, ReductionOptions::most_levels, scene.levels);
+  if (map.find("measure") != nullptr) scene.measure = *measure_named(map.word("measure"));
+  map.read("levels", scene.levels);
 }
 
 Budget budget_of(const Map& scene) {
   Budget budget;
   const Value* value = scene.find("budget");
   if (!value) return budget;
-  const Map map(*value);
-  map.allow({"wall", "work", "threads", "max_age"});
-  if (const Value* wall = map.find("wall")) {
-    budget.wall_us = 1e6 * wall->number({unit::time, 0.0, 1.0});
-  }
-  map.read("work", 0, 1'000'000'000, budget.work_units);
-  map.read("threads", 0, Capacities{}.threads, budget.threads);
-  map.read("max_age", 1, 1'000'000'000, budget.max_age);
+  const Map map(*value, grammar::budget());
+  if (map.find("wall") != nullptr) budget.wall_us = 1e6 * map.number("wall");
+  map.read("work", budget.work_units);
+  map.read("threads", budget.threads);
+  map.read("max_age", budget.max_age);
   return budget;
 }
 
@@ -95,21 +86,14 @@ bool apart_of(const Value& value, const Scene& scene) {
 
 Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& kinds) {
   const Value document = Value::document(yaml, file);
-  const Map map(document);
-  map.allow({"name",    "rate",     "robot",  "tool",        "laws",         "obstacles",
-             "loose",   "spare",    "camera", "cameras",     "hidden",       "network",
-             "script",  "partners", "budget", "coprocessor", "start_inside", "tool_speed",
-             "measure", "levels",   "apart"});
+  const Map map(document, grammar::scene());
   Scene scene;
   scene.file = file;
   scene.name = std::filesystem::path(file).stem().string();
   map.read("name", scene.name);
-  map.read("tool_speed", {unit::speed, 1e-3, 10.0}, scene.tool_speed);
-  if (const Value* inside = map.find("start_inside")) {
-    const bool out = inside->word_of({"refuse", "push_out"}) == "push_out";
-    scene.start_inside = out ? StartInside::push_out : StartInside::refuse;
-  }
-  map.read("rate", {unit::frequency, 1.0, 1e5}, scene.rate_hz);
+  map.read("tool_speed", scene.tool_speed);
+  map.read("start_inside", scene.start_inside);
+  map.read("rate", scene.rate_hz);
   read_measure(map, scene);
   const detail::Laws laws = detail::laws_of(map);
   std::size_t hull_points = 0;
@@ -127,10 +111,8 @@ Scene parse(std::string_view yaml, const std::string& file, const ModuleKinds& k
   scene.partners = partners_of(map, shared);
   if (const Value* apart = map.find("apart")) scene.apart = apart_of(*apart, scene);
   scene.budget = budget_of(map);
-  if (const Value* mode = map.find("coprocessor")) {
-    const auto& names = coprocessor_mode_names;
-    const std::string word = mode->word_of({names.begin(), names.end()});
-    scene.coprocessor = *coprocessor_mode_named(word);
+  map.read("coprocessor", scene.coprocessor);
+  if (map.find("coprocessor") != nullptr) {
     // Whoever names it wants it; how many threads it has may still be said.
     const bool has_threads =
         map.find("budget") != nullptr && Map(*map.find("budget")).find("threads");

@@ -12,14 +12,17 @@
 #include <repel/network/modules/guide.hpp>
 #include <repel/network/modules/relief.hpp>
 
+#include "grammar.hpp"
 #include "guide_reader.hpp"
 
 namespace repel::scene {
 namespace {
 
-Vec3 direction_of(const Value& value) {
-  const Vec3 direction = value.vector({unit::none, -1e3, 1e3});
-  if (direction.norm() < 1e-6) value.fail_with_value("a direction, longer than 1e-6");
+Vec3 direction_of(const Map& map) {
+  const Vec3 direction = map.vector("direction");
+  if (direction.norm() < 1e-6) {
+    map.at("direction").fail_with_value("a direction, longer than 1e-6");
+  }
   return direction.normalized();
 }
 
@@ -40,46 +43,38 @@ std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view>
   return keys;
 }
 
-constexpr Rule lever_rates{unit::angular_speed, -100.0, 100.0, true};
-
 /// What a second hand does in a phase: with six axes, or with a lever.
 void read_second(const Map& map, network::Phase& phase) {
-  map.allow({"linear", "angular", "direction", "lever"});
-  map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.second.linear);
-  map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.second.angular);
+  map.read("linear", phase.second.linear);
+  map.read("angular", phase.second.angular);
   if (map.find("direction") == nullptr && map.find("lever") == nullptr) return;
-  phase.second_lever = {direction_of(map.at("direction")), map.at("lever").number(lever_rates)};
+  phase.second_lever = {direction_of(map), map.number("lever")};
 }
 
-network::Phase phase_of(const Value& value) {
-  const Map map(value);
-  map.allow(phase_keys({"linear", "angular", "direction", "lever", "pitch", "axis"}));
+network::Phase phase_of(const Map& map) {
   network::Phase phase;
   phase.name = map.at("name").text();
-  phase.duration = map.at("duration").number({unit::time, 1e-3, 86400.0});
-  if (const Value* frame = map.find("frame")) {
-    const bool is_tool = frame->word_of({"world", "tool"}) == "tool";
-    phase.frame = is_tool ? network::PhaseFrame::tool : network::PhaseFrame::world;
-  }
+  phase.duration = map.number("duration");
+  map.read("frame", phase.frame);
   map.read("silent", phase.silent);
-  map.read("scale", {unit::share, network::ChangingScale::least, network::ChangingScale::most},
-           phase.scale);
-  if (const Value* second = map.find("second")) read_second(Map(*second), phase);
-  const std::string device = map.at("device").word_of({"spaceball", "torque_arm", "six_axes"});
-  if (device != "torque_arm") {
-    if (device == "six_axes") phase.master = network::Master::six_axes;
+  map.read("scale", phase.scale);
+  if (const Value* second = map.find("second")) {
+    read_second(Map(*second, grammar::second_hand()), phase);
+  }
+  (void)map.at("device");
+  map.read("device", phase.master);
+  if (phase.master != network::Master::torque_arm) {
     map.allow(phase_keys({"linear", "angular"}));
-    map.read("linear", {unit::speed, -10.0, 10.0, true}, phase.rates.linear);
-    map.read("angular", {unit::angular_speed, -100.0, 100.0, true}, phase.rates.angular);
+    map.read("linear", phase.rates.linear);
+    map.read("angular", phase.rates.angular);
   } else {
     map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
-    phase.master = network::Master::torque_arm;
-    phase.direction = direction_of(map.at("direction"));
-    phase.lever_rate = map.at("lever").number(lever_rates);
+    phase.direction = direction_of(map);
+    phase.lever_rate = map.number("lever");
     if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
       phase.screw.emplace();
-      map.read("pitch", {unit::length_per_angle, -10.0, 10.0}, phase.screw->pitch);
-      map.read("axis", {unit::length, -10.0, 10.0}, phase.screw->axis);
+      map.read("pitch", phase.screw->pitch);
+      map.read("axis", phase.screw->axis);
     }
   }
   return phase;
@@ -119,7 +114,7 @@ void read_guides(const Value& names, const Network& network, network::Phase& out
 /// Reads guiding_keys into a phase. @param network of the arm of the script
 void read_guiding(const Map& phase, const Network& network, network::Phase& out) {
   if (const Value* names = phase.find("guides")) read_guides(*names, network, out);
-  phase.read("guide_strength", {unit::share, 0.0, 1.0}, out.guide_strength);
+  phase.read("guide_strength", out.guide_strength);
   const Value* directions = phase.find("compliant");
   const Value* frame = phase.find("compliant_frame");
   if (directions == nullptr && frame == nullptr) return;
@@ -130,7 +125,7 @@ void read_guiding(const Map& phase, const Network& network, network::Phase& out)
   }
   if (directions == nullptr) frame->fail("'compliant_frame' without 'compliant'; allowed: both");
   out.compliant = bits_of(detail::directions_of(*directions));
-  const bool is_world = frame != nullptr ? frame->word_of({"tool", "world"}) == "world"
+  const bool is_world = frame != nullptr ? phase.word("compliant_frame") == "world"
                                          : relief->frame == network::ReliefFrame::world;
   if (is_world) out.compliant |= network::Relief::world_bit;
 }
@@ -148,7 +143,7 @@ std::size_t part_called(const Value& name, const std::vector<LoosePart>& loose) 
 void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart>& loose,
                 std::vector<PartStep>& steps) {
   double over = PartStep{}.over;
-  phase.read("over", {unit::time, 0.0, 60.0}, over);
+  phase.read("over", over);
   for (std::size_t i = 0; i < step_words.size(); ++i) {
     const Value* names = phase.find(step_words[i]);
     if (!names) continue;
@@ -191,10 +186,10 @@ void detail::read_script(const Map& of_arm, const std::vector<LoosePart>& loose,
   if (!value) return;
   std::set<std::string> names;
   for (const Value& entry : value->list()) {
-    const Map map(entry);
+    const Map map(entry, grammar::phase());
     read_steps(map, setup.script.size(), loose, setup.steps);
     setup.blind.push_back(blind_in(map, cameras));
-    setup.script.push_back(phase_of(entry));
+    setup.script.push_back(phase_of(map));
     read_guiding(map, setup.network, setup.script.back());
     require_new(names, map);
   }

@@ -9,13 +9,11 @@
 #include <repel/reduction/shape.hpp>
 #include <repel/scene/part_list.hpp>
 
+#include "grammar.hpp"
 #include "pose_reader.hpp"
 
 namespace repel::scene::detail {
 namespace {
-
-constexpr Rule extent{unit::length, 0.0, Shape::largest};
-constexpr std::size_t part_shapes = 7;  // so many obstacle_shapes are those of tools too
 
 /// Limits the total number of hull points in a scene, since each costs time in the reduction.
 /// @param where the error is, if there are too many
@@ -38,7 +36,7 @@ std::vector<std::string_view> size_keys(std::string_view kind) {
 /// With as few levels as possible: whoever needs more reduces it again.
 Shape shape_of(const Map& map, std::string_view kind, const ShapeFile& shapes) {
   constexpr ReductionOptions coarse{.levels = 1};
-  if (kind == "box") return Shape::box(0.5 * map.at("size").vector(extent), coarse);
+  if (kind == "box") return Shape::box(0.5 * map.vector("size"), coarse);
   if (kind == "hull") {
     const Value& list = map.at("points");
     std::vector<Vec3> points;
@@ -49,9 +47,9 @@ Shape shape_of(const Map& map, std::string_view kind, const ShapeFile& shapes) {
     if (points.size() <= input_limits.entries) count_hull(list, points.size(), shapes);
     return Shape::hull(points, coarse);
   }
-  const double radius = map.at("radius").number(extent);
+  const double radius = map.number("radius");
   if (kind == "sphere") return Shape::sphere(radius, coarse);
-  const double half_length = 0.5 * map.at("length").number(extent);
+  const double half_length = 0.5 * map.number("length");
   if (kind == "capsule") return Shape::capsule(radius, half_length, coarse);
   if (kind == "cone") return Shape::cone(radius, half_length, coarse);
   if (kind == "cylinder") return Shape::cylinder(radius, half_length, coarse);
@@ -104,11 +102,8 @@ std::vector<Part> parts_of(const Value& value, const Map& map,
                            std::span<const std::string_view> keys, const ShapeFile& shapes) {
   std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
   common.insert(common.end(), keys.begin(), keys.end());
-  auto any = common;
-  any.insert(any.end(), {"size", "radius", "length", "points", "file", "parts"});
-  map.allow(any);
   const std::string name = map.at("name").text();
-  const std::string kind = map.at("shape").word_of(std::span(obstacle_shapes).first<part_shapes>());
+  const std::string kind(map.word("shape"));
   const auto sizes = size_keys(kind);
   common.insert(common.end(), sizes.begin(), sizes.end());
   map.allow(common);
@@ -125,7 +120,7 @@ std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {
   std::vector<Part> parts;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
-    const Map map(entry);
+    const Map map(entry, grammar::tool_part());
     for (Part& part : parts_of(entry, map, {}, shapes)) parts.push_back(std::move(part));
     require_new(names, map);
   }

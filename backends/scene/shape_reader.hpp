@@ -3,7 +3,6 @@
 /// Reads the shapes of a scene file, and tools, which are made of them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -15,9 +14,6 @@
 #include "yaml.hpp"
 
 namespace repel::scene::detail {
-
-inline constexpr std::array<std::string_view, 9> obstacle_shapes{
-    "box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh", "urdf", "sdf"};
 
 /// What the shapes of a file add up to.
 struct ShapeFile {

@@ -88,11 +88,14 @@ std::string Value::text() const {
   return node_->text;
 }
 
+std::size_t Value::index_in(std::span<const std::string_view> words) const {
+  const auto found = is_scalar() ? std::find(words.begin(), words.end(), node_->text) : words.end();
+  if (found == words.end()) fail_with_value(listed(words));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
 std::string Value::word_of(std::span<const std::string_view> words) const {
-  const bool known =
-      is_scalar() && std::find(words.begin(), words.end(), node_->text) != words.end();
-  if (!known) fail_with_value(listed(words));
-  return node_->text;
+  return std::string(words[index_in(words)]);
 }
 
 std::string Value::path() const {
@@ -179,6 +182,17 @@ Map::Map(const Value& value) : self_(value) {
   }
 }
 
+Map::Map(const Value& value, const Keys& keys) : Map(value) {
+  keys_ = &keys;
+  std::vector<std::string_view> names;
+  for (const Key& key : keys) names.push_back(key.name);
+  allow(names);
+}
+
+Map Map::with(const Keys& keys) const {
+  return {self_, keys};
+}
+
 void Map::allow(std::span<const std::string_view> keys) const {
   const auto& nodes = self_.node_->children;
   for (std::size_t i = 0; i < nodes.size(); i += 2) {
@@ -207,12 +221,22 @@ const Value* Map::find(std::string_view key) const {
   return found == index_.end() ? nullptr : &entries_[found->second].second;
 }
 
-void Map::read(std::string_view key, const Rule& rule, double& out) const {
-  if (const Value* value = find(key)) out = value->number(rule);
+const Key& Map::key_of(std::string_view name) const {
+  return *std::find_if(keys_->begin(), keys_->end(),
+                       [&](const Key& each) { return each.name == name; });
 }
 
-void Map::read(std::string_view key, const Rule& rule, Vec3& out) const {
-  if (const Value* value = find(key)) out = value->vector(rule);
+std::int64_t Map::integer(std::string_view key) const {
+  const Rule& rule = key_of(key).rule;
+  return at(key).integer(static_cast<std::int64_t>(rule.low), static_cast<std::int64_t>(rule.high));
+}
+
+void Map::read(std::string_view key, double& out) const {
+  if (find(key) != nullptr) out = number(key);
+}
+
+void Map::read(std::string_view key, Vec3& out) const {
+  if (find(key) != nullptr) out = vector(key);
 }
 
 void Map::read(std::string_view key, std::string& out) const {

@@ -20,6 +20,7 @@
 #include <repel/base/types.hpp>
 #include <repel/common/input_limits.hpp>
 
+#include "key.hpp"
 #include "units.hpp"
 #include "yaml_document.hpp"
 
@@ -42,6 +43,8 @@ class Value {
 
   /// A non-empty scalar.
   [[nodiscard]] std::string text() const;
+  /// The position of the text in `words`.
+  [[nodiscard]] std::size_t index_in(std::span<const std::string_view> words) const;
   /// One of `words`.
   [[nodiscard]] std::string word_of(std::span<const std::string_view> words) const;
   [[nodiscard]] std::string word_of(std::initializer_list<std::string_view> words) const {
@@ -83,6 +86,11 @@ class Map {
  public:
   /// @throws SetupError if it is no map or has more entries than input_limits allows
   explicit Map(const Value& value);
+  /// Of these keys, which must outlive it.
+  /// @throws SetupError likewise, and for any other key, suggesting the nearest
+  Map(const Value& value, const Keys& keys);
+  /// The same map, of these keys.
+  [[nodiscard]] Map with(const Keys& keys) const;
 
   /// @throws SetupError for a key that is not in `keys`, suggesting the nearest
   void allow(std::span<const std::string_view> keys) const;
@@ -97,14 +105,36 @@ class Map {
   /// The value of `key`; null if it is missing.
   [[nodiscard]] const Value* find(std::string_view key) const;
 
-  /// Sets `out` if `key` is present.
-  void read(std::string_view key, const Rule& rule, double& out) const;
-  void read(std::string_view key, const Rule& rule, Vec3& out) const;
+  /// Sets `out` if `key` is present. Of a map with keys: its type is that of the key.
+  void read(std::string_view key, double& out) const;
+  void read(std::string_view key, Vec3& out) const;
   void read(std::string_view key, std::string& out) const;
   void read(std::string_view key, bool& out) const;
   template <std::integral Integer>
-  void read(std::string_view key, std::int64_t low, std::int64_t high, Integer& out) const {
-    if (const Value* value = find(key)) out = static_cast<Integer>(value->integer(low, high));
+  void read(std::string_view key, Integer& out) const {
+    if (find(key) != nullptr) out = static_cast<Integer>(integer(key));
+  }
+  /// The words of the key are those of the enumerators from 0 on.
+  template <class Word>
+  requires std::is_enum_v<Word>
+  void read(std::string_view key, Word& out) const {
+    if (const Value* value = find(key)) out = static_cast<Word>(value->index_in(key_of(key).words));
+  }
+  /// The numbers and words of an options struct (repel/base/field.hpp).
+  template <class Options>
+  void read_fields(Options& options) const {
+    Options::for_each_field([this](const auto& field, auto& x) { read(field.name, x); }, options);
+  }
+
+  /// The value of a key that is required. @throws SetupError if it is missing
+  [[nodiscard]] double number(std::string_view key) const {
+    return at(key).number(key_of(key).rule);
+  }
+  [[nodiscard]] Vec3 vector(std::string_view key) const { return at(key).vector(key_of(key).rule); }
+  [[nodiscard]] std::int64_t integer(std::string_view key) const;
+  [[nodiscard]] std::string_view word(std::string_view key) const {
+    const Key& words = key_of(key);
+    return words.words[at(key).index_in(words.words)];
   }
 
   [[nodiscard]] const std::vector<std::pair<std::string, Value>>& entries() const {
@@ -112,7 +142,10 @@ class Map {
   }
 
  private:
+  [[nodiscard]] const Key& key_of(std::string_view name) const;
+
   Value self_;
+  const Keys* keys_ = nullptr;
   std::vector<std::pair<std::string, Value>> entries_;
   std::map<std::string, std::size_t, std::less<>> index_;  // index of the entry by key
 };

@@ -287,5 +287,17 @@ TEST(ForceLaw, CheckedAsksOfAPassableBodyACeilingOfUpToHalfTheSurfaceForce) {
   EXPECT_NO_THROW(checked(law));
 }
 
+TEST(ForceLaw, IsNowhereLessDampedForItsSlopeThanItTellsTheStabilityCheck) {
+  const ForceLaw law{.range = 0.03, .surface_force = 200.0, .damping = 70.0};
+  const LawFormula<double> formula = law.formula();
+  const double told = law.steepest_damping() / law.stiffness();
+  constexpr double step = 1e-7;
+  for (double d = -2.0 * law.range; d < 0.99 * law.range; d += 1e-3 * law.range) {
+    const double slope = (formula.spring(d - step) - formula.spring(d + step)) / (2.0 * step);
+    EXPECT_LE(slope, law.stiffness() * (1.0 + 1e-6)) << d;
+    EXPECT_GE(formula.damper(d) / slope, told * (1.0 - 1e-6)) << d;
+  }
+}
+
 }  // namespace law_test
 }  // namespace repel

@@ -56,9 +56,9 @@ std::vector<std::string> settle_laws(CellDescription& cell) {
     if (law.hold == HoldKind::hard) law.watched = std::max(law.watched, stopping_distance(cell));
     law = settled(law, period, wall_delay(cell));
     const double needed = gain_rounding * wall_ticks(wall_delay(cell)) * period * law.stiffness();
-    const double most = stable_stiffness(law.damping, period, longest_delay(cell));
+    const double most = stable_stiffness(law.steepest_damping(), period, longest_delay(cell));
     const bool would_be_stable = law.stiffness() <= gain_rounding * most;
-    if (!would_be_stable || law.damping >= needed) return;
+    if (!would_be_stable || law.steepest_damping() >= needed) return;
     std::string said = "beside, forces are one tick late: the damping of walls of " +
                        to_text(law.stiffness(), 4) + " N/m is " + to_text_above(needed, 4) +
                        " N s/m, not " + to_text(law.damping);

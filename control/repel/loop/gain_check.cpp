@@ -53,26 +53,27 @@ ForceLaw settled(ForceLaw law, double period, double drive_delay) noexcept {
 
 double longest_period(const ForceLaw& law, double period, double drive_delay,
                       double response) noexcept {
-  const double left = law.damping / law.stiffness() - 2.0 * response;
+  const double left = law.steepest_damping() / law.stiffness() - 2.0 * response;
   return left / wall_ticks(drive_delay - response / period);
 }
 
 std::string complaint(const ForceLaw& law, double period, double drive_delay, double response) {
-  const double most = stable_stiffness(law.damping, period, drive_delay);
+  const double most = stable_stiffness(law.steepest_damping(), period, drive_delay);
   if (law.stiffness() <= gain_rounding * most) return {};
   const auto text = [](double value) { return repel::to_text(value, 4); };
   const double ticks = wall_ticks(drive_delay);
   std::string said = "wall stiffness is " + text(law.stiffness()) + " N/m; with its damping of " +
-                     text(law.damping) + " N s/m the limit is " + to_text_below(most, 4) +
-                     " N/m at a period of " + text(1e3 * period) + " ms and a drive delay of " +
-                     text(drive_delay) + " ticks; this wall needs " +
+                     text(law.steepest_damping()) + " N s/m the limit is " +
+                     to_text_below(most, 4) + " N/m at a period of " + text(1e3 * period) +
+                     " ms and a drive delay of " + text(drive_delay) + " ticks; this wall needs " +
                      to_text_above(law.stiffness() * ticks * period, 4) + " N s/m of damping";
   const double longest = longest_period(law, period, drive_delay, response);
   if (longest * greatest_rate >= 1.0) {
     return said + ", or a rate of at least " + to_text_above(1.0 / longest, 4) + " Hz";
   }
   said += ", or a lower surface force or a longer range";
-  const double within = 0.5 * (law.damping / law.stiffness() - ticks * period) + response;
+  const double within =
+      0.5 * (law.steepest_damping() / law.stiffness() - ticks * period) + response;
   if (within > 0.0) {
     said += ", or an arm that answers within " + to_text_below(1e3 * within, 4) + " ms";
   }
@@ -88,7 +89,7 @@ std::vector<std::string> check_gains(const World& world, double period, double d
     std::string text = complaint(pair.law, period, drive_delay, response);
     const network::CleanStiffness clean{.period = period,
                                         .device_damping = device_damping,
-                                        .wall_damping = pair.law.damping,
+                                        .wall_damping = pair.law.steepest_damping(),
                                         .delay = drive_delay * period};
     if (pair.law.stiffness() <= gain_rounding * clean.limit()) continue;
     if (!text.empty()) {

@@ -86,53 +86,58 @@ struct TickField {
 /// record; files and Python follow. What a replay reads besides is in the inputs of a recording.
 template <class Visit, class... Records>
 constexpr void for_each_field(const Visit& visit, Records&... records) {
-  using Field = TickField;
-  visit(Field{"tick", "", "", "Its number, from 0."}, records.tick...);
-  visit(Field{"time", "", "", "[s] since the first tick."}, records.time...);
-  visit(Field{"elapsed", "", "", "[periods] since the last tick; more after missed ticks."},
+  visit(TickField{"tick", "", "", "Its number, from 0."}, records.tick...);
+  visit(TickField{"time", "", "", "[s] since the first tick."}, records.time...);
+  visit(TickField{"elapsed", "", "", "[periods] since the last tick; more after missed ticks."},
         records.elapsed...);
-  visit(Field{"enable", "", "", "Enable the stopped drive of the arm again."}, records.enable...);
-  visit(Field{"phase", "phase", "", "Of the operator's script."}, records.phase...);
-  visit(Field{"status", "status", "",
-              "Faults and limits that were noticed, by their names; empty: none."},
+  visit(TickField{"enable", "", "", "Enable the stopped drive of the arm again."},
+        records.enable...);
+  visit(TickField{"phase", "phase", "", "Of the operator's script."}, records.phase...);
+  visit(TickField{"status", "status", "",
+                  "Faults and limits that were noticed, by their names; empty: none."},
         records.status...);
-  visit(Field{"p_WT", "*_m", "", "[m] the tool."}, records.p_WT...);
-  visit(Field{"v_WT", "v*_m_s", "", "[m/s] its velocity."}, records.v_WT...);
-  visit(Field{"virtual_force", "", "",
-              "force [N] and torque [N m] of the walls on the tool, about its origin, world axes."},
-        records.virtual_force...);
-  visit(Field{"", "virtual_f*_n", "force", "virtual [N]"}, records.virtual_force.force...);
-  visit(Field{"", "virtual_t*_nm", "torque", "virtual [N m]"}, records.virtual_force.torque...);
+  visit(TickField{"p_WT", "*_m", "", "[m] the tool."}, records.p_WT...);
+  visit(TickField{"v_WT", "v*_m_s", "", "[m/s] its velocity."}, records.v_WT...);
   visit(
-      Field{"coupling", "", "", "force [N] and torque [N m] from the operator's side on the tool."},
-      records.coupling...);
-  visit(Field{"", "coupling_f*_n", "coupling_force", "[N]"}, records.coupling.force...);
-  visit(Field{"", "", "coupling_torque", "[N m]"}, records.coupling.torque...);
-  visit(Field{"grip", "", "",
-              "force [N] and torque [N m] of a master with six axes on the hand; times `gain`."},
-        records.grip...);
-  visit(Field{"lever_torque", "lever_torque_nm", "lever_torque",
-              "[N m] reflected to the lever; times `gain`."},
+      TickField{
+          "virtual_force", "", "",
+          "force [N] and torque [N m] of the walls on the tool, about its origin, world axes."},
+      records.virtual_force...);
+  visit(TickField{"", "virtual_f*_n", "force", "virtual [N]"}, records.virtual_force.force...);
+  visit(TickField{"", "virtual_t*_nm", "torque", "virtual [N m]"}, records.virtual_force.torque...);
+  visit(TickField{"coupling", "", "",
+                  "force [N] and torque [N m] from the operator's side on the tool."},
+        records.coupling...);
+  visit(TickField{"", "coupling_f*_n", "coupling_force", "[N]"}, records.coupling.force...);
+  visit(TickField{"", "", "coupling_torque", "[N m]"}, records.coupling.torque...);
+  visit(
+      TickField{"grip", "", "",
+                "force [N] and torque [N m] of a master with six axes on the hand; times `gain`."},
+      records.grip...);
+  visit(TickField{"lever_torque", "lever_torque_nm", "lever_torque",
+                  "[N m] reflected to the lever; times `gain`."},
         records.lever_torque...);
-  visit(Field{"gain", "gain", "gain", "Of the fail-safe, 0 to 1."}, records.gain...);
-  visit(Field{"q", "q*_rad q*_m", "",
-              "[rad] or [m] as read, or predicted where the reading was not believed."},
+  visit(TickField{"gain", "gain", "gain", "Of the fail-safe, 0 to 1."}, records.gain...);
+  visit(TickField{"q", "q*_rad q*_m", "",
+                  "[rad] or [m] as read, or predicted where the reading was not believed."},
         records.q...);
-  visit(Field{"energy", "energy_*_j", "", "[J] the ledger of each module of the network."},
+  visit(TickField{"energy", "energy_*_j", "", "[J] the ledger of each module of the network."},
         records.energy...);
-  visit(Field{"stop", "stop", "stop",
-              "What was done about faults: running, holding, braking or released."},
+  visit(TickField{"stop", "stop", "stop",
+                  "What was done about faults: running, holding, braking or released."},
         records.stop...);
-  visit(Field{"brakes", "brakes", "brakes", "Engage the brakes of the arm."}, records.brakes...);
-  visit(Field{"torques", "tau*_nm tau*_n", "torques", "[N m] or [N] to be sent to the joints."},
+  visit(TickField{"brakes", "brakes", "brakes", "Engage the brakes of the arm."},
+        records.brakes...);
+  visit(TickField{"torques", "tau*_nm tau*_n", "torques", "[N m] or [N] to be sent to the joints."},
         records.torques...);
-  visit(Field{"v", "v*_rad_s v*_m_s", "", "[rad/s] or [m/s] their rates."}, records.v...);
-  visit(Field{"held_force", "held_n", "held_n", "[N] with which hard walls held the arm.", true},
-        records.held_force...);
-  visit(Field{"hold_margin", "hold_margin_m", "hold_margin_m",
-              "[m] How far off every hard wall the arm can still be stopped, by the proof; "
-              "infinite where none is near.",
-              true},
+  visit(TickField{"v", "v*_rad_s v*_m_s", "", "[rad/s] or [m/s] their rates."}, records.v...);
+  visit(
+      TickField{"held_force", "held_n", "held_n", "[N] with which hard walls held the arm.", true},
+      records.held_force...);
+  visit(TickField{"hold_margin", "hold_margin_m", "hold_margin_m",
+                  "[m] How far off every hard wall the arm can still be stopped, by the proof; "
+                  "infinite where none is near.",
+                  true},
         records.hold.margin...);
 }
 

@@ -51,14 +51,13 @@ std::size_t WidenedForces::add_run(std::span<const NearAnswer> all, std::size_t 
   const BodyState& A = now.bodies[static_cast<std::size_t>(a.index)];
   const BodyState& B = now.bodies[static_cast<std::size_t>(b.index)];
   const auto relative = relative_motion(A, B);
-  const Twist V_BA_W{to_vec3(relative.v_BA_W), to_vec3(relative.w_BA_W)};
   const Share acts = share_between(A, B);
   Wrench on_a;
   std::size_t i = first;
   for (; i < all.size() && all[i].a == a && all[i].b == b; ++i) {
     sizes_[i] = 0.0;
     if (!acts.acts()) continue;  // gone since
-    sizes_[i] = size_of(all[i], V_BA_W, acts.now);
+    sizes_[i] = size_of(all[i], relative, acts.now);
     if (acts.now != acts.before) supply(all[i], acts.now - acts.before, now);
     forces_.totals.note_force(sizes_[i], all[i].pair);
     if (all[i].is_passable) {
@@ -72,14 +71,18 @@ std::size_t WidenedForces::add_run(std::span<const NearAnswer> all, std::size_t 
   return i;
 }
 
-double WidenedForces::size_of(const NearAnswer& answer, const Twist& V_BA_W,
+double WidenedForces::size_of(const NearAnswer& answer,
+                              const RelativeMotion<double, Vec<double>>& relative,
                               double acts) const noexcept {
   // What the spring of a passable body remembers is the workers': its force is theirs.
   if (answer.is_passable) return norm(answer.gradient.force);
   const Pair& pair = world_->pair(answer.pair);
   const double distance = distance_of(answer, pair);
   if (!(distance < pair.law.range)) return 0.0;
-  return acts * answer.share * pair.law(distance, power(answer.gradient, V_BA_W));
+  const Wrench& g = answer.gradient;
+  return acts * answer.share *
+         force_of(pair.law.formula(), distance, Vec<double>(g.force), Vec<double>(g.torque),
+                  relative);
 }
 
 void WidenedForces::supply(const NearAnswer& answer, double gained, const Motion& now) noexcept {

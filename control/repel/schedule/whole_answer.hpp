@@ -51,7 +51,8 @@ class WidenedForces {
                       const Motion& now) noexcept;
 
   /// @param acts the share of its law that acts now
-  [[nodiscard]] double size_of(const NearAnswer& answer, const Twist& V_BA_W,
+  [[nodiscard]] double size_of(const NearAnswer& answer,
+                               const RelativeMotion<double, Vec<double>>& relative,
                                double acts) const noexcept;
   void supply(const NearAnswer& answer, double gained, const Motion& now) noexcept;
   /// [m] Not larger than the true one.

@@ -30,6 +30,9 @@ struct LawFormula {
   Number damping;        ///< c0 [N s/m]
   Number ceiling;        ///< [N]
 
+  /// [m] A distance at which the damper is weakest for the slope of the spring.
+  static constexpr double least_damped = 0.0;
+
   /// phi(d) [N] within the range, without the ceiling.
   [[nodiscard]] Number spring(const Number& distance) const noexcept {
     const Number share = distance / range;
@@ -172,6 +175,12 @@ struct ForceLaw {
   [[nodiscard]] double operator()(double distance, double rate) const noexcept {
     if (!(distance < range)) return 0.0;
     return passable ? damped(passing_spring(distance), rate) : formula()(distance, rate);
+  }
+
+  /// [N s/m] The damping that keeps the steepest spring from oscillating at a tick rate: where it
+  /// is weakest for the slope. A law whose damper fades with the depth has less than `damping`.
+  [[nodiscard]] double steepest_damping() const noexcept {
+    return passable ? damping : formula().damper(LawFormula<double>::least_damped);
   }
 
   /// Largest slope of the spring [N/m]: the wall stiffness to check against the clean-stiffness

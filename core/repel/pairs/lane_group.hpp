@@ -232,8 +232,7 @@ class LaneGroup {
     const Lanes none{};
     const LaneVec n = either(in_range, gradient_W_, LaneVec{});
     const LaneVec moment = either(in_range, moment_W_, LaneVec{});
-    const Lanes rate = dot(n, relative.v_BA_W) + dot(relative.w_BA_W, moment);
-    size_ = either(in_range, law_(distance, rate), none);
+    size_ = either(in_range, force_of<Lanes, LaneVec>(law_, distance, n, moment, relative), none);
     force_W_ = size_ * n;
     torque_W_ = size_ * moment;
     distance_if_proven_ =

@@ -33,21 +33,13 @@ struct MotionSince {
   }
 };
 
-/// A lower bound [m] of the signed distance after both bodies have moved. If the shapes were apart,
-/// the separating plane remains valid when shifted by the relative motion along its normal; in
-/// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
-/// increase of `turn` in both cases. The planes that separate the shapes of a patch, and the
-/// gradient of its distance, lean by up to its tilt.
-/// No answer is deeper than World::deepest; this bound may be.
+/// Lower bound [m] of the signed distance after both bodies have moved. The gradient of a patch
+/// leans by up to the tilt, and so do its separating planes.
 [[nodiscard]] inline double bound_after(const NearAnswer& answer, const MotionSince& of_a,
                                         const MotionSince& of_b) noexcept {
-  constexpr double widest_lean = 2.0 * ForceLaw::most_tilt;  // [rad]
-  const Vec3 moved = of_a.moved - of_b.moved;
-  const double length = norm(moved);
-  const double along = answer.is_apart ? dot(answer.gradient.force, moved) -
-                                             (answer.has_patch ? widest_lean * length : 0.0)
-                                       : -length;
-  return answer.bound + along - (of_a.turn + of_b.turn);
+  return bound_after(answer.bound, answer.is_apart, answer.gradient.force,
+                     answer.has_patch ? 2.0 * ForceLaw::most_tilt : 0.0, of_a.moved - of_b.moved,
+                     of_a.turn + of_b.turn);
 }
 
 }  // namespace repel::detail

@@ -20,6 +20,18 @@ namespace repel::detail {
   return 1.0 - std::clamp(fade, 0.0, 1.0);
 }
 
+/// Conservative lower bound [m] of a signed distance that was at least `bound` [m] before body A
+/// moved by `moved` [m] from body B, and the turning of both took up to `turned` [m]. If the shapes
+/// were apart, the separating plane remains valid when shifted by the motion along its normal,
+/// `direction`; in overlap the distance decreases no faster than the bodies move. `lean` [rad]: by
+/// which the separating planes of a contact patch may be off `direction`. No answer is deeper than
+/// World::deepest; this bound may be.
+[[nodiscard]] inline double bound_after(double bound, bool is_apart, const Vec3& direction,
+                                        double lean, const Vec3& moved, double turned) noexcept {
+  const double off = lean > 0.0 ? lean * norm(moved) : 0.0;
+  return bound + (is_apart ? dot(direction, moved) - off : -norm(moved)) - turned;
+}
+
 /// The data the force of a pair is computed from, at the tick of its evaluation and later. What
 /// `lower_bound` needs comes first: it is asked of hundreds of pairs that are not near.
 struct alignas(64) PairAnswer {
@@ -60,17 +72,11 @@ struct alignas(64) PairAnswer {
   /// A plane separates the shapes, with the extraction direction as its normal.
   [[nodiscard]] bool is_apart() const noexcept { return last.lower > 0.0 && !cut_short(); }
 
-  /// Conservative lower bound of the signed distance [m] now. If the shapes were apart, the
-  /// separating plane remains valid when shifted by the relative motion along its normal; in
-  /// overlap the distance decreases no faster than the bodies move. Rotation subtracts at most the
-  /// increase of `turn` in both cases. A patch has separating planes that lean by up to its tilt.
-  /// No answer is deeper than World::deepest; this bound may be.
+  /// Lower bound of the signed distance [m] now: bound_after.
   [[nodiscard]] double lower_bound(const BodyState& A, const BodyState& B) const noexcept {
-    const Vec3 moved = origin(A.X_WB) - origin(B.X_WB) - p_BA_W;
-    const bool separated = is_apart();
-    const double lean = nearer != 0.0 ? ForceLaw::most_tilt * norm(moved) : 0.0;
-    const double along = separated ? dot(last.extraction_W, moved) - lean : -norm(moved);
-    return proven() + along - (A.turn + B.turn - turn);
+    return bound_after(proven(), is_apart(), last.extraction_W,
+                       nearer != 0.0 ? ForceLaw::most_tilt : 0.0,
+                       origin(A.X_WB) - origin(B.X_WB) - p_BA_W, A.turn + B.turn - turn);
   }
 
  private:

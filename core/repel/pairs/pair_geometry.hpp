@@ -26,6 +26,15 @@ struct RelativeMotion {
   Number turn;    ///< [m] both bodies' BodyState::turn
 };
 
+/// Size [N] of the force of a pair that is not passable, at a distance [m] whose gradient, when A
+/// moves, is a force and a moment about the origin of body A. Of one pair, or of one in each lane.
+template <class Number, class Vector>
+[[nodiscard]] Number force_of(const LawFormula<Number>& law, const Number& distance,
+                              const Vector& force, const Vector& moment,
+                              const RelativeMotion<Number, Vector>& relative) noexcept {
+  return law(distance, dot(force, relative.v_BA_W) + dot(relative.w_BA_W, moment));
+}
+
 [[nodiscard]] inline RelativeMotion<double, Vec<double>> relative_motion(
     const BodyState& A, const BodyState& B) noexcept {
   const Vec<double> p_WoA = column<double>(A.X_WB, 3);

@@ -289,9 +289,8 @@ class SingleEvaluator {
     } else {
       const auto relative = relative_motion(A, B);
       const Wrench& g = answer.gradient;
-      const double rate =
-          dot(g.force, to_vec3(relative.v_BA_W)) + dot(g.torque, to_vec3(relative.w_BA_W));
-      size = share * law(distance, rate);
+      size = share * force_of(law.formula(), distance, Vec<double>(g.force), Vec<double>(g.torque),
+                              relative);
       on_a = size * g;
     }
     memory_.answer(slot).force = size;

@@ -57,7 +57,6 @@ struct LoosePart {
   PoseMove move{};               ///< while it lies free
   Pose X_TB = Pose::Identity();  ///< [m] in the tool that holds it
   std::vector<PairId> pairs{};   ///< of this part
-  std::vector<ForceLaw> laws{};  ///< of these pairs, before they are fitted to shapes
 };
 
 /// The parts of a world that come and go. The functions are those of `World` (world.hpp), which

@@ -32,10 +32,10 @@ struct Part {
 
 /// Two parts to be kept apart, and how.
 struct Pair {
-  PartId a;      ///< the part that is pushed along the extraction direction
-  PartId b;      ///< the part it is pushed away from
-  ForceLaw law;  ///< its `depth` clamped to the deepest that the two shapes can have, and its
-                 ///< `tilt` to what their size allows
+  PartId a;            ///< the part that is pushed along the extraction direction
+  PartId b;            ///< the part it is pushed away from
+  ForceLaw law;        ///< as it acts: World::effective
+  ForceLaw law_given;  ///< as it was given
 };
 
 /// A body that is attached to a link of an arm; its frame is that of the link.
@@ -119,19 +119,16 @@ class World {
     if (part(a).body == part(b).body) {
       throw SetupError("parts " + part(a).name + " and " + part(b).name + " are of one body");
     }
-    pairs_.push_back({a, b, fitted(checked(law), part(a).shape, part(b).shape)});
+    pairs_.push_back({a, b, effective(checked(law), part(a).shape, part(b).shape), law});
     const PairId id{static_cast<std::int32_t>(pairs_.size()) - 1};
     for (const PartId each : {a, b}) {
-      if (detail::LoosePart* loose = loose_.find(each)) {
-        loose->pairs.push_back(id);
-        loose->laws.push_back(law);
-      }
+      if (detail::LoosePart* loose = loose_.find(each)) loose->pairs.push_back(id);
     }
     return id;
   }
 
-  /// The law that a pair of two shapes gets: `depth` and `tilt` lowered to what their size allows.
-  [[nodiscard]] static ForceLaw fitted(ForceLaw law, const Shape& a, const Shape& b) noexcept {
+  /// The law as it acts between two shapes: `depth` and `tilt` lowered to what their size allows.
+  [[nodiscard]] static ForceLaw effective(ForceLaw law, const Shape& a, const Shape& b) noexcept {
     // By whatever measure, a passable body has let go where no common point can be deeper.
     law.depth = std::min(law.depth, deepest_point(a, b));
     // Over tilts up to e, the distance of two sets differs by at most e times the radius of the
@@ -173,9 +170,9 @@ class World {
     const detail::LoosePart* const loose = loose_.find(id);
     if (loose == nullptr || is_there(id) || !(shape.reach() <= loose->room)) return false;
     std::swap(parts_[id.index].shape, shape);
-    for (std::size_t i = 0; i < loose->pairs.size(); ++i) {
-      Pair& pair = pairs_[loose->pairs[i].index];
-      pair.law = fitted(loose->laws[i], part(pair.a).shape, part(pair.b).shape);
+    for (const PairId each : loose->pairs) {
+      Pair& pair = pairs_[each.index];
+      pair.law = effective(pair.law_given, part(pair.a).shape, part(pair.b).shape);
     }
     return true;
   }

@@ -209,4 +209,9 @@ struct Scene : ArmSetup {
 [[nodiscard]] Scene parse(std::string_view yaml, const std::string& file,
                           const ModuleKinds& kinds = {});
 
+/// A JSON Schema (draft 7) of scene files, from which editors complete keys and find mistakes. The
+/// readers are stricter: they also see what two keys together must be. Of modules it has those of
+/// the library.
+[[nodiscard]] std::string schema();
+
 }  // namespace repel::scene

@@ -22,14 +22,9 @@ bool FixtureOptions::has_inside() const noexcept {
 
 const FixtureOptions& checked_fixture(const FixtureOptions& fixture) {
   try {
-    (void)detail::checked_gain("stiffness", fixture.stiffness, 0.0, 1e7, "N/m");
-    (void)detail::checked_gain("damping", fixture.damping, 0.0, 1e6, "N s/m");
-    (void)detail::checked_gain("angular stiffness", fixture.angular_stiffness, 0.0, 1e6, "N m/rad");
-    (void)detail::checked_gain("angular damping", fixture.angular_damping, 0.0, 1e6, "N m s/rad");
-    (void)Attraction(fixture.along(1.0)), (void)Attraction(fixture.about(1.0));
+    checked_fields(fixture);
     checked("radius", fixture.radius, 0.0, 1e3, "m");
     checked("half angle", fixture.half_angle, 0.01, 1.56, "rad");
-    checked("angular range", fixture.angular_range, 1e-6, 2.0, "rad");
     if (fixture.kind == FixtureKind::path) {
       (void)FixturePath(fixture.points, fixture.frames, fixture.course);
       if (fixture.frames.empty() && fixture.alignment != Alignment::free) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <repel/base/field.hpp>
 #include <repel/base/types.hpp>
 #include <repel/network/elements/attraction.hpp>
 #include <repel/network/elements/fixture_path.hpp>
@@ -59,6 +60,21 @@ struct FixtureOptions {
   [[nodiscard]] AttractionLimits about(double k) const noexcept;
   /// Whether the force is zero inside the surface.
   [[nodiscard]] bool has_inside() const noexcept;
+
+  /// Calls visit(Field, x) for the numbers that every shape has.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"stiffness", "N/m", 0.0, 1e7, true}, o.stiffness);
+    visit(Field{"damping", "N s/m", 0.0, 1e6, true}, o.damping);
+    visit(Field{"most_force", "N", 1e-9, 1e6}, o.most_force);
+    visit(Field{"range", "m", 1e-6, 1e3}, o.range);
+    visit(Field{"most_energy", "J", 1e-9, 1e6}, o.most_energy);
+    visit(Choice{"alignment", {"free", "axis", "all"}}, o.alignment);
+    visit(Field{"angular_stiffness", "N m/rad", 0.0, 1e6, true}, o.angular_stiffness);
+    visit(Field{"angular_damping", "N m s/rad", 0.0, 1e6, true}, o.angular_damping);
+    visit(Field{"most_torque", "N m", 1e-9, 1e6}, o.most_torque);
+    visit(Field{"angular_range", "rad", 1e-6, 2.0}, o.angular_range);
+  }
 };
 
 /// Returns `fixture`; throws SetupError naming it and the first number that is out of range.

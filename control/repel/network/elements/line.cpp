@@ -6,9 +6,7 @@
 
 namespace repel::network {
 
-Line::Line(const LineOptions& options) : options_(options) {
-  checked("impedance", options.impedance, 1e-6, 1e6, "N s/m");
-  checked("angular impedance", options.angular_impedance, 1e-6, 1e6, "N m s/rad");
+Line::Line(const LineOptions& options) : options_(checked_fields(options)) {
   checked("buffer", options.buffer, -1.0, 10.0, "s");
   ChannelOptions back = options.channel;
   back.seed = ~back.seed;

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/channel.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/signals.hpp>
@@ -28,6 +29,17 @@ struct LineOptions {
   /// lost ones can be interpolated from the next; negative: the jitter plus as many ticks as
   /// packets are lost in a row with probability 1e-6, clamped to 2 to 50
   double buffer = -1.0;
+
+  /// Calls visit(Field, x) for each number but `buffer` and the seed.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Choice{"kind", {"waves", "force_velocity"}}, o.kind);
+    visit(Field{"impedance", "N s/m", 1e-6, 1e6}, o.impedance);
+    visit(Field{"angular_impedance", "N m s/rad", 1e-6, 1e6}, o.angular_impedance);
+    visit(Field{"delay", "s", 0.0, 10.0}, o.channel.delay);
+    visit(Field{"jitter", "s", 0.0, 10.0}, o.channel.jitter);
+    visit(Field{"loss", "", 0.0, 1.0}, o.channel.loss);
+  }
 };
 
 /// A two-port whose ends are one-ports of resistance Z. The wave a incident at one end leaves the

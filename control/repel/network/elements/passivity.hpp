@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/port.hpp>
 
 namespace repel::network {
@@ -19,6 +20,13 @@ struct PassivityOptions {
   double lever = 0.1;           ///< [m] lever arm of the damping of rotations
   bool keeps_energy = false;    ///< also while it exerts no effort: it stores energy where it does
                                 ///< not push
+
+  /// Calls visit(Field, x) for the numbers that scenes may choose.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"most_energy", "J", 0.0, 1e6}, o.most_energy);
+    visit(Field{"most_damping", "N s/m", 0.0, 1e6}, o.most_damping);
+  }
 };
 
 /// Energy balance of a passivity controller.

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
-
-#include <repel/base/setup_error.hpp>
 
 namespace repel::network {
 
@@ -32,12 +29,3 @@ Gains suited(const Gains& asked, double mass, double response, const Gains& usua
 }
 
 }  // namespace repel::network
-
-namespace repel::network::detail {
-
-double checked_gain(std::string_view name, double value, double low, double high,
-                    std::string_view unit) {
-  return value == automatic ? value : checked(name, value, low, high, unit);
-}
-
-}  // namespace repel::network::detail

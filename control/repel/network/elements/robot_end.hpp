@@ -4,7 +4,6 @@
 #pragma once
 
 #include <limits>
-#include <string_view>
 
 #include <repel/network/elements/port.hpp>
 
@@ -41,13 +40,5 @@ struct Gains {
 /// response time h. Without a known mass: `usual`.
 [[nodiscard]] Gains suited(const Gains& asked, double mass, double response, const Gains& usual,
                            double most_damping = std::numeric_limits<double>::infinity()) noexcept;
-
-namespace detail {
-
-/// `value` if it is `automatic` or in the range. @throws SetupError
-double checked_gain(std::string_view name, double value, double low, double high,
-                    std::string_view unit);
-
-}  // namespace detail
 
 }  // namespace repel::network

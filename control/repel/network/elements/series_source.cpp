@@ -30,8 +30,7 @@ void ToolSource::add_walls(const Jacobian& jacobian, Vec<any_size>& torques) con
 }
 
 const PassivityOptions& ToolSource::checked_passivity(const PassivityOptions& options) {
-  checked("most energy", options.most_energy, 0.0, 1e6, "J");
-  checked("most damping", options.most_damping, 0.0, 1e6, "N s/m");
+  checked_fields(options);
   checked("lever", options.lever, 1e-6, 100.0, "m");
   return options;
 }

@@ -57,31 +57,33 @@ struct HandField {
 /// order.
 template <class Visit, class... Hands>
 constexpr void for_each_field(const Visit& visit, Hands&... hands) {
-  using Field = HandField;
-  visit(Field{"lever_rate", "rad/s", "rate of a lever that is felt", true}, hands.lever_rate...);
-  visit(Field{"direction_W", "", "in which the lever drives the tool; unit", true},
+  visit(HandField{"lever_rate", "rad/s", "rate of a lever that is felt", true},
+        hands.lever_rate...);
+  visit(HandField{"direction_W", "", "in which the lever drives the tool; unit", true},
         hands.direction_W...);
-  visit(Field{.name = "turning_W",
-              .unit = "rad/m",
-              .what = "how far the lever turns the tool",
-              .most = 10.0},
+  visit(HandField{.name = "turning_W",
+                  .unit = "rad/m",
+                  .what = "how far the lever turns the tool",
+                  .most = 10.0},
         hands.turning_W...);
-  visit(Field{"linear", "m/s", "rate of the hand", true}, hands.ball.linear...);
-  visit(Field{.name = "angular",
-              .unit = "rad/s",
-              .what = "rate of the hand",
-              .moves = true,
-              .most = 100.0},
+  visit(HandField{"linear", "m/s", "rate of the hand", true}, hands.ball.linear...);
+  visit(HandField{.name = "angular",
+                  .unit = "rad/s",
+                  .what = "rate of the hand",
+                  .moves = true,
+                  .most = 100.0},
         hands.ball.angular...);
-  visit(Field{.name = "scale", .unit = "", .what = "of a master that is felt", .is_settled = true},
-        hands.scale...);
-  visit(Field{"guides", "", "bits of the fixtures that are on"}, hands.guides...);
-  visit(Field{.name = "guide_strength",
-              .unit = "",
-              .what = "share of the fixtures' force, 0 to 1",
-              .is_settled = true},
+  visit(
+      HandField{
+          .name = "scale", .unit = "", .what = "of a master that is felt", .is_settled = true},
+      hands.scale...);
+  visit(HandField{"guides", "", "bits of the fixtures that are on"}, hands.guides...);
+  visit(HandField{.name = "guide_strength",
+                  .unit = "",
+                  .what = "share of the fixtures' force, 0 to 1",
+                  .is_settled = true},
         hands.guide_strength...);
-  visit(Field{"compliant", "", "bits of the directions of relief"}, hands.compliant...);
+  visit(HandField{"compliant", "", "bits of the directions of relief"}, hands.compliant...);
 }
 
 /// Which of the hands that hold one tool.

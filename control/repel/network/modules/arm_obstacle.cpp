@@ -6,10 +6,8 @@
 namespace repel::network {
 
 ArmObstacle::ArmObstacle(const ArmObstacleOptions& options)
-    : options_(options), controller_(passivity_of(options), Vec<any_size>::Ones(1)) {
-  checked("most energy", options.most_energy, 0.0, 1e6, "J");
-  checked("most damping", options.most_damping, 0.0, 1e6, "N m s/rad");
-}
+    : options_(checked_fields(options)),
+      controller_(passivity_of(options), Vec<any_size>::Ones(1)) {}
 
 void ArmObstacle::fit(Space /*space*/, int size) {
   controller_ = PassivityController<any_size>(passivity_of(options_), Vec<any_size>::Ones(size));

@@ -3,6 +3,7 @@
 /// ARM_OBSTACLE: the virtual forces of the world model on the links of the arm.
 #pragma once
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/series_source.hpp>
 
 namespace repel::network {
@@ -11,6 +12,13 @@ namespace repel::network {
 struct ArmObstacleOptions {
   double most_energy = 5.0;     ///< [J] see PassivityOptions
   double most_damping = 300.0;  ///< [N m s/rad] limit of the damping against energy from sampling
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"most_energy", "J", 0.0, 1e6}, o.most_energy);
+    visit(Field{"most_damping", "N m s/rad", 0.0, 1e6}, o.most_damping);
+  }
 };
 
 /// A series source of torque on the joints: f_left = f_right - sum over the links of J^T F, with F

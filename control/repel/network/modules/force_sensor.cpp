@@ -9,13 +9,7 @@
 
 namespace repel::network {
 
-ForceSensor::ForceSensor(const ForceSensorOptions& options) : options_(options) {
-  checked("gain", options.gain, 0.0, most_gain, "");
-  checked("cutoff", options.cutoff, 0.0, 1e5, "Hz");
-  checked("force range", options.force_range, 1e-3, 1e6, "N");
-  checked("torque range", options.torque_range, 1e-3, 1e6, "N m");
-  checked("tare", options.tare, 0.0, 100.0, "s");
-  checked("mass", options.mass, 0.0, 1e3, "kg");
+ForceSensor::ForceSensor(const ForceSensorOptions& options) : options_(checked_fields(options)) {
   checked("distance of the centre of mass", options.p_TC.norm(), 0.0, 10.0, "m");
   checked("gravity", options.gravity_W.norm(), 0.0, 100.0, "m/s^2");
 }

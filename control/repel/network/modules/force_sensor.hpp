@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/signals.hpp>
 
@@ -12,8 +13,9 @@ namespace repel::network {
 
 /// Gain, filter and ranges of a ForceSensor.
 struct ForceSensorOptions {
-  double gain = 0.5;            ///< g, 0 to `ForceSensor::most_gain`
-  double cutoff = 5.0;          ///< [Hz] of the low pass, first order; 0: none
+  static constexpr double most_gain = 0.7;  ///< greatest g
+  double gain = 0.5;                        ///< g, 0 to `most_gain`
+  double cutoff = 5.0;                      ///< [Hz] of the low pass, first order; 0: none
   double force_range = 200.0;   ///< [N] a reading is clipped to it along each axis of the tool
   double torque_range = 20.0;   ///< [N m] likewise
   double tare = 0.0;            ///< [s] standing still, at the start, of which the mean reading is
@@ -21,6 +23,17 @@ struct ForceSensorOptions {
   double mass = 0.0;            ///< [kg] of the tool beyond the sensor
   Vec3 p_TC{0, 0, 0};           ///< [m] its centre of mass in the tool frame
   Vec3 gravity_W{0, 0, -9.81};  ///< [m/s^2]
+
+  /// Calls visit(Field, x) for each number along one axis.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"gain", "", 0.0, most_gain}, o.gain);
+    visit(Field{"cutoff", "Hz", 0.0, 1e5}, o.cutoff);
+    visit(Field{"force_range", "N", 1e-3, 1e6}, o.force_range);
+    visit(Field{"torque_range", "N m", 1e-3, 1e6}, o.torque_range);
+    visit(Field{"tare", "s", 0.0, 100.0}, o.tare);
+    visit(Field{"mass", "kg", 0.0, 1e3}, o.mass);
+  }
 };
 
 /// A two-port of the joints that measures what the tool touches:
@@ -44,7 +57,7 @@ struct ForceSensorOptions {
 /// power g (tau_left + J^T F) . v that it supplies.
 class ForceSensor {
  public:
-  static constexpr double most_gain = 0.7;      ///< greatest g
+  static constexpr double most_gain = ForceSensorOptions::most_gain;  ///< greatest g
   static constexpr double fall = 0.05;          ///< [s] in which g falls to zero
   static constexpr double hold = 0.25;          ///< [s] of sound readings before it returns
   static constexpr double rise = 0.5;           ///< [s] in which it returns

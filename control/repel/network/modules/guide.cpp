@@ -15,8 +15,8 @@ double Guide::Held::stored() const noexcept {
 
 Guide::Guide(const GuideOptions& options)
     : ToolSource(with_room(options)),
-      ramp_(checked("ramp", options.ramp, 1e-3, 100.0, "s")),
-      entry_(checked("entry energy", options.entry_energy, 1e-3, 1e3, "J")) {
+      ramp_(checked_fields(options).ramp),
+      entry_(options.entry_energy) {
   const auto count = static_cast<double>(options.fixtures.size());
   checked("number of fixtures", count, 0, most_fixtures, "");
   for (const FixtureOptions& fixture : options.fixtures) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/entry_energy.hpp>
 #include <repel/network/elements/fixture.hpp>
 #include <repel/network/elements/series_source.hpp>
@@ -19,6 +20,14 @@ struct GuideOptions {
   double ramp = 0.25;         ///< [s] in which a fixture that is switched comes or goes
   double entry_energy = 1.0;  ///< [J] that coming may take from the module itself: EntryEnergy
   PassivityOptions passivity{.keeps_energy = true};  ///< over all of them
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"ramp", "s", 1e-3, 100.0}, o.ramp);
+    visit(Field{"entry_energy", "J", 1e-3, 1e3}, o.entry_energy);
+    PassivityOptions::for_each_field(visit, o.passivity);
+  }
 };
 
 /// A series source of effort: f_left = f_right - F at the same flow, F the sum over the fixtures of

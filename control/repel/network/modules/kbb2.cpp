@@ -5,16 +5,7 @@
 
 namespace repel::network {
 
-Kbb2::Kbb2(const Kbb2Options& options) : options_(options) {
-  detail::checked_gain("stiffness", options.stiffness, 1e-3, 1e7, "N/m");
-  detail::checked_gain("damping", options.damping, 0.0, 1e6, "N s/m");
-  checked("shunt", options.shunt, 0.0, 1e6, "N s/m");
-  checked("force limit", options.force_limit, 0.0, 1e6, "N");
-  detail::checked_gain("angular stiffness", options.angular_stiffness, 1e-3, 1e6, "N m/rad");
-  detail::checked_gain("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
-  checked("angular shunt", options.angular_shunt, 0.0, 1e6, "N m s/rad");
-  checked("torque limit", options.torque_limit, 0.0, 1e6, "N m");
-}
+Kbb2::Kbb2(const Kbb2Options& options) : options_(checked_fields(options)) {}
 
 void Kbb2::suit(const RobotEnd& robot) noexcept {
   constexpr Kbb2Options usual;

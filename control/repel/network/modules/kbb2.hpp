@@ -3,6 +3,7 @@
 /// KBB2: a virtual coupling, spring K parallel to damper B, with a shunt damper B2.
 #pragma once
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/signals.hpp>
@@ -20,6 +21,19 @@ struct Kbb2Options {
   double angular_damping = 4.0;     ///< [N m s/rad]
   double angular_shunt = 0.0;       ///< [N m s/rad]
   double torque_limit = 8.0;        ///< [N m]
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"stiffness", "N/m", 1e-3, 1e7, true}, o.stiffness);
+    visit(Field{"damping", "N s/m", 0.0, 1e6, true}, o.damping);
+    visit(Field{"shunt", "N s/m", 0.0, 1e6}, o.shunt);
+    visit(Field{"force_limit", "N", 0.0, 1e6}, o.force_limit);
+    visit(Field{"angular_stiffness", "N m/rad", 1e-3, 1e6, true}, o.angular_stiffness);
+    visit(Field{"angular_damping", "N m s/rad", 0.0, 1e6, true}, o.angular_damping);
+    visit(Field{"angular_shunt", "N m s/rad", 0.0, 1e6}, o.angular_shunt);
+    visit(Field{"torque_limit", "N m", 0.0, 1e6}, o.torque_limit);
+  }
 };
 
 /// The left side moves the far end of a spring and a parallel damper whose near end is on the

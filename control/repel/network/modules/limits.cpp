@@ -19,8 +19,7 @@ double JointLimits::operator()(double q, double v, double lower, double upper) c
 
 Limits::Limits(const JointLimits& law, const std::vector<JointRange>& ranges) {
   checked("range", law.range, 1e-6, 1e3, "rad");
-  detail::checked_gain("stiffness", law.stiffness, 0.0, 1e6, "N m/rad");
-  detail::checked_gain("damping", law.damping, 0.0, 1e6, "N m s/rad");
+  checked_fields(law);
   checked("number of joints", static_cast<double>(ranges.size()), 1, most_joints, "");
   for (const JointRange& range : ranges) {
     if (!std::isinf(range.lower)) checked("lower limit", range.lower, -1e6, 1e6, "rad");

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/series_source.hpp>
 
@@ -21,6 +22,13 @@ struct JointLimits {
 
   /// The torque [N m] at position `q` moving at `v`, for a joint between `lower` and `upper`.
   [[nodiscard]] double operator()(double q, double v, double lower, double upper) const noexcept;
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"stiffness", "N m/rad", 0.0, 1e6, true}, o.stiffness);
+    visit(Field{"damping", "N m s/rad", 0.0, 1e6, true}, o.damping);
+  }
 };
 
 /// Range of one joint [rad] or [m]; infinite for a continuous joint.

@@ -8,11 +8,7 @@
 
 namespace repel::network {
 
-Multiplex::Multiplex(const MultiplexOptions& options) : options_(options) {
-  checked("velocity scale", options.velocity_scale, 1e-6, 100.0, "m/rad");
-  checked("force scale", options.force_scale, 1e-6, 100.0, "m");
-  checked("turning time", options.turning_time, 0.0, 100.0, "s");
-}
+Multiplex::Multiplex(const MultiplexOptions& options) : options_(checked_fields(options)) {}
 
 void Multiplex::prepare(double period) {
   const double time = options_.turning_time;

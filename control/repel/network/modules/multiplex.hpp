@@ -3,6 +3,7 @@
 /// MULTIPLEX: couples a one-degree-of-freedom device to the six degrees of freedom of the tool.
 #pragma once
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/signals.hpp>
@@ -15,6 +16,15 @@ struct MultiplexOptions {
   double force_scale = 0.1;     ///< s_f [m] lever torque per tool force; s_f = s_v is lossless
   double turning_time = 0.05;   ///< [s] time constant with which the direction follows a new one
   Hand hand = Hand::first;      ///< of the lever
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"velocity_scale", "m/rad", 1e-6, 100.0}, o.velocity_scale);
+    visit(Field{"force_scale", "m", 1e-6, 100.0}, o.force_scale);
+    visit(Field{"turning_time", "s", 0.0, 100.0}, o.turning_time);
+    visit(Choice{"hand", {"first", "second"}}, o.hand);
+  }
 };
 
 /// A transformer along one twist d, a direction [1] and a turning [rad/m]: v6 = s_v d v1 and f1 =

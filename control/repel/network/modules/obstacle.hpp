@@ -10,6 +10,12 @@ namespace repel::network {
 /// Of the passivity controller of an Obstacle.
 struct ObstacleOptions {
   PassivityOptions passivity;  ///< of all six directions together
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    PassivityOptions::for_each_field(visit, o.passivity);
+  }
 };
 
 /// A series source of effort: f_left = f_right - F_walls at the same flow. The walls are nonlinear

@@ -22,11 +22,7 @@ PassivityController<any_size> controller_of(const PostureOptions& options, int s
 
 Posture::Posture(PostureOptions options)
     : options_(std::move(options)), controller_(controller_of(options_, 1)) {
-  checked("stiffness", options_.stiffness, 0.0, 1e6, "N m/rad");
-  checked("damping", options_.damping, 0.0, 1e6, "N m s/rad");
-  checked("torque limit", options_.torque_limit, 0.0, 1e6, "N m");
-  checked("most energy", options_.most_energy, 0.0, 1e6, "J");
-  checked("most damping", options_.most_damping, 0.0, 1e6, "N m s/rad");
+  checked_fields(options_);
   for (const double q : options_.joints) checked("joint", q, -1e3, 1e3, "rad or m");
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/series_source.hpp>
 
@@ -20,6 +21,16 @@ struct PostureOptions {
   double most_damping = 300.0;   ///< [N m s/rad] limit of the damping against energy from sampling
   std::vector<double> joints{};  ///< [rad] or [m] at which the spring is slack; empty: where the
                                  ///< arm is in the first tick, and in the first after a release
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"stiffness", "N m/rad", 0.0, 1e6}, o.stiffness);
+    visit(Field{"damping", "N m s/rad", 0.0, 1e6}, o.damping);
+    visit(Field{"torque_limit", "N m", 0.0, 1e6}, o.torque_limit);
+    visit(Field{"most_energy", "J", 0.0, 1e6}, o.most_energy);
+    visit(Field{"most_damping", "N m s/rad", 0.0, 1e6}, o.most_damping);
+  }
 };
 
 /// A series source of torque in the null space of the tool, for arms with joints to spare:

@@ -9,11 +9,7 @@
 
 namespace repel::network {
 
-Relief::Relief(const ReliefOptions& options) : options_(options) {
-  checked("stiffness", options.stiffness, 0.0, 1e7, "N/m");
-  detail::checked_gain("damping", options.damping, 0.0, 1e6, "N s/m");
-  checked("angular stiffness", options.angular_stiffness, 0.0, 1e6, "N m/rad");
-  detail::checked_gain("angular damping", options.angular_damping, 0.0, 1e6, "N m s/rad");
+Relief::Relief(const ReliefOptions& options) : options_(checked_fields(options)) {
   for (std::size_t i = 0; i < options.compliant.size(); ++i) {
     if (!options.compliant[i] || may_give(options, i)) continue;
     throw SetupError("a compliant direction has neither stiffness nor damping");

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/elements/signals.hpp>
@@ -25,6 +26,16 @@ struct ReliefOptions {
   double damping = 50.0;           ///< [N s/m]
   double angular_stiffness = 5.0;  ///< [N m/rad]; 0: a pure damper
   double angular_damping = 0.5;    ///< [N m s/rad]
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Choice{"frame", {"world", "tool"}}, o.frame);
+    visit(Field{"stiffness", "N/m", 0.0, 1e7}, o.stiffness);
+    visit(Field{"damping", "N s/m", 0.0, 1e6, true}, o.damping);
+    visit(Field{"angular_stiffness", "N m/rad", 0.0, 1e6}, o.angular_stiffness);
+    visit(Field{"angular_damping", "N m s/rad", 0.0, 1e6, true}, o.angular_damping);
+  }
 };
 
 /// A series two-port: compliant, with a spring-damper, along each chosen direction s of the task

@@ -7,19 +7,7 @@
 
 namespace repel::network {
 
-SixAxes::SixAxes(const SixAxesOptions& options) : options_(options) {
-  checked("mass", options.mass, 1e-6, 1e3, "kg");
-  checked("inertia", options.inertia, 1e-9, 1e3, "kg m^2");
-  checked("friction", options.friction, 0.0, 1e4, "N s/m");
-  checked("angular friction", options.angular_friction, 0.0, 1e3, "N m s/rad");
-  checked("hand stiffness", options.hand_stiffness, 0.0, 1e6, "N/m");
-  checked("hand damping", options.hand_damping, 0.0, 1e5, "N s/m");
-  checked("angular hand stiffness", options.angular_hand_stiffness, 0.0, 1e5, "N m/rad");
-  checked("angular hand damping", options.angular_hand_damping, 0.0, 1e4, "N m s/rad");
-  checked("force limit", options.force_limit, 0.0, 1e5, "N");
-  checked("torque limit", options.torque_limit, 0.0, 1e4, "N m");
-  checked("motion scale", options.motion_scale, 1e-3, 1e3, "");
-}
+SixAxes::SixAxes(const SixAxesOptions& options) : options_(checked_fields(options)) {}
 
 void SixAxes::prepare(double period) {
   detail::checked_period(period);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/elements/held_axis.hpp>
 #include <repel/network/elements/signals.hpp>
@@ -30,6 +31,23 @@ struct SixAxesOptions {
   /// that no power is lost. Multiplied by HandInput::scale (ChangingScale).
   double motion_scale = 1.0;
   Hand hand = Hand::first;  ///< that holds it
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"mass", "kg", 1e-6, 1e3}, o.mass);
+    visit(Field{"inertia", "kg m^2", 1e-9, 1e3}, o.inertia);
+    visit(Field{"friction", "N s/m", 0.0, 1e4}, o.friction);
+    visit(Field{"angular_friction", "N m s/rad", 0.0, 1e3}, o.angular_friction);
+    visit(Field{"hand_stiffness", "N/m", 0.0, 1e6}, o.hand_stiffness);
+    visit(Field{"hand_damping", "N s/m", 0.0, 1e5}, o.hand_damping);
+    visit(Field{"angular_hand_stiffness", "N m/rad", 0.0, 1e5}, o.angular_hand_stiffness);
+    visit(Field{"angular_hand_damping", "N m s/rad", 0.0, 1e4}, o.angular_hand_damping);
+    visit(Field{"force_limit", "N", 0.0, 1e5}, o.force_limit);
+    visit(Field{"torque_limit", "N m", 0.0, 1e4}, o.torque_limit);
+    visit(Field{"motion_scale", "", 1e-3, 1e3}, o.motion_scale);
+    visit(Choice{"hand", {"first", "second"}}, o.hand);
+  }
 };
 
 /// A one-port of the tool space: wrench in, twist out; a HeldAxis along and about each of the world

@@ -7,13 +7,7 @@
 
 namespace repel::network {
 
-Spaceball::Spaceball(const SpaceballOptions& options) : options_(options) {
-  checked("dead band", options.dead_band, 0.0, 10.0, "m/s");
-  checked("saturation", options.saturation, 0.0, 10.0, "m/s");
-  checked("angular dead band", options.angular_dead_band, 0.0, 100.0, "rad/s");
-  checked("angular saturation", options.angular_saturation, 0.0, 100.0, "rad/s");
-  checked("time constant", options.time_constant, 0.0, 100.0, "s");
-}
+Spaceball::Spaceball(const SpaceballOptions& options) : options_(checked_fields(options)) {}
 
 void Spaceball::read(const Signals& signals) noexcept {
   const Twist& raw = signals.hand.ball;

@@ -3,6 +3,7 @@
 /// SPACEBALL: a six-degree-of-freedom rate source without force feedback.
 #pragma once
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/equivalent.hpp>
 #include <repel/network/elements/signals.hpp>
 
@@ -15,6 +16,16 @@ struct SpaceballOptions {
   double angular_dead_band = 0.01;  ///< [rad/s]
   double angular_saturation = 1.0;  ///< [rad/s]
   double time_constant = 0.05;      ///< [s] of the low pass; 0 for none
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"dead_band", "m/s", 0.0, 10.0}, o.dead_band);
+    visit(Field{"saturation", "m/s", 0.0, 10.0}, o.saturation);
+    visit(Field{"angular_dead_band", "rad/s", 0.0, 100.0}, o.angular_dead_band);
+    visit(Field{"angular_saturation", "rad/s", 0.0, 100.0}, o.angular_saturation);
+    visit(Field{"time_constant", "s", 0.0, 100.0}, o.time_constant);
+  }
 };
 
 /// Adds the rates of the ball to the flow from the left: v_right = v_left + v_ball at the same

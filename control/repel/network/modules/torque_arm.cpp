@@ -5,13 +5,7 @@
 
 namespace repel::network {
 
-TorqueArm::TorqueArm(const TorqueArmOptions& options) : options_(options) {
-  checked("inertia", options.inertia, 1e-6, 1e3, "kg m^2");
-  checked("friction", options.friction, 0.0, 1e3, "N m s/rad");
-  checked("hand stiffness", options.hand_stiffness, 0.0, 1e5, "N m/rad");
-  checked("hand damping", options.hand_damping, 0.0, 1e4, "N m s/rad");
-  checked("torque limit", options.torque_limit, 0.0, 1e4, "N m");
-}
+TorqueArm::TorqueArm(const TorqueArmOptions& options) : options_(checked_fields(options)) {}
 
 void TorqueArm::prepare(double period) {
   axis_ = HeldAxis({options_.inertia, options_.friction, options_.hand_stiffness,

@@ -4,6 +4,7 @@
 /// holds it.
 #pragma once
 
+#include <repel/base/field.hpp>
 #include <repel/network/elements/held_axis.hpp>
 #include <repel/network/elements/signals.hpp>
 
@@ -17,6 +18,17 @@ struct TorqueArmOptions {
   double hand_damping = 0.6;     ///< [N m s/rad]
   double torque_limit = 10.0;    ///< [N m] limit of the motor
   Hand hand = Hand::first;       ///< that holds it
+
+  /// Calls visit(Field, x) for each number.
+  template <class Visit, class Options>
+  static constexpr void for_each_field(const Visit& visit, Options& o) {
+    visit(Field{"inertia", "kg m^2", 1e-6, 1e3}, o.inertia);
+    visit(Field{"friction", "N m s/rad", 0.0, 1e3}, o.friction);
+    visit(Field{"hand_stiffness", "N m/rad", 0.0, 1e5}, o.hand_stiffness);
+    visit(Field{"hand_damping", "N m s/rad", 0.0, 1e4}, o.hand_damping);
+    visit(Field{"torque_limit", "N m", 0.0, 1e4}, o.torque_limit);
+    visit(Choice{"hand", {"first", "second"}}, o.hand);
+  }
 };
 
 /// A one-port: torque in, rate out; a HeldAxis of the lever space.
