@@ -4,7 +4,7 @@
 include(RepelDependencies)
 
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
-# backends/.
+# backends/; that of dds is link, that of octrees is percepts.
 set(REPEL_COMPONENTS core control common simulated ideal devices link dds record robots cover
     percepts octrees bullet ode scene visual)
 
@@ -83,6 +83,7 @@ repel_all_found(PNGS REPEL_WITH_PNGS REPEL_HAS_PERCEPTS PNG_FOUND)
 repel_all_found(ZSTD REPEL_WITH_ZSTD REPEL_HAS_RECORD ZSTD_FOUND)
 # The driver of Haply is part of the devices, with the packages of the live view.
 repel_all_found(HAPLY REPEL_WITH_HAPLY REPEL_HAS_DEVICES REPEL_HAS_VISUAL)
+repel_all_found(DDS REPEL_HAS_DDS REPEL_HAS_LINK)
 repel_all_found(OCTREES REPEL_HAS_OCTREES REPEL_HAS_COVER REPEL_HAS_PERCEPTS)
 foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs zstd haply)
   repel_say_if_left_out(${part})

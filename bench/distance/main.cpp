@@ -29,25 +29,16 @@ constexpr const char* about =
     "  --json FILE   writes the results as JSON\n"
     "  --help        this text\n";
 
-struct Options {
-  std::vector<std::string> tasks, rivals;
+struct Options : QueryOptions {
+  std::vector<std::string> tasks;
   bool sweep = false;
-  bool quick = false;
-  bool list = false;
-  double seconds = 0.0;
 };
 
 /// Throws std::invalid_argument for an unknown name.
 Options parse(Arguments arguments) {
-  Options options;
-  options.tasks = split(arguments.value("--task", ""));
-  options.rivals = split(arguments.value("--rival", ""));
-  options.sweep = arguments.has("--sweep");
-  options.quick = arguments.has("--quick");
-  options.list = arguments.has("--list");
-  options.seconds = std::stod(arguments.value("--seconds", "0.5"));
-  arguments.end();
-  return options;
+  const std::vector<std::string> tasks = split(arguments.value("--task", ""));
+  const bool sweep = arguments.has("--sweep");
+  return {query_options(arguments, "0.5"), tasks, sweep};
 }
 
 class Suite {

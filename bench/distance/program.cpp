@@ -69,6 +69,13 @@ void Arguments::end() const {
   }
 }
 
+QueryOptions query_options(Arguments arguments, const char* seconds) {
+  QueryOptions options{split(arguments.value("--rival", "")), arguments.has("--quick"),
+                       arguments.has("--list"), std::stod(arguments.value("--seconds", seconds))};
+  arguments.end();
+  return options;
+}
+
 std::vector<std::string> split(const std::string& names) {
   std::vector<std::string> parts;
   std::istringstream stream(names);

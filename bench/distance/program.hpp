@@ -30,6 +30,18 @@ class Arguments {
   std::vector<std::string> words_;
 };
 
+/// Options of the programs that time single queries.
+struct QueryOptions {
+  std::vector<std::string> rivals;  ///< only these libraries; empty: all
+  bool quick = false;               ///< fewer pairs, less time
+  bool list = false;                ///< say what there is to measure
+  double seconds = 0.0;             ///< [s] of a measurement
+};
+
+/// What is left of `arguments`; `seconds` where none are given. Throws std::invalid_argument for
+/// what is unknown.
+[[nodiscard]] QueryOptions query_options(Arguments arguments, const char* seconds);
+
 /// The parts of a list "a,b,c".
 [[nodiscard]] std::vector<std::string> split(const std::string& names);
 

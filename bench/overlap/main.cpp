@@ -26,24 +26,6 @@ constexpr const char* about =
     "  --json FILE   writes the results as JSON\n"
     "  --help        this text\n";
 
-struct Options {
-  std::vector<std::string> rivals;
-  bool quick = false;
-  bool list = false;
-  double seconds = 0.0;
-};
-
-/// Throws std::invalid_argument for an unknown name.
-Options parse(Arguments arguments) {
-  Options options;
-  options.rivals = split(arguments.value("--rival", ""));
-  options.quick = arguments.has("--quick");
-  options.list = arguments.has("--list");
-  options.seconds = std::stod(arguments.value("--seconds", "0.3"));
-  arguments.end();
-  return options;
-}
-
 /// The same solids for all libraries.
 class Input {
  public:
@@ -82,7 +64,7 @@ void count(const Conduct& conduct, benchmark::State& state) {
   state.counters["wrong_on_the_way"] = conduct.wrong;
 }
 
-Rows measure(const Options& options, bool to_file) {
+Rows measure(const QueryOptions& options, bool to_file) {
   Rows rows;
   for (const auto& [name, vertices] : {std::pair("box", 0), std::pair("16v", 16)}) {
     const Input input(name, vertices, options.quick);
@@ -108,7 +90,7 @@ Rows measure(const Options& options, bool to_file) {
 }
 
 int run(const Arguments& arguments, bool to_file) {
-  const Options options = parse(arguments);
+  const QueryOptions options = query_options(arguments, "0.3");
   std::vector<std::string> names{"repel"};
   for (const Library& library : libraries()) {
     if (options.list) std::printf("%s (%s)\n", library.name.c_str(), library.version.c_str());

@@ -21,11 +21,6 @@ ArmModel without_losses(ArmModel model) {
   return model;
 }
 
-double energy(const ArmModel& model, const Arm& arm) {
-  return kinetic_energy(model, positions(arm), velocities(arm)) +
-         potential_energy(model, positions(arm));
-}
-
 /// Time [s] between the first and the last of `swings` + 1 upward passages through zero, per swing.
 double measured_period(Arm& arm, double period, int swings) {
   double first = 0.0, last = 0.0, before = positions(arm)[0];
@@ -157,19 +152,6 @@ TEST(BulletArmDynamics, FirstOrderInTheSubStepTheEnergyOfASixLinkArmStays) {
   RecordProperty("largest_energy_error_J", std::to_string(coarse));
   EXPECT_LT(coarse, 0.5);                // of about 60 J exchanged
   EXPECT_NEAR(coarse / fine, 4.0, 0.5);  // second order: equations correct, only the step is coarse
-}
-
-TEST(BulletArmDynamics, TorquesThatBalanceGravityHoldTheArmStill) {
-  const ArmModel model = puma560();
-  Arm arm(model);
-  const std::vector q{0.3, 0.8, -0.5, 0.4, 0.9, -0.2};
-  arm.reset(q);
-  arm.set_torques(holding_torques(model, q));
-  for (int tick = 0; tick < 400; ++tick) arm.step(1.0 / 400);
-  for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(positions(arm)[i], q[i], 1e-8) << i;
-  arm.set_torques(std::vector(6, 0.0));
-  arm.step(0.1);
-  EXPECT_GT(std::abs(positions(arm)[1] - q[1]), 1e-3);  // so the torques held it
 }
 
 TEST(BulletArmDynamics, TurningTheBaseAndGravityTogetherChangesNothing) {

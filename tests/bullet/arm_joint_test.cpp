@@ -63,20 +63,6 @@ TEST(BulletArmJoint, CoulombFrictionStopsAMovingJointWhereTheWorkIsDone) {
   EXPECT_NEAR(velocities(arm)[0], 0.0, 1e-15);
 }
 
-TEST(BulletArmJoint, AStopHoldsAgainstALoadWithinLoadOverStiffness) {
-  ArmModel model = turntable(0.5);
-  model.links[0].lower = -0.7;
-  model.links[0].upper = 0.4;
-  Arm arm(model, {.substeps = 4, .stop_stiffness = 2e4});
-  for (const double torque : {150.0, -150.0}) {
-    arm.set_torques(std::vector{torque});
-    for (int tick = 0; tick < 2000; ++tick) arm.step(1.0 / 400);
-    const double stop = torque > 0 ? 0.4 : -0.7;
-    EXPECT_NEAR(positions(arm)[0], stop + torque / 2e4, 1e-6);
-    EXPECT_NEAR(velocities(arm)[0], 0.0, 1e-6);
-  }
-}
-
 TEST(BulletArmJoint, AStopTakesEnergyAndLetsGo) {
   ArmModel model = turntable(0.5);
   model.links[0].lower = -0.5;

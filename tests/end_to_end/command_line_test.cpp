@@ -4,6 +4,9 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <repel/host/command_line.hpp>
 
@@ -12,6 +15,23 @@
 
 namespace repel::test {
 namespace command_line_test {
+
+struct Complaint {
+  const char* arguments;
+  const char* words;  ///< the first ones, if they begin with the name of the program
+  int status = 2;
+};
+
+/// teleop ends with the status of each and says its words.
+void expect_complaints(const std::vector<Complaint>& all) {
+  for (const auto& [arguments, words, status] : all) {
+    const Ending ending = teleop(arguments);
+    EXPECT_EQ(ending.status, status) << arguments << '\n' << ending;
+    const bool first = std::string_view(words).starts_with("teleop: ");
+    EXPECT_TRUE(first ? ending.err.starts_with(words) : ending.says(words)) << arguments << '\n'
+                                                                            << ending;
+  }
+}
 
 TEST(CommandLine, HelpNamesCommandsCommonUsageAndWhatASceneIsRunWith) {
   const Ending ending = teleop("--help");
@@ -113,32 +133,19 @@ TEST(CommandLine, TheClosestWordIsTheOneOfFewestStepsIfTheyAreFew) {
 }
 
 TEST(CommandLine, WhatIsMistypedIsToldWhatWasMeant) {
-  const struct {
-    const char* arguments;
-    int status;
-    const char* words;
-  } cases[] = {
-      {"--bakend ode", 2, "teleop: unknown option --bakend; did you mean --backend?\n"},
-      {"plates --fats", 2, "teleop: unknown option --fats; did you mean --fast?\n"},
-      {"run plates --bakend=ode", 2, "teleop: unknown option --bakend; did you mean --backend?\n"},
-      {"station delayed --impared", 2, "did you mean --impaired?\n"},
-      {"--zzzzzzzzzzz", 2, "teleop: unknown option --zzzzzzzzzzz\n"},
-      {"chek plates", 2, "teleop: unknown command chek; did you mean check?\n"},
-      {"lsit", 2, "teleop: unknown command lsit; did you mean list?\n"},
-      {"plate --fast", 1, "plate: no such scene (did you mean plates?)"},
-  };
-  for (const auto& each : cases) {
-    const Ending ending = teleop(each.arguments);
-    EXPECT_EQ(ending.status, each.status) << each.arguments << '\n' << ending;
-    EXPECT_TRUE(ending.says(each.words)) << each.arguments << '\n' << ending;
-  }
+  expect_complaints(
+      {{"--bakend ode", "teleop: unknown option --bakend; did you mean --backend?\n"},
+       {"plates --fats", "teleop: unknown option --fats; did you mean --fast?\n"},
+       {"run plates --bakend=ode", "teleop: unknown option --bakend; did you mean --backend?\n"},
+       {"station delayed --impared", "did you mean --impaired?\n"},
+       {"--zzzzzzzzzzz", "teleop: unknown option --zzzzzzzzzzz\n"},
+       {"chek plates", "teleop: unknown command chek; did you mean check?\n"},
+       {"lsit", "teleop: unknown command lsit; did you mean list?\n"},
+       {"plate --fast", "plate: no such scene (did you mean plates?)", 1}});
 }
 
 TEST(CommandLine, AnOptionOfAnotherCommandIsToldWhereItBelongs) {
-  const struct {
-    const char* arguments;
-    const char* words;
-  } cases[] = {
+  expect_complaints({
       {"check plates --domain 3", "--domain belongs to: teleop run, teleop site, teleop station\n"},
       {"plates --domain 3", "--domain belongs to: teleop site, teleop station"},
       {"plates --impaired", "--impaired belongs to: teleop site, teleop station\n"},
@@ -147,12 +154,7 @@ TEST(CommandLine, AnOptionOfAnotherCommandIsToldWhereItBelongs) {
       {"station delayed --html x.html",
        "--html belongs to: teleop run, teleop replay, teleop site\n"},
       {"list --fast", "--fast belongs to: teleop run\n"},
-  };
-  for (const auto& each : cases) {
-    const Ending ending = teleop(each.arguments);
-    EXPECT_EQ(ending.status, 2) << each.arguments << '\n' << ending;
-    EXPECT_TRUE(ending.says(each.words)) << each.arguments << '\n' << ending;
-  }
+  });
 }
 
 TEST(CommandLine, OldSpellingsOfOptionsWorkAndSayTheNewOnes) {
@@ -178,19 +180,12 @@ TEST(CommandLine, OldSpellingsOfOptionsWorkAndSayTheNewOnes) {
 }
 
 TEST(CommandLine, OptionsThatAreCommandsByNowAreAnsweredWithThem) {
-  const struct {
-    const char* arguments;
-    const char* words;
-  } cases[] = {
+  expect_complaints({
       {"--replay run.mcap", "teleop: --replay FILE is by now: teleop replay FILE\n"},
       {"--replay=run.mcap --view", "teleop: --replay FILE is by now: teleop replay FILE\n"},
       {"delayed --site --seconds 1", "teleop: --site is by now: teleop site SCENE\n"},
-      {"delayed --station", "teleop: --station is by now: teleop station SCENE\n"}};
-  for (const auto& each : cases) {
-    const Ending ending = teleop(each.arguments);
-    EXPECT_EQ(ending.status, 2) << each.arguments << '\n' << ending;
-    EXPECT_EQ(ending.err.rfind(each.words, 0), 0U) << each.arguments << '\n' << ending;
-  }
+      {"delayed --station", "teleop: --station is by now: teleop station SCENE\n"},
+  });
 }
 
 TEST(CommandLine, RunIsTheCommandWhereNoneIsNamed) {

@@ -210,3 +210,16 @@ inline const char* to_text(Side side) {
 }
 
 }  // namespace repel::test
+
+// For the tests of the network, which are in namespaces within this one.
+namespace repel::network {
+
+using test::Cell;
+using test::DrawnEnds;
+using test::DrawnSignals;
+using test::Matrix;
+using test::Rng;
+using test::State;
+using test::Vector;
+
+}  // namespace repel::network

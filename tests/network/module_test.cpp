@@ -11,10 +11,7 @@
 namespace repel::network {
 namespace module_test {
 
-using test::Matrix;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 37;
 

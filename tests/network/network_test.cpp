@@ -17,11 +17,7 @@ namespace network_test {
 
 using test::between;
 using test::DrawnPlan;
-using test::DrawnSignals;
-using test::Matrix;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 /// Number of modules met, for each type of the library.
 template <class... M>

@@ -10,9 +10,7 @@
 namespace repel::network {
 namespace plan_test {
 
-using test::Matrix;
 using test::period;
-using test::Vector;
 
 Mass<any_size> mass(int size) {
   return Mass<any_size>(Matrix::Identity(size, size));

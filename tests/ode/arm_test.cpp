@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ODE arm: its mechanics, its joints and its other properties.
+// The ODE arm: its mechanics, its joints and its other properties. What every engine has is in
+// tests/engines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,11 +17,6 @@ namespace arm_test {
 using namespace simulated;
 
 constexpr double period = 1.0 / 400;
-
-double energy(const ArmModel& model, const Arm& arm) {
-  return potential_energy(model, positions(arm)) +
-         kinetic_energy(model, positions(arm), velocities(arm));
-}
 
 TEST(OdeArm, PendulumSwingsWithThePeriodOfTheEllipticIntegralAndKeepsItsEnergy) {
   const ArmModel model = pendulum();
@@ -46,16 +42,6 @@ TEST(OdeArm, AnswersTorquesAsBothMassesAndRotorsSay) {
   model.links[0].rotor_inertia = 1.5;
   Arm arm(model);
   EXPECT_NEAR(accelerations(arm, {0.0}, {0.0}, {4.0})[0], 2.0, 1e-6);
-}
-
-TEST(OdeArm, TorquesThatBalanceGravityHoldTheArmStill) {
-  const ArmModel model = heavy_puma();
-  const std::vector q{0.3, 0.8, -0.5, 0.4, 0.9, -0.2};
-  Arm arm(model);
-  arm.reset(q);
-  arm.set_torques(holding_torques(model, q));
-  for (int tick = 0; tick < 400; ++tick) arm.step(period);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(positions(arm)[i], q[i], 1e-6) << i;
 }
 
 TEST(OdeArm, TurnsAsFarAsItsJointsAllow) {
@@ -91,20 +77,9 @@ TEST(OdeArm, FrictionHoldsBelowItsLimitAndOpposesBeyondIt) {
   EXPECT_NEAR(velocities(arm)[0], (4.0 - 3.0) / 2.0, 1e-6);
 }
 
-TEST(OdeArm, AStopHoldsAgainstALoadWithinLoadOverStiffness) {
-  ArmModel model = turntable(0.5);
-  model.links[0].upper = 0.5;
-  Arm arm(model);
-  arm.set_torques(std::vector{20.0});
-  for (int tick = 0; tick < 2000; ++tick) arm.step(period);
-  EXPECT_NEAR(positions(arm)[0], 0.5 + 20.0 / 1e5, 1e-6);
-  arm.set_torques(std::vector{-20.0});
-  for (int tick = 0; tick < 40; ++tick) arm.step(period);
-  EXPECT_LT(positions(arm)[0], 0.45) << "a stop lets go";
-}
-
-std::vector<double> state_after_a_second(Arm& arm, unsigned seed) {
-  std::mt19937 generator(seed);
+TEST(OdeArm, TheLinksOfAPumaStayTogether) {
+  Arm arm(heavy_puma());
+  std::mt19937 generator(3);
   std::uniform_real_distribution<double> effort(-20.0, 20.0);
   for (int tick = 0; tick < 400; ++tick) {
     std::vector<double> torques(6);
@@ -112,24 +87,11 @@ std::vector<double> state_after_a_second(Arm& arm, unsigned seed) {
     arm.set_torques(torques);
     arm.step(period);
   }
-  return positions(arm);
+  EXPECT_LT(arm.parted(), 1e-3);
 }
 
-TEST(OdeArm, TheSameInputsGiveTheSameBits) {
-  Arm one(heavy_puma());
-  Arm two(heavy_puma());
-  EXPECT_EQ(state_after_a_second(one, 3), state_after_a_second(two, 3));
-  EXPECT_LT(one.parted(), 1e-3);
-}
-
-TEST(OdeArm, LivesThroughBadInputAndRemembersIt) {
+TEST(OdeArm, LivesThroughTorquesBeyondAllReason) {
   Arm arm(heavy_puma());
-  arm.set_torques(std::vector{std::nan(""), 0.0, 0.0, 0.0, 0.0});
-  EXPECT_TRUE(arm.faults().torque);
-  arm.step(std::nan(""));
-  arm.step(-1.0);
-  EXPECT_TRUE(arm.faults().period);
-  arm.clear_faults();
   arm.set_torques(std::vector(6, 1e9));
   for (int tick = 0; tick < 100; ++tick) arm.step(0.1);
   for (const double q : positions(arm)) EXPECT_TRUE(std::isfinite(q));
@@ -142,10 +104,6 @@ TEST(OdeArm, SetUpRefusesWhatItCannotMove) {
   ArmModel model = heavy_puma();
   model.links[3].mass = 0.0;
   EXPECT_THROW(Arm{model}, SetupError);
-  EXPECT_THROW((Arm{heavy_puma(), {.substeps = 0}}), SetupError);
-  Arm arm(heavy_puma());
-  EXPECT_THROW(arm.reset(std::vector(5, 0.0)), SetupError);
-  EXPECT_THROW(arm.reset(std::vector(6, 100.0)), SetupError);
 }
 
 }  // namespace arm_test

@@ -229,6 +229,13 @@ std::vector<double> velocities(const Arm& arm) {
   return v;
 }
 
+/// Kinetic and potential energy [J] of the arm of `model`.
+template <class Arm>
+double energy(const ArmModel& model, const Arm& arm) {
+  return kinetic_energy(model, positions(arm), velocities(arm)) +
+         potential_energy(model, positions(arm));
+}
+
 /// The acceleration under `torques` at `q`, `v`, from one step of `period` [s]. Free bodies with
 /// constraints need a longer one: rounding of their positions counts by its inverse square.
 template <class Arm>

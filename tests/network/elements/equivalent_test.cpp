@@ -10,10 +10,6 @@
 namespace repel::network {
 namespace equivalent_test {
 
-using test::Matrix;
-using test::Rng;
-using test::Vector;
-
 constexpr unsigned seed = 77;
 constexpr int draws = families::draws(3000);
 

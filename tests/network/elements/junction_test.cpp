@@ -8,10 +8,6 @@
 namespace repel::network {
 namespace junction_test {
 
-using test::Matrix;
-using test::Rng;
-using test::Vector;
-
 constexpr unsigned seed = 83;
 
 Equivalent<any_size> drawn(Rng& rng, int n, bool by_flow, bool insisting) {

@@ -13,12 +13,7 @@
 namespace repel::network {
 namespace line_test {
 
-using test::DrawnEnds;
-using test::Matrix;
 using test::period;
-using test::Rng;
-using test::State;
-using test::Vector;
 
 constexpr unsigned seed = 31;
 constexpr std::array<Side, 2> sides{Side::left, Side::right};

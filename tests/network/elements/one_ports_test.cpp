@@ -12,7 +12,6 @@ namespace repel::network {
 namespace one_ports_test {
 
 using test::period;
-using test::Rng;
 
 constexpr unsigned seed = 51;
 

@@ -12,8 +12,6 @@
 namespace repel::network {
 namespace port_test {
 
-using test::Rng;
-
 constexpr unsigned seed = 11;
 
 template <int N>

@@ -8,9 +8,6 @@
 namespace repel::network {
 namespace two_port_test {
 
-using test::Rng;
-using test::Vector;
-
 constexpr unsigned seed = 29;
 using Map = Eigen::Matrix<double, any_size, any_size, Eigen::ColMajor, most_joints, most_joints>;
 

@@ -9,7 +9,6 @@ namespace repel::network {
 namespace wave_account_test {
 
 using test::period;
-using test::Vector;
 
 constexpr unsigned seed = 811;
 

@@ -12,8 +12,6 @@ namespace repel::network {
 namespace any_module_test {
 
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 37;
 

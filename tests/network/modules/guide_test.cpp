@@ -10,11 +10,7 @@
 namespace repel::network {
 namespace guide_test {
 
-using test::Cell;
-using test::DrawnEnds;
-using test::DrawnSignals;
 using test::period;
-using test::Rng;
 
 constexpr unsigned seed = 67;
 

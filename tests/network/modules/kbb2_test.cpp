@@ -11,13 +11,7 @@
 namespace repel::network {
 namespace kbb2_test {
 
-using test::Cell;
-using test::DrawnEnds;
-using test::DrawnSignals;
-using test::Matrix;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 9;
 constexpr double no_limit = 1e6;

@@ -10,11 +10,7 @@
 namespace repel::network {
 namespace limits_test {
 
-using test::Cell;
-using test::DrawnEnds;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 12;
 

@@ -25,11 +25,6 @@
 namespace repel::network {
 namespace posture_test {
 
-using test::Cell;
-using test::Matrix;
-using test::Rng;
-using test::Vector;
-
 constexpr unsigned seed = 53;
 
 /// Seven joints about alternating axes, as those of most redundant arms, with a light wrist.

@@ -11,8 +11,6 @@ namespace repel::network {
 namespace puma_joints_test {
 
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 61;
 

@@ -8,13 +8,7 @@
 namespace repel::network {
 namespace puma_kin_test {
 
-using test::Cell;
-using test::DrawnEnds;
-using test::DrawnSignals;
-using test::Matrix;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 17;
 

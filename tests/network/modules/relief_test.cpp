@@ -10,13 +10,7 @@
 namespace repel::network {
 namespace relief_test {
 
-using test::Cell;
-using test::DrawnEnds;
-using test::DrawnSignals;
-using test::Matrix;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 41;
 using Six = Eigen::Matrix<double, 6, 1>;

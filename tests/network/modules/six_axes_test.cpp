@@ -15,9 +15,7 @@
 namespace repel::network {
 namespace six_axes_test {
 
-using test::Matrix;
 using test::period;
-using test::Vector;
 
 constexpr unsigned seed = 66;
 

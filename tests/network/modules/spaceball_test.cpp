@@ -10,12 +10,7 @@
 namespace repel::network {
 namespace spaceball_test {
 
-using test::Cell;
-using test::DrawnEnds;
-using test::DrawnSignals;
 using test::period;
-using test::Rng;
-using test::Vector;
 
 constexpr unsigned seed = 66;
 const SpaceballOptions unfiltered{.time_constant = 0.0};

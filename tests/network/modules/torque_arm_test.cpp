@@ -11,7 +11,6 @@ namespace repel::network {
 namespace torque_arm_test {
 
 using test::period;
-using test::Rng;
 
 constexpr unsigned seed = 5;
 

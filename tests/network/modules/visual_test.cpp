@@ -8,11 +8,6 @@
 namespace repel::network {
 namespace visual_test {
 
-using test::Cell;
-using test::DrawnEnds;
-using test::DrawnSignals;
-using test::Rng;
-
 constexpr unsigned seed = 71;
 
 TEST(Visual, ChangesNothing) {

@@ -15,8 +15,6 @@ namespace repel::network {
 namespace line_bounds_test {
 
 using test::period;
-using test::State;
-using test::Vector;
 
 constexpr unsigned seed = 250;
 constexpr double Z = 60.0, angular_Z = 0.5;

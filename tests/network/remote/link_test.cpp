@@ -17,7 +17,6 @@ using test::at;
 using test::period;
 using test::Relay;
 using test::RelayPath;
-using test::Vector;
 
 constexpr unsigned seed = 40;
 

@@ -20,8 +20,6 @@ using test::at;
 using test::period;
 using test::Relay;
 using test::RelayPath;
-using test::State;
-using test::Vector;
 
 constexpr unsigned seed = 1989;
 

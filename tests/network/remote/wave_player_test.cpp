@@ -13,8 +13,6 @@
 namespace repel::network {
 namespace wave_player_test {
 
-using test::Vector;
-
 constexpr unsigned seed = 9001;
 
 /// A sender of waves, whose packets reach a player over a path with constant delay.

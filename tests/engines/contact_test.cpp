@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// @file
-/// Tests for every engine with physical contact.
-#pragma once
-
+// Physical contact in every engine: obstacles stop its arm.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
+#include <repel/reduction/shape.hpp>
 #include <repel/simulated/contact.hpp>
 
-#include "simulated/arms.hpp"
+#include "engines/arms.hpp"
 
 namespace repel::simulated {
+namespace contact_test {
 
-inline Pose at(double x, double y, double z) {
+template <class Engine>
+struct Contact : testing::Test {};
+TYPED_TEST_SUITE(Contact, EveryEngine);
+
+Pose at(double x, double y, double z) {
   return Pose(Eigen::Translation3d(x, y, z));
 }
 
 /// A sledge of 2 kg on a rail along x, without weight or friction.
-inline ArmModel sledge() {
+ArmModel sledge() {
   ArmModel model;
   model.name = "sledge";
   model.links.push_back(link_with(2.0, Vec3::Zero(), {0.01, 0.01, 0.01}));
@@ -30,11 +35,21 @@ inline ArmModel sledge() {
 }
 
 /// Parts of a link that extend 0.1 m along x from its origin.
-inline std::vector<ContactPart> probes() {
-  return {{"box", 0, Shape::box({0.1, 0.05, 0.03}), Pose::Identity()},
-          {"sphere", 0, Shape::sphere(0.1), Pose::Identity()},
-          {"capsule", 0, Shape::capsule(0.1, 0.2), Pose::Identity()},
-          {"cylinder", 0, Shape::cylinder(0.1, 0.2), Pose::Identity()}};
+template <class Engine>
+std::vector<ContactPart> probes() {
+  std::vector<ContactPart> parts{{"box", 0, Shape::box({0.1, 0.05, 0.03}), Pose::Identity()},
+                                 {"sphere", 0, Shape::sphere(0.1), Pose::Identity()},
+                                 {"capsule", 0, Shape::capsule(0.1, 0.2), Pose::Identity()},
+                                 {"cylinder", 0, Shape::cylinder(0.1, 0.2), Pose::Identity()}};
+  if (!Engine::touches_any_shape) return parts;
+  std::vector<Vec3> corners;
+  for (const double x : {-0.1, 0.1}) {
+    for (const double y : {-0.1, 0.1}) {
+      for (const double z : {-0.05, 0.05}) corners.emplace_back(x, y, z);
+    }
+  }
+  parts.push_back({"hull", 0, Shape::hull(corners), Pose::Identity()});
+  return parts;
 }
 
 /// Pushes the sledge with 50 N, from 0.3 m/s, for two seconds, against a stop at `stop` [m].
@@ -57,38 +72,44 @@ void expect_stop(const std::vector<ContactPart>& parts, double stop, const std::
   EXPECT_EQ(arm.contact().deepest, 0.0) << which;
 }
 
-/// A box in the path of a sledge with `part`.
-template <class Arm>
-void expect_a_box_stops(const ContactPart& part) {
+TYPED_TEST(Contact, ABoxHoldsEveryShapeThatIsPushedIntoIt) {
   const ContactPart wall{"wall", -1, Shape::box({0.2, 0.5, 0.5}), at(0.5, 0, 0)};
-  expect_stop<Arm>({part, wall}, 0.2, part.name);
+  std::vector<ContactPart> parts = probes<TypeParam>();
+  if (TypeParam::touches_any_shape) {
+    for (const double turn : {pi / 2, -pi / 2}) {  // the tip and the base of a cone
+      parts.push_back({"cone", 0, Shape::cone(0.05, 0.1), Pose::Identity()});
+      parts.back().X_LP.linear() = Eigen::AngleAxisd(turn, Vec3::UnitY()).toRotationMatrix();
+    }
+  }
+  for (const ContactPart& part : parts) {
+    expect_stop<typename TypeParam::Arm>({part, wall}, 0.2, part.name);
+  }
 }
 
-/// The shape of `part` as an obstacle in the path of a transverse capsule.
-template <class Arm>
-void expect_it_stops_a_capsule(ContactPart part) {
-  part.link = -1;
-  part.X_LP = at(0.5, 0, 0);
+TYPED_TEST(Contact, EveryShapeHoldsATransverseCapsule) {
   ContactPart rod{"rod", 0, Shape::capsule(0.02, 0.2), Pose::Identity()};
   rod.X_LP.linear() = Eigen::AngleAxisd(pi / 2, Vec3::UnitX()).toRotationMatrix();
-  expect_stop<Arm>({rod, part}, 0.38, part.name);
+  for (ContactPart part : probes<TypeParam>()) {
+    part.link = -1;
+    part.X_LP = at(0.5, 0, 0);
+    expect_stop<typename TypeParam::Arm>({rod, part}, 0.38, part.name);
+  }
 }
 
 /// Forearm and hand of a PUMA, and a table onto which they fall from `above_the_table`.
-inline std::vector<ContactPart> forearm_hand_and_table() {
+std::vector<ContactPart> forearm_hand_and_table() {
   return {{"forearm", 2, Shape::capsule(0.05, 0.2), Pose::Identity()},
           {"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
           {"table", -1, Shape::box({2.0, 2.0, 0.1}), at(0, 0, -0.4)}};
 }
-inline std::vector<double> above_the_table() {
+std::vector<double> above_the_table() {
   return {0.0, 0.6, -0.6, 0.2, 0.3, 0.0};
 }
 
-/// Two arms that fall onto the table move bitwise alike.
-template <class Arm>
-void expect_the_same_again(const ArmModel& model) {
-  Arm one(model, {}, forearm_hand_and_table());
-  Arm two(model, {}, forearm_hand_and_table());
+TYPED_TEST(Contact, TheSameFallGivesTheSameBits) {
+  using Arm = typename TypeParam::Arm;
+  Arm one(TypeParam::puma(), {}, forearm_hand_and_table());
+  Arm two(TypeParam::puma(), {}, forearm_hand_and_table());
   for (Arm* arm : {&one, &two}) {
     arm->reset(above_the_table());
     for (int tick = 0; tick < 800; ++tick) arm->step(1.0 / 400);
@@ -99,10 +120,9 @@ void expect_the_same_again(const ArmModel& model) {
   EXPECT_EQ(one.contact().deepest, two.contact().deepest);
 }
 
-/// An arm that falls onto the table comes to rest.
-template <class Arm>
-void expect_to_rest_on_a_table(const ArmModel& model) {
-  Arm arm(model, {}, forearm_hand_and_table());
+TYPED_TEST(Contact, APumaThatFallsComesToRestOnATable) {
+  using Arm = typename TypeParam::Arm;
+  Arm arm(TypeParam::puma(), {}, forearm_hand_and_table());
   arm.reset(above_the_table());
   std::vector<double> before(6);
   for (int tick = 0; tick < 4000; ++tick) {
@@ -117,10 +137,9 @@ void expect_to_rest_on_a_table(const ArmModel& model) {
   EXPECT_FALSE(arm.faults().state);
 }
 
-/// A sensor on the sledge reads what holds it: 50 N along x, at a
-/// tool that is turned and does not lie in the line of the force.
-template <class Arm>
-void expect_its_wrench_to_hold_the_sledge() {
+/// 50 N along x, at a tool that is turned and does not lie in the line of the force.
+TYPED_TEST(Contact, SensorReadsWhatHoldsTheTool) {
+  using Arm = typename TypeParam::Arm;
   ArmModel model = sledge();
   model.links[0].p_LC = Vec3(0.03, 0.0, 0.0);
   model.X_LT = at(0.2, 0.1, 0.3);
@@ -146,9 +165,8 @@ void expect_its_wrench_to_hold_the_sledge() {
   EXPECT_EQ(alone.read_wrench()->force, Vec3::Zero());
 }
 
-/// On a link that does not carry the tool nothing is measured.
-template <class Arm>
-void expect_no_wrench_of_other_links() {
+TYPED_TEST(Contact, SensorMeasuresNothingOfALinkThatDoesNotCarryTheTool) {
+  using Arm = typename TypeParam::Arm;
   ArmModel model = sledge();
   model.links.push_back(link_with(0.5, Vec3::Zero(), {0.01, 0.01, 0.01}));
   model.links[1].axis_J = Vec3::UnitX();
@@ -162,13 +180,12 @@ void expect_no_wrench_of_other_links() {
   EXPECT_EQ(arm.read_wrench()->force, Vec3::Zero());
 }
 
-/// Parts out of reach leave the motion bitwise unchanged.
-template <class Arm>
-void expect_untouched_the_same(const ArmModel& model) {
+TYPED_TEST(Contact, WhatIsNotTouchedChangesNoBit) {
+  using Arm = typename TypeParam::Arm;
   const std::vector<ContactPart> parts{{"hand", 5, Shape::box({0.04, 0.04, 0.1}), Pose::Identity()},
                                        {"far", -1, Shape::box({0.1, 0.1, 0.1}), at(5, 0, 0)}};
-  Arm plain(model);
-  Arm touching(model, {}, parts);
+  Arm plain(TypeParam::puma());
+  Arm touching(TypeParam::puma(), {}, parts);
   for (int tick = 0; tick < 400; ++tick) {
     const std::vector<double> torques(6, 5.0 * std::sin(0.05 * tick));
     for (Arm* arm : {&plain, &touching}) {
@@ -181,4 +198,22 @@ void expect_untouched_the_same(const ArmModel& model) {
   EXPECT_EQ(touching.contact().steps, 0);
 }
 
+TYPED_TEST(Contact, SetUpNamesThePartThatCannotBeTouched) {
+  std::vector<Shape> shapes{Shape::box({0.1, 0.1, 0.0})};
+  if (!TypeParam::touches_any_shape) {
+    shapes.push_back(Shape::cone(0.1, 0.1));
+    shapes.push_back(Shape::hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}));
+  }
+  for (const Shape& shape : shapes) {
+    const std::vector<ContactPart> parts{{"spike", -1, shape, Pose::Identity()}};
+    try {
+      const typename TypeParam::Arm arm(TypeParam::puma(), {}, parts);
+      FAIL() << "nothing was thrown";
+    } catch (const SetupError& error) {
+      EXPECT_NE(std::string(error.what()).find("'spike'"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace contact_test
 }  // namespace repel::simulated
