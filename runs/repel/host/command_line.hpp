@@ -63,9 +63,8 @@ class Output {
 /// than one.
 [[nodiscard]] std::string closest(const std::string& word, std::span<const std::string> words);
 
-/// Gives a program --version, a help of 100 columns, and complaints beginning with its name, with
-/// the option likely meant or the command of the option. To be called before its options and
-/// commands are added.
+/// Gives a program --version, a help of 100 columns, and complaints with its name and the likely
+/// option or its command. To be called before its options and commands are added.
 void set_up(CLI::App& app);
 
 /// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so the exit of a

@@ -20,7 +20,7 @@ struct Device {
   std::string name;  ///< display name; empty: none
   std::shared_ptr<devices::DeviceLink> link;
   /// [N s/m] most damping it adds against energy from the network into its handle; not above zero:
-  /// it has no handle with force feedback.
+  /// no force feedback at a handle.
   double most_damping = 0.0;
   double late = 0.0;  ///< [s] from a motion of its handle to the force against it
 };
