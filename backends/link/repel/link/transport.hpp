@@ -19,9 +19,9 @@ enum class Side {
 
 /// Warning about a transport open to `whom`: they can drive the robot, and what to do about it.
 [[nodiscard]] inline std::string exposed_to(const std::string& whom, const std::string& instead) {
-  return "whoever is on " + whom +
-         " can drive the robot: nothing is encrypted, and nobody is asked who they are; use a "
-         "network of your own or a tunnel, and name its address: " +
+  return "anyone on " + whom +
+         " can drive the robot: there is no encryption and no authentication; use a network of "
+         "your own or a tunnel, and name its address: " +
          instead;
 }
 
