@@ -113,7 +113,7 @@ inline void remove_short_sides(Outline& polygon, const Sides& sides, double leas
 /// `outline` cut by all sides of a polygon. The nearest points are at r = 0.
 /// @param holds_nearest keep r = 0
 inline void cut_by(const Outline& polygon, bool holds_nearest, Outline& outline) noexcept {
-  constexpr double least = 1e-9;  // [m] rounding
+  constexpr double least = 1e-9;  // [m] rounding error
   Outline other;
   Outline* whole = &outline;
   Outline* rest = &other;
