@@ -74,8 +74,7 @@ class DriveWatch {
   struct Fit {
     double pw = 0.0, ww = 0.0;
   };
-  /// Momentum added since the onset of a difference [N m s], and the greatest error of each
-  /// hypothesis.
+  /// Momentum since a difference began [N m s], and the greatest error of each hypothesis.
   struct Since {
     double time = 0.0;  // [s] 0: there is no difference
     double p = 0.0, w = 0.0;
