@@ -59,10 +59,10 @@ void HeldJoints::refuse_follower(const urdf::Joint& joint) const {
   document_.fail_at_joint(
       joint.name, "mimics '" + joint.mimic->joint_name + "', which moves with the chain to '" +
                       chain_.end().link +
-                      "', and a joint of the arm moves on its own; allowed: to hold '" +
+                      "'; a joint of the arm must move on its own; allowed: to hold '" +
                       joint.name +
-                      "' where it does not follow (`hold` of a scene, --hold), to "
-                      "hold what it mimics, or a tip before that");
+                      "' at a given place (`hold` of a scene, --hold), to hold the mimicked joint, "
+                      "or a tip before that");
 }
 
 const HeldJoint& HeldJoints::held(const urdf::Joint& joint) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Where the joints of a robot stand that are not joints of its arm.
+/// Positions of the held joints of a robot: those beside its arm.
 #pragma once
 
 #include <map>
@@ -28,7 +28,7 @@ class HeldJoints {
   /// @throws SetupError if it is in the chain and cannot be a joint of a serial arm
   [[nodiscard]] bool moves(const urdf::Joint& joint) const;
 
-  /// Where `joint`, which does not move and is not fixed, is held, and why.
+  /// Position of the held `joint`, and the reason.
   /// @throws SetupError if its value is out of range, or it mimics a joint that moves
   [[nodiscard]] const HeldJoint& held(const urdf::Joint& joint);
 

@@ -24,7 +24,7 @@ inline constexpr std::size_t most_urdf_depth = 512;  ///< joints between the roo
 /// @throws SetupError if it cannot be read or has more than `most_description_bytes`
 [[nodiscard]] std::string text_of_description(const std::string& path);
 
-/// A URDF text that has passed all checks that need only the text.
+/// A URDF text that has passed all checks of the text alone.
 class UrdfDocument {
  public:
   using Element = tinyxml2::XMLElement;
@@ -59,7 +59,7 @@ class UrdfDocument {
   [[nodiscard]] const Element& robot() const noexcept { return *robot_; }
   [[nodiscard]] const Element* link(const std::string& name) const;
 
-  /// Checks what is in a <visual>, which is not done on reading.
+  /// Checks the content of a <visual>; not done on reading.
   /// @throws SetupError naming line and `owner`
   void require_numbers(const Element& element, const std::string& owner) const;
 

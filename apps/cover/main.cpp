@@ -75,12 +75,12 @@ void describe(CLI::App& app, Arguments& a) {
                         "How far parts reach into their neighbours, 0 to 1m; by default 5mm"),
          0.0, 1.0);
   length(app.add_option("--close", a.options.close,
-                        "Close holes whose points are at most this far from their rim, 0 to 10m; "
+                        "Close holes with all points at most this far from their rim, 0 to 10m; "
                         "by default as --error"),
          0.0, 10.0);
   app.add_option(
          "--engine", a.engine,
-         "What divides the mesh: auto, planes (built in), coacd (the PyPI package), hacd" +
+         "Engine dividing the mesh: auto, planes (built in), coacd (the PyPI package), hacd" +
              std::string(has_hacd() ? "" : " (not here: built without libbullet-extras-dev)") +
              ", hull")
       ->type_name("NAME")
@@ -90,8 +90,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->type_name("X [Y Z]")
       ->expected(1, 3)
       ->check(host::between(-1e6, 1e6));
-  app.add_option("--unseen", a.unseen,
-                 "Of a map: what nobody has seen of the space around it, free or solid")
+  app.add_option("--unseen", a.unseen, "Of a map: unseen space counts as free or solid")
       ->type_name("WHAT")
       ->check(CLI::IsMember({"free", "solid"}))
       ->capture_default_str();
@@ -99,13 +98,13 @@ void describe(CLI::App& app, Arguments& a) {
                         "Of a map: join its cubes to larger ones of about this edge, 0 to 10m; "
                         "solid if any of them is"),
          0.0, 10.0);
-  app.add_option("--json", a.json, "Write parts [m], what is uncovered and all bounds to FILE")
+  app.add_option("--json", a.json, "Write parts [m], uncovered pieces and all bounds to FILE")
       ->type_name("FILE");
   app.add_flag("--allow-gaps", a.allow_gaps, "Succeed although some of the surface is in no part");
   app.add_flag("--quiet", a.is_quiet, "No progress and no report");
   app.footer(
       "Exit status: 0 every point of the surface is in a part, 1 some is not or the mesh was "
-      "refused, 2 bad usage.\ndocs/covers.md says what the figures mean and how they are proven.");
+      "refused, 2 bad usage.\ndocs/covers.md explains the figures and their proofs.");
 }
 
 /// Says on stderr what is being done: on a terminal in one line, otherwise every few seconds.
@@ -155,8 +154,7 @@ void print(const Cover& cover, const Arguments& a, double seconds) {
     std::printf("seams       none\n");
   }
   if (cover.excess_m > a.options.error) {
-    std::printf("The excess is more than the %s mm that were asked for: %s.\n",
-                mm(a.options.error).c_str(),
+    std::printf("The excess is above the %s mm asked for: %s.\n", mm(a.options.error).c_str(),
                 cover.is_closed ? "raise --parts" : "the surface is open, see --close");
   }
 }

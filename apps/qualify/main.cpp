@@ -27,9 +27,9 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--json", a.json, "Write the report as JSON to FILE")->type_name("FILE");
   app.footer(
       "A thread sleeps until each tick is due and evaluates 32 pairs of boxes. A tick succeeds\n"
-      "when it has finished one period after it was due; the machine holds the rate when the\n"
-      "success rate of the last 100 ticks is never below 0.95. Ctrl-C ends the trial early: the\n"
-      "verdict is then on the ticks there were.\n\n"
+      "if it ends within one period of its due time; the machine holds the rate if the success\n"
+      "rate of the last 100 ticks is never below 0.95. Ctrl-C ends the trial early, with a\n"
+      "verdict on the ticks so far.\n\n"
       "Exit status: 0 it holds the rate, 1 it does not, 2 bad usage or file, 3 no verdict (ended\n"
       "before the 100th tick).");
 }

@@ -58,11 +58,11 @@ void describe(CLI::App& app, Arguments& a) {
   app.add_option("--srdf", a.srdf, "Its semantic description: link pairs that may touch")
       ->type_name("FILE");
   app.add_option("--package-path", a.options.package_paths,
-                 "Where package:// leads: a package, or a folder with packages; may be repeated")
+                 "Folder of package://: a package, or a folder with packages; may be repeated")
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
   app.add_option("--tip", a.options.tip,
-                 "Link whose frame is the tool; the arm is the joints that lead to it")
+                 "Link with the tool frame; the joints leading to it are the arm")
       ->type_name("LINK");
   app.add_option("--hold", a.hold,
                  "Joints to hold, and where: rad, deg, m or mm; without a unit rad or m. Those "
@@ -74,10 +74,11 @@ void describe(CLI::App& app, Arguments& a) {
                              : "'" + text + "'; allowed: JOINT, or JOINT=VALUE with a number and " +
                                    "rad, deg, m, mm or no unit";
       });
-  app.add_option("--json", a.json, "Write what is shown, and more, as JSON to FILE")
+  app.add_option("--json", a.json, "Write the output, and more, as JSON to FILE")
       ->type_name("FILE");
-  app.footer(std::string("Collision meshes become the convex parts in MESH.parts.yaml beside them, "
-                         "which the program cover\nwrites, or else their convex hulls") +
+  app.footer(std::string("Collision meshes become the convex parts in MESH.parts.yaml beside them "
+                         "(written by the\n"
+                         "program cover), or else their convex hulls") +
              (reads_meshes() ? "" : "; no hulls here: built without assimp (libassimp-dev)") +
              ".\nExit status: 0 the file was taken whole, 1 it was refused, 2 bad usage.");
 }
@@ -256,6 +257,6 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   return repel::host::start(argc, argv, "robot_info",
-                            "Shows what a URDF file holds, or why it cannot be taken whole.", 1,
-                            describe, run);
+                            "Shows the content of a URDF file, or why it is refused.", 1, describe,
+                            run);
 }

@@ -75,9 +75,9 @@ void describe_run(CLI::App& app, Command command, Arguments& a) {
     app.add_flag("--schema", a.schema, "Print the JSON Schema of scene files, for editors");
     return;
   }
-  app.add_option("--seconds", a.run.seconds,
-                 "Scene time to run [s]; with --view, --device or at a site until it is stopped, "
-                 "unless it is given")
+  app.add_option(
+         "--seconds", a.run.seconds,
+         "Scene time to run [s]; if not given, --view, --device and a site run until stopped")
       ->capture_default_str()
       ->each([&a](const std::string&) { a.has_seconds = true; })
       ->check(host::between(0.0, 1e6));
@@ -94,16 +94,16 @@ void describe_coprocessor(CLI::App& app, Arguments& a) {
                  "Coprocessor threads; 0: in the tick's own thread (default: the scene's)")
       ->check(CLI::Range(0, 16));
   app.add_option("--coprocessor", a.coprocessor,
-                 "What its threads do, at least one then: together, share the pairs of a tick with "
-                 "the tick's own thread, or beside, answer the last tick while this one goes on: "
-                 "the paper's way (default: the scene's)")
+                 "Work of its threads, at least one: together, they share the pairs of a tick with "
+                 "its own thread; beside, they answer the last tick during this one, as in the "
+                 "paper (default: the scene's)")
       ->check(CLI::IsMember({"together", "beside"}));
   app.add_option("--budget", a.run.budget,
-                 "In place of the scene's budget: support pairs per tick, none, or i860, the "
-                 "processor of 1993, on which 4 by 8 parts all but fit at 400 Hz")
+                 "In place of the scene's budget: support pairs per tick, none, or i860 (the "
+                 "processor of 1993: 4 by 8 parts almost fit at 400 Hz)")
       ->check(CLI::Validator(runs::budget_complaint, "UNITS, i860 or none"));
   app.add_flag("--every-pair", a.run.every_pair,
-               "Ask also the pairs that cannot be within range: to compare with");
+               "Evaluate pairs out of range, too, for comparison");
 }
 
 /// The simulated arm.
@@ -116,38 +116,36 @@ void describe_arm(CLI::App& app, Arguments& a) {
       ->capture_default_str()
       ->check(CLI::IsMember(backend_names([](const auto&) { return true; })));
   app.add_flag("--contact", a.run.contact,
-               "Of bullet and ode: obstacles that are not passable stop the arm by themselves, "
-               "too, where no virtual force does it first");
+               "With bullet or ode: impassable obstacles are also solid in the simulation, beside "
+               "their virtual force");
   app.add_option("--plant-inertia", a.run.plant_inertia,
-                 "Of bullet, ode and reference: how many times the inertia of its model a "
-                 "simulated arm has, at the same weight; to test the controller, which knows the "
-                 "model")
+                 "With bullet, ode or reference: inertia of the simulated arm relative to its "
+                 "model, at the same weight; tests the controller against errors of the model")
       ->capture_default_str()
       ->type_name("FACTOR")
       ->check(host::between(least_inertia_factor, most_inertia_factor));
   app.add_flag("!--no-prediction", a.run.prediction,
-               "Solve the network for the measured rates, without the mass of the arm: to compare "
-               "with; arms with light wrists then explode");
+               "Solve the network for the measured rates, without the mass of the arm, for "
+               "comparison; arms with light wrists become unstable");
 }
 
 void describe_walls(CLI::App& app, Arguments& a) {
   app.option_defaults()->group("Walls");
-  app.add_option("--walls", a.run.hold,
-                 "hard: no wall may be entered, whoever pushes; soft: walls are springs (default: "
-                 "as the laws of the scene say)")
+  app.add_option(
+         "--walls", a.run.hold,
+         "hard: no push enters a wall; soft: walls are springs (default: by the laws of the scene)")
       ->check(CLI::IsMember({"hard", "soft"}));
   app.add_flag("--tool-alone", a.run.tool_alone,
-               "Keep only the tools off the obstacles, not the links of the arms: the paper's way");
+               "Keep only the tools off the obstacles, not the links of the arms, as in the paper");
   std::vector<std::string> names;
   names.reserve(std::size(all_measures));
   for (const Measure measure : all_measures) names.emplace_back(to_text(measure));
   app.add_option("--measure", a.run.measure,
-                 "How the depth of an overlap is measured: by the deepest common point, by the "
-                 "reduction, which is the paper's way, or exactly (default: the scene's)")
+                 "Measure of the depth of an overlap: the deepest common point, the reduction of "
+                 "the paper, or exact (default: the scene's)")
       ->check(CLI::IsMember(names));
   app.add_option("--levels", a.run.levels,
-                 "Steps in which shapes are reduced, where the measure needs them (default: the "
-                 "scene's)")
+                 "Steps of the reduction of shapes, if the measure needs it (default: the scene's)")
       ->check(CLI::Range(1, ReductionOptions::most_levels));
 }
 
@@ -162,8 +160,8 @@ void describe_view(CLI::App& app, Command command, Arguments& a) {
       ->check(CLI::Validator(runs::listen_complaint, "ADDRESS:PORT"));
   CLI::Option* file =
       app.add_option("--secret", a.session.secret_file,
-                     "What a page must present, #secret=... behind its address: the first line of "
-                     "FILE, 16 characters or more. Wanted where other machines reach the view")
+                     "Secret of the pages, #secret=... behind the address: the first line of FILE, "
+                     "16 characters or more. Required if other machines reach the view")
           ->needs(view)
           ->type_name("FILE");
   app.add_option("--secret-env", a.session.secret_env,
@@ -175,14 +173,14 @@ void describe_view(CLI::App& app, Command command, Arguments& a) {
                                    "Pages look on: they do not drive, pause, step or restart")
                           ->needs(view);
   if (command != Command::run && command != Command::station) return;
-  CLI::Option* device = app.add_option(
-      "--device", a.session.device,
-      "In place of the script: the master that drives, spacenav (a six-axis mouse, through "
-      "spacenavd), evdev:PATH (a motorised lever) or haply[:URL] (an Inverse3, through its "
-      "service). Until it is stopped, unless --seconds is given");
+  CLI::Option* device =
+      app.add_option("--device", a.session.device,
+                     "Master driving in place of the script: spacenav (a six-axis mouse, through "
+                     "spacenavd), evdev:PATH (a motorised lever) or haply[:URL] (an Inverse3, "
+                     "through its service). Runs until stopped, unless --seconds is given");
   device->check(CLI::Validator(runs::device_complaint, "spacenav, evdev:PATH or haply[:URL]"));
   app.add_flag("--page-drives", a.session.page_drives,
-               "With --device, while which pages look on: they may take the controls from it")
+               "With --device: pages may take the controls from it; otherwise they look on")
       ->needs(view)
       ->needs(device)
       ->excludes(only);
@@ -193,25 +191,23 @@ void describe_link(CLI::App& app, Command command, Arguments& a) {
   app.option_defaults()->group("Link");
   if (command == Command::run) {
     app.add_option("--programs", a.programs,
-                   "two: run both sides as two programs that are joined by the link, on which "
-                   "packets are delayed and lost as by the line of the scene; one: never (default: "
-                   "two if the scene says so, and it is neither --fast nor recorded)")
+                   "two: run both sides as two programs, joined by the link, with the delay and "
+                   "loss of the scene's line; one: as one program (default: two if the scene says "
+                   "so, and it is neither --fast nor recorded)")
         ->check(CLI::IsMember({"two", "one"}));
   } else {
     app.add_flag("--impaired", a.session.link.is_impaired,
-                 "Delay and lose what is sent as the line of the scene does, to try a far link "
-                 "nearby");
+                 "Delay and lose packets as the line of the scene does, to try a far link nearby");
   }
   app.add_option(
          "--domain", a.session.link.domain,
          "DDS domain of the link, the same on both sides (default: 0; with --programs two a "
          "random one)")
       ->check(CLI::Range(0, 230));
-  app.add_option(
-         "--link", a.session.link.where,
-         "What joins the sides: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), udp "
-         "or udp:ADDRESS:PORT (where the site listens). Without more it is on this machine. "
-         "Who reaches it can drive the robot: docs/two_machines.md")
+  app.add_option("--link", a.session.link.where,
+                 "Link between the sides: dds, dds:INTERFACE or dds:INTERFACE,PEER (Cyclone DDS), "
+                 "udp or udp:ADDRESS:PORT (of the site). Without more it is on this machine. "
+                 "Anyone reaching it can drive the robot: docs/two_machines.md")
       ->default_str(runs::default_link())
       ->type_name("LINK")
       ->check(CLI::Validator(runs::link_complaint, "LINK"));
@@ -244,20 +240,18 @@ std::string names_text() {
          "scene):\n"
          "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
          "  six_axes    six rates of a hand, with force feedback, scripted\n"
-         "or, in place of the script, the page of --view and what --device names\n\n";
+         "or, in place of the script, the page of --view and the master of --device\n\n";
 }
 
 constexpr const char* ending_text =
-    "What is written stands beside its place as FILE.part until it is whole. Ctrl-C, SIGTERM and\n"
-    "SIGHUP fade the forces, then the run ends with its report; a second Ctrl-C ends it at "
-    "once.\n\n"
+    "Files are written as FILE.part and renamed once complete. Ctrl-C, SIGTERM and SIGHUP fade\n"
+    "the forces, then the run ends with its report; a second Ctrl-C ends it at once.\n\n"
     "Exit status: 0 it ran, 1 bad scene or file, 2 bad usage, 3 a replay came out otherwise,\n"
     "4 it ran, but a file or the output could not be written whole, 5 it ran, but an arm gained\n"
     "energy from its own control, or had a fault in more than a tenth of its ticks.";
 
 constexpr const char* usage_text =
-    "Without a command it is run: teleop SCENE [OPTIONS]. A file that is named as a command is, "
-    "too:\n"
+    "Without a command it is run: teleop SCENE [OPTIONS]. For a file named like a command:\n"
     "teleop run NAME. The options of a command: teleop COMMAND --help\n\n"
     "Common usage:\n"
     "  teleop plates --view                in the live view, driven from the browser\n"

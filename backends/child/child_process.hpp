@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Runs work on untrusted files in a child process, since libraries may crash on them or never end.
+/// Runs work on untrusted files in a child process: libraries may crash on them or never end.
 #pragma once
 
 #include <cstddef>
@@ -23,12 +23,12 @@ struct ChildLimits {
 [[nodiscard]] std::string result_of_child(const std::function<std::string()>& work,
                                           const ChildLimits& limits);
 
-/// The same for work on one file, of up to input_limits.mesh_bytes; small ones may cost less than
-/// large ones, none more than the limits of input_limits for meshes.
+/// The same for work on one file, of up to input_limits.mesh_bytes. The limits grow with its size,
+/// up to those of input_limits for meshes.
 /// @param what the file is, for errors: "mesh"
 /// @param expansion [byte] of memory for each byte of the file
-/// @throws SetupError that begins with `what` and the path; also if it is a directory, a device or
-///   a pipe
+/// @throws SetupError beginning with `what` and the path; also if it is a directory, a device or a
+///   pipe
 [[nodiscard]] std::string result_of_file(const std::filesystem::path& path, const std::string& what,
                                          std::size_t expansion,
                                          const std::function<std::string()>& work);

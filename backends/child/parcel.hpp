@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Values as the bytes that a child process hands back.
+/// Values as bytes, handed back by a child process.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ class Parcel {
   std::string bytes_;
 };
 
-/// Takes them out again, in the same order. A child whose memory a file has overwritten may have
-/// put anything: no length is believed, and what the values mean is up to who takes them.
+/// Takes them out again, in the same order. A corrupted child may have put anything: no length is
+/// trusted, and the caller must check the values.
 class Unpacking {
  public:
   /// @param bytes must outlive this object

@@ -15,16 +15,16 @@ namespace repel::cover {
 struct Gap {
   Polygon polygon;     ///< [m]
   double depth = 0.0;  ///< [m] no point of it is farther from the nearest part
-  int nearest = -1;    ///< the part that the bound is from; -1: there are no parts
+  int nearest = -1;    ///< the part of the bound; -1: there are no parts
 };
 
-/// Cuts each triangle by the planes of the parts. All points of the surface that are not in what is
-/// returned are at most `margin` [m] from a part, which is there for rounding.
+/// Cuts each triangle by the planes of the parts. Points of the surface outside the returned pieces
+/// are at most `margin` [m] from a part; the margin covers rounding.
 [[nodiscard]] std::vector<Gap> gaps_in(std::span<const Triangle> surface,
                                        std::span<const ConvexPart> parts, double margin);
 
-/// Lets parts grow until there are no gaps: each gap, or half of it, joins the part that it is
-/// nearest to. A gap that is farther than `most` [m] from every part stays.
+/// Lets parts grow until there are no gaps: each gap, or half of it, joins the nearest part. A gap
+/// farther than `most` [m] from every part stays.
 /// @param thickness as in ConvexPart::of
 [[nodiscard]] std::vector<Gap> fill_gaps(std::span<const Triangle> surface,
                                          std::vector<ConvexPart>& parts, double margin, double most,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What divides a mesh into convex parts. Set-up only: it allocates.
+/// Engines dividing a mesh into convex parts. Set-up only: it allocates.
 #pragma once
 
 #include <functional>
@@ -15,9 +15,9 @@ namespace repel::cover {
 /// Parts from an engine: their hulls approximate the solid, some of its surface may be in none.
 using PointSets = std::vector<std::vector<Vec3>>;
 
-/// Cuts the surface by planes, always where a part reaches out of the solid farthest, until no part
-/// does by more than `error` [m] or there are `most` parts. Of the planes of the mesh and of the
-/// axes, the one is taken after which the hulls have the least volume. Covers the surface exactly.
+/// Cuts the surface by planes, always at the largest excess of a part over the solid, until the
+/// excess is at most `error` [m] or there are `most` parts. Of the planes of the mesh and of the
+/// axes, the one leaving the least volume of the hulls is taken. Covers the surface exactly.
 [[nodiscard]] PointSets cut_by_planes(const Solid& solid, int most, double error, double thickness,
                                       const std::function<void(const std::string&)>& progress);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How far convex parts reach out of a solid: a bound that is proven.
+/// How far convex parts reach out of a solid: a proven bound.
 #pragma once
 
 #include <functional>
@@ -21,13 +21,13 @@ struct Excess {
 struct ExcessOptions {
   double gap = 1e-4;          ///< [m] between `bound` and `reached` at which the search is content
   double enough = 1e300;      ///< [m] the search ends when `reached` is larger
-  int most_pieces = 400'000;  ///< after which it ends with the bound that it has
+  int most_pieces = 400'000;  ///< after so many it ends with the bound reached
 };
 
 /// The excess of the hull of a part: branch and bound over pieces of it. A piece is bounded by the
 /// farthest of its corners from one triangle, as the distance from a convex set is largest at a
-/// corner; where the surface passes through a piece, it is divided by the planes of the triangles
-/// first, and what is inside the solid does not count.
+/// corner. A piece crossed by the surface is first divided by the planes of the triangles, and its
+/// share inside the solid does not count.
 [[nodiscard]] Excess excess_of(const ConvexPart& part, const Solid& solid,
                                const ExcessOptions& options);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Convex polytopes that are cut by planes. Set-up only: they allocate.
+/// Convex polytopes cut by planes. Set-up only: they allocate.
 #pragma once
 
 #include <span>
@@ -29,8 +29,8 @@ struct HeightRange {
 };
 [[nodiscard]] HeightRange heights(std::span<const Vec3> points, const HalfSpace& plane);
 
-/// Where the line from a to b crosses the plane, above which they are `ha` and `hb` high, one of
-/// them below: the same to the bit if both are exchanged, so that neighbours share corners.
+/// The crossing of the line from a to b with a plane, `ha` and `hb` their heights above it, one
+/// negative: the same to the bit if both are exchanged, so neighbours share corners.
 [[nodiscard]] Vec3 crossing(const Vec3& a, double ha, const Vec3& b, double hb);
 
 /// The part of `polygon` in the half space; fewer than three corners if there is none.
@@ -46,7 +46,7 @@ class Polytope {
   [[nodiscard]] bool empty() const { return faces_.empty(); }
   /// The corners, each once.
   [[nodiscard]] std::vector<Vec3> corners() const;
-  /// What lies in the half space. Cost: one pass over the corners.
+  /// The intersection with the half space. Cost: one pass over the corners.
   [[nodiscard]] Polytope clipped(const HalfSpace& plane) const;
 
  private:
@@ -60,9 +60,9 @@ struct ConvexPart {
   std::vector<HalfSpace> planes;  ///< of the facets, each once
   Vec3 low{0, 0, 0}, high{0, 0, 0};
 
-  /// The hull of `points`; of more than 100 000, a convex set around it of some hundred corners,
-  /// which contains every point. A set in one plane is made `thickness` [m] thick; without planes
-  /// if the points are in one line.
+  /// The hull of `points`; for more than 100 000, a convex set of some hundred corners containing
+  /// every point. A set in one plane is made `thickness` [m] thick; without planes if the points
+  /// are in one line.
   [[nodiscard]] static ConvexPart of(std::span<const Vec3> points, double thickness);
 
   /// Whether p is inside every plane, or above it by at most `margin` [m].
@@ -76,7 +76,7 @@ struct ConvexPart {
 /// from a convex set is a convex function.
 [[nodiscard]] double largest_distance(std::span<const Vec3> points, std::span<const Vec3> triangle);
 
-/// The point of the triangle a b c that is nearest to p.
+/// The point of the triangle a b c nearest to p.
 [[nodiscard]] Vec3 nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace repel::cover

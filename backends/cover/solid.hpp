@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The solid that a mesh bounds. Set-up only: it allocates.
+/// The solid bounded by a mesh. Set-up only: it allocates.
 #pragma once
 
 #include <string>
@@ -13,25 +13,25 @@
 
 namespace repel::cover {
 
-/// What a mesh file has that a solid has not.
+/// The defects of a mesh file, as the surface of a solid.
 struct MeshFaults {
-  std::size_t not_finite = 0;    ///< triangles with a corner that is no number or does not exist
+  std::size_t not_finite = 0;    ///< triangles with a corner not finite or missing
   std::size_t without_area = 0;  ///< triangles
   std::size_t duplicates = 0;    ///< triangles that are there twice
-  std::size_t turned = 0;        ///< triangles that face the other way than their neighbours
+  std::size_t turned = 0;        ///< triangles facing against their neighbours
   std::size_t closed_holes = 0;  ///< holes that were closed
-  std::size_t open_edges = 0;    ///< edges that remain without an opposite
+  std::size_t open_edges = 0;    ///< edges left without an opposite
   bool is_inside_out = false;    ///< all triangles face inward
 
   /// A sentence for each fault; empty without any.
   [[nodiscard]] std::vector<std::string> sentences() const;
 };
 
-/// A surface and, if it is closed, what is in it: the points that it winds around at least once.
-/// Its triangles with area, turned the same way; small holes are closed.
+/// A surface and, if it is closed, its inside: the points it winds around at least once. Its
+/// triangles with area, turned the same way; small holes are closed.
 class Solid {
  public:
-  /// @param widest_hole [m] holes whose points are at most this far from their rim are closed
+  /// @param widest_hole [m] holes with all points at most this far from their rim are closed
   /// @throws SetupError if no triangle is left
   Solid(const TriangleMesh& mesh, double widest_hole);
 

@@ -23,7 +23,7 @@ namespace repel::ode::detail {
 class Contacts {
  public:
   /// @param body one for each link of `model`, at its centre of mass; they must outlive this object
-  /// @throws SetupError naming the part that ODE does not support or that is out of range
+  /// @throws SetupError naming a part unsupported by ODE or out of range
   Contacts(dWorldID world, const ArmModel& model, const SimulationOptions& options,
            std::span<const dBodyID> body, std::span<const ContactPart> parts);
 

@@ -49,9 +49,8 @@ class Unpacker {
   /// What became of a chunk: it is as long as was said, it ends early, or it is none or longer.
   enum class Outcome : std::uint8_t { whole, cut, damaged };
 
-  /// Replaces `out` by the content of `packed`, never more than `size` bytes: what comes before the
-  /// end or the damage. Allocates at most about twice what has really been decompressed, and
-  /// 16 MiB.
+  /// Replaces `out` by the content of `packed` up to its end or damage, at most `size` bytes.
+  /// Allocates at most about twice what has really been decompressed, and 16 MiB.
   [[nodiscard]] Outcome unpack(std::string_view packed, std::uint64_t size, std::string& out);
 
  private:

@@ -8,10 +8,13 @@
 #include <string>
 #include <utility>
 
+#include <>
 #include <repel/base/capacities.hpp>
+#include <repel/distance/query.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/modules.hpp>
-#include <repel/scene/scene.hpp>
+#include <repel/scene/camera.hpp>
+#include <repel/schedule/coprocessor_options.hpp>
 
 #include "pose_reader.hpp"
 

@@ -24,7 +24,6 @@ struct Key {
     number,   ///< and a unit, by `rule`
     integer,  ///< by `rule`
     vector,   ///< three numbers and a unit
-    numbers,  ///< one or more numbers and a unit
     flag,     ///< yes or no
     text,
     word,   ///< one of `words`

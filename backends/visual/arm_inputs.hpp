@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a hand can switch in the network of an arm, in the messages to the page.
+/// The switches of a hand in the network of an arm, in the messages to the page.
 #pragma once
 
 #include <cmath>
@@ -21,11 +21,11 @@ inline double rounded(double value) {
 
 [[nodiscard]] nlohmann::json to_json(const Pose& X);
 
-/// Adds to an arm of `scene` what there is: `fixtures`, `compliant` and so on.
+/// Adds the switches of an arm to `scene`: `fixtures`, `compliant` and so on.
 void add_inputs(const ArmInfo& arm, nlohmann::json& json);
 
-/// Adds to an arm of `frame` how that is switched, and what its hands feel. Cost: a few hundred
-/// nanoseconds, and as much for each fixture that is on.
+/// Adds the state of its switches and the forces on its hands to an arm of `frame`. Cost: a few
+/// hundred nanoseconds, and as much for each active fixture.
 void write_inputs(const ArmInfo& arm, const TickRecord& k, JsonText& out);
 
 }  // namespace repel::visual

@@ -11,9 +11,9 @@
 
 namespace repel::visual {
 
-/// The host names by which a browser can reach this server over one connection: the local address
-/// of that connection, and localhost if that is a loopback address. A page of another site whose
-/// name is made to resolve to this server (DNS rebinding) sends its own name.
+/// The host names of this server for a browser, over one connection: the local address of the
+/// connection, and localhost for a loopback address. With DNS rebinding, a page of another site
+/// sends its own name.
 class Gate {
  public:
   /// @param address local address of the connection, numeric, without brackets

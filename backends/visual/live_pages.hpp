@@ -36,8 +36,8 @@ class LivePages final : public PageHandler {
   void heard(int page, std::string_view text, Pages& pages) override;
   void closed(int page, Pages& pages) override;
   void refresh(Pages& pages) override;
-  /// Just after the tick that takes the next picture: serving a page during a tick would cost that
-  /// tick cycles and cache; between two ticks it costs nothing.
+  /// Just after the tick taking the next picture: serving a page during a tick would cost that tick
+  /// cycles and cache; between two ticks it costs nothing.
   [[nodiscard]] std::optional<Clock::time_point> next_refresh() const override;
 
  private:
@@ -69,7 +69,7 @@ class LivePages final : public PageHandler {
   Timing timing_;
   std::vector<TickSample> recent_;  ///< since the last picture was sent
   std::map<int, Role> open_pages_;
-  /// Of the parts that have got another shape: boxes from pages, and what a camera sees.
+  /// Of the parts with another shape: boxes from pages, and parts seen by a camera.
   std::map<std::int32_t, Shape> reshaped_;
   PageInput input_;
   Driver driver_;

@@ -24,9 +24,9 @@ struct Seat {
   std::function<void()> leave;  ///< closes the connection
 };
 
-/// Bounds the number of waiting connections, yet always admits a new one: if its network has too
-/// many, the oldest idle connection of that network is closed; if there are too many in all, that
-/// of the network with most connections. Without an idle one, the oldest.
+/// Bounds the number of waiting connections, yet always admits a new one. If its network has too
+/// many, the oldest idle connection of that network is closed; if there are too many in all, one of
+/// the network with most connections. Without an idle one, the oldest.
 class Lobby {
  public:
   /// @param most in total

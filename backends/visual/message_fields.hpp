@@ -24,7 +24,7 @@ inline std::optional<double> number(const nlohmann::json& message, const char* n
   return value;
 }
 
-/// The vector of that name, if no longer than `most`.
+/// The vector of that name, if its length is at most `most`.
 inline std::optional<Vec3> vector(const nlohmann::json& message, const char* name, double most) {
   const auto found = message.find(name);
   if (found == message.end() || !found->is_array() || found->size() != 3) return std::nullopt;

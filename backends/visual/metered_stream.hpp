@@ -16,11 +16,11 @@
 
 namespace repel::visual {
 
-/// Counts the WebSocket frames in a byte stream, including pings, pongs and empty fragments, which
-/// are not visible to a reader of messages.
+/// Counts the WebSocket frames in a byte stream, including pings, pongs and empty fragments, all
+/// hidden from a reader of messages.
 class FrameCounter {
  public:
-  /// The number of frames that start in these bytes, which continue those of the last call.
+  /// The number of frames starting in these bytes, the continuation of the last call.
   [[nodiscard]] int count(std::string_view bytes) noexcept;
 
  private:

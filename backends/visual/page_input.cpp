@@ -147,7 +147,7 @@ std::string PageInput::lead_lever(const Json& message, Time now) {
 }
 
 std::string PageInput::set_scale(const Json& message) {
-  if (!arm_.has_scale) return "the network has no master that is felt, which alone has a scale";
+  if (!arm_.has_scale) return "the network has no scale: it has no force-reflecting master";
   const auto factor = fields::number(message, "factor", network::ChangingScale::most);
   if (!factor || *factor < network::ChangingScale::least) return out_of_range;
   input_.scale = *factor;

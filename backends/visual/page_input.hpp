@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the page that drives has asked for, out of its messages.
+/// The input of the driving page, from its messages.
 #pragma once
 
 #include <chrono>
@@ -13,9 +13,9 @@
 
 namespace repel::visual {
 
-/// Each message says a part: the rates of one hand, or what is switched. The control loop reads the
-/// newest input only, so each one has all that was said before: what was switched stays so, also
-/// from page to page, and the rates of a hand last as long as PageCommand::rest_after.
+/// Each message has a part of it: the rates of one hand, or switches. The control loop reads the
+/// newest input only, so each one repeats all before: switches stay, also from page to page, and
+/// the rates of a hand last as long as PageCommand::rest_after.
 class PageInput {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -26,7 +26,7 @@ class PageInput {
   /// Whether messages of this type belong here.
   [[nodiscard]] static bool knows(const std::string& type);
 
-  /// Empty; or why the message is refused, which then changes nothing.
+  /// Empty; or the reason for refusing the message, without effect then.
   [[nodiscard]] std::string take(const std::string& type, const nlohmann::json& message, Time now);
 
   /// The hands are at rest, and those of another driver.

@@ -10,6 +10,7 @@
 #else
 
 #include <repel/base/capacities.hpp>
+#include <repel/base/field.hpp>
 #include <repel/base/ids.hpp>
 #include <repel/base/layout.hpp>
 #include <repel/base/mailbox.hpp>

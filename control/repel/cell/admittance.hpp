@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Arms that take joint rates or positions, not torques: the end of the network that turns its
-/// efforts into such commands.
+/// Arms commanded by joint rates or positions, not torques: the end of the network, from efforts to
+/// such commands.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@
 
 namespace repel {
 
-/// How an arm that is commanded by rates or positions answers to the network: as joints with an
-/// inertia and a friction of their own, which exist in the controller only.
+/// How an arm commanded by rates or positions answers to the network: as joints with a virtual
+/// inertia and friction.
 struct AdmittanceOptions {
   /// [kg m^2] or [kg] of each joint, 1e-6 to 1e6; empty: the diagonal of the arm's own inertia
   /// matrix at its start, times `scale`
@@ -33,7 +33,7 @@ struct AdmittanceOptions {
 
 namespace detail {
 
-/// The kinematics of an arm, with the inertia that its admittance shows and without weight.
+/// The kinematics of an arm, with the virtual inertia of its admittance and without weight.
 class AdmittedKinematics final : public ArmKinematics {
  public:
   AdmittedKinematics(std::unique_ptr<ArmKinematics> arm, std::vector<double> inertia)
@@ -52,7 +52,7 @@ class AdmittedKinematics final : public ArmKinematics {
   std::vector<double> inertia_;  // [kg m^2] or [kg]
 };
 
-/// The inertia that each joint shows [kg m^2] or [kg].
+/// The virtual inertia of each joint [kg m^2] or [kg].
 [[nodiscard]] std::vector<double> shown_inertia(const ArmDescription& arm,
                                                 const AdmittanceOptions& options);
 
@@ -66,8 +66,8 @@ class AdmittedKinematics final : public ArmKinematics {
                                       double period);
 
 /// The admittance of each joint: v' = (tau - B v) / M, within the limits of speed, acceleration and
-/// position, and not further ahead of the arm than a sound arm lags behind. What the arm cannot
-/// follow is given up, so that an arm that was blocked does not jump. Allocates at construction
+/// position, and not further ahead of the arm than a sound arm lags behind. Motion the arm cannot
+/// follow is given up, so a blocked arm does not jump when it comes free. Allocates at construction
 /// only; a tick costs a few operations for each joint.
 class JointAdmittance {
  public:
@@ -84,7 +84,7 @@ class JointAdmittance {
   [[nodiscard]] std::span<const double> rates() const noexcept {
     return {rates_.data(), rates_.size()};
   }
-  /// [rad] or [m] that the joints are to be at, one for each.
+  /// Commanded positions [rad] or [m], one for each joint.
   [[nodiscard]] std::span<const double> positions() const noexcept {
     return {positions_.data(), positions_.size()};
   }
@@ -96,10 +96,10 @@ class JointAdmittance {
   void advance(std::size_t i, double q, double v, double torque, bool stop) noexcept;
 
   std::vector<ArmLink> links_;
-  double response_;  // [s] with that of a command that is held, and of a reading
+  double response_;  // [s] including the hold of a command and of a reading
   double period_;    // [s]
   std::vector<double> rates_, positions_;
-  std::vector<double> lag_;  // [rad] by which a sound arm may be behind
+  std::vector<double> lag_;  // [rad] lag of a sound arm at most
   bool has_begun_ = false;
 };
 

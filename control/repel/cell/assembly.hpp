@@ -61,7 +61,7 @@ class CellAssembly {
   /// evaluations of its pairs, so all of them an eighth.
   [[nodiscard]] int changes_per_tick() const noexcept;
 
-  /// [s] In which a gap that closes must be known to the barrier before hard walls.
+  /// [s] How early the barrier before hard walls must know a closing gap.
   [[nodiscard]] double reaction() const noexcept;
 
   void lay_out();

@@ -44,9 +44,9 @@ class Cell {
  public:
   /// May take long: every pair is evaluated at least once.
   /// @throws SetupError naming the fault and the allowed values, for: an arm without joints,
-  /// kinematics or inertia; a start outside the limits or inside an obstacle; a network that does
-  /// not transmit the wall forces to the arm or does not end in its joints; walls that are too
-  /// stiff for arm and rate; a value out of its range
+  /// kinematics or inertia; a start outside the limits or inside an obstacle; a network without the
+  /// wall forces of the arm or without its joints at the end; walls too stiff for arm and rate; a
+  /// value out of its range
   explicit Cell(CellDescription description);
   ~Cell();
   Cell(const Cell&) = delete;
@@ -87,7 +87,7 @@ class Cell {
   [[nodiscard]] World& world() noexcept;
   /// For one other thread: the queue of such changes. They are applied at the next `sense`.
   [[nodiscard]] WorldChanges& changes() noexcept;
-  /// The parts that can come and go, in the order of the description.
+  /// The loose parts, in the order of the description.
   [[nodiscard]] std::span<const PartId> loose() const noexcept;
   /// Forces and answers of the pairs (schedule/coprocessor.hpp).
   [[nodiscard]] const Coprocessor& coprocessor() const noexcept;
@@ -103,8 +103,8 @@ class Cell {
   [[nodiscard]] double elapsed() const noexcept;
   /// The control of an arm (loop/tick.hpp).
   [[nodiscard]] const Teleoperator& control(std::size_t arm) const noexcept;
-  /// The leverage of the tools over a pair, 1 to `most_leverage`: what its force at the parts is
-  /// divided by to compare it with a force at the tool. Not for the tick.
+  /// The leverage of the tools over a pair, 1 to `most_leverage`: divides its force at the parts to
+  /// compare it with one at the tool. Not for the tick.
   [[nodiscard]] double leverage(PairId id) const;
   /// [N] The hardest push of any arm that the wall of a hard pair has withstood; 0 for a soft one.
   [[nodiscard]] double withstood(PairId id) const noexcept;
@@ -112,8 +112,8 @@ class Cell {
   [[nodiscard]] std::span<const MovingBody> moving() const noexcept;
   /// The least viscous damping of any arm at its tool, in its start pose [N s/m].
   [[nodiscard]] double device_damping() const noexcept;
-  /// One message for each finding that the description tolerates: walls above the clean-stiffness
-  /// limit, parts that start inside an obstacle.
+  /// One message for each tolerated finding: walls above the clean-stiffness limit, parts starting
+  /// inside an obstacle.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept;
 
  private:

@@ -33,7 +33,7 @@ struct ArmPart {
   int link = on_tool;            ///< index in ArmModel::links
 };
 
-/// An arm, its parts that are repelled by obstacles, and the network between operator and joints.
+/// An arm, its parts repelled by obstacles, and the network between operator and joints.
 struct ArmDescription {
   std::string name;  ///< prefix of the names of its bodies and parts: "left" gives "left/tool"
   ArmModel model;    ///< limits, efforts and friction of the joints; masses of the links
@@ -66,15 +66,15 @@ struct LooseDescription {
   Pose X_WP = Pose::Identity();  ///< [m] where it comes, unless it is said
   ForceLaw law{};                ///< between it and every part of every arm
   bool at_start = false;         ///< it is there from the start on
-  double room = 0.0;          ///< [m] largest reach of a shape that it can get; 0: that of `shape`
-  double mass = 0.0;          ///< [kg] at the origin of its shape: the weight that a tool carries
-  bool is_mass_known = true;  ///< to the controller, not only to a simulated arm
+  double room = 0.0;             ///< [m] largest reach of its later shapes; 0: that of `shape`
+  double mass = 0.0;             ///< [kg] at the origin of its shape: its weight on a tool
+  bool is_mass_known = true;     ///< to the controller, not only to a simulated arm
   /// A tool can take it: it then keeps off obstacles and other such parts. Without, it has pairs
-  /// with arms only, which is what hundreds of parts can afford.
+  /// with arms only, so hundreds of parts are affordable.
   bool can_be_held = true;
 };
 
-/// Handling of an arm that starts with a part of it inside an obstacle that is not passable.
+/// Handling of an arm starting with a part inside an impassable obstacle.
 enum class StartInside {
   refuse,    ///< SetupError
   push_out,  ///< it starts, and is pushed out slowly

@@ -19,12 +19,12 @@ namespace detail {
 
 }  // namespace detail
 
-/// What an arm that takes rates or positions touches does not move what its admittance shows.
+/// Contact forces on an arm commanded by rates or positions do not move its virtual inertia.
 /// @throws SetupError if it has a force sensor all the same
 void require_fitting_sensor(const ArmDescription& arm, const network::Network& network);
 
 /// The least masses of an arm at its start and in 63 poses of its workspace, the same in every run,
-/// divided by the uncertainty of its masses; and how late it answers. Leaves the kinematics at the
+/// divided by the uncertainty of its masses; and its response time. Leaves the kinematics at the
 /// start. Set-up only. Cost: 64 mass matrices.
 /// @param period [s]
 [[nodiscard]] network::RobotEnd robot_end(const ArmDescription& arm, double period);

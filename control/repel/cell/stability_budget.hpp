@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What each spring and damper of a cell takes of the stability of its sampled loop.
+/// The share of each spring and damper of a cell in the stability limit of its sampled loop.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace repel {
 ///
 ///     K T^2 / M = 4        B T / M = 2
 ///
-/// on. What a cell does about it is in docs/network.md: the damping of walls, limits and couplings
-/// is solved together with the mass, so that only `needed_damping` limits them.
+/// on. The damping of walls, limits and couplings is solved together with the mass, so only
+/// `needed_damping` limits them (docs/network.md).
 struct StabilityShare {
   std::string source;           ///< such as "walls, turning"
   double spring = 0.0;          ///< K T^2 / M

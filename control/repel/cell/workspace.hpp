@@ -10,8 +10,8 @@
 namespace repel::detail {
 
 /// Sets the joints `q` [rad] or [m] to pose `index`, from 0: spread evenly over the ranges of the
-/// joints, and the same in every run. Joints that turn without end are spread over a turn; those
-/// that slide without end stay at the start.
+/// joints, and the same in every run. Continuous joints are spread over a turn; prismatic ones
+/// without limits stay at the start.
 ///
 /// By multiples of powers of the inverse of the root of x^(n+1) = x + 1, without their integers (M.
 /// Roberts, 2018).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The contacts that push in a tick, with their directions and damping: what the implicit solution
-/// of the network needs to know about the walls.
+/// The contacts exerting force in a tick, with directions and damping, for the implicit solution of
+/// the network.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,11 @@ namespace repel {
 
 /// A pair that exerts a force in this tick.
 struct ActiveContact {
-  PairId pair;  ///< that exerts a force
-  BodyId a;     ///< the body that moves
-  BodyId b;     ///< likewise, of the other part
-  Wrench on_a;  ///< [1, m] on A of a unit force that parts them, about the origin of its body
-  Wrench on_b;  ///< on B, likewise
+  PairId pair;           ///< that exerts a force
+  BodyId a;              ///< the body that moves
+  BodyId b;              ///< likewise, of the other part
+  Wrench on_a;           ///< [1, m] on A of a unit separating force, about the origin of its body
+  Wrench on_b;           ///< on B, likewise
   double damping = 0.0;  ///< [N s/m] how much its force falls with the speed along that force
   /// [N m/rad] How much its torque rises as A turns across the force: F a / e on a contact patch of
   /// half width a and tilt e (ForceLaw::tilt), 0 elsewhere.
@@ -69,7 +69,7 @@ struct TurnedArm {
 
 /// Damps the turning of a tool that is light for the contact patches it rests on: a patch is a
 /// spring K against turning and has no damping of its own, so from K T^2 / I = 0.25 on, the damping
-/// wall_ticks T K is added by degrees, whole at 0.5. The inertia I is that about an axis across the
+/// wall_ticks T K is added by degrees, whole at 0.5. I is the inertia about an axis across the
 /// force, by the diagonal of M.
 /// @param w [rad/s] of the tool @param damping [N m s/rad] of all contacts at the joints, to which
 /// it is added

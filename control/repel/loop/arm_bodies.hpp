@@ -42,8 +42,8 @@ class ArmBodies {
     return {links_.data(), links_.size()};
   }
 
-  /// Places every body at its pose from `kinematics`, moving with the joint rates `v`. False when a
-  /// pose is invalid: that body stays where it was.
+  /// Places every body at its pose from `kinematics`, moving with the joint rates `v`. False for an
+  /// invalid pose: that body is not moved.
   [[nodiscard]] bool place(World& world, const ArmKinematics& kinematics,
                            std::span<const double> v) noexcept;
 
@@ -54,10 +54,10 @@ class ArmBodies {
   void gather(const PairForces& forces, BodyId tool, const Jacobian& of_tool,
               network::Vec<network::any_size>& torques) const noexcept;
 
-  /// That of the origin of the link which is this body; null: it is none of them.
+  /// Jacobian of the origin of the link with this body; null: none has it.
   [[nodiscard]] const Jacobian* jacobian_of(BodyId body) const noexcept;
 
-  /// Power that the bodies which push the links deliver by their own motion [W].
+  /// Power delivered to the links by the motion of the bodies pushing them [W].
   [[nodiscard]] double carried(const PairForces& forces) const noexcept;
 
  private:

@@ -29,7 +29,7 @@ struct ArmMotion {
   const std::vector<double>& v;       ///< [rad/s] likewise
   std::span<const double> probes;     ///< [N m] of joints that may be frozen (JointWatch::probe)
   double tool_speed = 0.0;            ///< [m/s]
-  double carried = 0.0;               ///< [W] that walls give because they move themselves
+  double carried = 0.0;               ///< [W] from moving walls
 };
 
 /// Decides on the stop and composes the joint torques; the command of the arm is in the record.
@@ -60,13 +60,13 @@ class ArmCommand {
 
   /// The operator's force has been ramped down to zero.
   [[nodiscard]] bool has_let_go() const noexcept;
-  /// The walls that push the arm out of its start position act at their full share.
+  /// The ramp of the walls pushing the arm out of its start position is complete.
   [[nodiscard]] bool pushes_out_whole() const noexcept { return exit_share_ >= 1.0; }
-  /// [N m] That were sent in the last tick, without the weight.
+  /// [N m] Sent in the last tick, without the weight.
   [[nodiscard]] const network::Vec<network::any_size>& sent() const noexcept {
     return torques_.net();
   }
-  /// [rad/s] By which what was asked for in the last tick is to change the rates.
+  /// [rad/s] Change of the rates expected from the torques asked for in the last tick.
   [[nodiscard]] const network::Vec<network::any_size>& foreseen() const noexcept {
     return foreseen_;
   }
@@ -78,7 +78,7 @@ class ArmCommand {
   static constexpr EnergyWatchOptions out_of_phase{
       .taken_back = 0.1, .most = 0.2, .memory = 1.0, .latch = 3.0};
 
-  // What is not in the model may move an arm that touches it.
+  // Unmodelled objects may move an arm touching them.
   [[nodiscard]] Status watch_phase(const JointWatch& watch, double elapsed) noexcept;
 
   // A drive that stopped by itself is enabled again after FailsafeOptions::hold without other
@@ -88,8 +88,8 @@ class ArmCommand {
   [[nodiscard]] TorqueShares shares_of(const JointWatch& watch, const TickRecord& record,
                                        double tool_speed) noexcept;
 
-  // Share of the walls that push an arm out of its start position: ramped up from zero while the
-  // tool is slower than exit_speed, and down while it is faster.
+  // Share of the walls pushing an arm out of its start position: ramped up from zero while the tool
+  // is below exit_speed, down while above.
   [[nodiscard]] double exit_share(double speed) noexcept;
 
   // Without brakes the motors alone hold the weight, as long as a pose is known.
@@ -102,14 +102,14 @@ class ArmCommand {
   TeleoperatorOptions options_;
   Failsafe failsafe_;
   EnergyWatch energy_watch_;  // by sampling
-  EnergyWatch motion_watch_;  // by torques that act later than they are told to
+  EnergyWatch motion_watch_;  // by torques acting later than told
   StopControl stop_control_;
   JointTorques torques_;
   EntryBarrier barrier_;
   network::Vec<network::any_size> walls_;     // [N m] of walls and limits on the joints
   network::Vec<network::any_size> asked_;     // [N m] of the whole network
-  network::Vec<network::any_size> total_;     // [N m] the same, as far as it is sent
-  network::Vec<network::any_size> foreseen_;  // [rad/s] by which that changes the rates
+  network::Vec<network::any_size> total_;     // [N m] the part of it sent
+  network::Vec<network::any_size> foreseen_;  // [rad/s] expected change of the rates by it
   double exit_share_ = 0.0;
   bool is_poisoned_ = false;
   bool is_enabled_ = true;    // the drive of the arm

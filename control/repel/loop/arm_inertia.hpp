@@ -16,15 +16,15 @@
 
 namespace repel {
 
-/// Effort limit of a joint [N m] or [N], finite. Where the model has none: twice the gravity load
-/// plus 50 rad/s^2 (m/s^2) times the inertia that it moves, both with the arm stretched out, and at
-/// least 200 N m or 1000 N. Not for the tick.
+/// Effort limit of a joint [N m] or [N], finite. If the model has none: twice the gravity load plus
+/// 50 rad/s^2 (m/s^2) times the moved inertia, both with the arm stretched out, and at least 200 N
+/// m or 1000 N. Not for the tick.
 [[nodiscard]] double effort_bound(const ArmModel& model, std::size_t joint);
 
 /// The same for all joints.
 [[nodiscard]] std::vector<double> effort_bounds(const ArmModel& model);
 
-/// What is said of an arm whose `ArmInertia` is not sound where it starts.
+/// Error message for an arm with an unsound `ArmInertia` at its start.
 inline constexpr const char* unsound_mass =
     "its mass matrix at the start is none; allowed: a finite, symmetric and positive definite one";
 
@@ -32,9 +32,9 @@ inline constexpr const char* unsound_mass =
 ///
 ///     M = sum over the links of  m Jv' Jv + Jw' I Jw     and the rotors on the diagonal
 ///
-/// with Jv that of the centre of mass; or the mass matrix of the kinematics. A joint that moves no
-/// mass at this pose (`missing`) is given the inertia that its effort accelerates by 100 rad/s^2
-/// (m/s^2). Allocates at construction only.
+/// with Jv that of the centre of mass; or the mass matrix of the kinematics. A joint without mass
+/// at this pose (`missing`) gets its effort / 100 rad/s^2 (m/s^2) as inertia. Allocates at
+/// construction only.
 class ArmInertia {
  public:
   using Vector = network::Vec<network::any_size>;  ///< one entry for each joint
@@ -45,8 +45,8 @@ class ArmInertia {
 
   /// Updates M to the pose of `kinematics`. Cost: a Jacobian for each link, or its mass matrix, and
   /// a factorization.
-  /// @return whether it can be a mass matrix: finite, symmetric, nowhere negative, and with less
-  /// than four times, and more than a fourth of, the inertias of the last one; else M stays
+  /// @return whether it can be a mass matrix: finite, symmetric, nowhere negative, its inertias
+  /// between a fourth and four times the last ones; else M stays
   [[nodiscard]] bool update(const ArmKinematics& kinematics) noexcept;
   /// Accepts the next sound matrix whatever the last one was: the arm moved on unseen.
   void begin_anew() noexcept { is_known_ = false; }
@@ -54,7 +54,7 @@ class ArmInertia {
   /// M [kg m^2] or [kg], symmetric.
   [[nodiscard]] const Matrix& matrix() const noexcept { return M_; }
 
-  /// The first joint with no mass, or a mass that is not a number, at the last update; -1: none.
+  /// The first joint with no mass or a NaN at the last update; -1: none.
   [[nodiscard]] int missing() const noexcept { return missing_; }
 
   /// Momenta M v [kg m^2/s] or [kg m/s].
@@ -63,8 +63,8 @@ class ArmInertia {
  private:
   [[nodiscard]] Eigen::Index size() const noexcept;
 
-  // Whether the inertias can be those of a moment after the last ones. Below a tenth of what stands
-  // for an unknown inertia they may be anything.
+  // Whether the inertias can follow the last ones a moment later. Below a tenth of the substitute
+  // for an unknown inertia anything is accepted.
   [[nodiscard]] bool follows() const noexcept;
 
   [[nodiscard]] bool is_sound() noexcept;

@@ -20,17 +20,17 @@ struct BarrierRow {
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
 
   PairId pair;             ///< invalid: of a joint
-  Vector h;                ///< [m] torques on the joints of 1 N that opens the gap
+  Vector h;                ///< [m] torques on the joints of 1 N opening the gap
   double gap = 0.0;        ///< [m], [rad] less its margin
   double rate = 0.0;       ///< [m/s] of the gap, positive on retreat
-  double others = 0.0;     ///< [m/s] the part of it that is not of this arm
+  double others = 0.0;     ///< [m/s] the part of it from other bodies
   double bending = 0.0;    ///< [m/s^2] of the rate at constant joint rates
-  double top_speed = 0.0;  ///< [rad/s] of a joint, in place of what a gap allows; 0: none
+  double top_speed = 0.0;  ///< [rad/s] of a joint, in place of the bound of a gap; 0: none
   bool is_shared = false;  ///< another arm can close it too
 };
 
-/// Gathers the rows of an arm. Allocates at construction only; of more rows than it has room for,
-/// those are kept that will close first.
+/// Gathers the rows of an arm. Allocates at construction only; on overflow the rows closing first
+/// are kept.
 class BarrierRows {
  public:
   static constexpr std::size_t most = 64;  ///< rows in one tick
@@ -38,8 +38,8 @@ class BarrierRows {
   /// @param margin [m] by which the gaps of walls count as smaller
   BarrierRows(const ArmModel& model, double margin);
 
-  /// @param q [rad] or [m] @param v [rad/s] or [m/s] of the joints, as told @param untold the rates
-  /// by which they move faster (JointWatch::untold_rate); they count where they close a gap
+  /// @param q [rad] or [m] @param v [rad/s] or [m/s] of the joints, as told @param untold their
+  /// untold rates (JointWatch::untold_rate), counted if they close a gap
   /// @param soon [s] rows compare by their gap after this time
   void gather(std::span<const HardContact> contacts, BodyId tool, const Jacobian& jacobian,
               const ArmBodies& links, std::span<const double> q, std::span<const double> v,
@@ -67,7 +67,7 @@ class BarrierRows {
     Twist bias;  // bias_of(*jacobian, v)
   };
 
-  // Adds what the wrench `F` on a body does. False if the body is not of this arm.
+  // Adds the torques of the wrench `F` on a body. False if the body is not of this arm.
   static bool add_side(Side& side, const Jacobian* jacobian, const Wrench& F,
                        std::span<const double> v, BarrierRow& row) noexcept;
 
@@ -77,7 +77,7 @@ class BarrierRows {
 
   // The row after those kept, without a gap.
   [[nodiscard]] BarrierRow& begin_row() noexcept;
-  // Keeps it, or the one that closes first of all.
+  // Keeps it, or on overflow those closing first.
   void keep() noexcept;
 
   const ArmModel& model_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Finds a drive that is dead, turned round or later than was told.
+/// Finds a dead drive, a reversed one, or one later than told.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,17 @@ namespace repel {
 ///
 ///     p' = M dv/dt + B v + F sgn(v) + g - e
 ///
-/// is what the torques have added, w' = tau, at their delay and with a gain within the uncertainty
+/// is the integral of the torques, w' = tau, at their delay and with a gain within the uncertainty
 /// of masses. e is the steady disturbance of a moving joint. The residual may be beyond the noise,
 /// and one of these may have a residual several times smaller. Then the drive does not follow its
 /// command, or readings are late:
 ///
-/// - torques that are later by two ticks or more, over 20 ms;
-/// - no torque, or the opposite one, from the moment at which the difference began.
+/// - torques later by two ticks or more, over 20 ms;
+/// - no torque, or the opposite one, from the onset of the difference.
 ///
-/// A force that nobody sent, as of a person who pushes, is explained by none of them. After the
-/// momentum observer of De Luca and Mattone (2003). Allocates at construction only. Cost: a few
-/// operations for each delay and joint.
+/// An external force, as of a person pushing, fits none of them. After the momentum observer of De
+/// Luca and Mattone (2003). Allocates at construction only. Cost: a few operations for each delay
+/// and joint.
 class DriveWatch {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -36,7 +36,7 @@ class DriveWatch {
   /// @param delay [ticks] of the drive
   DriveWatch(const ArmModel& model, double delay);
 
-  /// What was sent after the last reading: `net` and `weight` [N m], their sum is the torque.
+  /// The torque sent after the last reading: the sum of `net` and `weight` [N m].
   void note_sent(const Vector& net, std::span<const double> weight) noexcept;
 
   /// Brakes are on: no torque acts.
@@ -49,7 +49,7 @@ class DriveWatch {
   /// The next reading does not follow from the last one, or a brake held the arm.
   void begin_anew(double elapsed) noexcept;
 
-  /// Some joint does not do what its drive was told.
+  /// The drive of some joint does not follow its command.
   [[nodiscard]] bool strays() const noexcept { return strays_; }
 
  private:
@@ -62,19 +62,19 @@ class DriveWatch {
   static constexpr double friction_error = 1.25;            // of the gain
   static constexpr double opposites[3] = {0.65, 1.0, 1.5};  // gains
   static constexpr double evident = 3.0;                    // times the noise
-  static constexpr std::size_t lead = 4;                    // ticks that a difference takes to show
+  static constexpr std::size_t lead = 4;                    // ticks until a difference shows
   static constexpr int enough = 2;                          // ticks
   static constexpr std::size_t lates = 7;
   static constexpr std::size_t late[lates] = {2, 3, 4, 5, 6, 8, 12};  // [ticks]
 
-  // [N m s] What is left of p beside any gain.
+  // [N m s] Residual of p at any gain.
   static double left_of(double p, double w, double u) noexcept;
 
   /// Sums for the gain of torques.
   struct Fit {
     double pw = 0.0, ww = 0.0;
   };
-  /// What was added since a difference began [N m s], and how far at most each assumption was off.
+  /// Momentum since a difference began [N m s], and the greatest error of each hypothesis.
   struct Since {
     double time = 0.0;  // [s] 0: there is no difference
     double p = 0.0, w = 0.0;
@@ -100,12 +100,12 @@ class DriveWatch {
 
   void advance(double kept, double elapsed) noexcept;
   [[nodiscard]] double at(std::size_t ticks, std::size_t joint) const noexcept;
-  // [N m s] of torques that are later than told.
+  // [N m s] of torques later than told.
   [[nodiscard]] double w(double later, std::size_t joint) const noexcept;
   void rest(std::size_t i) noexcept;
 
   static double unexplained(double pp, const Fit& fit, double u) noexcept;
-  // By torques that are late.
+  // By late torques.
   void compare(std::size_t i, double share, const JointWatchOptions& options) noexcept;
 
   // By no torque, or the opposite one. @param added, sent [N m s] in this tick @param w of the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Keeps an arm from entering hard walls, by the least change of torques that lets it stop.
+/// Keeps an arm from entering hard walls, by the least change of torques.
 #pragma once
 
 #include <algorithm>
@@ -24,28 +24,27 @@ namespace repel {
 struct BarrierTotals {
   std::int64_t ticks = 0;   ///< in which it changed a torque
   std::int64_t lost = 0;    ///< in which some wall could not be held
-  double peak_force = 0.0;  ///< [N] hardest push that a wall withstood
-  double energy = 0.0;      ///< [J] taken from gaps that closed, less what was given to open them
+  double peak_force = 0.0;  ///< [N] hardest push withstood by a wall
+  double energy = 0.0;      ///< [J] taken from closing gaps, less the energy given to open them
 };
 
 /// A barrier on the approach to hard walls. A gap d (BarrierRows) may close no faster than
 ///
 ///     d = b t + b^2 / (2 a)        b(d) = sqrt(a^2 t^2 + 2 a d) - a t
 ///
-/// with a the deceleration that the efforts of the joints leave to the arm there, by its inertia
-/// times `mass_uncertainty` and less the bending of the gap, and t the time until a torque acts:
-/// the delay of the drive, the slew rate of the torques, and some ticks, so that the gap closes
-/// exponentially at last. The speed of a gap is the lowest that a RateForecast leaves possible.
+/// with a the deceleration available from the efforts of the joints, by the inertia times
+/// `mass_uncertainty` and less the bending of the gap, and t the time until a torque acts: drive
+/// delay, slew time, and some ticks for an exponential approach at last. The speed of a gap is the
+/// lower bound of a RateForecast.
 ///
-/// Of all torques that bring every gap to its speed within a step, the ones are sent that change
-/// the acceleration of the arm least (LeastConstraint), as if walls without friction pushed. So
-/// retreat and sliding are free. The forces only brake what approaches, or take off what is asked
-/// for; they add energy only to flee from a wall that comes, and to return to the margin as much as
-/// was taken before.
+/// The torques sent bring every gap to its speed within a step at the least change of acceleration
+/// (LeastConstraint), like pushes of frictionless walls. So retreat and sliding are free. The
+/// forces brake an approach or reduce torques asked for. They add energy only to flee from an
+/// approaching wall, and to return to the margin as much as was taken before.
 ///
-/// Where no torque within the limits can stop the arm any more, `account` says so while the gap is
+/// If no torque within the limits can stop the arm any more, `account` reports it while the gap is
 /// still open. Allocates at construction only. Cost: a solution with the mass matrix for each gap,
-/// and what LeastConstraint says.
+/// and that of LeastConstraint.
 class EntryBarrier {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -58,44 +57,43 @@ class EntryBarrier {
 
   /// Some wall is hard.
   [[nodiscard]] bool is_on() const noexcept { return !withstood_.empty(); }
-  /// t [s]. A gap that cannot close in several of these need not be known.
+  /// t [s]. Gaps that stay open for several of these may be unknown.
   [[nodiscard]] double reaction() const noexcept { return reaction_; }
 
-  /// Takes the contacts that concern this arm, in its present pose. @param q [rad] or [m]
-  /// @param v [rad/s] or [m/s] of the joints, and by how much they are faster than `v` says
-  /// (JointWatch::untold_rate) @param jacobian of the tool
+  /// Takes the contacts of this arm, in its present pose. @param q [rad] or [m]
+  /// @param v [rad/s] or [m/s] of the joints, and their untold rates (JointWatch::untold_rate)
+  /// @param jacobian of the tool
   void watch(const Contacts& contacts, BodyId tool, const Jacobian& jacobian,
              const ArmBodies& links, std::span<const double> q, std::span<const double> v,
              std::span<const double> untold) noexcept;
   /// Without contacts, until the next `watch`: something else holds the arm.
-  /// @return `hold_lost` where a wall comes that will be at the arm soon, or 0
+  /// @return `hold_lost` if a moving wall will reach the arm soon, or 0
   [[nodiscard]] Status forget() noexcept;
 
   /// To be called in every tick, before the others. @param v [rad/s]
   /// @return true where a hard wall is near
   [[nodiscard]] bool observe(std::span<const double> v, const ArmInertia& inertia) noexcept;
-  /// Adds the bounds of the gaps to a problem, as its first rows: with torques that keep them, no
-  /// hard wall is entered. @param weight [N m] the torques that carry the weight
+  /// Adds the bounds of the gaps to a problem, as its first rows: torques within them enter no hard
+  /// wall. @param weight [N m] the torques carrying the weight
   void bound(LeastConstraint& problem, std::span<const double> weight, std::span<const double> v,
              const ArmInertia& inertia) noexcept;
-  /// Takes account of the solution, and solves it again where no torques keep all gaps.
-  /// @param efforts [N m] limits, by which the push that a wall withstands is counted: how fast a
-  /// torque may change does not matter to it
+  /// Accounts for the solution, and solves again if no torques keep all gaps.
+  /// @param efforts [N m] limits for the withstood push: slew rates do not count in it
   /// @return `hold_lost`, or 0
   [[nodiscard]] Status account(LeastConstraint& problem, std::span<const double> lower,
                                std::span<const double> upper,
                                std::span<const double> efforts) noexcept;
 
-  /// To be called in every tick, with the torques that were sent less those of the weight [N m].
+  /// To be called in every tick, with the torques sent less those of the weight [N m].
   void note_sent(const Vector& net) noexcept { forecast_.note_sent(net); }
 
   /// [N] Largest constraint force of the last tick.
   [[nodiscard]] double force() const noexcept { return force_; }
   /// The pair of the hardest contact; invalid where none held.
   [[nodiscard]] PairId pushed() const noexcept { return pushed_; }
-  /// What the last tick leaves proven, with the torques that it sent.
+  /// The proof left by the last tick and its torques.
   [[nodiscard]] const HoldProof& proof() const noexcept { return proof_; }
-  /// [N] Hardest push that the wall of this pair withstood since set-up.
+  /// [N] Hardest push withstood by the wall of this pair since set-up.
   [[nodiscard]] double withstood(PairId pair) const noexcept;
   [[nodiscard]] const BarrierTotals& totals() const noexcept { return totals_; }  ///< since set-up
 
@@ -104,12 +102,12 @@ class EntryBarrier {
 
   /// How a gap can be braked [m/s^2].
   struct Stopping {
-    double surely = 0.0;   ///< a: by a push along the gap, with the inertia that is uncertain
+    double surely = 0.0;   ///< a: by a push along the gap, at the uncertain inertia
     double at_most = 0.0;  ///< if all joints did their utmost for this gap alone
   };
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
-  // [m] What turns and bends within a tick grows with it.
+  // [m] Turning and bending within a tick grow with it.
   [[nodiscard]] double margin() const noexcept;
 
   void add(LeastConstraint& problem, const BarrierRow& row, Stopping& stop,
@@ -118,19 +116,19 @@ class EntryBarrier {
   [[nodiscard]] Stopping stopping(const LeastConstraint::Row& row,
                                   std::span<const double> weight) const noexcept;
 
-  // b [m/s] at a gap of d [m]; below zero for one that is to be opened. @param a [m/s^2]
+  // b [m/s] at a gap of d [m]; below zero to open it. @param a [m/s^2]
   [[nodiscard]] double allowed(double d, double a) const noexcept;
 
   void count(const LeastConstraint& problem, std::span<const double> efforts) noexcept;
 
-  // [m] What is left of the gap of a row when the torques of this tick have acted.
+  // [m] Remaining gap of a row after the torques of this tick.
   // @param freely [m/s] its rate then without them @param after with them
   [[nodiscard]] double soon(const BarrierRow& row, double freely, double after) const noexcept;
-  // [m] Way of an arm that approaches at `after` [m/s] and is braked by `a` [m/s^2] from then on.
+  // [m] Braking distance from `after` [m/s] at `a` [m/s^2].
   [[nodiscard]] double stopping_distance(double after, double a) const noexcept;
 
-  // Finds the proof. A wall is lost where the arm passes the place where it is held and will,
-  // braked with all it has, come to rest behind the wall, or has no proof that it will not.
+  // Finds the proof. A wall is lost if the arm passes the margin and full braking is not proven to
+  // stop it before the wall.
   [[nodiscard]] Status judge(const LeastConstraint& problem) noexcept;
 
   // The first of the rows of a problem are those of the gaps.
@@ -142,7 +140,7 @@ class EntryBarrier {
   double period_;     // [s]
   double delay_;      // [ticks]
   double slew_time_;  // [s]
-  double step_;       // [s] in which a gap is brought to its speed
+  double step_;       // [s] to bring a gap to its speed
   double reaction_;   // t [s]
   BarrierRows rows_;
   RateForecast forecast_;

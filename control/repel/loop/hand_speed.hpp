@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Keeps what a hand asks for within the speed limit of the tool.
+/// Keeps the rates of a hand within the speed limit of the tool.
 #pragma once
 
 #include <repel/base/types.hpp>
@@ -11,22 +11,22 @@ namespace repel {
 
 namespace detail {
 
-/// Of a vector whose squares may be beyond the range of numbers.
+/// Of a vector; its squares may overflow.
 [[nodiscard]] double length_of(const Vec3& v) noexcept;
 
 }  // namespace detail
 
-/// Puts a hand to rest whose numbers are not finite; it keeps the `last` direction of its lever.
-/// True when it was finite.
+/// Puts a hand with non-finite numbers to rest; it keeps the `last` direction of its lever. True if
+/// it was finite.
 [[nodiscard]] bool rest_unless_finite(network::HandInput& hand,
                                       const network::HandInput& last) noexcept;
 
 /// Clamps the operator's rates to the speed limit of the tool and the lever direction to length
-/// one, with its turning; a scale that is none becomes 1. True when a rate was clamped.
+/// one, with its turning; an invalid scale becomes 1. True if a rate was clamped.
 /// @param scale of the lever [m/rad], above 0
 [[nodiscard]] bool cut_to_speed(network::HandInput& hand, double limit, double scale) noexcept;
 
-/// [m/rad] Tool motion per motion of the lever that a hand holds; 1 where it holds none.
+/// [m/rad] Tool motion per motion of the lever of a hand; 1 without a lever.
 struct LeverScales {
   double first = 1.0;   ///< of the first hand
   double second = 1.0;  ///< of the second hand

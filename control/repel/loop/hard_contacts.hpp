@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Where the hard walls of a world could be entered: the points of their near pairs that matter,
-/// with their gaps.
+/// Possible points of entry into the hard walls of a world, on near pairs, with their gaps.
 #pragma once
 
 #include <array>
@@ -19,19 +18,19 @@ namespace repel {
 
 /// A point at which two bodies of a hard pair may meet.
 struct HardContact {
-  PairId pair;        ///< whose wall is hard
-  BodyId a;           ///< the body that moves: a body that a tool holds is the tool
-  BodyId b;           ///< likewise, of the other part
-  Wrench on_a;        ///< [1, m] on A of a unit force that parts them, about the origin of its body
-  Wrench on_b;        ///< on B, likewise
-  double gap = 0.0;   ///< [m] there, along that force; of the pair, not larger than its distance
-  double rate = 0.0;  ///< [m/s] of the gap, positive on retreat
-  double bending = 0.0;          ///< [m/s^2] of the rate as both bodies go on with constant twists
+  PairId pair;           ///< whose wall is hard
+  BodyId a;              ///< the moving body; the tool, for a held one
+  BodyId b;              ///< likewise, of the other part
+  Wrench on_a;           ///< [1, m] on A of a unit separating force, about the origin of its body
+  Wrench on_b;           ///< on B, likewise
+  double gap = 0.0;      ///< [m] there, along that force: at most the distance of the pair
+  double rate = 0.0;     ///< [m/s] of the gap, positive on retreat
+  double bending = 0.0;  ///< [m/s^2] of the rate as both bodies go on with constant twists
   bool is_between_arms = false;  ///< two arms can close the gap
   std::int32_t at = 0;           ///< which point of the pair it is
 };
 
-/// What the tick of an arm needs to know of the contacts of all arms.
+/// The contacts of all arms, for the tick of one.
 struct Contacts {
   std::span<const ActiveContact> active;  ///< that exert a force
   std::span<const HardContact> hard{};    ///< that must not be entered
@@ -41,14 +40,13 @@ struct Contacts {
 /// Some pair of the world is hard.
 [[nodiscard]] bool has_hard(const World& world) noexcept;
 
-/// Collects the points of the hard pairs that are near, at the present poses. The answer of a pair
-/// may be old. Only its direction is used: the separation along any direction is a lower bound of
-/// the distance.
+/// Collects the points of the near hard pairs, at the present poses. The answer of a pair may be
+/// old. Only its direction is used: the separation along any direction is a lower bound of the
+/// distance.
 ///
-/// The nearest point is not enough: where two faces are nearly parallel, a small turn moves it to
-/// the other end of the face, which may approach as the first one retreats. So for a ring of
-/// directions along the plane, the plane is tilted by what the bodies turn soon, and the corner
-/// that it would touch is taken.
+/// The nearest point is not enough: between nearly parallel faces, a small turn moves it to the
+/// other end of the face. That end may approach while the first one retreats. So the plane is
+/// tilted about a ring of directions by the turn expected soon, and the corner it touches is taken.
 ///
 /// Allocates at construction only; points beyond its capacity are left out and counted.
 class HardContacts {
@@ -63,8 +61,8 @@ class HardContacts {
 
   /// Collects those of the last exchange. Cost: a look at each near pair; for a hard one that
   /// could be entered soon 18 evaluations of both support maps, about 1 us.
-  /// @param reaction [s] until a torque acts: what cannot be entered until it has braked an arm,
-  /// from the speed that it has and may gain by then, has no points
+  /// @param reaction [s] until a torque acts: walls out of reach within reaction and braking, at
+  /// present speed plus its possible gain, have no points
   void collect(const Coprocessor& coprocessor, double reaction) noexcept;
 
   /// The contacts of the last `collect`.
@@ -110,7 +108,7 @@ class HardContacts {
   std::size_t count_ = 0;
   int left_out_ = 0;
   double reaction_ = 0.0;  // [s]
-  double near_ = 0.0;      // [m] gaps of this pair that may close suddenly
+  double near_ = 0.0;      // [m] gaps of this pair up to this may close suddenly
 };
 
 }  // namespace repel

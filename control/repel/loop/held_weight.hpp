@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The weight of what a tool holds, at the joints of its arm.
+/// The weight of held parts, at the joints of the arm.
 #pragma once
 
 #include <span>
@@ -17,8 +17,8 @@ enum class Masses {
   all,
 };
 
-/// Adds to the torques [N m] that hold an arm against gravity those for what its tool holds
-/// (World::weigh). As a part becomes part of the tool, so does its weight. Its inertia is left out.
+/// Adds the weight of the parts held by the tool (World::weigh) to the gravity torques [N m] of an
+/// arm. As a part becomes part of the tool, so does its weight. Its inertia is left out.
 /// @param J of the frame of the `tool` @param gravity_W [m/s^2]
 void add_held_weight(const World& world, BodyId tool, const Jacobian& J, const Vec3& gravity_W,
                      Masses masses, std::span<double> torques) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Decides the joint torques: what is asked for, within all bounds.
+/// Decides the joint torques: those asked for, within all bounds.
 #pragma once
 
 #include <cstddef>
@@ -28,12 +28,11 @@ struct TorqueShares {
   double gravity = 1.0;    ///< of the gravity compensation
 };
 
-/// What holds a torque back, besides the arm itself.
+/// Bounds of the torques, besides those of the arm itself.
 struct TorqueBounds {
   EntryBarrier* barrier = nullptr;  ///< before hard walls; null: none is hard
   ToolSpeed tool{};                 ///< how fast the tool may become
-  /// [N m] net torques that joints must exceed, signed, 0 where there is no doubt
-  /// (StillJoint::probe)
+  /// [N m] net torques that joints must exceed, signed; 0 without doubt (StillJoint::probe)
   std::span<const double> probes{};
   std::span<const double> q{};  ///< [rad] or [m] of the joints; empty: their ranges do not count
 };
@@ -42,13 +41,12 @@ struct TorqueBounds {
 ///
 ///     tau = g(q) + operator + walls + friction - M v / brake_time
 ///
-/// Braking uses the effort that is left over. All its torques are scaled together, so it never
-/// drives. It is reduced while a wall pushes the arm along. What is sent is, of all torques
-/// within the bounds, the one that changes the acceleration of the arm least (LeastConstraint). Of
-/// bounds that contradict each other, the first of these holds: effort and slew rate; hard walls
-/// (EntryBarrier); speeds of joints and tool (SpeedBounds). A torque that cannot be sent therefore
-/// changes those of the other joints too: what a heavy joint lacks would else throw a light one.
-/// Allocates at construction only.
+/// Braking uses the remaining effort. All its torques are scaled together, so it never drives. It
+/// is reduced while a wall pushes the arm along. Of all torques within the bounds, those with the
+/// least change of acceleration are sent (LeastConstraint). Of conflicting bounds, the first of
+/// these holds: effort and slew rate; hard walls (EntryBarrier); speeds of joints and tool
+/// (SpeedBounds). A bound on one torque therefore changes those of the other joints too: a
+/// shortfall at a heavy joint would else throw a light one. Allocates at construction only.
 class JointTorques {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -70,10 +68,10 @@ class JointTorques {
   [[nodiscard]] const std::vector<double>& torques() const noexcept { return torques_; }  ///< [N m]
   /// tau - g of the last tick [N m].
   [[nodiscard]] const Vector& net() const noexcept { return net_; }
-  /// What accelerates each joint whatever holds the others: the smaller of `net` and of the torque
-  /// that would accelerate it alone as `net` accelerates it with all others [N m]; 0 where they
-  /// disagree. The same as `net` where no bound changed a torque and no wall is hard: what the
-  /// network sends is not meant to cancel, what holds an arm is.
+  /// Torque surely accelerating each joint, even with the others held [N m]: the smaller of `net`
+  /// and of the torque for the same acceleration of this joint alone; 0 if their signs differ.
+  /// Equals `net` if no bound changed a torque and no wall is hard: torques of the network are not
+  /// meant to cancel, holding torques are.
   [[nodiscard]] const Vector& alone() const noexcept { return alone_; }
   /// Predicted rate of each joint one period later with the torques sent and dry friction [rad/s].
   [[nodiscard]] const Vector& expected_rate() const noexcept { return rate_; }
@@ -82,10 +80,10 @@ class JointTorques {
   static bool is_number(double x) noexcept { return x - x == 0.0; }
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
-  // Rejects torques that are not finite; gravity falls back to its last finite value.
+  // Rejects torques not finite; gravity falls back to its last finite value.
   [[nodiscard]] bool keep_sound(const Vector& network, const Vector& walls) noexcept;
 
-  // Sums what operator, walls and friction ask for.
+  // Sums the torques of operator, walls and friction.
   void share_out(const Vector& network, const Vector& walls, const TorqueShares& s,
                  const std::vector<double>& v) noexcept;
 
@@ -94,7 +92,7 @@ class JointTorques {
 
   void probe(std::size_t i, double level) noexcept;
 
-  // Returns the share of the damping M v / brake_time that is applied; its torques are in `brake_`.
+  // Returns the applied share of the damping M v / brake_time; its torques are in `brake_`.
   double brake(const TorqueShares& s, const std::vector<double>& v,
                const ArmInertia& inertia) noexcept;
 
@@ -104,7 +102,7 @@ class JointTorques {
   // M and the viscous friction until the torque of this tick has acted, by an implicit rule.
   [[nodiscard]] bool begin(const ArmInertia& inertia) noexcept;
 
-  // What is asked for can be sent.
+  // The torques asked for are within the bounds.
   [[nodiscard]] bool is_within_range() const noexcept;
 
   // Finds the torques within all bounds.

@@ -28,13 +28,13 @@ namespace repel {
 /// - a rate grows no faster than the full effort of the joint, and the coupling from other joints,
 ///   can accelerate it: M_ii |dv_i| <= T (|tau_i - g_i| + effort_i) + sum |M_ik dv_k|. Speed may be
 ///   lost at once, by an impact;
-/// - a joint that moves, or is driven by more than its friction can hold, does not report exactly
-///   the same position repeatedly (StillJoint).
+/// - a joint moving, or driven beyond its friction, does not report exactly the same position
+///   repeatedly (StillJoint).
 ///
 /// A reading that fails is not used; meanwhile the motion is predicted from the last believed one.
-/// A joint is believed again where each of its readings followed from the one before, or where it
-/// was lost and braked; else the program has to confirm its position (`confirm`). Losses in short
-/// succession double the number of sound readings that it takes.
+/// A joint is believed again if each reading followed from the one before, or at the place of its
+/// loss after braking; else the program has to confirm its position (`confirm`). Losses in short
+/// succession double the number of sound readings needed.
 ///
 /// Allocates at construction only; a tick costs a few operations for each pair of joints.
 class JointWatch {
@@ -46,15 +46,15 @@ class JointWatch {
   JointWatch(const ArmModel& model, double period, const JointWatchOptions& options = {},
              double drive_delay = 0.0);
 
-  /// Checks a reading `q` [rad], `v` [rad/s]; `position` and `rate` then return it if it is
-  /// believed, else the prediction. @param elapsed [s] since the last reading
-  /// @return the bits of status::blind that hold; 0 when the reading is believed
+  /// Checks a reading `q` [rad], `v` [rad/s]; `position` and `rate` then return it if believed,
+  /// else the prediction. @param elapsed [s] since the last reading
+  /// @return bits of status::blind; 0 for a believed reading
   [[nodiscard]] Status step(const std::vector<double>& q, const std::vector<double>& v,
                             double elapsed, const ArmInertia::Matrix& M) noexcept;
 
-  /// What the loop sent after the reading: the net torque `net` = tau - g [N m], the part `alone`
-  /// of it that moves each joint whatever holds the others, `weight` g, and the `rate` predicted
-  /// one period later [rad/s]. `held`: brakes are on.
+  /// The torques sent after the reading: `net` = tau - g [N m], its part `alone` effective even
+  /// with the other joints held, `weight` g, and the `rate` predicted one period later [rad/s].
+  /// `held`: brakes are on.
   void expect(const Vector& net, const Vector& alone, std::span<const double> weight,
               const Vector& rate, bool held) noexcept;
 
@@ -63,23 +63,21 @@ class JointWatch {
 
   /// Accepts the next reading without comparison: the arm moved on while the loop was suspended.
   void begin_anew() noexcept;
-  /// The positions are those of the arm, by a reference that does not depend on its encoders: the
-  /// next readings are believed, whatever was lost before.
+  /// The positions are confirmed by a reference independent of the encoders: the next readings are
+  /// believed, in spite of earlier losses.
   void confirm() noexcept;
 
   /// Read or predicted [rad] or [m].
   [[nodiscard]] double position(std::size_t joint) const noexcept { return joints_[joint].q; }
   /// Read or predicted [rad/s] or [m/s].
   [[nodiscard]] double rate(std::size_t joint) const noexcept { return joints_[joint].v; }
-  /// [rad/s] By which the positions move faster than `rate` says, signed; 0 while a reading is
-  /// predicted, and where the difference is within the noise.
+  /// [rad/s] Rate of the positions less `rate`, signed; 0 while predicted, and within the noise.
   [[nodiscard]] double untold_rate(std::size_t joint) const noexcept;
-  /// [N m] The net torque, signed, that shows whether a joint stands still or its encoder is
-  /// frozen; 0: there is no doubt.
+  /// [N m] Net torque, signed, to tell a joint at rest from a frozen encoder; 0: there is no doubt.
   [[nodiscard]] double probe(std::size_t joint) const noexcept;
-  /// The energy that no torque gave.
+  /// The energy gained without torques.
   [[nodiscard]] const MotionAccount& account() const noexcept { return account_; }
-  /// What the drive does with its torques.
+  /// The response of the drive to its torques.
   [[nodiscard]] const DriveWatch& drive() const noexcept { return drive_; }
   /// No reading has been believed yet.
   [[nodiscard]] bool knows_nothing() const noexcept { return !has_believed_; }
@@ -100,7 +98,7 @@ class JointWatch {
     void forget() noexcept;
   };
 
-  static constexpr double braking = 0.04;  // [s] an arm moves on at the speed at which it was lost
+  static constexpr double braking = 0.04;    // [s] an arm moves on at its speed at the loss
   static constexpr double succession = 5.0;  // [s] between losses
   static constexpr int most_losses = 8;      // that count
 
@@ -109,11 +107,11 @@ class JointWatch {
   [[nodiscard]] Status compare(const std::vector<double>& q, const std::vector<double>& v,
                                double elapsed, const ArmInertia::Matrix& M) noexcept;
 
-  // By the speed limit and by what can accelerate the joint.
+  // By the speed limit and the largest possible acceleration.
   [[nodiscard]] bool can_be_true(std::size_t i, const std::vector<double>& v,
                                  const ArmInertia::Matrix& M) const noexcept;
 
-  // Whether the readings are those of an arm that went on from where it was lost.
+  // Whether the readings continue the motion from the place of the loss.
   [[nodiscard]] bool agrees(const std::vector<double>& q) const noexcept;
 
   void keep(const std::vector<double>& q, const std::vector<double>& v) noexcept;

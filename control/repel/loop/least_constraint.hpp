@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The principle of least constraint: torques within their limits that keep some rates above their
-/// bounds and change the acceleration of an arm as little as possible.
+/// The principle of least constraint: torques within their limits, keeping rates above their bounds
+/// at the least change of acceleration.
 #pragma once
 
 #include <array>
@@ -19,14 +19,13 @@ namespace repel {
 ///
 ///     h_k' (v + step M^-1 (tau - weight)) >= least_k      lower <= tau <= upper
 ///
-/// (C. F. Gauss 1829). By their duals f_k >= 0, it is as if bodies without friction pushed with the
-/// forces f_k, and as if stops held what is at its limit. A dual active set (D. Goldfarb, A. Idnani
-/// 1983): the most violated bound is added until none is left, so the result is exact after about
-/// as many steps as there are bounds that bind.
+/// (C. F. Gauss 1829). The duals f_k >= 0 act like forces of frictionless bodies, and like stops at
+/// the torque limits. A dual active set (D. Goldfarb, A. Idnani 1983): the most violated bound is
+/// added until none is left, so the result is exact after about one step for each active bound.
 ///
-/// Each bound of a rate gives way by a share of its mobility. Where the limits leave no solution,
-/// the result misses the bounds by the least sum of squares, each over its share: what gives way
-/// more is missed first. Allocates at construction only.
+/// Each bound of a rate gives way by a share of its mobility. If the limits leave no solution, the
+/// bounds are missed by the least sum of squares, each over its share: the softest first. Allocates
+/// at construction only.
 class LeastConstraint {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -49,7 +48,7 @@ class LeastConstraint {
   /// Allocates for so many joints and rows.
   LeastConstraint(std::size_t joints, std::size_t most_rows);
 
-  /// Begins a problem. @param mass M, with what else brakes in proportion to the rates
+  /// Begins a problem. @param mass M, with other braking in proportion to the rates
   /// @param step [s] @return false if M is not positive definite
   template <class Entry>
   [[nodiscard]] bool begin(Eigen::Index joints, const Entry& mass, double step) noexcept {
@@ -59,43 +58,43 @@ class LeastConstraint {
     for (Eigen::Index i = 0; i < joints * joints; ++i) M_.data()[i] = mass(i);
     return mass_.factor(joints, mass);
   }
-  /// Takes what is asked for: after `begin`, before `solve`. The spans must stay valid.
-  /// @param asked [N m], may be beyond the limits @param weight [N m] the part of it that carries
-  /// the weight
+  /// Takes the torques asked for: after `begin`, before `solve`. The spans must stay valid.
+  /// @param asked [N m], may be beyond the limits @param weight [N m] the part of it carrying the
+  /// weight
   void ask(std::span<const double> asked, std::span<const double> weight) noexcept;
-  /// [N m] What is asked for beyond the weight.
+  /// [N m] Torques asked for beyond the weight.
   [[nodiscard]] double asked(std::size_t joint) const noexcept {
     return asked_.coeff(index(joint)) - weight_[joint];
   }
-  /// [rad/s^2] With the torques that are asked for.
+  /// [rad/s^2] With the torques asked for.
   [[nodiscard]] const Vector& asked_acceleration() const noexcept { return freely_; }
   [[nodiscard]] double step() const noexcept { return step_; }  ///< [s]
 
   /// M, in factors.
   [[nodiscard]] const network::dense::Factored& mass() const noexcept { return mass_; }
 
-  /// @return the row, whose `least_rate` may still be set; null: there is no room
+  /// @return the row (its `least_rate` may still be set); null: overflow
   [[nodiscard]] Row* add(const Vector& h, double rate) noexcept;
   /// The rows added since `begin`.
   [[nodiscard]] std::span<const Row> rows() const noexcept { return std::span(rows_).first(used_); }
 
   /// The spans must stay valid for the calls below.
-  /// @return false if nothing has to be changed. Cost: for each bound that binds, a look at all
-  /// rows and the solution of a triangular system
+  /// @return false if nothing has to be changed. Cost: for each active bound, a look at all rows
+  /// and the solution of a triangular system
   [[nodiscard]] bool solve(std::span<const double> lower, std::span<const double> upper) noexcept;
 
-  /// [rad/s^2] With tau, before rounding and what no solution keeps.
+  /// [rad/s^2] With tau, before rounding and missed bounds.
   [[nodiscard]] const Vector& acceleration() const noexcept { return acceleration_; }
   /// [N m] tau of a joint.
   [[nodiscard]] double torque(std::size_t joint) const noexcept;
   /// [m/s] The rate after the step.
   [[nodiscard]] double rate_after(const Row& row) const noexcept;
-  /// [m/s] The residual of the firm bounds: the largest shortfall of a rate below its bound. It is
-  /// more than rounding where the limits leave no solution, or the steps did not suffice.
+  /// [m/s] The residual of the firm bounds: the largest shortfall of a rate below its bound. Beyond
+  /// rounding only if the limits leave no solution, or the steps did not suffice.
   [[nodiscard]] double missed() const noexcept;
-  /// The share of the forces f that the limits let act, 0 to 1.
+  /// Share of the forces f within the limits, 0 to 1.
   [[nodiscard]] double share() const noexcept;
-  /// The share of the forces f that limits of +-`most` [N m] would let act, 0 to 1.
+  /// Share of the forces f within limits of +-`most` [N m], 0 to 1.
   [[nodiscard]] double share(std::span<const double> most) const noexcept;
 
  private:
@@ -103,11 +102,11 @@ class LeastConstraint {
   static constexpr int most_steps = 64;
   static constexpr double tolerance = 1e-9;  // [m/s], and of the range of a torque
 
-  /// A bound that binds: of a row, or the limit of a joint.
+  /// An active bound: of a row, or the limit of a joint.
   struct Active {
     std::size_t index = 0;  // of the row or joint
     double side = 0.0;      // 0: a row, 1: the lower limit, -1: the upper one
-    double missing = 0.0;   // [m/s^2] or [N m] by which `asked` violates it
+    double missing = 0.0;   // [m/s^2] or [N m] violation by `asked`
     double force = 0.0;     // its dual
   };
 
@@ -115,7 +114,7 @@ class LeastConstraint {
 
   // M^-1, where there is a row.
   void invert() noexcept;
-  // The bound that is violated most, by what its removal costs; false: none is.
+  // The most violated bound, weighed by the cost of its removal; false: none.
   [[nodiscard]] bool find_worst(Active& worst) const noexcept;
   // Scalar product of the gradients of two bounds by the norm of M^-1.
   [[nodiscard]] double product(const Active& x, const Active& y) const noexcept;

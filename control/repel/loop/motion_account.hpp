@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The energy that an arm gains without a torque that gave it.
+/// The energy gained by an arm without work of its torques.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,14 @@
 
 namespace repel {
 
-/// Compares the kinetic energy that the readings tell with the work of the torques that were sent:
+/// Compares the kinetic energy by the readings with the work of the torques sent:
 ///
 ///     gained = sum of  dE - T v.(tau - g - B v + e)      E = v' M v / 2
 ///
-/// e is what acts steadily beside them: a payload, an error of the weight, dry friction. It is the
-/// low-passed difference of M dv / T and the torques. What is gained stays within the error of E
-/// while readings and drive are as late as was told. Where they are later, torque and motion are
-/// out of phase, and it grows by what the loop believes to take out. Allocates at construction
-/// only.
+/// e is the steady disturbance: a payload, an error of the weight, dry friction. It is the
+/// low-passed difference of M dv / T and the torques. The gain stays within the error of E while
+/// readings and drive are as late as told. If they are later, torque and motion are out of phase,
+/// and it grows by the energy the loop believes to take out. Allocates at construction only.
 class MotionAccount {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint

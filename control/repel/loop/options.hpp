@@ -50,19 +50,19 @@ struct JointWatchOptions {
   double rate_noise = 0.2;       ///< [rad/s] error of one rate relative to the next
   double resolution = 1e-5;      ///< [rad] smallest step of a position
   double jitter = 1.0;           ///< [periods] by which the time between readings may be off
-  int repeats = 1;  ///< ticks for which a sound arm may report the same position of a moving joint;
-                    ///< more where it is read more often than it measures
+  int repeats = 1;  ///< ticks a sound arm may report the same position of a moving joint; more for
+                    ///< an arm read faster than it measures
   double mass_uncertainty = 1.7;  ///< factor by which inertia and torque may be off
-  bool touches = false;  ///< the arm may press on objects that are not in the model, and be pushed
-                         ///< by them: a joint that stands still against a force is believed, and
-                         ///< motion that no torque explains is no fault
+  bool touches = false;  ///< the arm may press on unmodelled objects, and be pushed by them: a
+                         ///< joint at rest against a force is believed, and motion without torque
+                         ///< is no fault
   int regain = 4;        ///< consecutive sound readings after which they are believed again
 };
 
 /// Options of the control of one arm.
 struct TeleoperatorOptions {
-  double tool_speed = 0.25;  ///< [m/s] up to which the tool may be driven, by the operator and by
-                             ///< walls that do not move; 1e-3 to 10
+  double tool_speed = 0.25;  ///< [m/s] top speed of the tool, driven by the operator and by walls
+                             ///< at rest; 1e-3 to 10
   double longest_gap = 0.1;  ///< [s] without a tick after which the operator's force is removed
   double exit_speed = 0.02;  ///< [m/s] at which an arm is pushed out of an obstacle it starts in
   bool push_out = false;     ///< the arm starts inside an obstacle and is to be pushed out of it

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Checks that the positions and the rates of a joint tell of the same motion.
+/// Checks that positions and rates of a joint agree.
 #pragma once
 
 #include <limits>
@@ -9,20 +9,20 @@
 
 namespace repel {
 
-/// A position follows from the last one and the mean of the rates. What is missing is compared with
-/// the noise three times: of one reading, of about ten, and of about a second, there with a share
-/// of the way travelled and what the scatter of the readings adds up to. Until it is a fault, the
-/// difference counts as a rate that was not told. Angles; lengths likewise.
+/// A position follows from the last one and the mean of the rates. The difference is compared with
+/// the noise over one reading, about ten, and about a second. The last one also allows a share of
+/// the way travelled and the accumulated scatter of the readings. Until it is a fault, the
+/// difference counts as an untold rate. Angles; lengths likewise.
 class RateCheck {
  public:
   /// @param moved [rad] since the last reading @param last_v [rad/s] told then @param v told now
-  /// @param elapsed [s] between both @param is_late readings are missing: the rate may have been
-  /// another for a while @param period [s] usual
+  /// @param elapsed [s] between both @param is_late readings are missing: the rate may have
+  /// differed for a while @param period [s] usual
   /// @return whether both agree
   [[nodiscard]] bool step(double moved, double last_v, double v, double elapsed, bool is_late,
                           const JointWatchOptions& options, double period) noexcept;
 
-  /// [rad/s] By which the positions moved faster than the rates told, signed; 0 within the noise.
+  /// [rad/s] Untold rate: of the positions less the rate read, signed; 0 within the noise.
   [[nodiscard]] double untold() const noexcept { return untold_; }
   /// The same, without the last reading.
   [[nodiscard]] double untold_before() const noexcept { return untold_before_; }
@@ -49,7 +49,7 @@ class RateCheck {
   double slip_ = 0.0;                          // [rad] missing, over a second
   double way_ = 0.0;                           // [rad] travelled, over a second
   double top_ = 0.0;                           // [rad/s] speed, over a second
-  double scatter_ = 0.0, last_missing_ = 0.0;  // [rad^2] of what is missing, over a second; [rad]
+  double scatter_ = 0.0, last_missing_ = 0.0;  // [rad^2] of the difference, over a second; [rad]
   double untold_ = 0.0, untold_before_ = 0.0;  // [rad/s]
 };
 

@@ -13,7 +13,7 @@ struct ReciprocatingMotion {
   Vec3 along_W{0, 0, 0};  ///< [m] from where the body starts to the far end
   double duration = 1.0;  ///< [s] there and back, above 0
 
-  /// [m] From where the body starts to where it is `time` [s] after that.
+  /// [m] Displacement `time` [s] after the start.
   [[nodiscard]] Vec3 offset(double time) const noexcept;
   /// Greatest speed [m/s].
   [[nodiscard]] double top_speed() const noexcept;
@@ -25,8 +25,8 @@ struct MovingBody {
   Pose X_WB = Pose::Identity();  ///< [m] where it starts
   ReciprocatingMotion motion;    ///< of its frame
 
-  /// Places the body where it is `time` [s] after the start. False when the pose is invalid: the
-  /// body stays where it was.
+  /// Places the body at its pose `time` [s] after the start. False for an invalid pose: the body is
+  /// not moved.
   [[nodiscard]] bool place(World& world, double time) const noexcept;
 };
 

@@ -19,16 +19,16 @@
 
 namespace repel {
 
-/// What is proven of the hard walls of an arm in a tick: neither arm nor drive being worse than
-/// they were told to be, it can be stopped before all of them (EntryBarrier, docs/walls.md).
+/// The proof for the hard walls of an arm in a tick: with arm and drive no worse than told, it can
+/// be stopped before all of them (EntryBarrier, docs/walls.md).
 struct HoldProof {
-  /// [m] How far off every hard wall it can still be stopped; below zero where that is not proven.
-  /// Infinite where no hard wall is near, or something else holds the arm.
+  /// [m] Proven distance to the hard walls after braking; below zero: not proven. Infinite if no
+  /// hard wall is near, or something else holds the arm.
   double margin = std::numeric_limits<double>::infinity();
-  PairId pair;                ///< of the gap that leaves least; invalid: none is near
-  double missed = 0.0;        ///< [m/s] by which a gap closes faster than it may; the torques that
-                              ///< can be sent do not suffice (LeastConstraint::missed)
-  std::int32_t left_out = 0;  ///< gaps for which there was no room, so the proof is not of them
+  PairId pair;                ///< of the smallest such gap; invalid: none is near
+  double missed = 0.0;        ///< [m/s] excess of the closing speed of a gap, with torques at their
+                              ///< limits (LeastConstraint::missed)
+  std::int32_t left_out = 0;  ///< overflow: gaps not covered by the proof
 };
 
 using JointNumbers = std::array<double, network::most_joints>;        ///< zeros beyond the last
@@ -60,7 +60,7 @@ struct TickRecord {
   Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
   Wrench second_grip;         ///< [N, N m] and on a second one; likewise
   double gain = 1.0;          ///< of the fail-safe
-  double held_force = 0.0;    ///< [N] with which hard walls held the arm (loop/entry_barrier.hpp)
+  double held_force = 0.0;    ///< [N] of hard walls on the arm (loop/entry_barrier.hpp)
   PairId held_pair;           ///< that of the hardest one; invalid: none did
   HoldProof hold;             ///< what is proven of hard walls
   JointNumbers torques{};     ///< [N m] or [N] sent to the joints
@@ -70,7 +70,7 @@ struct TickRecord {
   WorkerReport workers;                      ///< the coprocessor's threads
 };
 
-/// What is known of a number of a tick besides its value: where it is written, and as what.
+/// Metadata of a number of a tick: the files it is written to, and its name there.
 struct TickField {
   const char* name;         ///< in Python; empty: not there
   const char* column = "";  ///< of CSV, with its unit; `*` is x, y and z, the number of the joint
@@ -81,9 +81,9 @@ struct TickField {
   bool may_lack = false;    ///< there is none where it is not finite, and in older recordings
 };
 
-/// Calls visit(TickField, x...) for every number of a tick that is written somewhere, with that of
-/// each of `records`, in the order of the columns of CSV. A new one is entered here and in the
-/// record; files and Python follow. What a replay reads besides is in the inputs of a recording.
+/// Calls visit(TickField, x...) for every number of a tick written somewhere, x of each of
+/// `records`, in the order of the CSV columns. A new one is entered here and in the record; files
+/// and Python follow. Further input of a replay is in the inputs of a recording.
 template <class Visit, class... Records>
 constexpr void for_each_field(const Visit& visit, Records&... records) {
   visit(TickField{"tick", "", "", "Its number, from 0."}, records.tick...);
@@ -141,7 +141,7 @@ constexpr void for_each_field(const Visit& visit, Records&... records) {
         records.hold.margin...);
 }
 
-/// Notes what the masters of the network do to the hands that hold them; zero where there is none.
+/// Records the forces of the masters of the network on the hands; zero without a master.
 void note_masters(const network::Network& network, TickRecord& record) noexcept;
 
 /// Keeps the ticks of a run in memory reserved at set-up; ticks beyond it are dropped and counted.

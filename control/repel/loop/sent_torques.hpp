@@ -10,8 +10,8 @@
 
 namespace repel {
 
-/// A ring of the net torques that were sent, as long as the delay of the drive. Torques [N m], or
-/// forces [N] for a prismatic joint. Allocates at construction only.
+/// A ring of the net torques sent, as long as the delay of the drive. Torques [N m], or forces [N]
+/// for a prismatic joint. Allocates at construction only.
 class SentTorques {
  public:
   using Vector = ArmInertia::Vector;  ///< one entry for each joint
@@ -22,11 +22,11 @@ class SentTorques {
   /// To be called once a tick. @param share of `net` that acts, 0 with brakes on
   void add(const Vector& net, double share = 1.0) noexcept;
 
-  /// What acted between the last two readings, with the delay as told.
+  /// The torque acting between the last two readings, at the delay told.
   [[nodiscard]] double acted(std::size_t joint) const noexcept;
-  /// The least that acted whatever the delay, up to the one told; 0 where the sign changed.
+  /// Lower bound over all delays up to the one told; 0 where the sign changed.
   [[nodiscard]] double surely(std::size_t joint) const noexcept;
-  /// The largest that may have acted, absolute.
+  /// Upper bound of its magnitude.
   [[nodiscard]] double at_most(std::size_t joint) const noexcept;
 
  private:

@@ -23,33 +23,32 @@ namespace repel {
 struct ToolSpeed {
   const network::Jacobian* jacobian = nullptr;             ///< of the tool; null: it is not bounded
   double limit = std::numeric_limits<double>::infinity();  ///< [m/s]
-  bool is_carried = false;  ///< walls that move themselves push it, as fast as they are
+  bool is_carried = false;  ///< pushed by moving walls, as fast as they are
 };
 
-/// [m/s] Greatest speed s of approach that can be braked to rest within `distance` [m]:
-/// distance = reaction s + s^2 / (2 deceleration). 0 where there is no distance.
+/// [m/s] Greatest speed s of approach with a stop within `distance` [m]: distance = reaction s +
+/// s^2 / (2 deceleration). 0 for a distance not above 0.
 /// @param deceleration [m/s^2] @param reaction [s] until it acts
 [[nodiscard]] double braked_within(double distance, double deceleration, double reaction) noexcept;
 
-/// Bounds the speed s of a joint or the tool, of those that a torque would take beyond its limit
-/// within the horizon h:
+/// Bounds the speed s of a joint or the tool, if a torque would take it beyond its limit within the
+/// horizon h:
 ///
 ///     s + h ds/dt <= limit
 ///
-/// So a limit is approached exponentially, and what is beyond it is braked. Towards an end of its
-/// range, a joint may be as fast as it can still be stopped before it, at a distance d:
+/// So a limit is approached exponentially, and an excess is braked. At a distance d from an end of
+/// its range, the speed of a joint is bounded by its stopping distance:
 ///
 ///     d = 2 h s + s^2 / (2 a)
 ///
-/// with the deceleration a that its effort gives to it alone, its inertia taken 1.7 times. The
-/// springs ahead of the stops (network/modules/limits.hpp) act too late to stop a fast joint where
-/// the drive is late, and throw it back. Dry friction counts: a
-/// torque must overcome it before it moves anything. A bound of the tool
-/// acts along the velocity that it would have: forces across it, and against it, stay as they are.
-/// Nothing is scaled, so nothing that balances is taken apart.
+/// with the deceleration a by its own effort, its inertia taken 1.7 times. With a late drive, the
+/// springs ahead of the stops (network/modules/limits.hpp) act too late to stop a fast joint, and
+/// throw it back. Dry friction counts: a torque must overcome it before it moves anything. A bound
+/// of the tool acts along its predicted velocity: forces across and against it stay as they are.
+/// Nothing is scaled, so balanced forces stay balanced.
 ///
-/// Walls are held back only where the arm is faster than half its limit, and not by walls that move
-/// themselves: what they push against may be something that no model has.
+/// Wall forces are bounded only above half the speed limit. Those of moving walls are not: there
+/// may be unmodelled objects behind the arm.
 class SpeedBounds {
  public:
   /// @param horizon [s] from a torque to its effect, with the delay of the drive
@@ -60,17 +59,17 @@ class SpeedBounds {
   void observe(std::span<const double> q, const ArmInertia& inertia) noexcept;
 
   /// To be called in every tick, before `bound`. @param mass of the arm @param asked [N m]
-  /// @param weight [N m] the part of it that carries the weight
+  /// @param weight [N m] the part of it carrying the weight
   /// @param v [rad/s] or [m/s] of the joints
-  /// @return true where what is asked for takes a joint or the tool beyond its limit
-  /// Cost: a solution with the mass matrix, and a product with the Jacobian
+  /// @return true if the torques asked for take a joint or the tool beyond its limit Cost: a
+  /// solution with the mass matrix, and a product with the Jacobian
   [[nodiscard]] bool foresee(const network::dense::Factored& mass, std::span<const double> asked,
                              std::span<const double> weight, std::span<const double> v,
                              const ToolSpeed& tool) noexcept;
-  /// Adds bounds where joints or the tool would be too fast with the solution of a problem, which
-  /// is then to be solved again. What the tool may do is a ball, and each bound a plane that
-  /// touches it; and who slows the tool by a light joint makes that one fast.
-  /// @param walls [N m] that push the arm, by their share
+  /// Adds bounds where the solution of a problem makes joints or the tool too fast; the problem
+  /// must then be solved again. Once may not suffice: the bound of the tool is a ball, approximated
+  /// by tangent planes, and slowing the tool can make a light joint fast.
+  /// @param walls [N m] of the walls, by their share
   /// @return false if nothing was added. Cost: a product with the Jacobian, and a solution with the
   /// mass matrix for each bound
   bool bound(LeastConstraint& problem, std::span<const double> v, const ArmInertia::Vector& walls,
@@ -79,17 +78,17 @@ class SpeedBounds {
   [[nodiscard]] static Status said(const LeastConstraint& problem) noexcept;
 
  private:
-  // The solution of soft bounds may be so much beyond.
+  // Tolerance of the solution of soft bounds.
   static constexpr double rounding = 1.01;
   static constexpr double of_joints = 5e-3;  // [rad/s] likewise, of joints
   static constexpr double mass_uncertainty = 1.7;
-  // Above the limit, so that who asks for it gets it, and is not told of what swings beyond.
+  // Above the limit, so that the full limit is available and a small overshoot is not reported.
   static constexpr double tool_slack = 0.075;
 
   static Eigen::Index index(std::size_t i) noexcept { return static_cast<Eigen::Index>(i); }
 
   // A row for a rate that must not fall below -limit within the horizon. @param h its direction
-  // @param rate [m/s] now @param walls that may do what they do; null: none @return false: no room
+  // @param rate [m/s] now @param walls left as they are; null: none @return false: overflow
   bool add(LeastConstraint& problem, const ArmInertia::Vector& h, double rate, double limit,
            const ArmInertia::Vector* walls, Status tag) const noexcept;
   bool bound_tool(LeastConstraint& problem, std::span<const double> v,
@@ -98,7 +97,7 @@ class SpeedBounds {
   // [m/s] Velocity of the tool after the horizon; `now` receives that of now.
   [[nodiscard]] Vec3 then(const ToolSpeed& tool, std::span<const double> v,
                           const ArmInertia::Vector& acceleration, Vec3& now) const noexcept;
-  // [rad/s] By which a joint is beyond its limit after the horizon; 0: it is not.
+  // [rad/s] Excess of a joint over its limit after the horizon; 0: none.
   [[nodiscard]] double excess(Eigen::Index joint, double v, double acceleration) const noexcept {
     const double then = v + horizon_ * acceleration;
     if (then > up_.coeff(joint)) return then - up_.coeff(joint);
@@ -115,7 +114,7 @@ class SpeedBounds {
   const ArmModel& model_;
   std::vector<End> ends_;
   double horizon_;                // [s]
-  ArmInertia::Vector driven_;     // [rad/s^2] by what is asked for, less what friction takes
+  ArmInertia::Vector driven_;     // [rad/s^2] by the torques asked for, less friction
   ArmInertia::Vector friction_;   // [rad/s^2] of this, that of friction
   ArmInertia::Vector down_, up_;  // [rad/s] limits of this tick towards the ends of the ranges
 };

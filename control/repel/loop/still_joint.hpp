@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Tells a joint that stands still from one whose encoder is frozen.
+/// Tells a joint at rest from one with a frozen encoder.
 #pragma once
 
 #include <limits>
@@ -9,10 +9,11 @@
 
 namespace repel {
 
-/// What is known of the torques on a joint between two readings. Forces for a prismatic joint.
+/// Bounds of the torques on a joint between two readings. Forces for a prismatic joint.
 struct JointLoad {
-  double surely = 0.0;   ///< [N m] net torque that acted, whatever the drive's delay; signed
-  double at_most = 0.0;  ///< [N m] the largest that may have acted, absolute
+  double surely = 0.0;   ///< [N m] lower bound of the net torque over all delays of the drive;
+                         ///< signed
+  double at_most = 0.0;  ///< [N m] upper bound of its magnitude
   double dry = 0.0;      ///< [N m] dry friction of the model
   double weight = 0.0;   ///< [N m] gravity torque
   double effort = 0.0;   ///< [N m] limit
@@ -21,16 +22,16 @@ struct JointLoad {
   bool is_held = false;  ///< by a brake
 };
 
-/// Decides by what acts on a joint while it reports the same position, bit for bit. Friction is
+/// Decides by the torques on a joint while it reports the same position, bit for bit. Friction is
 /// known to a factor only, so there are three cases:
 ///
 /// - The joint moved, or moves by its rate, or is pushed by more than dry friction and an error of
 ///   the gravity model can hold: its encoder is frozen.
-/// - It is pushed by less than it was already seen to withstand, or by less than half of its dry
-///   friction: it stands still.
-/// - Between these, it may move unseen. Before that can be `unseen` far, the torque is raised to
-///   where it must move (`probe`). A sound joint breaks away and is known from then on to withstand
-///   the torque at which it stood.
+/// - It is pushed by less than it withstood before, or by less than half of its dry friction: it
+///   stands still.
+/// - Between these, it may move unseen. Before it can be `unseen` far, the torque is raised until
+///   it must move (`probe`). A sound joint breaks away; from then on, it is known to withstand its
+///   last torque at rest.
 class StillJoint {
  public:
   /// Advances by a reading. @param q [rad] @param v [rad/s] this reading; `last_q`, `last_v` the
@@ -39,17 +40,16 @@ class StillJoint {
   [[nodiscard]] bool step(double q, double v, double last_q, double last_v, const JointLoad& load,
                           const JointWatchOptions& options) noexcept;
 
-  /// [N m] Net torque at which the joint must move, signed; 0: there is no doubt. To be sent, at
-  /// least, as far as all limits allow.
+  /// [N m] Net torque at which the joint must move, signed; 0: there is no doubt. To be sent at
+  /// least, within all limits.
   [[nodiscard]] double probe(const JointLoad& load,
                              const JointWatchOptions& options) const noexcept;
 
-  /// [rad/s] Rate that the torques have given a joint that reports none, signed.
+  /// [rad/s] Rate by the torques of a joint reporting none, signed.
   [[nodiscard]] double rate() const noexcept;
-  /// [rad] Way that it has taken unseen, signed; a guess. @param elapsed [s] from reading to
-  /// reading
+  /// [rad] Estimated unseen way, signed. @param elapsed [s] from reading to reading
   [[nodiscard]] double way(double elapsed) const noexcept;
-  /// A frozen joint that was begun anew is asked again.
+  /// A frozen joint begun anew is probed again.
   void forget() noexcept;
 
  private:
@@ -59,7 +59,7 @@ class StillJoint {
   static constexpr double coarse = 0.1;         // of the position noise: coarsest encoder, not told
   static constexpr double at_once = 0.005;      // [s]
   static constexpr double ramp = 0.0075;        // [s] of a probe
-  static constexpr double memory = 10.0;        // [s] of what the joint withstood
+  static constexpr double memory = 10.0;        // [s] of the withstood torque
 
   // [rad] After which the position must have changed.
   [[nodiscard]] double shown(const JointWatchOptions& options) const noexcept;

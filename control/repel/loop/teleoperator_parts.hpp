@@ -13,7 +13,7 @@
 
 namespace repel {
 
-/// What couples one arm of a world to its operator. Referenced objects must outlive the
+/// The parts coupling one arm of a world to its operator. Referenced objects must outlive the
 /// teleoperator.
 struct TeleoperatorParts {
   const ArmModel& model;        ///< of the arm
@@ -29,17 +29,15 @@ namespace detail {
 /// True when some pair of the world contains the body.
 [[nodiscard]] bool has_pair(const World& world, BodyId body);
 
-/// The name of the only module that applies these walls; empty when there is none.
-/// @throws SetupError when there are two
+/// The name of the module applying these walls; empty: none. @throws SetupError for two
 [[nodiscard]] std::string module_for(const network::Network& network, network::Walls walls);
 
 }  // namespace detail
 
-/// Checks the parts. Set-up only: a wall that no module applies would not push the arm, although
-/// the record of every tick would show its force.
-/// @throws SetupError, naming what is missing, for: a network that does not end in the joints of
-/// the arm, walls on the tool or on links with no module that applies them, and two that apply the
-/// same
+/// Checks the parts. Set-up only: without a module applying it, a wall would not push the arm, yet
+/// the record of every tick would show its force. @throws SetupError, naming the missing part, for:
+/// a network not ending in the joints of the arm, walls on the tool or on links without a module
+/// applying them, and two modules for the same walls
 void require_complete(const TeleoperatorParts& parts);
 
 }  // namespace repel

@@ -39,7 +39,7 @@ struct Screw {
   [[nodiscard]] Twist per_motion(const Vec3& direction) const noexcept;
 };
 
-/// A lever and what it does to the tool.
+/// A lever and the motion it gives the tool.
 struct LeverMotion {
   Vec3 direction{1, 0, 0};  ///< unit, in the frame of the phase: in which the tool is driven
   double rate = 0.0;        ///< [rad/s] of the hand
@@ -55,9 +55,8 @@ struct Phase {
   PhaseFrame frame = PhaseFrame::world;  ///< of the rates and of the direction
   double duration = 1.0;                 ///< [s]
   Twist rates{};            ///< [m/s, rad/s] spaceball, six axes: constant through the phase
-  Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction in which the lever drives the tool
-  /// Torque arm: the lever screws the tool about an axis along `direction`, which stays fixed to
-  /// the tool.
+  Vec3 direction{1, 0, 0};  ///< torque arm: unit, direction of the tool driven by the lever
+  /// Torque arm: the lever screws the tool about an axis along `direction`, fixed to the tool.
   std::optional<Screw> screw{};
   double lever_rate = 0.0;  ///< [rad/s] torque arm: rate of the hand
   Twist second{};           ///< [m/s, rad/s] of a second hand with six axes, meanwhile
@@ -105,8 +104,8 @@ class ScriptedOperator {
   void switch_over(const Phase& phase) noexcept;
   [[nodiscard]] bool read(const Phase& phase, const Mat3& R_WT, double period) noexcept;
 
-  /// The axis is fixed to the tool from the start of the phase on, so that the tool stays on it:
-  /// its screw about the axis leaves the axis where it is in the world.
+  /// The axis is fixed to the tool from the start of the phase on: a screw about it leaves the axis
+  /// at rest in the world, so the tool stays on it.
   void follow_screw(const Phase& phase, const Mat3& R_WT, bool begins) noexcept;
 
   Script script_;

@@ -62,13 +62,13 @@ class Plan {
 
   /// Checks the structure and prepares every module for `period` [s].
   /// @throws SetupError, naming the modules, for: a duplicate or unknown name, too many connections
-  /// at a port or none, spaces or sizes that do not match, a delay-free loop, two modules that both
-  /// impose their flow, a nonlinear module whose flow is not measured, and a rigid or slack part
-  /// that makes the network singular
+  /// at a port or none, spaces or sizes that do not match, a delay-free loop, two modules imposing
+  /// their flow, a nonlinear module without a measured flow, and a rigid or slack part making the
+  /// network singular
   [[nodiscard]] Network build(double period) const { return build(period, std::nullopt); }
-  /// The same with a module `prediction` after the others: it stands between the module that
-  /// measures its flow, with the walls that need this flow, and all else. Without a module that
-  /// measures its flow: as above. Gains that are `automatic` suit the `robot`.
+  /// The same with a module `prediction` after the others. On its one side are the module measuring
+  /// its flow and the walls needing this flow, on the other all else. Without a measured flow: as
+  /// above. Gains that are `automatic` suit the `robot`.
   [[nodiscard]] Network build(double period, const std::optional<PredictionOptions>& prediction,
                               const RobotEnd& robot = {}) const;
 

@@ -14,8 +14,8 @@
 
 namespace repel::detail {
 
-/// On every processor, so that the same sums are made in the same order, and types have the same
-/// layout, whatever registers a unit is compiled for.
+/// On every processor: all units make the same sums in the same order, and types have the same
+/// layout, at any register width.
 inline constexpr int lane_count = 4;
 inline constexpr int lane_bytes = 8 * lane_count;
 #if defined(__AVX__)

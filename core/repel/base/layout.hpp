@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// ABI settings that a program must share with the compiled parts of this library that it links.
+/// ABI settings shared by a program and the linked parts of this library.
 ///
 /// Flags like -mavx change the alignment of the types of Eigen, and with it the layout of types
 /// that hold them; and how functions take vectors of this library. So each compiled part defines a

@@ -14,8 +14,8 @@
 
 namespace repel {
 
-/// Slots are filled in place, so that a value that owns memory is never copied whole. The writer
-/// never waits: when all `capacity` slots are unread, the value is dropped and counted. Memory:
+/// Slots are filled in place, so a value owning memory is never copied whole. The writer never
+/// waits: when all `capacity` slots are unread, the value is dropped and counted. Memory:
 /// `capacity` + 1 copies of a prototype, allocated at construction.
 template <class T>
 class Ring {
@@ -46,12 +46,12 @@ class Ring {
     return after(writing_) == tail_.load(std::memory_order_acquire);
   }
 
-  /// Reader: the oldest unread value; null when there is none. What the reader leaves in it, the
-  /// writer finds in a later draft: so memory goes back to where it may be freed.
+  /// Reader: the oldest unread value; null when there is none. The writer gets its content back in
+  /// a later draft, and with it memory to be freed there.
   [[nodiscard]] T* front() noexcept {
     return const_cast<T*>(std::as_const(*this).front());  // NOLINT(*-const-cast): it is ours
   }
-  /// The oldest value that waits, for the consumer; null when there is none.
+  /// The oldest unread value, for the consumer; null: none.
   [[nodiscard]] const T* front() const noexcept {
     if (reading_ == head_.load(std::memory_order_acquire)) return nullptr;
     return &slots_[reading_];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Inverse poses, and rotations by angle and axis and between two others. As those of Eigen and
-/// bitwise equal to them, but plain functions: whoever includes them compiles none of the types
-/// that Eigen makes for the parts of a pose and their products.
+/// Inverse poses, and rotations by angle and axis and between two others. Bitwise equal to those of
+/// Eigen, but plain functions: including them compiles none of Eigen's expression types for parts
+/// of a pose and their products.
 #pragma once
 
 #include <array>

@@ -11,7 +11,7 @@
 
 namespace repel {
 
-/// An error in an input: what is wrong, where, the value found and the range allowed.
+/// An error in an input: the fault, its place, the value found and the range allowed.
 class SetupError : public std::runtime_error {
  public:
   /// @param what_is_wrong one sentence, without the location
@@ -54,14 +54,14 @@ class SetupError : public std::runtime_error {
   return to_text(rounded);
 }
 
-/// The least number of `digits` significant digits that is not below `value`, for advice that is to
-/// be enough. A part of 1e-12 of it is rounding.
+/// `value` rounded up to `digits` significant digits, for advice on a sufficient value. A part of
+/// 1e-12 of it is rounding.
 [[nodiscard]] inline std::string to_text_above(double value, int digits) {
   if (!(value > 0.0)) return to_text(value, digits);
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
   return to_text(unit * std::ceil(value / unit * (1.0 - 1e-12)), digits);
 }
-/// The same from below: the greatest that is not above `value`.
+/// The same, rounded down.
 [[nodiscard]] inline std::string to_text_below(double value, int digits) {
   if (!(value > 0.0)) return to_text(value, digits);
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);

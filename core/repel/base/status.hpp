@@ -76,8 +76,8 @@ inline constexpr Status bad_wrench = 1U << 23;
 /// A hard wall cannot be held: it comes faster than the arm can flee, or the arm is too fast for
 /// its efforts; it was told before the wall was reached: lower the speed of the obstacle or the arm
 inline constexpr Status hold_lost = 1U << 24;
-/// At the station of a divided scene: the site is not heard. What is shown of it is what it told
-/// last, and the master meets a damper; start the site, or repair the link
+/// At the station of a divided scene: the site is not heard. Its last state is shown, and the
+/// master meets a damper; start the site, or repair the link
 inline constexpr Status silent_site = 1U << 25;
 
 /// Faults of joint sensing: the present joint positions are unknown.
@@ -86,8 +86,8 @@ inline constexpr Status blind = bad_joints | implausible_joints | frozen_joints;
 inline constexpr Status failsafe = bad_pose | bad_command | clock_fault | expired_pairs |
                                    silent_device | network_fault | clock_gap | bad_torque |
                                    arm_stopped | pushed_out | energy_gain | blind;
-/// The same without what a sound run may have for long: an operator who is silent, and an arm that
-/// is pushed out of where it started.
+/// The same without the long states of a sound run: a silent operator, and an arm being pushed out
+/// of its start position.
 inline constexpr Status unsound = failsafe & ~(silent_device | pushed_out);
 }  // namespace status
 
@@ -98,7 +98,7 @@ enum class Stop : std::uint8_t {
   braking,   ///< the joint readings are not trusted: the last motion is predicted and braked, then
              ///< the brakes of the arm are requested
   released,  ///< nothing can be trusted: only gravity compensation at the last known pose, and no
-             ///< torque at all where the brakes hold the arm
+             ///< torque at all with brakes on
 };
 
 /// Its name. Not real-time safe.

@@ -21,8 +21,7 @@ template <class T>
 struct Coordinates {
   T x, y, z;
 };
-/// As in the register of four that holds them where there is one, so that data laid out by a unit
-/// are read by any other, whatever registers they are compiled for.
+/// As in a register of four, so all units read the same layout at any register width.
 template <>
 struct alignas(32) Coordinates<double> {
   double x, y, z;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Faces of polytopes that are known from tick to tick, one per SIMD lane.
+/// Faces of polytopes, known from tick to tick, one per SIMD lane.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,13 @@ namespace repel::detail {
 
 /// Where a face of a polytope is alone.
 struct AloneAround {
-  /// [1] For unit vectors nearer to its normal than this, the farthest vertex is one of its
+  /// [1] For unit vectors within this distance of its normal, the farthest vertex is one of its
   /// corners, and no face there is nearer.
   double within = 1.0;
-  double room = 1.0;  ///< [rad] the least `Faces::room_of` of the faces that share a vertex with it
+  double room = 1.0;  ///< [rad] the least `Faces::room_of` of the faces sharing a vertex with it
 };
 
-/// Cost: a look at all faces that share a vertex with it.
+/// Cost: a look at all faces sharing a vertex with it.
 [[nodiscard]] inline AloneAround alone_around(const Faces& faces, std::uint32_t face) noexcept {
   constexpr double rounding = 1e-9;
   const Vec<double>& n = faces.normal(face);
@@ -46,8 +46,8 @@ struct AloneAround {
   return alone;
 }
 
-/// One side of several pairs, one lane per pair: a face of its polytope, as long as it is the one
-/// that faces the other.
+/// One side of several pairs, one lane per pair: a face of its polytope, while it faces the other
+/// set.
 class FaceLanes {
  public:
   /// Forgets the face of lane k.
@@ -71,7 +71,7 @@ class FaceLanes {
       corners_[i].set(k, i <= last ? place(i) : place(last) + static_cast<double>(i - last) * step);
     }
   }
-  /// True in lanes where FlatSearch finds that face for the unit vector n, with the whole tilt.
+  /// True in lanes with that face as FlatSearch result for the unit vector n, at the whole tilt.
   [[nodiscard]] LaneMask holds(const LaneVec& n, const Lanes& tilt) const noexcept {
     const LaneVec off = n - normal_;
     const Lanes within = smaller(within_, TiltMean::faded * tilt);

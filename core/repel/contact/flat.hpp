@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The flat features of a convex set that face a direction.
+/// The flat features of a convex set facing a direction.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace repel::detail {
 
-/// The flat feature of a set that is perpendicular to the normal of a contact within an angle.
+/// The flat feature of a set perpendicular to the normal of a contact within an angle.
 class FlatSearch {
  public:
   /// @param X the pose of the set
@@ -171,9 +171,9 @@ class FlatSearch {
 
   /// The flattest face at the farthest vertex, or the flattest edge.
   ///
-  /// Where faces differ by little, the tilt is less, by so much that its disc around n meets one
-  /// face, or one edge, wherever n is: the least of what each face has room for, plus a share of
-  /// the angle from its normal to n. It changes continuously with n.
+  /// Between nearly parallel faces the tilt is less, so that its disc around any n meets one face
+  /// or one edge only. It is the least over the faces of their room, plus a share of the angle from
+  /// the normal to n. It changes continuously with n.
   [[nodiscard]] Flat of_polytope() const noexcept {
     const Faces& faces = set_.faces();
     const std::uint32_t farthest = set_.support(n_).name;
@@ -231,7 +231,7 @@ class FlatSearch {
     return dot(n_, away) / std::sqrt(dot(away, away));
   }
 
-  /// Lowers the tilt to what a face leaves; the square of how far its normal is off [rad^2].
+  /// Lowers the tilt to the bound by a face; returns the squared angle to its normal [rad^2].
   double lower_tilt(std::uint32_t face, Flat& flat) const noexcept {
     const Vec<double> between = set_.faces().normal(face) - n_;
     const double square = dot(between, between);
@@ -240,8 +240,8 @@ class FlatSearch {
     return square;
   }
 
-  /// A face; with many corners, those farthest along a few directions stand for it, the first of
-  /// which leads to the corner `farthest`.
+  /// A face; with many corners, by those farthest along a few directions. The first direction leads
+  /// to the corner `farthest`.
   [[nodiscard]] Flat of_face(std::uint32_t face, std::uint32_t farthest, Flat flat) const noexcept {
     const Vec<double>& normal = set_.faces().normal(face);
     const auto corners = set_.faces().corners(face);
@@ -278,8 +278,8 @@ class FlatSearch {
   }
 
   static constexpr std::uint32_t none = 0xFFFFFFFFU;
-  /// The directions of the corners that stand for a disc, a twelfth of a turn apart, from the x
-  /// axis. The corner nearest to the other set is a point of the disc itself.
+  /// The directions of the corners of a disc, a twelfth of a turn apart, from the x axis. The
+  /// corner nearest to the other set is a point of the disc itself.
   static constexpr std::size_t disc_corners = 12;
   [[nodiscard]] static Planar disc_corner(std::size_t k) noexcept {
     constexpr double c = 0.5 * std::numbers::sqrt3;

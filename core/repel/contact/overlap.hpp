@@ -28,9 +28,9 @@ inline void cut_segment(Outline& segment, const Planar& normal, double offset, b
   }
 }
 
-/// What of `polygon` does not lie beyond a line goes to `rest`.
+/// The part of `polygon` within a line goes to `rest`.
 /// @param normal outward, of any length; points with normal.r <= offset stay
-/// @param of_a whom the line belongs to
+/// @param of_a the line is of A
 /// @return false, and `rest` is unchanged, if all of it stays
 [[nodiscard]] inline bool cut(const Outline& polygon, const Planar& normal, double offset,
                               bool of_a, Outline& rest) noexcept {
@@ -60,7 +60,7 @@ inline void cut_segment(Outline& segment, const Planar& normal, double offset, b
   return true;
 }
 
-/// The corners of a polygon whose sides to the next are longer than `least` [m].
+/// The corners of a polygon, but for those nearer than `least` [m] to the next.
 inline void remove_short_sides(Outline& polygon, const Sides& sides, double least) noexcept {
   const Outline whole = polygon;
   polygon.size = 0;
@@ -71,7 +71,7 @@ inline void remove_short_sides(Outline& polygon, const Sides& sides, double leas
   }
 }
 
-/// The segment along the bisector of two nearly parallel ones in which both lie.
+/// The segment along the bisector of two nearly parallel ones, containing both.
 [[nodiscard]] inline Outline common_segment(const Outline& first, const Outline& second) noexcept {
   const auto unit_along = [](const Outline& segment) {
     const Planar edge = segment.at(1).r - segment.at(0).r;
@@ -113,7 +113,7 @@ inline void remove_short_sides(Outline& polygon, const Sides& sides, double leas
 /// `outline` cut by all sides of a polygon. The nearest points are at r = 0.
 /// @param holds_nearest keep r = 0
 inline void cut_by(const Outline& polygon, bool holds_nearest, Outline& outline) noexcept {
-  constexpr double least = 1e-9;  // [m] by which rounding may be wrong
+  constexpr double least = 1e-9;  // [m] rounding error
   Outline other;
   Outline* whole = &outline;
   Outline* rest = &other;
@@ -133,10 +133,10 @@ inline void cut_by(const Outline& polygon, bool holds_nearest, Outline& outline)
 }
 
 /// Where two features lie over each other; the nearest points are at r = 0.
-/// @param holds_nearest keep r = 0, which rounding, or a normal between those of the features, may
-/// leave outside: of shapes that are apart
-/// @param overlap,sides where they do, and its sides, none of which is shorter than 0.1 um
-/// @return false when that is a point
+/// @param holds_nearest keep r = 0 for separated shapes: rounding, or a normal between those of the
+/// features, may leave it outside
+/// @param overlap,sides the result, and its sides of 0.1 um or more
+/// @return false for a point
 [[nodiscard]] inline bool find_overlap(const Outline& a, const Outline& b, bool holds_nearest,
                                        Outline& overlap, Sides& sides) noexcept {
   constexpr double shortest = 1e-7;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The contact patch of a pair: where nearly parallel features meet, in place of one point.
+/// The contact patch of a pair: the region between nearly parallel features, in place of one point.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@
 namespace repel {
 
 /// The distance of two shapes as its mean over all small tilts of one against the other. The
-/// distance itself has a kink where features are parallel: its gradient, the line along which a
-/// force acts, jumps from corner to corner. The mean has none. It is the distance itself where the
-/// nearest point is the same under all tilts, and, with a term added for that, where faces are
-/// parallel; elsewhere it differs by at most ForceLaw::most_nearer.
+/// distance itself has a kink at parallel features: its gradient, the line of action of the force,
+/// jumps from corner to corner. The mean has none. It equals the distance if the nearest point is
+/// the same under all tilts, and, by an added term, at parallel faces. Elsewhere it differs by at
+/// most ForceLaw::most_nearer.
 struct ContactPatch {
   double nearer = 0.0;  ///< [m] the distance minus that of the patch, of either sign
   /// The gradient of the mean when A moves: the wrench on A of a unit force, [1] and [m] about
@@ -30,7 +30,7 @@ struct ContactPatch {
 
 namespace detail {
 
-/// False if a box has no edge, and a cylinder neither cap nor side, that is perpendicular to a
+/// False if no edge of a box, or neither cap nor side of a cylinder, is perpendicular to a
 /// direction within `angle` [rad].
 [[nodiscard]] inline bool may_be_flat(const Convex& set, const Pose& X, const Vec<double>& n_W,
                                       double angle) noexcept {
@@ -40,16 +40,16 @@ namespace detail {
   return n.z() < angle || n.x() * n.x() + n.y() * n.y() < angle * angle;
 }
 
-/// Two segments, nearly parallel, that lie across each other: the gap grows to both sides of the
-/// point where they cross, by `sine` `lean` x^2 / 2.
+/// Two nearly parallel segments crossing each other: the gap grows to both sides of the crossing,
+/// by `sine` `lean` x^2 / 2.
 struct Crossing {
   double sine = 0.0;  ///< of the angle from B to A around the normal
   double lean = 0.0;  ///< [1/m] how much the normal of the pair leans to the side along them
-  double tilt = 0.0;  ///< [rad] falls to zero where they are no longer parallel
+  double tilt = 0.0;  ///< [rad] falls to zero as they turn apart
   double fall = 0.0;  ///< of `tilt` with the angle
 
   static constexpr double widest = 0.2;         ///< [rad]
-  static constexpr double least_radius = 1e-3;  ///< [m] of two sharp edges that touch
+  static constexpr double least_radius = 1e-3;  ///< [m] of two touching sharp edges
 
   Crossing() = default;
   /// @param gap [m] between the segments
@@ -66,17 +66,17 @@ struct Crossing {
   }
 };
 
-/// h(s) [m]: how much nearer than at r = 0 the gap is somewhere. It is 0 where the nearest points
-/// are those of the features; in overlap, a measure may name others.
+/// h(s) [m]: the gap at r = 0 less the least gap. It is 0 if the nearest points are those of the
+/// features; in overlap, a measure may name others.
 [[nodiscard]] inline double farthest_along(const Outline& outline, const Planar& s) noexcept {
   double most = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < outline.size; ++i) most = std::max(most, dot(s, outline.at(i).r));
   return most;
 }
 
-/// In overlap, the features and the measure agree where nothing but the features bounds the depth.
-/// Elsewhere the patch has the distance of its features while they are nearly parallel, and that of
-/// the measure where they are not: this is the share of the latter.
+/// In overlap, features and measure agree if only the features bound the depth. Elsewhere the patch
+/// has the distance of its features while they are nearly parallel, else that of the measure: this
+/// is the share of the latter.
 [[nodiscard]] inline double share_of_measure(double lean, double tilt) noexcept {
   return std::clamp((lean - 2.0 * tilt) / (3.0 * tilt), 0.0, 1.0);
 }
@@ -90,10 +90,9 @@ struct Crossing {
 /// The patch around the nearest points of two shapes.
 /// @param s their `separation` at these poses
 /// @param tilt [rad] radius of the disc of tilts, more than 0, a few thousandths
-/// @return false where there is none: the same point is nearest under all tilts, or no direction is
-/// known. `patch` is then unchanged
-/// Cost: without a patch a look at the nearest features, else several times that of a warm
-/// `separation` of boxes. No heap, bounded.
+/// @return false for none: the same point is nearest under all tilts, or no direction is known.
+/// `patch` is then unchanged Cost: without a patch a look at the nearest features, else several
+/// times that of a warm `separation` of boxes. No heap, bounded.
 [[nodiscard]] inline bool find_patch(const Separation& s, PosedShape A, PosedShape B, double tilt,
                                      ContactPatch& patch) noexcept {
   using namespace detail;
@@ -140,8 +139,8 @@ struct Crossing {
   const Planar lean = slope_b - slope_a;
   const TiltMean mean(outline, sides, lean, crossing.tilt, std::max(norm(slope_a), norm(slope_b)));
   const Planar& r = mean.point();
-  // Forces act normal to the surface of A, or of B where A ends; and off the normal where segments
-  // that cross are nearest beside the crossing.
+  // Forces act normal to the surface of A, or of B beyond the border of A. They act off the normal
+  // for crossing segments with the nearest point beside the crossing.
   const Vec<double> off = axes.in_world(slope_a);
   const Planar aside = crossing.lean * dot(unit, r) * Planar{-unit.y, unit.x};
   const double twist = crossing.lean * mean.square() - crossing.fall * mean.widened();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Directions that a set faces with a single corner or edge: where no contact patch can be.
+/// Directions without a contact patch: the set faces them with a single corner or edge.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +21,9 @@ namespace repel::detail {
 struct Pointed {
   Vec<double> n{0.0, 0.0, 0.0};      ///< unit, outward, in the frame of the set
   Vec<double> along{0.0, 0.0, 0.0};  ///< unit, the edge; 0: not even that, a corner
-  double below = 0.0;                ///< [1] the edge is flat at most where its slope is less
-  double within = -1.0;              ///< [1] the same holds for all unit vectors nearer to n than
-                                     ///< this; negative: there may be a face, or several edges
+  double below = 0.0;                ///< [1] the edge is flat only below this slope
+  double within = -1.0;              ///< [1] it holds for unit vectors within this distance of n;
+                                     ///< negative: there may be a face, or several edges
 
   /// It still holds for another unit vector.
   [[nodiscard]] bool holds(const Vec<double>& other) const noexcept {
@@ -36,8 +36,7 @@ struct Pointed {
   }
 };
 
-/// What a set shows around n; of sets with curved sides nothing is said. Cost: about that of one
-/// support map.
+/// The feature of a set around n; unknown for curved sides. Cost: about that of one support map.
 class PointedSearch {
  public:
   /// @param n unit, outward, in the frame of the set
@@ -117,7 +116,7 @@ class PointedSearch {
 
   /// Of the faces at a corner.
   struct FacesAt {
-    double tilt;    ///< [rad] what they leave
+    double tilt;    ///< [rad] bound by them
     double within;  ///< [1] as Pointed: up to where none is flat
   };
   [[nodiscard]] FacesAt faces_at(std::uint32_t corner) const noexcept {
@@ -147,7 +146,7 @@ class PointedSearch {
   double tilt_;  ///< [rad]
 };
 
-/// One side of several pairs, one lane per pair: what is known of its set around some direction.
+/// One side of several pairs, one lane per pair: the feature of its set around a direction.
 class PointedLanes {
  public:
   void set(int k, const Pointed& pointed) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What is known of the features of a pair from tick to tick: mostly that it has no contact patch.
+/// The features of a pair, kept from tick to tick: mostly to rule out a contact patch.
 #pragma once
 
 #include <bit>
@@ -13,7 +13,7 @@
 
 namespace repel::detail {
 
-/// What two shapes show each other.
+/// The features of two shapes facing each other.
 struct PointedPair {
   Pointed a, b;
 
@@ -74,7 +74,7 @@ class PointedPairLanes {
     return {~(corner | crossed), edge_a | edge_b};
   }
 
-  /// Looks at the sets of those lanes again where what is known does not hold.
+  /// Updates the features of those lanes that no longer hold.
   /// @param tilt [rad] of the laws
   void look_at(unsigned lanes, const FeatureLanes& features, const LaneGap& gap,
                const Lanes& tilt) noexcept {

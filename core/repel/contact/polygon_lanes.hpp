@@ -55,7 +55,7 @@ struct PlanarLaneAxes {
   }
 };
 
-/// Flat features that are polygons, one per lane.
+/// Polygonal flat features, one per lane.
 struct PolygonLanes {
   static constexpr std::size_t most = 8;
 

@@ -53,7 +53,7 @@ class PolygonMean {
   }
   /// `farthest_along` the slope.
   [[nodiscard]] const Lanes& farthest() const noexcept { return farthest_; }
-  /// False where rounding decides what bounds the overlap, and for an overlap that is hardly one.
+  /// False if rounding decides the bounds of the overlap, and for a degenerate overlap.
   [[nodiscard]] const LaneMask& is_sure() const noexcept { return is_sure_; }
 
  private:
@@ -68,8 +68,8 @@ class PolygonMean {
     Lanes length;      ///< [m]
     Lanes offset;      ///< [m] of its line, normal.r = offset
     Ray ray;
-    Lanes begin, end;   ///< [m] what is left of it, from the first corner
-    Ray before, after;  ///< of the sides where that begins and ends
+    Lanes begin, end;   ///< [m] the remaining part of it, from the first corner
+    Ray before, after;  ///< of the sides at its begin and end
 
     [[nodiscard]] PlanarLanes at(const Lanes& t) const noexcept {
       return {from.x - t * ray.normal.y, from.y + t * ray.normal.x};
@@ -125,7 +125,7 @@ class PolygonMean {
     side.after = all[i + 1 < sides ? i + 1 : 0].ray;
   }
 
-  /// Moves a side of B outward by what rounding may be wrong, as cut_by does.
+  /// Moves a side of B outward by the rounding error, as cut_by does.
   void grow(std::size_t j) noexcept {
     Side& side = sides_b_[j];
     const Lanes none{};

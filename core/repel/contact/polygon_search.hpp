@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The contact patches of several pairs at once that show a polygon to each other.
+/// The contact patches of several pairs of facing polygons at once.
 #pragma once
 
 #include <bit>
@@ -20,7 +20,7 @@ struct PolygonPatches {
   LaneMask valid{};           ///< the others are to be found alone
 };
 
-/// `find_patch` for the lanes whose features are polygons of few corners. The patch of a lane does
+/// `find_patch` for the lanes with polygons of few corners as features. The patch of a lane does
 /// not depend on the others.
 class PolygonSearch {
  public:
@@ -33,7 +33,7 @@ class PolygonSearch {
 
   /// Finds the features of those lanes.
   /// @param pose_a,pose_b called with k: the pose of the set in lane k
-  /// @param faces_a,faces_b what is known of the sets; updated
+  /// @param faces_a,faces_b known faces of the sets; updated
   template <class PoseOfA, class PoseOfB>
   void find_flats(const LaneMask& lanes, const PoseOfA& pose_a, const PoseOfB& pose_b,
                   FaceLanes& faces_a, FaceLanes& faces_b) noexcept {
@@ -42,10 +42,10 @@ class PolygonSearch {
     find({features_.B, gap_.n_B, gap_.p_AQb_W - p_AB, Facing::up}, lanes & a_.valid, pose_b,
          faces_b, b_);
   }
-  /// Bit k: one of the sets in lane k shows a corner, so that there is no patch.
+  /// Bit k: no patch, as one of the sets in lane k shows a corner.
   [[nodiscard]] unsigned corners() const noexcept { return corners_; }
 
-  /// Of those lanes that need so many sides, `PolygonLanes::most` or the 4 of boxes.
+  /// Of the lanes with so many sides, `PolygonLanes::most` or the 4 of boxes.
   template <std::size_t sides>
   [[nodiscard]] PolygonPatches patches(const LaneMask& lanes, const Lanes& depth_a) noexcept {
     PolygonPatches patches;

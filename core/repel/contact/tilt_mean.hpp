@@ -20,15 +20,14 @@ namespace repel::detail {
 ///
 /// h is the support function of P; with y in the normal cone of corner i, corner i is the nearest.
 /// So the mean nearest point is the sum of the corners weighted by the share of the disc around s
-/// that lies in their cones. It moves continuously with s and with P, since it depends on nothing
-/// but the set P; it is the corner itself where the whole disc is in its cone, and the Steiner
-/// point of P where s is 0. Where the boundary belongs to A, P moves with it: y is a sum of
-/// multiples of the outward normals of the two sides at the corner, and those of sides of A pull on
-/// A.
+/// that lies in their cones. It moves continuously with s and with P, as it depends on the set P
+/// only. With the whole disc in the cone of a corner it is that corner; at s = 0 it is the Steiner
+/// point of P. Sides of A move with A: y is a sum of multiples of the outward normals of the two
+/// sides at the corner, and those of sides of A pull on A.
 ///
-/// Where faces are parallel, the mean is less than the gap by H(0). So that the distance is the gap
-/// there, w H(0) is added for polygons, with a weight w that is 1 at s = 0 and 0 where s, or the
-/// angle between a feature and the tangent plane, is `faded` e.
+/// At parallel faces, the mean is less than the gap by H(0). To make the distance the gap there, w
+/// H(0) is added for polygons. The weight w is 1 at s = 0, and 0 once s, or the angle between a
+/// feature and the tangent plane, is `faded` e.
 class TiltMean {
  public:
   static constexpr double faded = 10.0;
@@ -48,8 +47,8 @@ class TiltMean {
     }
   }
 
-  /// H(s) - w H(0) [m], see above: by how much the mean gap is less than that at r = 0, beyond what
-  /// it is at s = 0. Parallel features give 0.
+  /// H(s) - w H(0) [m], see above: the gap at r = 0 less the mean gap, less the same at s = 0 by
+  /// the weight. Parallel features give 0.
   [[nodiscard]] double nearer() const noexcept { return nearer_; }
   /// [m] Its gradient by s: the mean nearest point, and up to a seventh of the size of P beyond.
   [[nodiscard]] const Planar& point() const noexcept { return point_; }
@@ -229,7 +228,7 @@ class TiltMean {
     bool to_a = corner.of_a;
     double part = 1.0;
     if (held > 0.0 && outline.touching_a > 0 && outline.touching_b > 0) {
-      // With more than a side of each at a corner, rounding decides which two are found.
+      // With more than a side of each at a corner, rounding decides on the two found.
       if (outline.touching_a + outline.touching_b > 2 || from_a == to_a) {
         from_a = to_a = true;
         part = 0.5;
@@ -267,8 +266,8 @@ class TiltMean {
   Planar x_pull_{}, y_pull_{};  ///< [m] sums of r.x t and r.y t
 };
 
-/// [rad] Features count as flat within this angle of the tangent plane. It is more than the tilt,
-/// so that they come and go with weight zero.
+/// [rad] Features count as flat within this angle of the tangent plane. It exceeds the tilt, so
+/// they come and go with weight zero.
 [[nodiscard]] inline double flat_within(double tilt) noexcept {
   return TiltMean::faded * tilt;
 }

@@ -17,10 +17,9 @@
 
 namespace repel::detail {
 
-/// A polytope inside A - B that contains the origin is expanded toward the boundary where it is
-/// nearest: the support point along the normal of the nearest face is added, until it lies on that
-/// face. The nearest face is a lower bound of the depth, the support value along any normal an
-/// upper bound.
+/// A polytope inside A - B containing the origin is expanded toward the nearest boundary: the
+/// support point along the normal of the nearest face is added, until it lies on that face. The
+/// nearest face is a lower bound of the depth, the support value along any normal an upper bound.
 class ExpandingPolytope {
  public:
   static constexpr int cap = 120;  ///< limit of support-map pairs
@@ -111,9 +110,9 @@ class ExpandingPolytope {
     return (*words[i / 4])[i % 4];
   }
   /// The polytope of the last result at the poses of now. False when there is none, or when it no
-  /// longer encloses the origin. Where the faces are a closed surface and the origin is on the
-  /// inner side of all of them, they surround it at least once, and so every point that is nearer
-  /// than the nearest face: whether they are convex or not, that point is in A - B.
+  /// longer encloses the origin. A closed surface with the origin on the inner side of all faces
+  /// surrounds it at least once. So it surrounds every point nearer than the nearest face, and that
+  /// point is in A - B, even if the surface is not convex.
   bool restore(const WarmStart& warm, double margin) noexcept {
     if (warm.level_a != WarmStart::exact_depth) return false;
     corner_count_ = std::clamp<std::size_t>(warm.size, 4, WarmStart::most_corners);
@@ -122,7 +121,7 @@ class ExpandingPolytope {
       const std::uint32_t names = word(warm, i);
       corners_[i] = named(names & 0xFFFFU, names >> 16U);
     }
-    // One bit for each corner that an edge leads to.
+    // One bit for each corner reached by an edge.
     std::array<std::uint32_t, WarmStart::most_corners> to{};
     PlanesOfFaces<WarmStart::most_corners> planes;
     face_count_ = 2 * corner_count_ - 4;
@@ -159,7 +158,7 @@ class ExpandingPolytope {
     return closed;
   }
 
-  /// Keeps the corners that are in use and the faces, if they are few enough.
+  /// Keeps the used corners and the faces, if they are few enough.
   void save(WarmStart& warm) const noexcept {
     WarmStart kept;
     kept.level_a = kept.level_b = WarmStart::exact_depth;

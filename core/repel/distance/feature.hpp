@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A feature (vertex, edge or face) of the Minkowski difference A - B, its point nearest to the
-/// origin, and the proof that no point of A - B is nearer.
+/// origin, and the proof of the lower bound.
 #pragma once
 
 #include <algorithm>
@@ -54,8 +54,8 @@ struct Foot {
   Vec<double> weights{1.0, 0.0, 0.0};  ///< barycentric weights of the corners; their sum is 1
 };
 
-/// The point nearest to the origin on the affine span of the corners p, q, r; a weight is negative
-/// where that point lies outside the feature.
+/// The point nearest to the origin on the affine span of the corners p, q, r; negative weights: it
+/// lies outside the feature.
 ///
 ///     face    n = (q - p) x (r - p),  v = n (n.p) / n.n,  weights n.(q x r), n.(r x p), n.(p x q)
 ///     edge    e = q - p,              v = p + t e,        weights 1 - t, t       (t = -p.e / e.e)

@@ -24,8 +24,7 @@ class FeatureSearch {
 
   /// True when `gap` is the proven result. In any case `warm`, which may hold points initially,
   /// receives the names of the last feature, and `gap` the number of support-map pairs evaluated.
-  /// Four names are of corners that enclose the origin but for rounding: the sets seem to
-  /// intersect.
+  /// Four names: these corners enclose the origin but for rounding, so the sets seem to intersect.
   [[nodiscard, gnu::flatten, gnu::noinline]] bool run(const QueryOptions& options, WarmStart& warm,
                                                       Gap& gap) noexcept {
     gap.iterations = begin(warm);
@@ -124,8 +123,8 @@ class FeatureSearch {
                  gap);
   }
 
-  /// Moves to the nearest feature that contains `n`, the corner in the free slot; false when none
-  /// is nearer than the present one, or when the corners enclose the origin.
+  /// Moves to the nearest feature containing `n`, the corner in the free slot; false if none is
+  /// nearer, or if the corners enclose the origin.
   bool approach(const Corner& n) noexcept {
     const Slots& in_use = slots();
     const auto& [i, j, k] = in_use.older;

@@ -172,11 +172,11 @@ class Gjk {
 
 }  // namespace detail
 
-/// The distance of A and B. Cases that double precision cannot certify - a gap near rounding, a
-/// needle whose normal is noise, nearly parallel discs - are decided in extended precision; a
-/// bracket that is still too wide then ends in `budget_spent`.
-/// Cost: one or two support-map pairs when the warm start still holds, otherwise a few more, for
-/// curved sets a few dozen; at most `options.iterations` in each precision. No heap, no lock.
+/// The distance of A and B. Cases beyond double precision - a gap near rounding, the noisy normal
+/// of a needle, nearly parallel discs - are decided in extended precision; a bracket still too wide
+/// then ends in `budget_spent`. Cost: one or two support-map pairs when the warm start still holds,
+/// otherwise a few more, for curved sets a few dozen; at most `options.iterations` in each
+/// precision. No heap, no lock.
 [[nodiscard]] inline Gap gap_between(const Convex& A, const Pose& X_WA, const Convex& B,
                                      const Pose& X_WB, const QueryOptions& options,
                                      WarmStart& warm) noexcept {

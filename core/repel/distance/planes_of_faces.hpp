@@ -19,9 +19,9 @@ struct FacePlane {
   double offset = 0.0;  ///< [m^3] the largest product of n and a corner
 };
 
-/// The plane through three points, in which they lie within `margin` [m]: a bound of the distance
-/// that it gives holds for all points of the triangle. In double precision the normal of a sliver
-/// turns by rounding; it is then found in extended precision.
+/// The plane through three points, with these within `margin` [m] of it: its bound of the distance
+/// holds for all points of the triangle. In double precision the normal of a sliver turns by
+/// rounding; it is then found in extended precision.
 [[nodiscard]] inline FacePlane plane_through(const Vec<double>& p, const Vec<double>& q,
                                              const Vec<double>& r, double margin) noexcept {
   Vec<double> n = cross(q - p, r - p);

@@ -72,10 +72,9 @@ struct QueryOptions {
   Measure measure = Measure::deepest_point;  ///< of an overlap; apart it plays no part
 };
 
-/// State that a query leaves for the next one on the same pair: the names of up to four point pairs
-/// and the pair of levels they belong to, or the names of the planes that meet at the deepest
-/// point, or the polytope that an exact depth was found by. Any content is safe; good content saves
-/// iterations.
+/// State of a query for the next one on the same pair: the names of up to four point pairs and
+/// their pair of levels, or the names of the planes meeting at the deepest point, or the polytope
+/// of an exact depth. Any content is safe; good content saves iterations.
 struct WarmStart {
   static constexpr std::uint8_t deepest_point = 255;  ///< value of a level: the names are of planes
   static constexpr std::uint8_t exact_depth = 254;    ///< value of a level: see `faces`
@@ -86,7 +85,7 @@ struct WarmStart {
   std::uint8_t size = 0;             ///< how many entries of `a` and `b` are valid
   std::uint8_t level_a = 0;          ///< of A, or one of the values above
   std::uint8_t level_b = 0;          ///< of B, likewise
-  /// The pair of levels before that one, which intersects: point pairs around a common point.
+  /// The intersecting pair of levels before that one: point pairs around a common point.
   std::array<std::uint32_t, 4> met_a{};
   std::array<std::uint32_t, 4> met_b{};  ///< likewise, on B
   std::uint8_t met_size = 0;             ///< 4 when they are known

@@ -33,8 +33,8 @@ enum class Projection : std::uint8_t {
 /// The projection takes the minimum over all features that could contain v instead of testing
 /// Voronoi regions: for needles and near-parallel faces, rounding makes the region tests contradict
 /// each other, but not the minimum. The projection on a face starts from its nearest vertex along
-/// the normal, that on an edge from its nearer end and is then made orthogonal to the edge again,
-/// so that the error of v scales with the short vectors and not with the long ones.
+/// the normal, that on an edge from its nearer end, with a second orthogonalization to the edge. So
+/// the error of v scales with the short vectors and not with the long ones.
 template <class T>
 class Simplex {
  public:
@@ -69,9 +69,9 @@ class Simplex {
     return project(-1, margin);
   }
 
-  /// Adds `p` (at most four points in total) and moves to the nearest feature that contains `p`: no
-  /// other one can be nearer than the present v. When none is nearer, or when the four points
-  /// enclose the origin, the simplex is unchanged.
+  /// Adds `p` (at most four points in total) and moves to the nearest feature containing `p`: only
+  /// these can be nearer than the present v. If none is nearer, or if the four points enclose the
+  /// origin, the simplex is unchanged.
   Projection add(const DifferencePoint<T>& p, T margin) noexcept {
     if (size_ == 4) return Projection::no_nearer;
     points_[size_++] = p;

@@ -95,11 +95,10 @@ class BoxTree {
     nodes_ = std::vector<Node>(nodes_);  // a copy holds no more memory than it needs
   }
 
-  /// Calls `found(index, distance)` for every box whose distance to `box` is at most `within` [m],
-  /// up to 1e9, and for some that are farther by up to a millionth; the reported distance [m] never
-  /// exceeds the true one. In the order of the tree.
-  /// Returns a lower bound of the distance of all other boxes [m], up to 1e18.
-  /// Cost: about 10 ns per node visited. No heap; bounded by the number of boxes.
+  /// Calls `found(index, distance)` for every box at most `within` [m] (up to 1e9) from `box`, and
+  /// for some up to a millionth farther; the reported distance [m] is a lower bound. In the order
+  /// of the tree. Returns a lower bound of the distance of all other boxes [m], up to 1e18. Cost:
+  /// about 10 ns per node visited. No heap; bounded by the number of boxes.
   template <class Found>
   double query(const Box& box, double within, Found&& found) const noexcept {
     const Node::Probe probe(box);

@@ -16,7 +16,7 @@ namespace detail {
 class HullFaces;
 }
 
-/// Convex polygons, each the union of all facets in one plane. Empty for flat hulls, which have no
+/// Convex polygons, each the union of all facets in one plane. Empty for flat hulls: they have no
 /// facets. Built by `hull_faces` (hull_faces.hpp).
 class Faces {
  public:
@@ -53,7 +53,7 @@ class Faces {
   [[nodiscard]] std::span<const std::uint32_t> corners(std::uint32_t i) const noexcept {
     return {corners_.data() + first_[i], first_[i + 1] - first_[i]};
   }
-  /// The faces that meet at a vertex, which must be valid; none when empty.
+  /// The faces at a vertex, that must be valid; none when empty.
   [[nodiscard]] std::span<const Corner> at(std::uint32_t vertex) const noexcept {
     if (empty()) return {};
     return {at_.data() + first_at_[vertex], first_at_[vertex + 1] - first_at_[vertex]};
@@ -65,11 +65,11 @@ class Faces {
     return {edges_.data() + first_at_[vertex], first_at_[vertex + 1] - first_at_[vertex]};
   }
 
-  /// [rad] How far around its normal a face is alone: a sixtieth of the angle to the nearest face
-  /// that shares a vertex, and no more than half the room at its own. At most 1.
+  /// [rad] Angle around its normal without other faces: a sixtieth of the angle to the nearest face
+  /// at the same vertices, at most half of its own room. At most 1.
   [[nodiscard]] double room_of(std::uint32_t face) const noexcept { return face_room_[face]; }
-  /// [rad] The same for the edges at a vertex: a quarter of the angle between the directions that
-  /// two of them face, where they bound no common face.
+  /// [rad] The same for the edges at a vertex: a quarter of the angle between the facing directions
+  /// of two of them without a common face.
   [[nodiscard]] double room_at(std::uint32_t vertex) const noexcept { return vertex_room_[vertex]; }
 
  private:

@@ -14,10 +14,10 @@
 namespace repel {
 
 /// The triangulated facets of the convex hull of finite `points` [m]: a closed surface however thin
-/// the hull is. Empty when all points lie within 1e-14 of their largest coordinate from one plane,
-/// where rounding decides which points are vertices. As computed in double, every point is inside
-/// every half space, and each half space touches the hull within 1e-15 of the largest distance from
-/// the origin. Of coincident points one is a vertex. Cost: about n log n; 10 000 points on a sphere
+/// the hull is. Empty if all points lie within 1e-14 of their largest coordinate from one plane:
+/// rounding would decide on the vertices. As computed in double, every point is inside every half
+/// space, and each half space touches the hull within 1e-15 of the largest distance from the
+/// origin. Of coincident points one is a vertex. Cost: about n log n; 10 000 points on a sphere
 /// take some 0.05 s.
 [[nodiscard]] inline std::vector<Facet> hull_facets(std::span<const Vec3> points) {
   double reach = 0.0;

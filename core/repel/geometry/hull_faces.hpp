@@ -39,7 +39,7 @@ class HullFaces {
   [[nodiscard]] Faces faces() && noexcept { return std::move(faces_); }
 
  private:
-  /// [rad] Facets that share an edge and differ by less are one face.
+  /// [rad] Facets sharing an edge with a smaller angle are one face.
   static constexpr double flat = 1e-7;
 
   /// The indices of the vertices of all facets; of several at one place, that of the last.
@@ -91,8 +91,8 @@ class HullFaces {
       }
     }
 
-    /// The last triangle with the edge from one vertex to another, or none. Looks at the end where
-    /// fewer triangles meet, so that all edges of a hull take a time linear in its vertices.
+    /// The last triangle with the edge from one vertex to another, or none. Searches at the end
+    /// with fewer triangles, so all edges of a hull take a time linear in its vertices.
     [[nodiscard]] std::uint32_t beside(std::uint32_t from, std::uint32_t to) const {
       const bool is_at_from = first_[from + 1] - first_[from] <= first_[to + 1] - first_[to];
       const std::uint32_t vertex = is_at_from ? from : to;
@@ -209,7 +209,7 @@ class HullFaces {
 
 /// The faces of a hull.
 /// @param points as `facets` refers to them
-/// @param vertices the same points without those that are no vertices, in any order [m]
+/// @param vertices the vertices among these points, in any order [m]
 [[nodiscard]] inline Faces hull_faces(std::span<const Vec3> points,
                                       const std::vector<Facet>& facets,
                                       std::span<const Vec3> vertices) {

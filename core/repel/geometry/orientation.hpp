@@ -107,8 +107,8 @@ inline Vec<DoubleDouble> exact_cross(const ExactVector& u, const ExactVector& v)
 
 /// The sign of the volume spanned by b - a, c - a and p - a: 1 when p lies on the side of the plane
 /// from which a, b, c appear counter-clockwise, -1 on the other, 0 in the plane. Correct for any
-/// doubles whose triple products do not underflow: computed in double where its error bound allows,
-/// then in DoubleDouble with its own bound, then with exact sums.
+/// doubles without underflow of triple products: computed in double within its error bound, then in
+/// DoubleDouble within its own, then with exact sums.
 [[nodiscard]] inline int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 u = b - a;
   const Vec3 v = c - a;

@@ -13,13 +13,12 @@
 
 namespace repel::detail {
 
-/// Quickhull (Barber, Dobkin, Huhdanpaa 1996): every outside point is assigned to one facet that it
-/// sees; the farthest point of a facet replaces all facets that see it by a cone over their
-/// horizon.
+/// Quickhull (Barber, Dobkin, Huhdanpaa 1996): every outside point is assigned to one visible
+/// facet; the farthest point of a facet replaces all facets it sees by a cone over their horizon.
 ///
-/// A facet sees a point that is strictly above it, decided exactly. So the facets that see a point
-/// are connected and their horizon is a single cycle, a point is never collinear with the horizon
-/// edge it is joined to, and points in the plane of a facet give further facets in that plane.
+/// A facet sees a point strictly above it, decided exactly. So the facets seeing a point are
+/// connected and their horizon is a single cycle. A point is never collinear with its horizon edge,
+/// and points in the plane of a facet give further facets in that plane.
 class QuickHull {
  public:
   struct Face {
@@ -79,8 +78,8 @@ class QuickHull {
   void find_rim(int apex, int first_seen);
   void close_rim(int apex);
 
-  /// The point with the largest measure; of several equal ones the lexicographically last, which is
-  /// a vertex of their hull.
+  /// The point with the largest measure; of several equal ones the lexicographically last, a vertex
+  /// of their hull.
   template <class Measure>
   [[nodiscard]] int farthest(Measure measure) const {
     std::size_t best = 0;
@@ -131,7 +130,7 @@ class QuickHull {
   std::vector<Vec3> points_;  ///< scaled to about 1
   std::vector<Face> faces_;
   std::vector<RimEdge> rim_;
-  std::vector<int> seen_;      ///< faces that see the apex and are removed
+  std::vector<int> seen_;      ///< faces seeing the apex, to be removed
   std::vector<int> rim_face_;  ///< for each point, the new face on the rim edge that starts there
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Lookup table from directions to the vertices of a large polytope that can be the farthest along
-/// them, for a support map whose cost does not grow with the number of vertices.
+/// Lookup table from directions to the candidates for the farthest vertex of a large polytope. The
+/// cost of its support map does not grow with the number of vertices.
 #pragma once
 
 #include <algorithm>
@@ -22,11 +22,11 @@ namespace repel {
 /// A vertex u is left out of a cell when another one is farther along each of the four corner
 /// directions of the cell by more than the rounding error: every direction of the cell is a
 /// nonnegative combination of the corners, so u is never the farthest. Hence the first best of
-/// `candidates(d)` is exactly the vertex that a scan of all vertices would find, also in flat and
-/// nearly flat regions and among repeated and nearly repeated vertices, where hill climbing along
-/// edges gets stuck. A cell that contains the normal of a flat face lists all vertices of that
-/// face. Where refining would give more than `most_candidates` per vertex in total, for example for
-/// a far corner that consists of a thousand vertices within rounding, the coarser cells are kept.
+/// `candidates(d)` is exactly the result of a scan of all vertices. That holds also in flat regions
+/// and among repeated vertices, or nearly such; there hill climbing along edges gets stuck. A cell
+/// containing the normal of a flat face lists all vertices of that face. Coarser cells are kept if
+/// refining would exceed `most_candidates` per vertex in total, as at a far corner of a thousand
+/// vertices within rounding.
 class SupportTable {
  public:
   /// Per vertex, summed over all cells: round shapes have 4 to 8, needles and prisms up to 26.
@@ -39,19 +39,19 @@ class SupportTable {
   /// There are no vertices: made by default.
   [[nodiscard]] bool empty() const noexcept { return first_.empty(); }
 
-  /// [byte] Heap memory held, and the most that a table of so many vertices holds.
+  /// [byte] Heap memory held, and its upper bound for a table of so many vertices.
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (first_.capacity() + candidates_.capacity()) * sizeof(std::uint32_t);
   }
-  /// [bytes] Upper bound of the heap that the table of so many vertices takes.
+  /// [bytes] Upper bound of the heap for the table of so many vertices.
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept {
     const std::size_t width = finest_width(vertices);
     return (6 * width * width + 1 + most_candidates * vertices) * sizeof(std::uint32_t);
   }
 
-  /// Indices, in ascending order, of the vertices that can have the largest dot product with `d`,
-  /// as computed in double or better; for a `d` that is zero or not finite, of some vertices. The
-  /// table must not be empty.
+  /// Indices, in ascending order, of all candidates for the largest dot product with `d`, as
+  /// computed in double or better; of some vertices for a `d` zero or not finite. The table must
+  /// not be empty.
   [[nodiscard]] std::span<const std::uint32_t> candidates(const Vec<double>& d) const noexcept {
     return candidates_of(cell_of(d));
   }

@@ -10,10 +10,10 @@
 
 namespace repel::detail {
 
-/// The support map of a set in world axes around the origin of the set, for a search that evaluates
-/// it several times. What can be rotated once is precomputed, so that neither the direction nor the
-/// result has to be rotated: the edges of a box, three of which sum to a corner, and the vertices
-/// of a small polytope.
+/// The support map of a set in world axes around the origin of the set, for a search with several
+/// evaluations. Some sets are rotated once in advance, to rotate neither the direction nor the
+/// result: the edges of a box (three of them sum to a corner), and the vertices of a small
+/// polytope.
 class Turned {
  public:
   struct Point {
@@ -36,8 +36,7 @@ class Turned {
   Turned(const Turned&) = delete;
   Turned& operator=(const Turned&) = delete;
 
-  /// The farthest point along `d`, which need not be unit; one of them where several are equally
-  /// far within rounding.
+  /// The farthest point along `d` (of any length); one of several equally far within rounding.
   [[nodiscard]] Point support(const Vec<double>& d) const noexcept {
     if (is_box_) {
       const Vec<double> d_own = rotate_transposed(X_, d);

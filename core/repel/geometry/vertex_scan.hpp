@@ -38,7 +38,7 @@ struct VertexBlock {
   [[nodiscard]] double largest_product(const Vec<double>& d) const noexcept;
   /// The same for each of several directions. Cost: one pass for all.
   [[nodiscard]] detail::Lanes largest_products(const detail::LaneVec& d) const noexcept;
-  /// The vertices rotated by `X`, written to `room`, which holds 3 x stride numbers.
+  /// The vertices rotated by `X`, written to `room`, an array of 3 x stride numbers.
   VertexBlock turned(const Pose& X, double* room) const noexcept;
 
  private:
@@ -75,7 +75,7 @@ class VertexScan {
   [[nodiscard]] std::size_t bytes() const noexcept {
     return numbers_.capacity() * sizeof(double) + rows_.capacity() * sizeof(Vec<double>);
   }
-  /// [bytes] Of heap that so many vertices take.
+  /// [bytes] Of heap for so many vertices.
   [[nodiscard]] static std::size_t bytes_of(std::size_t vertices) noexcept {
     return 3 * stride_of(vertices) * sizeof(double) + vertices * sizeof(Vec<double>);
   }
@@ -105,8 +105,8 @@ class VertexScan {
   std::vector<Vec<double>> rows_;  ///< [m]
 };
 
-// The largest product first, then the vertices that have it: so that no vertex waits for a
-// comparison with the one before.
+// The largest product first, then the vertices with it: no vertex waits for a comparison with the
+// one before.
 inline std::uint32_t VertexBlock::farthest(const Vec<double>& d) const noexcept {
   using detail::lane_count;
   using detail::Lanes;

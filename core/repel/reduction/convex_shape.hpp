@@ -79,15 +79,15 @@ class Shape {
   }
 
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, be interior, collinear or
-  /// coplanar. Whoever builds one includes reduction/shape.hpp. A template of what is always
-  /// ReductionOptions, so that nobody else compiles how hulls are built.
+  /// coplanar. Whoever builds one includes reduction/shape.hpp. A template, always of
+  /// ReductionOptions: others need not compile the building of hulls.
   template <std::same_as<ReductionOptions> Options = ReductionOptions>
   static Shape hull(std::span<const Vec3> points, const Options& options = {}) {
     return detail::HullBuilding<Options>::shape(points, options);
   }
 
   /// The same shape reduced in another way. The first level and the planes are the same, so only
-  /// the depth of an overlap by `Measure::reduction` differs. Costs what building the shape does.
+  /// the depth of an overlap by `Measure::reduction` differs. Costs as much as building the shape.
   /// Needs reduction/shape.hpp, as `hull` does.
   template <std::same_as<ReductionOptions> Options = ReductionOptions>
   [[nodiscard]] Shape reduced(const Options& options) const {
@@ -150,7 +150,7 @@ class Shape {
     first_ = data_->ladder.data();
   }
 
-  /// Moves the levels to where they take no more memory than they need.
+  /// Moves the levels to memory of their exact size.
   static Ladder without_spare(Ladder& ladder) {
     Ladder moved;
     moved.reserve(ladder.size());

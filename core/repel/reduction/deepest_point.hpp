@@ -23,11 +23,11 @@ struct BoxStart {
   std::array<std::uint32_t, 3> corner{};  ///< of the other one
 };
 
-/// Of all faces of two boxes, the one that the other box would leave soonest, and the corner of the
-/// other box that would leave last: the deepest common point is mostly near. Cost: that of six
-/// support functions.
-/// @param tilt of the objective, in world axes: it decides for one of the corners of an edge or
-/// face that is parallel
+/// Of all faces of two boxes, the one with the shortest way out for the other box, and the last
+/// corner of that box to leave: the deepest common point is mostly near. Cost: that of six support
+/// functions.
+/// @param tilt of the objective, in world axes: it decides for one of the corners of a parallel
+/// edge or face
 [[nodiscard]] inline BoxStart box_start(const PosedPlanes& A, const PosedPlanes& B,
                                         const Vec<double>& tilt) noexcept {
   const std::array<const PosedPlanes*, 2> boxes{&A, &B};
@@ -69,8 +69,8 @@ struct BoxStart {
 /// resulting force is conservative.
 ///
 /// Solved by the dual simplex method. While no multiplier is negative, a basis gives an upper
-/// bound; the plane that x violates most enters and the one whose multiplier falls to zero first
-/// leaves. The basis that was optimal at the last tick is mostly optimal again.
+/// bound. The plane most violated by x enters, and the first multiplier to fall to zero leaves. The
+/// optimal basis of the last tick is mostly optimal again.
 class DeepestPoint {
  public:
   static constexpr int most_pivots = 216;  ///< total of all attempts in both precisions
@@ -123,9 +123,9 @@ class DeepestPoint {
     /// Above the rounding of a multiplier, and far below the tilt, which it would hide.
     static constexpr double of_multiplier = is_double ? 1e-15 : 1e-24;
     static constexpr double least_share = is_double ? 1e-9 : 1e-18;
-    /// Of the objective, a perturbation [-]: it separates multipliers that would all be 0, and
-    /// where several points are deepest, it makes one the answer, cold as well as warm. Above
-    /// rounding, and so little that the answer is the deepest point but for rounding.
+    /// Of the objective, a perturbation [-]: it separates multipliers of 0, and makes one of
+    /// several deepest points the answer, cold as well as warm. Above rounding, and so little that
+    /// the answer is the deepest point but for rounding.
     static constexpr double tilt = is_double ? 1e-12 : 1e-20;
   };
 
@@ -201,8 +201,8 @@ class DeepestPoint {
 
   /// The initial basis, valid for any input: four bounding planes around A and the largest depth
   /// that B can have. Then the planes of the last tick enter, or otherwise the tangent planes of
-  /// round sides that face the other shape: the extraction direction is mostly there, and the
-  /// search for it would be long.
+  /// round sides facing the other shape: the extraction direction is mostly there, and its search
+  /// would be long.
   template <class T>
   bool begin(const WarmStart& warm, PlaneBasis<T>& basis, int allowed) noexcept {
     const bool cold = warm.level_a != WarmStart::deepest_point;

@@ -91,9 +91,8 @@ inline Vec3 moved_inside(const std::vector<Facet>& facets, Vec3 v, double t, con
   return v + std::min(1.0, share * (1.0 + 1e-12)) * (deep - v);
 }
 
-/// If there are more than a thousand corners, moves those to the front that are extreme along one
-/// of about a thousand directions all around. Returns their number, or the number of all corners
-/// when there are fewer.
+/// With more than a thousand corners, moves the extreme ones along about a thousand directions all
+/// around to the front. Returns their number, or the number of all corners when there are fewer.
 inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
   constexpr int steps = leading_steps;
   if (corners.size() <= most_leading) return corners.size();
@@ -122,12 +121,11 @@ inline std::size_t lead_with_extremes(std::vector<Vec3>& corners) {
 
 /// The ladder whose first level is `hull`, with these vertices and facets.
 ///
-/// To get the next level, each vertex moves to the nearest point it finds that is `t` deeper; the
-/// next level is the hull of the moved vertices. So no level has more vertices than its parent, a
-/// vertex keeps its index from level to level, and the depth of a level is the sum of the measured
-/// depth gains of all steps. Of a hull with very many vertices only the first `leading` move, a
-/// thousand. The last level with volume is followed by its centroid, and so is flat input, which
-/// has no depth.
+/// For the next level, each vertex moves to the nearest point found `t` deeper; the next level is
+/// the hull of the moved vertices. So no level has more vertices than its parent, a vertex keeps
+/// its index from level to level, and the depth of a level is the sum of the measured depth gains
+/// of all steps. Of a hull with very many vertices only the first `leading` move, a thousand. The
+/// last level with volume is followed by its centroid, and so is flat input: it has no depth.
 inline Ladder hull_ladder(Convex hull, std::vector<Vec3> vertices, std::size_t leading,
                           const ReductionOptions& options, std::vector<Facet> facets) {
   std::vector<Vec3> sides;
@@ -165,8 +163,7 @@ inline Ladder hull_ladder(Convex hull, std::vector<Vec3> vertices, std::size_t l
   return verified(std::move(ladder), {sides.data(), sides.size()});
 }
 
-/// The ladder of the hull of `points` with these facets; the first level lacks the points that are
-/// not vertices.
+/// The ladder of the hull of `points` with these facets; the first level has the vertices only.
 inline Ladder hull_ladder(std::span<const Vec3> points, const ReductionOptions& options,
                           std::vector<Facet> facets) {
   std::vector<Vec3> vertices(points.begin(), points.end());

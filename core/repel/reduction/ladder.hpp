@@ -39,8 +39,8 @@ struct Level {
 ///
 /// so that rounding (a sphere is a point with a depth) is treated as any other depth. Two ladders
 /// are merged by `order`: by the depth lost while there is thickness to lose, and after that by how
-/// far the flat remains have shrunk. The merged pairs are nested, which the walk along them relies
-/// on; see separation.hpp.
+/// far the flat remains have shrunk. The merged pairs are nested, as needed by the walk along them;
+/// see separation.hpp.
 using Ladder = std::vector<Level>;
 
 namespace detail {
@@ -89,8 +89,8 @@ inline void append(Ladder& ladder, Convex core, double depth, double order) {
   ladder.push_back({std::move(core), depth, std::max(order, next)});
 }
 
-/// The number of even steps that the first `i` steps, 1 to all, are equivalent to: `i` itself when
-/// all are even.
+/// The number of even steps equivalent to the first `i` steps, 1 to all: `i` itself if all are
+/// even.
 inline double even_steps(int i, const ReductionOptions& options) {
   return i * std::pow(static_cast<double>(i) / options.levels, options.spacing - 1.0);
 }
@@ -101,13 +101,12 @@ inline double depth_after(int i, const ReductionOptions& options, double thickne
   return thickness * even_steps(i, options) / options.levels;
 }
 
-/// The ladder with the depth of each level lowered to what its support values prove: along each of
-/// `normals`, a level must lie inside the first level by its depth and inside its parent by its
-/// step, within 4e-15 of the reach, which is less than queries allow for.
-/// @param normals of all sides of the first level; one of each pair where all levels are symmetric,
-/// one for a curved side around the axis
-/// Throws SetupError for a level that protrudes from its parent by more than 1e-12 of the reach.
-/// Cost: a support map per level and normal.
+/// The ladder with the depth of each level lowered to the proof by its support values. Along each
+/// of `normals`, a level must lie inside the first level by its depth and inside its parent by its
+/// step. That holds within 4e-15 of the reach, less than the margin of queries.
+/// @param normals of all sides of the first level; one of each pair if all levels are symmetric,
+/// one for a curved side around the axis Throws SetupError for a level protruding from its parent
+/// beyond 1e-12 of the reach. Cost: a support map per level and normal.
 inline Ladder verified(Ladder ladder, std::span<const Vec3> normals) {
   const double reach = ladder.front().core.reach();
   // Squares of lengths below 1e-154 m lose all digits by underflow.

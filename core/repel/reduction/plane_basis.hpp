@@ -87,10 +87,10 @@ class PlaneBasis {
     count_ = 0;
     of_b_ = 0;
   }
-  /// Adds `tilt`.x to the objective: against cycling, it parts multipliers that would all be 0.
+  /// Adds `tilt`.x to the objective: against cycling, it separates multipliers of 0.
   void tilt(const Vec<T>& tilt) noexcept { tilt_ = tilt; }
   [[nodiscard]] const Vec<T>& tilt() const noexcept { return tilt_; }
-  /// The multipliers without it; those of a basis that is optimal with it only may be negative.
+  /// The multipliers without it; they may be negative for a basis optimal only with it.
   void untilt() noexcept { spread({}, {T(1.0), T(1.0)}, multiplier_); }
   /// Adds a constraint to fewer than five; false for an unknown name.
   bool add(unsigned side, std::uint32_t name) noexcept {
@@ -122,8 +122,8 @@ class PlaneBasis {
     return g;
   }
 
-  /// The constraint that the point violates most; its violation is at most `tolerance` [m] when
-  /// there is none.
+  /// The constraint most violated by the point; a violation of at most `tolerance` [m] counts as
+  /// none.
   [[nodiscard]] Entry most_violated(T tolerance) noexcept {
     Entry most{0, 0, tolerance};
     for (unsigned s = 0; s < 2; ++s) {
@@ -164,8 +164,8 @@ class PlaneBasis {
     return false;
   }
 
-  /// Pivot: the entry replaces the constraint whose multiplier falls to zero first. False when none
-  /// falls: the polytopes have no common point.
+  /// Pivot: the entry replaces the constraint with the first multiplier to fall to zero. False if
+  /// none falls: the polytopes have no common point.
   /// @param least_share pivot tolerance: smaller shares are ignored, the planes being nearly
   /// parallel
   /// @param late how far below zero rounding may take a multiplier
@@ -176,8 +176,8 @@ class PlaneBasis {
     sums[entry.side] = T(is_plane ? 1.0 : -1.0);
     std::array<T, rows> share;
     spread(rows_[rows].n, sums, share);
-    // Of the multipliers that fall to zero nearly at once, the one that falls fastest leaves: its
-    // plane is the least parallel to the others (ratio test of Harris 1973).
+    // Of multipliers falling to zero nearly at once, the fastest leaves: its plane is the least
+    // parallel to the others (ratio test of Harris 1973).
     const auto falls_at = [&](std::size_t k, double after) {
       return (std::max(multiplier_[k], T(0.0)) + T(after)) / share[k];
     };

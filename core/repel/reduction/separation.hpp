@@ -37,13 +37,13 @@ namespace detail {
   return a.core.is_polytope() && b.core.is_polytope();
 }
 
-/// The query options for the cores that give the rounded shapes what `options` requires.
+/// The query options for the cores, for the rounded shapes to meet `options`.
 [[nodiscard]] inline QueryOptions options_of_cores(const Level& a, const Level& b,
                                                    const QueryOptions& options) noexcept {
   QueryOptions of_cores = options;
   of_cores.ignore_beyond += a.depth + b.depth;
-  // The distance of rounded shapes can be much less than that of their cores, and a search on a
-  // curve converges only asymptotically.
+  // Rounded shapes can be much nearer to each other, and a search on a curve converges only
+  // asymptotically.
   if (!are_angular(a, b) || a.depth + b.depth > 0.0) of_cores.tolerance *= 0.01;
   return of_cores;
 }
@@ -129,8 +129,8 @@ namespace detail {
   return true;
 }
 
-/// True when the last query ended in an overlap that can be measured again without a search for
-/// corners that enclose the origin.
+/// True if the last query ended in an overlap, measurable again without a search for corners
+/// enclosing the origin.
 [[nodiscard]] inline bool overlapped(const Shape& A, const Shape& B,
                                      const WarmStart& warm) noexcept {
   if (warm.level_a >= WarmStart::exact_depth) return true;
@@ -176,8 +176,8 @@ namespace detail {
   const bool meets = gap.meets || gap.end == QueryEnd::touching;
   if (meets && measure_overlap(A, B, options, gap.iterations, false, warm, s)) return s;
   s = walk.run(&gap);
-  // The levels are the fallback for a measure that did not finish: report that, when the iterations
-  // ran short or the levels find a depth above rounding.
+  // The levels are the fallback of an unfinished measure: report that if the iterations ran short
+  // or the levels find a depth above rounding.
   const double depth_of_cores = s.distance + a.depth + b.depth;
   const double margin = A.shape.planes().margin() + B.shape.planes().margin();
   const bool deep = depth_of_cores < -1e-13 * (A.shape.reach() + B.shape.reach()) - margin;

@@ -10,10 +10,10 @@
 
 namespace repel {
 
-/// Reads the triangles of a mesh file [m], scaled per axis: as the file has them, but for
-/// vertices that are equal, which become one. A unit given in the file is applied, an up direction
-/// is ignored, as everywhere in ROS. Polygons become triangles, points and lines are dropped. The
-/// file is read in a child process.
+/// Reads the triangles of a mesh file [m], scaled per axis: as in the file, but equal vertices
+/// become one. A unit given in the file is applied, an up direction is ignored, as everywhere in
+/// ROS. Polygons become triangles, points and lines are dropped. The file is read in a child
+/// process.
 /// @throws SetupError naming the file, also if the reader crashes or exceeds the memory or time of
 ///   input_limits, and where repel is built without a reader
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path,

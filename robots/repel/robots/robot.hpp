@@ -61,7 +61,7 @@ struct RobotLink {
   Pose X_LN = Pose::Identity();  ///< [m] pose of its frame in that link
 };
 
-/// A joint that could move and is held, because it is beside the arm or was chosen to be held.
+/// A movable joint held still: beside the arm, or chosen to be held.
 struct HeldJoint {
   std::string name;       ///< as in the file
   std::string type;       ///< revolute, continuous, prismatic, planar or floating
@@ -90,13 +90,13 @@ struct Hold {
   Hold(std::string name) : joint(std::move(name)) {}
   /// The joint of that name at `at`, in the unit of its type [rad], [m].
   Hold(std::string name, double at) : joint(std::move(name)), position(at) {}
-  /// The same, whose type must be `kind`.
+  /// The same, of type `kind`.
   Hold(std::string name, double at, JointType kind)
       : joint(std::move(name)), position(at), type(kind) {}
 
   std::string joint;  ///< its name in the file
-  /// [rad] or [m] where. Without: where the joint that it mimics puts it, if that one does not move
-  /// either, else at zero, or at its limit nearest to zero.
+  /// [rad] or [m] where. Without: by the mimicked joint if that is held too, else at zero, or at
+  /// its limit nearest to zero.
   std::optional<double> position;
   std::optional<JointType> type;  ///< which of the two units it is; without, that of the joint
 };
@@ -106,7 +106,7 @@ struct Hold {
 using ConvexParts =
     std::function<std::vector<std::vector<Vec3>>(const std::string& path, const Vec3& scale)>;
 
-/// Choices that the file does not make.
+/// Choices not in the file.
 struct UrdfOptions {
   /// Link whose frame is the tool frame; the joints between the root and this link are those of the
   /// arm. Empty: the longest chain without its gripper, by the rules of docs/robots.md.

@@ -16,9 +16,9 @@ namespace repel {
 /// RobotPart::in_link, the names of models and link are joined by `::`.
 /// @param options of which only those about meshes count; `package_paths` are also where
 ///   model://NAME is searched
-/// @throws SetupError naming file, line, value and what is allowed, if the file cannot be read, has
-///   several worlds, or has a collision that is no box, sphere, cylinder, capsule or mesh; and
-///   where repel is built without libsdformat
+/// @throws SetupError naming file, line, value and allowed values, if the file cannot be read, has
+///   several worlds, or a collision other than box, sphere, cylinder, capsule or mesh; always if
+///   built without libsdformat
 [[nodiscard]] std::vector<RobotPart> load_sdf_parts(const std::string& path,
                                                     const UrdfOptions& options = {});
 

@@ -38,7 +38,7 @@ inline constexpr std::size_t most_visual_triangles = 50'000;
 /// mesh with its scale, and the colour of its material, its own or one of that name in the file. A
 /// link without one, or without one that can be read, looks like its collision parts. May take
 /// long: meshes are read in child processes.
-/// @param robot what load_arm() made of that file
+/// @param robot from load_arm() of that file
 /// @param options of which only `package_paths` counts
 /// @throws SetupError if the file cannot be read as URDF
 [[nodiscard]] RobotVisuals load_visuals(const std::string& path, const Robot& robot,

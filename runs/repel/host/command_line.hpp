@@ -30,8 +30,8 @@ namespace repel::host {
 /// kills the program.
 [[nodiscard]] const std::atomic<bool>& insistence();
 
-/// An output file. It is opened before the run, so that a long run does not fail at its end, and
-/// moved into its place by close(); see PartFile. An empty path means no output.
+/// An output file. Opened before the run, so a long run does not fail at its end, and moved into
+/// its place by close(); see PartFile. An empty path means no output.
 class Output {
  public:
   /// @throws SetupError if the file cannot be written
@@ -58,17 +58,17 @@ class Output {
 /// The program's name, the version of the library, and the commit it was built from.
 [[nodiscard]] std::string version_of(const char* name);
 
-/// The one of `words` that was likely meant by `word`: that which the fewest letters, added, left
-/// out, replaced or swapped with the next, make of it; the first of several. Empty if these are
-/// more than a third of its letters, and more than one.
+/// The likely intended one of `words`: the nearest to `word` by letters added, left out, replaced
+/// or swapped with the next; the first of several. Empty beyond a third of its letters, if more
+/// than one.
 [[nodiscard]] std::string closest(const std::string& word, std::span<const std::string> words);
 
-/// Gives a program --version, a help of 100 columns, and complaints that begin with its name and
-/// say which option was meant or what command has it. Before its options and commands are added.
+/// Gives a program --version, a help of 100 columns, and complaints with its name and the likely
+/// option or its command. To be called before its options and commands are added.
 void set_up(CLI::App& app);
 
-/// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so that a reader
-/// that exits does not end the program. Returns the exit status: that of `run`, 0 for --help and
+/// The body of main(): parses the command line and calls `run`. Ignores SIGPIPE, so the exit of a
+/// reader does not end the program. Returns the exit status: that of `run`, 0 for --help and
 /// --version, 2 for bad usage, `failure` after printing the message of an exception.
 /// @param describe declares the options, which write to the arguments
 /// @param reword changes the words of the command line before they are parsed; null: nothing does

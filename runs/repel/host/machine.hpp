@@ -8,7 +8,7 @@
 
 namespace repel::host {
 
-/// What the system granted to a thread that requested real-time scheduling.
+/// Real-time scheduling granted by the system to a thread.
 struct Grant {
   int priority = 0;  ///< SCHED_FIFO priority; 0: refused
   bool memory_locked = false;

@@ -10,9 +10,9 @@ namespace repel::host {
 
 /// A file that is written under a temporary name in the folder of its target and renamed to the
 /// target when it is complete; an existing target stays until then. The temporary name is
-/// PATH.part, or PATH.2.part and so on where that exists; it is left behind if the process is
-/// killed. A device, a pipe, or a path through /dev or /proc is written directly. Symbolic links
-/// are followed and kept.
+/// PATH.part, or PATH.2.part and so on if that exists; it is left behind if the process is killed.
+/// A device, a pipe, or a path through /dev or /proc is written directly. Symbolic links are
+/// followed and kept.
 class PartFile {
  public:
   /// Creates the file, empty. Does nothing for an empty path.

@@ -20,7 +20,7 @@ namespace repel::host {
 [[nodiscard]] nlohmann::ordered_json to_json(const DeadlineMonitor& deadline,
                                              std::int64_t skipped_ticks);
 
-/// For each status bit that was set: the number of ticks in which it was.
+/// For each status bit: the number of ticks with it; only bits that were set.
 [[nodiscard]] nlohmann::ordered_json status_ticks(const RunTotals& totals);
 
 /// Statistics of the pairs of a world.
@@ -34,7 +34,7 @@ namespace repel::host {
 /// A count that is not available on some machines: null if negative.
 [[nodiscard]] nlohmann::ordered_json known(std::int64_t count);
 
-/// Writes a report. Bytes that are not UTF-8 are replaced; numbers that are not finite become null.
+/// Writes a report. Bytes other than UTF-8 are replaced; numbers not finite become null.
 void write(const nlohmann::ordered_json& report, std::ostream& file);
 
 /// Prints how many pairs were near and evaluated, in one line.

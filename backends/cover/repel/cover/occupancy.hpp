@@ -41,19 +41,19 @@ struct CubeRange {
 };
 
 /// The same with cubes `factor` times as large, 1 or more; one is solid if any within it is.
-/// @param before cubes that the first large one has along x, y, z before the first of `grid`, so
-/// that large cubes may begin at multiples of their edge: 0 to `factor` - 1
+/// @param before cubes of the first large one along x, y, z before the first of `grid`, to begin
+/// large cubes at multiples of their edge: 0 to `factor` - 1
 [[nodiscard]] OccupancyGrid coarser(const OccupancyGrid& grid, int factor,
                                     const std::array<int, 3>& before = {0, 0, 0});
 
-/// The box that grows from a cube, in all directions as long as all is solid, in turns.
+/// The box grown from a cube, in all directions in turn while all of it is solid.
 /// @param cube solid @param reach [m] largest from the centre of the box to its corners, unless one
 /// cube alone has a larger one
 [[nodiscard]] CubeRange grown_from(const OccupancyGrid& grid, const std::array<int, 3>& cube,
                                    double reach = std::numeric_limits<double>::infinity());
 
-/// Boxes that contain every solid cube and nothing else, as their 8 corners [m]. From a cube that
-/// is in none yet, each grows in all directions as long as all is solid, through others too: so
+/// Boxes that contain every solid cube and nothing else, as their 8 corners [m]. Each starts from a
+/// cube in no box yet, and grows in all directions while all of it is solid, through others too: so
 /// there are few, and they reach far into each other. Cost: about a second for a million cubes.
 /// @throws SetupError if there are more than `most`, with their number
 [[nodiscard]] std::vector<std::vector<Vec3>> boxes_of(const OccupancyGrid& grid, int most);

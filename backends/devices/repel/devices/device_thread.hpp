@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A thread that reads a device and sends it forces, so that the tick need not wait for it.
+/// A thread that reads a device and sends it forces: the tick never waits for it.
 #pragma once
 
 #include <pthread.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The rates of a hand whose pose is measured.
+/// The rates of a hand, from its measured pose.
 #pragma once
 
 #include <algorithm>
@@ -13,19 +13,19 @@ namespace repel::devices {
 
 /// How readings are followed.
 struct HandFollowerOptions {
-  double time = 0.01;               ///< [s] in which what is missing of the pose is caught up with
-  double most_rate = 2.0;           ///< [m/s] of the rates that result, in length
+  double time = 0.01;               ///< [s] to catch up with the measured pose
+  double most_rate = 2.0;           ///< [m/s] of the resulting rates, in length
   double most_angular_rate = 10.0;  ///< [rad/s]
 };
 
-/// Turns the readings of a device into rates whose sum is its pose, so that a network that
-/// integrates them never drifts from it: the measured rate, plus what the sum of all rates lacks of
-/// the measured pose, over `time`. With `time` of one period and no measured rate this is the
-/// difference of two poses.
+/// Turns the readings of a device into rates with its pose as their sum, so the integral in a
+/// network never drifts from it. They are the measured rate, plus the measured pose less the sum of
+/// all rates, over `time`. With `time` of one period and no measured rate this is the difference of
+/// two poses.
 ///
-/// It begins at the pose of the first reading that is enabled, so a clutch, a fault or a device
-/// that comes back never moves the tool. Where the limit holds it back, what is missing is given
-/// up, not caught up with later. Does not allocate or block: for the tick.
+/// It begins at the pose of the first enabled reading, so a clutch, a fault or a reconnected device
+/// never moves the tool. Motion beyond the limit is given up, not caught up with later. Does not
+/// allocate or block: for the tick.
 class HandFollower {
  public:
   /// @throws SetupError for a number out of range
@@ -35,7 +35,7 @@ class HandFollower {
     checked("largest angular rate of the hand", options.most_angular_rate, 1e-3, 200.0, "rad/s");
   }
 
-  /// The rates of the hand in the period that begins, in W. Those of a device without a pose pass.
+  /// The rates of the hand in the next period, in W. Those of a device without a pose pass.
   /// @param period [s] above zero
   [[nodiscard]] Twist step(const Measured& m, double period) noexcept {
     if (m.operating_state != OperatingState::enabled || !m.has_position) {
@@ -67,7 +67,7 @@ class HandFollower {
     return rates;
   }
 
-  /// Begins anew at the next reading that is enabled.
+  /// Begins anew at the next enabled reading.
   void rest() noexcept { follows_ = turns_ = false; }
 
  private:

@@ -21,7 +21,7 @@ namespace repel::devices {
 
 class HaplyLink;
 
-/// Where the service is, and what the device may do.
+/// The address of the service, and limits of the device.
 struct HaplyInverseOptions {
   std::string url = "ws://localhost:10001";  ///< of the service
   /// From the axes of the device (x right, y away from the operator, z up) to those of W. The
@@ -32,13 +32,12 @@ struct HaplyInverseOptions {
   /// The account of the energy at the handle; its damping is shown beside the force, within the
   /// limit.
   network::PassivityOptions guard{.most_energy = 0.1, .most_damping = 15.0};
-  ClutchPolicy clutch = ClutchPolicy::always;  ///< what its button does
+  ClutchPolicy clutch = ClutchPolicy::always;  ///< use of its button
   int clutch_button = 0;      ///< of the grip: 0, 1, 2 for a, b, c; unused for ClutchPolicy::always
   double period = 0.001;      ///< [s] between two commands, at least
-  double silent_after = 0.1;  ///< [s] a command that is not answered for this long ends it
+  double silent_after = 0.1;  ///< [s] a command unanswered for this long ends it
   double retry_after = 0.5;   ///< [s] before the first attempt to connect anew
-  double retry_at_most =
-      8.0;                  ///< [s] each attempt that fails doubles the time to the next, to this
+  double retry_at_most = 8.0;  ///< [s] each failed attempt doubles the time to the next, to this
   double most_speed = 3.0;  ///< [m/s] a position farther from the last, or a velocity beyond it, is
                             ///< no motion of a hand
   Clock now = &steady_now;  ///< any clock that grows
@@ -46,8 +45,8 @@ struct HaplyInverseOptions {
 
 /// Sends a force and receives a state, in turn: the service answers every command once. The reading
 /// has the pose and the velocity of the handle. The force is limited, follows its target at a
-/// limited rate, and is kept passive: an account of the energy between handle and network, as the
-/// device has exchanged it, adds the damping that keeps the network from giving more than it took.
+/// limited rate, and is kept passive. An account of the energy exchanged between handle and network
+/// adds damping, so that the network never gives more than it took.
 ///
 /// The force is zero while the clutch is released, on a fault and at the end. These faults close
 /// the connection: a malformed message; a silent, lost or flooding service; a jump or exchange of
@@ -59,7 +58,7 @@ class HaplyInverse {
   static constexpr double jump = 0.02;            ///< [m] a change of position that needs no time
   static constexpr double compared_over = 0.02;   ///< [s] of velocities and positions
   static constexpr double most_difference = 0.5;  ///< [m/s] of both
-  /// of that motion, by which they may differ besides: a filter lags behind a hand by some ms
+  /// of that motion, allowed difference besides: a filter lags behind a hand by some ms
   static constexpr double most_share = 0.5;
 
   /// Connects to the service and waits up to a second for a device.
@@ -75,8 +74,8 @@ class HaplyInverse {
   /// "Inverse3 ID on URL"
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
 
-  /// Sends a command when it is time for one, and waits for its answer, both for at most `wait`,
-  /// limited to 1 s. Allocates.
+  /// Sends a command when due, and waits for its answer, both for at most `wait`, limited to 1 s.
+  /// Allocates.
   [[nodiscard]] Measured read(std::chrono::milliseconds wait) noexcept;
 
   /// Sets the force on the hand [N], in W; zero if not finite. It is part of the next command. The
@@ -112,7 +111,7 @@ class HaplyInverse {
   HaplyInverseOptions options_;
   std::unique_ptr<HaplyLink> link_;
   std::string name_;
-  std::string id_;  // of the device that gets commands; empty: none
+  std::string id_;  // of the device getting commands; empty: none
   Clutch clutch_;
   HaplyState state_{};
   HaplyState read_{};         // the message being read

@@ -45,13 +45,13 @@ struct HaplyBounds {
 ///
 /// The first device of a kind counts, of grips a wireless one before a wired one (`verse_grip`,
 /// whose only button is `button`, here a). Other keys are ignored. Allocates.
-/// @return nullptr, or static text: what is wrong. `state` is then undefined. Wrong are: text that
-///   is no JSON or too long, the same key twice in an object, the same handle twice, a value that
-///   is missing, of another type or out of bounds.
+/// @return nullptr, or static text: what is wrong. `state` is then undefined. Wrong are: text too
+///   long or not JSON, the same key twice in an object, the same handle twice, a value missing, of
+///   another type or out of bounds.
 [[nodiscard]] const char* read_haply(std::string_view text, HaplyState& state) noexcept;
 
-/// The first message that a client sends: it gives its name, and asks for the axes of `HaplyState`
-/// whatever an earlier client has chosen. Later ones leave `session` away.
+/// The first message of a client: its name, and a request for the axes of `HaplyState`, as an
+/// earlier client may have changed them. Later ones leave `session` away.
 enum class HaplyTurn { first, later };
 
 /// A command of a force on the handle [N], in the axes of the device; a number beyond 1e6 is

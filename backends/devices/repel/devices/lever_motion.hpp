@@ -27,7 +27,7 @@ struct LeverScale {
 /// the time since the last change, minus a grace time of `report_interval`.
 class LeverMotion {
  public:
-  static constexpr double report_interval = 0.02;  ///< [s] longer than that of common devices
+  static constexpr double report_interval = 0.02;  ///< [s] above that of common devices
 
   /// At rest, before the first reading.
   explicit LeverMotion(const LeverScale& scale) noexcept : scale_(scale) {}

@@ -41,7 +41,7 @@ enum class OperatingState {
 struct Measured {
   OperatingState operating_state = OperatingState::disabled;  ///< the rest holds only if enabled
   Twist measured_cv;                       ///< [m/s, rad/s] shaped, in the axes of `Shaping`
-  Vec3 lever_direction_W = Vec3::UnitX();  ///< unit: direction in which a lever drives the tool
+  Vec3 lever_direction_W = Vec3::UnitX();  ///< unit: direction of the tool driven by a lever
   double lever_rate = 0.0;                 ///< [rad/s] of a device with one degree of freedom
   /// Pose of a handle that measures it, in the axes of W from an origin of its own: measured_cp.
   /// Also while paused. `HandFollower` makes rates of it.
@@ -58,11 +58,11 @@ struct Measured {
 /// Force feedback to the operator.
 struct Felt {
   double lever_torque = 0.0;  ///< [N m] on the lever; positive towards larger angles
-  Wrench tool_force;          ///< [N, N m] in W: on the hand, where the network has SIX AXES, else
-                              ///< that of the walls on the tool, about its origin
+  Wrench tool_force;          ///< [N, N m] in W: on the hand in a network with SIX AXES, else of
+                              ///< the walls on the tool, about its origin
 };
 
-/// A device that is read and driven by its own thread; see `DeviceThread`.
+/// A device read and driven by its own thread; see `DeviceThread`.
 ///
 /// `read` blocks for at most the given time and returns the state at its end. `servo_cf` applies a
 /// force, or does nothing if the device has no force feedback. Neither throws or blocks for longer.

@@ -14,7 +14,7 @@
 
 namespace repel::devices {
 
-/// An event that the daemon sends.
+/// An event of the daemon.
 struct SpacenavEvent {
   /// What happened.
   enum class Kind {
@@ -28,7 +28,7 @@ struct SpacenavEvent {
   std::int32_t button = 0;             ///< from 0
 };
 
-/// Protocol version 0, which every spacenavd uses with a client that sends no handshake (spacenavd
+/// Protocol version 0: every spacenavd uses it with a client sending no handshake (spacenavd
 /// src/client.c: `proto = 0`, events of motion and buttons). Each event is 8 int32 in native byte
 /// order (src/proto_unix.c, send_uevent):
 ///
@@ -37,12 +37,12 @@ struct SpacenavEvent {
 ///     2, button                                    released
 ///
 /// The handshake of version 1, 0x7faa5501, is deliberately not sent: it would only add events on
-/// devices and settings, and a daemon that does not know it takes it for a sensitivity that is not
-/// a number (libspnav src/spnav.c, spnav_open, repairs that after 0.3 s of waiting). Types 3 to 6
-/// are those of later versions: devices, settings, raw axes, raw buttons (src/proto.h).
+/// devices and settings. An old daemon takes it for a sensitivity of NaN (libspnav src/spnav.c,
+/// spnav_open, repairs that after 0.3 s of waiting). Types 3 to 6 are those of later versions:
+/// devices, settings, raw axes, raw buttons (src/proto.h).
 ///
-/// A value that no working daemon sends invalidates the stream: the parser returns nothing until
-/// `reset`, because what follows may be misaligned by some bytes and look like motion.
+/// An impossible value invalidates the stream: the parser returns nothing until `reset`, as later
+/// bytes may be misaligned and look like motion.
 class SpacenavParser {
  public:
   static constexpr std::size_t event_size = 8 * sizeof(std::int32_t);  ///< [bytes] of one event

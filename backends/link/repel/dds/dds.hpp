@@ -14,8 +14,8 @@ namespace repel::dds {
 /// Where the other side is.
 struct DdsOptions {
   link::Side side = link::Side::site;  ///< which side this is
-  /// Network interface on which the other side is searched. Who can reach it can drive the robot,
-  /// and read what it does: see docs/two_machines.md
+  /// Network interface for the search of the other side. Others on it can drive the robot, and read
+  /// its state: see docs/two_machines.md
   std::string interface = "lo";
   std::string peer;          ///< address of the other side, where multicast does not reach it
   std::uint32_t domain = 0;  ///< DDS domain, 0 to 230
@@ -23,7 +23,7 @@ struct DdsOptions {
 
 /// Topics `repel/to_site` and `repel/to_station` of type repel_dds::RemotePacket
 /// (remote_packet.idl), best effort, the last eight kept. Both sides find each other, in any order.
-/// @throws SetupError for an interface that this machine has not, and what DDS refuses
+/// @throws SetupError for a missing interface, and options refused by DDS
 [[nodiscard]] std::unique_ptr<link::Transport> open_dds(const DdsOptions& options);
 
 }  // namespace repel::dds

@@ -10,11 +10,11 @@
 
 namespace repel::link {
 
-/// Passes on what `transport` carries, but each packet that is sent is delayed, scattered or lost
-/// first, as the channel says: `delay` plus a uniformly distributed part of `jitter`, so that
-/// packets overtake each other. What is lost or when is the same for the same seed and number of
-/// packets. The clock is that of the thread that uses it: a packet leaves up to one wait late.
-/// More than 4096 packets on the way are lost.
+/// Passes on the packets of `transport`, but delays or loses each one sent, by the numbers of the
+/// channel: `delay` plus a uniformly distributed part of `jitter`, so packets overtake each other.
+/// Losses and delays are the same for the same seed and number of packets. It has no thread of its
+/// own: a packet leaves up to one wait of its caller late. More than 4096 packets on the way are
+/// lost.
 /// @throws SetupError for a number out of range
 [[nodiscard]] std::unique_ptr<Transport> impaired(std::unique_ptr<Transport> transport,
                                                   const network::ChannelOptions& channel);

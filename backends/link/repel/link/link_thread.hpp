@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The thread that sends and receives the packets of a link, so that the tick need not.
+/// The thread sending and receiving the packets of a link, in place of the tick.
 #pragma once
 
 #include <pthread.h>
@@ -50,7 +50,7 @@ class LinkThread {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
   }
-  /// After `stop`: messages that were no packets, and packets that could not be sent.
+  /// After `stop`: invalid messages received, and packets that could not be sent.
   [[nodiscard]] std::int64_t foreign() const noexcept { return transport_->foreign(); }
   /// Packets that the transport did not take.
   [[nodiscard]] std::int64_t unsent() const noexcept { return unsent_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What carries the packets of a link between two programs.
+/// Transport of the packets of a link between two programs.
 #pragma once
 
 #include <chrono>
@@ -17,16 +17,16 @@ enum class Side {
   station,  ///< with the operator
 };
 
-/// Says of a transport that is open to `whom` that they can drive the robot, and what to do.
+/// Warning about a transport open to `whom`: they can drive the robot, and what to do about it.
 [[nodiscard]] inline std::string exposed_to(const std::string& whom, const std::string& instead) {
-  return "whoever is on " + whom +
-         " can drive the robot: nothing is encrypted, and nobody is asked who they are; use a "
-         "network of your own or a tunnel, and name its address: " +
+  return "anyone on " + whom +
+         " can drive the robot: there is no encryption and no authentication; use a network of "
+         "your own or a tunnel, and name its address: " +
          instead;
 }
 
 /// Carries packets to the other side and back; any may be lost, doubled or overtaken. For one
-/// thread, which is not the tick: these functions make system calls and may allocate.
+/// thread, not that of the tick: these functions make system calls and may allocate.
 class Transport {
  public:
   Transport() = default;
@@ -36,20 +36,20 @@ class Transport {
 
   /// Sends without waiting. False when it could not be sent: the packet is lost.
   virtual bool send(const network::RemotePacket& packet) noexcept = 0;
-  /// Takes a packet that has arrived; false when there is none. What is not a packet of this
-  /// version is dropped and counted.
+  /// Takes a packet that has arrived; false: none. Anything but a packet of this version is dropped
+  /// and counted.
   [[nodiscard]] virtual bool receive(network::RemotePacket& packet) noexcept = 0;
   /// Waits until something may have arrived, at most for `longest`.
   virtual void wait(std::chrono::microseconds longest) noexcept = 0;
-  /// What it joins, for people: "UDP 127.0.0.1:7411".
+  /// Its name, for people: "UDP 127.0.0.1:7411".
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Who else can reach this side, and what to do about it: a sentence. Empty: this machine alone.
+  /// Warning and advice if other machines can reach this side: a sentence. Empty: none can.
   [[nodiscard]] virtual std::string exposure() const { return {}; }
-  /// Messages that were no packets of this version.
+  /// Count of messages other than packets of this version.
   [[nodiscard]] virtual std::int64_t foreign() const noexcept { return foreign_; }
 
  protected:
-  /// Counts a message that was no packet.
+  /// Counts an invalid message.
   void count_foreign() noexcept { ++foreign_; }
 
  private:

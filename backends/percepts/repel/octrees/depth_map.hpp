@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A map of cubes that is kept up to date by depth images.
+/// A map of cubes kept up to date by depth images.
 #pragma once
 
 #include <array>
@@ -16,22 +16,21 @@
 
 namespace repel::octrees {
 
-/// What is entered in a map, and how.
+/// How images are entered in a map.
 struct DepthMapOptions {
   double cube = 0.05;  ///< [m] edge of a cube, 0.001 to 10
-  double slack = 0.0;  ///< [m] a point that is so near to an occupied cube is counted as in it, so
-                       ///< that noise of the camera changes no cubes; 0 to a quarter of `cube`
+  double slack = 0.0;  ///< [m] a point this near to an occupied cube counts as in it, so camera
+                       ///< noise changes no cubes; 0 to a quarter of `cube`
   int frees = 3;       ///< images that see through an occupied cube until it is free, 1 to 1000
   double keeps = 2.0;  ///< [s] how long a cube stays occupied in which only the robot is seen, 0 to
                        ///< 1e6
   Region region{};     ///< of which there is a map
 };
 
-/// Enters depth images in an octree: a cube in which a point was measured is occupied, or with a
-/// `slack` another one that is no farther away than that and occupied already. It stays so
-/// where nothing is seen of it, and is free again when several images have seen through it. Pixels
-/// with a negative depth show the robot (percepts::OwnBody): what is before them is free, where
-/// they end is neither, since within its margin there may be something else.
+/// Enters depth images in an octree: a cube with a measured point is occupied, or with a `slack` an
+/// occupied one within it. It stays so while out of sight, and is free again after several images
+/// have seen through it. Pixels with a negative depth show the robot (percepts::OwnBody): the space
+/// before them is free; their end is neither, as its margin may hide something else.
 class DepthMap {
  public:
   /// @throws SetupError for a number out of range, or a region of too many cubes
@@ -39,9 +38,8 @@ class DepthMap {
 
   /// @param depth [m] width x height of the camera; a shorter image is as if nothing was measured
   /// @param X_WC [m] the camera in the frame of the map when it was taken @param time [s] of the
-  /// image, not before that of the last one @return cubes in which something was measured. Cost:
-  /// about 10 ns a pixel, and 10 ns for each cube that a ray passes; rays are half a cube apart
-  /// where they end
+  /// image, not before that of the last one @return cubes with a measurement. Cost: about 10 ns a
+  /// pixel, and 10 ns for each cube on a ray; rays are half a cube apart at their ends
   int insert(std::span<const float> depth, const Pose& X_WC, double time);
 
   /// The map, as of the last image.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What an octree of OctoMap says of a region, as cubes that are solid or not.
+/// A region of an octree of OctoMap as cubes, each solid or not.
 #pragma once
 
 #include <cstddef>
@@ -29,23 +29,22 @@ struct Region {
 
 /// The cubes of edge `cube` [m] that have a part in a region, counted from the origin of the map:
 /// cube 0 begins there.
-/// @throws SetupError for a region that is empty, reaches out of a map (32768 cubes on each side of
-/// its origin) or has more than Region::most cubes
+/// @throws SetupError for a region empty, out of a map (32768 cubes on each side of its origin) or
+/// of more cubes than Region::most
 [[nodiscard]] cover::CubeRange cubes_in(const Region& region, double cube);
 
 /// Reads a file of OctoMap, .bt or .ot, in a child process.
-/// @throws SetupError naming the file, if it cannot be read, is deeper than a map can be, or has
-/// cubes of less than a micrometre or more than a kilometre; also if the reader crashes or exceeds
-/// the limits of input_limits for meshes
+/// @throws SetupError naming the file, if it cannot be read, is too deep, or has cubes outside 1 um
+/// to 1 km; also if the reader crashes or exceeds the limits of input_limits for meshes
 [[nodiscard]] std::unique_ptr<octomap::OcTree> read_tree(const std::string& path);
 
 /// The smallest range, counted from the origin, with all that a tree knows, occupied or free; the
 /// tree has a node.
 [[nodiscard]] cover::CubeRange known_range(const octomap::OcTree& tree);
 
-/// The cubes of a tree, of its finest, in a range counted from its origin: solid are those that are
-/// occupied, and if `is_unseen_solid` those of which nothing is known. Cost: about 50 ns for each
-/// leaf of the tree in the range and 1 ns a cube.
+/// The finest cubes of a tree, in a range counted from its origin: solid are the occupied ones, and
+/// with `is_unseen_solid` the unknown ones. Cost: about 50 ns for each leaf of the tree in the
+/// range and 1 ns a cube.
 [[nodiscard]] cover::OccupancyGrid grid_of(const octomap::OcTree& tree,
                                            const cover::CubeRange& range, bool is_unseen_solid);
 

@@ -19,32 +19,31 @@ struct MappedOptions {
   bool is_unseen_solid = false;  ///< what the tree does not know, within the region
   Region region{};               ///< what is occupied outside of it is left out
   double room = 1.0;             ///< [m] largest reach of a box from its centre, 0.001 to 100
-  double slack = 0.0;            ///< [m] by which boxes are larger on all sides, 0 to 0.1: that of
-                                 ///< the map, DepthMapOptions
+  double slack = 0.0;            ///< [m] boxes are larger by it on all sides, 0 to 0.1: that of the
+                                 ///< map, DepthMapOptions
   double over = 0.05;            ///< [s] in which parts come and go, 0 to 10
   ReservedShare share{};         ///< of the reserved parts, for this map alone
   /// Is told of every new part with its shape, for displays; may be empty.
   std::function<void(PartId, const Shape&)> on_add{};
 };
 
-/// What a version of the tree has changed, and what its boxes are like.
+/// Changes by a version of the tree, and its boxes.
 struct MapCounts {
   int boxes = 0;      ///< that the tree needs with these cubes
   int kept = 0;       ///< of these, that are parts already
   int added = 0;      ///< of these, that have become parts
   int left_out = 0;   ///< of these, beyond `most` or without a reserved part that is free
   int removed = 0;    ///< parts that are none of the boxes now
-  double cube = 0.0;  ///< [m] edge of the cubes that were few enough: that of the tree, or 2, 4, 8
-                      ///< ... times as large, a large one being solid if any within it is
+  double cube = 0.0;  ///< [m] edge of the cubes used: that of the tree, or 2, 4, 8 ... times as
+                      ///< large to have few enough; a large one is solid if any within it is
 };
 
-/// Makes the solid cubes of an octree parts of a world that come and go: boxes that contain every
-/// solid cube and, but for a slack, nothing else. A box that is still solid stays as it is, so
-/// where the tree has not changed nothing does. Where it has, new boxes come before those that they
-/// replace go. If they are more than `most`, they are made anew, then with cubes twice as large,
-/// until they are few enough or a cube would have no room; with smaller cubes again when these need
-/// at most 70 % of `most`. For one thread, which is the only one that uses these `WorldChanges`; it
-/// may allocate.
+/// Makes the solid cubes of an octree loose parts of a world: boxes containing every solid cube
+/// and, but for a slack, nothing else. A box still solid stays as it is, so unchanged regions of
+/// the tree change no parts. New boxes are added before the replaced ones are removed. If they are
+/// more than `most`, they are made anew, then with cubes twice as large, until they are few enough
+/// or a cube would have no room; with smaller cubes again when these need at most 70 % of `most`.
+/// For one thread, the only user of these `WorldChanges`; it may allocate.
 class MappedParts {
  public:
   /// @param resolution [m] edge of the cubes of the trees @param changes must outlive this object.

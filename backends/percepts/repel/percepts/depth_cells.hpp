@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Divides depth images into few convex cells that contain everything that was seen.
+/// Divides depth images into few convex cells containing everything seen.
 #pragma once
 
 #include <array>
@@ -46,13 +46,12 @@ struct DivisionReport {
   int too_large = 0;       ///< cells beyond `CellOptions::room`
 };
 
-/// Divides images, block by block: the inverse depth of a plane is linear in the image, so a block
-/// that shows one is fitted by one cell, however it is inclined; other blocks are divided into
-/// four, the smallest into what is before and what is behind the largest gap. If there are too many
-/// cells, again with twice the tolerance and the smallest blocks twice as large; the next images
-/// begin so too, until there are few. So every point
-/// that was measured lies in a cell. Every cell begins at most that tolerance before what is seen
-/// in it, but for the smallest blocks and those of which only a part was measured. All memory is
+/// Divides images, block by block. The inverse depth of a plane is linear in the image, so one cell
+/// fits a block showing a plane of any inclination. Other blocks are divided into four, the
+/// smallest ones at their largest gap in depth. If there are too many cells, again with twice the
+/// tolerance and the smallest blocks twice as large; the next images begin so too, until there are
+/// few. So every point that was measured lies in a cell. Every cell begins at most that tolerance
+/// before its nearest point, but for the smallest blocks and those measured in part. All memory is
 /// allocated at construction.
 class DepthCells {
  public:

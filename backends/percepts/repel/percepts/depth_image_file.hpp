@@ -18,8 +18,8 @@ namespace repel::percepts {
 /// @throws SetupError naming the file and what it has instead; also if this build cannot read it
 void check_depth_image(const std::string& path, const DepthCamera& camera);
 
-/// Reads such a file: the convention of ROS and of the RGB-D benchmark of TUM, where every pixel is
-/// a multiple of a unit, and 0 where nothing was measured.
+/// Reads such a file, by the convention of ROS and of the RGB-D benchmark of TUM: every pixel is a
+/// multiple of a unit, 0 without a measurement.
 /// @param unit [m] of a pixel, such as 0.001 @param depth [m] width x height of the camera, is
 /// overwritten. Cost: some ms for 640 x 480
 /// @throws SetupError as above, and for a file that is cut off or damaged

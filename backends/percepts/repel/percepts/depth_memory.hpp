@@ -12,8 +12,8 @@ namespace repel::percepts {
 
 /// Fills in pixels without a depth with what was last seen there. Where `OwnBody` has taken the
 /// robot out, until something is measured, since a thing does not go away while the robot stands
-/// before it. Elsewhere for a while, unless all that is measured around the pixel is at another
-/// depth: then what was there has moved on. Allocates at construction only.
+/// before it. Elsewhere for a while, unless all depths measured around the pixel differ: then the
+/// object has moved on. Allocates at construction only.
 class DepthMemory {
  public:
   /// @param keeps [s] how long a depth is remembered where nothing is measured; 0 to 1e6

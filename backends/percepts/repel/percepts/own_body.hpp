@@ -11,9 +11,8 @@
 
 namespace repel::percepts {
 
-/// Takes what a camera sees of the robot itself out of its images: every pixel whose point is in
-/// one of the robot's parts with all its faces moved out by a margin. Allocates at construction
-/// only.
+/// Removes the robot itself from camera images: every pixel with its point in one of the robot's
+/// parts, their faces moved out by a margin. Allocates at construction only.
 class OwnBody {
  public:
   /// @param shapes of the parts of tool and links @param margin [m] 0 to 1: how far model, readings

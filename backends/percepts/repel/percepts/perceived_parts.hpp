@@ -15,8 +15,8 @@ namespace repel::percepts {
 
 /// How cells become parts.
 struct PerceivedOptions {
-  double slack = 0.01;    ///< [m] by which parts are grown at the front and back, so that noise of
-                          ///< the camera changes none
+  double slack = 0.01;    ///< [m] growth of parts at the front and back, so camera noise changes
+                          ///< none
   double over = 0.05;     ///< [s] in which parts come and go
   double keeps = 2.0;     ///< [s] how long what is hidden stays after it was last seen
   ReservedShare share{};  ///< of the reserved parts, for this camera alone
@@ -27,18 +27,18 @@ struct PerceivedOptions {
 /// What an image has changed.
 struct PerceptCounts {
   int cells = 0;     ///< of the image
-  int kept = 0;      ///< of these, that are where a part already is
+  int kept = 0;      ///< of these, in the place of an existing part
   int added = 0;     ///< of these, that have become a part
   int left_out = 0;  ///< of these, for which no reserved part was free
   int removed = 0;   ///< parts that are no longer seen
-  int hidden = 0;    ///< parts that stay, though nothing was measured where they are
+  int hidden = 0;    ///< parts kept without a measurement at their place
 };
 
-/// Makes the cells of depth images parts of a world that come and go. A cell that is where a part
-/// already is changes nothing. Where there is a new one, it comes before what it replaces goes. A
-/// part in front of which nothing is measured, as when the robot hides it, stays for a while.
-/// For one thread, which is the only one that uses these `WorldChanges`; it may allocate. Several
-/// cameras have an object each, with shares that have no part in common.
+/// Makes the cells of depth images parts of a world that come and go. A cell in the place of an
+/// existing part changes nothing. A new part is added before the replaced one is removed. A part in
+/// front of which nothing is measured, as when the robot hides it, stays for a while. For one
+/// thread, the only user of these `WorldChanges`; it may allocate. Several cameras have an object
+/// each, with shares that have no part in common.
 class PerceivedParts {
  public:
   /// @param changes must outlive this object. The share should be twice as many parts as there are

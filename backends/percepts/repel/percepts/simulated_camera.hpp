@@ -32,9 +32,9 @@ class SimulatedCamera {
                   const CameraFaults& faults = {});
 
   /// Takes an image. @param X_CM [m] the frames of the meshes in that of the camera, in their
-  /// order; one that is not finite is not there @param depth [m] width x height of the camera, is
-  /// overwritten; a shorter one stays as it is. Cost: about 100 ns a triangle and 5 ns a pixel that
-  /// it covers; faults 20 ns a pixel
+  /// order; not finite: absent @param depth [m] width x height of the camera, is overwritten; a
+  /// shorter one stays as it is. Cost: about 100 ns a triangle and 5 ns a pixel that it covers;
+  /// faults 20 ns a pixel
   void take(std::span<const Pose> X_CM, std::span<float> depth) noexcept;
 
  private:

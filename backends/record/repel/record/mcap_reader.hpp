@@ -65,8 +65,8 @@ class McapReader {
  public:
   /// Opens the file at `path` and reads everything except the messages. Cost: reads the first nine
   /// bytes of every record, and all of attachments, metadata, schemas, channels and the summary.
-  /// @throws SetupError naming the byte, what was found and what is allowed, if the file cannot be
-  ///   read or does not start as an MCAP file
+  /// @throws SetupError naming the byte, its value and the allowed one, if the file cannot be read
+  ///   or does not start as an MCAP file
   explicit McapReader(const std::string& path);
 
   /// The same for a file in memory; `name` replaces its path in errors.

@@ -61,14 +61,14 @@ class McapWriter {
 
   /// Adds a description of messages: `data` in the language `encoding` ("jsonschema", "ros2msg",
   /// ...). Returns its id, from 1. Written immediately, and again in the first chunk that needs it.
-  /// @throws SetupError for more than 65535 schemas or one of more than 16 MiB
+  /// @throws SetupError above 65535 schemas or for one above 16 MiB
   std::uint16_t add_schema(std::string_view name, std::string_view encoding, std::string_view data);
 
   /// Adds a stream of messages in `encoding` ("json", "cdr", ...). `schema` is an id from
   /// add_schema(); 0: none. Returns its id, from 1. Written immediately, and again in the first
   /// chunk that needs it.
-  /// @throws SetupError for a schema that does not exist, an empty topic, a topic that is already
-  ///   used, more than 65535 channels or one of more than 16 MiB
+  /// @throws SetupError for an unknown schema, a topic empty or already used, above 65535 channels
+  ///   or for one above 16 MiB
   std::uint16_t add_channel(std::string_view topic, std::uint16_t schema, std::string_view encoding,
                             const std::map<std::string, std::string>& metadata = {});
 
@@ -87,7 +87,7 @@ class McapWriter {
   void write(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
              std::string_view data);
 
-  /// Finishes the current chunk, so that a crash cannot lose what was written so far.
+  /// Finishes the current chunk, so a crash cannot lose it.
   void flush();
 
   /// Finishes the current chunk, writes the summary and closes the file. Further calls do nothing.

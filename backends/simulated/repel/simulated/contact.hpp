@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Physical contact in simulated arms: which shapes can touch.
+/// Physical contact in simulated arms: the shapes that can touch.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace repel {
 
-/// A convex part of a simulated arm that can touch obstacles, or an obstacle.
+/// An obstacle, or a convex part of a simulated arm touching obstacles.
 struct ContactPart {
   std::string name;              ///< for error messages
   int link = -1;                 ///< index in ArmModel::links; -1: an obstacle, fixed in the world
@@ -25,8 +25,7 @@ struct ContactPart {
 /// and half length of a capsule; radius, radius and half length of a cylinder or cone.
 [[nodiscard]] Vec3 core_extents(const Shape& shape) noexcept;
 
-/// Throws SetupError naming the part whose link is not in `model` or whose pose is not rigid.
-/// Set-up only.
+/// Throws SetupError naming a part with a link not in `model` or a pose not rigid. Set-up only.
 void require_touchable(std::span<const ContactPart> parts, const ArmModel& model);
 
 }  // namespace repel

@@ -21,7 +21,7 @@ struct SimulationOptions {
   double watchdog = 0.0;  ///< [s] timeout without torques after which the arm stops; 0: never
 };
 
-/// What a simulated arm has rejected since construction or since its faults were cleared.
+/// Input rejected by a simulated arm since construction or since its faults were cleared.
 struct SimulationFaults {
   bool torque = false;  ///< an entry was missing or not usable and was taken as zero
   bool period = false;  ///< a period was not finite or not positive: the arm did not move
@@ -29,16 +29,16 @@ struct SimulationFaults {
                         ///< torques or raise SimulationOptions::substeps
 };
 
-/// Throws SetupError naming the joint and the number of `model` that no engine can simulate: a pose
-/// that is not rigid, an axis that is not of unit length, a mass, friction or inertia that is
-/// negative or not finite, limits out of order. Set-up only, as all below.
+/// Throws SetupError naming the joint and the number of `model` beyond every engine: a pose not
+/// rigid, an axis not of unit length, a mass, friction or inertia negative or not finite, limits
+/// out of order. Set-up only, as all below.
 void require_simulable(const ArmModel& model);
 
-/// Throws SetupError naming the option that is out of its range.
+/// Throws SetupError naming an option out of its range.
 void require_valid(const SimulationOptions& options);
 
-/// Throws SetupError unless `q` [rad] or [m] and `v` [rad/s] or [m/s], which may be empty, are
-/// finite, one for each link, and `q` within the limits.
+/// Throws SetupError unless `q` [rad] or [m] and `v` [rad/s] or [m/s] (or empty) are finite, one
+/// for each link, and `q` within the limits.
 void require_state(const ArmModel& model, std::span<const double> q, std::span<const double> v);
 
 }  // namespace repel

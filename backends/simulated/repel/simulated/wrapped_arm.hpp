@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the wrappers of simulated arms have in common.
+/// Common base of the wrappers of simulated arms.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace repel {
 
-/// An arm that is the arm inside; who derives from it changes a part of that. Allocates nothing.
+/// Forwards everything to the arm inside; derived classes change a part of it. Allocates nothing.
 class WrappedArm : public TorqueDrivenArm {
  public:
   /// @param arm not null

@@ -26,8 +26,8 @@ struct ArmInfo {
   double max_speed = 0.25;           ///< [m/s] maximum command of its master
   double max_turn = 1.0;             ///< [rad/s] likewise
   double max_lever_rate = 1.5;       ///< [rad/s] maximum commanded lever motion
-  /// Places the links that VisualInfo::link names, if there are any. It belongs to one view, which
-  /// moves it in a thread of its own: never that of a cell.
+  /// Places the links that VisualInfo::link names, if there are any. It belongs to one view and is
+  /// moved in its thread: never that of a cell.
   std::shared_ptr<ArmKinematics> kinematics{};
   // What a hand can switch in its network.
   std::vector<network::FixtureOptions> fixtures;  ///< of GUIDE, in its order

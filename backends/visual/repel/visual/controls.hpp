@@ -75,7 +75,7 @@ class NewShapes {
   std::map<std::int32_t, Shape> shapes_;
 };
 
-/// Lock-free interface between the loop, which reads, and one other thread, which writes.
+/// Lock-free interface between the loop, reading, and one other thread, writing.
 struct Controls {
   Mailbox<DriverInput> input{DriverInput{}};  ///< each post also tells that the driver is alive
   std::atomic<bool> paused{false};            ///< the loop waits, but for single steps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The live view as a part of a program: its pages, and what they command.
+/// The live view as a part of a program: its pages, and their commands.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@
 
 namespace repel::visual {
 
-/// What a page is told of a cell: names, bodies and joints of its arms. To be added by who knows
-/// it: `visuals`, the speeds of the masters, and what a hand can switch.
+/// The description of a cell for pages: names, bodies and joints of its arms. To be added by the
+/// program: `visuals`, the speeds of the masters, and the switches of a hand.
 [[nodiscard]] inline SceneInfo scene_info_of(const Cell& cell, std::string name) {
   SceneInfo info;
   info.scene = std::move(name);
@@ -41,7 +41,7 @@ namespace repel::visual {
   return info;
 }
 
-/// The live view of a cell whose ticks your program runs:
+/// The live view of a cell ticked by your program:
 ///
 ///     visual::LiveView view(cell, visual::scene_info_of(cell, "my cell"), {.pages_drive = true});
 ///     for (;;) {                                    // your thread, your clock
@@ -78,10 +78,10 @@ class LiveView {
     show({&arm, 1}, times);
   }
 
-  /// Before a tick, or between its two halves: the command of the page that drives, for the first
-  /// arm; null: none does, and your own operator counts. When that page falls silent its rates are
-  /// zero after PageCommand::rest_after; from PageCommand::silent_after on it is reported silent,
-  /// so that the cell takes its force away; two seconds later it has lost the controls.
+  /// Before a tick, or between its two halves: the command of the driving page, for the first arm;
+  /// null: none drives, and your own operator counts. The rates of a silent page are zero after
+  /// PageCommand::rest_after. From PageCommand::silent_after on it is reported silent, so the cell
+  /// removes its force. Two seconds later it loses the controls.
   [[nodiscard]] const network::Command* command() noexcept {
     page_.hear(cell_->elapsed());
     if (page_.driver() != Driver::page) return nullptr;

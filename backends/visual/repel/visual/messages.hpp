@@ -25,7 +25,7 @@ void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 /// Makes the program link `is_built_for`.
 [[gnu::used, gnu::retain]] constexpr auto built_alike = &is_built_for;
 
-/// Where the surface of a mesh is in none of its convex parts.
+/// Gaps of a mesh: its surface outside all of its convex parts.
 struct GapsInfo {
   /// One such place.
   struct Gap {
@@ -33,21 +33,21 @@ struct GapsInfo {
     double depth = 0.0;  ///< [m] no point of it is farther from the parts
   };
 
-  PartId part;               ///< in whose frame the points are
+  PartId part;               ///< the points are in its frame
   std::size_t count = 0;     ///< of all such places
   std::vector<Gap> deepest;  ///< some of them, the deepest first
 };
 
-/// What a part of an arm looks like, or what it stands on: only looked at, without any force.
+/// The visual of a link of an arm or its stand: without any force.
 struct VisualInfo {
-  std::string name;  ///< as in "base_link"
-  BodyId body{};     ///< that it moves with; World::fixed: none. Unused where there is a `link`
-  int arm = -1;      ///< that it belongs to
-  Pose X_BV = Pose::Identity();                  ///< [m] in its body or link
+  std::string name;              ///< as in "base_link"
+  BodyId body{};                 ///< that it moves with; World::fixed: none. Unused with a `link`
+  int arm = -1;                  ///< that it belongs to
+  Pose X_BV = Pose::Identity();  ///< [m] in its body or link
   std::optional<std::array<double, 4>> color{};  ///< red, green, blue, opacity, 0 to 1
   TriangleMesh mesh{};                           ///< [m] in its own frame V
-  /// Of a moving link without a body in the world: its index, base outward, for which
-  /// ArmInfo::kinematics says where it is; -1: it moves with `body`.
+  /// Index, base outward, of a moving link without a body in the world, placed by
+  /// ArmInfo::kinematics; -1: it moves with `body`.
   int link = -1;
 };
 
@@ -67,7 +67,7 @@ struct SceneInfo {
 /// @throws SetupError for a visual of a link that its arm does not have, or has no kinematics for
 [[nodiscard]] std::string scene_message(const SceneInfo& info, const World& world);
 
-/// `part`: a part that has got another shape.
+/// `part`: a part with a new shape.
 [[nodiscard]] std::string part_message(PartId id, const Shape& shape);
 
 /// `parts`: the same of several, by their indices.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The command of whoever drives through the controls, for each tick.
+/// The command of the driver at the controls, for each tick.
 #pragma once
 
 #include <repel/base/spatial.hpp>
@@ -30,8 +30,8 @@ class PageCommand {
   /// Who drives, by the newest post.
   [[nodiscard]] Driver driver() const noexcept { return controls_->input.newest().driver; }
 
-  /// Writes the newest post over the last command of its driver: what is not switched, and a
-  /// direction that is no number, stay as they were.
+  /// Writes the newest post over the last command of its driver. Absent switches and a direction of
+  /// NaN leave theirs as they were.
   /// @param R_WT axes of the tool, to which rates may refer
   void write(const Mat3& R_WT, network::Command& command) const noexcept {
     const DriverInput& input = controls_->input.newest();

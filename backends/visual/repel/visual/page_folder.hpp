@@ -7,18 +7,18 @@
 
 namespace repel::visual {
 
-/// The folder with index.html: `backends/visual/page` of the source tree that the program was built
-/// in, `share/repel/page` of the installation it is in, or that of the package repel it was
-/// compiled with; the first of these if none exists. Not for the tick.
+/// The folder with index.html, the first that exists of: `backends/visual/page` of the source tree
+/// of the build, `share/repel/page` of the program's installation, the folder of the package repel
+/// it was compiled with. If none exists, the first. Not for the tick.
 [[nodiscard]] std::string page_folder();
 
-/// Adds a folder, which must last, to those that page_folder() looks at, as the last one.
+/// Adds a folder to the end of the list of page_folder(). The text must last.
 /// @return true
 bool note_page_folder(const char* folder) noexcept;
 
 #ifdef REPEL_PAGE_FOLDER
 /// Set by the target repel::visual of an installed package: the package may have been moved since
-/// this library was built, and only who compiles against it knows where it is.
+/// this library was built, and its place is known only when a program is compiled against it.
 [[maybe_unused]] static const bool page_folder_of_package = note_page_folder(REPEL_PAGE_FOLDER);
 #endif
 

@@ -86,9 +86,8 @@ class PageHandler {
 
 /// Listens from construction on. Only pages served by this server may use it: a request for a host
 /// other than the local address of its connection, and a WebSocket of another origin, get 403. A
-/// page that is slow, or sends too many or too long messages, delays only itself, and so does a
-/// client that connects and sends nothing. With a secret, nothing is sent to or accepted from a
-/// page before it has presented it.
+/// slow page, one sending too many or too long messages, or a client sending nothing delays only
+/// itself. With a secret, nothing is sent to or accepted from a page before it has presented it.
 class Server {
  public:
   /// @param show must outlive the server

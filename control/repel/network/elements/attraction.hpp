@@ -24,9 +24,8 @@ struct AttractionLimits {
 ///          = P (1 - 3 t^2 + 2 t^3)             r / 2 < d < r, t = (d - r / 2) / (r / 2)
 ///          = 0                                 r <= d
 ///
-/// P is F, at most k r / 3, and such that U(r) is at most E. So f has a continuous slope, whose
-/// size is nowhere more than k, and so has f(d) / d, the stiffness across. U is its integral from
-/// 0.
+/// P is F, at most k r / 3, and such that U(r) is at most E. So f and f(d) / d, the stiffness
+/// across, have a continuous slope of magnitude at most k. U is its integral from 0.
 ///
 /// With a soft start, for the outside of a tube or a cone, the slope begins at zero as well: f(d) =
 /// k d^2 / (2 e) up to d = e, a tenth of the range or a / 2 if that is less, and goes on as above.
@@ -42,15 +41,15 @@ class Attraction {
   /// U(d) [J], 0 to `depth`.
   [[nodiscard]] double energy(double d) const noexcept;
 
-  /// Share of the damping that belongs to the distance, 0 to 1: it comes and goes with the slope of
-  /// the force, so that what keeps the spring stable at its stiffest does so everywhere.
+  /// Share of the damping at that distance, 0 to 1. It follows the slope of the force, so damping
+  /// that is stable at the stiffest point is stable everywhere.
   [[nodiscard]] double damping_share(double d) const noexcept;
 
   /// P [N] or [N m], the greatest force.
   [[nodiscard]] double peak() const noexcept { return peak_; }
   /// Distance from which on there is no force [m] or [rad].
   [[nodiscard]] double border() const noexcept { return range_ + 0.5 * start_; }
-  /// U beyond the border [J]: what it takes to leave.
+  /// U beyond the border [J]: the energy to leave.
   [[nodiscard]] double depth() const noexcept { return energy(border()); }
   /// [N/m], [N m/rad] at the centre.
   [[nodiscard]] double stiffness() const noexcept { return stiffness_; }
@@ -71,8 +70,8 @@ class Attraction {
   double start_ = 0.0;  // e
 };
 
-/// The largest share of `damper`, up to 1, for which spring + share damper is at most `most` long;
-/// 0 where the spring alone is longer. [N] or [N m]
+/// The largest share of `damper`, up to 1, with |spring + share damper| at most `most`; 0 if the
+/// spring alone is larger. [N] or [N m]
 [[nodiscard]] double share_within(const Vec3& spring, const Vec3& damper, double most) noexcept;
 
 }  // namespace repel::network

@@ -7,10 +7,9 @@
 
 namespace repel::network {
 
-/// Follows HandInput::scale as a first-order lag. A transformer between motions and between forces
-/// by the same number, constant within a tick, neither stores nor supplies energy, whatever number
-/// it has in the next: so a change moves nothing, and a force that is felt goes over to its new
-/// size.
+/// Follows HandInput::scale as a first-order lag. A transformer by the same number for motions and
+/// forces, constant within a tick, neither stores nor supplies energy, even if the number changes
+/// in the next tick. So a change moves nothing, and a felt force fades to its new size.
 class ChangingScale {
  public:
   static constexpr double time = 0.3;    ///< [s] in which 63 % of a change are made

@@ -20,8 +20,8 @@ struct ChannelOptions {
   std::uint64_t seed = 1;  ///< the same seed gives the same channel
 };
 
-/// Carries one packet per tick. A packet that has arrived is looked up by the tick in which it was
-/// sent; `newest` is the one sent last. Deterministic; only `prepare` allocates.
+/// Carries one packet per tick. Arrived packets are looked up by the tick of their sending;
+/// `newest` is the one sent last. Deterministic; only `prepare` allocates.
 template <class Payload>
 class Channel {
  public:
@@ -74,8 +74,7 @@ class Channel {
     }
   }
 
-  /// The packet that was sent in `tick`; null when it was lost, has not arrived or is no longer
-  /// kept.
+  /// The packet sent in `tick`; null if it was lost, has not arrived or is no longer kept.
   [[nodiscard]] const Payload* sent_at(std::int64_t tick) const noexcept {
     if (tick < 0) return nullptr;
     const Packet& packet = packets_[static_cast<std::size_t>(tick) % packets_.size()];

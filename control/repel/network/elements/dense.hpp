@@ -76,15 +76,14 @@ void transposed_product(const A& matrix, const X& x, Y& y) noexcept {
   }
 }
 
-/// A = L D L' of a symmetric positive definite n x n matrix by columns, in place of which is L,
-/// with a diagonal of ones that is not written; the inverse of D is in `inverse`. False when the
-/// matrix is singular.
+/// A = L D L' of a symmetric positive definite n x n matrix by columns. L replaces it, its unit
+/// diagonal not written; the inverse of D is in `inverse`. False when the matrix is singular.
 ///
-/// Without a square root, which the next pivot would wait for (Eigen's would pull in heap
-/// allocation for sizes that cannot occur). Rounding makes the pivot of a rigid direction tiny
-/// instead of zero, the more so where its diagonal entry is a small part of the matrix. Each pivot
-/// is compared with its own diagonal entry, so that the test does not depend on units. Entries
-/// above the diagonal do not matter.
+/// Without a square root: the next pivot would wait for it (Eigen's would pull in heap allocation
+/// for sizes that cannot occur). Rounding makes the pivot of a rigid direction tiny instead of
+/// zero, the more so where its diagonal entry is a small part of the matrix. Each pivot is compared
+/// with its own diagonal entry, so that the test does not depend on units. Entries above the
+/// diagonal do not matter.
 [[nodiscard]] bool factor_positive(double* L, double* inverse, int n) noexcept;
 
 /// The inverse of a symmetric positive definite n x n matrix by columns, in place, from its factors

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a spring may be switched on with.
+/// The energy to switch a spring on.
 #pragma once
 
 namespace repel::network {
 
-/// Raises the gain of a potential no faster than the energy for it is there: first what is spare,
-/// which the element took from motion and does not store, then an amount of its own. That is small,
-/// refilled slowly, and counts as supplied.
+/// Raises the gain of a potential no faster than its energy is available: first spare energy, taken
+/// from motion and not stored, then an amount of its own. That amount is small, refilled slowly,
+/// and counts as supplied.
 class EntryEnergy {
  public:
   /// [s] in which all of it is there again.
@@ -16,10 +16,10 @@ class EntryEnergy {
   /// @param most [J] of its own
   explicit EntryEnergy(double most) noexcept : most_(most), left_(most) {}
 
-  /// Begins a tick of `period` [s]. @param spare [J] that the element took and does not store
+  /// Begins a tick of `period` [s]. @param spare [J] taken by the element and not stored
   void begin(double spare, double period) noexcept;
 
-  /// Returns `gain`, raised by at most `step` towards `target`, as far as there is energy for it.
+  /// Returns `gain`, raised by at most `step` towards `target`, within the available energy.
   /// @param energy [J] of the potential at a gain of 1
   [[nodiscard]] double raised(double gain, double target, double step, double energy) noexcept;
 

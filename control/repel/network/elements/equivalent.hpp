@@ -20,8 +20,8 @@ enum class Form {
 /// Everything behind a port, in one tick, as an affine relation between effort and flow (Thevenin,
 /// Norton equivalent). In the impedance form R is the port resistance without instantaneous
 /// reflection, and the offset b is the reflected wave, whatever the incident one: f - R v = b. The
-/// admittance form has the roles exchanged; it also represents what no finite R can: a side whose
-/// flow is imposed in some direction, for which G is zero.
+/// admittance form has the roles exchanged. It also represents an imposed flow in some direction,
+/// by G = 0: no finite R can.
 ///
 /// The matrix is symmetric positive semidefinite. Every operation preserves this, and with it the
 /// exact power balance of each tick: no term is neglected or delayed.
@@ -44,8 +44,8 @@ struct Equivalent {
     offset = w;
   }
 
-  /// True for an effort, or a flow, that does not depend on the other: the diagonal of the matrix
-  /// is zero, and so is all of it.
+  /// True if effort and flow are independent: the diagonal of the matrix is zero, and so is all of
+  /// it.
   [[nodiscard]] bool is_source() const noexcept {
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
       if (matrix.coeff(i, i) != 0.0) return false;

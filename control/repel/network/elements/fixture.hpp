@@ -14,8 +14,7 @@
 
 namespace repel::network {
 
-/// What a fixture attracts to. With a radius it is what is within it that attracts: a ball, a tube,
-/// a slab.
+/// The target of a fixture. With a radius, all points within it: a ball, a tube, a slab.
 enum class FixtureKind {
   point,  ///< the origin of F
   line,   ///< the z axis of F
@@ -87,13 +86,13 @@ struct FixtureView {
   Mat3 across = Mat3::Zero();   ///< projection on the directions that it holds
   double angle = 0.0;           ///< [rad] from its orientation, 0 to pi
   Vec3 axis_W{0, 0, 0};         ///< unit: change of the angle by rates of the tool
-  Vec3 turned_W{0, 0, 0};       ///< [rad/m] and by its motion along a path whose frames turn
+  Vec3 turned_W{0, 0, 0};       ///< [rad/m] and by its motion along a path with turning frames
   Mat3 turning = Mat3::Zero();  ///< projection on the rates that it holds
 };
 
-/// A fixture and, for a path, the place on it that attracts. That place follows the tool: it moves
-/// to the place nearest by, downhill, at most `most_ahead` times as far as the tool does, and not
-/// while that stands still. So where the nearest place jumps, the force does not.
+/// A fixture and, for a path, the attracting place on it. That place follows the tool downhill to
+/// the local nearest, at most `most_ahead` times as far as the tool moves, and rests when the tool
+/// does. So the force does not jump with the nearest place.
 class FixtureGeometry {
  public:
   /// How far the place on a path may go per motion of the tool.
@@ -105,9 +104,9 @@ class FixtureGeometry {
 
   /// Looks for the nearest place anew.
   void begin(const Vec3& x) noexcept;
-  /// The place follows the tool to `x`, which is `motion` [m] from where it was.
+  /// The place follows the tool to `x`, after a motion of `motion` [m].
   void follow(const Vec3& x, double motion) noexcept;
-  /// There is a place that follows the tool: on a path.
+  /// There is a place following the tool: on a path.
   [[nodiscard]] bool has_place() const noexcept { return kind_ == FixtureKind::path; }
   [[nodiscard]] const PathPlace& place() const noexcept { return place_; }  ///< where on the path
   /// The path; empty for another kind.

@@ -60,9 +60,9 @@ class FixturePath {
   /// Whether it is an end of the path, or a corner of a polyline between two pieces.
   [[nodiscard]] bool is_at_corner(const PathPlace& place) const noexcept;
 
-  /// The place nearest to `x` [m], looking at every piece. Of two that are nearly as near, the
-  /// points alone could name the wrong one: each piece that may have it is descended. Cost: nine
-  /// points of each, and eight steps from the nearest ones.
+  /// The place nearest to `x` [m], looking at every piece. Points alone could pick the wrong one of
+  /// two nearly equal minima, so the descent starts in each candidate piece. Cost: nine points of
+  /// each, and eight steps from the nearest ones.
   [[nodiscard]] PathPlace nearest(const Vec3& x) const noexcept;
 
   /// The place from `from` on down to the local nearest to `x`, at most `most` [m] from it. It
@@ -87,7 +87,7 @@ class FixturePath {
   [[nodiscard]] PathPlace descended(const PathPlace& from, const Vec3& x) const noexcept;
   [[nodiscard]] PathPlace turned_to(const PathPlace& place, const Vec3& x) const noexcept;
 
-  // Between two places of which the second is too far from `start`.
+  // Between two places, the second too far from `start`.
   [[nodiscard]] PathPlace part_way(const PathPlace& place, const PathPlace& next, const Vec3& start,
                                    double most, const Vec3& x) const noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// One axis of a force-reflecting master, with the hand that holds it.
+/// One axis of a force-reflecting master, with the operator's hand.
 #pragma once
 
 namespace repel::network {
@@ -20,11 +20,10 @@ struct HeldAxisGains {
 ///
 ///     R = 2 I / T + c + (k_h T / 2 + c_h)      b = b_I + b_k - (k_h T / 2 + c_h) v_hand
 ///
-/// with b_I and b_k the waves reflected by inertia and spring. The hand is an energy source; what
-/// it supplies is counted separately. The motor never exceeds its limit: the axis takes the wave
-/// a' that goes with the effort it can give. Where the hand overpowers the motor, |a'| > |a|: what
-/// the axis then takes beyond the power of its port is the work of the hand and counts as
-/// supplied.
+/// with b_I and b_k the waves reflected by inertia and spring. The hand is an energy source; its
+/// supply is counted separately. The motor never exceeds its limit: the axis takes the wave a' of
+/// its possible effort. If the hand overpowers the motor, |a'| > |a|: the excess over the power of
+/// the port is work of the hand and counts as supplied.
 class HeldAxis {
  public:
   HeldAxis() = default;
@@ -45,14 +44,13 @@ class HeldAxis {
   [[nodiscard]] double position() const noexcept { return position_; }  ///< [m, rad]
   [[nodiscard]] double rate() const noexcept { return rate_; }          ///< [m/s, rad/s]
   [[nodiscard]] double felt() const noexcept { return felt_; }          ///< [N, N m] of the motor
-  /// [N, N m] of spring and damper on the hand; its product with the rate of the hand is the power
-  /// that the hand gets.
+  /// [N, N m] of spring and damper on the hand; times the rate of the hand it is the power into the
+  /// hand.
   [[nodiscard]] double grip() const noexcept { return grip_; }
-  /// [N s/m, N m s/rad] What a real device must have of damping by itself, its operator's hand
-  /// included, where `move` is given its measured motion and `grip` acts on it: with that it stays
-  /// passive behind any passive network. Infinite for a grip that has none.
-  /// docs/network/six_axes.md derives it. @param late [s] from a motion to the force against it,
-  /// in addition to the sampling
+  /// [N s/m, N m s/rad] Damping needed in a real device and its operator's hand, with its measured
+  /// motion in `move` and `grip` acting on it, to stay passive behind any passive network. Infinite
+  /// for a grip without damping. docs/network/six_axes.md derives it. @param late [s] from a motion
+  /// to the force against it, in addition to the sampling
   [[nodiscard]] double device_damping(double late) const noexcept;
   /// [N s/m, N m s/rad] Optimal damping of the grip; `device_damping` is then least, and twice as
   /// much.

@@ -13,7 +13,7 @@
 
 namespace repel::network {
 
-/// What is sent over a line.
+/// The quantities sent over a line.
 enum class LineKind {
   waves,           ///< passive for any delay, jitter and loss
   force_velocity,  ///< velocity one way, force the other; not passive, for comparison
@@ -25,9 +25,9 @@ struct LineOptions {
   double impedance = 20.0;          ///< Z [N s/m]
   double angular_impedance = 0.5;   ///< [N m s/rad]; of a tool port
   ChannelOptions channel;           ///< of both directions, with different seeds
-  /// [s] that the receiver waits beyond the channel delay, so that late packets are in time and
-  /// lost ones can be interpolated from the next; negative: the jitter plus as many ticks as
-  /// packets are lost in a row with probability 1e-6, clamped to 2 to 50
+  /// [s] wait of the receiver beyond the channel delay, to have late packets in time and
+  /// interpolate lost ones from the next; negative: the jitter plus the number of packets lost in a
+  /// row with probability 1e-6, in ticks, clamped to 2 to 50
   double buffer = -1.0;
 
   /// Calls visit(Field, x) for each number but `buffer` and the seed.
@@ -47,13 +47,12 @@ struct LineOptions {
 /// instantaneous path between the ends, so a line breaks a delay-free loop.
 ///
 /// Waves cannot simply be output on arrival: holding one too long injects its energy twice,
-/// dropping one loses the motion it stands for. Each packet carries the sum of all waves and of
-/// their energy so far (after Niemeyer and Slotine 1998). The receiver outputs the wave that was
-/// sent a fixed time ago: the channel delay plus a `buffer`. If that packet is missing, the sum in
-/// the next one received gives the mean of the missing waves, which never has more energy than they
-/// had. If none is there, the output is zero, and the missing sum is made up later as far as the
-/// energy sent and not yet output allows. So the energy out never exceeds the energy in, whatever
-/// the channel does.
+/// dropping one loses its motion. Each packet carries the sum of all waves and of their energy so
+/// far (after Niemeyer and Slotine 1998). The receiver outputs the wave sent a fixed time ago: the
+/// channel delay plus a `buffer`. If that packet is missing, the sum in the next one received gives
+/// the mean of the missing waves; its energy never exceeds theirs. Without a later packet the
+/// output is zero, and the missing sum is made up later within the energy sent and not yet output.
+/// So the energy out never exceeds the energy in, on any channel.
 class Line {
  public:
   /// @throws SetupError for a number out of range

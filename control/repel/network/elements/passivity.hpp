@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Passivity observer and controller for an element that is not passive by itself.
+/// Passivity observer and controller for an active element.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace repel::network {
 
 /// Limits of a passivity controller.
 struct PassivityOptions {
-  double most_energy = 5.0;  ///< [J] cap on the stored energy of the element; what it dissipated in
-                             ///< a long contact beyond this cannot be returned later
+  double most_energy = 5.0;  ///< [J] cap on the stored energy of the element; energy dissipated in
+                             ///< a long contact beyond it cannot be returned later
   double most_damping = 300.0;  ///< [N s/m] limit of the damping against energy from sampling; the
                                 ///< rest is carried over
   double lever = 0.1;           ///< [m] lever arm of the damping of rotations
@@ -41,8 +41,8 @@ struct PassivityReport {
 /// The port energy, E += T f.v, never becomes negative: where the effort of a tick would generate
 /// energy, it is damped along its flow just enough to leave E at zero. Because E was not negative
 /// before, the deficit is at most T |f.v|, and the correction never reverses the effort. Energy
-/// that a source other than the port supplies counts as well. Where the source takes more than is
-/// stored, the port returns nothing; what is still missing is not charged to it, and is owed.
+/// from a source other than the port counts as well. If the source takes more than the stored
+/// energy, the port returns nothing; the remaining deficit is not charged to the port, and is owed.
 ///
 /// The sampled energy E_s += T f(k-1).(mean flow) pairs the effort held through a period with the
 /// motion of that period, and is known one tick late. Its damping is limited, never resists
@@ -87,7 +87,7 @@ class PassivityController {
     double damping = 0.0;
     if (square > 1e-200) {
       double missing = -(energy_ / period + power) / square;
-      // What the source takes beyond what is stored may cost the port its push, and no more.
+      // A deficit by the source may cancel the push of the port, and no more.
       if (energy_ < 0.0) missing = std::min(missing, -power / square);
       const double sampled = -(sampled_ / period + power) / square;
       // On retreat the damping may cancel the push of the element but not turn it into a pull; nor
@@ -108,9 +108,9 @@ class PassivityController {
     return damping;
   }
 
-  /// Takes from both accounts what the effort of the last step did not give, because its flow
+  /// Takes the undelivered part of the effort of the last step from both accounts, as its flow
   /// changed within the period. An effort is reduced to zero at most.
-  /// @param less [N], [N m] of that effort @param flow of that step @param period [s]
+  /// @param less [N], [N m] undelivered effort @param flow of that step @param period [s]
   void give_up(const Vec<N>& less, const Vec<N>& flow, double period) noexcept {
     for (Eigen::Index i = 0; i < held_.size(); ++i) {
       double& held = held_.coeffRef(i);

@@ -3,8 +3,8 @@
 /// Ports: effort and flow, and the corresponding waves.
 ///
 /// The modules of a network are one-ports and two-ports. A port carries an effort f (force, torque,
-/// wrench) and a flow v (velocity, joint rate, twist), both counted into the element, so that f.v
-/// is the power that enters it. With a port resistance R, symmetric and positive definite,
+/// wrench) and a flow v (velocity, joint rate, twist), both counted into the element, so f.v is the
+/// power into it. With a port resistance R, symmetric and positive definite,
 ///
 ///     a = f + R v   the incident wave       b = f - R v   the reflected wave
 ///     f.v = (a' R^-1 a - b' R^-1 b) / 4

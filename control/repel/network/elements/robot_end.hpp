@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a network ends in, for gains that are chosen for an arm.
+/// The arm at the end of a network, for automatic gains.
 #pragma once
 
 #include <limits>
@@ -12,7 +12,7 @@ namespace repel::network {
 /// In place of a stiffness or a damping: as stiff as the arm allows.
 inline constexpr double automatic = -std::numeric_limits<double>::infinity();
 
-/// The lightest that an arm appears to a network that ends in it.
+/// The least apparent masses of an arm at the end of its network.
 struct RobotEnd {
   double mass = 0.0;        ///< [kg] of the tool, least over directions and poses; 0: not known
   double inertia = 0.0;     ///< [kg m^2] likewise, of its rotation
@@ -35,9 +35,9 @@ struct Gains {
 ///
 ///     B = min(m / h, most damping)    K = B^2 / (4 m)
 ///
-/// and at least `usual`. A mass m behind them is critically damped. With B = m / h it is as fast as
-/// it can be made to follow: a stiffer spring would ask for more than the arm can do within its
-/// response time h. Without a known mass: `usual`.
+/// and at least `usual`. A mass m behind them is critically damped. B = m / h gives the fastest
+/// response: a stiffer spring would be faster than the response time h of the arm. Without a known
+/// mass: `usual`.
 [[nodiscard]] Gains suited(const Gains& asked, double mass, double response, const Gains& usual,
                            double most_damping = std::numeric_limits<double>::infinity()) noexcept;
 

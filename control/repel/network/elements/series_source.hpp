@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What modules have in common that add an effort in series.
+/// Common base of the modules adding an effort in series.
 #pragma once
 
 #include <repel/network/elements/equivalent.hpp>
@@ -10,7 +10,7 @@
 namespace repel::network {
 
 /// An effort in series, at the same flow of both ports: f_left = f_right + effort. The base of a
-/// module, which sets the effort when it reads the signals of a tick.
+/// module; the module sets the effort as it reads the signals of a tick.
 class SeriesSource {
  public:
   /// What is behind, and the effort in series. Always true.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What has passed along a line in one direction: the sum of the waves and their energy.
+/// The waves along a line in one direction: their sum and energy.
 #pragma once
 
 #include <repel/network/elements/port.hpp>
@@ -17,8 +17,8 @@ struct WaveAccount {
   void clear(int size) noexcept;
   /// Adds a wave that lasted for `period` [s].
   void add(const Vec<any_size>& wave, double period) noexcept;
-  /// Outputs for `period` [s] the wave that makes up `missing` [sqrt(J s)], as far as `allowed` [J]
-  /// goes: returns that wave [sqrt(W)], which is added to this account.
+  /// Outputs for `period` [s] the wave for the `missing` sum [sqrt(J s)], within `allowed` [J]:
+  /// returns that wave [sqrt(W)], added to this account.
   [[nodiscard]] Vec<any_size> draw(const Vec<any_size>& missing, double allowed,
                                    double period) noexcept;
 };
@@ -36,8 +36,7 @@ class LineImpedance {
   [[nodiscard]] const Vec<any_size>& diagonal() const noexcept { return impedance_; }
   /// The wave into the line of an end in that state [sqrt(W)].
   [[nodiscard]] Vec<any_size> wave_of(const PortState<any_size>& state) const noexcept;
-  /// The effort offset b of an end at which a wave of the other end comes out, with its sign
-  /// inverted: b = -2 sqrt(Z) u.
+  /// The effort offset b at the end receiving a wave, with its sign inverted: b = -2 sqrt(Z) u.
   [[nodiscard]] Vec<any_size> offset_of(const Vec<any_size>& wave) const noexcept;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace repel::network {
 
-/// What is done about a wall that is too stiff.
+/// The reaction to a wall that is too stiff.
 enum class GainCheck {
   error,    ///< SetupError
   warning,  ///< a text for the report; the passivity controller has to dissipate the excess energy

@@ -17,9 +17,9 @@ struct Ledger {
   /// @param in [J] net through all ports; `moved` [J] sum of the magnitudes; `from_source` [J]
   void add(double in, double moved, double from_source) noexcept;
 
-  /// Greatest energy deficit relative to the energy that passed; 0 for a module whose `energy` was
-  /// never negative. Where almost nothing passes, as against a rigid end, the deficit is only
-  /// rounding: what passed counts as at least one millijoule.
+  /// Greatest energy deficit relative to the energy passed; 0 if `energy` was never negative. The
+  /// energy passed counts as at least one millijoule: at a rigid end almost nothing passes, and the
+  /// deficit is only rounding.
   [[nodiscard]] double deficit() const noexcept;
 };
 

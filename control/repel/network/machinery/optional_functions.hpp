@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The functions that a module may have: their signatures, and the refusal of any other under their
-/// names, which would never be called.
+/// The optional functions of a module: their signatures. Any other signature under these names is
+/// refused, as it would never be called.
 #pragma once
 
 #include <concepts>
@@ -120,8 +120,7 @@ REPEL_HAS_ANY(traits)
 REPEL_HAS_ANY(incident)
 #undef REPEL_HAS_ANY
 
-/// Fails to compile, naming the function, where `M` has one under the name of an optional function
-/// and it cannot be called as that.
+/// Fails to compile, naming the function, if `M` has an optional function with another signature.
 template <class M>
 constexpr void require_callable() noexcept {
   static_assert(Fits<M> || !has_fit<M>(),

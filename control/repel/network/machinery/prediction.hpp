@@ -10,29 +10,28 @@
 
 namespace repel::network {
 
-/// What is known of the drive of the arm.
+/// The drive of the arm.
 struct PredictionOptions {
   double drive_delay = 0.0;  ///< [ticks] between a torque and its effect, beyond its being held for
                              ///< one tick; 0 to 10
 };
 
-/// A series element at the same effort: the operator's side is solved for the flow that the arm
-/// will have after a `horizon` h, and not for the one measured at the start of the tick. Torques
-/// are held for a tick, so springs and dampers that are solved for the measured flow drive an arm
-/// into oscillation where they are stiff for its mass: for one joint of inertia m unless
-/// k T^2 / m / 2 < b T / m < 2. With the torques of the walls w and their damping C,
+/// A series element at the same effort: the operator's side is solved for the predicted flow after
+/// a `horizon` h, not for the one measured at the start of the tick. Torques are held for a tick,
+/// so springs and dampers solved for the measured flow oscillate if they are stiff for the mass:
+/// for one joint of inertia m unless k T^2 / m / 2 < b T / m < 2. With the torques of the walls w
+/// and their damping C,
 ///
 ///     u = J G (J' f + w + e),   G = (M / h + C)^-1,   v_left = v_right + u
 ///
 /// G is formed in the joints, where J is the identity. So the operator's side is connected to the
 /// mass of the arm, discretized by an implicit rule. The walls themselves depend on the measured
-/// pose and stay at the measured flow; what they will give less as the arm moves is in `given_up`.
+/// pose and stay at the measured flow; their predicted loss by the motion is in `given_up`.
 ///
-/// e is what else acts on the arm: dry friction, contact that is not modelled, an effort at its
-/// limit. It is the low-passed difference of M dv / T and the torques sent, so that nothing is
-/// predicted for an arm that is held. Without errors the sum of T u is h v. What the sum is beyond
-/// that is taken back by `leak` per tick, so that springs on the left do not drift away from the
-/// arm.
+/// e is the disturbance: dry friction, unmodelled contact, an effort at its limit. It is the
+/// low-passed difference of M dv / T and the torques sent, so a held arm has no predicted motion.
+/// Without errors the sum of T u is h v. Its excess is taken back by `leak` per tick, so that
+/// springs on the left do not drift away from the arm.
 ///
 /// Stability for one joint, by the eigenvalues of the closed loop: with h = 1.5 T no spring and
 /// damper on the left can make it oscillate while M is 0.3 to 2.5 times the true mass; with a drive
@@ -45,8 +44,8 @@ class Prediction {
   static constexpr Traits traits{.passive = false};
   /// Longest delay of a drive [ticks].
   static constexpr double longest_delay = 100.0;
-  /// Share of the error of the summed flow that is taken back in a tick. What is taken back is seen
-  /// a drive's delay later: taken back faster, it oscillates.
+  /// Share of the error of the summed flow taken back in a tick. The effect shows a drive delay
+  /// later: a faster return oscillates.
   [[nodiscard]] static constexpr double leak(double drive_delay) noexcept {
     return drive_delay > 2.0 ? 0.2 / drive_delay : 0.1;
   }
@@ -76,19 +75,20 @@ class Prediction {
   void predict(const Signals& signals, const Vec<any_size>& walls,
                const Mat<any_size>& damping) noexcept;
 
-  /// What is on the right measures its flow, so that only the effort at this flow is shown. In the
-  /// joints an impedance may be singular: what the tool does not feel, of seven joints or in a
-  /// singular pose, is answered by no torque.
+  /// The right side measures its flow, so only the effort at this flow is shown. In the joints an
+  /// impedance may be singular: null-space motion, of seven joints or in a singular pose, meets no
+  /// torque.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept;
-  /// The same effort; the flow at the operator's side is that which the arm will have.
+  /// The same effort; the flow at the operator's side is the predicted one.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept;
 
   /// [rad/s] By how much the torques `total` [N m] on the joints, those of the walls included,
   /// change the rates within the horizon: G total.
   [[nodiscard]] Vec<any_size> foreseen(const Vec<any_size>& total) const noexcept;
-  /// [N m] That walls and limits give less as the rates change by `change` [rad/s]: C change.
+  /// [N m] Loss of the torques of walls and limits by a change of the rates `change` [rad/s]: C
+  /// change.
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& change) const noexcept;
 
   /// Torques on the joints besides those of network and gravity, as estimated [N m].

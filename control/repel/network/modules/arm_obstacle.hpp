@@ -22,11 +22,11 @@ struct ArmObstacleOptions {
 };
 
 /// A series source of torque on the joints: f_left = f_right - sum over the links of J^T F, with F
-/// the virtual forces on a link. Where links of the arm push its own tool, that force is among
-/// them: a pair of two bodies of one arm is stored energy of its joints. The counterpart of
-/// OBSTACLE for the links. It must stand between PUMA_KIN and the robot, with nothing compliant on
-/// its right. One passivity controller observes the energy of all joints together: one joint may
-/// return energy that another has absorbed.
+/// the virtual forces on a link. Forces of the arm's links on its own tool are included: a pair of
+/// two bodies of one arm is stored energy of its joints. The counterpart of OBSTACLE for the links.
+/// It must stand between PUMA_KIN and the robot, with nothing compliant on its right. One passivity
+/// controller observes the energy of all joints together: one joint may return energy absorbed by
+/// another.
 class ArmObstacle : public JointSource {
  public:
   /// For the planner.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// FORCE SENSOR: a measured force, in a loop at the joints that makes an arm lighter.
+/// FORCE SENSOR: a measured force, in a loop at the joints to make an arm lighter.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct ForceSensorOptions {
   }
 };
 
-/// A two-port of the joints that measures what the tool touches:
+/// A two-port of the joints that measures the contact force on the tool:
 ///
 ///     tau_right = tau_left + g (tau_left + J^T F)
 ///
@@ -46,15 +46,15 @@ struct ForceSensorOptions {
 ///     M a = tau_right + J^T F - friction,   M / (1 + g) a = tau_left + J^T F - friction / (1 + g)
 ///
 /// The network moves an arm of 1 / (1 + g) times the inertia and friction, and is pushed by a
-/// contact just once, as by a virtual wall. Nothing is added to what the operator feels. It must be
-/// the last module before the robot.
+/// contact just once, as by a virtual wall. Nothing is added to the force at the operator. It must
+/// be the last module before the robot.
 ///
-/// A reading that is missing, not finite, or more than `beyond` times the range is not used: g
+/// Unsound readings (missing, not finite, or more than `beyond` times the range) are not used: g
 /// falls to zero in `fall` with the last force, stays there until readings were sound for `hold`,
 /// and returns in `rise`. Likewise while the operator's force is removed.
 ///
 /// It is an amplifier. Its traits say `passive` as those of SPACEBALL do: its ledger counts the
-/// power g (tau_left + J^T F) . v that it supplies.
+/// supplied power g (tau_left + J^T F) . v.
 class ForceSensor {
  public:
   static constexpr double most_gain = ForceSensorOptions::most_gain;  ///< greatest g
@@ -76,7 +76,7 @@ class ForceSensor {
   /// @param period [s] of the network.
   void prepare(double period);
 
-  /// Takes a reading, and the wrench that acts in this tick.
+  /// Takes a reading, and updates the wrench of this tick.
   void read(const Signals& signals) noexcept;
 
   /// What is behind, 1 + g times, and the torques of the contact. Always true.
@@ -116,11 +116,11 @@ class ForceSensor {
 
   void follow() noexcept;
 
-  // A bias that is known stays: what the tool touches now is not part of it.
+  // A known bias stays: the present contact is not part of it.
   void forget() noexcept;
 
   ForceSensorOptions options_;
-  double follows_ = 1.0;  // share of a reading that the low pass takes over in a tick
+  double follows_ = 1.0;  // share of a reading taken over by the low pass in a tick
   double share_ = 0.0;    // of the gain
   double sound_for_ = 0.0;
   bool has_tripped_ = false;

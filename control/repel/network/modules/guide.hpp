@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// GUIDE: virtual fixtures that attract the tool.
+/// GUIDE: virtual fixtures attracting the tool.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ namespace repel::network {
 /// The fixtures, and how they come and go.
 struct GuideOptions {
   std::vector<FixtureOptions> fixtures{};  ///< in the order of HandInput::guides
-  double ramp = 0.25;         ///< [s] in which a fixture that is switched comes or goes
-  double entry_energy = 1.0;  ///< [J] that coming may take from the module itself: EntryEnergy
+  double ramp = 0.25;                      ///< [s] of a fixture being switched on or off
+  double entry_energy = 1.0;  ///< [J] supplied by the module itself for switching on: EntryEnergy
   PassivityOptions passivity{.keeps_energy = true};  ///< over all of them
 
   /// Calls visit(Field, x) for each number.
@@ -35,10 +35,10 @@ struct GuideOptions {
 ///     - a grad U(x) - a B across v
 ///
 /// with a gain a, 0 to 1, for the position and one for the orientation. At a constant gain it is
-/// conservative but for its damper. A gain that falls releases a U; one that rises does so no
-/// faster than the energy for it is there: what the damper and falling gains took from motion, then
-/// `entry_energy`, which counts as supplied. Where the tool is at the fixture U is zero and so is
-/// the cost. A passivity controller watches the port.
+/// conservative but for its damper. A falling gain releases a U. A rising one is limited by the
+/// available energy: first that taken by damper and falling gains, then `entry_energy`, counted as
+/// supplied. With the tool at the fixture U is zero and so is the cost. A passivity controller
+/// watches the port.
 class Guide : public ToolSource {
  public:
   /// For the planner.
@@ -74,7 +74,7 @@ class Guide : public ToolSource {
   void suit(const RobotEnd& robot) noexcept { robot_ = robot; }
   /// @throws SetupError for a damping that does not keep its spring stable at this period
   void prepare(double period);
-  /// Takes pose and motion of the tool, and what the hand has switched.
+  /// Takes pose and motion of the tool, and the switches of the hand.
   void read(const Signals& signals) noexcept;
   /// The fixtures, in the order of the options.
   [[nodiscard]] std::span<const Held> fixtures() const noexcept {
@@ -86,7 +86,7 @@ class Guide : public ToolSource {
   void add_wall_damping(const Jacobian& jacobian, Mat<any_size>& damping) const noexcept;
 
  private:
-  // What the springs hold must fit into the account beside what the damper took.
+  // The energy of the springs must fit into the account beside that of the damper.
   static PassivityOptions with_room(const GuideOptions& options);
   // As of a wall: B >= wall_ticks T K.
   [[nodiscard]] Gains settled(const FixtureOptions& fixture, const Gains& asked, const Gains& usual,
@@ -95,8 +95,8 @@ class Guide : public ToolSource {
   [[nodiscard]] static double wanted(const HandInput& hand, const Held& held,
                                      std::size_t index) noexcept;
   void settle_gains(const Signals& signals) noexcept;
-  // A place that attracts nothing may be left for a nearer one; if that would attract, as something
-  // that is switched on. It is looked for where the tool may have come within range of it.
+  // A place without force may be left for a nearer one; if that attracts, as if switched on. It is
+  // searched if the tool may have come within range of it.
   static void search(Held& held, const Pose& X_WT) noexcept;
   void look(Held& held, const Pose& X_WT, double motion) noexcept;
   void push(Held& held, const Vec<any_size>& flow) noexcept;

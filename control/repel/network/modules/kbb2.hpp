@@ -36,9 +36,9 @@ struct Kbb2Options {
   }
 };
 
-/// The left side moves the far end of a spring and a parallel damper whose near end is on the
-/// right. R = K T / 2 + B. The shunt B2 to ground is on the left, where the waves of a line arrive:
-/// with B2 equal to the impedance of the line, a right side that moves freely reflects nothing.
+/// A spring and a parallel damper. The left side moves their far end; the near end is on the right.
+/// R = K T / 2 + B. The shunt B2 to ground is on the left, towards a line: with B2 equal to the
+/// impedance of the line, a free right side reflects nothing.
 ///
 /// At its limit the far end of the spring is dragged along, so that a blocked tool causes no
 /// wind-up and the force drops at once when the operator reverses. That only removes energy from
@@ -52,7 +52,7 @@ class Kbb2 {
 
   /// Chooses the gains that are `automatic`; those of the defaults for an arm without a known mass.
   /// The damper has no limit of its own: at the greatest speed of the tool, and at 1 rad/s, it adds
-  /// no more than that of the spring, or it would push a blocked tool into a wall.
+  /// no more than the spring limit. More would push a blocked tool into a wall.
   void suit(const RobotEnd& robot) noexcept;
   /// Sets the size of its port, and the gains for that space.
   void fit(Space space, int size);
@@ -60,7 +60,7 @@ class Kbb2 {
   void prepare(double period);
   /// On which side the robot is.
   void face(Side root) noexcept { root_ = root; }
-  /// Releases the spring where no force of the operator is to act.
+  /// Releases the spring while the operator's force is removed.
   void read(const Signals& signals) noexcept;
 
   /// What is behind, with shunt and spring-damper. False where it cannot be formed.

@@ -35,8 +35,8 @@ struct JointLimits {
 struct JointRange {
   double lower = 0.0;  ///< [rad] or [m]
   double upper = 0.0;  ///< [rad] or [m]
-  /// [rad] or [m] replaces JointLimits::range for this joint: joints that turn and joints that
-  /// slide cannot share one number
+  /// [rad] or [m] replaces JointLimits::range for this joint: revolute and prismatic joints cannot
+  /// share one number
   std::optional<double> zone{};
 };
 
@@ -56,8 +56,8 @@ class Limits : public JointSource {
   [[nodiscard]] int size() const noexcept { return static_cast<int>(joints_.size()); }
   /// Chooses the gains that are `automatic`; those of the defaults for an arm without known masses.
   void suit(const RobotEnd& robot) noexcept;
-  /// Raises the damping of each joint to what keeps its sampled spring stable: K T / 2 and more
-  /// where the drive is late.
+  /// Raises the damping of each joint to the stability limit of its sampled spring: K T / 2, more
+  /// for a late drive.
   void prepare(double period);
 
   /// Takes the torques of the limits, corrected by the passivity controllers.

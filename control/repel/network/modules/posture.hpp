@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// POSTURE: a spring and a damper on the motion of the joints that the tool does not feel.
+/// POSTURE: a spring and a damper on the null-space motion of the joints.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace repel::network {
 
-/// The spring and damper of a Posture, the same for each joint; for one that slides as N and m.
+/// The spring and damper of a Posture, the same for each joint; for a prismatic one as N and m.
 struct PostureOptions {
   double stiffness = 10.0;       ///< [N m/rad]
   double damping = 2.0;          ///< [N m s/rad]; raised where the tick rate and the delay of the
@@ -19,8 +19,8 @@ struct PostureOptions {
   double torque_limit = 20.0;    ///< [N m] of spring and damper, on each joint
   double most_energy = 5.0;      ///< [J] see PassivityOptions
   double most_damping = 300.0;   ///< [N m s/rad] limit of the damping against energy from sampling
-  std::vector<double> joints{};  ///< [rad] or [m] at which the spring is slack; empty: where the
-                                 ///< arm is in the first tick, and in the first after a release
+  std::vector<double> joints{};  ///< [rad] or [m] of the slack spring; empty: the position in the
+                                 ///< first tick, and in the first after a release
 
   /// Calls visit(Field, x) for each number.
   template <class Visit, class Options>
@@ -40,32 +40,32 @@ struct PostureOptions {
 /// P projects on the null space of the Jacobian J: with the eigenvectors n of J' J and their
 /// eigenvalues s^2, P = sum g n n', g = (1 - (s / s0)^2)^2 below s0 and 0 above, where s0 is
 /// `singular` times the greatest s. So P is I - J^+ J in a regular pose, zero for six joints there,
-/// and a direction that the tool loses near a singular pose comes to it continuously.
+/// and a direction lost by the tool near a singular pose enters it continuously.
 ///
 /// As v = P qdot and tau = P x, power is kept: spring, damper and passivity controller act at a
 /// port of their own, x . v = tau . qdot, and push nothing but the null space. The projected spring
-/// has no potential, so it gives back what was stored and what the damper took, up to
-/// `most_energy`. With positions that are given it begins charged, which counts as supplied. It
-/// must stand between PUMA_KIN and the robot, with nothing compliant on its right.
+/// has no potential, so it gives back the energy of spring and damper, up to `most_energy`. With
+/// given positions it begins charged; that energy counts as supplied. It must stand between
+/// PUMA_KIN and the robot, with nothing compliant on its right.
 class Posture : public JointSource {
  public:
   /// For the planner.
   static constexpr Traits traits{
       .left = Space::joints, .right = Space::joints, .needs_flow = true, .keeps_flow = true};
-  /// Share of the greatest motion of the tool, 1 rad counted as 0.3 m, below which the motion of
-  /// the joints begins to count as one that the tool does not feel.
+  /// Null-space motion begins below this share of the greatest motion of the tool, 1 rad counted as
+  /// 0.3 m.
   static constexpr double singular = 0.01;
 
   /// @throws SetupError for a number out of range
   explicit Posture(PostureOptions options = {});
 
-  /// Takes what keeps a spring stable at this arm.
+  /// Takes the stability limits of this arm.
   void suit(const RobotEnd& robot) noexcept { wall_ticks_ = robot.wall_ticks; }
   /// For an arm of `size` joints.
   /// @throws SetupError if positions are given, and not one for each joint
   void fit(Space /*space*/, int size);
-  /// Raises the damping to what keeps the sampled spring stable: K T / 2 and more where the drive
-  /// is late. @param period [s] of the network
+  /// Raises the damping to the stability limit of the sampled spring: K T / 2, more for a late
+  /// drive. @param period [s] of the network
   void prepare(double period);
 
   /// Takes the torques, corrected by the passivity controller. Cost: the eigenvectors of J' J, a

@@ -9,8 +9,8 @@
 namespace repel::network {
 
 /// The flow of a motor joint for the network: the measured rate, corrected so that its trapezoidal
-/// integral tracks the measured position. Springs that integrate it do not drift away from the arm,
-/// whatever the quality of the rate.
+/// integral tracks the measured position. Springs integrating it do not drift away from the arm,
+/// even at poor rates.
 class MeasuredFlow {
  public:
   /// [s] in which a position error is corrected, at any tick rate.
@@ -34,12 +34,12 @@ class MeasuredFlow {
 };
 
 /// A one-port that imposes its flow: the joint rates are measured, the network returns torques. It
-/// is the only unmatched element of its network, at the root. The zero-order hold of the torque
-/// while the arm moves on is not part of the network: the energy that it gives the arm,
+/// is the only unmatched element of its network, at the root. The zero-order hold of the torque is
+/// not part of the network: the energy it gives to the moving arm,
 ///
 ///     sum T tau(k) . (mean flow of the period after k - flow at k)
 ///
-/// is observed and reported as `sampling_energy`. Here tau is what was sent of the torques.
+/// is observed and reported as `sampling_energy`. Here tau is the part of the torques sent.
 class PumaJoints {
  public:
   /// The arm is an energy source: it may return more energy than it absorbed.
@@ -51,7 +51,7 @@ class PumaJoints {
   /// Number of joints.
   [[nodiscard]] int size() const noexcept { return static_cast<int>(flow_.size()); }
 
-  /// Takes the measured rates, and notes what sampling has added in the period before.
+  /// Takes the measured rates, and accounts for the sampling energy of the period before.
   void read(const Signals& signals) noexcept;
   /// The measured rates, whatever the effort.
   void equivalent(Equivalent<any_size>& shown) const noexcept;
@@ -63,7 +63,7 @@ class PumaJoints {
   [[nodiscard]] double sampling_energy() const noexcept { return sampling_energy_; }  ///< [J]
 
  private:
-  // What was held back moved nothing.
+  // Torque held back moved nothing.
   void limit_to(const Vec<any_size>& sent) noexcept;
 
   Vec<any_size> flow_;    // [rad/s]

@@ -48,11 +48,10 @@ struct ReliefOptions {
 /// frame neither stores nor releases energy.
 ///
 /// HandInput::compliant changes directions and frame at any time, in `switching_time`: the damper
-/// of a direction that becomes rigid grows until nothing moves. Its spring, whose energy is then
-/// dissipated, is forgotten, and its extension is held. One that becomes compliant begins with a
-/// spring without force and a damper that shrinks to its own. In all of this the module is a spring
-/// and a positive damper in each tick: passive, and u changes by no more than its share of the
-/// time.
+/// of a direction made rigid grows until nothing moves. Its spring is forgotten, the energy
+/// dissipated, and its extension is held. A direction made compliant begins with a spring without
+/// force and a damper shrinking to its own value. In all of this the module is a spring and a
+/// positive damper in each tick: passive, and u changes by no more than its share of the time.
 class Relief {
  public:
   /// A tool on both sides.
@@ -73,13 +72,13 @@ class Relief {
   void suit(const RobotEnd& robot) noexcept;
   /// @param period [s] of the network.
   void prepare(double period);
-  /// Takes the orientation of the tool, and what the hand has switched.
+  /// Takes the orientation of the tool, and the switches of the hand.
   void read(const Signals& signals) noexcept;
 
   /// What is behind, with the compliant directions in series. False where it cannot be formed.
   [[nodiscard]] bool reflected(const Equivalent<any_size>& behind,
                                Equivalent<any_size>& shown) const noexcept;
-  /// The same effort; the flow without that of the springs, which advance.
+  /// The same effort; the flow without that of the springs. Advances the springs.
   void incident(const PortState<any_size>& at_root, const Equivalent<any_size>& /*behind*/,
                 PortState<any_size>& at_leaf) noexcept;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// SIX AXES: a simulated force-reflecting master of six degrees of freedom, with the hand that
-/// holds it.
+/// SIX AXES: a simulated force-reflecting master of six degrees of freedom, with the operator's
+/// hand.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace repel::network {
 
-/// The handle and the hand that holds it. The first numbers are for motion along the axes, those
-/// with `angular` for motion about them.
+/// The handle and the operator's hand. The first numbers are for motion along the axes, those with
+/// `angular` for motion about them.
 struct SixAxesOptions {
   double mass = 0.3;                    ///< [kg] of the handle
   double inertia = 1e-3;                ///< [kg m^2]
@@ -83,7 +83,7 @@ class SixAxes {
   [[nodiscard]] Vec<6> rate() const noexcept;
   /// [N, N m] of the motors.
   [[nodiscard]] Vec<6> felt() const noexcept;
-  /// [N, N m] of the grip on the hand: what a device is to show whose motion HandInput::ball is.
+  /// [N, N m] of the grip on the hand: the force for a device with HandInput::ball as its motion.
   [[nodiscard]] Vec<6> grip() const noexcept;
   /// [N s/m, N m s/rad] HeldAxis::device_damping of every axis. @param late [s]
   [[nodiscard]] Vec<6> device_damping(double late) const noexcept;

@@ -32,9 +32,9 @@ struct SpaceballOptions {
 /// effort. Dead band and saturation act on the length of the vector and keep its direction; a
 /// first-order low pass follows.
 ///
-/// It reflects no effort to the operator: it is an energy source, and what leaves through its ports
-/// has no bound. Its traits say `passive` all the same: that is a claim about the ledger, which
-/// counts the power it supplies, F.v_ball. It returns no more than it absorbed and was supplied.
+/// It reflects no effort to the operator: it is an energy source, with unbounded energy out of its
+/// ports. Its traits say `passive` all the same: that is a claim about the ledger, with the
+/// supplied power F.v_ball counted. It returns no more than it absorbed and was supplied.
 class Spaceball {
  public:
   /// A tool on both sides.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What may come over a line from another program, whoever sends it.
+/// Bounds on the waves received over a line from another program.
 #pragma once
 
 #include <limits>
@@ -11,8 +11,8 @@
 
 namespace repel::network {
 
-/// What the operator of a line can ask of the robot: by the master in the hand, and by the coupling
-/// between line and robot. Infinite: not bounded.
+/// Bounds of the operator's motion and force at the robot, by the master in the hand and the
+/// coupling between line and robot. Infinite: not bounded.
 struct LineBounds {
   static constexpr double none = std::numeric_limits<double>::infinity();  ///< not bounded
 
@@ -27,16 +27,15 @@ struct LineBounds {
   Hand hand = Hand::first;    ///< that holds the master; HandInput::scale multiplies both scales
 };
 
-/// Cuts the waves of a line to its bounds. A wave u, p = 2 sqrt(Z) u, pushes an end that moves at v
+/// Cuts the waves of a line to its bounds. A wave u, p = 2 sqrt(Z) u, pushes an end moving at v
 /// with f = p - Z v. So no sound wave is larger than
 ///
 ///     |u| <= (F + Z v) / (2 sqrt(Z))
 ///
-/// with the greatest force F and speed v: both ends send no larger one, and what is larger comes
-/// from a program that is false or broken. That alone bounds neither force nor speed: a wave that
-/// leans on a wall drives a free tool far too fast. So the end at the robot cuts p to F + Z v along
-/// each axis, with the v that it moves at, and to f + Z v with the greatest speed v and the f that
-/// it pushes with. Both are of the tick before. A wave is only made smaller: what is cut off is
+/// with the greatest force F and speed v: sound ends send no larger one. That alone bounds neither
+/// force nor speed: a wave for leaning on a wall drives a free tool far too fast. So the end at the
+/// robot cuts p to F + Z v along each axis, v its own velocity, and to f + Z v with the greatest
+/// speed v, f its own force. Both are of the tick before. A wave is only made smaller: the rest is
 /// lost, and the end stays passive.
 class WaveLimiter {
  public:

@@ -24,7 +24,7 @@ struct RemoteOptions {
   PlayoutOptions playout{};  ///< when waves are output
 };
 
-/// What has passed over a link since the run began.
+/// Counts of the packets over a link since the run began.
 struct RemoteCounts {
   std::int64_t sent = 0;         ///< packets handed to the thread
   std::int64_t received = 0;     ///< packets taken from it
@@ -36,18 +36,18 @@ struct RemoteCounts {
   std::int64_t sessions = 0;     ///< of the other side: 1, and one more for each restart
   std::int64_t beyond = 0;       ///< of those received: told of larger waves than the bounds allow
   std::int64_t cut = 0;          ///< ticks in which a wave was cut to the bounds
-  std::int64_t closed = 0;       ///< partners that went on sending what is beyond or not sound
+  std::int64_t closed = 0;       ///< partners closed for unsound packets or waves beyond the bounds
   double longest_silence = 0.0;  ///< [s] between two packets of one session
 };
 
-/// One side of a link: what passes between the tick and the thread that sends and receives. The
-/// tick never waits for that thread, nor for the other side. In each tick: `receive`, then the
-/// network with a RemoteLine, which sends. The memory is allocated at construction.
+/// One side of a link: the queues between the tick and the thread of the link. The tick never waits
+/// for that thread, nor for the other side. In each tick: `receive`, then the network with a
+/// RemoteLine, which sends. The memory is allocated at construction.
 class RemoteLink {
  public:
   static constexpr std::size_t room = 64;  ///< packets between two visits of the thread
-  /// Packets of a partner, less a quarter of the others, that are beyond the bounds or not sound,
-  /// after which it is closed: 0.1 s at 400 Hz. Its session is not met again.
+  /// A partner is closed after so many packets beyond the bounds or unsound, less a quarter of its
+  /// others: 0.1 s at 400 Hz. Its session is not met again.
   static constexpr double patience = 40.0;
 
   /// @throws SetupError for a number out of range
@@ -78,8 +78,8 @@ class RemoteLink {
   [[nodiscard]] std::span<const double, RemotePacket::most_values> heard() const noexcept;
   /// True once the other side has been heard.
   [[nodiscard]] bool is_linked() const noexcept { return partner_ != 0; }
-  /// [s] since the newest packet came; since the first `receive`, or since the partner was closed,
-  /// when there was none.
+  /// [s] since the newest packet came; before any, since the first `receive`, or since the partner
+  /// was closed.
   [[nodiscard]] double silent_for() const noexcept;
 
   /// Counts since the run began.
@@ -88,12 +88,12 @@ class RemoteLink {
   [[nodiscard]] const WavePlayer& player() const noexcept { return player_; }
   /// [J] Of all waves sent.
   [[nodiscard]] double energy_sent() const noexcept { return sent_.energy; }
-  /// [J] What the other side says of itself and of this session; 0 before it has heard of it.
+  /// [J] Energy reported by the other side for this session; 0 before it has heard of it.
   [[nodiscard]] double partner_sent() const noexcept { return partner_sent_; }
-  /// [J] likewise: what it has output of this side's waves.
+  /// [J] likewise: output of this side's waves.
   [[nodiscard]] double partner_played() const noexcept { return partner_played_; }
-  /// From a tick to the other side and back, without the time in between there: what the packets of
-  /// this tick told, until the next `receive`.
+  /// Round trips by the packets of this tick, without the time at the other side; valid until the
+  /// next `receive`.
   [[nodiscard]] std::span<const std::chrono::nanoseconds> round_trips() const noexcept;
 
  private:
@@ -104,8 +104,8 @@ class RemoteLink {
   /// A partner is another program only once the one before has been silent.
   bool meet(const RemotePacket& packet) noexcept;
 
-  /// What the partner sent is beyond the bounds or not sound. True when it is closed for that: the
-  /// place is free, and this session is not met again.
+  /// Counts a packet of the partner beyond the bounds or unsound. True if it is closed for that:
+  /// the place is free, and this session is not met again.
   bool distrust() noexcept;
 
   void hear(const RemotePacket& packet) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What one side of a remote line tells the other in each tick.
+/// The packet of a remote line, sent in each tick.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace repel::network {
 
-/// A packet of one tick. Trivially copyable, of fixed size. Every packet says all that has passed
-/// since its session began, so that any of them may be lost, doubled or overtaken.
+/// A packet of one tick. Trivially copyable, of fixed size. Every packet has the totals since its
+/// session began, so any may be lost, doubled or overtaken.
 struct RemotePacket {
   static constexpr std::size_t most_values = 64;  ///< of what a side tells besides waves
 

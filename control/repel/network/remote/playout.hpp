@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// When to output what another machine sent: a buffer against jitter and loss, by two clocks that
-/// drift.
+/// The moment of output of received waves: a buffer against jitter and loss, with two drifting
+/// clocks.
 #pragma once
 
 #include <limits>
 
 namespace repel::network {
 
-/// How long what arrives is kept back.
+/// The buffer time.
 struct PlayoutOptions {
-  /// [s] of what was sent kept back beyond the least delay seen; negative: 1.25 times the longest
-  /// time that the newest packet had to last in the last seconds, from one period to `most`
+  /// [s] of buffer beyond the least delay seen; negative: 1.25 times the longest wait for the next
+  /// packet in the last seconds, from one period to `most`
   double buffer = -1.0;
   double most = 0.2;  ///< [s]
 };
 
-/// The moment, by the clock of the sender, whose waves are output now: now, less the least delay
-/// seen in the last seconds, less a buffer. Only differences of delays are used: the clocks need
-/// not agree. The moment never goes back; where delays change, or the clocks drift apart, it goes
-/// faster or slower for a while instead of jumping, so that jitter that is no multiple of a period
-/// is spread evenly.
+/// The moment of output, by the clock of the sender: now, less the least delay seen in the last
+/// seconds, less a buffer. Only differences of delays are used: the clocks need not agree. The
+/// moment never goes back. If delays change, or the clocks drift apart, it runs faster or slower
+/// for a while instead of jumping. So jitter of fractions of a period is spread evenly.
 class Playout {
  public:
   static constexpr double window = 2.0;    ///< [s] delays are remembered for one to two of these
@@ -34,7 +33,7 @@ class Playout {
   /// Forgets all delays.
   void begin() noexcept;
 
-  /// A packet arrived that is newer than all others.
+  /// A new packet arrived, newer than all others.
   /// @param sent [s] by the clock of the sender @param before [s] when the newest one before was
   /// sent; `sent` for the first @param now [s] by the clock of the receiver
   void arrive(double sent, double before, double now) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// REMOTE LINE: one end of a line whose other end is in another program.
+/// REMOTE LINE: one end of a line between two programs.
 #pragma once
 
 #include <repel/network/elements/equivalent.hpp>
@@ -18,12 +18,11 @@ struct RemoteLineOptions {
   bool is_station = false;         ///< the robot is at the other end
 };
 
-/// A one-port of resistance Z: what the other end of the line sent comes out of it, as far as it
-/// was sent in time, and what enters is sent there (Anderson and Spong 1989; sums of waves after
-/// Niemeyer and Slotine 1998). While nothing comes, it is a damper Z. It gives no more energy than
-/// the other end has sent, whatever the network does; in the ledger of its own network, that energy
-/// is what it is supplied with. At the robot it drives no faster and pushes no harder than its
-/// bounds, whatever was sent: see WaveLimiter.
+/// A one-port of resistance Z: it outputs the waves of the other end, received in time, and sends
+/// its incident ones there (Anderson and Spong 1989; sums of waves after Niemeyer and Slotine
+/// 1998). Without packets it is a damper Z. Its output never exceeds the energy sent by the other
+/// end, on any network; its ledger counts that energy as supplied. At the robot, speed and force
+/// stay within its bounds for any waves received: see WaveLimiter.
 class RemoteLine {
  public:
   /// @param link receives before each tick; must outlive the network. A link has one end here
@@ -35,16 +34,16 @@ class RemoteLine {
   /// Once, for the link as well. @param period [s] of the network.
   void prepare(double period);
 
-  /// Takes the wave that is due, as far as the bounds go.
+  /// Takes the wave due now, cut to the bounds.
   void read(const Signals& signals) noexcept;
   /// Resistance Z with the wave that is due.
   void equivalent(Equivalent<any_size>& shown) const noexcept;
   /// Sends the wave that enters.
   void incident(const PortState<any_size>& state) noexcept;
-  /// [W] That came over the line.
+  /// [W] Received over the line.
   [[nodiscard]] double supplied() const noexcept { return wave_.squaredNorm(); }
 
-  /// What came was beyond the bounds in this tick.
+  /// The wave received was beyond the bounds in this tick.
   [[nodiscard]] bool saturated() const noexcept { return is_cut_; }
 
   /// The link that it sends over.

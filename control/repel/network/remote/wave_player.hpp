@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Outputs the waves that another machine sent, in time and never more energy than was sent.
+/// Outputs the waves of another machine, in time and without more energy than sent.
 #pragma once
 
 #include <array>
@@ -15,17 +15,16 @@ namespace repel::network {
 
 /// The receiving half of a remote line. The account of the sender - the sum of its waves and their
 /// energy - is a function of the sender's time, known at the packets and taken as linear between
-/// them. In each tick the player outputs the mean wave of the time that has passed for the sender,
-/// by a Playout: whatever the rates of both sides, and across packets that are lost. The mean has
-/// at most the energy of the waves, and what is output never exceeds what was sent.
+/// them. In each tick the player outputs the mean wave over the elapsed time of the sender, by a
+/// Playout: at any rates of both sides, and across lost packets. The mean has at most the energy of
+/// the waves, so the output never exceeds the energy sent.
 ///
-/// Where nothing newer has arrived the wave is zero. What was missed then is output within some
-/// `catch_up`, as far as its energy goes; after a silence it is dropped, so that nobody is moved by
-/// what happened long ago.
+/// Without a newer packet the wave is zero. Waves missed then are output within some `catch_up`,
+/// within their energy. After a silence they are dropped, so that old motion moves nobody.
 ///
-/// What a packet says must be possible: the sum of waves over a time has no more than their energy
-/// allows, and no more energy comes than waves of `most_power` have. What cannot be is refused at
-/// arrival, before it is in any sum here.
+/// The account in a packet must be possible: the sum of waves over a time within the bound by their
+/// energy, and the energy within that of waves of `most_power`. Others are refused at arrival,
+/// before entering any sum here.
 class WavePlayer {
  public:
   static constexpr std::size_t kept = 256;  ///< packets
@@ -43,7 +42,7 @@ class WavePlayer {
 
   /// [W] Of the largest wave that a sound sender sends, squared.
   void set_most_power(double power) noexcept { most_power_ = power; }
-  /// False for accounts that no session can have.
+  /// False for an impossible account.
   [[nodiscard]] bool is_credible(const RemotePacket& packet) const noexcept;
   /// The packet taken last told of larger waves than a sound sender sends.
   [[nodiscard]] bool is_beyond() const noexcept { return is_beyond_; }
@@ -51,12 +50,12 @@ class WavePlayer {
   /// The packets that come now are of another session.
   void begin() noexcept;
 
-  /// Takes a packet that is sound. False when it is a copy of one before, too old, or contradicts
-  /// what the sender said before. @param now [s] by the clock of the receiver
+  /// Takes a sound packet. False for a copy of an earlier one, one too old, or one contradicting
+  /// earlier ones. @param now [s] by the clock of the receiver
   bool arrive(const RemotePacket& packet, double now) noexcept;
 
   /// The wave of this tick [sqrt(W)]. @param now [s] must grow @param at_rest outputs nothing and
-  /// drops what is due
+  /// drops the waves due
   const Vec<any_size>& step(double now, bool at_rest) noexcept;
 
   /// [J] Output in this session; never more than the sender says it has sent.
@@ -82,8 +81,8 @@ class WavePlayer {
   [[nodiscard]] bool follows(const Entry& last, const RemotePacket& packet,
                              double elapsed) const noexcept;
   [[nodiscard]] bool precedes(const RemotePacket& packet, double sent) const noexcept;
-  /// Notes what a sound sender may have sent in `elapsed` [s] of its time; false for what is
-  /// absurd.
+  /// Accounts for the energy sent in `elapsed` [s] of the sender's time; false for an absurd
+  /// amount.
   [[nodiscard]] bool can_pay(double energy, double elapsed, double now) noexcept;
 
   [[nodiscard]] Entry& at(std::int64_t sequence) noexcept;

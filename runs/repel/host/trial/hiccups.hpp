@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Measures the interruptions that the machine inflicts on a thread that only reads the clock.
+/// Measures the interruptions by the machine of a thread reading the clock.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 namespace repel::host {
 
 /// Counts the gaps of more than 10 us between two readings of the clock while ticks ran, and the
-/// ticks that met such a gap between their due time and their end. Of a gap that began before the
-/// ticks or ends after them, only the part within counts.
+/// ticks with such a gap between due time and end. Parts of a gap before the first tick or after
+/// the last do not count.
 class Hiccups {
  public:
   using nanoseconds = std::chrono::nanoseconds;
@@ -56,9 +56,8 @@ class Hiccups {
   nanoseconds watched_{0};
 };
 
-/// A thread that reads the clock in a loop from construction on. Where it is granted the real-time
-/// class of the ticks, it sleeps 1 ms in every 10 ms: a real-time thread that never sleeps would
-/// starve kernel threads.
+/// A thread reading the clock in a loop from construction on. In the real-time class of the ticks,
+/// if granted, it sleeps 1 ms in every 10 ms: without sleep it would starve kernel threads.
 class HiccupWatch {
  public:
   using nanoseconds = std::chrono::nanoseconds;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A simulated arm that carries what its tool holds in the world model.
+/// A simulated arm carrying the parts held by its tool in the world model.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,11 @@
 
 namespace repel::runs {
 
-/// An arm whose joints feel the weight of what the tool holds, whether the controller knows it or
-/// not. Everything else is that of the arm inside. Allocates at construction only.
+/// An arm with the weight of held parts at its joints, known to the controller or not. Everything
+/// else is that of the arm inside. Allocates at construction only.
 class LoadedArm final : public WrappedArm {
  public:
-  /// @param cell that the arm is the arm `index` of
+  /// @param cell of the arm @param index of the arm in it
   LoadedArm(std::unique_ptr<TorqueDrivenArm> arm, const Cell& cell, std::size_t index)
       : WrappedArm(std::move(arm)),
         cell_(cell),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A depth camera that looks at a running cell, simulated or recorded, and the parts that are made
-/// of its images.
+/// A depth camera on a running cell, simulated or recorded, and the parts made of its images.
 #pragma once
 
 #include <atomic>
@@ -22,11 +21,11 @@
 
 namespace repel::runs {
 
-/// What has become of the images of a camera.
+/// Counts of the images of a camera.
 struct ImageResult {
   std::string name;           ///< of the camera
   std::int64_t images = 0;    ///< of which parts were made
-  std::int64_t lost = 0;      ///< that came faster than they could be used, or are damaged
+  std::int64_t lost = 0;      ///< too fast to be used, or damaged
   int most_cells = 0;         ///< or boxes, of an image
   double largest_cube = 0.0;  ///< [m] of a map; 0: there is none
   std::int64_t left_out = 0;  ///< cells for which no reserved part was free, over all images
@@ -47,14 +46,14 @@ class CameraFeed {
   /// Of the same thread, after the image of this tick was served, if it is: counts the time in
   /// which the camera is silent. @param elapsed [s] since the last tick
   void count_silence(double elapsed) noexcept;
-  /// [s] Age of the last image of which parts were made, if the camera counts as silent, otherwise
-  /// 0. Of the thread of the tick.
+  /// [s] Age of the last image made into parts, if the camera counts as silent, otherwise 0. Of the
+  /// thread of the tick.
   [[nodiscard]] double silent_for() const noexcept;
 
-  /// Makes parts of an image whose time has come. @param early looks at an image before its time
+  /// Makes parts of an image that is due. @param early looks at an image before its time
   /// @return whether there was something to do
   bool serve(bool early);
-  /// When no thread is left that serves.
+  /// After the serving thread has ended.
   [[nodiscard]] ImageResult result() const;
 
  private:
@@ -84,10 +83,10 @@ class CameraFeed {
   std::size_t next_image_ = 0;  ///< of a recording, counted through all repetitions
   double round_ = 0.0;          ///< [s] after which the recording begins again, if it does
   std::atomic<double> now_{0.0};
-  std::atomic<double> seen_at_{0.0};     ///< [s] when the last image was taken that was used
+  std::atomic<double> seen_at_{0.0};     ///< [s] capture time of the last image used
   double period_ = 0.0;                  ///< [s] of the tick
   std::chrono::nanoseconds looking_{0};  ///< at the oldest image in the ring
-  ImageResult result_;                   ///< of the thread that serves, but for:
+  ImageResult result_;                   ///< of the serving thread, but for:
   double silent_ = 0.0;                  ///< [s] of the thread of the tick
   std::int64_t skipped_ = 0;             ///< images, of the thread of the tick
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// All cameras that look at a running cell.
+/// All cameras of a running cell.
 #pragma once
 
 #include <functional>
@@ -13,16 +13,16 @@
 
 namespace repel::runs {
 
-/// What has become of the images of a run.
+/// Counts of the images of a run.
 struct CameraResult {
-  ImageResult all;                ///< of all cameras: sums, but for what is most or largest
+  ImageResult all;                ///< of all cameras: sums, or the greatest for maxima
   std::vector<ImageResult> each;  ///< in their order
   Clearance clearance;
 };
 
-/// Takes images of a running cell and makes parts of them: between the ticks, where a run is not by
-/// the clock, which repeats itself; otherwise on one thread of its own for all cameras, since one
-/// thread alone may ask for changes of the world. There the cameras take turns.
+/// Takes images of a running cell and makes parts of them. A run by the clock does so on one thread
+/// for all cameras, in turns, as only one thread may ask for changes of the world. Other runs do so
+/// between the ticks, to be repeatable.
 class CameraFeeds {
  public:
   /// @param scene with cameras @param cell must outlive this object
@@ -34,10 +34,10 @@ class CameraFeeds {
   CameraFeeds& operator=(const CameraFeeds&) = delete;
 
   /// After every tick, outside of its time. By the clock it never waits.
-  /// @param scene says in which phases which cameras are blind
+  /// @param scene with the blind cameras of each phase
   void follow(const scene::Scene& scene, std::span<const TickRecord* const> records);
-  /// [s] Age of the oldest of the last images, one of each camera, of which parts were made, if
-  /// that camera counts as silent, otherwise 0. Of the thread of the tick.
+  /// [s] Greatest age over the cameras of the last image made into parts, if that camera counts as
+  /// silent, otherwise 0. Of the thread of the tick.
   [[nodiscard]] double silent_for() const noexcept;
   /// Ends the thread. Then what has become of the images.
   [[nodiscard]] CameraResult finish();

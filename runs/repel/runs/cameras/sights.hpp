@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Where everything is that cameras can see of a scene.
+/// Poses of everything in a scene visible to cameras.
 #pragma once
 
 #include <cstddef>
@@ -19,14 +19,14 @@
 
 namespace repel::runs {
 
-/// The least signed distance of an arm or its tool from what cameras see and the world model does
-/// not know: from the hidden parts themselves, not from what was made of them.
+/// The least signed distance of an arm or its tool from the hidden parts: those seen by cameras and
+/// unknown to the world model. From the parts themselves, not from those made of images.
 struct Clearance {
   double least = std::numeric_limits<double>::infinity();  ///< [m]
   std::string pair;                                        ///< "part - hidden"; empty: none
 };
 
-/// Where everything that a camera can see of a scene is.
+/// Poses of everything in a scene visible to a camera.
 class Sights {
  public:
   /// @param robots of the arms of the cell, in their order

@@ -25,7 +25,7 @@ class DrivenCell {
   /// @param arms one for each arm of the cell, in the same order
   /// @param operators likewise
   /// @param scene of the cell
-  /// @param remote over which the first operator is; null: that operator is here
+  /// @param remote link to the first operator; null: that operator is here
   DrivenCell(Cell& cell, const scene::Scene& scene,
              std::vector<std::unique_ptr<TorqueDrivenArm>> arms,
              std::vector<OperatorInput> operators, network::RemoteLink* remote = nullptr)
@@ -97,7 +97,7 @@ class DrivenCell {
   [[nodiscard]] const TorqueDrivenArm& arm(std::size_t i) const noexcept { return *arms_[i]; }
 
  private:
-  /// What has become of a part that comes and goes, of each in turn: the station has no world.
+  /// The state of one loose part, of each in turn: the station has no world.
   [[nodiscard]] PartState next_part(std::int64_t tick) const noexcept {
     PartState told;
     if (scripted_parts_ == 0) return told;

@@ -14,7 +14,7 @@ namespace repel::runs {
 /// Continues a run with its operators at rest until the fail-safe has faded the forces of all arms.
 class FadeOut {
  public:
-  /// [s] of scene time after which the run ends whatever the forces are; at least one tick.
+  /// [s] of scene time until the run ends at any forces; at least one tick.
   static constexpr double longest = 0.5;
 
   /// @param stop request that starts the fade-out

@@ -19,8 +19,8 @@ namespace repel::runs {
 struct Device {
   std::string name;  ///< display name; empty: none
   std::shared_ptr<devices::DeviceLink> link;
-  /// [N s/m] that it adds where its handle would get energy from the network, at most; not above
-  /// zero: it leads no handle whose forces it shows.
+  /// [N s/m] most damping it adds against energy from the network into its handle; not above zero:
+  /// no force feedback at a handle.
   double most_damping = 0.0;
   double late = 0.0;  ///< [s] from a motion of its handle to the force against it
 };
@@ -33,8 +33,8 @@ struct Device {
 /// @throws SetupError if it is not available, saying what to do
 [[nodiscard]] Device open_device(const std::string& text);
 
-/// Checks that a device which leads the hand of SIX AXES can keep it passive: see
-/// docs/network/six_axes.md.
+/// Checks that a device leading the hand of SIX AXES can keep it passive
+/// (docs/network/six_axes.md).
 /// @throws SetupError, saying what the grip needs
 void require_passive_grip(const Device& device, const network::Network& network);
 

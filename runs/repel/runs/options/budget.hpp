@@ -14,7 +14,7 @@ namespace repel::runs {
 /// at 400 Hz take if every pair is evaluated in every tick (docs/real_time.md).
 inline constexpr double i860_units_per_second = 400.0 * 256.0;
 
-/// Empty for a valid budget name, else what is wrong with it and what is allowed.
+/// Empty for a valid budget name, else its fault and the allowed names.
 [[nodiscard]] std::string budget_complaint(const std::string& name);
 
 /// The budget of that name: "i860", scaled to one tick at this rate; "none"; a number of support

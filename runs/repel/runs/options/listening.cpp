@@ -133,7 +133,7 @@ std::string settle_secret(SessionOptions& session) {
   const std::optional<Place> place = place_of(session.listen);
   if (!session.view || !place || is_loopback(*place)) return {};
   return "--listen: other machines reach " + session.listen +
-         "; add --secret FILE (its first line is what a page must present) or --secret-env NAME, "
+         "; add --secret FILE (the secret of the pages is its first line) or --secret-env NAME, "
          "or listen on 127.0.0.1 and come through ssh -L";
 }
 

@@ -25,8 +25,8 @@ struct Place {
 /// What is wrong with ADDRESS:PORT; empty: nothing.
 [[nodiscard]] std::string listen_complaint(const std::string& listen);
 
-/// Reads the secret from the file or variable of the options. Returns what is wrong with it, or
-/// that listening on an address reachable from other machines requires one; empty: nothing.
+/// Reads the secret from the file or variable of the options. Returns a complaint about it, or its
+/// absence on an address reachable from other machines; empty: none.
 [[nodiscard]] std::string settle_secret(SessionOptions& session);
 
 /// Prints on stderr the URL of the view, and what else is needed to open it.

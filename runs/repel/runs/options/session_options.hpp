@@ -19,12 +19,12 @@ struct SessionOptions {
   std::string listen = "127.0.0.1:8448";  ///< ADDRESS:PORT of the live view
   std::string page;                       ///< folder of the files of the page; empty: found
   std::string device;                     ///< input device; empty: none
-  std::string secret_file;   ///< its first line is the secret that a page must present; empty: none
-  std::string secret_env;    ///< environment variable with the secret, instead
-  std::string secret;        ///< the secret, once settle_secret has read it
-  bool view_only = false;    ///< pages may only watch
-  bool page_drives = false;  ///< pages may override the device
-  LinkChoice link;           ///< to the other side of the scene
+  std::string secret_file;                ///< its first line is the secret of pages; empty: none
+  std::string secret_env;                 ///< environment variable with the secret, instead
+  std::string secret;                     ///< the secret, once settle_secret has read it
+  bool view_only = false;                 ///< pages may only watch
+  bool page_drives = false;               ///< pages may override the device
+  LinkChoice link;                        ///< to the other side of the scene
   /// Called after each tick, outside of its measured time, with the records of all arms; null: not.
   std::function<void(const Cell&, std::span<const TickRecord* const>)> on_tick{};
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The shapes that parts get while a run lasts, each with the tick after which it was asked for, so
-/// that a log shows them at the same tick in every repetition.
+/// New shapes of parts during a run, each with the tick of its request, so a log shows them at the
+/// same tick in every repetition.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ class DatedShapes {
 
   /// A part gets this shape in one of the next ticks.
   void note(PartId part, const Shape& shape) { fresh_.push_back({0, part, shape}); }
-  /// Those noted since the last call were noted after this tick. To be called before it is logged.
+  /// Sets this tick for those noted since the last call. To be called before it is logged.
   void date(std::int64_t tick) {
     if (fresh_.empty()) return;
     const std::lock_guard lock(mutex_);

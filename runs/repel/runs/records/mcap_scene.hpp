@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What happens in a run as messages foxglove.SceneUpdate: its parts, and what pushes them.
+/// Parts and forces of a run as messages foxglove.SceneUpdate.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@
 
 namespace repel::runs::mcap {
 
-/// The parts of a world: each an entity with the name of the part, in the frame of its body, which
-/// is in `/poses` by the same name; those that are there already get numbers, see told_apart. Its
-/// triangles are those of the live view, mesh_of(shape).
+/// The parts of a world: each an entity with the name of the part, in the frame of its body in
+/// `/poses`. Repeated names get numbers, see told_apart. Its triangles are those of the live view,
+/// mesh_of(shape).
 class Bodies {
  public:
   /// @param world as it is at the start; its names, shapes and pairs are copied
@@ -41,7 +41,7 @@ class Bodies {
   };
 
   std::vector<Entity> entities_;  ///< by PartId
-  /// Of parts that have not gone yet: only then they come with it.
+  /// Of parts not yet removed: only then they are added with it.
   std::map<std::int32_t, Shape> waiting_;
   std::vector<std::uint8_t> there_;  ///< Snapshot::is_there of the last tick
   bool has_changed_ = true;          ///< since the last update
@@ -67,8 +67,8 @@ class Contacts {
 /// The JSON Schema of the messages.
 [[nodiscard]] std::string scene_update_schema();
 
-/// The names, where each that was there before gets a number: "seen", "seen #2", ... Viewers tell
-/// frames and entities apart by their names alone.
+/// The names, repeated ones with a number: "seen", "seen #2", ... Viewers tell frames and entities
+/// apart by their names alone.
 [[nodiscard]] std::vector<std::string> told_apart(const std::vector<std::string>& names);
 
 }  // namespace repel::runs::mcap

@@ -364,9 +364,9 @@ Recording load_recording(const std::string& path,
                          const std::function<std::string(const std::string&)>& find) {
   std::error_code error;
   if (!std::filesystem::exists(path, error) && std::filesystem::exists(path + ".part", error)) {
-    throw SetupError("there is no such file; what a run that was cut off has left is " + path +
-                         ".part, which can be gone through as well",
-                     path);
+    throw SetupError(
+        "there is no such file; an interrupted run has left " + path + ".part, for replay as well",
+        path);
   }
   McapReader reader(path);
   Recording recording;

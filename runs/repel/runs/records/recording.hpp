@@ -32,13 +32,13 @@ struct Recording {
 };
 
 /// Reads a file of mcap_log, up to the first missing tick: what follows cannot be replayed.
-/// @param find returns the path of the scene of that name, in whose folder its robots are
-/// @throws SetupError if the file is no such recording, or a file that it needs has changed since
+/// @param find returns the path of the scene of that name; its robots are in the same folder
+/// @throws SetupError if the file is no such recording, or a file it needs has changed since
 [[nodiscard]] Recording load_recording(const std::string& path,
                                        const std::function<std::string(const std::string&)>& find);
 
 /// @param lists paths of the lists of parts of meshes in URDF files, as used now
-/// @throws SetupError unless they are those that were recorded
+/// @throws SetupError unless they are the recorded ones
 void require_recorded_lists(const Recording& recording, const std::vector<std::string>& lists);
 
 /// An arm that reports the recorded state and ignores torques.

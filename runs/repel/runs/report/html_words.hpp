@@ -45,48 +45,44 @@ inline constexpr auto html_words = std::to_array<Word>({
      "Largest sum in the run of the forces of all pairs on the tool: "
      "surfaces that are simulated, not touched."},
     {"pair of the largest force", "Of all pairs at that tick the one with the largest force."},
-    {"largest on", "The part that felt the largest force of a pair with that obstacle."},
+    {"largest on", "The part with the largest force of a pair with that obstacle."},
     {"body of it", "The tool or the link that this part belongs to."},
     {"largest of a pair [N]",
      "Largest force in the run of one pair with that obstacle: not the "
      "sum on the tool."},
     {"hard wall held [N]",
-     "Hardest push against which this wall, which cannot be entered, held "
-     "the arm; a wall that gives is soft."},
-    {"root mean square", "Of what is above 30 Hz, which is felt as roughness, over the run."},
+     "Hardest push of the arm withstood by this wall; soft: it is no hard wall."},
+    {"root mean square", "Of the part above 30 Hz, felt as roughness, over the run."},
     {"largest jump", "Largest change from one tick to the next."},
     {"virtual force, of all pairs", "Sum at that tick of the forces of all pairs on the tool."},
-    {"coupling force, of the operator", "What the operator's side does to the tool."},
+    {"coupling force, of the operator", "Force of the operator's side on the tool."},
     {"largest of a pair", "The largest force of one pair at that tick, not a sum."},
-    {"by which hard walls held",
-     "Force with which walls that cannot be entered held the arm, beside the virtual force."},
+    {"by which hard walls held", "Force of hard walls on the arm, beside the virtual force."},
     // Work.
-    {"near", "Pairs that may be within the range of their law at that tick."},
-    {"evaluated", "Those of them whose distance was computed in that tick."},
-    {"stale", "Those whose last answer, of an earlier tick, was used."},
+    {"near", "Pairs possibly within the range of their law at that tick."},
+    {"evaluated", "Those of them with a distance computed in that tick."},
+    {"stale", "Those evaluated in an earlier tick only; that answer was used."},
     {"compute time", "From when a tick began until it was finished."},
     {"lateness", "From when a tick was due until it began; it need not miss its deadline."},
-    {"evaluated pairs", "Pairs of parts whose distance was computed in that tick."},
+    {"evaluated pairs", "Pairs of parts with a distance computed in that tick."},
     {"support steps", "Steps of these computations: two support points each. Not pairs of parts."},
     {"phase", "Phase of the operator's script at that tick."},
     {"at [s]", "Time of that tick since the first."},
     {"obstacle", "A part that the arm is pushed away from."},
-    {"chatter of",
-     "Where the force acts whose roughness is given; walls: the virtual force on the "
-     "tool, of all pairs."},
+    {"chatter of", "Place of the force; walls: the virtual force on the tool, of all pairs."},
     {"status", "What a tick reported beside its forces."},
     {"arm", "The partner that reported it; empty for the arm of the scene itself."},
     {"ticks", "In how many ticks."},
     // Energy.
     {"module", "A part of the network between operator and arm."},
-    {"energy [J]", "Ledger at the end: what the module took in less what it gave out."},
+    {"energy [J]", "Ledger at the end: energy into the module less energy out of it."},
     {"lowest [J]", "Least of that ledger in the run; a passive module never falls below zero."},
     {"passed [J]", "Energy that went through, in either direction."},
-    {"supplied [J]", "Energy that the module took from its own supply."},
-    {"controller took [J]", "Energy that its passivity controller dissipated."},
+    {"supplied [J]", "Energy from its own supply."},
+    {"controller took [J]", "Energy dissipated by its passivity controller."},
     {"passive",
-     "It claims never to give out more than it took in, and kept to it. Not to be "
-     "confused with passable: what may be entered."},
+     "It claims never to give out more energy than it took in, and kept to it. Not to be confused "
+     "with passable, for obstacles that may be entered."},
 });
 
 /// Empty if there is none.

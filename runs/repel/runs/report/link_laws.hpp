@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the force laws at the links of the arms amount to at the tools.
+/// The force laws at the links of the arms, in terms of forces at the tools.
 #pragma once
 
 #include <cstdio>
@@ -11,8 +11,8 @@
 
 namespace repel::runs {
 
-/// Adds to each obstacle of `result` the links that it pushed, and to the warnings those laws,
-/// given at the part, that the operator outweighs. Call after `note_pairs`.
+/// Adds to each obstacle of `result` the links it pushed. Adds a warning for each law, given at the
+/// part, weaker than the operator. Call after `note_pairs`.
 void note_link_laws(const Cell& cell, RunResult& result);
 
 /// Prints a line for each link that this obstacle pushed.

@@ -511,7 +511,7 @@ void print_replay(const Recording& recording, const RunResult& result, std::FILE
   const ReplayReport& r = result.replay;
   std::fprintf(out, "\n%s: %zu ticks recorded", recording.file.c_str(), recording.ticks());
   if (recording.missing > 0) {
-    std::fprintf(out, ", then %lld that were dropped; what follows them is left out",
+    std::fprintf(out, ", then %lld dropped; later ticks are left out",
                  static_cast<long long>(recording.missing));
   }
   std::fprintf(out, "\n");
@@ -521,11 +521,11 @@ void print_replay(const Recording& recording, const RunResult& result, std::FILE
   std::fprintf(out, "  the same forces        in %lld of %lld ticks, bit for bit\n",
                static_cast<long long>(r.same), static_cast<long long>(r.ticks));
   if (r.first_difference < 0) return;
-  std::fprintf(out,
-               "  first difference       in tick %lld; virtual forces by at most %.3g N. A wall "
-               "budget or\n                         a worker that was late makes a run that no "
-               "replay can repeat\n",
-               static_cast<long long>(r.first_difference), r.force_difference);
+  std::fprintf(
+      out,
+      "  first difference       in tick %lld; virtual forces by at most %.3g N. A run with\n"
+      "                         a wall budget or a late worker is not repeatable\n",
+      static_cast<long long>(r.first_difference), r.force_difference);
 }
 
 void write_json(const RunResult& r, std::ostream& file) {

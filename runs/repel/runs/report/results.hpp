@@ -33,7 +33,7 @@
 
 namespace repel::runs {
 
-/// The law of an obstacle on a link that it pushed, and what that amounts to at the tool.
+/// The law of an obstacle on a link it pushed, and its effect at the tool.
 struct LinkLaw {
   std::string body;  ///< the link
   GivenAt given_at = GivenAt::part;
@@ -41,7 +41,7 @@ struct LinkLaw {
   double leverage = 1.0;      ///< of the tool over the link, see Cell::leverage
   double at_part = 0.0;       ///< [N] surface force on the link
   double peak_force = 0.0;    ///< [N] on the link
-  double peak_at_tool = 0.0;  ///< [N] what it held there
+  double peak_at_tool = 0.0;  ///< [N] its force there
 
   /// The surface force in terms of a push at the tool [N].
   [[nodiscard]] double at_tool() const noexcept { return at_part / leverage; }
@@ -52,7 +52,7 @@ struct ObstacleResult {
   std::string name;
   PairExtremes extremes{};           ///< of all pairs with it
   bool is_hard = false;              ///< it may not be entered
-  double withstood = 0.0;            ///< [N] hardest push that it withstood, if it is hard
+  double withstood = 0.0;            ///< [N] hardest push withstood, if it is hard
   std::string part{};                ///< of a tool or arm, in the pair with the largest force
   std::string body{};                ///< the tool or link of that part
   std::vector<LinkLaw> link_laws{};  ///< the weakest pair of each link that it pushed
@@ -79,7 +79,7 @@ struct ModuleResult {
   bool claims_passive = true;  ///< by its traits: its ledger never falls below zero
   network::Ledger ledger;
   network::PassivityReport passivity;  ///< of the controller inside
-  double sampling_energy = 0.0;  ///< [J] that holding the torques gave the arm; of puma_joints
+  double sampling_energy = 0.0;  ///< [J] given to the arm by holding the torques; of puma_joints
   std::optional<network::Kbb2Options> coupling{};  ///< with the gains in use; of kbb2
   /// [m, rad] how far it gave along and about each axis at most; of relief
   std::optional<Eigen::Matrix<double, 6, 1>> given{};
@@ -108,23 +108,23 @@ struct ArmResult {
 /// The results of a run.
 struct RunResult {
   RunOptions options;
-  scene::Scene scene;  ///< with the budget and the measure that were in force
+  scene::Scene scene;  ///< with the budget and the measure in force
   int pairs = 0;
-  int levels = 0;   ///< that the shapes were reduced in; 0: the measure needs none
-  int threads = 0;  ///< coprocessor threads that had work
+  int levels = 0;   ///< of the reduced shapes; 0: the measure needs none
+  int threads = 0;  ///< coprocessor threads with work
   WorkerUsage worker_usage;
   std::vector<ArmResult> arms;  ///< the arm of the scene itself, then its partners
   double device_damping = 0.0;  ///< [N s/m] minimum over the arms, at their tools at the start
-  std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts that start
-                                      ///< in an obstacle, a log that ended early, laws at links
-                                      ///< that the operator outweighs
+  std::vector<std::string> warnings;  ///< walls above the clean-stiffness limit, parts starting in
+                                      ///< an obstacle, a log ended early, laws at links weaker than
+                                      ///< the operator
   DurationHistogram network_time;     ///< of the networks alone, within the tick
   DeadlineMonitor deadline{std::chrono::nanoseconds{2500000}};
-  std::int64_t most_support_pairs = 0;  ///< in one tick
-  std::chrono::nanoseconds compute{0};  ///< sum over all ticks
-  DurationHistogram arm_step;           ///< time of the simulated arm, outside the tick
-  std::int64_t over_budget = 0;    ///< ticks that took longer than the scene's wall-clock budget
-  std::int64_t skipped_ticks = 0;  ///< due but never run; each counts as a miss
+  std::int64_t most_support_pairs = 0;    ///< in one tick
+  std::chrono::nanoseconds compute{0};    ///< sum over all ticks
+  DurationHistogram arm_step;             ///< time of the simulated arm, outside the tick
+  std::int64_t over_budget = 0;           ///< ticks above the scene's wall-clock budget
+  std::int64_t skipped_ticks = 0;         ///< due but never run; each counts as a miss
   std::int64_t allocations_in_tick = -1;  ///< -1, here and below: not available
   std::int64_t system_calls_in_tick = -1;
   std::int64_t page_faults_in_tick = -1;  ///< minor and major; of the tick's thread, as below
@@ -138,13 +138,13 @@ struct RunResult {
   std::string log_trouble;              ///< other reason why the log is incomplete; empty: none
   bool interrupted = false;
   bool begins_anew = false;              ///< the user requested another run
-  std::vector<PartStepResult> steps;     ///< of the parts that come and go
+  std::vector<PartStepResult> steps;     ///< of the loose parts
   std::optional<CameraResult> camera;    ///< if the scene has cameras
   std::optional<LinkResult> link;        ///< if the operator is in another program
   std::optional<StationEnding> station;  ///< if it ran beside this program
   ReplayReport replay;                   ///< of a replay
   host::Machine machine;
-  /// Since set-up, of all pairs whose law is not passable, and of those whose law is.
+  /// Since set-up, of all pairs with an impassable law, and of those with a passable one.
   PairExtremes walls, passables;
 
   /// Of the arm of the scene itself.
@@ -155,27 +155,27 @@ struct RunResult {
 [[nodiscard]] bool gained_energy(const RunResult& result);
 
 /// True when an arm had a fault in more than a tenth of its ticks (`status::unsound`). Ten ticks
-/// are excused for each that the machine skipped: it held up the loop, and the drive stopped.
+/// are excused for each one skipped by the machine: it held up the loop, and the drive stopped.
 [[nodiscard]] bool was_often_at_fault(const RunResult& result);
 /// Of teleop: 3 a replay came out otherwise, 4 the log is not whole, 5 an arm gained energy or was
 /// often at fault; else 0.
 [[nodiscard]] int exit_status(const RunResult& result);
 
-/// How many support pairs this machine computes in one period, extrapolated from the support pairs
-/// and the computing time of the run, which includes all other work of the ticks. 0 if unknown.
+/// Support pairs computed by this machine in one period, extrapolated from the support pairs and
+/// the computing time of the run, all other work of the ticks included. 0 if unknown.
 [[nodiscard]] double support_pairs_per_period(const RunResult& result);
 
 /// Collects the extremes of every obstacle, of the walls and of the passable bodies, and the
 /// nearest pair of all. Call once `coprocessor` has stopped.
-/// @param withstood [N] by PairId, the hardest push that a hard wall withstood; empty: none is hard
+/// @param withstood [N] by PairId, the hardest push withstood by a hard wall; empty: none is hard
 void note_pairs(const World& world, const Coprocessor& coprocessor, RunResult& result,
                 std::span<const double> withstood = {});
 
-/// For each pair the place of its obstacle in `RunResult::obstacles`. What a tool holds meets
-/// obstacles that are there already.
+/// For each pair the place of its obstacle in `RunResult::obstacles`. Obstacles of held parts are
+/// those already listed.
 [[nodiscard]] std::vector<std::size_t> obstacles_of_pairs(const World& world);
 
-/// Collects the steps that have been made, and warns of those that were refused.
+/// Collects the steps made, and warns of those refused.
 void note_steps(const PartSteps& steps, RunResult& result);
 
 /// The results of every module, in the order of the network.

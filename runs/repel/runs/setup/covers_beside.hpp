@@ -25,8 +25,8 @@ class CoversBeside {
     };
   }
 
-  /// The gaps of the mesh that `part` is of, in the frame of the part, if it is the first part of a
-  /// cover that was read here; otherwise none.
+  /// The gaps of the mesh of `part`, in the frame of the part, if it is the first part of a cover
+  /// read here; otherwise none.
   [[nodiscard]] scene::Gaps gaps_of(const RobotPart& part) const {
     const auto found = gaps_.find(key(part.mesh, part.mesh_scale));
     const bool is_first = part.is_of_cover && part.name.ends_with("/1");

@@ -17,18 +17,18 @@ struct DescribedScene {
   CellDescription cell;
   std::vector<Robot> robots;
   std::vector<scene::Obstacle> model_obstacles;  ///< of Scene::models, the last ones of the cell
-  /// Paths of the files that the parts of meshes in URDF files are from.
+  /// Paths of the lists of parts of meshes in URDF files.
   std::vector<std::string> part_lists;
-  /// Of each part of the world, in its order, as far as they are given in files: where the mesh
-  /// that it is the first part of is not covered.
+  /// Gaps of the meshes, at the first part of each cover, for each part of the world in its order;
+  /// only of covers from files.
   std::vector<scene::Gaps> gaps;
 };
 
 /// Reads the robots of the scene and describes its cell, with `rate_hz` ticks per second.
 /// @param with_gravity false for arms without weight, as those of the back end "ideal"
-/// @param remote over which the operator is: the network of the cell is the half of the robot;
-/// null: it is whole
-/// @throws SetupError naming file, value and what is allowed
+/// @param remote link to the operator: the network of the cell is the half of the robot; null: it
+/// is whole
+/// @throws SetupError naming file, value and allowed values
 [[nodiscard]] DescribedScene describe(const scene::Scene& scene, double rate_hz,
                                       bool with_gravity = true,
                                       network::RemoteLink* remote = nullptr);

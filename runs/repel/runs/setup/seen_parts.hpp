@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The parts of a cell that are reserved for what a camera sees.
+/// The parts of a cell reserved for cameras.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What a station shows of its site: the scene, placed as the site told it.
+/// The view of a site at its station: the scene, at the poses told by the site.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace repel::runs {
 
-/// What a station knows after a tick. Its vector has its size from set-up on.
+/// The state of a station after a tick. Its vector has its size from set-up on.
 struct StationShot {
   bool is_told = false;          ///< false: the site was never heard, `record` has no joints
   TickRecord record;             ///< as told by the site; tick, phase, masters, ledgers: as here
@@ -27,10 +27,10 @@ struct StationShot {
 void note(const StationSide& station, std::int64_t tick, const TickTimes& times,
           StationShot& shot) noexcept;
 
-/// The world of a scene with its arm, moving obstacles and parts where the site says they are, and
+/// The world of a scene with its arm, moving obstacles and parts at the poses told by the site, and
 /// the near pairs there. Not for the tick: a picture costs the kinematics of the arm and an
-/// evaluation of all near pairs. The twin knows nothing of what a camera or a page has added at the
-/// site, and not how fast the arm moves: the forces it finds for single pairs are without damping.
+/// evaluation of all near pairs. The twin knows no parts added by a camera or a page at the site.
+/// It has no velocity of the arm, so its forces of single pairs are without damping.
 class SiteTwin {
  public:
   /// Builds the scene anew. @throws SetupError for a scene that cannot be built

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The operator's side of a scene that is divided between two programs.
+/// The operator's side of a scene divided between two programs.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 namespace repel::runs {
 
-/// What a station measured.
+/// Measurements of a station.
 struct StationResult {
   RunOptions options;
   scene::Scene scene;
@@ -26,10 +26,10 @@ struct StationResult {
   std::int64_t allocations_in_tick = -1;
   std::int64_t system_calls_in_tick = -1;
   LinkResult link;
-  double linked = 0.0;              ///< [s] in which the site was heard
-  double peak_lever_torque = 0.0;   ///< [N m] that the operator felt
+  double linked = 0.0;              ///< [s] with the site heard
+  double peak_lever_torque = 0.0;   ///< [N m] felt by the operator
   bool has_handle = false;          ///< the operator holds a master of six axes
-  double peak_hand_force = 0.0;     ///< [N] that the operator felt at it
+  double peak_hand_force = 0.0;     ///< [N] felt by the operator at it
   double peak_hand_torque = 0.0;    ///< [N m]
   double peak_virtual_force = 0.0;  ///< [N] on the tool, as the site says
   double nearest = 1e9;             ///< [m] as the site says
@@ -40,10 +40,9 @@ struct StationResult {
 
 /// Runs the part of the network on the operator's side of its line: by the clock, with the script
 /// of the scene, the device or a page, until the script and the time are over or `stop`. It has no
-/// arm; what is near the tool is known at the site, and a view shows what the site tells.
-/// Parameters as of run_session.
-/// @throws SetupError for a scene that cannot be divided, or a link, a device or an address that is
-/// not available
+/// arm: near pairs are known at the site only, and a view shows those told by it. Parameters as of
+/// run_session.
+/// @throws SetupError for an indivisible scene, or a link, a device or an address not available
 [[nodiscard]] StationResult run_station(const scene::Scene& scene, const RunOptions& options,
                                         const SessionOptions& session,
                                         const std::atomic<bool>& stop,

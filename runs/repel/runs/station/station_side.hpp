@@ -21,7 +21,7 @@
 namespace repel::runs {
 
 /// The network on the operator's side, ended by the link.
-/// @throws SetupError for a scene that cannot be divided
+/// @throws SetupError for an indivisible scene
 [[nodiscard]] inline network::Network station_network(const scene::Scene& scene,
                                                       const RunOptions& options,
                                                       network::RemoteLink& link) {
@@ -99,12 +99,12 @@ class StationSide {
     const auto* handle = network_.find<network::SixAxes>();
     return handle == nullptr ? Wrench{} : network::to_wrench(handle->grip());
   }
-  /// What the site said last.
+  /// The last values from the site.
   [[nodiscard]] const SiteState& site() const noexcept { return site_; }
   [[nodiscard]] std::int32_t phase() const noexcept { return command_.phase; }
   /// Of the operator, in the last tick.
   [[nodiscard]] const network::Command& command() const noexcept { return command_; }
-  /// What the site said of itself last, as long as it is heard, and what is known here.
+  /// The last state of the site, while it is heard, and that of the station.
   [[nodiscard]] Status status() const noexcept {
     Status bits = is_heard() ? site_.status : status::silent_site;
     if (!command_.sound) bits |= status::bad_command;

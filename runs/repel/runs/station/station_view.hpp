@@ -22,12 +22,12 @@ struct StationControls : Controls {
   explicit StationControls(const SessionOptions& session);
 };
 
-/// Shows what the site tells, from a thread of its own that places the twin of the site.
+/// Shows the twin of the site, placed in a thread of its own.
 class StationView {
  public:
-  /// @param controls must outlive this object, as must what `session` names
+  /// @param controls must outlive this object, as must all named in `session`
   /// @param station for the names of its modules
-  /// @param device name of the master that drives whenever no page does; empty: none
+  /// @param device name of the master driving while no page does; empty: none
   /// @throws SetupError for a scene that cannot be built, or as `open_view`
   StationView(const scene::Scene& scene, const RunOptions& options, const SessionOptions& session,
               const std::string& device, const StationSide& station, Controls& controls);
@@ -44,7 +44,7 @@ class StationView {
   StationShot last_;  // of the loop's thread
   Mailbox<StationShot> shots_;
   std::unique_ptr<View> view_;
-  std::jthread thread_;  // last member: joined before what it uses is destroyed
+  std::jthread thread_;  // last member: joined before the others are destroyed
 };
 
 }  // namespace repel::runs

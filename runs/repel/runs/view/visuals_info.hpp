@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What the arms of a run look like, for display.
+/// The visuals of the arms of a run, for display.
 #pragma once
 
 #include <repel/runs/setup/prepared_run.hpp>
@@ -8,9 +8,9 @@
 
 namespace repel::runs {
 
-/// Adds the visuals of the arms, as their URDF files have them, and kinematics for an arm in which
-/// a link that has some has no body in the world. Collision geometry that is a part of the world is
-/// left out, and so is what cannot be read, which is said on stderr.
+/// Adds the visuals of the arms from their URDF files, and kinematics for an arm having visuals on
+/// a link without a body in the world. Collision geometry in the world is left out. So are
+/// unreadable files, with a message on stderr.
 void add_visuals(const PreparedRun& prepared, visual::SceneInfo& info);
 
 }  // namespace repel::runs

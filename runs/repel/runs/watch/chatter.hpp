@@ -20,15 +20,14 @@ inline constexpr double chatter_above_hz = 30.0;
 
 /// Chatter of a signal, in the unit of the signal.
 struct Chatter {
-  /// Root mean square above `chatter_above_hz`; NaN where it is not known: without a sample, and at
-  /// tick rates of up to twice that frequency, which cannot show what is above it.
+  /// Root mean square above `chatter_above_hz`; NaN if unknown: without a sample, and at tick rates
+  /// up to twice that frequency.
   double rms = std::numeric_limits<double>::quiet_NaN();
   double jump = 0.0;  ///< largest change from one tick to the next, without sign
 };
 
-/// Measures the chatter of signals that are sampled together, in bounded memory for a run of any
-/// length: a Butterworth high pass of fourth order at 30 Hz for each signal, and the sum of its
-/// squares.
+/// Measures the chatter of signals sampled together, in bounded memory for a run of any length: a
+/// Butterworth high pass of fourth order at 30 Hz for each signal, and the sum of its squares.
 ///
 /// The offline form, `telepresence::rms_above`, has all samples at hand and cuts sharply. Of a
 /// steady signal both give the same within 3 %, except for content near the cutoff: of a sine at
@@ -40,8 +39,8 @@ class ChatterMeter {
   /// Allocates; nothing else does. @param rate_hz [Hz] of the samples
   ChatterMeter(std::size_t signals, double rate_hz);
 
-  /// Adds a sample of every signal, in their order. Samples of which one is not finite are left
-  /// out, as a gap. Cost: some twenty floating-point operations for each signal.
+  /// Adds a sample of every signal, in their order. A sample with a value not finite is left out,
+  /// as a gap. Cost: some twenty floating-point operations for each signal.
   void add(std::span<const double> samples) noexcept;
 
   /// The next samples do not follow the last ones: their difference is no jump, and the filters
@@ -59,7 +58,7 @@ class ChatterMeter {
     double a2 = 0.0;
   };
   struct Signal {
-    double base = 0.0;  ///< value after the last gap, which the filter does not see
+    double base = 0.0;  ///< value after the last gap, hidden from the filter
     double last = 0.0;
     double jump = 0.0;
     double squares = 0.0;
@@ -75,8 +74,8 @@ class ChatterMeter {
   std::int64_t count_ = 0;
 };
 
-/// Chatter of an arm. Of a vector it is that of the worst axis of the world, which may be another
-/// one for the root mean square than for the jump.
+/// Chatter of an arm. Of a vector it is that of the worst axis of the world; root mean square and
+/// jump may be of different axes.
 struct ArmChatter {
   Chatter wall_force;              ///< [N] virtual force on the tool
   Chatter wall_torque;             ///< [N m] virtual torque on it, about the origin of its frame
@@ -90,8 +89,7 @@ class ArmChatterMeter {
   /// Allocates; nothing else does but `result`. @param rate_hz [Hz] of the ticks
   ArmChatterMeter(std::size_t joints, bool has_lever, double rate_hz);
 
-  /// Adds a tick. One that comes later than a period after the last is no jump: see
-  /// ChatterMeter::gap.
+  /// Adds a tick. One later than a period after the last is no jump: see ChatterMeter::gap.
   void add(const TickRecord& record) noexcept;
 
   /// The next tick does not follow the last one, as after a pause.

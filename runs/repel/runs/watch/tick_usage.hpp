@@ -13,8 +13,8 @@ namespace repel::runs {
 /// over all ticks. Both make a system call: call them just before and just after the measured time.
 class TickUsage {
  public:
-  /// Touches the stack that ticks need, and locks all memory that the program has now; otherwise
-  /// the kernel may evict any page. Memory allocated later is not locked: where the limit is low,
+  /// Touches the stack of the ticks, and locks all present memory of the program; otherwise the
+  /// kernel may evict any page. Memory allocated later is not locked: where the limit is low,
   /// allocating it must not fail.
   TickUsage() noexcept;
 

@@ -50,8 +50,7 @@ void print_link(const LinkResult& r, std::FILE* out) {
                  1e-3 * r.round_trips.max_us(), 1e3 * r.buffer);
     std::fprintf(
         out,
-        "  energy over the link   sent %s J, of which played there %s J; heard of %s J, of "
-        "which played here %s J\n",
+        "  energy over the link   sent %s J, played there %s J; heard of %s J, played here %s J\n",
         host::figure(r.energy_sent, 3).c_str(), host::figure(r.partner_played, 3).c_str(),
         host::figure(r.partner_sent, 3).c_str(), host::figure(r.energy_played, 3).c_str());
   }

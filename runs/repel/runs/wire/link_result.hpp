@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What passed over the link between two programs.
+/// Counts of the link between two programs.
 #pragma once
 
 #include <cstdio>
@@ -19,15 +19,15 @@ namespace repel::runs {
 
 struct LinkResult {
   std::string name;      ///< of the transport, for people
-  std::string exposure;  ///< who else can reach it, and what to do; empty: nobody
+  std::string exposure;  ///< warning and advice if other machines can reach it; empty: none can
   network::RemoteCounts counts;
-  std::int64_t foreign = 0;  ///< messages that were no packets of this version, or of others
-  std::int64_t unsent = 0;   ///< packets that the transport did not take
+  std::int64_t foreign = 0;  ///< messages other than packets of this version, or of strangers
+  std::int64_t unsent = 0;   ///< packets refused by the transport
   double buffer = 0.0;       ///< [s] at the end
   double silent = 0.0;       ///< [s] at the end
   DurationHistogram round_trips;
   double energy_sent = 0.0, energy_played = 0.0;    ///< [J] of this side
-  double partner_sent = 0.0, partner_played = 0.0;  ///< [J] what the other side says
+  double partner_sent = 0.0, partner_played = 0.0;  ///< [J] by the other side
 };
 
 /// In each tick, once it has been made.
@@ -35,7 +35,7 @@ void note_round_trips(const network::RemoteLink& link, LinkResult& result) noexc
 /// The rest, once the thread of the link has stopped.
 void note_link(const network::RemoteLink& link, const link::LinkThread& thread, LinkResult& result);
 
-/// Says at the start who else can reach this side of the link; nothing where nobody can.
+/// Warns at the start if other machines can reach this side of the link.
 void say_exposure(const link::LinkThread& thread);
 
 void print_link(const LinkResult& result, std::FILE* out);

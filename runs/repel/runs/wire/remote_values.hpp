@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What site and station tell each other besides waves.
+/// The values between site and station besides waves.
 #pragma once
 
 #include <algorithm>
@@ -21,16 +21,16 @@
 
 namespace repel::runs {
 
-/// What the site says of a part that can come and go.
+/// The state of a loose part at the site.
 struct PartState {
   enum class Where : std::uint8_t { absent, lies_free, is_held };
 
   std::int32_t part = -1;  ///< its place in Scene::loose; -1: of none
   Where where = Where::absent;
-  Pose X = Pose::Identity();  ///< [m] in the world; in the tool that holds it
+  Pose X = Pose::Identity();  ///< [m] in the world; of a held one in the tool
 };
 
-/// What the operator needs to know of the robot.
+/// The state of the robot for the operator.
 struct SiteState {
   bool is_told = false;          ///< false: nothing was said yet
   Pose X_WT = Pose::Identity();  ///< [m]
@@ -67,7 +67,7 @@ class Row {
   std::size_t at_ = 0;
 };
 
-/// What is not finite would make the whole packet unsound.
+/// A number not finite would make the whole packet unsound.
 [[nodiscard]] inline double or_zero(double x) noexcept {
   return std::isfinite(x) ? x : 0.0;
 }
@@ -83,12 +83,12 @@ class Row {
   return unit * (most / unit.norm());
 }
 
-/// A set of bits as told; -1 for what is none.
+/// A set of bits as told; -1 if invalid.
 [[nodiscard]] inline std::int32_t bits_of(double told) noexcept {
   return told >= 0.0 && told < 2147483648.0 ? static_cast<std::int32_t>(told) : -1;
 }
 
-/// A number, bits or a vector; what is not finite as `none`.
+/// A number, bits or a vector; `none` if not finite.
 template <class Value, class Numbers>
 void put(const Value& value, const Value& none, Row<Numbers>& row) noexcept {
   if constexpr (std::is_same_v<Value, Vec3>) {
@@ -136,7 +136,7 @@ void put(const PartState& told, Row<Numbers>& row) noexcept {
   for (const double x : {turn.w(), turn.x(), turn.y(), turn.z()}) row.next() = x;
 }
 
-/// Of no part where what was told is no pose.
+/// Without a part if the pose told is invalid.
 template <class Numbers>
 [[nodiscard]] PartState read_part(Row<Numbers>& row) noexcept {
   PartState told;
@@ -154,7 +154,7 @@ template <class Numbers>
 
 }  // namespace detail
 
-/// From the station to the site. A command that is not finite is told as one that is not sound.
+/// From the station to the site. A command not finite is sent as unsound.
 inline void tell(const network::Command& command, network::RemoteLink& link) noexcept {
   const network::HandInput& hand = command.hand;
   const network::HandInput& second = command.second;
@@ -168,7 +168,7 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   detail::put(second, row);
 }
 
-/// The command that the site heard last. Once the link has been silent for 0.1 s the operator is
+/// The last command heard by the site. Once the link has been silent for 0.1 s the operator is
 /// silent as well, and before the station was heard; a shorter silence is jitter, or a few packets
 /// lost.
 [[nodiscard]] inline network::Command heard_command(const network::RemoteLink& link) noexcept {
@@ -182,14 +182,14 @@ inline void tell(const network::Command& command, network::RemoteLink& link) noe
   if (!link.is_linked()) command.hand = command.second = {};
   if (!link.is_linked() || link.silent_for() > network::WavePlayer::silence) {
     command.silent_for = std::max(OperatorInput::silent_after, link.silent_for());
-    // The hand that moved when the line went silent is not known to move on.
+    // A hand moving as the line fell silent is not known to move on.
     command.hand.rest();
     command.second.rest();
   }
   return command;
 }
 
-/// From the site to the station. @param part one of those that can come and go
+/// From the site to the station. @param part a loose one
 inline void tell(const TickRecord& record, const Pose& X_WT, const PartState& part,
                  network::RemoteLink& link) noexcept {
   detail::Row row(link.values());
@@ -208,7 +208,7 @@ inline void tell(const TickRecord& record, const Pose& X_WT, const PartState& pa
   detail::put(part, row);
 }
 
-/// What the station heard last.
+/// The last state heard by the station.
 [[nodiscard]] inline SiteState heard_state(const network::RemoteLink& link) noexcept {
   SiteState state;
   if (!link.is_linked()) return state;
@@ -216,7 +216,7 @@ inline void tell(const TickRecord& record, const Pose& X_WT, const PartState& pa
   for (int k = 0; k < 3; ++k) state.X_WT.linear().col(k) = row.vec3();
   state.X_WT.translation() = row.vec3();
   // The first packet of a site says nothing yet. A stranger's packet with these agreements is
-  // conceivable, too; a pose that is none would spread.
+  // conceivable, too; an invalid pose would spread.
   if (!is_rigid(state.X_WT)) return {};
   state.is_told = true;
   state.virtual_force.force = row.vec3();
