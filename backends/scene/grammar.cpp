@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include <>
 #include <repel/base/capacities.hpp>
 #include <repel/distance/query.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/network/modules.hpp>
 #include <repel/scene/camera.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
+#include <repel/simulated/changed_arm.hpp>
 
 #include "pose_reader.hpp"
 

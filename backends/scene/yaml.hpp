@@ -123,7 +123,8 @@ class Map {
   /// The numbers and words of an options struct (repel/base/field.hpp).
   template <class Options>
   void read_fields(Options& options) const {
-    Options::for_each_field([this](const auto& field, auto& x) { read(field.name, x); }, options);
+    Options::for_each_field([this](const auto& field, auto& x) { this->read(field.name, x); },
+                            options);
   }
 
   /// The value of a key that is required. @throws SetupError if it is missing
