@@ -11,7 +11,7 @@
 namespace repel::scene {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string json(std::string_view text) {
   std::string result(1, '"');
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -32,7 +32,7 @@ std::string enclosed(char open, const std::vector<std::string>& entries, char cl
 
 std::string strings(const std::vector<std::string_view>& words) {
   std::vector<std::string> entries;
-  for (const std::string_view word : words) entries.push_back(quoted(word));
+  for (const std::string_view word : words) entries.push_back(json(word));
   return enclosed('[', entries, ']');
 }
 
@@ -49,7 +49,7 @@ std::string quantity_pattern(const std::string& repeated, Units units) {
     for (const char c : unit.name) names += c == '^' ? std::string("\\^") : std::string(1, c);
   }
   if (!names.empty()) pattern += "\\s*(" + names + ")" + (is_needed ? "" : "?");
-  return quoted(pattern + "$");
+  return json(pattern + "$");
 }
 
 std::string quantity(const Rule& rule, const std::string& repeated) {
@@ -57,7 +57,7 @@ std::string quantity(const Rule& rule, const std::string& repeated) {
   const std::string text =
       "{\"type\":\"string\",\"pattern\":" + quantity_pattern(repeated, rule.units) +
       ",\"description\":" +
-      quoted(range_text(rule) + (rule.units.size() > 1 ? ", in " + units : "")) + "}";
+      json(range_text(rule) + (rule.units.size() > 1 ? ", in " + units : "")) + "}";
   std::vector<std::string> alternatives{text};
   if (rule.may_be_auto) alternatives.emplace_back("{\"const\":\"auto\"}");
   const bool is_plain = repeated == "{0}" && rule.units.front().name.empty();
@@ -75,7 +75,7 @@ std::string object(const Keys& keys);
 std::string any_module() {
   std::vector<std::string> cases;
   for (const std::string_view kind : grammar::module_kinds()) {
-    cases.push_back(R"({"if":{"properties":{"module":{"const":)" + quoted(kind) + R"(}}},"then":)" +
+    cases.push_back(R"({"if":{"properties":{"module":{"const":)" + json(kind) + R"(}}},"then":)" +
                     object(grammar::module(kind)) + "}");
   }
   return R"({"type":"object","required":["module"],"properties":{"module":{"enum":)" +
@@ -117,7 +117,7 @@ std::string object(const Keys& keys) {
   std::vector<std::string> properties;
   std::vector<std::string_view> required;
   for (const Key& key : keys) {
-    properties.push_back(quoted(key.name) + ":" + of(key));
+    properties.push_back(json(key.name) + ":" + of(key));
     if (key.is_required) required.push_back(key.name);
   }
   return R"({"type":"object","additionalProperties":false,"required":)" + strings(required) +

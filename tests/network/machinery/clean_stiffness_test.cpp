@@ -115,10 +115,10 @@ TEST(CleanStiffness, AMassOnTheWallSwingsUpAboveTheLimitAndCalmsDownBelow) {
       CleanStiffness at{.period = T, .delay = delay};
       const double needed = at.needed_damping(stiffness);
       at.device_damping = 1.1 * needed;
-      EXPECT_TRUE(complaint(at, stiffness).empty());
+      EXPECT_LT(stiffness, at.limit());
       EXPECT_LT(growth(at, stiffness), 1.0);
       at.device_damping = 0.9 * needed;
-      EXPECT_FALSE(complaint(at, stiffness).empty());
+      EXPECT_GT(stiffness, at.limit());
       EXPECT_GT(growth(at, stiffness), 1.0);
     }
   }
@@ -135,29 +135,6 @@ TEST(CleanStiffness, LimitAndNeededDampingAreOneFormula) {
   positive.wall_damping = 10.0;
   EXPECT_EQ(positive.limit(), 0.0);
   EXPECT_EQ(CleanStiffness{}.limit(), 0.0);
-}
-
-TEST(CleanStiffness, ComplaintHoldsEveryNumber) {
-  const CleanStiffness at{
-      .period = 0.002, .device_damping = 10.0, .wall_damping = 4.0, .delay = 0.0015};
-  const std::string text = complaint(at, 9000.0);
-  for (const char* number :
-       {"9000 N/m", "2400 N/m", "2 ms", "1.5 ms", "10 N s/m", " 4 N s/m", "26.5 N s/m"}) {
-    EXPECT_NE(text.find(number), std::string::npos) << number << ": " << text;
-  }
-  EXPECT_EQ(complaint(at, 2400.0), "");
-}
-
-TEST(CleanStiffness, AnErrorThrowsAndAWarningSaysTheSame) {
-  const CleanStiffness at{.device_damping = 1.0};
-  EXPECT_THROW((void)checked_gain(GainCheck::error, at, 1e4), SetupError);
-  EXPECT_EQ(checked_gain(GainCheck::warning, at, 1e4), complaint(at, 1e4));
-  EXPECT_EQ(checked_gain(GainCheck::error, at, 0.5 * at.limit()), "");
-  try {
-    (void)checked_gain(GainCheck::error, at, 1e4);
-  } catch (const SetupError& error) {
-    EXPECT_EQ(error.what(), complaint(at, 1e4));
-  }
 }
 
 }  // namespace clean_stiffness_test

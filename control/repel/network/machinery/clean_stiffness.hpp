@@ -29,11 +29,4 @@ struct CleanStiffness {
   [[nodiscard]] double needed_damping(double stiffness) const noexcept;
 };
 
-/// Empty when a wall of `stiffness` [N/m] is within the limit; else one sentence with all numbers,
-/// to four digits.
-[[nodiscard]] std::string complaint(const CleanStiffness& at, double stiffness);
-
-/// Throws SetupError when the wall is too stiff and `check` is `error`; else returns the complaint.
-std::string checked_gain(GainCheck check, const CleanStiffness& at, double stiffness);
-
 }  // namespace repel::network
