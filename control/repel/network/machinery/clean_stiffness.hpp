@@ -3,8 +3,6 @@
 /// The largest stiffness at which a sampled wall is passive.
 #pragma once
 
-#include <string>
-
 namespace repel::network {
 
 /// The reaction to a wall that is too stiff.
