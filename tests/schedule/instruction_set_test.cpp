@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// REPEL_ISA as a user sets it: tests/end_to_end/instruction_sets.sh.
+// REPEL_ISA as a user sets it: tests/end_to_end/programs/instruction_sets.sh.
 #include <repel/schedule/instruction_set.hpp>
 
 #include <gtest/gtest.h>

@@ -249,6 +249,33 @@ TEST(CommandLine, CheckSaysThatASceneIsSoundAndHowLargeItIs) {
   }
 }
 
+TEST(CommandLine, CheckPrintsASchemaThatKnowsUnitsWordsAndModules) {
+  const Ending ending = teleop("check --schema");
+  ASSERT_EQ(ending.status, 0) << ending;
+  const auto schema = nlohmann::json::parse(ending.out);
+  const auto& keys = schema.at("properties");
+  EXPECT_EQ(schema.at("additionalProperties"), false);
+  EXPECT_EQ(keys.at("start_inside").at("enum"), nlohmann::json({"refuse", "push_out"}));
+  const auto& law = keys.at("laws").at("additionalProperties").at("properties");
+  const std::regex range(law.at("range").at("pattern").get<std::string>());
+  for (const char* right : {"20 mm", "0.02 m", "2e1mm", ".5 cm"}) {
+    EXPECT_TRUE(std::regex_match(right, range)) << right;
+  }
+  for (const char* wrong : {"20", "20 N", "20 mm 3", "x mm"}) {
+    EXPECT_FALSE(std::regex_match(wrong, range)) << wrong;
+  }
+  std::set<std::string> kinds;
+  for (const auto& each : keys.at("network").at("items").at("allOf")) {
+    const auto& own = each.at("then").at("properties");
+    EXPECT_TRUE(own.contains("module") && own.contains("to")) << each;
+    const std::string kind = each.at("if").at("properties").at("module").at("const");
+    EXPECT_EQ(own.contains("angular_shunt"), kind == "kbb2");
+    kinds.insert(kind);
+  }
+  EXPECT_EQ(kinds.size(), 21U);
+  EXPECT_TRUE(kinds.contains("force_sensor"));
+}
+
 TEST(CommandLine, CheckSaysWhatIsWrongAndWhere) {
   const Folder folder;
   const std::string bad = quoted(folder.with(
