@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 #include <numeric>
+#include <stdexcept>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/network/elements/robot_end.hpp>
@@ -222,8 +223,10 @@ const Value* Map::find(std::string_view key) const {
 }
 
 const Key& Map::key_of(std::string_view name) const {
-  return *std::find_if(keys_->begin(), keys_->end(),
-                       [&](const Key& each) { return each.name == name; });
+  for (const Key& key : *keys_) {
+    if (key.name == name) return key;
+  }
+  throw std::logic_error("no key '" + std::string(name) + "' in the grammar of this map");
 }
 
 std::int64_t Map::integer(std::string_view key) const {
