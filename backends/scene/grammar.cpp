@@ -198,7 +198,7 @@ const Keys& law() {
       number("ceiling", unit::force, 0.0, 1e6),
       word("given_at", {"part", "tool"}),
       number("tilt", unit::angle, 0.0, ForceLaw::most_tilt),
-      word("hold", {"soft", "hard"}),
+      word("hold", {"hard", "soft"}),
       flag("passable"),
       number("depth", unit::length, 0.0, 1e6),
       number("plateau", unit::none, 0.0, 1.0)};
@@ -292,7 +292,7 @@ const Keys& fixture() {
        {flag("on")},
        pose(),
        {number("radius", unit::length, 0.0, 1e3), number("half_angle", unit::angle, 0.01, 1.56),
-        any("points"), any("frames"), word("course", {"straight", "spline"})}});
+        any("points"), any("frames"), word("course", {"spline", "straight"})}});
   return keys;
 }
 

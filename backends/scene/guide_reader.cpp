@@ -40,7 +40,9 @@ void read_path(const Map& map, FixtureOptions& fixture) {
     }
     fixture.alignment = Alignment::all;
   }
-  map.read("course", fixture.course);
+  if (map.find("course") != nullptr && map.word("course") == "straight") {
+    fixture.course = network::Course::straight;
+  }
 }
 
 void read_shape(const Map& map, FixtureOptions& fixture) {

@@ -25,7 +25,9 @@ ForceLaw law_of(const Value& value) {
         {"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "hold", "passable"});
   }
   map.read("given_at", law.given_at);
-  map.read("hold", law.hold);
+  if (map.find("hold") != nullptr) {
+    law.hold = map.word("hold") == "hard" ? HoldKind::hard : HoldKind::soft;
+  }
   map.read("range", law.range);
   map.read("surface_force", law.surface_force);
   const Value* damping = map.find("damping");
