@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program that covers meshes, as run by a user.
-#include "program.hpp"
+#include "end_to_end/program.hpp"
 
 #include "cover/meshes.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program that prints the contents of a robot description, as run by a user.
-#include "hook.hpp"
-#include "program.hpp"
+#include "end_to_end/hook.hpp"
+#include "end_to_end/program.hpp"
 
 namespace repel::test {
 namespace robot_info_test {
