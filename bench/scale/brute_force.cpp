@@ -77,7 +77,7 @@ void BruteForce::push(std::int32_t pair, const Separation& s) {
   const auto [part_a, part_b] = parts(pair);
   const std::size_t a = part_a.body.index;
   const std::size_t b = part_b.body.index;
-  const ForceLaw law = World::fitted(scene_.law(), part_a.shape, part_b.shape);
+  const ForceLaw law = World::effective(scene_.law(), part_a.shape, part_b.shape);
   const Pose X_WA = X_WB_[a] * part_a.X_BP;
   const Pose X_WB = X_WB_[b] * part_b.X_BP;
   scale::push(s, {part_a.shape, X_WA, X_WB_[a], V_WB_[a]}, {part_b.shape, X_WB, X_WB_[b], V_WB_[b]},

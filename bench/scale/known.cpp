@@ -22,8 +22,8 @@ class Known final : public Method {
         on_body_(bodies_.size()) {
     for (const Placement& p : scene.placements(0)) bodies_[p.body.index] = p;
     for (std::int32_t pair = 0; pair < scene.setting().pairs; ++pair) {
-      laws_.push_back(World::fitted(scene.law(), parts_[pair / obstacles_].shape,
-                                    parts_[tool_parts_ + pair % obstacles_].shape));
+      laws_.push_back(World::effective(scene.law(), parts_[pair / obstacles_].shape,
+                                       parts_[tool_parts_ + pair % obstacles_].shape));
     }
     BruteForce brute(scene);
     for (int tick = 0; tick < scene.setting().ticks; ++tick) {

@@ -30,8 +30,8 @@ Sieve::Sieve(const Scene& scene, Maker make, bool with_forces)
   }
   broad_ = make(boxes, tool_parts_);
   for (std::int32_t pair = 0; with_forces && pair < pairs_; ++pair) {
-    laws_.push_back(World::fitted(scene.law(), parts_[pair / obstacles_].shape,
-                                  parts_[tool_parts_ + pair % obstacles_].shape));
+    laws_.push_back(World::effective(scene.law(), parts_[pair / obstacles_].shape,
+                                     parts_[tool_parts_ + pair % obstacles_].shape));
   }
 }
 
