@@ -154,7 +154,7 @@ void print(const Cover& cover, const Arguments& a, double seconds) {
     std::printf("seams       none\n");
   }
   if (cover.excess_m > a.options.error) {
-    std::printf("The excess is above the %s mm asked for: %s.\n", mm(a.options.error).c_str(),
+    std::printf("The excess is more than the %s mm asked for: %s.\n", mm(a.options.error).c_str(),
                 cover.is_closed ? "raise --parts" : "the surface is open, see --close");
   }
 }
