@@ -58,8 +58,9 @@ class Network {
 
   /// Torques of all walls and limits on the joints, as of the last `run` [N m].
   [[nodiscard]] const Vec<any_size>& walls() const noexcept { return walls_; }
-  /// Prediction::foreseen and given_up; zero without a prediction.
+  /// Prediction::foreseen; zero without a prediction.
   [[nodiscard]] Vec<any_size> foreseen(const Vec<any_size>& total) const noexcept;
+  /// Prediction::given_up; zero without a prediction.
   [[nodiscard]] Vec<any_size> given_up(const Vec<any_size>& change) const noexcept;
 
   /// The modules, in the order of the plan.

@@ -21,7 +21,7 @@ class SeriesSource {
                 PortState<any_size>& at_leaf) const noexcept;
 
  protected:
-  Vec<any_size> effort_;  // into the module
+  Vec<any_size> effort_;  ///< [N, N m] into the module
 };
 
 /// Torques on the joints, or forces on those that slide.
@@ -48,13 +48,14 @@ class ToolSource : public SeriesSource {
  protected:
   /// @throws SetupError for a number out of range
   static const PassivityOptions& checked_passivity(const PassivityOptions& options);
+  /// Without an effort. @param options of the passivity controller, checked
   explicit ToolSource(const PassivityOptions& options);
   /// Adds the damping of the passivity controller to the effort. @param flow of the tool
   void keep_passive(const Signals& signals, const Vec<any_size>& flow) noexcept;
 
-  PassivityController<6> controller_;
-  double supplied_ = 0.0;
-  double damping_ = 0.0;  // [N s/m] of the passivity controller in this tick
+  PassivityController<6> controller_;  ///< of all six directions
+  double supplied_ = 0.0;              ///< [W] to the effort other than through its port
+  double damping_ = 0.0;               ///< [N s/m] of the passivity controller in this tick
 };
 
 }  // namespace repel::network
