@@ -212,7 +212,7 @@ void read_recorded(const Map& map, CameraChoice& camera) {
   map.read("repeat", camera.recording->repeats);
 }
 
-/// Refuses what a recording says of itself; without one, that it is repeated.
+/// With a recording, refuses the keys of a simulated camera; without one, `repeat`.
 void allow_of_images(const Map& map, const Keys& keys, bool is_recorded) {
   constexpr std::string_view of_simulated[] = {"position", "look_at", "orientation", "width",
                                                "height",   "view",    "rate",        "noise",

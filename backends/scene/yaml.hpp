@@ -86,7 +86,7 @@ class Map {
  public:
   /// @throws SetupError if it is no map or has more entries than input_limits allows
   explicit Map(const Value& value);
-  /// Of these keys, which must outlive it.
+  /// Allows these keys alone. They must outlive the map.
   /// @throws SetupError likewise, and for any other key, suggesting the nearest
   Map(const Value& value, const Keys& keys);
   /// The same map, of these keys.

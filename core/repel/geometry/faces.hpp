@@ -53,7 +53,7 @@ class Faces {
   [[nodiscard]] std::span<const std::uint32_t> corners(std::uint32_t i) const noexcept {
     return {corners_.data() + first_[i], first_[i + 1] - first_[i]};
   }
-  /// The faces at a vertex, that must be valid; none when empty.
+  /// The faces at a valid vertex; none when empty.
   [[nodiscard]] std::span<const Corner> at(std::uint32_t vertex) const noexcept {
     if (empty()) return {};
     return {at_.data() + first_at_[vertex], first_at_[vertex + 1] - first_at_[vertex]};
