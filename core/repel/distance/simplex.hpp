@@ -33,7 +33,7 @@ enum class Projection : std::uint8_t {
 /// The projection takes the minimum over all features that could contain v instead of testing
 /// Voronoi regions: for needles and near-parallel faces, rounding makes the region tests contradict
 /// each other, but not the minimum. The projection on a face starts from its nearest vertex along
-/// the normal, that on an edge from its nearer end, with a second orthogonalization to the edge. So
+/// the normal. On an edge it starts from the nearer end, orthogonalized twice to the edge. So
 /// the error of v scales with the short vectors and not with the long ones.
 template <class T>
 class Simplex {

@@ -24,7 +24,7 @@ struct BoxStart {
 };
 
 /// Of all faces of two boxes, the one with the shortest way out for the other box, and the last
-/// corner of that box to leave: the deepest common point is mostly near. Cost: that of six support
+/// corner of that box to leave. The deepest common point is mostly near it. Cost: six support
 /// functions.
 /// @param tilt of the objective, in world axes: it decides for one of the corners of a parallel
 /// edge or face

@@ -50,7 +50,7 @@ struct DivisionReport {
 /// fits a block showing a plane of any inclination. Other blocks are divided into four, the
 /// smallest ones at their largest gap in depth. If there are too many cells, again with twice the
 /// tolerance and the smallest blocks twice as large; the next images begin so too, until there are
-/// few. So every point that was measured lies in a cell. Every cell begins at most that tolerance
+/// few. So every measured point lies in a cell. Every cell begins at most that tolerance
 /// before its nearest point, but for the smallest blocks and those measured in part. All memory is
 /// allocated at construction.
 class DepthCells {

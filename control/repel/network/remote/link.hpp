@@ -41,8 +41,8 @@ struct RemoteCounts {
 };
 
 /// One side of a link: the queues between the tick and the thread of the link. The tick never waits
-/// for that thread, nor for the other side. In each tick: `receive`, then the network with a
-/// RemoteLine, which sends. The memory is allocated at construction.
+/// for that thread, nor for the other side. In each tick: `receive`, then the network, whose
+/// RemoteLine sends. The memory is allocated at construction.
 class RemoteLink {
  public:
   static constexpr std::size_t room = 64;  ///< packets between two visits of the thread
