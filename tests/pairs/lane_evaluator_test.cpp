@@ -16,13 +16,14 @@ struct EveryPair {
       : world(&the_world),
         use_lanes(in_lanes),
         poses(the_world),
-        singles(the_world, static_cast<int>(the_world.pairs().size()), 1000),
-        lanes(singles) {
-    for (std::int32_t i = 0; i < count(); ++i) EXPECT_EQ(memory().slot_for({i}), i);
+        memory(the_world, static_cast<int>(the_world.pairs().size())),
+        forces(the_world.body_count()),
+        singles(the_world, memory, forces, 1000),
+        lanes(singles, memory, forces) {
+    for (std::int32_t i = 0; i < count(); ++i) EXPECT_EQ(memory.slot_for({i}), i);
   }
   [[nodiscard]] int count() const { return static_cast<int>(world->pairs().size()); }
-  [[nodiscard]] PairMemory& memory() { return singles.memory(); }
-  [[nodiscard]] bool is_in_lane(int slot) { return memory().tracking(slot).lane >= 0; }
+  [[nodiscard]] bool is_in_lane(int slot) { return memory.tracking(slot).lane >= 0; }
 
   /// @param evaluated false: uses only old answers
   const PairForces& tick(bool evaluated = true) {
@@ -30,12 +31,12 @@ struct EveryPair {
     poses.begin_tick();
     singles.begin_tick(motion.tick);
     lanes.begin_tick();
-    singles.forces().totals.near = count();
+    forces.totals.near = count();
     std::vector<int> others;
     for (int slot = 0; slot < count(); ++slot) {
       if (!is_in_lane(slot)) others.push_back(slot);
     }
-    PairTotals& totals = singles.forces().totals;
+    PairTotals& totals = forces.totals;
     for (int g = 0; evaluated && g < lanes.groups(); ++g) {
       lanes.evaluate_group(g, motion, poses, totals);
     }
@@ -48,12 +49,14 @@ struct EveryPair {
     for (const int slot : others) {
       if (use_lanes && lanes.may_add(slot)) lanes.add(slot, poses);
     }
-    return singles.forces();
+    return forces;
   }
 
   const World* world;
   bool use_lanes;
   PartPoses poses;
+  PairMemory memory;
+  PairForces forces;
   SingleEvaluator singles;
   LaneEvaluator lanes;
 };
@@ -70,9 +73,9 @@ void expect_no_gaps(EveryPair& every) {
   for (int lane = 0; lane < lanes.count(); ++lane) {
     const int slot = lanes.slot(lane);
     const LaneGroup& group = lanes.group(lane / lane_count);
-    ASSERT_EQ(every.memory().tracking(slot).lane, lane);
-    ASSERT_EQ(group.body_a(lane % lane_count), every.memory().tracking(slot).body_a);
-    ASSERT_EQ(group.body_b(lane % lane_count), every.memory().tracking(slot).body_b);
+    ASSERT_EQ(every.memory.tracking(slot).lane, lane);
+    ASSERT_EQ(group.body_a(lane % lane_count), every.memory.tracking(slot).body_a);
+    ASSERT_EQ(group.body_b(lane % lane_count), every.memory.tracking(slot).body_b);
   }
 }
 
@@ -271,11 +274,11 @@ TEST(LaneEvaluator, RehearsingChangesNothing) {
   EveryPair with_lanes(scene.world, true);
   run_a_little(scene, with_lanes);
   const auto before = known(with_lanes);
-  const PairTotals totals = with_lanes.singles.forces().totals;
+  const PairTotals totals = with_lanes.forces.totals;
   EXPECT_GT(with_lanes.lanes.rehearse(1000, scene.world.motion(), with_lanes.poses), 0);
   expect_same(known(with_lanes), before);
-  EXPECT_EQ(with_lanes.singles.forces().totals.evaluated, totals.evaluated);
-  EXPECT_EQ(with_lanes.singles.forces().totals.nearest, totals.nearest);
+  EXPECT_EQ(with_lanes.forces.totals.evaluated, totals.evaluated);
+  EXPECT_EQ(with_lanes.forces.totals.nearest, totals.nearest);
 }
 
 // A group of one pair among many lanes would cost more than the pair alone.

@@ -16,27 +16,31 @@ struct Evaluator {
   explicit Evaluator(const World& the_world)
       : world(&the_world),
         poses(the_world),
-        pairs(the_world, static_cast<int>(the_world.pairs().size()), max_age) {
-    for (std::int32_t i = 0; i < count(); ++i) EXPECT_EQ(pairs.memory().slot_for({i}), i);
+        memory(the_world, static_cast<int>(the_world.pairs().size())),
+        forces(the_world.body_count()),
+        pairs(the_world, memory, forces, max_age) {
+    for (std::int32_t i = 0; i < count(); ++i) EXPECT_EQ(memory.slot_for({i}), i);
   }
-  [[nodiscard]] int count() const { return pairs.memory().slots(); }
+  [[nodiscard]] int count() const { return memory.slots(); }
   [[nodiscard]] const Motion& motion() const { return world->motion(); }
   void begin_tick() {
     poses.begin_tick();
     pairs.begin_tick(motion().tick);
   }
-  void evaluate(int slot) { pairs.evaluate(slot, motion(), poses, pairs.forces().totals); }
+  void evaluate(int slot) { pairs.evaluate(slot, motion(), poses, forces.totals); }
   /// One tick in which the pair of a slot is evaluated, or not.
   const PairForces& tick(int slot, bool evaluated) {
     begin_tick();
     if (evaluated) evaluate(slot);
-    ++pairs.forces().totals.near;
+    ++forces.totals.near;
     pairs.push(slot, motion());
-    return pairs.forces();
+    return forces;
   }
 
   const World* world;
   PartPoses poses;
+  PairMemory memory;
+  PairForces forces;
   SingleEvaluator pairs;
 };
 
@@ -80,22 +84,22 @@ TEST(SingleEvaluator, BeginsColdWhenAPairComesWithinRange) {
       for (int slot = 0; slot < always.count(); ++slot) {
         always.evaluate(slot);
         always.pairs.push(slot, always.motion());
-        const bool was_inside = seldom.pairs.memory().answer(slot).in_range;
-        const bool far = always.pairs.memory().answer(slot).last.lower > 0.031;
+        const bool was_inside = seldom.memory.answer(slot).in_range;
+        const bool far = always.memory.answer(slot).last.lower > 0.031;
         skipped += far && !was_inside ? 1 : 0;
         if (far && !was_inside) continue;
         seldom.evaluate(slot);
         seldom.pairs.push(slot, seldom.motion());
-        entered += !was_inside && seldom.pairs.memory().answer(slot).in_range ? 1 : 0;
+        entered += !was_inside && seldom.memory.answer(slot).in_range ? 1 : 0;
       }
-      always.pairs.forces().totals.near = seldom.pairs.forces().totals.near = 1;
+      always.forces.totals.near = seldom.forces.totals.near = 1;
       for (std::size_t body = 0; body < 2; ++body) {
-        const Wrench& all = always.pairs.forces().on_body[body];
-        const Wrench& some = seldom.pairs.forces().on_body[body];
+        const Wrench& all = always.forces.on_body[body];
+        const Wrench& some = seldom.forces.on_body[body];
         ASSERT_EQ(all.force, some.force) << "tick " << tick << ", seed " << seed + run;
         ASSERT_EQ(all.torque, some.torque) << "tick " << tick << ", seed " << seed + run;
       }
-      pushed += seldom.pairs.forces().totals.peak_force > 1.0 ? 1 : 0;
+      pushed += seldom.forces.totals.peak_force > 1.0 ? 1 : 0;
     }
   }
   EXPECT_GT(skipped, 3 * 600 * 160 / 2);
@@ -116,7 +120,7 @@ TEST(SingleEvaluator, EveryMeasureOfAWorldDecidesItsOverlaps) {
       for (int slot = 0; slot < evaluator.count(); ++slot) {
         const Pair& pair = boxes.world.pair({slot});
         evaluator.evaluate(slot);
-        const PairAnswer& answer = evaluator.pairs.memory().answer(slot);
+        const PairAnswer& answer = evaluator.memory.answer(slot);
         ASSERT_NEAR(answer.last.distance, test::separation_now(boxes.world, pair).distance, 1e-9);
         ASSERT_GE(answer.last.distance, -boxes.world.deepest(pair) - 1e-12) << to_text(measure);
         if (answer.last.distance > -1e-3) continue;
@@ -126,7 +130,7 @@ TEST(SingleEvaluator, EveryMeasureOfAWorldDecidesItsOverlaps) {
             separation(boxes.world.part(pair.a).shape, X_WA, boxes.world.part(pair.b).shape,
                        test::pose_of(boxes.world, pair.b));
         others += std::abs(answer.last.distance - by_default.distance) > 1e-4 ? 1 : 0;
-        WarmStart warm = evaluator.pairs.memory().history(slot).warm;
+        WarmStart warm = evaluator.memory.history(slot).warm;
         int iterations = 0;
         const PosedShape A{boxes.world.part(pair.a).shape, X_WA};
         const Pose X_WB = test::pose_of(boxes.world, pair.b);

@@ -16,18 +16,20 @@
 
 namespace repel::detail {
 
-/// Holds some of the pairs of a SingleEvaluator in groups of SIMD lanes; lanes are numbered
+/// Holds some of the pairs of a PairMemory in groups of SIMD lanes; lanes are numbered
 /// consecutively across groups. There are no gaps: when a pair is removed, the last one takes its
 /// lane. The answer of a pair stays in its lane until the pair is removed or its group is not
 /// evaluated at a tick; then it is stored in the memory. All memory is allocated at construction.
 class LaneEvaluator {
  public:
-  /// @param singles evaluates the pairs that are in no lane; owns the memory and forces of all
-  /// pairs
-  explicit LaneEvaluator(SingleEvaluator& singles)
+  /// @param singles evaluates the pairs that are in no lane
+  /// @param memory,forces those of `singles`; must outlive this object, as it must
+  LaneEvaluator(SingleEvaluator& singles, PairMemory& memory, PairForces& forces)
       : singles_(&singles),
-        slots_(memory().slots() + lane_count),
-        groups_((memory().slots() + lane_count - 1) / lane_count) {}
+        memory_(&memory),
+        forces_(&forces),
+        slots_(memory.slots() + lane_count),
+        groups_((memory.slots() + lane_count - 1) / lane_count) {}
 
   /// Pairs in lanes.
   [[nodiscard]] int count() const noexcept { return count_; }
@@ -45,12 +47,12 @@ class LaneEvaluator {
   /// The last stored answer of a pair, in a lane or not.
   [[nodiscard]] Separation separation_of(int slot) const noexcept {
     const int lane = lane_of(slot);
-    if (!has_answer(lane)) return memory().answer(slot).last;
+    if (!has_answer(lane)) return memory_->answer(slot).last;
     return group_of(lane).answer(index_of(lane)).last;
   }
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept {
-    PairExtremes extremes = memory().extremes(id);
-    const int slot = memory().slot_of(id);
+    PairExtremes extremes = memory_->extremes(id);
+    const int slot = memory_->slot_of(id);
     const int lane = slot == PairMemory::none ? -1 : lane_of(slot);
     if (lane >= 0) extremes.add(extremes_in(lane));
     return extremes;
@@ -62,7 +64,7 @@ class LaneEvaluator {
     const LaneGroup& group = group_of(lane);
     const int k = index_of(lane);
     const PairAnswer answer = group.answer(k);
-    return NearPair{memory().tracking(slot).pair, answer.last, group.force(k), false, 0,
+    return NearPair{memory_->tracking(slot).pair, answer.last, group.force(k), false, 0,
                     answer.nearer != 0.0};
   }
 
@@ -70,8 +72,8 @@ class LaneEvaluator {
   [[nodiscard]] NearAnswer near_answer(int slot, const Motion& motion) const noexcept {
     const int lane = lane_of(slot);
     const PairAnswer answer =
-        has_answer(lane) ? group_of(lane).answer(index_of(lane)) : memory().answer(slot);
-    const PairTracking& tracking = memory().tracking(slot);
+        has_answer(lane) ? group_of(lane).answer(index_of(lane)) : memory_->answer(slot);
+    const PairTracking& tracking = memory_->tracking(slot);
     const bool stale = answer.tick != motion.tick;
     const bool passable = singles_->pair(slot).law.passable;
     return {.gradient = passable ? answer.force * answer.gradient : answer.gradient,
@@ -99,12 +101,12 @@ class LaneEvaluator {
   }
   /// Puts a pair into a lane for which `may_add` is true.
   void add(int slot, const PartPoses& poses) noexcept {
-    memory().tracking(slot).lane = count_;
+    memory_->tracking(slot).lane = count_;
     slots_[count_] = slot;
     // The unused lanes behind it need valid data to compute with, too.
     for (int k = index_of(count_); k < lane_count; ++k) {
       groups_[count_ / lane_count].set(singles_->world(), k, singles_->pair(slot),
-                                       memory().history(slot), poses, k == index_of(count_));
+                                       memory_->history(slot), poses, k == index_of(count_));
     }
     ++count_;
   }
@@ -116,16 +118,16 @@ class LaneEvaluator {
     const int last = slots_[count_ - 1];
     for (const int moved : {slot, last}) {
       store(moved);
-      memory().history(moved).pointed = group_of(lane_of(moved)).pointed(index_of(lane_of(moved)));
+      memory_->history(moved).pointed = group_of(lane_of(moved)).pointed(index_of(lane_of(moved)));
     }
-    memory().tracking(last).lane = lane;
-    memory().tracking(slot).lane = -1;
+    memory_->tracking(last).lane = lane;
+    memory_->tracking(slot).lane = -1;
     --count_;
     slots_[lane] = slots_[count_];
     groups_[count_ / lane_count].remove(index_of(count_));
     if (lane < count_) {
       groups_[lane / lane_count].set(singles_->world(), index_of(lane), singles_->pair(last),
-                                     memory().history(last), poses, true);
+                                     memory_->history(last), poses, true);
     }
   }
 
@@ -150,14 +152,14 @@ class LaneEvaluator {
     if ((stale | unproven) == 0U) return;
     for_each(stale & group.proven(), [&](int k) {
       singles_->add_refresh_energy(slot_at(g, k), group.answer(k).proven(), totals);
-      memory().answer(slot_at(g, k)).is_stale = false;
+      memory_->answer(slot_at(g, k)).is_stale = false;
     });
     for_each(unproven, [&](int k) {
       const int slot = slot_at(g, k);
-      memory().history(slot).pointed = group.pointed(k);
+      memory_->history(slot).pointed = group.pointed(k);
       singles_->evaluate(slot, motion, poses, totals);
       if (fits(slot)) {
-        group.set_feature(singles_->world(), k, singles_->pair(slot), memory().history(slot));
+        group.set_feature(singles_->world(), k, singles_->pair(slot), memory_->history(slot));
       }
     });
   }
@@ -181,8 +183,8 @@ class LaneEvaluator {
         singles_->push(slot_at(g, k), motion);
       });
     }
-    LaneSum(motion, singles_->forces()).add({groups_.data(), static_cast<std::size_t>(groups())});
-    PairTotals& totals = singles_->forces().totals;
+    LaneSum(motion, *forces_).add({groups_.data(), static_cast<std::size_t>(groups())});
+    PairTotals& totals = forces_->totals;
     if (extremes.peak_force() > totals.peak_force) note_hardest(extremes.peak_force());
     if (extremes.nearest() < totals.nearest) note_nearest(extremes.nearest());
     totals.deepest = std::max(totals.deepest, extremes.deepest());
@@ -221,17 +223,14 @@ class LaneEvaluator {
   /// Measured: below, a group costs more than its pairs do singly.
   static constexpr int fewest_in_group = lane_count / 2;
 
-  [[nodiscard]] PairMemory& memory() noexcept { return singles_->memory(); }
-  [[nodiscard]] const PairMemory& memory() const noexcept { return singles_->memory(); }
-
-  [[nodiscard]] int lane_of(int slot) const noexcept { return memory().tracking(slot).lane; }
+  [[nodiscard]] int lane_of(int slot) const noexcept { return memory_->tracking(slot).lane; }
   [[nodiscard]] const LaneGroup& group_of(int lane) const noexcept {
     return groups_[lane / lane_count];
   }
   [[nodiscard]] static int index_of(int lane) noexcept { return lane % lane_count; }
   [[nodiscard]] int slot_at(int g, int k) const noexcept { return slots_[g * lane_count + k]; }
   [[nodiscard]] PairId pair_at(int g, int k) const noexcept {
-    return memory().tracking(slot_at(g, k)).pair;
+    return memory_->tracking(slot_at(g, k)).pair;
   }
   /// The newest answer of the pair in that lane is in the lane, not in the memory.
   [[nodiscard]] bool has_answer(int lane) const noexcept {
@@ -250,7 +249,7 @@ class LaneEvaluator {
 
   /// Notes `distance` [m], the least of this tick, and finds the pair it belongs to.
   void note_nearest(double distance) noexcept {
-    PairTotals& totals = singles_->forces().totals;
+    PairTotals& totals = forces_->totals;
     totals.nearest = distance;
     for (int g = 0; g < groups(); ++g) {
       if (!groups_[g].fresh()) continue;
@@ -266,7 +265,7 @@ class LaneEvaluator {
       if (!groups_[g].fresh()) continue;
       for_each(groups_[g].used(), [&](int k) {
         if (groups_[g].force(k) == force) {
-          singles_->forces().totals.note_force(force, pair_at(g, k));
+          forces_->totals.note_force(force, pair_at(g, k));
         }
       });
     }
@@ -276,15 +275,15 @@ class LaneEvaluator {
   [[nodiscard]] bool fits(int slot) const noexcept {
     const Pair& p = singles_->pair(slot);
     const World& world = singles_->world();
-    return memory().answer(slot).in_range && !p.law.passable && !memory().is_temporary(slot) &&
-           has_feature(memory().history(slot).warm) &&
+    return memory_->answer(slot).in_range && !p.law.passable && !memory_->is_temporary(slot) &&
+           has_feature(memory_->history(slot).warm) &&
            are_angular(world.part(p.a).shape.level(0), world.part(p.b).shape.level(0));
   }
 
   /// Copies answer and extremes from the lane of a pair to the memory.
   void store(int slot) noexcept {
     const int lane = lane_of(slot);
-    memory().extremes(memory().tracking(slot).pair).add(extremes_in(lane));
+    memory_->extremes(memory_->tracking(slot).pair).add(extremes_in(lane));
     if (!has_answer(lane)) return;
     LaneGroup& group = groups_[lane / lane_count];
     singles_->store(slot, group.answer(index_of(lane)));
@@ -292,6 +291,8 @@ class LaneEvaluator {
   }
 
   SingleEvaluator* singles_;
+  PairMemory* memory_;
+  PairForces* forces_;
   int count_ = 0;
   std::vector<std::int32_t> slots_;  ///< by lane
   std::vector<LaneGroup> groups_;

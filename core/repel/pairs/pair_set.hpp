@@ -26,7 +26,7 @@ class PairSet {
   /// @param slots largest number of pairs with a slot, at least 0
   /// @param lookahead [m] by which a pair may be out of its range and yet be near
   PairSet(const World& world, int slots, const Budget& budget = {}, double lookahead = 0.0);
-  // lanes_ keeps a pointer to singles_.
+  // The evaluators point to members.
   PairSet(const PairSet&) = delete;
   PairSet& operator=(const PairSet&) = delete;
 
@@ -81,7 +81,7 @@ class PairSet {
 
   /// Pairs that are in lanes or due, most of which are near. After `select`.
   [[nodiscard]] int selected() const noexcept { return lanes_.count() + due_count_; }
-  [[nodiscard]] const PairForces& forces() const noexcept { return singles_.forces(); }
+  [[nodiscard]] const PairForces& forces() const noexcept { return forces_; }
   /// The last stored answer; the default one, which bounds nothing, if there is none.
   [[nodiscard]] Separation separation_of(PairId id) const noexcept;
   [[nodiscard]] PairExtremes extremes_of(PairId id) const noexcept;
@@ -101,11 +101,9 @@ class PairSet {
       if (near) see(*near, lanes_.near_answer(candidate.slot, motion));
     }
   }
-  [[nodiscard]] const PairMemory& memory() const noexcept { return singles_.memory(); }
+  [[nodiscard]] const PairMemory& memory() const noexcept { return memory_; }
 
  private:
-  [[nodiscard]] PairMemory& memory() noexcept { return singles_.memory(); }
-
   /// The k-th of the due candidates.
   [[nodiscard]] const Candidate& due(int k) const noexcept { return candidates_[due_[k]]; }
 
@@ -129,6 +127,8 @@ class PairSet {
 
   static constexpr int ahead = 3;  ///< pairs by which answers are fetched before they are read
 
+  PairMemory memory_;
+  PairForces forces_;
   SingleEvaluator singles_;
   LaneEvaluator lanes_;
   Candidates candidates_;
@@ -142,31 +142,33 @@ class PairSet {
 };
 
 inline PairSet::PairSet(const World& world, int slots, const Budget& budget, double lookahead)
-    : singles_(world, slots, budget.max_age, lookahead),
-      lanes_(singles_),
-      candidates_(memory().slots()),
-      due_(memory().slots()),
-      is_near_(memory().slots()),
-      fitting_(memory().slots()),
-      plan_(memory().slots() / lane_count + 1, memory().slots()) {}
+    : memory_(world, slots, lookahead),
+      forces_(world.body_count()),
+      singles_(world, memory_, forces_, budget.max_age),
+      lanes_(singles_, memory_, forces_),
+      candidates_(memory_.slots()),
+      due_(memory_.slots()),
+      is_near_(memory_.slots()),
+      fitting_(memory_.slots()),
+      plan_(memory_.slots() / lane_count + 1, memory_.slots()) {}
 
 inline void PairSet::prime(const Motion& motion, PartPoses& poses) noexcept {
-  for (PairId id{0}; id.index < memory().pairs(); ++id.index) {
+  for (PairId id{0}; id.index < memory_.pairs(); ++id.index) {
     if (!acts(singles_.world(), id, motion)) continue;
-    singles_.evaluate(memory().slot_for(id), motion, poses, singles_.forces().totals);
+    singles_.evaluate(memory_.slot_for(id), motion, poses, forces_.totals);
   }
-  singles_.forces().clear();
+  forces_.clear();
 }
 
 inline void PairSet::track_all(const PairIndex& index) noexcept {
   all_near_ = true;
   const auto end = [&](std::size_t list) {
-    return list < index.lists.size() ? index.lists[list].first : memory().pairs();
+    return list < index.lists.size() ? index.lists[list].first : memory_.pairs();
   };
   for (std::size_t list = 0; list < index.lists.size(); ++list) {
     for (std::int32_t i = index.lists[list].first; i < end(list + 1); ++i) {
       const PairId id = index.pairs[i];
-      candidates_.add(id, memory().slot_for(id), static_cast<std::int32_t>(list));
+      candidates_.add(id, memory_.slot_for(id), static_cast<std::int32_t>(list));
     }
     candidates_.update(static_cast<std::int32_t>(list), [](std::int32_t) { return false; });
   }
@@ -179,12 +181,12 @@ inline void PairSet::begin_tick(std::int64_t tick) noexcept {
 
 inline bool PairSet::take(PairId id, std::int32_t list, double distance, const Motion& motion,
                           PartPoses& poses) noexcept {
-  const int slot = memory().slot_for(id);
-  const PairTracking& tracking = memory().tracking(slot);
-  if (tracking.is_loose && tracking.list == PairMemory::none) memory().forget(slot);
+  const int slot = memory_.slot_for(id);
+  const PairTracking& tracking = memory_.tracking(slot);
+  if (tracking.is_loose && tracking.list == PairMemory::none) memory_.forget(slot);
   singles_.set_clearance(slot, motion, distance - singles_.reach(slot));
-  if (memory().is_temporary(slot)) {
-    PairTotals& totals = singles_.forces().totals;
+  if (memory_.is_temporary(slot)) {
+    PairTotals& totals = forces_.totals;
     ++totals.crowded;
     if (singles_.is_due(slot, motion)) {
       ++totals.near;
@@ -193,15 +195,15 @@ inline bool PairSet::take(PairId id, std::int32_t list, double distance, const M
     }
     return false;
   }
-  memory().tracking(slot).found = true;
-  if (memory().add_to_list(slot, list)) candidates_.add(id, slot, list);
+  memory_.tracking(slot).found = true;
+  if (memory_.add_to_list(slot, list)) candidates_.add(id, slot, list);
   return true;
 }
 
 inline int PairSet::end(std::int32_t list) noexcept {
   int kept = 0;
   candidates_.update(list, [&](std::int32_t slot) {
-    PairTracking& tracking = memory().tracking(slot);
+    PairTracking& tracking = memory_.tracking(slot);
     const bool leaves = !tracking.found && tracking.lane < 0;
     kept += !tracking.found && !leaves ? 1 : 0;
     if (leaves) singles_.remove_from_list(slot);
@@ -223,7 +225,7 @@ inline int PairSet::select(const Motion& motion, PartPoses& poses,
   // Pairs in lanes are evaluated several at a time: too coarse for a budget in work units.
   if (limit.is_counted()) lanes_.remove_all(poses);
   find_due(motion);
-  singles_.forces().totals.near += lanes_.count();
+  forces_.totals.near += lanes_.count();
   return plan_.plan(
       limit, lanes_.groups(), due_count_, [&](int k) { return due(k).key(); },
       [&](std::int32_t k) { return singles_.time_to_touch(due(k).slot, motion); });
@@ -236,30 +238,29 @@ inline std::int64_t PairSet::evaluate(int batch, const Motion& motion, PartPoses
       [&](int g, PairTotals& totals) { lanes_.evaluate_group(g, motion, poses, totals); },
       [&](int k, bool allowed, PairTotals& totals) {
         const std::int32_t slot = due(k).slot;
-        if (k + ahead < due_count_) memory().prefetch(due(k + ahead).slot);
+        if (k + ahead < due_count_) memory_.prefetch(due(k + ahead).slot);
         is_near_[k] = all_near_ || is_near(slot, motion, poses) ? 1 : 0;
         if (is_near_[k] == 0) return;
         ++totals.near;
-        if (!allowed && memory().answer(slot).known()) return;
+        if (!allowed && memory_.answer(slot).known()) return;
         singles_.evaluate(slot, motion, poses, totals);
       });
 }
 
 inline void PairSet::evaluate_all(const Motion& motion, PartPoses& poses) noexcept {
-  std::int64_t spent = singles_.forces().totals.iterations;
+  std::int64_t spent = forces_.totals.iterations;
   for (int k = 0; k < plan_.batches(); ++k) spent += evaluate(k, motion, poses, spent);
 }
 
 inline void PairSet::finish(const Motion& motion, const PartPoses& poses) noexcept {
-  plan_.finish(singles_.forces().totals, [&](int k) { return due(k).key(); });
+  plan_.finish(forces_.totals, [&](int k) { return due(k).key(); });
   lanes_.push(motion);
   for_each_near_single([&](std::int32_t slot) { singles_.push(slot, motion); });
   lanes_.remove_ended(poses);
   if (plan_.limit().is_counted()) return;
   fitting_count_ = 0;
   for_each_near_single([&](std::int32_t slot) {
-    if (!memory().tracking(slot).is_loose && lanes_.may_add(slot))
-      fitting_[fitting_count_++] = slot;
+    if (!memory_.tracking(slot).is_loose && lanes_.may_add(slot)) fitting_[fitting_count_++] = slot;
   });
   const int more = lanes_.to_add(fitting_count_);
   if (more < 0) lanes_.remove_last(-more, poses);
@@ -283,7 +284,7 @@ inline int PairSet::rehearse(const Motion& motion, PartPoses& poses, int most) n
 }
 
 inline Separation PairSet::separation_of(PairId id) const noexcept {
-  const int slot = memory().slot_of(id);
+  const int slot = memory_.slot_of(id);
   return slot == PairMemory::none ? Separation{} : lanes_.separation_of(slot);
 }
 
@@ -309,7 +310,7 @@ inline void PairSet::find_due(const Motion& motion) noexcept {
   const int asked = std::exchange(due_count_, 0);
   for (int k = 0; k < asked; ++k) {
     const std::int32_t i = due_[k];
-    const PairTracking& tracking = memory().tracking(all[i].slot);
+    const PairTracking& tracking = memory_.tracking(all[i].slot);
     const bool is_due = all_near_ || singles_.is_due(all[i].slot, motion);
     all[i].due_at = is_due ? all[i].due_at : tracking.due_at;
     due_[due_count_] = i;
@@ -318,7 +319,7 @@ inline void PairSet::find_due(const Motion& motion) noexcept {
 }
 
 inline bool PairSet::is_near(int slot, const Motion& motion, PartPoses& poses) noexcept {
-  PairAnswer& answer = memory().answer(slot);
+  PairAnswer& answer = memory_.answer(slot);
   if (answer.in_range) return true;
   const double reach = singles_.reach(slot);
   double clearance =
