@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs every part that was built, the package file and the pkg-config file of the core. A build
 # may be of some targets only, as that of ./run: what it left out is named and not installed.
+#
+# Three components, each a Debian package: `core`, headers that need Eigen alone; `programs`, with
+# their scenes, robots and page; and `dev`, all the rest.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 
-# repel_say_if_not_built(TARGET FILES...): then FILES, which promise it, are taken away again.
-function(repel_say_if_not_built target)
+# repel_say_if_not_built(TARGET COMPONENT FILES...): then FILES, which promise it, are taken away
+# again.
+function(repel_say_if_not_built target component)
   string(REPLACE ";" " " promises "${ARGN}")
   set(remedy "cmake --build ${PROJECT_BINARY_DIR} --target ${target}")
   install(CODE "
@@ -17,7 +22,7 @@ function(repel_say_if_not_built target)
           file(REMOVE \${promises})
         endif()
       endforeach()
-    endif()")
+    endif()" COMPONENT ${component})
 endfunction()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/repel)
@@ -44,33 +49,39 @@ foreach(part ${REPEL_COMPONENTS})
   string(APPEND REPEL_PACKAGES "set(repel_packages_${part} \"${packages}\")\n")
   if(TARGET repel_${part})
     set_target_properties(repel_${part} PROPERTIES EXPORT_NAME ${part})
-    install(TARGETS repel_${part} EXPORT repel-${part} OPTIONAL FILE_SET HEADERS)
-    install(EXPORT repel-${part} NAMESPACE repel:: DESTINATION ${package_dir})
+    set(component dev)
+    if(part STREQUAL core)
+      set(component core)
+    endif()
+    install(TARGETS repel_${part} EXPORT repel-${part} OPTIONAL
+            FILE_SET HEADERS COMPONENT ${component})
+    install(EXPORT repel-${part} NAMESPACE repel:: DESTINATION ${package_dir}
+            COMPONENT ${component})
     get_target_property(type repel_${part} TYPE)
     if(NOT type STREQUAL INTERFACE_LIBRARY)
-      repel_say_if_not_built(
-        repel_${part} ${package_dir}/repel-${part}.cmake ${package_dir}/repel-${part}-*.cmake)
+      repel_say_if_not_built(repel_${part} ${component} ${package_dir}/repel-${part}.cmake
+                             ${package_dir}/repel-${part}-*.cmake)
     endif()
   endif()
 endforeach()
 foreach(program teleop qualify robot_info cover)
   if(TARGET ${program})
-    install(TARGETS ${program} OPTIONAL)
-    repel_say_if_not_built(${program})
+    install(TARGETS ${program} OPTIONAL COMPONENT programs)
+    repel_say_if_not_built(${program} programs)
   endif()
 endforeach()
 foreach(data scenes robots)
-  install(DIRECTORY ${data} DESTINATION ${CMAKE_INSTALL_DATADIR}/repel
+  install(DIRECTORY ${data} DESTINATION ${CMAKE_INSTALL_DATADIR}/repel COMPONENT programs
           FILES_MATCHING PATTERN *.yaml PATTERN *.urdf PATTERN *.stl PATTERN *.obj)
 endforeach()
 install(DIRECTORY backends/visual/page/ DESTINATION ${CMAKE_INSTALL_DATADIR}/repel/page
-        PATTERN bundle EXCLUDE)
+        COMPONENT programs PATTERN bundle EXCLUDE)
 if(TARGET repel_visual)  # programs that link it are elsewhere, and so may be the package
   set(page $<INSTALL_PREFIX>/${CMAKE_INSTALL_DATADIR}/repel/page)
   target_compile_definitions(repel_visual
                              INTERFACE $<INSTALL_INTERFACE:REPEL_PAGE_FOLDER="${page}">)
 endif()
-install(FILES LICENSE TYPE DOC)
+install(FILES LICENSE TYPE DOC COMPONENT programs)
 
 configure_package_config_file(cmake/repel-config.cmake.in repel-config.cmake
                               INSTALL_DESTINATION ${package_dir})
@@ -78,7 +89,7 @@ write_basic_package_version_file(repel-config-version.cmake COMPATIBILITY SameMi
 install(FILES ${PROJECT_BINARY_DIR}/repel-config.cmake
               ${PROJECT_BINARY_DIR}/repel-config-version.cmake
               cmake/RepelDependencies.cmake
-        DESTINATION ${package_dir})
+        DESTINATION ${package_dir} COMPONENT core)
 
 # Relative to the file itself, so that the installed tree can be moved.
 set(pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
@@ -86,5 +97,6 @@ file(RELATIVE_PATH REPEL_PREFIX_FROM_PC /${pkgconfig_dir} /)
 string(REGEX REPLACE "/$" "" REPEL_PREFIX_FROM_PC ${REPEL_PREFIX_FROM_PC})
 foreach(file repel.pc repel-control.pc)
   configure_file(cmake/${file}.in ${file} @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/${file} DESTINATION ${pkgconfig_dir})
 endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/repel.pc DESTINATION ${pkgconfig_dir} COMPONENT core)
+install(FILES ${PROJECT_BINARY_DIR}/repel-control.pc DESTINATION ${pkgconfig_dir})
