@@ -72,7 +72,7 @@ std::string found_uri(const std::string& uri, const std::filesystem::path& file,
 
 /// A collision element, as the child process sends it.
 struct Collision {
-  enum class Kind : int { box, sphere, cylinder, capsule, mesh, plane, other };
+  enum class Kind : int { box, sphere, cylinder, capsule, ellipsoid, mesh, plane, other };
 
   std::string name, in_link;
   Pose X_WP = Pose::Identity();
@@ -165,6 +165,10 @@ class Gathering {
       case sdf::GeometryType::CAPSULE:
         return is(Kind::capsule, geometry.CapsuleShape()->Radius(),
                   0.5 * geometry.CapsuleShape()->Length(), 0.0);
+      case sdf::GeometryType::ELLIPSOID: {
+        const auto radii = geometry.EllipsoidShape()->Radii();
+        return is(Kind::ellipsoid, radii.X(), radii.Y(), radii.Z());
+      }
       case sdf::GeometryType::MESH: {
         const sdf::Mesh& mesh = *geometry.MeshShape();
         collision.mesh = mesh.Uri();
@@ -232,6 +236,9 @@ class PartMaker {
       case Kind::capsule:
         part.kind = PartKind::capsule;
         return {part};
+      case Kind::ellipsoid:
+        part.kind = PartKind::ellipsoid;
+        return {part};
       case Kind::mesh:
         return parts_of_mesh(collision);
       case Kind::plane:
@@ -239,7 +246,7 @@ class PartMaker {
       case Kind::other:
         break;
     }
-    throw SetupError("allowed: a box, sphere, cylinder, capsule or mesh");
+    throw SetupError("allowed: a box, sphere, cylinder, capsule, ellipsoid or mesh");
   }
 
   std::vector<RobotPart> parts_of_mesh(const Collision& collision) {

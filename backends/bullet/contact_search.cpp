@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_search.hpp"
 
+#include <repel/reduction/shape_mesh.hpp>
+
 #include "multibody.hpp"
 
 namespace repel::bullet::detail {
@@ -9,15 +11,20 @@ namespace {
 /// [m] Bullet's collision margin of boxes and cylinders; it rounds their edges, within their faces.
 constexpr double rounding = 1e-4;
 
-std::unique_ptr<btCollisionShape> hull_of(const Convex& polytope) {
+std::unique_ptr<btCollisionShape> hull_of(std::span<const Vec3> points) {
   auto hull = std::make_unique<btConvexHullShape>();
-  for (int i = 0; i < polytope.vertex_count(); ++i) {
-    const Vec<double> p = polytope.place(static_cast<std::uint32_t>(i));
-    hull->addPoint({p.x(), p.y(), p.z()}, false);
-  }
+  for (const Vec3& p : points) hull->addPoint(to_bullet(p), false);
   hull->recalcLocalAabb();
   hull->setMargin(0.0);
   return hull;
+}
+
+std::unique_ptr<btCollisionShape> hull_of(const Convex& polytope) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < polytope.vertex_count(); ++i) {
+    corners.push_back(to_vec3(polytope.place(static_cast<std::uint32_t>(i))));
+  }
+  return hull_of(corners);
 }
 
 template <class BulletShape, class... Sizes>
@@ -52,6 +59,8 @@ std::unique_ptr<btCollisionShape> bullet_shape(const ContactPart& part) {
     case Convex::Kind::cylinder:
       require_thick(part, size);
       return with_margin<btCylinderShapeZ>(rounding, to_bullet(size));
+    case Convex::Kind::ellipsoid:  // Bullet has none
+      return hull_of(mesh_of(part.shape).vertices);
   }
   throw SetupError("part '" + part.name + "' is of no kind");
 }

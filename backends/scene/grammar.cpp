@@ -55,7 +55,8 @@ Keys part(const Words& shapes, const Keys& own) {
       {{text("name").required(), word("shape", shapes).required()}, pose(), own, sizes()});
 }
 
-const Words tool_shapes{"box", "sphere", "capsule", "cylinder", "cone", "hull", "mesh"};
+const Words tool_shapes{"box",  "sphere",    "capsule", "cylinder",
+                        "cone", "ellipsoid", "hull",    "mesh"};
 
 Keys station() {
   return {map("robot", robot()).required(), maps("tool", tool_part()).required(),

@@ -28,6 +28,7 @@ void count_hull(const Value& where, std::size_t points, const ShapeFile& shapes)
 std::vector<std::string_view> size_keys(std::string_view kind) {
   if (kind == "box") return {"size"};
   if (kind == "sphere") return {"radius"};
+  if (kind == "ellipsoid") return {"size"};
   if (kind == "hull") return {"points"};
   if (kind == "mesh") return {"file", "parts"};
   return {"radius", "length"};
@@ -37,6 +38,7 @@ std::vector<std::string_view> size_keys(std::string_view kind) {
 Shape shape_of(const Map& map, std::string_view kind, const ShapeFile& shapes) {
   constexpr ReductionOptions coarse{.levels = 1};
   if (kind == "box") return Shape::box(0.5 * map.vector("size"), coarse);
+  if (kind == "ellipsoid") return Shape::ellipsoid(0.5 * map.vector("size"), coarse);
   if (kind == "hull") {
     const Value& list = map.at("points");
     std::vector<Vec3> points;

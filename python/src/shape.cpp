@@ -73,6 +73,15 @@ void bind_shape(nb::module_& m) {
           nb::arg("levels") = usual_levels,
           "A disc of `radius` [m] at -half_length [m] on the z axis and the apex at +half_length.")
       .def_static(
+          "ellipsoid",
+          [](nb::handle radii, int levels) {
+            return Shape::ellipsoid(vector_of(radii, "radii"), reduction(levels));
+          },
+          nb::arg("radii"), nb::kw_only(), nb::arg("levels") = usual_levels,
+          nb::sig("def ellipsoid(radii: numpy.typing.ArrayLike, *, levels: int = 8) -> Shape"),
+          "An ellipsoid with semi-axes `radii` [m] (3,) along x, y and z, each 1e-6 to 1e6 and the "
+          "largest at most 1e4 times the least. The surface is exact.")
+      .def_static(
           "hull",
           [](nb::handle points, int levels) {
             return Shape::hull(points_of(points, "points"), reduction(levels));

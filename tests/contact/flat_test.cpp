@@ -71,6 +71,10 @@ TEST(Flat, CylinderShowsItsCapItsSideOrAPointOfItsRim) {
   EXPECT_EQ(below(cylinder, 0.5, 0.0).outline.size, 1);
 }
 
+TEST(Flat, AnEllipsoidShowsAPoint) {
+  EXPECT_EQ(below(Shape::ellipsoid({0.3, 0.2, 0.001}), 0.0, 0.0).outline.size, 1);
+}
+
 TEST(Flat, ConeShowsItsBaseItsSideOrAPoint) {
   const Shape cone = Shape::cone(0.1, 0.2);
   EXPECT_GE(below(cone, 0.0, 0.0).outline.size, 8);

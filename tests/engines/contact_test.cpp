@@ -49,6 +49,8 @@ std::vector<ContactPart> probes() {
     }
   }
   parts.push_back({"hull", 0, Shape::hull(corners), Pose::Identity()});
+  const Pose on_side(Eigen::AngleAxisd(pi / 2, Vec3::UnitY()));  // its z axis is a corner
+  parts.push_back({"ellipsoid", 0, Shape::ellipsoid({0.2, 0.05, 0.1}), on_side});
   return parts;
 }
 

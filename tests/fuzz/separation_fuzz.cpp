@@ -19,8 +19,8 @@ using fuzz::require;
 std::optional<Shape> shape_of(Bytes& bytes) {
   const auto kind = bytes.take<std::uint8_t>();
   try {
-    const ReductionOptions levels{.levels = 1 + kind / 5 % 4};
-    switch (kind % 5) {
+    const ReductionOptions levels{.levels = 1 + kind / 6 % 4};
+    switch (kind % 6) {
       case 0:
         return Shape::box(bytes.vector(), levels);
       case 1:
@@ -33,6 +33,8 @@ std::optional<Shape> shape_of(Bytes& bytes) {
         const double radius = bytes.number();
         return Shape::cylinder(radius, bytes.number(), levels);
       }
+      case 4:
+        return Shape::ellipsoid(bytes.vector(), levels);
       default: {
         std::vector<Vec3> points(1 + bytes.take<std::uint8_t>() % 12);
         for (Vec3& p : points) p = bytes.vector();

@@ -45,6 +45,17 @@ Sample cylinder_sample(const std::string& name, double radius, double half_lengt
   return s;
 }
 
+std::vector<Vec3> directions();
+
+Sample ellipsoid_sample(const std::string& name, const Vec3& axes) {
+  Sample s{name, Convex::ellipsoid(axes), {}};
+  for (const Vec3& d : directions()) {
+    const Vec3 u = axes.cwiseProduct(d);
+    if (u.norm() > 0.0) s.points.push_back(axes.cwiseProduct(u.normalized()));
+  }
+  return s;
+}
+
 std::vector<Sample> samples() {
   Rng rng(seed);
   std::vector<Sample> all;
@@ -56,6 +67,8 @@ std::vector<Sample> samples() {
   all.push_back(cylinder_sample("cylinder", 0.5, 1.0));
   all.push_back(cylinder_sample("disc", 0.5, 0.0));
   all.push_back(cylinder_sample("axis", 0.0, 1.0));
+  all.push_back(ellipsoid_sample("ellipsoid", {0.5, 0.2, 1.0}));
+  all.push_back(ellipsoid_sample("flat ellipsoid", {1.0, 0.5, 1e-4}));
   for (const int count : {1, 2, 3, 8, 33}) {
     const std::vector<Vec3> vertices = families::cloud(rng, count, 0.9).vertices;
     all.push_back({"hull of " + std::to_string(count), Convex::polytope(vertices), vertices});
@@ -112,8 +125,9 @@ TEST(Convex, ExtendedPrecisionFindsTheSameSupport) {
 TEST(Convex, TheNameOfASupportPointBringsItBack) {
   for (const Sample& sample : samples()) {
     SCOPED_TRACE(sample.name + ", seed " + std::to_string(seed));
-    // The ids of angles on a rim have a resolution of about 1e-8.
-    const double tolerance = sample.set.vertex_count() == 0 ? 1e-7 : 0.0;
+    // The names of angles on a rim have a resolution of about 1e-8, those of nodes of 1e-4.
+    const bool is_ellipsoid = sample.set.kind() == Convex::Kind::ellipsoid;
+    const double tolerance = is_ellipsoid ? 1e-4 : sample.set.vertex_count() == 0 ? 1e-7 : 0.0;
     for (const Vec3& d : directions()) {
       const Convex::Point p = sample.set.support(Vec<double>(d));
       const Convex::Point again = sample.set.point(p.name);
@@ -152,6 +166,9 @@ TEST(Convex, ANameSurvivesTheReductionOfItsSet) {
   const Convex smaller = Convex::cylinder(0.5, 1.5);
   const Vec3 expected = to_vec3(smaller.support(Vec<double>(d)).p);
   EXPECT_LE((to_vec3(smaller.point(rim).p) - expected).norm(), 1e-7);
+  const Convex::Point oval = Convex::ellipsoid({1, 2, 3}).support(Vec<double>(d));
+  const Vec3 shrunk = to_vec3(Convex::ellipsoid({0.5, 1.0, 1.5}).point(oval.name).p);
+  EXPECT_LE((shrunk - 0.5 * to_vec3(oval.p)).norm(), 2e-4);
 }
 
 TEST(Convex, ReachIsTheDistanceOfTheFarthestPoint) {
@@ -168,6 +185,7 @@ TEST(Convex, VertexCountTellsWhatAFlatSetIs) {
   EXPECT_EQ(Convex::box({0, 0, 3}).vertex_count(), 2);
   EXPECT_EQ(Convex::box({0, 0, 0}).vertex_count(), 1);
   EXPECT_EQ(Convex::cylinder(1, 2).vertex_count(), 0);
+  EXPECT_EQ(Convex::ellipsoid({1, 2, 3}).vertex_count(), 0);
   EXPECT_EQ(Convex::cylinder(0, 2).vertex_count(), 2);
   EXPECT_EQ(Convex::cylinder(0, 0).vertex_count(), 1);
 }
@@ -175,6 +193,7 @@ TEST(Convex, VertexCountTellsWhatAFlatSetIs) {
 TEST(Convex, OnlyACurvedSetIsNoPolytope) {
   EXPECT_TRUE(Convex::box({1, 2, 3}).is_polytope());
   EXPECT_FALSE(Convex::cylinder(1, 2).is_polytope());
+  EXPECT_FALSE(Convex::ellipsoid({1, 2, 3}).is_polytope());
   EXPECT_FALSE(Convex::cylinder(1, 0).is_polytope());
   EXPECT_TRUE(Convex::cylinder(0, 2).is_polytope());
 }

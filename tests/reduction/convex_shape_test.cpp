@@ -13,6 +13,7 @@ TEST(ConvexShape, AllButHullsAreBuiltWithoutWhatBuildsHulls) {
   EXPECT_EQ(Shape::capsule(0.5, 1.0).reach(), 1.5);
   EXPECT_EQ(Shape::cylinder(3.0, 4.0).reach(), 5.0);
   EXPECT_EQ(Shape::cone(3.0, 4.0).reach(), 5.0);
+  EXPECT_EQ(Shape::ellipsoid({3.0, 4.0, 5.0}).reach(), 5.0);
   EXPECT_THROW((void)Shape::sphere(-1.0), SetupError);
 }
 

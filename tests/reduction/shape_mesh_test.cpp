@@ -30,6 +30,7 @@ std::vector<Specimen> specimens() {
           {"sphere", Shape::sphere(0.2)},
           {"capsule", Shape::capsule(0.1, 0.2)},
           {"long cylinder", Shape::cylinder(0.1, 0.3)},
+          {"ellipsoid", Shape::ellipsoid({0.1, 0.3, 0.2})},
           {"flat cylinder", Shape::cylinder(0.3, 0.1)},
           {"cylinder as wide as long", Shape::cylinder(0.2, 0.2)},
           {"cone", Shape::cone(0.1, 0.2)},

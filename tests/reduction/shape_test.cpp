@@ -71,6 +71,20 @@ TEST(Shape, TheLimitsThemselvesAreAllowed) {
   EXPECT_EQ(Shape::box({1, 1, 1}, {.levels = 1}).levels(), 2);
 }
 
+TEST(Shape, AnEllipsoidIsThickEnough) {
+  EXPECT_EQ(Shape::ellipsoid({1e-6, 1e-6, 2e-6}).reach(), 2e-6);
+  EXPECT_EQ(Shape::ellipsoid({1e6, 128.0, 1e6}).deepest(), 128.0);
+  EXPECT_EQ(Shape::ellipsoid({0.3, 0.3, 0.3}).levels(), 1) << "a sphere";
+  EXPECT_EQ(Shape::ellipsoid({0.3, 0.2, 0.1}, {.levels = 1}).levels(), 2);
+  expect_refused("semi-axis y", "0", [] { (void)Shape::ellipsoid({1, 0, 1}); });
+  expect_refused("semi-axis x", "-1", [] { (void)Shape::ellipsoid({-1, 1, 1}); });
+  expect_refused("semi-axis z", "2000000", [] { (void)Shape::ellipsoid({1, 1, 2e6}); });
+  expect_refused("semi-axis z", "nan", [] { (void)Shape::ellipsoid({1, 1, not_a_number}); });
+  expect_refused("largest over least semi-axis", "20000", [] {
+    (void)Shape::ellipsoid({1, 2e4, 1});
+  });
+}
+
 TEST(Shape, LevelsThatAreNotAllowedAreNamed) {
   const std::vector<Vec3> points = families::box({1, 1, 1}).vertices;
   for (const int levels : {0, 65, -1, std::numeric_limits<int>::max()}) {
@@ -111,6 +125,7 @@ std::vector<Shape> of_each_kind(const ReductionOptions& options) {
           Shape::cylinder(0.1, 0.4, options),
           Shape::cylinder(0.4, 0.1, options),
           Shape::cone(0.3, 0.5, options),
+          Shape::ellipsoid({0.3, 0.1, 0.2}, options),
           Shape::hull(families::cloud(rng, 12, 0.3).vertices, options),
           Shape::hull(families::cloud(rng, 200, 0.3).vertices, options),
           Shape::hull(std::vector<Vec3>{{0, 0, 1}, {0, -2, 0}, {1, 0, 0}}, options)};

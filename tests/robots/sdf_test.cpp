@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/robots/parts.hpp>
 #include <repel/robots/urdf.hpp>
 
 #include "end_to_end/folder.hpp"
@@ -31,7 +32,9 @@ std::string table(const std::string& more = "") {
          "<collision name='ball'><geometry><sphere><radius>0.2</radius></sphere></geometry>"
          "</collision>\n"
          "<collision name='pill'><geometry><capsule><radius>0.1</radius><length>0.4</length>"
-         "</capsule></geometry></collision></link>\n" +
+         "</capsule></geometry></collision>\n"
+         "<collision name='egg'><geometry><ellipsoid><radii>0.1 0.2 0.3</radii></ellipsoid>"
+         "</geometry></collision></link>\n" +
          more + "</model>";
 }
 
@@ -63,7 +66,7 @@ class Sdf : public ::testing::Test {
 
 TEST_F(Sdf, HasTheShapesOfAModelWhereItsFramesPutThem) {
   const std::vector<RobotPart> parts = load_sdf_parts(file_of(folder_, table()));
-  ASSERT_EQ(parts.size(), 4U);
+  ASSERT_EQ(parts.size(), 5U);
   EXPECT_EQ(parts[0].name, "plate");
   EXPECT_EQ(parts[0].in_link, "cell::table");
   EXPECT_EQ(parts[0].link, -1);
@@ -80,6 +83,9 @@ TEST_F(Sdf, HasTheShapesOfAModelWhereItsFramesPutThem) {
   EXPECT_EQ(parts[2].size.x(), 0.2);
   EXPECT_EQ(parts[3].kind, PartKind::capsule);
   EXPECT_LT((parts[3].size - Vec3(0.1, 0.2, 0)).norm(), 1e-12);
+  EXPECT_EQ(parts[4].kind, PartKind::ellipsoid);
+  EXPECT_EQ(parts[4].size, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(shape_of(parts[4]).reach(), 0.3);
 }
 
 TEST_F(Sdf, HasAllModelsOfAWorldAlsoNestedAndIncludedOnes) {

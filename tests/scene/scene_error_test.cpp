@@ -264,7 +264,7 @@ TEST(SceneError, ALawThatIsNotDefinedIsRefusedAndTheDefinedOnesNamed) {
 
 TEST(SceneError, AnUnknownWordIsRefusedAndTheKnownOnesNamed) {
   expect_refused(changed("shape: box", "shape: cube"), 7,
-                 {"'shape' is 'cube'", "box, sphere, capsule, cylinder, cone, hull"});
+                 {"'shape' is 'cube'", "box, sphere, capsule, cylinder, cone, ellipsoid, hull"});
   expect_refused(base_scene + "script:\n  - {name: a, device: mouse, duration: 1 s}\n", 9,
                  {"'device' is 'mouse'", "spaceball, torque_arm"});
   expect_refused(

@@ -173,6 +173,7 @@ TEST(SceneValue, EveryShapeHasTheSizeItStates) {
   EXPECT_NEAR(reach("shape: capsule, radius: 2 m, length: 6 m"), 5.0, 1e-12);
   EXPECT_NEAR(reach("shape: cylinder, radius: 3 m, length: 8 m"), 5.0, 1e-12);
   EXPECT_NEAR(reach("shape: cone, radius: 3 m, length: 8 m"), 5.0, 1e-12);
+  EXPECT_NEAR(reach("shape: ellipsoid, size: 2 6 4 m"), 3.0, 1e-12);
   EXPECT_NEAR(reach("shape: hull, points: [0 0 0 m, 3 0 0 m, 0 400 0 cm, 0 0 1 m]"), 4.0, 1e-12);
 }
 

@@ -49,6 +49,8 @@ class FlatSearch {
         return of_cylinder();
       case Convex::Kind::cone:
         return of_cone();
+      case Convex::Kind::ellipsoid:
+        return of_ellipsoid();
       case Convex::Kind::polytope:
         break;
     }
@@ -166,6 +168,13 @@ class FlatSearch {
     } else {
       add(flat, off > 0.0 ? rim : tip);
     }
+    return flat;
+  }
+
+  /// Curved everywhere: a single point.
+  [[nodiscard]] Flat of_ellipsoid() const noexcept {
+    Flat flat;
+    add(flat, set_.support(n_).p);
     return flat;
   }
 

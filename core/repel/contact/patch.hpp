@@ -31,9 +31,10 @@ struct ContactPatch {
 namespace detail {
 
 /// False if no edge of a box, or neither cap nor side of a cylinder, is perpendicular to a
-/// direction within `angle` [rad].
+/// direction within `angle` [rad], and of an ellipsoid.
 [[nodiscard]] inline bool may_be_flat(const Convex& set, const Pose& X, const Vec<double>& n_W,
                                       double angle) noexcept {
+  if (set.kind() == Convex::Kind::ellipsoid) return false;
   if (set.kind() != Convex::Kind::box && set.kind() != Convex::Kind::cylinder) return true;
   const Vec<double> n = magnitudes(rotate_transposed(X, n_W));
   if (set.kind() == Convex::Kind::box) return std::min(std::min(n.x(), n.y()), n.z()) < angle;

@@ -3,6 +3,7 @@
 /// A convex set given by its support map: the farthest point of the set along a direction.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +14,7 @@
 
 #include <repel/base/vec.hpp>
 #include <repel/geometry/faces.hpp>
+#include <repel/geometry/sphere_grid.hpp>
 #include <repel/geometry/support_table.hpp>
 #include <repel/geometry/vertex_scan.hpp>
 
@@ -21,14 +23,15 @@ namespace repel {
 /// A convex set around its own origin. A box with zero extents is a rectangle, a segment or a
 /// point; a cylinder with zero half length is a disc. Points are identified by a 32-bit name, so
 /// that a simplex of them can be kept from tick to tick in a few bytes: corner signs for a box, the
-/// vertex index for a polytope, end and angle (to 1e-8) for a cylinder.
+/// vertex index for a polytope, end and angle (to 1e-8) for a cylinder, a node of a SphereGrid for
+/// an ellipsoid.
 class Convex {
  public:
   /// Up to so many vertices, a scan of all of them is as fast as a SupportTable.
   static constexpr std::size_t largest_scan = 32;
 
   /// What the set is.
-  enum class Kind : std::uint8_t { box, cylinder, cone, polytope };
+  enum class Kind : std::uint8_t { box, cylinder, cone, ellipsoid, polytope };
 
   /// A point of the set that is farthest in some direction.
   template <class T>
@@ -59,6 +62,13 @@ class Convex {
     Convex set(Kind::cone);
     set.size_ = {radius, z_base, z_apex};
     set.reach_ = std::max(std::hypot(radius, z_base), std::abs(z_apex));
+    return set;
+  }
+  /// An ellipsoid with these semi-axes [m] along x, y and z, each above 0.
+  static Convex ellipsoid(const Vec3& semi_axes) {
+    Convex set(Kind::ellipsoid);
+    set.size_ = Vec<double>(semi_axes);
+    set.reach_ = std::max({semi_axes.x(), semi_axes.y(), semi_axes.z()});
     return set;
   }
   /// The convex hull of at least one vertex [m].
@@ -102,7 +112,8 @@ class Convex {
   [[nodiscard]] VertexBlock vertices() const noexcept { return vertices_.block(); }
   /// [m] The half extents of a box.
   [[nodiscard]] Vec<double> half_extents() const noexcept { return size_; }
-  /// [m] Of a cylinder: radius, radius, half length; of a cone: radius, z of base, z of apex.
+  /// [m] Of a cylinder: radius, radius, half length; of a cone: radius, z of base, z of apex; of an
+  /// ellipsoid: the semi-axes.
   [[nodiscard]] Vec<double> round_size() const noexcept { return size_; }
   /// The name of a corner of a box by its signs, bit k set where coordinate k is positive. A corner
   /// of a flat box has several sign patterns; the lowest is its name.
@@ -120,6 +131,8 @@ class Convex {
         return rim_support(d, d.z() > T(0.0));
       case Kind::cone:
         return cone_support(d);
+      case Kind::ellipsoid:
+        return oval_support(d);
       case Kind::polytope:
         break;
     }
@@ -135,6 +148,8 @@ class Convex {
       case Kind::cylinder:
       case Kind::cone:
         return rim_point<double>(name).p;
+      case Kind::ellipsoid:
+        return oval_point<double>(name).p;
       case Kind::polytope:
         break;
     }
@@ -150,6 +165,10 @@ class Convex {
         return size_.x() * across(d) + size_.z() * std::abs(d.z());
       case Kind::cone:
         return std::max(size_.x() * across(d) + size_.y() * d.z(), size_.z() * d.z());
+      case Kind::ellipsoid: {
+        const Vec<double> u = product(size_, d);
+        return std::sqrt(dot(u, u));
+      }
       case Kind::polytope:
         break;
     }
@@ -172,6 +191,8 @@ class Convex {
       case Kind::cylinder:
       case Kind::cone:
         return rim_point<T>(name);
+      case Kind::ellipsoid:
+        return oval_point<T>(name);
       case Kind::polytope:
         break;
     }
@@ -251,6 +272,24 @@ class Convex {
     return {name_of_centre(true), {T(0.0), T(0.0), T(size_.z())}};
   }
 
+  /// The image of the unit vector u under the map that takes the unit ball to the ellipsoid. Along
+  /// d, it is farthest for u along the image of d.
+  template <class T>
+  [[nodiscard]] Point<T> oval_support(const Vec<T>& d) const noexcept {
+    const Vec<T> size(size_);
+    const Vec<T> u(size.x() * d.x(), size.y() * d.y(), size.z() * d.z());
+    const T length = root(dot(u, u));
+    if (!(length > T(1e-300))) return oval_point<T>(0);
+    const Vec<T> p(size.x() * u.x(), size.y() * u.y(), size.z() * u.z());
+    return {SphereGrid::nearest(Vec<double>(u)), (T(1.0) / length) * p};
+  }
+  template <class T>
+  [[nodiscard]] Point<T> oval_point(std::uint32_t name) const noexcept {
+    const Vec<double> u = SphereGrid::node(name);
+    const Vec<T> p = Vec<T>(product(size_, u));
+    return {name, (T(1.0) / root(dot(Vec<T>(u), Vec<T>(u)))) * p};
+  }
+
   // Name of a rim point: bit 31 the end, bit 30 set for the centre of the disc, bits 28 and 29 the
   // signs of cosine and sine, the lower bits the tangent of half the angle within its quadrant.
   static constexpr double angle_steps = 268435455.0;  // 2^28 - 1
@@ -283,7 +322,7 @@ class Convex {
   std::uint32_t thick_axes_ = 0;  ///< of a box: one bit per axis with nonzero extent
   double reach_ = 0.0;            ///< [m]
   Vec<double> size_{};  ///< [m] box: half extents; cylinder: radius, radius, half length; cone:
-                        ///< radius, z of base, z of apex
+                        ///< radius, z of base, z of apex; ellipsoid: semi-axes
   VertexScan vertices_;
   Faces faces_;
   SupportTable table_;  ///< of a polytope with many vertices; otherwise empty
@@ -291,6 +330,7 @@ class Convex {
 
 inline int Convex::vertex_count() const noexcept {
   if (kind_ == Kind::polytope) return vertices_.size();
+  if (kind_ == Kind::ellipsoid) return 0;
   if (kind_ == Kind::cylinder || kind_ == Kind::cone) {
     return size_.x() > 0.0 ? 0 : (end(true) > end(false) ? 2 : 1);
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <repel/base/lanes.hpp>
+#include <repel/geometry/oval_tangents.hpp>
 #include <repel/geometry/tangents.hpp>
 
 namespace repel {
@@ -77,6 +78,16 @@ class Planes {
     return Planes({{{}, -unit(2), half_length}}, margin, 2.0 / sharp,
                   {length / side, radius / side, half_length * radius / side});
   }
+  /// An ellipsoid with these semi-axes [m], each above 0.
+  static Planes ellipsoid(const Vec3& semi_axes) {
+    Planes planes = box(semi_axes);
+    planes.is_box_ = false;
+    planes.oval_ = OvalTangents(semi_axes);
+    // The planes protrude, and the one that is found may not be the nearest of all.
+    const double oblong = semi_axes.maxCoeff() / semi_axes.minCoeff();
+    planes.margin_ = 2.0 * planes.oval_.sagitta() + 4e-15 * oblong * semi_axes.maxCoeff();
+    return planes;
+  }
 
   /// There is none.
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
@@ -86,8 +97,13 @@ class Planes {
   /// [-] A point at most d above each plane is at most margin() + d sharpness() outside the set: at
   /// the tip of a sliver, far.
   [[nodiscard]] double sharpness() const noexcept { return sharpness_; }
+  /// [m] By how much a plane may be violated without being worth another step of a search: less
+  /// than the margin, 0 for all but ellipsoids.
+  [[nodiscard]] double slack() const noexcept { return oval_.sagitta(); }
   /// Number of planes.
-  [[nodiscard]] std::uint32_t size() const noexcept { return listed() + side_.size(); }
+  [[nodiscard]] std::uint32_t size() const noexcept {
+    return listed() + side_.size() + oval_.size();
+  }
   /// [byte] Heap memory held, and the heap memory of so many planes.
   [[nodiscard]] std::size_t bytes() const noexcept { return numbers_.capacity() * sizeof(double); }
   /// [bytes] Of heap that so many planes take.
@@ -97,21 +113,26 @@ class Planes {
 
   /// Unit, outward; `i` less than size().
   [[nodiscard]] Vec<double> normal(std::uint32_t i) const noexcept {
-    if (i >= size_) return side_.normal(i - listed());
+    if (i >= size_) return is_oval() ? oval_.normal(i - listed()) : side_.normal(i - listed());
     return {numbers_[i], numbers_[stride_ + i], numbers_[2 * stride_ + i]};
   }
   /// [m]
   [[nodiscard]] double offset(std::uint32_t i) const noexcept {
-    return i < size_ ? numbers_[3 * stride_ + i] : side_.offset();
+    if (i < size_) return numbers_[3 * stride_ + i];
+    return is_oval() ? oval_.offset(i - listed()) : side_.offset();
   }
 
   /// True for the six planes of a box: plane 2 k and 2 k + 1 are normal to axis k, outward along it
   /// and against it.
   [[nodiscard]] bool is_box() const noexcept { return is_box_; }
   /// True when some planes are tangent to a curved side.
-  [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0; }
-  /// The two tangent planes that face along `x`, seen from the axis. Must be round.
+  [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0 || is_oval(); }
+  /// True for the planes of an ellipsoid.
+  [[nodiscard]] bool is_oval() const noexcept { return oval_.size() > 0; }
+  /// The two tangent planes that face along `x`, seen from the axis; of an ellipsoid, the one that
+  /// touches behind `x` and the one nearest to it. Must be round.
   [[nodiscard]] std::array<std::uint32_t, 2> facing(const Vec<double>& x) const noexcept {
+    if (is_oval()) return {listed() + oval_.behind(x), listed() + oval_.nearest(x)};
     const std::array<std::uint32_t, 2> names = side_.around(x);
     return {listed() + names[0], listed() + names[1]};
   }
@@ -148,6 +169,7 @@ class Planes {
   [[nodiscard]] std::uint32_t listed() const noexcept { return static_cast<std::uint32_t>(size_); }
 
   Tangents side_;
+  OvalTangents oval_;
   bool is_box_ = false;
   double margin_ = 0.0;
   double sharpness_ = 2.0;
@@ -189,7 +211,12 @@ inline Planes::Nearest<double> Planes::nearest_of_listed(const Vec<double>& x) c
 inline Planes::Nearest<double> Planes::nearest(const Vec<double>& x) const noexcept {
   if (is_box_) return nearest_of_box(x);
   const Nearest<double> of_listed = nearest_of_listed(x);
-  if (side_.size() == 0) return of_listed;
+  if (!is_round()) return of_listed;
+  if (is_oval()) {
+    const std::uint32_t name = listed() + oval_.nearest(x);
+    const double depth = offset(name) - dot(normal(name), x);
+    return depth < of_listed.depth ? Nearest<double>{name, depth} : of_listed;
+  }
   const std::uint32_t on_side = side_.nearest(x);
   const double depth = side_.offset() - dot(side_.normal(on_side), x);
   return depth < of_listed.depth ? Nearest<double>{listed() + on_side, depth} : of_listed;

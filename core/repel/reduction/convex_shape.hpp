@@ -78,6 +78,22 @@ class Shape {
                  Planes::cone(radius, half_length), options);
   }
 
+  /// The largest semi-axis of an ellipsoid over its least one.
+  static constexpr double most_oblong = 1e4;
+
+  /// An ellipsoid with these semi-axes [m] along x, y and z: each 1e-6 to 1e6, the largest at most
+  /// 1e4 times the least. The surface is exact, not a mesh; with equal semi-axes a sphere.
+  static Shape ellipsoid(const Vec3& semi_axes, const ReductionOptions& options = {}) {
+    checked("semi-axis x", semi_axes.x(), 1e-6, largest, "m");
+    checked("semi-axis y", semi_axes.y(), 1e-6, largest, "m");
+    checked("semi-axis z", semi_axes.z(), 1e-6, largest, "m");
+    const auto [least, most] = std::minmax({semi_axes.x(), semi_axes.y(), semi_axes.z()});
+    checked("largest over least semi-axis", most / least, 1.0, most_oblong, "");
+    if (least == most) return sphere(most, options);
+    return Shape(detail::ellipsoid_ladder(semi_axes, allowed(options)),
+                 Planes::ellipsoid(semi_axes), options);
+  }
+
   /// The convex hull of 1 to 10 000 points [m]; they may coincide, be interior, collinear or
   /// coplanar. Whoever builds one includes reduction/shape.hpp. A template, always of
   /// ReductionOptions: others need not compile the building of hulls.
@@ -169,6 +185,8 @@ class Shape {
         return detail::cylinder_ladder(core.round_size().x(), core.round_size().z(), options);
       case Convex::Kind::cone:
         return detail::cone_ladder(core.round_size().x(), core.round_size().z(), options);
+      case Convex::Kind::ellipsoid:
+        return detail::ellipsoid_ladder(to_vec3(core.round_size()), options);
       case Convex::Kind::polytope:
         break;
     }

@@ -79,7 +79,8 @@ class DeepestPoint {
       : A_(A),
         B_(B),
         size_(A.reach + B.reach +
-              sum(magnitudes(column<double>(B.X_W, 3) - column<double>(A.X_W, 3)))) {}
+              sum(magnitudes(column<double>(B.X_W, 3) - column<double>(A.X_W, 3)))),
+        slack_(A.planes.slack() + B.planes.slack()) {}
 
   /// Warm starts from the basis in `warm` if it is still dual feasible, and stores the last basis
   /// there. False when the polytopes have no common point deeper than rounding, or none was found.
@@ -148,20 +149,23 @@ class DeepestPoint {
     if (load(warm, basis) && basis.weigh() &&
         basis.least_multiplier() >= T(-Precision<T>::of_multiplier)) {
       const int before = pivots_;
-      end = improve(basis, std::min(allowed, pivots_ + Precision<T>::warm_pivots));
+      end = improve(basis, std::min(allowed, pivots_ + Precision<T>::warm_pivots + more_pivots()));
       if (end == End::best && pivots_ == before) return end;
     }
     if (end == End::unclear && begin(warm, basis, allowed)) {
-      end = improve(basis, std::min(allowed, pivots_ + Precision<T>::cold_pivots));
+      end = improve(basis, std::min(allowed, pivots_ + Precision<T>::cold_pivots + more_pivots()));
     }
     save(basis, warm);
     return end;
   }
 
+  /// Around an ellipsoid, the planes that are nearly right are many in two directions.
+  [[nodiscard]] int more_pivots() const noexcept { return slack_ > 0.0 ? 120 : 0; }
+
   /// Pivots until no plane is violated, or the number of pivots reaches `most`.
   template <class T>
   End improve(PlaneBasis<T>& basis, int most) noexcept {
-    const T tolerance(Precision<T>::of_depth * size_);
+    const T tolerance(Precision<T>::of_depth * size_ + slack_);
     while (true) {
       const auto entry = basis.most_violated(tolerance);
       if (!(entry.violation > tolerance) || basis.holds(entry)) return judge(basis, tolerance);
@@ -191,7 +195,7 @@ class DeepestPoint {
       const double above = std::max(0.0, -static_cast<double>(basis.depth(s)));
       outside_ += above * (s == 0 ? A_ : B_).planes.sharpness();
     }
-    if (outside_ > Precision<T>::of_place * size_) return End::unclear;
+    if (outside_ > Precision<T>::of_place * size_ + 4.0 * slack_) return End::unclear;
     point_ = Vec<double>(basis.point());
     gradient_ = Vec<double>(basis.gradient());
     for (std::size_t s = 0; s < 2; ++s) depth_[s] = static_cast<double>(basis.depth(s));
@@ -272,7 +276,8 @@ class DeepestPoint {
 
   PosedPlanes A_;
   PosedPlanes B_;
-  double size_;  ///< [m]
+  double size_;   ///< [m]
+  double slack_;  ///< [m] Planes::slack of both
   int pivots_ = 0;
   bool doubted_ = false;
   std::array<double, 2> depth_{};

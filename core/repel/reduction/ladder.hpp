@@ -206,6 +206,32 @@ inline Ladder cone_ladder(double radius, double half_length, const ReductionOpti
   return verified(std::move(ladder), {base_and_side, 2});
 }
 
+/// An ellipsoid shrinks to its centre. With c the least semi-axis, the level at depth t has the
+/// squares (c - t)^2 + (1 - t / c) (a^2 - c^2) of the semi-axes a: the same radii of curvature at
+/// the ends of the least axis, less t. So its support function is less by t there, and by more
+/// elsewhere. That it loses nothing more at these ends makes the levels of a flat one nearly as
+/// wide as the shape.
+inline Ladder ellipsoid_ladder(const Vec3& semi_axes, const ReductionOptions& options) {
+  int thin = 0;
+  for (int axis = 1; axis < 3; ++axis) thin = semi_axes[axis] < semi_axes[thin] ? axis : thin;
+  const double least = semi_axes[thin];
+  Ladder ladder = ladder_of(Convex::ellipsoid(semi_axes));
+  for (int i = 1; i < options.levels; ++i) {
+    const double t = depth_after(i, options, least);
+    const double left = 1.0 - t / least;
+    Vec3 level;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double more = (semi_axes[axis] - least) * (semi_axes[axis] + least);
+      level[axis] = std::sqrt((least - t) * (least - t) + left * more);
+    }
+    level[thin] = least - t;
+    append(ladder, Convex::ellipsoid(level), t, t);
+  }
+  append(ladder, Convex::box({0, 0, 0}), least, least);
+  const Vec3 ends[] = {unit(thin)};
+  return verified(std::move(ladder), {ends, 1});
+}
+
 /// A sphere is a point with a depth (Figure 4 d).
 inline Ladder sphere_ladder(double radius) {
   return ladder_of(Convex::box({0, 0, 0}), radius);

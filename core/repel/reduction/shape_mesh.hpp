@@ -50,7 +50,9 @@ inline std::vector<Vec3> mesh_outline(const Convex& set, double radius, int turn
     }
     return points;
   }
-  for (const Vec3& d : mesh_directions(turns)) {
+  for (Vec3 d : mesh_directions(turns)) {
+    // Even on the unit ball whose image the ellipsoid is.
+    if (set.kind() == Convex::Kind::ellipsoid) d = d.cwiseQuotient(to_vec3(set.round_size()));
     add_once(points, to_vec3(set.support(Vec<double>(d)).p) + radius * d);
   }
   return points;

@@ -20,6 +20,8 @@ namespace repel {
       return Shape::capsule(part.size.x(), part.size.y(), options);
     case PartKind::cylinder:
       return Shape::cylinder(part.size.x(), part.size.y(), options);
+    case PartKind::ellipsoid:
+      return Shape::ellipsoid(part.size, options);
     case PartKind::hull:
       return Shape::hull(part.points, options);
   }

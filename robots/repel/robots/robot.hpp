@@ -15,7 +15,7 @@
 namespace repel {
 
 /// The form of a part.
-enum class PartKind { box, sphere, capsule, cylinder, hull };
+enum class PartKind { box, sphere, capsule, cylinder, ellipsoid, hull };
 
 /// The name of `kind`.
 [[nodiscard]] constexpr const char* to_text(PartKind kind) noexcept {
@@ -28,6 +28,8 @@ enum class PartKind { box, sphere, capsule, cylinder, hull };
       return "capsule";
     case PartKind::cylinder:
       return "cylinder";
+    case PartKind::ellipsoid:
+      return "ellipsoid";
     case PartKind::hull:
       break;
   }
@@ -40,8 +42,8 @@ struct RobotPart {
   std::string in_link;  ///< its link in the file
   int link = -1;        ///< index in ArmModel::links; -1 for the base
   PartKind kind = PartKind::box;  ///< its form
-  /// [m] box: half extents; sphere: radius, 0, 0; capsule and cylinder, along z: radius, half
-  /// length (of a capsule without its caps), 0; hull: unused.
+  /// [m] box: half extents; ellipsoid: semi-axes; sphere: radius, 0, 0; capsule and cylinder, along
+  /// z: radius, half length (of a capsule without its caps), 0; hull: unused.
   Vec3 size = Vec3::Zero();
   /// [m] hull only, in the frame of the part: the vertices of the convex hull of the mesh, or of
   /// one of its convex parts.

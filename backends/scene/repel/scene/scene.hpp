@@ -40,18 +40,18 @@ void is_built_for(EigenAlignmentHere, VectorRegisterHere) noexcept;
 struct Part {
   std::string name;              ///< unique among the parts of the tool
   Shape shape;                   ///< in the frame P
-  std::string kind;              ///< box, sphere, capsule, cylinder, cone or hull
+  std::string kind;              ///< box, sphere, capsule, cylinder, cone, ellipsoid or hull
   Pose X_BP = Pose::Identity();  ///< [m] pose in the tool frame
   Gaps gaps{};                   ///< of the mesh, in the frame P; only of its first part
 };
 
 /// One convex part P of the world.
 struct Obstacle {
-  std::string name;                           ///< unique in the scene
-  Shape shape;                                ///< in the frame P
-  std::string kind;                           ///< box, sphere, capsule, cylinder, cone or hull
-  Pose X_WP = Pose::Identity();               ///< [m] pose; initial pose if it moves
-  ForceLaw law;                               ///< between it and every part of every arm
+  std::string name;              ///< unique in the scene
+  Shape shape;                   ///< in the frame P
+  std::string kind;              ///< box, sphere, capsule, cylinder, cone, ellipsoid or hull
+  Pose X_WP = Pose::Identity();  ///< [m] pose; initial pose if it moves
+  ForceLaw law;                  ///< between it and every part of every arm
   std::optional<ReciprocatingMotion> motion;  ///< none: it is fixed
   Gaps gaps{};                                ///< of the mesh, as those of a Part
 };
@@ -72,7 +72,7 @@ struct StaticModel {
 struct LoosePart {
   std::string name;                  ///< unique in the scene
   Shape shape = Shape::sphere(0.0);  ///< in the frame P
-  std::string kind;                  ///< box, sphere, capsule, cylinder, cone or hull
+  std::string kind;                  ///< box, sphere, capsule, cylinder, cone, ellipsoid or hull
   Pose X_WP = Pose::Identity();      ///< [m] where it is at the start, and where it comes
   ForceLaw law;                      ///< between it and every part of every arm
   bool at_start = true;              ///< it is there at the start

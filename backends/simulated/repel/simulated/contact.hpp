@@ -22,7 +22,8 @@ struct ContactPart {
 };
 
 /// Support values [m] of the core of `shape` along its x, y and z axis: half extents of a box; 0, 0
-/// and half length of a capsule; radius, radius and half length of a cylinder or cone.
+/// and half length of a capsule; radius, radius and half length of a cylinder or cone; the
+/// semi-axes of an ellipsoid.
 [[nodiscard]] Vec3 core_extents(const Shape& shape) noexcept;
 
 /// Throws SetupError naming a part with a link not in `model` or a pose not rigid. Set-up only.
