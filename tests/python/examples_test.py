@@ -48,6 +48,14 @@ def test_an_own_controller(tmp_path):
     assert lines[-1] == "x 0.197 m, wall 71.9 N, saturated"  # as 03_own_controller.cpp
 
 
+def test_an_arm_in_mujoco(tmp_path):
+    pytest.importorskip("mujoco", reason="the package mujoco is not installed")
+    said = said_by("05_mujoco.py", folder=tmp_path)
+    force = re.match(r"0 contacts, walls of up to (\d+) N", said)[1]
+    assert 10 < int(force) < 100
+    assert float(re.search(r"within (\S+) m of MuJoCo's", said)[1]) < 1e-9
+
+
 def test_the_notebook_runs():
     notebook = json.loads((EXAMPLES / "first_steps.ipynb").read_text())
     names = {}
