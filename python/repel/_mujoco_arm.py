@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,10 @@ from .description import Arm, Link, Part
 mujoco = needed("mujoco", extra="mujoco")
 
 #: What a constructor of Shape of that name takes of the sizes of a geom.
-_SIZES = {"sphere": lambda size: (size[0],), "capsule": lambda size: (size[0], size[1]),
-          "cylinder": lambda size: (size[0], size[1]), "box": lambda size: (size,),
-          "ellipsoid": lambda size: (size,)}
+_SIZES: dict[str, Callable[[Any], tuple[Any, ...]]] = {
+    "sphere": lambda size: (size[0],), "capsule": lambda size: (size[0], size[1]),
+    "cylinder": lambda size: (size[0], size[1]), "box": lambda size: (size,),
+    "ellipsoid": lambda size: (size,)}
 
 
 def name_of(model: Any, kind: str, index: int) -> str:
@@ -149,9 +150,9 @@ class ModelArm:
             lower=float(model.jnt_range[joint][0]) if limited else -math.inf,
             upper=float(model.jnt_range[joint][1]) if limited else math.inf,
             effort_limit=self._effort_limit(joint),
-            viscous_friction=float(model.dof_damping[dof]),
+            viscous_friction=float(model.dof_damping[dof]) + self._seen(joint, "damping"),
             coulomb_friction=float(model.dof_frictionloss[dof]),
-            rotor_inertia=float(model.dof_armature[dof])))
+            rotor_inertia=float(model.dof_armature[dof]) + self._seen(joint, "armature")))
         return _pose(-anchor)
 
     def actuators(self, joint: int) -> list[int]:
@@ -160,6 +161,12 @@ class ModelArm:
         on_joints = [int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT)]
         return [i for i, kind in enumerate(model.actuator_trntype)
                 if int(kind) in on_joints and model.actuator_trnid[i, 0] == joint]
+
+    def _seen(self, joint: int, name: str) -> float:
+        """The armature or damping of actuators, seen at the joint; MuJoCo 3 has none there."""
+        own = getattr(self.model, f"actuator_{name}", None)
+        return 0.0 if own is None else sum(float(self.model.actuator_gear[i, 0]) ** 2 * float(own[i])
+                                           for i in self.actuators(joint))
 
     def _effort_limit(self, joint: int) -> float:
         """[N m] or [N] of the joint and of its actuators together; 0: without a limit."""

@@ -1,0 +1,6 @@
+# What the stub says in place of what it is told by values.
+_repel.QUERY_ENDS:
+    QUERY_ENDS: tuple[str, ...]
+
+_repel.Tick.FIELDS:
+    FIELDS: tuple[str, ...]
