@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from . import _repel
 from ._errors import SetupError, how_to_have
-from ._repel import (QUERY_ENDS, Cell, Command, ForceLaw, QueryOptions, Separation, Shape, Tick,
-                     WarmStart, WarmStarts, World, separation)
+from ._repel import (QUERY_ENDS, ArmKinematics, Cell, Command, ForceLaw, QueryOptions, Separation,
+                     Shape, Tick, WarmStart, WarmStarts, World, separation)
 from ._separations import SEPARATION, separations
 from .description import Arm, Capacities, Kinematics, Link, Obstacle, Part
 from .program import program, run, view
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.2.0"
 
-__all__ = ["Arm", "Capacities", "Cell", "Command", "Cover", "ForceLaw", "Kinematics", "Link",
+__all__ = ["Arm", "ArmKinematics", "Capacities", "Cell", "Command", "Cover", "ForceLaw", "Kinematics", "Link",
            "Obstacle", "Part", "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene",
            "ScriptedOperator", "Separation", "SetupError", "Shape", "SimulatedArm", "Tick",
            "WarmStart", "WarmStarts", "World", "cover", "load_scene", "program", "read_recording",

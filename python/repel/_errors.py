@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The exception of the package, and what is said of a part that a build goes without."""
 
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
 from ._left_out import PACKAGES
 
 
@@ -21,3 +26,16 @@ def how_to_have(part: str) -> str:
     if part not in PACKAGES:
         return "its part was switched off when this was built"
     return f"to have it: apt-get install {PACKAGES[part]}, then pip install . again"
+
+
+def needed(module: str, package: str | None = None, *, extra: str) -> Any:
+    """A module of an optional package. Raises SetupError with the command that installs it.
+
+    extra: what the package is part of, in the optional dependencies of this one.
+    """
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        package = package or module
+        raise SetupError(f"{package} is not installed; to have it: pip install {package}, or "
+                         f"pip install 'repel-haptics[{extra}]'") from error

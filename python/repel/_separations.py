@@ -26,22 +26,29 @@ def separations(shapes: Sequence[_repel.Shape], X_W: Any, pairs: Any, *,
     w x y z (N, 4). pairs: (M, 2) indices of shapes, A and B of each pair. warm: WarmStarts(M), kept
     by the caller from call to call. out: the array of an earlier call, to be used again.
 
-    Row i has the same bits as `separation` gives for that pair. Other threads run meanwhile.
+    X_W may also be an array (B, N, 4, 4), which places all shapes B times: then the result is (B, M),
+    and WarmStarts has B M rows. Row i has the same bits as `separation` gives for that pair. Other threads run
+    meanwhile.
     """
+    batch: tuple[int, ...] = ()
+    if isinstance(X_W, np.ndarray) and X_W.ndim == 4:
+        batch, X_W = X_W.shape[:1], X_W.reshape(-1, *X_W.shape[2:])
     index = np.asarray(pairs)
     if index.ndim != 2 or index.shape[1] != 2:
         raise ValueError(f"pairs: expected indices of shapes (M, 2), got shape {index.shape}")
     if index.dtype.kind not in "iu":
         raise TypeError(f"pairs: expected whole numbers, got {index.dtype}")
+    rows = (*batch, len(index))
     if out is None:
-        out = np.empty(len(index), SEPARATION)
+        out = np.empty(rows, SEPARATION)
     elif not isinstance(out, np.ndarray):
         raise TypeError(f"out: expected an array, got {type(out).__name__}")
-    elif out.dtype != SEPARATION or out.shape != (len(index),):
-        raise ValueError(f"out: expected {len(index)} rows of repel.SEPARATION, "
+    elif out.dtype != SEPARATION or out.shape != rows:
+        raise ValueError(f"out: expected {' x '.join(map(str, rows))} rows of repel.SEPARATION, "
                          f"got {out.dtype} of shape {out.shape}")
     elif not out.flags.carray:
         raise ValueError("out: expected rows one after the other that may be written, got others")
-    _repel._fill_separations(list(shapes), X_W, np.ascontiguousarray(index, np.int64),
-                             options or _repel.QueryOptions(), warm, out.view(np.uint8))
+    _repel._fill_separations(list(shapes), X_W, batch[0] if batch else 1,
+                             np.ascontiguousarray(index, np.int64),
+                             options or _repel.QueryOptions(), warm, out.reshape(-1).view(np.uint8))
     return out

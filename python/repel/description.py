@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
 
+from . import _repel
+from ._errors import SetupError, how_to_have
 from ._repel import ForceLaw, Shape
 
 
@@ -107,8 +110,59 @@ class Arm:
 
     def __post_init__(self) -> None:
         _check_all("links", self.links, Link,
-                   "; the arm of a URDF file is that of a scene: repel.Cell.from_scene")
+                   "; the arm of a URDF file is repel.Arm.from_urdf(path)")
         _check_all("parts", self.parts, Part)
+
+    @classmethod
+    def from_urdf(cls, path: str | os.PathLike[str], *, tip: str = "",
+                  packages: Sequence[str | os.PathLike[str]] = (),
+                  parts: str | None = "collision", **change: Any) -> Arm:
+        """The arm of a URDF file, as scenes have it: see docs/robots.md.
+
+        tip: the link whose frame is the tool frame; empty: the end of the longest chain without its
+        gripper. packages: folders where package:// is searched. parts: those of the moving links,
+        each mesh as its hull: "collision", "visual" (what the arm looks like) or None. change:
+        other arguments of Arm. Raises SetupError naming file, line and value.
+        """
+        if not hasattr(_repel, "_read_urdf"):
+            raise SetupError(f"Arm.from_urdf is not in this build: {how_to_have('robots')}")
+        read = _repel._read_urdf(os.fspath(path), tip, [os.fspath(each) for each in packages],
+                                 "none" if parts is None else parts)
+        for warning in read.pop("warnings"):
+            warnings.warn(warning, stacklevel=2)
+        read["links"] = [Link(**each) for each in read["links"]]
+        read["parts"] = [Part(**each) for each in read["parts"]]
+        return cls(**{**read, **change})
+
+    @classmethod
+    def from_mujoco(cls, model: Any, site: str, *, qpos: Any = None,
+                    leave_out: Sequence[str] = (), **change: Any) -> Arm:
+        """The arm between the world and a site of a mujoco.MjModel; the site is the tool frame.
+
+        Its links have the hinge and slide joints there, the masses of all that they carry, and the
+        geoms of these as parts. Other joints on it are held where qpos (nq,) has them; none: at
+        the reference of the model. The arm starts there, too. Geoms are left out that no bit of
+        contype or conaffinity lets touch, or that leave_out names. change: other arguments of Arm.
+        Raises SetupError naming the joint or geom that an arm cannot have.
+        """
+        from . import _mujoco_arm
+        return _mujoco_arm.arm_of(model, site, qpos, leave_out, **change)
+
+    @classmethod
+    def from_mjcf(cls, path: str | os.PathLike[str], site: str, **options: Any) -> Arm:
+        """The same of an MJCF file, as MuJoCo reads it. options: those of `from_mujoco`."""
+        from . import _mujoco_arm
+        return _mujoco_arm.arm_of_mjcf(path, site, **options)
+
+    @classmethod
+    def from_pinocchio(cls, model: Any, frame: str, *, q: Any = None, **change: Any) -> Arm:
+        """The arm between the world and a frame of a pinocchio.Model; the frame is the tool frame.
+
+        Joints beside that chain are held where q (nq,) has them; none: at neutral. It has no parts.
+        change: other arguments of Arm. Raises SetupError naming the joint that an arm cannot have.
+        """
+        from . import _pinocchio_arm
+        return _pinocchio_arm.arm_of(model, frame, q, **change)
 
 
 @dataclass

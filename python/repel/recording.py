@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from . import _repel
-from ._errors import SetupError
+from ._errors import SetupError, needed
 
 _TOPICS = ("/inputs", "/forces", "/separations", "/energy", "/timing", "/poses")
 #: The messages of a topic, in their order.
@@ -60,27 +60,17 @@ class Recording(Mapping[str, np.ndarray]):
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame."""
-        pandas = _needed("pandas")
+        pandas = needed("pandas", extra="tables")
         return pandas.DataFrame(self._columns)
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
         """Writes a Parquet file with a column for each."""
-        arrow = _needed("pyarrow")
-        parquet = _needed("pyarrow.parquet", "pyarrow")
+        arrow = needed("pyarrow", extra="tables")
+        parquet = needed("pyarrow.parquet", "pyarrow", extra="tables")
         parquet.write_table(arrow.table(self._columns), os.fspath(path))
 
     def __repr__(self) -> str:
         return f"<repel.Recording of {self.ticks} ticks, {len(self)} columns>"
-
-
-def _needed(module: str, package: str | None = None) -> Any:
-    import importlib
-    try:
-        return importlib.import_module(module)
-    except ImportError as error:
-        package = package or module
-        raise SetupError(f"{package} is not installed; to have it: pip install {package}, or "
-                         "pip install 'repel-haptics[tables]'") from error
 
 
 def read_recording(path: str | os.PathLike[str]) -> Recording:

@@ -43,17 +43,9 @@ ArmLink link_of(nb::handle from) {
   link.type = type == "revolute" ? JointType::revolute : JointType::prismatic;
   link.X_PJ = optional_pose(from, "X_PJ");
   link.axis_J = vector_of(from.attr("axis_J"), "axis_J");
-  link.mass = number(from, "mass");
   link.p_LC = vector_of(from.attr("p_LC"), "p_LC");
   link.I_C_L = inertia_of(from);
-  link.lower = number(from, "lower");
-  link.upper = number(from, "upper");
-  link.velocity_limit = number(from, "velocity_limit");
-  link.effort_limit = number(from, "effort_limit");
-  link.viscous_friction = number(from, "viscous_friction");
-  link.coulomb_friction = number(from, "coulomb_friction");
-  link.rotor_inertia = number(from, "rotor_inertia");
-  link.brake_torque = number(from, "brake_torque");
+  for (const auto& [name, member] : link_numbers) link.*member = number(from, name);
   return link;
 }
 
@@ -80,12 +72,8 @@ std::unique_ptr<ArmKinematics> kinematics_of(nb::handle from, const ArmModel& mo
 
 ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKinematics*>& own) {
   ArmDescription arm;
-  arm.name = nb::cast<std::string>(from.attr("name"));
-  arm.model.name = arm.name;
-  arm.model.X_WB = optional_pose(from, "X_WB");
-  arm.model.X_LT = optional_pose(from, "X_LT");
-  arm.model.gravity_W = vector_of(from.attr("gravity_W"), "gravity_W");
-  for (nb::handle link : from.attr("links")) arm.model.links.push_back(link_of(link));
+  arm.model = arm_model_of(from);
+  arm.name = arm.model.name;
   for (nb::handle part : from.attr("parts")) arm.parts.push_back(part_of(part));
   if (const nb::object start = from.attr("start"); !start.is_none()) {
     arm.start = numbers_of(start, "start");
@@ -119,6 +107,16 @@ ObstacleDescription obstacle_of(nb::handle from) {
 }
 
 }  // namespace
+
+ArmModel arm_model_of(nb::handle from) {
+  ArmModel model;
+  model.name = nb::cast<std::string>(from.attr("name"));
+  model.X_WB = optional_pose(from, "X_WB");
+  model.X_LT = optional_pose(from, "X_LT");
+  model.gravity_W = vector_of(from.attr("gravity_W"), "gravity_W");
+  for (nb::handle link : from.attr("links")) model.links.push_back(link_of(link));
+  return model;
+}
 
 Capacities capacities_of(nb::handle from) {
   Capacities limits;

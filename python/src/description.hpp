@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <nanobind/nanobind.h>
@@ -19,6 +20,22 @@ struct OwnDescription {
   CellDescription cell;
   std::vector<OwnKinematics*> kinematics;  ///< those of the arms that are written in Python
 };
+
+/// The members of a repel.Link that are one number.
+inline constexpr std::pair<const char*, double ArmLink::*> link_numbers[] = {
+    {"lower", &ArmLink::lower},
+    {"upper", &ArmLink::upper},
+    {"velocity_limit", &ArmLink::velocity_limit},
+    {"effort_limit", &ArmLink::effort_limit},
+    {"mass", &ArmLink::mass},
+    {"viscous_friction", &ArmLink::viscous_friction},
+    {"coulomb_friction", &ArmLink::coulomb_friction},
+    {"rotor_inertia", &ArmLink::rotor_inertia},
+    {"brake_torque", &ArmLink::brake_torque}};
+
+/// The links of a repel.Arm, its base, its tool frame and its gravity.
+/// @throws SetupError or the errors of Python, naming what is wrong
+[[nodiscard]] ArmModel arm_model_of(nb::handle from);
 
 /// Those of a repel.Capacities; none: as many as C++ has. @throws SetupError
 [[nodiscard]] Capacities capacities_of(nb::handle from);

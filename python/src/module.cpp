@@ -29,7 +29,11 @@ NB_MODULE(_repel, m) {
   bind_separation(m);
   bind_world(m);
   bind_ticks(m);
+  bind_kinematics(m);
   bind_cell(m);
+#ifdef REPEL_PYTHON_ROBOTS
+  bind_robots(m);
+#endif
 #ifdef REPEL_PYTHON_SCENES
   bind_scenes(m);
 #endif

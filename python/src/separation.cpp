@@ -112,17 +112,18 @@ std::vector<std::int64_t> indices_of(const Pairs& pairs, std::size_t shapes) {
   return indices;
 }
 
-void ask_many(const nb::list& list, nb::handle X_W, const Pairs& pairs, const QueryOptions& options,
-              WarmStarts* warm, const Bytes& out) {
+/// @param batches times that all shapes are placed: X_W has the poses of one after the other
+void ask_many(const nb::list& list, nb::handle X_W, std::size_t batches, const Pairs& pairs,
+              const QueryOptions& options, WarmStarts* warm, const Bytes& out) {
   const std::vector<const Shape*> shapes = shapes_of(list);
   const std::vector<Pose> poses = poses_of(X_W, "X_W");
-  if (poses.size() != shapes.size()) {
+  if (poses.size() != batches * shapes.size()) {
     throw nb::value_error(("X_W: expected a pose for each of " + std::to_string(shapes.size()) +
-                           " shapes, got " + std::to_string(poses.size()))
+                           " shapes, got " + std::to_string(poses.size() / batches))
                               .c_str());
   }
   const std::vector<std::int64_t> indices = indices_of(pairs, shapes.size());
-  const std::size_t count = pairs.shape(0);
+  const std::size_t count = batches * pairs.shape(0);
   if (warm != nullptr && warm->rows.size() != count) {
     throw nb::value_error(("warm: expected " + std::to_string(count) +
                            " rows, one for each pair, got " + std::to_string(warm->rows.size()))
@@ -131,15 +132,18 @@ void ask_many(const nb::list& list, nb::handle X_W, const Pairs& pairs, const Qu
   if (out.size() != count * sizeof(Row)) {
     throw nb::value_error(("out: expected " + std::to_string(count) + " rows").c_str());
   }
-  const std::int64_t* index = indices.data();
   auto* row = reinterpret_cast<Row*>(out.data());
+  WarmStart* kept = warm != nullptr ? warm->rows.data() : nullptr;
   const Released others_go_on;
-  for (std::size_t i = 0; i < count; ++i, index += 2) {
-    WarmStart cold;
-    const auto a = static_cast<std::size_t>(index[0]);
-    const auto b = static_cast<std::size_t>(index[1]);
-    row[i] = row_of(ask(*shapes[a], poses[a], *shapes[b], poses[b], options,
-                        warm != nullptr ? warm->rows[i] : cold));
+  for (std::size_t batch = 0; batch < batches; ++batch) {
+    const Pose* X = poses.data() + batch * shapes.size();
+    for (std::size_t i = 0; i < indices.size(); i += 2) {
+      WarmStart cold;
+      const auto a = static_cast<std::size_t>(indices[i]);
+      const auto b = static_cast<std::size_t>(indices[i + 1]);
+      *row++ = row_of(
+          ask(*shapes[a], X[a], *shapes[b], X[b], options, kept != nullptr ? *kept++ : cold));
+    }
   }
 }
 
@@ -240,10 +244,12 @@ void bind_separation(nb::module_& m) {
         "The signed distance of shape `a` at pose X_WA and shape `b` at X_WB.\n\n"
         "A pose [m] is a rigid 4x4 matrix, or (position (3,), unit quaternion w x y z (4,)).\n"
         "Raises SetupError for a pose that is not finite or not rigid.");
-  m.def("_fill_separations", &ask_many, nb::arg("shapes"), nb::arg("X_W").none(), nb::arg("pairs"),
-        nb::arg("options"), nb::arg("warm").none(), nb::arg("out"),
-        nb::sig("def _fill_separations(shapes: list[Shape], X_W: object, pairs: numpy.ndarray, "
-                "options: QueryOptions, warm: WarmStarts | None, out: numpy.ndarray) -> None"));
+  m.def("_fill_separations", &ask_many, nb::arg("shapes"), nb::arg("X_W").none(),
+        nb::arg("batches"), nb::arg("pairs"), nb::arg("options"), nb::arg("warm").none(),
+        nb::arg("out"),
+        nb::sig("def _fill_separations(shapes: list[Shape], X_W: object, batches: int, pairs: "
+                "numpy.ndarray, options: QueryOptions, warm: WarmStarts | None, out: "
+                "numpy.ndarray) -> None"));
 }
 
 }  // namespace repel::python

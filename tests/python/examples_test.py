@@ -48,6 +48,14 @@ def test_an_own_controller(tmp_path):
     assert lines[-1] == "x 0.197 m, wall 71.9 N, saturated"  # as 03_own_controller.cpp
 
 
+def test_an_arm_in_mujoco(tmp_path):
+    pytest.importorskip("mujoco", minversion="4", reason="its distances are exact from 4 on")
+    said = said_by("05_mujoco.py", folder=tmp_path)
+    force = re.match(r"0 contacts, walls of up to (\d+) N", said)[1]
+    assert 10 < int(force) < 100
+    assert float(re.search(r"within (\S+) m of MuJoCo's", said)[1]) < 1e-9
+
+
 def test_the_notebook_runs():
     notebook = json.loads((EXAMPLES / "first_steps.ipynb").read_text())
     names = {}
@@ -79,3 +87,12 @@ def test_stubs_come_with_the_package():
     for name in ("Shape", "Cell", "World", "Tick"):
         assert f"class {name}:" in stub
     assert "def separation(a: Shape, X_WA: numpy.typing.ArrayLike" in stub
+
+
+def test_the_types_of_the_package_hold(tmp_path):
+    pytest.importorskip("mypy")
+    # What NumPy multiplies is Any.
+    checked = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--no-warn-return-any",
+                              "-p", "repel"], cwd=tmp_path, capture_output=True, text=True,
+                             check=False)
+    assert checked.returncode == 0, checked.stdout

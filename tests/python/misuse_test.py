@@ -184,7 +184,7 @@ def test_a_world_and_a_simulated_arm_take_one_call_at_a_time():
 
 @pytest.mark.parametrize("wrong, words", [
     (lambda: repel.Arm("x.urdf"), r"links: expected a sequence of repel.Link, got 'x.urdf'; the "
-                                  r"arm of a URDF file is that of a scene: repel.Cell.from_scene"),
+                                  r"arm of a URDF file is repel.Arm.from_urdf\(path\)"),
     (lambda: repel.Arm(pathlib.Path("x.urdf")), "links: expected a sequence of repel.Link"),
     (lambda: repel.Arm(["a"]), r"links\[0\]: expected a repel.Link, got str"),
     (lambda: repel.Arm([], parts=[repel.Shape.sphere(1)]),

@@ -209,3 +209,27 @@ def test_meshes_of_shapes_are_closed():
                                         triangles[:, [2, 0]]]), axis=1)
         assert vertices.shape[1] == 3
         assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+
+
+def test_batches_of_poses_are_answered_one_after_the_other():
+    problem = Problem(SEED + 9, shapes=20, pairs=50)
+    places = np.stack([problem.X_W, problem.X_W, problem.X_W])
+    places[1, :, 0, 3] *= 1.5
+    places[2, :, 1, 3] += np.arange(len(problem.shapes))
+    warm = repel.WarmStarts(3 * len(problem.pairs))
+    rows = repel.separations(problem.shapes, places, problem.pairs)
+    assert rows.shape == (3, len(problem.pairs))
+    for X_W, answers in zip(places, rows):
+        alone = repel.separations(problem.shapes, X_W, problem.pairs)
+        for name in COLUMNS:
+            assert answers[name].tobytes() == alone[name].tobytes(), f"{name}, seed {SEED + 9}"
+    out = np.empty_like(rows)
+    assert repel.separations(problem.shapes, places, problem.pairs, out=out, warm=warm) is out
+    np.testing.assert_allclose(out["distance"], rows["distance"], atol=1e-9)
+    assert repel.separations(problem.shapes, places[:0], problem.pairs).shape == (
+        0, len(problem.pairs))
+    for wrong in (places[:, 1:], places[:, :, :3]):
+        with pytest.raises(ValueError, match="X_W: expected"):
+            repel.separations(problem.shapes, wrong, problem.pairs)
+    with pytest.raises(ValueError, match="out: expected 3 x 50 rows"):
+        repel.separations(problem.shapes, places, problem.pairs, out=rows[0])

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A Cell in the loop of a MuJoCo simulation: it drives an arm of the model among its geoms.
+
+    sim = repel.mujoco.attach(model, data, site="tool")
+    while True:
+        sim.step(repel.Command(linear=[0.1, 0.0, 0.0]))
+
+Needs the package mujoco: pip install 'repel-haptics[mujoco]'.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ._errors import SetupError
+from ._mujoco_arm import ModelArm, mujoco, name_of
+from ._repel import Cell, Command, ForceLaw, Shape, Tick
+from .description import Arm, Capacities, Obstacle
+
+__all__ = ["Simulation", "attach"]
+
+#: Of the model, what a cell is made of: it must stay as it was.
+_USED = ("body_pos", "body_quat", "body_mass", "body_ipos", "jnt_pos", "jnt_axis", "geom_pos",
+         "geom_quat", "geom_size")
+
+#: [m] half extents of the box that stands for a plane; its upper face is in the plane.
+_PLANE = np.array([100.0, 100.0, 1.0])
+
+_REST = Command()
+
+
+class Simulation:
+    """A cell with an arm of a model; made by `attach`.
+
+    `model` and `data` are what was attached, `cell` is made of `arm` and `obstacles`. `joints` has
+    the ids of the joints of the arm, base outward. `left_out` names the geoms that the cell does
+    not know: they may touch the arm.
+    """
+
+    def __init__(self, model: Any, data: Any, joints: list[int], cell: Cell, arm: Arm,
+                 obstacles: list[Obstacle], left_out: list[str], substeps: int):
+        self.model, self.data, self.cell = model, data, cell
+        self.arm, self.obstacles, self.joints, self.left_out = arm, obstacles, joints, left_out
+        self._substeps = substeps
+        self._q, self._dof = (_run(addresses[self.joints]) for addresses in
+                              (model.jnt_qposadr, model.jnt_dofadr))
+        self._qpos, self._qvel, self._torques = data.qpos, data.qvel, data.qfrc_applied
+        self._used = [(name, array, array.tobytes()) for name, array in
+                      ((name, getattr(model, name)) for name in _USED)]
+        self._opt, self._timestep = model.opt, model.opt.timestep
+
+    def tick(self, command: Command = _REST) -> Tick:
+        """One tick of the cell, without moving the simulation.
+
+        Reads data.qpos and data.qvel and writes the torques of the joints of the arm to
+        data.qfrc_applied, for the mj_step calls of one period. Actuators keep their data.ctrl.
+        Raises SetupError if the model has changed since `attach`. Readings that are not finite are
+        a fault of the tick.
+        """
+        for name, array, before in self._used:
+            if array.tobytes() != before:
+                raise SetupError(f"{name} of the model has changed; allowed: to attach again")
+        if self._opt.timestep != self._timestep:
+            raise SetupError("opt.timestep of the model has changed; allowed: to attach again")
+        tick = self.cell.step(self._qpos[self._q], self._qvel[self._dof], command)
+        self._torques[self._dof] = tick.torques
+        return tick
+
+    def step(self, command: Command = _REST) -> Tick:
+        """`tick`, and the mj_step calls of one period."""
+        tick = self.tick(command)
+        mujoco.mj_step(self.model, self.data, self._substeps)
+        return tick
+
+
+def _run(addresses: np.ndarray) -> slice | np.ndarray:
+    """As a slice, which is faster, if they follow one another."""
+    first, count = int(addresses[0]), len(addresses)
+    is_run = np.array_equal(addresses, np.arange(first, first + count))
+    return slice(first, first + count) if is_run else addresses.copy()
+
+
+def attach(model: Any, data: Any, *, site: str, rate_hz: float | None = None,
+           law: ForceLaw | None = None, leave_out: Sequence[str] = (), gain_check: str = "error",
+           start_inside: str = "refuse", limits: Capacities | None = None,
+           **arm: Any) -> Simulation:
+    """A cell with the arm that moves a site of the model, and an obstacle for each geom around it.
+
+    data: of the model; the arm starts where data.qpos has it. rate_hz [Hz] of the tick; none: one
+    for each timestep, else a whole number of timesteps must make a period. law: of all obstacles.
+    leave_out: names of geoms that are not to count, on the arm and around it. arm: further
+    arguments of Arm; gain_check, start_inside, limits: of Cell.
+
+    Geoms become obstacles if they stand still in the world and can touch anything. A plane becomes
+    a large box. Not among them are the geoms of the body that carries the first joint, which the
+    first link may touch, and those that move without the arm: a warning names the latter.
+    Raises SetupError naming the site, joint, geom or actuator that cannot be used.
+    """
+    if not isinstance(data, mujoco.MjData):
+        raise TypeError(f"data: expected a mujoco.MjData, got {type(data).__name__}")
+    chain = ModelArm(model, site, data.qpos, leave_out)
+    if data.qvel.shape != (model.nv,):
+        raise ValueError(f"data: expected that of the model, with {model.nv} degrees of freedom, "
+                         f"got {data.qvel.size}")
+    _require_no_servos(chain)
+    obstacles, moving = _around(chain, law)
+    if moving:
+        warnings.warn(f"these geoms move without the arm, and are no obstacles: "
+                      f"{', '.join(moving)}", stacklevel=2)
+    period = model.opt.timestep if rate_hz is None else 1.0 / rate_hz
+    substeps = round(period / model.opt.timestep)
+    if substeps < 1 or abs(substeps * model.opt.timestep - period) > 1e-6 * period:
+        raise SetupError(f"rate_hz is {rate_hz:g}, with a timestep of {model.opt.timestep:g} s; "
+                         "allowed: whole timesteps in a period")
+    described = chain.arm(**arm)
+    cell = Cell(rate_hz=1.0 / period, arms=[described], obstacles=obstacles, gain_check=gain_check,
+                start_inside=start_inside, limits=limits)
+    base = [name for name, _ in chain.geoms(chain.base)] if chain.base else []
+    return Simulation(model, data, chain.joints, cell, described, obstacles, moving + base,
+                      substeps)
+
+
+def _around(chain: ModelArm, law: ForceLaw | None) -> tuple[list[Obstacle], list[str]]:
+    """The obstacles, and the names of the geoms that move without the arm."""
+    obstacles, moving = [], []
+    for body, link in enumerate(chain.link):
+        if link is None:
+            moving += [name for name, _ in chain.geoms(body)]
+        elif link == -1 and (body == 0 or body != chain.base):
+            obstacles += [_obstacle(chain, name, geom, law) for name, geom in chain.geoms(body)]
+    return obstacles, moving
+
+
+def _obstacle(chain: ModelArm, name: str, geom: int, law: ForceLaw | None) -> Obstacle:
+    X_WP = chain.pose(geom)
+    if chain.model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE:
+        return Obstacle(name, chain.shape(name, geom), X_WP, law)
+    X_WP[:3, 3] -= _PLANE[2] * X_WP[:3, 2]
+    return Obstacle(name, Shape.box(_PLANE, levels=1), X_WP, law)
+
+
+def _require_no_servos(chain: ModelArm) -> None:
+    """Raises SetupError for an actuator that would pull against the torques of the cell."""
+    model = chain.model
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
+        return
+    for joint in chain.joints:
+        for actuator in chain.actuators(joint):
+            pulls = model.actuator_biastype[actuator] != mujoco.mjtBias.mjBIAS_NONE
+            if pulls and not model.opt.disableactuator >> int(model.actuator_group[actuator]) & 1:
+                raise SetupError(
+                    f"actuator '{name_of(model, 'actuator', actuator)}' pulls on joint "
+                    f"'{name_of(model, 'joint', joint)}' by itself, against the torques of the "
+                    "cell; allowed: motors, or its group in actuatorgroupdisable of the model")

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A cell in the loop of a MuJoCo simulation."""
+
+import importlib
+import warnings
+
+import numpy as np
+import pytest
+
+import repel
+from problem import ROOT
+
+mujoco = pytest.importorskip("mujoco", reason="the package mujoco is not installed")
+importlib.import_module("repel.mujoco")
+
+ARM = (ROOT / "examples/python/05_mujoco.xml").read_text()
+FORTH = repel.Command(linear=[0.1, 0, 0])
+
+
+def made(text=ARM):
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    return model, data
+
+
+def attached(text=ARM, **options):
+    return repel.mujoco.attach(*made(text), site="tool", **options)
+
+
+def with_geom(more, after="<worldbody>"):
+    return ARM.replace(after, after + more, 1)
+
+
+def test_an_arm_is_driven_against_a_wall_and_does_not_touch_it():
+    sim = attached()
+    assert sim.cell.joints() == [f"joint {i}" for i in range(1, 8)]
+    assert [wall.name for wall in sim.obstacles] == ["table", "post", "rail", "ball", "wedge"]
+    assert sim.left_out == ["foot"] and sim.cell.period == pytest.approx(0.001)
+    ticks = []
+    for _ in range(2000):
+        ticks.append(sim.step(FORTH))
+        assert sim.data.ncon == 0
+    assert sim.data.time == pytest.approx(2.0)
+    assert ticks[-1].hardest_pair == "part 7 - wedge" and ticks[-1].peak_force > 10.0
+    assert {tick.stop for tick in ticks} == {"running"}
+    np.testing.assert_array_equal(sim.data.qfrc_applied, ticks[-1].torques)
+    np.testing.assert_allclose(sim.cell.X_WT()[:3, 3], sim.data.site("tool").xpos, atol=1e-12)
+
+
+def test_a_tick_does_not_move_the_simulation():
+    sim = attached()
+    before = sim.data.qpos.copy()
+    sim.tick(FORTH)
+    assert sim.data.time == 0.0 and np.array_equal(sim.data.qpos, before)
+    assert sim.data.qfrc_applied.any()
+    other = attached()
+    other.step(FORTH)
+    mujoco.mj_step(sim.model, sim.data)
+    np.testing.assert_array_equal(sim.data.qpos, other.data.qpos)
+
+
+def test_a_period_is_of_whole_timesteps():
+    sim = attached(rate_hz=250.0)
+    sim.step()
+    assert sim.data.time == pytest.approx(0.004)
+    for wrong in (300.0, 2000.0):
+        with pytest.raises(repel.SetupError, match=f"rate_hz is {wrong:g}, with a timestep of "
+                                                   "0.001 s; allowed: whole timesteps"):
+            attached(rate_hz=wrong)
+
+
+def test_joints_of_the_arm_stand_among_others():
+    """A free body before the arm, and joints of the arm that do not follow one another."""
+    text = """<mujoco><option timestep="0.001"/><worldbody>
+        <body pos="5 0 0" name="stone"><freejoint/><geom name="stone" size="0.1"/></body>
+        <body name="arm"><joint name="a" type="slide" axis="1 0 0" armature="1"/>
+          <geom name="carriage" size="0.1"/>
+          <body name="flap" pos="0 0 1"><joint name="b"/><geom size="0.05" pos="0 0.2 0"/></body>
+          <body name="head" pos="0 0 -1"><joint name="c" type="slide" axis="0 1 0" armature="1"/>
+            <geom name="head" size="0.1"/><site name="tool"/></body></body></worldbody></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    with pytest.warns(UserWarning, match="move without the arm, and are no obstacles: stone"):
+        sim = repel.mujoco.attach(model, data, site="tool")
+    assert sim.left_out == ["stone"] and sim.cell.joints() == ["a", "c"]
+    data.qpos[[7, 9]] = 0.01, 0.02
+    tick = sim.tick()
+    assert list(tick.q) == [0.01, 0.02]
+    assert list(data.qfrc_applied[[6, 8]]) == list(tick.torques)
+    assert not data.qfrc_applied[[0, 1, 2, 3, 4, 5, 7]].any()
+
+
+def test_geoms_become_obstacles_as_they_are():
+    text = with_geom("<geom name='floor' type='plane' size='0 0 1' pos='0 0 -0.2' "
+                     "euler='10 0 0'/><geom type='sphere' size='1' contype='0' conaffinity='0'/>"
+                     "<body name='shelf' pos='0 2 0'><geom size='0.1 0.1 0.1' type='box'/></body>")
+    sim = attached(text, leave_out=["ball"], law=repel.ForceLaw(range=0.03))
+    walls = {wall.name: wall for wall in sim.obstacles}
+    assert set(walls) == {"floor", "table", "post", "rail", "wedge", "shelf/geom 7"}
+    assert {wall.law.range for wall in sim.obstacles} == {0.03}
+    mujoco.mj_forward(sim.model, sim.data)
+    sphere, X = repel.Shape.sphere(0.01), np.eye(4)
+    X[:3, 3] = 0.3, 0.4, 1.0
+    floor = sim.data.geom("floor")
+    height = (X[:3, 3] - floor.xpos) @ floor.xmat.reshape(3, 3)[:, 2]
+    found = repel.separation(sphere, X, walls["floor"].shape, walls["floor"].X_WP)
+    assert found.distance == pytest.approx(height - 0.01, abs=1e-9)
+
+
+def test_nothing_that_carries_the_arm_is_forgotten_but_its_base():
+    text = ARM.replace("<body name=\"base\">",
+                       "<body name='pedestal'><geom name='plate' type='box' size='1 1 0.01' "
+                       "pos='0 0 -0.5'/><body name='base'>").replace(
+                           "</worldbody>", "</body></worldbody>")
+    sim = attached(text)
+    assert "plate" in [wall.name for wall in sim.obstacles] and sim.left_out == ["foot"]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+@pytest.mark.parametrize("where", ["qpos", "qvel"])
+def test_readings_that_are_not_finite_are_a_fault(where, value):
+    sim = attached()
+    for _ in range(10):
+        sim.step(FORTH)
+    getattr(sim.data, where)[2] = value
+    tick = sim.tick(FORTH)
+    assert tick.status and np.isfinite(sim.data.qfrc_applied).all()
+    for _ in range(100):
+        getattr(sim.data, where)[2] = value
+        tick = sim.tick(FORTH)
+    assert tick.stop != "running"
+
+
+@pytest.mark.parametrize("name", ["geom_size", "body_pos", "geom_quat", "body_mass", "jnt_axis"])
+def test_a_model_that_changes_under_the_cell_is_named(name):
+    sim = attached()
+    sim.step()
+    getattr(sim.model, name)[2] *= 1.5
+    with pytest.raises(repel.SetupError, match=f"{name} of the model has changed; allowed: to "
+                                               "attach again"):
+        sim.step()
+
+
+def test_another_timestep_is_named():
+    sim = attached()
+    sim.model.opt.timestep = 0.002
+    with pytest.raises(repel.SetupError, match="opt.timestep of the model has changed"):
+        sim.step()
+
+
+SERVO = "<actuator><position name='servo' joint='joint 3' kp='10' group='2'/></actuator>"
+
+
+def test_servos_that_would_pull_against_the_cell_are_refused():
+    text = ARM.replace("<keyframe>", SERVO + "<keyframe>")
+    with pytest.raises(repel.SetupError, match="actuator 'servo' pulls on joint 'joint 3' by "
+                                               "itself.*allowed: motors"):
+        attached(text)
+    assert attached(text.replace("<option ", "<option actuatorgroupdisable='2' "))
+    assert attached(text.replace("<position", "<motor").replace("kp='10'", "gear='10'"))
+    model, data = made(text)
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
+    assert repel.mujoco.attach(model, data, site="tool")
+
+
+def test_what_cannot_be_attached_is_named():
+    model, data = made()
+    with pytest.raises(repel.SetupError, match="site is 'tol'; allowed: 'tool'"):
+        repel.mujoco.attach(model, data, site="tol")
+    with pytest.raises(TypeError, match="data: expected a mujoco.MjData, got MjModel"):
+        repel.mujoco.attach(model, model, site="tool")
+    other = mujoco.MjModel.from_xml_string("<mujoco><worldbody><body><joint/><geom size='1'/>"
+                                           "</body></worldbody></mujoco>")
+    with pytest.raises(ValueError, match="qpos: expected 7 numbers, got shape"):
+        repel.mujoco.attach(model, mujoco.MjData(other), site="tool")
+    hill = with_geom("<geom name='hill' type='hfield' hfield='hill'/>").replace(
+        "<asset>", "<asset><hfield name='hill' nrow='2' ncol='2' size='1 1 1 1'/>")
+    with pytest.raises(repel.SetupError, match="geom 'hill' is of type hfield; allowed: .*mesh"):
+        attached(hill)
+    assert attached(hill, leave_out=["hill"])
+    inside = with_geom("<geom name='block' size='0.1' pos='0.67 0 0.4'/>")
+    with pytest.raises(repel.SetupError, match="starts inside 'block'"):
+        attached(inside)
+    assert "starts inside 'block'" in attached(inside, start_inside="push_out").cell.warnings[0]
+
+
+def test_nothing_is_warned_of_a_plain_model():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        attached()
