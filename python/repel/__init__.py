@@ -13,7 +13,7 @@ from ._errors import SetupError, how_to_have
 from ._repel import (QUERY_ENDS, ArmKinematics, Cell, Command, ForceLaw, QueryOptions, Separation,
                      Shape, Tick, WarmStart, WarmStarts, World, separation)
 from ._separations import SEPARATION, separations
-from .description import Arm, Capacities, Kinematics, Link, Obstacle, Part
+from .description import Admittance, Arm, Capacities, Kinematics, Link, Obstacle, Part
 from .program import program, run, view
 from .recording import Recording, read_recording
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 __version__ = "0.2.0"
 
-__all__ = ["Arm", "ArmKinematics", "Capacities", "Cell", "Command", "Cover", "ForceLaw", "Kinematics", "Link",
-           "Obstacle", "Part", "QUERY_ENDS", "QueryOptions", "Recording", "SEPARATION", "Scene",
-           "ScriptedOperator", "Separation", "SetupError", "Shape", "SimulatedArm", "Tick",
-           "WarmStart", "WarmStarts", "World", "cover", "load_scene", "program", "read_recording",
-           "run", "separation", "separations", "view"]
+__all__ = ["Admittance", "Arm", "ArmKinematics", "Capacities", "Cell", "Command", "Cover",
+           "ForceLaw", "Kinematics", "Link", "Obstacle", "Part", "QUERY_ENDS", "QueryOptions",
+           "Recording", "SEPARATION", "Scene", "ScriptedOperator", "Separation", "SetupError",
+           "Shape", "SimulatedArm", "Tick", "WarmStart", "WarmStarts", "World", "cover",
+           "load_scene", "program", "read_recording", "run", "separation", "separations", "view"]
 
 #: What a build leaves out when packages are missing, and the part of it that is left out.
 _PARTS = {"Scene": "scenes", "ScriptedOperator": "scenes", "SimulatedArm": "scenes",

@@ -91,6 +91,18 @@ def _check_all(name: str, values: Any, kind: type, instead: str = "") -> None:
 
 
 @dataclass
+class Admittance:
+    """How an arm that takes joint positions or rates answers to the network (docs/admittance.md):
+    each joint shows a virtual inertia M and friction B, and moves by v' = (torque - B v) / M."""
+
+    response: float = 0.03  #: [s] from a commanded rate to the rate of the arm: dead time and lag
+    inertia: Any = None  #: (joints,) [kg m^2] or [kg]; none: the arm's own at its start, by `scale`
+    scale: float = 1.0
+    rest_time: float = 0.3  #: [s] in which a joint without effort loses 63 % of its rate
+    acceleration: float = 0.0  #: [rad/s^2] or [m/s^2] of the commands; 0: what the efforts allow
+
+
+@dataclass
 class Arm:
     """An arm, with the default network between operator and joints."""
 
@@ -107,6 +119,7 @@ class Arm:
     tool_speed: float = 0.25  #: [m/s] up to which the operator may drive the tool
     drive_delay: float = 0.0  #: [ticks] from a torque to its effect
     has_brakes: bool = False
+    admittance: Admittance | None = None  #: it takes the positions or rates of a Tick, not torques
 
     def __post_init__(self) -> None:
         _check_all("links", self.links, Link,

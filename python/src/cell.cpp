@@ -32,26 +32,37 @@ std::unique_ptr<Cell> built(CellDescription description, Trouble& trouble) {
   }
 }
 
-/// What an arm reports; the numbers live here.
-struct OwnReadings {
-  std::vector<double> q, v;
-
-  OwnReadings(nb::handle positions, nb::handle rates, std::size_t joints)
-      : q(numbers_of(positions, "q", joints)), v(numbers_of(rates, "v", joints)) {}
-  [[nodiscard]] ArmReadings readings(bool homed) const {
-    ArmReadings all{q, v};
-    all.homed = homed;
-    return all;
-  }
-};
-
 }  // namespace
+
+OwnReadings::OwnReadings(nb::handle positions, nb::handle rates, std::size_t joints)
+    : q(numbers_of(positions, "q", joints)), v(numbers_of(rates, "v", joints)) {}
+
+ArmReadings OwnReadings::readings(bool homed) const {
+  ArmReadings all{q, v};
+  all.homed = homed;
+  return all;
+}
 
 OwnCell::OwnCell(OwnDescription description, Trouble trouble)
     : trouble_(std::move(trouble)),
       kinematics_(std::move(description.kinematics)),
       cell_(built(std::move(description.cell), trouble_)),
-      names_(names_of(*cell_)) {}
+      names_(names_of(*cell_)) {
+  for (const ArmDescription& arm : cell_->description().arms) {
+    auto& end = ends_.emplace_back();
+    if (arm.takes_motion) end.emplace(arm.model, arm.response, 1.0 / cell_->description().rate_hz);
+  }
+}
+
+Tick OwnCell::tick_of(std::size_t arm, const TickRecord& record, const OwnReadings& own) {
+  Tick tick{record, names_[arm]};
+  if (auto& end = ends_[arm]) {
+    end->step(own.readings(false), record.torques, record.brakes);
+    tick.positions.assign(end->positions().begin(), end->positions().end());
+    tick.rates.assign(end->rates().begin(), end->rates().end());
+  }
+  return tick;
+}
 
 std::chrono::nanoseconds OwnCell::time_of(std::optional<std::int64_t> now) {
   last_ = now ? std::chrono::nanoseconds(*now) : last_ + cell_->period();
@@ -77,7 +88,7 @@ Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
     record = &cell_->step(own.readings(homed), hands, time);
   }
   raise(trouble_);
-  return {*record, names_.front()};
+  return tick_of(0, *record, own);
 }
 
 void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> now, bool homed) {
@@ -103,6 +114,7 @@ void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> no
     const Released others_go_on;
     cell_->sense(all, time);
   }
+  sensed_ = std::move(own);
   has_sensed_ = true;
   raise(trouble_);
 }
@@ -123,7 +135,8 @@ std::vector<Tick> OwnCell::act(const std::vector<network::Command>& hands) {
       const Released others_go_on;
       records = cell_->act(hands);
     }
-    for (std::size_t i = 0; i < records.size(); ++i) ticks.push_back({*records[i], names_[i]});
+    for (std::size_t i = 0; i < records.size(); ++i)
+      ticks.push_back(tick_of(i, *records[i], sensed_[i]));
   }
   raise(trouble_);
   return ticks;

@@ -7,6 +7,7 @@
 #include <nanobind/stl/pair.h>
 
 #include <repel/base/setup_error.hpp>
+#include <repel/cell/admittance.hpp>
 #include <repel/world/kinematics.hpp>
 
 #include "arrays.hpp"
@@ -68,6 +69,18 @@ std::unique_ptr<ArmKinematics> kinematics_of(nb::handle from, const ArmModel& mo
     return made;
   }
   return std::make_unique<Kinematics>(model);
+}
+
+AdmittanceOptions admittance_of(nb::handle from) {
+  AdmittanceOptions options;
+  options.response = number(from, "response");
+  if (const nb::object inertia = from.attr("inertia"); !inertia.is_none()) {
+    options.inertia = numbers_of(inertia, "inertia");
+  }
+  options.scale = number(from, "scale");
+  options.rest_time = number(from, "rest_time");
+  options.acceleration = number(from, "acceleration");
+  return options;
 }
 
 ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKinematics*>& own) {
@@ -136,7 +149,18 @@ OwnDescription described(double rate_hz, nb::handle arms, nb::handle obstacles,
                          const Trouble& trouble) {
   OwnDescription own;
   own.cell.rate_hz = rate_hz;
-  for (nb::handle arm : arms) own.cell.arms.push_back(arm_of(arm, trouble, own.kinematics));
+  for (nb::handle arm : arms) {
+    ArmDescription& made = own.cell.arms.emplace_back(arm_of(arm, trouble, own.kinematics));
+    if (const nb::object admittance = arm.attr("admittance"); !admittance.is_none()) {
+      const double period = 1.0 / checked("rate_hz", rate_hz, 1.0, 1e5, "Hz");
+      try {
+        made = admitted(std::move(made), admittance_of(admittance), period);
+      } catch (const SetupError&) {
+        raise(trouble);  // which is why
+        throw;
+      }
+    }
+  }
   for (nb::handle each : obstacles) own.cell.obstacles.push_back(obstacle_of(each));
   return own;
 }

@@ -12,6 +12,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <repel/cell/admittance.hpp>
 #include <repel/cell/cell.hpp>
 
 #include "description.hpp"
@@ -20,6 +21,17 @@
 #include "tick.hpp"
 
 namespace repel::python {
+
+/// What an arm reports; the numbers live here.
+struct OwnReadings {
+  std::vector<double> q;  ///< [rad] or [m]
+  std::vector<double> v;  ///< [rad/s] or [m/s]
+
+  /// @throws the error of Python for numbers of another shape
+  OwnReadings(nb::handle positions, nb::handle rates, std::size_t joints);
+  /// Refers to this one. @param homed see ArmReadings
+  [[nodiscard]] ArmReadings readings(bool homed) const;
+};
 
 /// A cell, with the kinematics that are written in Python and the names of its records.
 class OwnCell {
@@ -40,12 +52,16 @@ class OwnCell {
   [[nodiscard]] const std::vector<OwnKinematics*>& kinematics() const { return kinematics_; }
 
  private:
+  /// The record of an arm, and its motion if it takes that in place of torques.
+  [[nodiscard]] Tick tick_of(std::size_t arm, const TickRecord& record, const OwnReadings& own);
   [[nodiscard]] std::chrono::nanoseconds time_of(std::optional<std::int64_t> now);
 
   Trouble trouble_;
   std::vector<OwnKinematics*> kinematics_;
   std::unique_ptr<Cell> cell_;
   std::vector<std::shared_ptr<const TickNames>> names_;
+  std::vector<std::optional<JointAdmittance>> ends_;  // of arms that take motion
+  std::vector<OwnReadings> sensed_;                   // by the last `sense`
   std::chrono::nanoseconds last_{0};
   bool has_sensed_ = false;
   bool is_in_use_ = false;

@@ -53,7 +53,7 @@ void copy_matrix(nb::handle value, const char* name, std::size_t rows, std::size
 
 }  // namespace
 
-void raise(Trouble& trouble) {
+void raise(const Trouble& trouble) {
   if (!trouble || !trouble->has_value()) return;
   std::optional<nb::python_error> raised = std::exchange(*trouble, std::nullopt);
   throw nb::python_error(std::move(*raised));

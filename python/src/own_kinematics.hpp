@@ -20,7 +20,7 @@ namespace nb = nanobind;
 using Trouble = std::shared_ptr<std::optional<nb::python_error>>;
 
 /// Raises it, once.
-void raise(Trouble& trouble);
+void raise(const Trouble& trouble);
 
 /// Asks an object of Python with the functions of `repel.Kinematics`. Needs no GIL of the caller.
 class OwnKinematics final : public ArmKinematics {

@@ -148,6 +148,18 @@ void add_fields(TickBinding& binding) {
       none);
 }
 
+void add_motion(TickBinding& binding) {
+  const auto of_arm = [](const std::vector<double>& all) {
+    return all.empty() ? nb::object(nb::none()) : to_array(all.data(), {all.size()});
+  };
+  binding.add(
+      "positions", "numpy.ndarray | None",
+      "[rad] or [m] (joints,) command to an arm with an Admittance; none: it takes torques.",
+      [of_arm](const Tick& t) { return of_arm(t.positions); });
+  binding.add("rates", "numpy.ndarray | None", "[rad/s] or [m/s] (joints,) the same as rates.",
+              [of_arm](const Tick& t) { return of_arm(t.rates); });
+}
+
 void add_pairs(TickBinding& binding) {
   binding.add("nearest", "float", "[m] least signed distance of all pairs evaluated.",
               [](const Tick& t) { return t.record.pairs.nearest; });
@@ -279,6 +291,7 @@ void bind_command(nb::module_& m) {
 void bind_ticks(nb::module_& m) {
   TickBinding binding(m);
   add_fields(binding);
+  add_motion(binding);
   add_pairs(binding);
   binding.finish();
   bind_command(m);

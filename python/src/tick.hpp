@@ -23,6 +23,8 @@ struct TickNames {
 struct Tick {
   TickRecord record;
   std::shared_ptr<const TickNames> names;
+  std::vector<double> positions{};  ///< [rad] or [m] for an arm that takes motion; empty: torques
+  std::vector<double> rates{};      ///< [rad/s] or [m/s] likewise
 };
 
 /// One for each arm of a cell.

@@ -62,7 +62,7 @@ TEST(Pages, ShowTheExampleWithTheLiveView) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Adapters, PagesOfAdapters,
-                         testing::Values("torque_callback", "update_loop"));
+                         testing::Values("torque_callback", "update_loop", "position_servo"));
 
 }  // namespace pages_test
 }  // namespace repel::test

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <string>
+
+#include <franka/exception.h>
 
 #include "examples/heap.hpp"
 #include "torque_callback/torque_callback.hpp"
@@ -28,37 +29,6 @@ CellDescription wall_in_front() {
   cell.obstacles.push_back({"wall", Shape::box({0.1, 0.5, 0.5}), X_WP});
   return cell;
 }
-
-// libfranka has a MotionFinished for each kind of command. Seven bare numbers fit three of them.
-template <class Command>
-concept IsFinished = requires(const Command& command) {
-  { franka::MotionFinished(command) } -> std::same_as<Command>;
-};
-static_assert(IsFinished<franka::Torques> && IsFinished<franka::JointPositions> &&
-              IsFinished<franka::JointVelocities> && IsFinished<franka::CartesianPose> &&
-              IsFinished<franka::CartesianVelocities>);
-template <class Numbers>
-concept IsTakenForACommand = requires(const Numbers& numbers) {
-  franka::MotionFinished(numbers);
-};
-static_assert(!IsTakenForACommand<std::array<double, 7>>,
-              "the stand-in takes what libfranka refuses");
-
-template <class Command>
-using Leads = Command (*)(const franka::RobotState&, franka::Duration);
-template <class... Callbacks>
-concept IsControlled = requires(franka::Robot& robot, Callbacks... callbacks) {
-  robot.control(callbacks..., false, franka::kMaxCutoffFrequency);
-};
-static_assert(IsControlled<Leads<franka::Torques>> &&
-              IsControlled<Leads<franka::Torques>, Leads<franka::JointPositions>> &&
-              IsControlled<Leads<franka::Torques>, Leads<franka::JointVelocities>> &&
-              IsControlled<Leads<franka::Torques>, Leads<franka::CartesianPose>> &&
-              IsControlled<Leads<franka::Torques>, Leads<franka::CartesianVelocities>> &&
-              IsControlled<Leads<franka::JointPositions>, franka::ControllerMode> &&
-              IsControlled<Leads<franka::JointVelocities>, franka::ControllerMode> &&
-              IsControlled<Leads<franka::CartesianPose>, franka::ControllerMode> &&
-              IsControlled<Leads<franka::CartesianVelocities>, franka::ControllerMode>);
 
 /// A robot whose hand is led towards the wall by 0.1 m/s.
 class TorqueCallback : public testing::Test {
@@ -213,6 +183,25 @@ TEST(FrankaKinematics, JacobianOfAPointOnALinkIsItsDerivative) {
       const Vec3 rate = (arm.X_WL(link) * p_LQ - p_WQ) / step;
       EXPECT_LT((J.col(i).head<3>() - rate).norm(), 1e-5) << "link " << link << ", joint " << i;
     }
+  }
+}
+
+TEST(FrankaLimits, OfAnotherArmAreKept) {
+  franka::Robot robot("stand-in");
+  const franka::Model model = robot.loadModel();
+  CellDescription cell = wall_in_front();
+  cell.arms[0].model = adapters::franka_model(adapters::fr3_rectangular);
+  franka::RobotState state = robot.readOnce();
+  EXPECT_NO_THROW(adapters::TorqueCallback(model, state, wall_in_front()));
+  state.q[1] = 1.6;  // within the range of the first arm alone
+  EXPECT_THROW(adapters::TorqueCallback(model, state, std::move(cell)), SetupError);
+}
+
+TEST(FrankaLimits, SuggestedRangeLiesWithinThatOfTheArm) {
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_GT(adapters::fr3_rectangular.lower[i], adapters::fr3.lower[i]);
+    EXPECT_LT(adapters::fr3_rectangular.upper[i], adapters::fr3.upper[i]);
+    EXPECT_LT(adapters::fr3_rectangular.rate[i], adapters::fr3.rate[i]);
   }
 }
 

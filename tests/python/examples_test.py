@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The examples run, and say what the documentation says that they say."""
 
+import importlib.util
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -96,3 +98,43 @@ def test_the_types_of_the_package_hold(tmp_path):
                               "-p", "repel"], cwd=tmp_path, capture_output=True, text=True,
                              check=False)
     assert checked.returncode == 0, checked.stdout
+
+
+STAND_INS = ROOT / "tests/python/stand_ins"
+
+
+def with_stand_ins():
+    """For a program in the place of another one's robot."""
+    paths = [str(STAND_INS), str(pathlib.Path(repel.__file__).parents[1])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+
+
+def said_with_stand_ins(name, seconds, folder):
+    return subprocess.run([sys.executable, EXAMPLES / name, "192.0.2.1", str(seconds)], cwd=folder,
+                          env=with_stand_ins(), capture_output=True, text=True,
+                          check=True).stdout.splitlines()
+
+
+def test_torques_take_the_arm_of_franka_to_a_wall(tmp_path):
+    lines = said_with_stand_ins("franka.py", 2, tmp_path)
+    assert lines[0] == "0.0 s: x 0.307 m, wall 0.0 N"  # the pose of the maker's start
+    assert re.fullmatch(r"2.0 s: x 0.39\d m, wall [67]\d.\d N", lines[-1])
+
+
+def test_positions_take_the_arm_of_universal_robots_to_a_wall(tmp_path):
+    lines = said_with_stand_ins("ur_servo.py", 3, tmp_path)
+    assert re.fullmatch(r"3.0 s: [23].\d mm from the wall, [67]\d.\d N", lines[-1])
+
+
+@pytest.mark.parametrize("package, name", [("pylibfranka", "franka.py"),
+                                           ("rtde_control", "ur_servo.py")])
+def test_examples_of_others_fit_the_packages_that_are_installed(package, name, tmp_path):
+    """By their stubs; without stubs, names and types of repel are still checked."""
+    for needed in ("mypy", package):
+        if importlib.util.find_spec(needed) is None:
+            pytest.skip(f"to have it: pip install {needed.replace('rtde_control', 'ur-rtde')}")
+    said = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path),
+                           "--disable-error-code", "import-untyped", "--disable-error-code",
+                           "import-not-found", "--follow-imports", "silent",
+                           str(EXAMPLES / name)], cwd=tmp_path, capture_output=True, text=True)
+    assert said.returncode == 0, said.stdout + said.stderr

@@ -12,6 +12,8 @@
 #include <repel/world/arm.hpp>
 #include <repel/world/arm_kinematics.hpp>
 
+#include "franka_limits.hpp"
+
 namespace adapters {
 
 /// The model library of the robot as kinematics; the world is its base frame O.
@@ -58,18 +60,11 @@ class FrankaKinematics final : public repel::ArmKinematics {
   franka::RobotState state_;
 };
 
-/// The limits of the first arm of the maker (FER, "Panda"); others have other numbers.
-inline repel::ArmModel franka_model() {
-  constexpr double lower[] = {-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973};
-  constexpr double upper[] = {2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973};
+/// The model for FrankaKinematics: limits alone, as masses and poses come from the robot.
+inline repel::ArmModel franka_model(const FrankaLimits& limits) {
   repel::ArmModel arm;
-  for (int i = 0; i < 7; ++i) {
-    repel::ArmLink& link = arm.links.emplace_back();
-    link.lower = lower[i];
-    link.upper = upper[i];
-    link.velocity_limit = i < 4 ? 2.175 : 2.61;  // [rad/s]
-    link.effort_limit = i < 4 ? 87.0 : 12.0;     // [N m]
-  }
+  arm.links.resize(7);
+  limit(arm, limits);
   return arm;
 }
 

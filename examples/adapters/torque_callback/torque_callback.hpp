@@ -32,11 +32,16 @@ struct Stopped : std::runtime_error {
 class TorqueCallback {
  public:
   /// @param model must outlive this @param state of Robot::readOnce, at rest
-  /// @param cell parts of the arm and obstacles, in O; the rest of the arm is filled in here
+  /// @param cell parts of the arm and obstacles, in O; an arm without links gets the limits of the
+  ///   first arm (FER)
   /// @throws repel::SetupError
   TorqueCallback(const franka::Model& model, const franka::RobotState& state,
                  repel::CellDescription cell)
-      : cell_(completed(std::move(cell), model, state)) {}
+      : TorqueCallback(state, computed_by(model, state, std::move(cell))) {}
+
+  /// @param cell whose arm has links and kinematics, as `arm_of` returns it @throws as above
+  TorqueCallback(const franka::RobotState& state, repel::CellDescription cell)
+      : cell_(completed(std::move(cell), state)) {}
 
   /// For Robot::control. @throws Stopped when the brakes are requested
   franka::Torques operator()(const franka::RobotState& state, franka::Duration period) {
@@ -71,15 +76,22 @@ class TorqueCallback {
   [[nodiscard]] const repel::TickRecord* record() const noexcept { return record_; }
 
  private:
-  static repel::CellDescription completed(repel::CellDescription cell, const franka::Model& model,
+  static repel::CellDescription computed_by(const franka::Model& model,
+                                            const franka::RobotState& state,
+                                            repel::CellDescription cell) {
+    repel::ArmDescription& arm = cell.arms.at(0);
+    if (arm.model.links.empty()) arm.model = franka_model(fer);
+    arm.kinematics = std::make_unique<FrankaKinematics>(model, state);
+    return cell;
+  }
+
+  static repel::CellDescription completed(repel::CellDescription cell,
                                           const franka::RobotState& state) {
     cell.rate_hz = 1000.0;
     repel::ArmDescription& arm = cell.arms.at(0);
-    arm.model = franka_model();
-    arm.kinematics = std::make_unique<FrankaKinematics>(model, state);
     arm.start.assign(state.q.begin(), state.q.end());
     arm.options.has_brakes = true;
-    arm.options.torques.slew_time = 0.0871;  // [s] 87 N m at less than 1000 N m/s
+    arm.options.torques.slew_time = 1.001 * fer.torque[0] / fer.torque_rate;  // [s] FR3 likewise
     return cell;
   }
 

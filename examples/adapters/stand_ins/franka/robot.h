@@ -1,64 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Stand-in for <franka/robot.h> of libfranka, with the published signatures of what the adapter
-/// uses, and a simulated arm in place of the robot. Time is simulated: `control` runs as fast as
+/// Stand-in for <franka/robot.h> of libfranka, with the published signatures of what adapters
+/// use, and a simulated arm in place of the robot. Time is simulated: `control` runs as fast as
 /// it can.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
 
 #include <franka/control_types.h>
+#include <franka/duration.h>
 #include <franka/exception.h>
+#include <franka/lowpass_filter.h>
+#include <franka/robot_state.h>
 
 namespace franka {
-
-enum class RobotMode {
-  kOther,
-  kIdle,
-  kMove,
-  kGuiding,
-  kReflex,
-  kUserStopped,
-  kAutomaticErrorRecovery
-};
-inline constexpr double kMaxCutoffFrequency = 1000.0;     // [Hz]
-inline constexpr double kDefaultCutoffFrequency = 100.0;  // [Hz]
-
-class Duration {  // of whole milliseconds
- public:
-  Duration() noexcept = default;
-  explicit Duration(uint64_t milliseconds) noexcept : milliseconds_(milliseconds) {}
-  Duration(std::chrono::duration<uint64_t, std::milli> time) noexcept
-      : milliseconds_(time.count()) {}
-  operator std::chrono::duration<uint64_t, std::milli>() const noexcept {
-    return std::chrono::duration<uint64_t, std::milli>(milliseconds_);
-  }
-  double toSec() const noexcept { return 1e-3 * static_cast<double>(milliseconds_); }
-  uint64_t toMSec() const noexcept { return milliseconds_; }
-  Duration operator-(const Duration& rhs) const noexcept {
-    return Duration(milliseconds_ - rhs.milliseconds_);
-  }
-
- private:
-  uint64_t milliseconds_ = 0;
-};
-
-struct RobotState {
-  std::array<double, 16> F_T_EE{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  std::array<double, 7> tau_J{};    // [N m] measured, with gravity
-  std::array<double, 7> tau_J_d{};  // [N m] desired, without gravity
-  std::array<double, 7> q{};        // [rad]
-  std::array<double, 7> dq{};       // [rad/s]
-  double control_command_success_rate{};
-  RobotMode robot_mode = RobotMode::kIdle;
-  Duration time{1000};  // since the robot was switched on
-};
 
 class Model;
 
@@ -68,10 +28,14 @@ using Callback = std::function<Command(const RobotState&, Duration)>;
 
 class Robot {
  public:
+  using ServerVersion = uint16_t;
+
   explicit Robot(const std::string& /*franka_address*/,
                  RealtimeConfig /*realtime_config*/ = RealtimeConfig::kEnforce,
                  size_t /*log_size*/ = 50) {
-    state_.q = {0.0, -M_PI / 4, 0.0, -3 * M_PI / 4, 0.0, M_PI / 2, M_PI / 4};
+    state_.robot_mode = RobotMode::kIdle;
+    state_.time = Duration(1000);
+    stand(RobotMode::kIdle);
   }
   Robot(Robot&&) noexcept = default;
   Robot& operator=(Robot&&) noexcept = default;
@@ -80,8 +44,29 @@ class Robot {
   virtual ~Robot() noexcept = default;
 
   Model loadModel();
-  RobotState readOnce() { return state_; }
+  /// The URDF of the simulated arm, up to its flange; from release 0.14 on.
+  std::string getRobotModel();
+  virtual RobotState readOnce() { return state_; }
+  void read(std::function<bool(const RobotState&)> read_callback) {
+    while (read_callback(state_)) state_.time += Duration(1);
+  }
+  ServerVersion serverVersion() const noexcept { return 0; }
   void automaticErrorRecovery() { state_.robot_mode = RobotMode::kIdle; }
+  void stop() { stand(RobotMode::kIdle); }
+  void setEE(const std::array<double, 16>& NE_T_EE) { state_.F_T_EE = NE_T_EE; }
+  void setLoad(double load_mass, const std::array<double, 3>& F_x_Cload,
+               const std::array<double, 9>& load_inertia) {
+    state_.m_load = state_.m_total = load_mass;
+    state_.F_x_Cload = state_.F_x_Ctotal = F_x_Cload;
+    state_.I_load = state_.I_total = load_inertia;
+  }
+  // The simulated arm meets nothing: thresholds of torques and forces are without effect.
+  void setCollisionBehavior(const std::array<double, 7>&, const std::array<double, 7>&,
+                            const std::array<double, 7>&, const std::array<double, 7>&,
+                            const std::array<double, 6>&, const std::array<double, 6>&,
+                            const std::array<double, 6>&, const std::array<double, 6>&) {}
+  void setCollisionBehavior(const std::array<double, 7>&, const std::array<double, 7>&,
+                            const std::array<double, 6>&, const std::array<double, 6>&) {}
 
   /// Calls back every millisecond until the motion is finished. Does not filter.
   /// @throws ControlException as the robot would, and what the callback throws; the arm then stands
