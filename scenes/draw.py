@@ -74,6 +74,9 @@ def shape_of(part):
         return [value(point) for point in part["points"]], 0.0
     if kind in ("sphere", "capsule"):
         return [[0, 0, -half], [0, 0, half]], radius
+    if kind == "ellipsoid":
+        rings = [rim(np.sin(turn), np.cos(turn)) for turn in np.linspace(0.0, np.pi, 13)]
+        return np.concatenate(rings) * np.asarray(value(part["size"])) / 2, 0.0
     if kind == "cone":
         return [*rim(radius, -half), [0, 0, half]], 0.0
     return rim(radius, -half) + rim(radius, half), 0.0

@@ -78,7 +78,7 @@ TEST(Shape, AnEllipsoidIsThickEnough) {
   EXPECT_EQ(Shape::ellipsoid({0.3, 0.2, 0.1}, {.levels = 1}).levels(), 2);
   expect_refused("semi-axis y", "0", [] { (void)Shape::ellipsoid({1, 0, 1}); });
   expect_refused("semi-axis x", "-1", [] { (void)Shape::ellipsoid({-1, 1, 1}); });
-  expect_refused("semi-axis z", "2000000", [] { (void)Shape::ellipsoid({1, 1, 2e6}); });
+  expect_refused("semi-axis z", "2e+06", [] { (void)Shape::ellipsoid({1, 1, 2e6}); });
   expect_refused("semi-axis z", "nan", [] { (void)Shape::ellipsoid({1, 1, not_a_number}); });
   expect_refused("largest over least semi-axis", "20000", [] {
     (void)Shape::ellipsoid({1, 2e4, 1});
