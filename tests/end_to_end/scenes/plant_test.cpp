@@ -129,7 +129,7 @@ TEST(Plant, AFactorOutOfRangeOrForABackEndWithoutMassesIsRefused) {
   }
   const Ending ideal = teleop("--plant-inertia 2 --backend ideal");
   EXPECT_EQ(ideal.status, 2) << ideal;
-  EXPECT_TRUE(ideal.says("ideal") && ideal.says("bullet, ode, reference")) << ideal;
+  EXPECT_TRUE(ideal.says("ideal") && ideal.says("bullet, ode, mujoco, reference")) << ideal;
 }
 
 }  // namespace plant_test
