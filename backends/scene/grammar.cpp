@@ -167,7 +167,8 @@ const Keys& sensor_errors() {
 }
 
 const Keys& robot() {
-  static const Keys keys{text("urdf").required(),
+  static const Keys keys{text("urdf"),
+                         text("mjcf"),
                          text("tip_link"),
                          any("start").required(),
                          map("base", frame()),
