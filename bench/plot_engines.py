@@ -4,7 +4,8 @@ sub-steps."""
 
 import chart
 
-STYLES = {"bullet": (chart.GREY, "^"), "ode": (chart.BLUE, "s"), "reference": (chart.RED, "o")}
+STYLES = {"bullet": (chart.GREY, "^"), "ode": (chart.BLUE, "s"), "mujoco": (chart.GREEN, "P"),
+          "reference": (chart.RED, "o")}
 BELOW = {"bullet"}  # its sub-steps stand there, since its curve runs beside that of ode
 LEAST_ERROR = 1e-10  # [mrad]; the truth is hardly better known
 
@@ -25,7 +26,8 @@ def draw(part, path):
     arms = list(dict.fromkeys(row["arm"] for row in rows))
     figure, ((*panels,),) = chart.panels(len(arms), sharex=True, sharey=True)
     for panel, arm in zip(panels, arms):
-        for name, style in chart.named(STYLES, STYLES).items():
+        measured = [name for name in STYLES if any(row["engine"] == name for row in rows)]
+        for name, style in chart.named(STYLES, measured).items():
             curve(panel, [row for row in rows if row["arm"] == arm], name, style)
         chart.logarithmic(panel, "x", (1, 3))
         chart.logarithmic(panel, "y", every=2)

@@ -6,7 +6,7 @@ include(RepelDependencies)
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/; that of dds is link, that of octrees is percepts.
 set(REPEL_COMPONENTS core control common simulated ideal devices link dds record robots cover
-    percepts octrees bullet ode scene visual)
+    percepts octrees bullet ode mujoco scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)
@@ -73,11 +73,12 @@ if(REPEL_HAS_DDS)
   enable_language(C)  # of what idlc writes
 endif()
 # What belongs to a part, and can be left out of it.
-foreach(extra meshes sdf hacd pngs zstd haply)
+foreach(extra meshes sdf mjcf hacd pngs zstd haply)
   repel_switch(${extra} wanted)
 endforeach()
 repel_all_found(MESHES REPEL_WITH_MESHES REPEL_HAS_ROBOTS assimp_FOUND ZLIB_FOUND)
 repel_all_found(SDF REPEL_WITH_SDF REPEL_HAS_ROBOTS SDFORMAT_FOUND)
+repel_all_found(MJCF REPEL_WITH_MJCF REPEL_HAS_ROBOTS MUJOCO_FOUND)
 repel_all_found(HACD REPEL_WITH_HACD REPEL_HAS_COVER REPEL_HAS_HACD)
 repel_all_found(PNGS REPEL_WITH_PNGS REPEL_HAS_PERCEPTS PNG_FOUND)
 repel_all_found(ZSTD REPEL_WITH_ZSTD REPEL_HAS_RECORD ZSTD_FOUND)
@@ -85,7 +86,7 @@ repel_all_found(ZSTD REPEL_WITH_ZSTD REPEL_HAS_RECORD ZSTD_FOUND)
 repel_all_found(HAPLY REPEL_WITH_HAPLY REPEL_HAS_DEVICES REPEL_HAS_VISUAL)
 repel_all_found(DDS REPEL_HAS_DDS REPEL_HAS_LINK)
 repel_all_found(OCTREES REPEL_HAS_OCTREES REPEL_HAS_COVER REPEL_HAS_PERCEPTS)
-foreach(part ${REPEL_COMPONENTS} meshes hacd sdf pngs zstd haply)
+foreach(part ${REPEL_COMPONENTS} meshes hacd sdf mjcf pngs zstd haply)
   repel_say_if_left_out(${part})
 endforeach()
 

@@ -59,8 +59,13 @@ macro(repel_find_robots)
   if(REPEL_ROBOTS_READ_SDF)
     set(repel_for_sdf SDFORMAT_FOUND)
   endif()
+  # Only for MJCF files; where it was built in, it is needed.
+  repel_find_mujoco_engine()
+  if(REPEL_ROBOTS_READ_MJCF)
+    set(repel_for_mjcf MUJOCO_FOUND)
+  endif()
   repel_all_found(ROBOTS orocos_kdl_FOUND urdfdom_FOUND TINYXML2_FOUND ${repel_for_meshes}
-                  ${repel_for_sdf})
+                  ${repel_for_sdf} ${repel_for_mjcf})
 endmacro()
 
 macro(repel_find_cover)
@@ -113,6 +118,30 @@ endmacro()
 macro(repel_find_ode)
   repel_pkg_config(ODE ode)
   repel_all_found(ODE ODE_FOUND)
+endmacro()
+
+# Sets MUJOCO_FOUND and the target repel_mujoco_engine::mujoco.
+macro(repel_find_mujoco_engine)
+  # Its CMake file asks for OpenGL, which nothing here draws with.
+  find_path(REPEL_MUJOCO_INCLUDE_DIR mujoco/mujoco.h)
+  find_library(REPEL_MUJOCO_LIBRARY mujoco)
+  mark_as_advanced(REPEL_MUJOCO_INCLUDE_DIR REPEL_MUJOCO_LIBRARY)
+  if(REPEL_MUJOCO_INCLUDE_DIR AND REPEL_MUJOCO_LIBRARY)
+    set(MUJOCO_FOUND TRUE)
+  else()
+    set(MUJOCO_FOUND FALSE)
+  endif()
+  if(MUJOCO_FOUND AND NOT TARGET repel_mujoco_engine::mujoco)
+    add_library(repel_mujoco_engine::mujoco UNKNOWN IMPORTED)
+    set_target_properties(repel_mujoco_engine::mujoco PROPERTIES
+      IMPORTED_LOCATION ${REPEL_MUJOCO_LIBRARY}
+      INTERFACE_INCLUDE_DIRECTORIES ${REPEL_MUJOCO_INCLUDE_DIR})
+  endif()
+endmacro()
+
+macro(repel_find_mujoco)
+  repel_find_mujoco_engine()
+  repel_all_found(MUJOCO MUJOCO_FOUND)
 endmacro()
 
 macro(repel_find_scene)

@@ -274,20 +274,6 @@ class PartMaker {
   std::vector<RobotPart> parts_;
 };
 
-/// libsdformat would take a URDF file too, and change it.
-void require_sdf(const std::string& path) {
-  tinyxml2::XMLDocument document;
-  const std::string text = detail::text_of_description(path);
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw SetupError(document.ErrorStr(), path, document.ErrorLineNum());
-  }
-  const tinyxml2::XMLElement* const root = document.RootElement();
-  if (root == nullptr) throw SetupError("the file has no element; allowed: <sdf>", path);
-  if (std::string_view(root->Name()) == "sdf") return;
-  throw SetupError("the file begins with <" + std::string(root->Name()) + ">; allowed: <sdf>", path,
-                   root->GetLineNum());
-}
-
 /// What the child process does: all collisions of the file and those that it includes.
 std::string collisions_in(const std::string& path, const UrdfOptions& options) {
   sdf::ParserConfig config;
@@ -317,7 +303,7 @@ std::string collisions_in(const std::string& path, const UrdfOptions& options) {
 }  // namespace
 
 std::vector<RobotPart> load_sdf_parts(const std::string& path, const UrdfOptions& options) {
-  require_sdf(path);
+  detail::require_root(path, "sdf");  // libsdformat would take a URDF file too, and change it
   // libsdformat follows files that include themselves until something ends.
   constexpr detail::ChildLimits limits{.seconds = 10, .memory = std::size_t{1} << 30};
   std::string bytes;

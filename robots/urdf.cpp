@@ -10,6 +10,7 @@
 
 #include "chain_choice.hpp"
 #include "held_joints.hpp"
+#include "merged_body.hpp"
 #include "mesh.hpp"
 #include "urdf_document.hpp"
 
@@ -28,28 +29,13 @@ Pose from_urdf(const urdf::Pose& X) {
   return result;
 }
 
-/// Inertia about the origin of a point mass at `p`.
-Mat3 point_inertia(double mass, const Vec3& p) {
-  return mass * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
-}
-
 /// Adds mass, centre of mass and inertia of a body to those of the link it is fixed to.
 void add_body(const urdf::Inertial& body, const Pose& X_LN, ArmLink& link) {
-  const double total = link.mass + body.mass;
-  const Pose X_LC = X_LN * from_urdf(body.origin);
   Mat3 I;
   I << body.ixx, body.ixy, body.ixz,  //
       body.ixy, body.iyy, body.iyz,   //
       body.ixz, body.iyz, body.izz;
-  // Without any mass the centre is undefined, but the inertia still counts.
-  const Vec3 centre = total > 0.0
-                          ? Vec3((link.mass * link.p_LC + body.mass * X_LC.translation()) / total)
-                          : X_LC.translation();
-  link.I_C_L += point_inertia(link.mass, link.p_LC - centre) +
-                X_LC.linear() * I * X_LC.linear().transpose() +
-                point_inertia(body.mass, X_LC.translation() - centre);
-  link.p_LC = centre;
-  link.mass = total;
+  detail::add_body(body.mass, I, X_LN * from_urdf(body.origin), link);
 }
 
 /// Converts any geometry except a mesh.

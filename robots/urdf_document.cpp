@@ -133,6 +133,14 @@ void remove_all(Element& element, const char* name) {
                    file);
 }
 
+/// The format that begins with <`root`>, behind an error; empty if it is unknown.
+std::string format_hint(std::string_view root) {
+  if (root == "robot") return "; this is URDF";
+  if (root == "mujoco") return "; this is MJCF";
+  if (root == "sdf") return "; this is SDF";
+  return {};
+}
+
 }  // namespace
 
 std::string text_of_description(const std::string& path) {
@@ -149,6 +157,21 @@ std::string text_of_description(const std::string& path) {
   return text;
 }
 
+void require_root(const std::string& path, std::string_view root) {
+  tinyxml2::XMLDocument document;
+  const std::string text = text_of_description(path);
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw SetupError(document.ErrorStr(), path, document.ErrorLineNum());
+  }
+  const tinyxml2::XMLElement* const found = document.RootElement();
+  const std::string allowed = "; allowed: <" + std::string(root) + ">";
+  if (found == nullptr) throw SetupError("the file has no element" + allowed, path);
+  if (root == found->Name()) return;
+  throw SetupError("the file begins with <" + std::string(found->Name()) + ">" + allowed +
+                       format_hint(found->Name()),
+                   path, found->GetLineNum());
+}
+
 UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std::move(file)) {
   if (text.size() > most_description_bytes) refuse_size(text.size(), file_);
   if (xml_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
@@ -156,7 +179,12 @@ UrdfDocument::UrdfDocument(std::string_view text, std::string file) : file_(std:
                      xml_.ErrorLineNum());
   }
   robot_ = xml_.FirstChildElement("robot");
-  if (!robot_) throw SetupError("no <robot> element; allowed: one", file_, 1);
+  if (!robot_) {
+    const tinyxml2::XMLElement* const root = xml_.RootElement();
+    throw SetupError(
+        "no <robot> element; allowed: one" + (root ? format_hint(root->Name()) : std::string()),
+        file_, 1);
+  }
   Counts counts;
   require_modest(*robot_, counts);
   require_plain_urdf();

@@ -24,6 +24,10 @@ inline constexpr std::size_t most_urdf_depth = 512;  ///< joints between the roo
 /// @throws SetupError if it cannot be read or has more than `most_description_bytes`
 [[nodiscard]] std::string text_of_description(const std::string& path);
 
+/// Checks that the XML file at `path` begins with <`root`>, and says which format begins otherwise.
+/// @throws SetupError as text_of_description(), and if it does not
+void require_root(const std::string& path, std::string_view root);
+
 /// A URDF text that has passed all checks of the text alone.
 class UrdfDocument {
  public:

@@ -111,16 +111,16 @@ void describe_arm(CLI::App& app, Arguments& a) {
   app.option_defaults()->group("Arm");
   app.add_option(
          "--backend", a.run.backend,
-         "Simulated arm: bullet or ode (dynamics, gravity, friction, stops), reference (the "
-         "same without stops, by a higher order, slow) or ideal (free joints)")
+         "Simulated arm: bullet, ode or mujoco (dynamics, gravity, friction, stops), reference "
+         "(the same without stops, by a higher order, slow) or ideal (free joints)")
       ->capture_default_str()
       ->check(CLI::IsMember(backend_names([](const auto&) { return true; })));
   app.add_flag("--contact", a.run.contact,
-               "With bullet or ode: impassable obstacles are also solid in the simulation, beside "
-               "their virtual force");
+               "With bullet, ode or mujoco: impassable obstacles are also solid in the simulation, "
+               "beside their virtual force");
   app.add_option("--plant-inertia", a.run.plant_inertia,
-                 "With bullet, ode or reference: inertia of the simulated arm relative to its "
-                 "model, at the same weight; tests the controller against errors of the model")
+                 "With bullet, ode, mujoco or reference: inertia of the simulated arm relative to "
+                 "its model, at the same weight; tests the controller against errors of the model")
       ->capture_default_str()
       ->type_name("FACTOR")
       ->check(host::between(least_inertia_factor, most_inertia_factor));
@@ -236,8 +236,9 @@ void describe_files(CLI::App& app, Command command, Arguments& a) {
 /// What stands in scene files and behind options.
 std::string names_text() {
   return "Scenes:" + scene_list() +
-         "\n\nBack ends:\n  bullet, ode, reference, ideal\n\nDevices (chosen phase by phase in the "
-         "scene):\n"
+         "\n\nBack ends:\n  bullet, ode, mujoco, reference, ideal\n\nDevices (chosen phase by "
+         "phase in "
+         "the scene):\n"
          "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
          "  six_axes    six rates of a hand, with force feedback, scripted\n"
          "or, in place of the script, the page of --view and the master of --device\n\n";

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <repel/simulated/brake_torque.hpp>
+#include <repel/simulated/joint_resistance.hpp>
 
 namespace repel::bullet::detail {
 namespace {
@@ -12,10 +13,10 @@ namespace {
 constexpr int most_sweeps = 100;
 constexpr double settled = 1e-14;  // [rad/s] the search ends when no change in a sweep exceeds it
 
-Eigen::VectorXd gathered(const ArmModel& model, double ArmLink::*field) {
+Eigen::VectorXd coulomb_friction_of(const ArmModel& model) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(model.links.size()));
   std::transform(model.links.begin(), model.links.end(), values.begin(),
-                 [field](const ArmLink& link) { return link.*field; });
+                 [](const ArmLink& link) { return link.coulomb_friction; });
   return values;
 }
 
@@ -30,30 +31,23 @@ Eigen::VectorXd brakes_of(const ArmModel& model) {
 }  // namespace
 
 ImplicitJoints::ImplicitJoints(const ArmModel& model, const SimulationOptions& options)
-    : lower_(gathered(model, &ArmLink::lower)),
-      upper_(gathered(model, &ArmLink::upper)),
-      rotor_inertia_(gathered(model, &ArmLink::rotor_inertia)),
-      viscous_(gathered(model, &ArmLink::viscous_friction)),
-      coulomb_(gathered(model, &ArmLink::coulomb_friction)),
+    : links_(model.links),
+      options_(options),
+      coulomb_(coulomb_friction_of(model)),
       brake_(brakes_of(model)),
-      diagonal_(lower_.size()),
-      torque_(lower_.size()),
-      most_(lower_.size()),
-      friction_(lower_.size()),
-      column_(lower_.size()),
-      factor_(lower_.size()),
-      stop_stiffness_(options.stop_stiffness),
-      stop_damping_(options.stop_damping) {}
+      diagonal_(coulomb_.size()),
+      torque_(coulomb_.size()),
+      most_(coulomb_.size()),
+      friction_(coulomb_.size()),
+      column_(coulomb_.size()),
+      factor_(coulomb_.size()) {}
 
 const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
                                                  const Eigen::VectorXd& torque, double h) noexcept {
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const double next = q[i] + h * v[i];
-    const double beyond = next - std::clamp(next, lower_[i], upper_[i]);
-    // A stop damps inward motion only; on the way out a damper would hold the joint back.
-    const double damping = viscous_[i] + (beyond * v[i] > 0.0 ? stop_damping_ : 0.0);
-    const double stiffness = beyond == 0.0 ? 0.0 : stop_stiffness_;
-    diagonal_[i] = rotor_inertia_[i] + h * damping + h * h * stiffness;
+    const ArmLink& link = links_[static_cast<std::size_t>(i)];
+    const auto [damping, stiffness, beyond] = resistance_of(link, options_, q[i], v[i], h);
+    diagonal_[i] = link.rotor_inertia + h * damping + h * h * stiffness;
     torque_[i] = torque[i] - damping * v[i] - stiffness * beyond;
   }
   return torque_;

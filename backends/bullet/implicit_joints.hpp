@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <vector>
 
 #include <repel/simulated/simulated_arm.hpp>
 #include <repel/world/arm.hpp>
@@ -50,12 +51,11 @@ class ImplicitJoints {
   void find_friction(const Eigen::MatrixXd& W, Eigen::VectorXd& a, const Eigen::VectorXd& v,
                      double h, Contacts* contacts) noexcept;
 
-  Eigen::VectorXd lower_, upper_;                      // [rad]
-  Eigen::VectorXd rotor_inertia_, viscous_, coulomb_;  // [kg m^2], [N m s/rad], [N m]
-  Eigen::VectorXd brake_;                              // [N m]
+  std::vector<ArmLink> links_;
+  SimulationOptions options_;
+  Eigen::VectorXd coulomb_, brake_;  // [N m]
   Eigen::VectorXd diagonal_, torque_, most_, friction_, column_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
-  double stop_stiffness_, stop_damping_;
 };
 
 }  // namespace repel::bullet::detail

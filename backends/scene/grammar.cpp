@@ -168,7 +168,8 @@ const Keys& sensor_errors() {
 }
 
 const Keys& robot() {
-  static const Keys keys{text("urdf").required(),
+  static const Keys keys{text("urdf"),
+                         text("mjcf"),
                          text("tip_link"),
                          any("start").required(),
                          map("base", frame()),

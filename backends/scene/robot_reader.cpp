@@ -12,6 +12,18 @@ Pose pose_at(const Map& parent, std::string_view key) {
   return value != nullptr ? pose_of(Map(*value, grammar::frame())) : Pose::Identity();
 }
 
+/// One of two formats.
+void read_file(const Map& map, RobotChoice& robot) {
+  const Value* const mjcf = map.find("mjcf");
+  robot.is_mjcf = mjcf != nullptr;
+  robot.urdf = (robot.is_mjcf ? *mjcf : map.at("urdf")).path();
+  if (!robot.is_mjcf) return;
+  for (const char* key : {"urdf", "srdf", "packages", "covers"}) {
+    if (const Value* value = map.find(key))
+      value->fail("beside 'mjcf'; allowed: with 'urdf' alone");
+  }
+}
+
 /// Angles, or a list of angles and, for prismatic joints, lengths.
 void read_start(const Value& value, RobotChoice& robot) {
   robot.start_line = value.line();
@@ -77,7 +89,7 @@ std::vector<JointHold> holds_of(const Value& value) {
 RobotChoice robot_of(const Value& value, const Laws& laws) {
   const Map map(value, grammar::robot());
   RobotChoice robot;
-  robot.urdf = map.at("urdf").path();
+  read_file(map, robot);
   if (const Value* srdf = map.find("srdf")) robot.srdf = srdf->path();
   if (map.find("self_law")) robot.self_law = law_called(laws, map, "self_law");
   map.read("tip_link", robot.tip_link);

@@ -5,6 +5,9 @@
 #include <limits>
 
 #include <repel/bullet/arm.hpp>
+#ifdef REPEL_ENGINES_MUJOCO
+#include <repel/mujoco/arm.hpp>
+#endif
 #include <repel/ode/arm.hpp>
 #include <repel/robots/urdf.hpp>
 
@@ -53,12 +56,15 @@ ArmModel without_stops(ArmModel model) {
 
 }  // namespace
 
-const std::array<Engine, 3>& engines() {
-  static const std::array<Engine, 3> all{{
+const std::vector<Engine>& engines() {
+  static const std::vector<Engine> all{
       {"bullet", make<bullet::Arm, bullet::ArmOptions>},
       {"ode", make<ode::Arm, ode::ArmOptions>},
+#ifdef REPEL_ENGINES_MUJOCO
+      {"mujoco", make<mujoco::Arm, mujoco::ArmOptions>},
+#endif
       {"reference", make<ReferenceArm, ReferenceOptions>},
-  }};
+  };
   return all;
 }
 

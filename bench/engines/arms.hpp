@@ -3,7 +3,6 @@
 /// The engines behind a common interface, and the arms they simulate.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -34,8 +33,8 @@ struct Engine {
   std::unique_ptr<SimulatedArm> (*make)(const ArmModel& model, int substeps);
 };
 
-/// In the order of the tables; the reference is last.
-[[nodiscard]] const std::array<Engine, 3>& engines();
+/// Those that are built, in the order of the tables; the reference is last.
+[[nodiscard]] const std::vector<Engine>& engines();
 [[nodiscard]] const Engine& reference();
 
 /// A rod of 2 kg, hanging down at zero, centre of mass 0.5 m from the axis; no friction.

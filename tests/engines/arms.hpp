@@ -12,6 +12,9 @@
 #ifdef REPEL_TESTS_Ode
 #include <repel/ode/arm.hpp>
 #endif
+#ifdef REPEL_TESTS_Mujoco
+#include <repel/mujoco/arm.hpp>
+#endif
 #ifdef REPEL_TESTS_Robots
 #include <repel/robots/dynamics.hpp>
 #endif
@@ -22,7 +25,8 @@ namespace repel::simulated {
 struct Bullet {
   using Arm = bullet::Arm;
   static ArmModel puma() { return puma560(); }
-  static constexpr bool touches_any_shape = true;
+  static constexpr bool touches_hulls = true;
+  static constexpr bool touches_cones = true;
   static constexpr double creep = 1e-8;   ///< [rad] at most in a second, while in balance
   static constexpr double braked = 1e-4;  ///< [rad/s^2] error of the acceleration under a brake
   static constexpr double strays = 5e-3;  ///< [rad] from the reference, with four sub-steps
@@ -33,10 +37,23 @@ struct Bullet {
 struct Ode {
   using Arm = ode::Arm;
   static ArmModel puma() { return heavy_puma(); }
-  static constexpr bool touches_any_shape = false;  ///< no cones, no hulls
+  static constexpr bool touches_hulls = false;
+  static constexpr bool touches_cones = false;
   static constexpr double creep = 1e-6;
   static constexpr double braked = 1e-3;
   static constexpr double strays = 1e-2;
+};
+#endif
+
+#ifdef REPEL_TESTS_Mujoco
+struct Mujoco {
+  using Arm = mujoco::Arm;
+  static ArmModel puma() { return puma560(); }
+  static constexpr bool touches_hulls = true;
+  static constexpr bool touches_cones = false;
+  static constexpr double creep = 1e-8;
+  static constexpr double braked = 1e-4;
+  static constexpr double strays = 5e-3;
 };
 #endif
 

@@ -41,7 +41,7 @@ std::vector<ContactPart> probes() {
                                  {"sphere", 0, Shape::sphere(0.1), Pose::Identity()},
                                  {"capsule", 0, Shape::capsule(0.1, 0.2), Pose::Identity()},
                                  {"cylinder", 0, Shape::cylinder(0.1, 0.2), Pose::Identity()}};
-  if (!Engine::touches_any_shape) return parts;
+  if (!Engine::touches_hulls) return parts;
   std::vector<Vec3> corners;
   for (const double x : {-0.1, 0.1}) {
     for (const double y : {-0.1, 0.1}) {
@@ -77,7 +77,7 @@ void expect_stop(const std::vector<ContactPart>& parts, double stop, const std::
 TYPED_TEST(Contact, ABoxHoldsEveryShapeThatIsPushedIntoIt) {
   const ContactPart wall{"wall", -1, Shape::box({0.2, 0.5, 0.5}), at(0.5, 0, 0)};
   std::vector<ContactPart> parts = probes<TypeParam>();
-  if (TypeParam::touches_any_shape) {
+  if (TypeParam::touches_cones) {
     for (const double turn : {pi / 2, -pi / 2}) {  // the tip and the base of a cone
       parts.push_back({"cone", 0, Shape::cone(0.05, 0.1), Pose::Identity()});
       parts.back().X_LP.linear() = Eigen::AngleAxisd(turn, Vec3::UnitY()).toRotationMatrix();
@@ -202,8 +202,8 @@ TYPED_TEST(Contact, WhatIsNotTouchedChangesNoBit) {
 
 TYPED_TEST(Contact, SetUpNamesThePartThatCannotBeTouched) {
   std::vector<Shape> shapes{Shape::box({0.1, 0.1, 0.0})};
-  if (!TypeParam::touches_any_shape) {
-    shapes.push_back(Shape::cone(0.1, 0.1));
+  if (!TypeParam::touches_cones) shapes.push_back(Shape::cone(0.1, 0.1));
+  if (!TypeParam::touches_hulls) {
     shapes.push_back(Shape::hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 1}}));
   }
   for (const Shape& shape : shapes) {

@@ -4,6 +4,7 @@
 #ifdef PART_robots
 #include <repel/robots/dynamics.hpp>
 #include <repel/robots/kinematics.hpp>
+#include <repel/robots/mjcf.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/robots/read_mesh.hpp>
 #include <repel/robots/urdf.hpp>
@@ -51,6 +52,9 @@
 #endif
 #ifdef PART_ode
 #include <repel/ode/arm.hpp>
+#endif
+#ifdef PART_mujoco
+#include <repel/mujoco/arm.hpp>
 #endif
 #ifdef PART_scene
 #include <repel/scene/build_network.hpp>

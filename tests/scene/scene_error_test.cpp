@@ -204,6 +204,8 @@ TEST(SceneError, AMissingKeyIsRefusedAtTheMapThatLacksIt) {
   expect_refused("tool: []\nobstacles: []\n", 1, {"'robot' is missing"});
   expect_refused(changed("  start: 0 45 180 0 45 0 deg\n", ""), 2, {"'start' is missing"});
   expect_refused(changed("  urdf: ../robots/puma560.urdf\n", ""), 2, {"'urdf' is missing"});
+  expect_refused(changed("  start:", "  mjcf: ../robots/puma560.urdf\n  start:"), 2,
+                 {"'urdf'", "beside 'mjcf'"});
   expect_refused(changed(", radius: 20 mm", ""), 5, {"'radius' is missing"});
   expect_refused(changed("shape: box, ", ""), 7, {"'shape' is missing"});
   expect_refused(changed("name: wall, ", ""), 7, {"'name' is missing"});

@@ -192,6 +192,7 @@ TEST(SceneValue, ASceneThatSaysLittleHasTheStatedDefaults) {
   EXPECT_EQ(scene.name, "test");
   EXPECT_EQ(scene.file, "scenes/test.yaml");
   EXPECT_EQ(scene.robot.urdf, "robots/puma560.urdf");
+  EXPECT_FALSE(scene.robot.is_mjcf);
   EXPECT_EQ(scene.rate_hz, 400.0);
   EXPECT_EQ(scene.tool[0].kind, "sphere");
   EXPECT_EQ(scene.obstacles[0].law.range, 0.02);

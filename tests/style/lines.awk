@@ -99,7 +99,8 @@ is_outside_apps && (/^ *# *include *[<"]([^>"]*\/)?apps\// ||
     is_build && !/^ *#/ && /(^|[^A-Za-z0-9_])apps\/[^ ]|\/apps([^A-Za-z0-9_\/]|$)/) {
   breach("arrow-into-apps", "what others need of a program belongs to a library")
 }
-FILENAME ~ /^\.\/robots\// && /^ *# *include.*repel\/(bullet|ode|ideal|scene|visual|devices)\// {
+FILENAME ~ /^\.\/robots\// &&
+    /^ *# *include.*repel\/(bullet|ode|mujoco|ideal|scene|visual|devices)\// {
   breach("include-order", "robots know no back end")
 }
 FILENAME ~ /^\.\/backends\// && /^ *# *include.*repel\/robots\// {

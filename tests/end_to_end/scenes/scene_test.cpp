@@ -59,7 +59,7 @@ TEST(Scene, TheDefaultOneLeadsWithTheLeverSlidesWithinTheLimitsAndUsesEveryModul
   EXPECT_GT(ball, 1.0);
 
   const Folder folder;
-  for (const std::string backend : {"bullet", "ode", "reference", "ideal"}) {
+  for (const std::string backend : {"bullet", "ode", "mujoco", "reference", "ideal"}) {
     SCOPED_TRACE(backend);
     const Ending ending = teleop("--fast --seconds 20 --backend " + backend + " --report " +
                                  quoted(folder / "report.json"));
@@ -140,9 +140,10 @@ TEST(Scene, SoftTissueStiffensWithDepthOverBoneAndSkinGivesWay) {
 TEST(Scene, EveryOneOfTheRepositoryRunsWithoutAFault) {
   const Folder folder;
   for (const std::string& scene : scene_names()) {
-    for (const std::string backend : {"bullet", "ode", "reference", "ideal"}) {
+    for (const std::string backend : {"bullet", "ode", "mujoco", "reference", "ideal"}) {
       const Ending ending = teleop(scene + " --fast --seconds 1 --backend " + backend +
                                    " --report " + quoted(folder / "report.json"));
+      if (ending.says("is not built in")) continue;
       ASSERT_EQ(ending.status, 0) << scene << '\n' << ending;
       const auto report = report_of(folder / "report.json");
       for (const char* fault : {"bad_pose", "bad_command", "bad_joints", "clock_fault"}) {
@@ -168,7 +169,7 @@ TEST(Scene, TheEnginesAndTheReferenceArmFeelTheSameWalls) {
   const Columns reference = log_with(folder, "reference");
   const auto& force = reference.at("virtual_fz_n");
   EXPECT_GT(*std::max_element(force.begin(), force.end()), 50.0);
-  for (const char* backend : {"bullet", "ode"}) {
+  for (const char* backend : {"bullet", "ode", "mujoco"}) {
     const Columns log = log_with(folder, backend);
     if (log.empty()) continue;
     for (const char* column : {"x_m", "y_m", "z_m"}) {

@@ -120,7 +120,8 @@ struct JointHold {
 /// The robot file, its placement and its initial position.
 struct RobotChoice {
   std::string urdf;                    ///< path; in the scene file relative to that file
-  std::string tip_link;                ///< empty: the end of the longest chain
+  bool is_mjcf = false;                ///< the file is MJCF, not URDF
+  std::string tip_link;                ///< empty: the end of the longest chain; MJCF: or a site
   std::vector<JointHold> hold;         ///< joints to hold; those beside the chain are held anyway
   std::vector<std::string> packages;   ///< folders where package:// leads; paths as that of urdf
   bool covers = true;                  ///< meshes become the parts in the lists beside them

@@ -10,6 +10,9 @@
 #ifdef REPEL_RUNS_BULLET
 #include <repel/bullet/arm.hpp>
 #endif
+#ifdef REPEL_RUNS_MUJOCO
+#include <repel/mujoco/arm.hpp>
+#endif
 #ifdef REPEL_RUNS_ODE
 #include <repel/ode/arm.hpp>
 #endif
@@ -44,7 +47,7 @@ ArmPointer make_reference(const ArmModel& model, std::span<const double> start, 
                   start);
 }
 
-#if defined(REPEL_RUNS_BULLET) || defined(REPEL_RUNS_ODE)
+#if defined(REPEL_RUNS_BULLET) || defined(REPEL_RUNS_MUJOCO) || defined(REPEL_RUNS_ODE)
 template <class Arm>
 ArmPointer make_simulated(const ArmModel& model, std::span<const double> start, double watchdog,
                           std::span<const ContactPart> parts) {
@@ -54,7 +57,7 @@ ArmPointer make_simulated(const ArmModel& model, std::span<const double> start, 
 }
 #endif
 
-#if !defined(REPEL_RUNS_BULLET) || !defined(REPEL_RUNS_ODE)
+#if !defined(REPEL_RUNS_BULLET) || !defined(REPEL_RUNS_MUJOCO) || !defined(REPEL_RUNS_ODE)
 template <const char* remedy>
 ArmPointer refuse(const ArmModel& /*model*/, std::span<const double> /*start*/, double /*watchdog*/,
                   std::span<const ContactPart> /*parts*/) {
@@ -75,10 +78,18 @@ constexpr auto make_ode = &make_simulated<ode::Arm>;
 constexpr char no_ode[] = "backend ode is not built in; to have it: apt-get install libode-dev";
 constexpr auto make_ode = &refuse<no_ode>;
 #endif
+#ifdef REPEL_RUNS_MUJOCO
+constexpr auto make_mujoco = &make_simulated<mujoco::Arm>;
+#else
+constexpr char no_mujoco[] =
+    "backend mujoco is not built in; to have it: apt-get install libmujoco-dev";
+constexpr auto make_mujoco = &refuse<no_mujoco>;
+#endif
 
 constexpr ArmBackend backends[] = {
     {.name = "bullet", .has_gravity = true, .has_contact = true, .make = make_bullet},
     {.name = "ode", .has_gravity = true, .has_contact = true, .make = make_ode},
+    {.name = "mujoco", .has_gravity = true, .has_contact = true, .make = make_mujoco},
     {.name = "reference", .has_gravity = true, .has_contact = false, .make = &make_reference},
     {.name = "ideal", .has_gravity = false, .has_contact = false, .make = &make_ideal},
 };

@@ -9,6 +9,7 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/cell/admittance.hpp>
 #include <repel/cell/layout.hpp>
+#include <repel/robots/mjcf.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/runs/setup/covers_beside.hpp>
 #include <repel/runs/setup/seen_parts.hpp>
@@ -33,16 +34,22 @@ void make_ideal(ArmModel& model) {
   }
 }
 
-Robot load_robot(const scene::RobotChoice& choice, bool with_gravity, CoversBeside& covers) {
+Robot read_robot(const scene::RobotChoice& choice, CoversBeside& covers) {
+  std::vector<Hold> holds;
+  for (const scene::JointHold& hold : choice.hold) {
+    holds.push_back(hold.position ? Hold(hold.joint, *hold.position, hold.type) : Hold(hold.joint));
+  }
+  if (choice.is_mjcf) return load_mjcf_arm(choice.urdf, {choice.tip_link, std::move(holds)});
   UrdfOptions options;
   if (choice.covers) options.convex_parts = covers.reader();
   options.tip = choice.tip_link;
   options.package_paths = choice.packages;
-  for (const scene::JointHold& hold : choice.hold) {
-    options.hold.push_back(hold.position ? Hold(hold.joint, *hold.position, hold.type)
-                                         : Hold(hold.joint));
-  }
-  Robot robot = load_arm(choice.urdf, options);
+  options.hold = std::move(holds);
+  return load_arm(choice.urdf, options);
+}
+
+Robot load_robot(const scene::RobotChoice& choice, bool with_gravity, CoversBeside& covers) {
+  Robot robot = read_robot(choice, covers);
   ArmModel& model = robot.arm;
   model.X_WB = choice.X_WB * model.X_WB;
   model.X_LT = model.X_LT * choice.X_LT;

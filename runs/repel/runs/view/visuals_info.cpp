@@ -56,6 +56,7 @@ void add_visuals(const PreparedRun& prepared, visual::SceneInfo& info) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < prepared.robots.size(); ++i) {
     const scene::RobotChoice& choice = prepared.scene.arm_setup(i).robot;
+    if (choice.is_mjcf) continue;  // its parts are shown
     RobotVisuals visuals;
     try {
       visuals = load_visuals(choice.urdf, prepared.robots[i], {.package_paths = choice.packages});

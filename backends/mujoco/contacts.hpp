@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Contacts of an arm in MuJoCo: their law, and what is told of them.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <repel/base/spatial.hpp>
+#include <repel/simulated/simulated_arm.hpp>
+
+namespace repel::mujoco::detail {
+
+/// A contact point is a spring K and a damper C along its normal, and a damper C along the surface,
+/// limited by dry friction. MuJoCo solves for an acceleration a of each row of its constraints
+///
+///     a + R f = a_ref,   with x the (negative) distance, v the speed and v' = v + h a:
+///     f = -K (x + h v') - C v'   gives   R = 1 / (h (C + h K)),   a_ref = -R K x - v / h.
+///
+/// The force is exactly that of an implicit spring and damper, whatever the masses; MuJoCo's own
+/// parameters would make it depend on them.
+class Contacts {
+ public:
+  Contacts(const ArmModel& model, const SimulationOptions& options);
+
+  /// Sets the law of all contact points, for a sub-step of `h` [s]: between the velocity stage of
+  /// MuJoCo and its solver.
+  void set_law(mjData& data, double h) noexcept;
+
+  /// Adds up the forces on the last link, once they are solved in a sub-step.
+  void note_forces(const mjModel& model, const mjData& data) noexcept;
+
+  /// Ends a step: counts it if any of its sub-steps had a contact.
+  void end_step() noexcept;
+
+  /// Sum of the contact forces on the last link about the origin of the tool, in axes of the tool,
+  /// mean of the last step [N, N m].
+  [[nodiscard]] const Wrench& on_tool() const noexcept { return on_tool_; }
+
+  /// Clears the report.
+  void forget() noexcept;
+
+  [[nodiscard]] ContactReport report() const noexcept { return report_; }
+
+ private:
+  SimulationOptions options_;
+  Pose X_LT_;  // [m]
+  int last_;   // body of the link that carries the tool
+  ContactReport report_;
+  bool touching_ = false;  // in this step
+  Wrench sum_;             // of the last link in this step, over its sub-steps
+  Wrench on_tool_;
+};
+
+}  // namespace repel::mujoco::detail

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arms from MJCF files, compared with MuJoCo itself, and what is refused.
+#include <repel/robots/mjcf.hpp>
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+#include <string>
+
+#include <repel/base/setup_error.hpp>
+#include <repel/robots/describe_arm.hpp>
+#include <repel/robots/dynamics.hpp>
+
+#ifdef REPEL_TESTS_MJCF
+#include <mujoco/mujoco.h>
+#endif
+
+#include "end_to_end/folder.hpp"
+
+namespace repel {
+namespace mjcf_test {
+
+using test::Folder;
+
+std::string complaint(const std::string& path, const MjcfOptions& options = {}) {
+  try {
+    (void)load_mjcf_arm(path, options);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+bool says(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+std::string mjcf_of(const std::string& bodies, const std::string& rest = "") {
+  return "<mujoco model=\"test\">\n<compiler angle=\"radian\"/>\n<worldbody>\n" + bodies +
+         "</worldbody>\n" + rest + "</mujoco>\n";
+}
+
+#ifndef REPEL_TESTS_MJCF
+TEST(Mjcf, WithoutMujocoTheErrorSaysWhatWouldBringIt) {
+  const std::string text = complaint("arm.xml");
+  EXPECT_TRUE(says(text, "apt-get install libmujoco-dev")) << text;
+  EXPECT_FALSE(reads_mjcf());
+}
+#else
+
+/// Joints beside their bodies, with references and armatures, two of them in one body, a slide, a
+/// fixed body with a mass, and a site at its end.
+const std::string arm_bodies = R"(
+<geom type="plane" size="1 1 1"/>
+<body name="base" pos="0.1 -0.2 0.3" quat="0.9 0.1 -0.3 0.2">
+  <geom name="foot" type="cylinder" size="0.1 0.2" mass="3"/>
+  <body name="upper" pos="0.2 0.1 0.4" quat="0.7 -0.2 0.4 0.5">
+    <inertial pos="0.05 -0.1 0.2" mass="4" fullinertia="0.3 0.25 0.2 0.01 -0.02 0.03"/>
+    <joint name="yaw" axis="0.1 0.2 1" pos="0.03 -0.02 0.1" ref="0.4" armature="0.5"
+           range="-3 2" limited="true" damping="1.5" frictionloss="0.7"/>
+    <joint name="pitch" axis="0 1 0.3" pos="-0.1 0.02 0.2"/>
+    <geom name="pill" type="capsule" size="0.05 0.2" pos="0 0 0.2" quat="0.5 0.5 -0.5 0.5"/>
+    <geom name="seen" type="sphere" size="0.3" contype="0" conaffinity="0"/>
+    <body name="rail" pos="0.1 0 0.5" quat="0.6 0.1 0.7 -0.2">
+      <joint name="lift" type="slide" axis="1 0.2 -0.4" pos="0.3 0.1 0.2" ref="-0.2" armature="2"/>
+      <geom type="box" size="0.1 0.05 0.2" pos="0.02 0.03 0.04" mass="2"/>
+      <body name="hand" pos="0.2 -0.1 0.1" quat="0.3 0.2 0.8 0.4">
+        <joint name="roll" axis="0 0 1" pos="0 0.01 0"/>
+        <geom name="palm" type="mesh" mesh="wedge" mass="0.8"/>
+        <body name="flange" pos="0.01 0.02 0.3" quat="0.2 0.9 0.1 0.3">
+          <geom name="ball" type="sphere" size="0.04" mass="0.5"/>
+          <site name="tip" pos="0.02 0.01 0.1" quat="0.8 0.1 0.5 0.2"/>
+        </body>
+        <body name="finger" pos="0 0.05 0.1">
+          <joint name="squeeze" type="slide" axis="0 1 0" range="0.01 0.04" limited="true"/>
+          <geom name="nail" type="box" size="0.01 0.01 0.03" mass="0.1"/>
+        </body>
+      </body>
+    </body>
+  </body>
+</body>
+)";
+const std::string arm_rest = R"(
+<option gravity="0.5 -1 -9"/>
+<asset><mesh name="wedge" vertex="0 0 0  0.1 0 0  0 0.1 0  0.1 0.1 0  0 0 0.2  0.1 0 0.2
+                                  0.03 0.03 0.05"/></asset>
+<actuator><motor joint="yaw" gear="50" ctrlrange="-2 1" ctrllimited="true"/>
+<position joint="pitch" kp="100" forcerange="-30 20" forcelimited="true"/></actuator>
+)";
+
+struct EndModel {
+  void operator()(mjModel* ended) const { mj_deleteModel(ended); }
+};
+struct EndData {
+  void operator()(mjData* ended) const { mj_deleteData(ended); }
+};
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Pose pose_of(const mjtNum* p, const mjtNum* R) {
+  Pose X = Pose::Identity();
+  X.translation() = Eigen::Map<const Vec3>(p);
+  X.linear() = Eigen::Map<const RowMajor>(R);
+  return X;
+}
+
+double apart(const Pose& a, const Pose& b) {
+  return std::max((a.translation() - b.translation()).norm(), (a.linear() - b.linear()).norm());
+}
+
+TEST(Mjcf, PosesInertiaAndBiasAreThoseOfMujoco) {
+  const Folder folder;
+  const std::string path = folder.with("arm.xml", mjcf_of(arm_bodies, arm_rest));
+  const Robot robot = load_mjcf_arm(path, {.tip = "tip"});
+  char message[1000] = "";
+  const std::unique_ptr<mjModel, EndModel> model(
+      mj_loadXML(path.c_str(), nullptr, message, sizeof message));
+  ASSERT_TRUE(model) << message;
+  const std::unique_ptr<mjData, EndData> data(mj_makeData(model.get()));
+  const int n = 4;
+  ASSERT_EQ(robot.arm.links.size(), std::size_t{n});
+  ASSERT_EQ(model->nv, n + 1);  // the finger is held
+  ASSERT_EQ(robot.held.size(), 1U);
+  Kinematics kinematics(robot.arm);
+  Dynamics dynamics(robot.arm);
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> any(-2.0, 2.0);
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<double> q(n), v(n);
+    for (double& value : q) value = any(generator);
+    for (double& value : v) value = any(generator);
+    std::copy(q.begin(), q.end(), data->qpos);
+    std::copy(v.begin(), v.end(), data->qvel);
+    data->qpos[n] = robot.held[0].position;
+    data->qvel[n] = 0.0;
+    mj_forward(model.get(), data.get());
+    kinematics.update(q);
+    const int site = mj_name2id(model.get(), mjOBJ_SITE, "tip");
+    EXPECT_LT(
+        apart(kinematics.X_WT(), pose_of(data->site_xpos + 3 * site, data->site_xmat + 9 * site)),
+        1e-12);
+    for (const RobotLink& link : robot.links) {
+      const int body = mj_name2id(model.get(), mjOBJ_BODY, link.name.c_str());
+      const Pose X_WL = link.link < 0 ? Pose::Identity() : kinematics.X_WL(link.link);
+      EXPECT_LT(apart(X_WL * link.X_LN, pose_of(data->xpos + 3 * body, data->xmat + 9 * body)),
+                1e-12)
+          << link.name;
+    }
+    Eigen::MatrixXd M(n, n), all(n + 1, n + 1);
+    dynamics.inertia(q, M);
+    mj_fullM(model.get(), all.data(), data->qM);
+    EXPECT_LT((M - all.topLeftCorner(n, n)).norm(), 1e-9 * all.norm());
+    std::vector<double> bias(n);
+    dynamics.bias(q, v, bias);
+    const Eigen::Map<const Eigen::VectorXd> here(bias.data(), n);
+    const Eigen::Map<const Eigen::VectorXd> there(data->qfrc_bias, n);
+    EXPECT_LT((here - there).norm(), 1e-9 * there.norm());
+  }
+}
+
+TEST(Mjcf, PartsAndLimitsAreThoseOfTheFile) {
+  const Folder folder;
+  const std::string path = folder.with("arm.xml", mjcf_of(arm_bodies, arm_rest));
+  const Robot robot = load_mjcf_arm(path, {.tip = "hand"});
+  EXPECT_EQ(robot.arm.name, "test");
+  EXPECT_EQ(robot.arm.gravity_W, Vec3(0.5, -1, -9));
+  const ArmLink& yaw = robot.arm.links[0];
+  EXPECT_EQ(yaw.name, "upper/yaw");
+  EXPECT_EQ(yaw.mass, 0.0);
+  EXPECT_EQ(robot.arm.links[1].name, "upper");
+  EXPECT_EQ(robot.arm.links[1].mass, 4.0);
+  EXPECT_EQ(yaw.lower, -3.0);
+  EXPECT_EQ(yaw.upper, 2.0);
+  EXPECT_EQ(yaw.viscous_friction, 1.5);
+  EXPECT_EQ(yaw.coulomb_friction, 0.7);
+  EXPECT_EQ(yaw.rotor_inertia, 0.5);
+  EXPECT_EQ(yaw.effort_limit, 100.0);
+  EXPECT_EQ(robot.arm.links[1].effort_limit, 30.0);
+  EXPECT_EQ(robot.arm.links[2].effort_limit, 0.0) << "unknown";
+  EXPECT_EQ(robot.held[0].position, 0.01);
+  std::string names;
+  for (const RobotPart& part : robot.parts) {
+    names += part.name + " " + to_text(part.kind) + " " + std::to_string(part.link) + "; ";
+  }
+  EXPECT_EQ(names,
+            "foot cylinder -1; pill capsule 1; rail_0 box 2; palm hull 3; ball sphere 3; "
+            "nail box 3; ");
+  EXPECT_EQ(robot.parts[1].size, Vec3(0.05, 0.2, 0));
+  EXPECT_EQ(robot.parts[3].points.size(), 6U) << "the corners of its hull";
+  const ArmDescription arm = arm_from_mjcf(path, {.tip = "hand"});
+  EXPECT_EQ(arm.parts.size(), 5U) << "without what stands with the base";
+}
+
+TEST(Mjcf, AHeldJointStandsWhereItIsHeld) {
+  const Folder folder;
+  const std::string path = folder.with("arm.xml", mjcf_of(arm_bodies, arm_rest));
+  const Robot robot = load_mjcf_arm(path, {"tip", {{"lift", 0.1, JointType::prismatic}}});
+  EXPECT_EQ(robot.arm.links.size(), 3U);
+  const auto held = [&](const Hold& hold) { return complaint(path, {"tip", {hold}}); };
+  EXPECT_TRUE(says(held({"lift", 0.1, JointType::revolute}), "allowed: a length"));
+  EXPECT_TRUE(says(held({"yaw", 2.5}), "allowed: -3 to 2 rad"));
+  EXPECT_TRUE(says(held("nowhere"), "no joint 'nowhere'"));
+}
+
+TEST(Mjcf, WhatIsNoSerialArmIsRefusedByName) {
+  const Folder folder;
+  const auto of = [&](const std::string& text) { return complaint(folder.with("m.xml", text)); };
+  const auto link = [](const std::string& joint, const std::string& more = "") {
+    return "<body name=\"b\">" + joint + "<geom name=\"g\" size=\"0.1\"/>" + more + "</body>\n";
+  };
+  const std::string hinge = "<joint name=\"j\"/>";
+  EXPECT_EQ(of(mjcf_of(link(hinge))), "accepted");
+  const struct {
+    std::string text, words;
+  } cases[] = {
+      {mjcf_of(link("<freejoint name=\"j\"/>")),
+       "joint 'j' is a free joint; allowed: hinge, slide"},
+      {mjcf_of(link("<joint name=\"j\" type=\"ball\"/>")), "joint 'j' is a ball joint"},
+      {mjcf_of(link("<joint name=\"j\" stiffness=\"3\"/>")), "joint 'j' has a spring, stiffness 3"},
+      {mjcf_of(link("")), "no joint moves"},
+      {mjcf_of(link(hinge), "<equality><joint name=\"e\" joint1=\"j\"/></equality>"),
+       "'e' is an equality constraint"},
+      {mjcf_of(link(hinge),
+               "<tendon><fixed name=\"t\"><joint joint=\"j\" coef=\"1\"/></fixed>"
+               "</tendon>"),
+       "'t' is a tendon"},
+      {mjcf_of(link(hinge), "<option density=\"1.2\"/>"), "density"},
+      {mjcf_of(link(hinge) + "<body name=\"m\" mocap=\"true\"/>"), "body 'm' is a mocap body"},
+      {mjcf_of("<body name=\"base\"><geom name=\"p\" type=\"plane\" size=\"1 1 1\"/>" +
+               link(hinge) + "</body>"),
+       "geom 'p' of body 'base' is a plane"},
+      {mjcf_of(link(hinge, "<geom name=\"e\" type=\"ellipsoid\" size=\"1 2 1\"/>")),
+       "geom 'e' of body 'b' is an ellipsoid; allowed: sphere"},
+      {mjcf_of(link(hinge) + "<body name=\"c\"><joint/><geom size=\"1\"/></body>"),
+       "bodies 'b' and 'c' move on branches of their own"},
+      {mjcf_of(link("<joint name=\"j\" colour=\"3\"/>")),
+       "m.xml:4: MuJoCo refuses the file: XML Error: Schema violation: unrecognized attribute: "
+       "'colour'"},
+      {"<mujoco><worldbody>", "m.xml:1"},
+      {"<robot name=\"r\"/>", "begins with <robot>; allowed: <mujoco>; this is URDF"},
+  };
+  for (const auto& each : cases) {
+    const std::string text = of(each.text);
+    EXPECT_TRUE(says(text, each.words)) << each.words << "\n" << text;
+    EXPECT_TRUE(says(text, "m.xml")) << text;
+  }
+  const std::string path = folder.with("m.xml", mjcf_of(link(hinge)));
+  EXPECT_TRUE(says(complaint(path, {.tip = "nowhere"}), "no body or site 'nowhere'"));
+  EXPECT_TRUE(says(complaint(folder / "none.xml"), "none.xml: cannot be opened"));
+  try {
+    (void)load_arm(path);
+    FAIL() << "nothing was thrown";
+  } catch (const SetupError& error) {
+    EXPECT_TRUE(says(error.what(), "this is MJCF")) << error.what();
+  }
+}
+#endif
+
+}  // namespace mjcf_test
+}  // namespace repel
