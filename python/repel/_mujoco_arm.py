@@ -241,18 +241,17 @@ class ModelArm:
                                                           model.geom_quat[geom])
 
     def shape(self, name: str, geom: int) -> Shape:
-        """Raises SetupError for a geom that is not convex, or that this build has no shape for."""
+        """Raises SetupError for a geom that is not convex, or whose sizes no shape has."""
         model = self.model
         kind = mujoco.mjtGeom(model.geom_type[geom]).name.removeprefix("mjGEOM_").lower()
         try:
             if kind == "mesh":
                 return Shape.hull(_corners(model, int(model.geom_dataid[geom])), levels=1)
-            if kind in _SIZES and hasattr(Shape, kind):
+            if kind in _SIZES:
                 return getattr(Shape, kind)(*_SIZES[kind](model.geom_size[geom]), levels=1)
         except SetupError as error:
             raise SetupError(f"geom '{name}': {error}") from error
-        allowed = [each for each in _SIZES if hasattr(Shape, each)]
-        raise SetupError(f"geom '{name}' is of type {kind}; allowed: {', '.join(allowed)}, mesh, or "
+        raise SetupError(f"geom '{name}' is of type {kind}; allowed: {', '.join(_SIZES)}, mesh, or "
                          "contype=\"0\" conaffinity=\"0\" for what is only looked at")
 
     def arm(self, **change: Any) -> Arm:

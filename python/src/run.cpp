@@ -61,7 +61,7 @@ class Watcher {
 };
 
 nb::tuple run_scene(const std::string& file, double seconds, bool fast,
-                    std::optional<double> rate_hz, std::optional<std::string> backend,
+                    std::optional<double> rate_hz, const std::optional<std::string>& backend,
                     const std::string& log, nb::object on_tick, nb::object stop) {
   const scene::Scene scene = scene::load(file);
   runs::RunOptions options = runs::options_of(scene);

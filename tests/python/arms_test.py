@@ -62,7 +62,7 @@ class RandomModel:
 
     def geom(self):
         self.geoms += 1
-        kind = self.rng.choice(["sphere", "capsule", "cylinder", "box", "mesh"])
+        kind = self.rng.choice(["sphere", "capsule", "cylinder", "box", "ellipsoid", "mesh"])
         size = "mesh='lump'" if kind == "mesh" else f"size='{numbers(self.rng.uniform(.02, .1, 3))}'"
         return (f"<geom name='geom {self.geoms}' type='{kind}' {size} pos='{self.place()}' "
                 f"quat='{self.turn()}'/><geom type='sphere' size='0.3' contype='0' "
@@ -190,18 +190,12 @@ def test_a_geom_without_a_shape_is_named(monkeypatch):
     from repel import _mujoco_arm
     monkeypatch.delitem(_mujoco_arm._SIZES, "sphere")
     with pytest.raises(repel.SetupError, match="geom 'ball' is of type sphere; allowed: capsule, "
-                                               "cylinder, box, .*mesh"):
+                                               "cylinder, box, ellipsoid, mesh, or contype"):
         of_mjcf(one())
-    assert [part.name for part in of_mjcf(one(), leave_out=["ball", "tip"]).parts] == []
-
-
-def test_an_ellipsoid_is_one_or_is_named():
-    ellipsoid = one(geom="type='ellipsoid' size='0.1 0.2 0.3'").replace('size="0.1" ', "", 1)
-    if hasattr(repel.Shape, "ellipsoid"):
-        assert of_mjcf(ellipsoid).parts[0].shape.reach == pytest.approx(0.3)
-    else:
-        with pytest.raises(repel.SetupError, match="geom 'ball' is of type ellipsoid; allowed"):
-            of_mjcf(ellipsoid)
+    assert of_mjcf(one(), leave_out=["ball", "tip"]).parts == []
+    flat = one(geom="type='ellipsoid'").replace('size="0.1"', 'size="1 1 1e-7"', 1)
+    with pytest.raises(repel.SetupError, match="geom 'ball': "):
+        of_mjcf(flat)
 
 
 def test_what_is_asked_for_wrongly_is_named(monkeypatch, tmp_path):

@@ -21,6 +21,13 @@ def test_names_the_packages_of_what_is_left_out(monkeypatch):
         repel.__getattr__("covers")
 
 
+def test_an_arm_of_a_urdf_file_names_the_packages_too(monkeypatch):
+    monkeypatch.delattr(repel._repel, "_read_urdf", raising=False)
+    monkeypatch.setitem(PACKAGES, "robots", "libexample-dev")
+    with pytest.raises(repel.SetupError, match="Arm.from_urdf is not in this build.*libexample"):
+        repel.Arm.from_urdf("arm.urdf")
+
+
 def test_lists_what_is_there_and_nothing_else():
     assert all(hasattr(repel, name) for name in repel.__all__)
     assert sorted(repel.__all__) == sorted(set(repel.__all__))

@@ -83,8 +83,8 @@ class HullFaces {
       for (const std::uint32_t vertex : triangles) ++first_[vertex + 1];
       for (std::size_t i = 0; i < vertices; ++i) first_[i + 1] += first_[i];
       std::vector<std::uint32_t> next = first_;
-      for (std::uint32_t t = 0; 3 * t < triangles.size(); ++t) {
-        const std::uint32_t* const triangle = &triangles[3 * t];
+      for (std::uint32_t t = 0; std::size_t{3} * t < triangles.size(); ++t) {
+        const std::uint32_t* const triangle = &triangles[std::size_t{3} * t];
         for (std::size_t k = 0; k < 3; ++k) {
           corners_[next[triangle[k]]++] = {t, triangle[(k + 1) % 3], triangle[(k + 2) % 3]};
         }
