@@ -45,8 +45,8 @@ std::string placed(const Pose& X) {
 [[noreturn]] void refuse(const ContactPart& part) {
   throw SetupError(
       "part '" + part.name +
-      "' cannot be touched in MuJoCo; allowed: boxes, spheres, capsules, cylinders and "
-      "hulls that have a thickness");
+      "' cannot be touched in MuJoCo; allowed: boxes, spheres, capsules, cylinders, "
+      "ellipsoids and hulls that have a thickness");
 }
 
 std::string form_of(const ContactPart& part, const std::string& mesh) {
@@ -67,6 +67,8 @@ std::string form_of(const ContactPart& part, const std::string& mesh) {
         return " type=\"cylinder\"" + attribute("size", {size.x(), size.z()});
       }
       break;
+    case Convex::Kind::ellipsoid:
+      return " type=\"ellipsoid\"" + attribute("size", size);
     case Convex::Kind::cone:
       break;
   }
