@@ -13,7 +13,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include <repel/common/input_limits.hpp>
 #include <repel/geometry/facets.hpp>
 
 #include "child_process.hpp"
@@ -423,9 +422,8 @@ class MjcfBuilder {
     X_LB_.push_back(Pose::Identity());
     for (std::size_t i = 0; i < arm.bodies.size(); ++i) add(i);
     if (robot_.arm.links.empty()) fail("no joint moves; allowed: 1 or more");
-    const std::size_t last = end_;
-    robot_.arm.X_LT = X_LB_[last] * X_BT_;
-    robot_.end = arm.bodies[last].name;
+    robot_.arm.X_LT = X_LB_[end_] * X_BT_;
+    robot_.end = arm.bodies[end_].name;
   }
 
   [[nodiscard]] Robot take() { return std::move(robot_); }

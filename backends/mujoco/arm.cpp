@@ -160,7 +160,7 @@ void Arm::Simulation::sub_step(double h) noexcept {
   } catch (const std::exception&) {
     moves = false;
   }
-  contacts.note_forces(*compiled, *data);
+  if (moves) contacts.note_forces(*compiled, *data);
   for (std::size_t i = 0; i < links && moves; ++i) {
     const double v = data->qvel[i] + h * data->qacc[i];
     moves = std::abs(v) < mjMAXVAL && std::abs(data->qpos[i] + h * v) < mjMAXVAL;

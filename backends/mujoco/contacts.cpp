@@ -19,6 +19,7 @@ void Contacts::set_law(mjData& data, double h) noexcept {
   const double outward = 1.0 / (h * (options_.contact_damping + h * options_.contact_stiffness));
   const double along = 1.0 / (h * options_.contact_damping);
   for (mjContact& point : std::span(data.contact, static_cast<std::size_t>(data.ncon))) {
+    if (point.efc_address < 0) continue;  // faces that meet without a depth have no force
     report_.deepest = std::max(report_.deepest, -point.dist);
     touching_ = true;
     point.mu = point.friction[0] * std::sqrt(along / outward);
@@ -40,6 +41,7 @@ void Contacts::note_forces(const mjModel& model, const mjData& data) noexcept {
   Wrench F_W;
   for (int i = 0; i < data.ncon; ++i) {
     const mjContact& point = data.contact[i];
+    if (point.efc_address < 0) continue;
     const bool first = model.geom_bodyid[point.geom1] == last_;
     if (!first && model.geom_bodyid[point.geom2] != last_) continue;
     const Eigen::Map<const RowMajor> R_CW(point.frame);

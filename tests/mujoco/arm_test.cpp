@@ -99,6 +99,19 @@ TEST(MujocoArm, AContactIsTheSpringOfItsStiffness) {
   }
 }
 
+TEST(MujocoArm, FacesThatMeetWithoutADepthHaveNoForce) {
+  ArmModel model = turntable(0.5);
+  model.links[0].type = JointType::prismatic;
+  model.gravity_W.setZero();
+  Arm arm(model, {},
+          std::vector<ContactPart>{{"ball", 0, Shape::sphere(0.125), Pose::Identity()},
+                                   {"floor", -1, Shape::box({1.0, 1.0, 0.25}), at(0, 0, -0.375)}});
+  for (int tick = 0; tick < 100; ++tick) arm.step(period);
+  EXPECT_EQ(positions(arm)[0], 0.0);
+  EXPECT_EQ(arm.contact().steps, 0);
+  EXPECT_EQ(arm.read_wrench()->force, Vec3::Zero());
+}
+
 TEST(MujocoArm, ATorqueBeyondAllReasonIsAFaultAndLeavesAFiniteState) {
   ArmModel model = puma560();
   for (ArmLink& link : model.links) link.coulomb_friction = 2.0;

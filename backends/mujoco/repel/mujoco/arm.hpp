@@ -54,8 +54,7 @@ class Arm final : public TorqueDrivenArm {
   /// zero and sets a fault.
   void set_torques(std::span<const double> torques) noexcept override;
 
-  /// Advances the arm by `period` [s]. No allocation but what MuJoCo takes for contacts of hulls,
-  /// no lock; cost grows with substeps x links^3.
+  /// Advances the arm by `period` [s]. No allocation, no lock; cost grows with substeps x links^3.
   void step(double period) noexcept override;
 
   /// Enables the arm: torques act and the brakes are off. This is the initial state.
