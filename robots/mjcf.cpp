@@ -261,11 +261,13 @@ class MjcfGathering {
         part.points = hull_of(m_.geom_dataid[i]);
         break;
       case mjGEOM_ELLIPSOID:
-        refuse(geom + "an ellipsoid", "sphere, capsule, cylinder, box, mesh");
+        part.kind = PartKind::ellipsoid;
+        part.size = {size[0], size[1], size[2]};
+        break;
       case mjGEOM_PLANE:
         refuse(geom + "a plane, which has no end", "a box in its place");
       default:
-        refuse(geom + "a height field", "sphere, capsule, cylinder, box, mesh");
+        refuse(geom + "a height field", "sphere, capsule, cylinder, ellipsoid, box, mesh");
     }
     return part;
   }

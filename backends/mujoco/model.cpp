@@ -43,10 +43,9 @@ std::string placed(const Pose& X) {
 }
 
 [[noreturn]] void refuse(const ContactPart& part) {
-  throw SetupError(
-      "part '" + part.name +
-      "' cannot be touched in MuJoCo; allowed: boxes, spheres, capsules, cylinders, "
-      "ellipsoids and hulls that have a thickness");
+  throw SetupError("part '" + part.name +
+                   "' cannot be touched in MuJoCo; allowed: boxes, spheres, capsules, cylinders, "
+                   "ellipsoids and hulls that have a thickness");
 }
 
 std::string form_of(const ContactPart& part, const std::string& mesh) {
