@@ -54,7 +54,8 @@ install_packages() {
     awk '$2 == "installed" { printf "%s ", $1 }')"
   missing=
   for package in $wanted; do
-    case $present in *" $package "*) ;; *) missing="$missing $package" ;; esac
+    case $present in *" $package "*) continue ;; esac
+    ! is_known "$package" || missing="$missing $package"
   done
   [ -n "$missing" ] || return 0
 
@@ -63,9 +64,21 @@ install_packages() {
   fi
   echo "Installing$missing" >&2
   quietly apt_as_root update -q || true  # one broken source need not matter
+  known=
+  for package in $missing; do
+    if is_known "$package"; then known="$known $package"; else
+      echo "This release has no $package; what needs it is left out." >&2
+    fi
+  done
+  missing=$known
   # shellcheck disable=SC2086
   quietly apt_as_root install -qy --no-install-recommends $missing || ask_for_packages
   reconfigure=yes  # a part that was left out may be possible now
+}
+
+# Whether apt has heard of a package; of all of them, as long as it has no lists.
+is_known() {
+  apt-cache show "$1" >/dev/null 2>&1 || ! apt-cache show g++ >/dev/null 2>&1
 }
 
 # install_packages_for SCRIPT [PARTS...]: what the script needs, and more parts.
