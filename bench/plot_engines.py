@@ -27,7 +27,7 @@ def draw(part, path):
     figure, ((*panels,),) = chart.panels(len(arms), sharex=True, sharey=True)
     for panel, arm in zip(panels, arms):
         measured = [name for name in STYLES if any(row["engine"] == name for row in rows)]
-        for name, style in chart.named(STYLES, measured).items():
+        for name, style in chart.named(measured, STYLES).items():
             curve(panel, [row for row in rows if row["arm"] == arm], name, style)
         chart.logarithmic(panel, "x", (1, 3))
         chart.logarithmic(panel, "y", every=2)
