@@ -93,7 +93,7 @@ TYPED_TEST(Contact, EveryShapeHoldsATransverseCapsule) {
   rod.X_LP.linear() = Eigen::AngleAxisd(pi / 2, Vec3::UnitX()).toRotationMatrix();
   for (ContactPart part : probes<TypeParam>()) {
     part.link = -1;
-    part.X_LP = at(0.5, 0, 0);
+    part.X_LP = at(0.5, 0, 0) * part.X_LP;
     expect_stop<typename TypeParam::Arm>({rod, part}, 0.38, part.name);
   }
 }
