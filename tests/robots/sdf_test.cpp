@@ -105,11 +105,11 @@ TEST_F(Sdf, HasAllModelsOfAWorldAlsoNestedAndIncludedOnes) {
                            "<include><uri>model://stool</uri><name>left</name>"
                            "<pose relative_to='cell'>0 1 0 0 0 0</pose></include></world>");
   const std::vector<RobotPart> parts = load_sdf_parts(path);
-  ASSERT_EQ(parts.size(), 6U);
-  EXPECT_EQ(parts[4].in_link, "cell::inner::l");
-  EXPECT_LT((parts[4].X_LP.translation() - Vec3(1, 0, 2)).norm(), 1e-12);
-  EXPECT_EQ(parts[5].in_link, "left::seat");
-  EXPECT_LT((parts[5].X_LP.translation() - Vec3(0, 0, 0)).norm(), 1e-12);
+  ASSERT_EQ(parts.size(), 7U);
+  EXPECT_EQ(parts[5].in_link, "cell::inner::l");
+  EXPECT_LT((parts[5].X_LP.translation() - Vec3(1, 0, 2)).norm(), 1e-12);
+  EXPECT_EQ(parts[6].in_link, "left::seat");
+  EXPECT_LT((parts[6].X_LP.translation() - Vec3(0, 0, 0)).norm(), 1e-12);
 }
 
 TEST_F(Sdf, GivesMeshesTheirConvexParts) {
@@ -139,16 +139,18 @@ TEST_F(Sdf, WhatCannotBeAPartIsRefusedWithItsLine) {
                                             geometry + "</geometry></collision></link>")));
   };
   const std::string plane = with("<plane><normal>0 0 1</normal><size>1 1</size></plane>");
-  EXPECT_TRUE(says(plane, "cell.sdf:8: collision 'odd': a plane has no end")) << plane;
-  const std::string odd = with("<ellipsoid><radii>1 1 2</radii></ellipsoid>");
-  EXPECT_TRUE(says(odd, "cell.sdf:8: collision 'odd': allowed: a box")) << odd;
+  EXPECT_TRUE(says(plane, "cell.sdf:9: collision 'odd': a plane has no end")) << plane;
+  const std::string odd = with(
+      "<polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
+      "<height>1</height></polyline>");
+  EXPECT_TRUE(says(odd, "cell.sdf:9: collision 'odd': allowed: a box")) << odd;
   const std::string number = with("<sphere><radius>wide</radius></sphere>");
-  EXPECT_TRUE(says(number, "cell.sdf:8: ")) << number;
+  EXPECT_TRUE(says(number, "cell.sdf:9: ")) << number;
   EXPECT_TRUE(says(number, "radius")) << number;
   const std::string mesh = with("<mesh><uri>none.stl</uri></mesh>");
-  EXPECT_TRUE(says(mesh, "cell.sdf:8: ") && says(mesh, "none.stl")) << mesh;
+  EXPECT_TRUE(says(mesh, "cell.sdf:9: ") && says(mesh, "none.stl")) << mesh;
   const std::string part = with("<mesh><uri>a.stl</uri><submesh><name>leg</name></submesh></mesh>");
-  EXPECT_TRUE(says(part, "cell.sdf:8: ") && says(part, "submesh, 'leg'")) << part;
+  EXPECT_TRUE(says(part, "cell.sdf:9: ") && says(part, "submesh, 'leg'")) << part;
 }
 
 TEST_F(Sdf, FilesThatAreNoneAreRefused) {
