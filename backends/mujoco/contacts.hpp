@@ -16,8 +16,8 @@ namespace repel::mujoco::detail {
 ///     a + R f = a_ref,   with x the (negative) distance, v the speed and v' = v + h a:
 ///     f = -K (x + h v') - C v'   gives   R = 1 / (h (C + h K)),   a_ref = -R K x - v / h.
 ///
-/// The force is exactly that of an implicit spring and damper, whatever the masses; MuJoCo's own
-/// parameters would make it depend on them.
+/// The force is exactly that of an implicit spring and damper. MuJoCo's own parameters would make
+/// it depend on the masses.
 class Contacts {
  public:
   Contacts(const ArmModel& model, const SimulationOptions& options);

@@ -5,12 +5,12 @@
 
 namespace repel::mujoco::detail {
 
-/// Sets the error and warning handlers of MuJoCo, which belong to the whole process, and keeps
-/// those that are there. Set-up only.
+/// Sets the error and warning handlers of MuJoCo and keeps the earlier ones. They are of the whole
+/// process. Set-up only.
 void set_handlers();
 
-/// While one exists, what MuJoCo reports as an error in this thread is thrown as a
-/// std::runtime_error, and its warnings are dropped.
+/// While one exists, an error of MuJoCo in this thread is thrown as a std::runtime_error. Its
+/// warnings are dropped.
 class ErrorsThrown {
  public:
   ErrorsThrown() noexcept;

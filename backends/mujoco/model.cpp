@@ -121,8 +121,8 @@ std::pair<Mat3, Vec3> principal_inertia(const ArmLink& link) {
   return {R_LB, inertia.eigenvalues().cwiseMax(0.0)};
 }
 
-// Masses and inertias are written into the compiled model: the compiler refuses zeros, which the
-// engine takes where the joint moves something else.
+// Masses and inertias are written into the compiled model. The compiler refuses zeros; the engine
+// takes them where the joint moves something else.
 std::string mjcf_of(const ArmModel& model, const SimulationOptions& options,
                     std::span<const ContactPart> parts) {
   const auto points = parts.empty() ? 0 : most_points;

@@ -13,9 +13,9 @@
 
 namespace repel {
 
-/// Half spaces n.x <= offset, n unit, that touch an ellipsoid: at the images of the nodes of a
-/// SphereGrid under the map that takes the unit ball to the ellipsoid. None is stored: the index of
-/// a plane is the name of its node.
+/// Tangent half spaces n.x <= offset of an ellipsoid, n unit. They touch at the images of the nodes
+/// of a SphereGrid under x -> a x, a the semi-axes. None is stored: the index of a plane is the
+/// name of its node.
 class OvalTangents {
  public:
   OvalTangents() = default;  ///< no planes
@@ -56,9 +56,9 @@ class OvalTangents {
   /// The plane that touches nearest to the point of the surface nearest to `x` [m], inside or
   /// outside. Must not be empty. Cost: some divisions and square roots.
   ///
-  /// With the semi-axes a and the least of them c, that point has the parts a^2 x / (s + a^2 - c^2)
-  /// with s > 0 such that it lies on the surface: u = a x / (s + a^2 - c^2) has length 1. As
-  /// 1 / |u| is concave in s, Newton's method converges to it from below.
+  /// Semi-axes a, the least of them c. The nearest point is a^2 x / (s + a^2 - c^2), part by part.
+  /// The multiplier s > 0 puts it on the surface: u = a x / (s + a^2 - c^2) has length 1. As
+  /// 1 / |u| is concave in s, Newton's method converges to s from below.
   [[nodiscard]] std::uint32_t nearest(const Vec<double>& x) const noexcept {
     // A point in a plane of symmetry is nearest to two points. It counts as being off that plane.
     const Vec3 point = to_vec3(x);

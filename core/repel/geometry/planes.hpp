@@ -129,8 +129,8 @@ class Planes {
   [[nodiscard]] bool is_round() const noexcept { return side_.size() > 0 || is_oval(); }
   /// True for the planes of an ellipsoid.
   [[nodiscard]] bool is_oval() const noexcept { return oval_.size() > 0; }
-  /// The two tangent planes that face along `x`, seen from the axis; of an ellipsoid, the one that
-  /// touches behind `x` and the one nearest to it. Must be round.
+  /// The two tangent planes that face along `x`, seen from the axis. Of an ellipsoid: that which
+  /// touches on the ray through `x`, and the nearest to `x`. Must be round.
   [[nodiscard]] std::array<std::uint32_t, 2> facing(const Vec<double>& x) const noexcept {
     if (is_oval()) return {listed() + oval_.behind(x), listed() + oval_.nearest(x)};
     const std::array<std::uint32_t, 2> names = side_.around(x);
