@@ -76,9 +76,10 @@ install_packages() {
   reconfigure=yes  # a part that was left out may be possible now
 }
 
-# Whether apt has heard of a package; of all of them, as long as it has no lists.
+# Whether apt has heard of a package; of all of them, as long as it has no lists. A name it does not
+# know it takes for a pattern, and g++ would be one that much matches: cmake is not.
 is_known() {
-  apt-cache show "$1" >/dev/null 2>&1 || ! apt-cache show g++ >/dev/null 2>&1
+  apt-cache show "$1" >/dev/null 2>&1 || ! apt-cache show cmake >/dev/null 2>&1
 }
 
 # install_packages_for SCRIPT [PARTS...]: what the script needs, and more parts.
