@@ -47,7 +47,7 @@ apt_as_root() {
 # Installs what the named parts need and this machine lacks.
 install_packages() {
   command -v dpkg-query >/dev/null || return 0  # not Debian: CMake says what it does not find
-  wanted=$(packages_of "$@")
+  wanted=$(packages_of "$@" | awk '!seen[$0]++')
   # It fails where one of them is not known, which must not end a script that sets pipefail.
   # shellcheck disable=SC2016,SC2086
   present=" $({ dpkg-query -W -f '${Package} ${db:Status-Status}\n' $wanted 2>/dev/null || :; } |

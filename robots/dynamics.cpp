@@ -8,7 +8,6 @@
 #include <kdl/chaindynparam.hpp>
 #include <limits>
 
-#include <repel/simulated/arm_drive.hpp>
 #include <repel/simulated/brake_torque.hpp>
 
 #include "kdl_chain.hpp"
@@ -73,70 +72,99 @@ void Dynamics::bias(std::span<const double> q, std::span<const double> v,
   for (unsigned i = 0; i < impl_->links; ++i) out[i] = impl_->coriolis(i) + impl_->gravity(i);
 }
 
-struct ReferenceArm::Impl {
+namespace {
+
+// Joints move beyond their limits, so that a reset may put them there as well.
+ArmModel without_limits(ArmModel model) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (ArmLink& link : model.links) {
+    link.lower = -infinity;
+    link.upper = infinity;
+  }
+  return model;
+}
+
+class ReferenceEngine final : public ArmEngine {
+ public:
+  ReferenceEngine(const ArmModel& arm, const ReferenceOptions& options)
+      : ArmEngine(without_limits(arm)),
+        dynamics_(arm),
+        friction_speed_(options.friction_speed),
+        M_(dynamics_.links(), dynamics_.links()) {
+    const double largest = std::numeric_limits<double>::max();
+    checked("ReferenceOptions::substeps", options.substeps, 1, 100000, "");
+    checked("ReferenceOptions::friction_speed", options.friction_speed,
+            std::numeric_limits<double>::min(), largest, "rad/s or m/s");
+    const Vector zero = Vector::Zero(dynamics_.links());
+    at_ = {zero, zero};
+    bias_ = viscous_ = most_held_ = zero;
+    dynamics_.inertia(span_of(at_.q), M_);
+    for (Eigen::Index i = 0; i < zero.size(); ++i) {
+      const ArmLink& link = arm.links[static_cast<std::size_t>(i)];
+      checked("joint '" + link.joint_name + "': inertia it moves", M_(i, i), 1e-12, largest,
+              "kg m^2 or kg");
+      viscous_[i] = link.viscous_friction;
+      most_held_[i] = link.coulomb_friction + brake_torque(arm, static_cast<int>(i));
+    }
+  }
+
+  void put(std::span<const double> q, std::span<const double> v) noexcept override {
+    std::copy(q.begin(), q.end(), at_.q.begin());
+    at_.v.setZero();
+    std::copy(v.begin(), v.end(), at_.v.begin());
+  }
+
+  bool sub_step(std::span<const double> torque, bool braked, double h) noexcept override {
+    const Eigen::Map<const Vector> tau(torque.data(), at_.q.size());
+    const State next = braked ? slowed(h) : driven(tau, h);
+    const bool moves = next.q.allFinite() && next.v.allFinite();
+    if (moves) {
+      at_ = next;
+    } else {
+      at_.v.setZero();
+    }
+    return moves;
+  }
+
+  std::span<const double> q() const noexcept override { return span_of(at_.q); }
+  std::span<const double> v() const noexcept override { return span_of(at_.v); }
+
+  double kinetic_energy() noexcept {
+    dynamics_.inertia(span_of(at_.q), M_);
+    return 0.5 * at_.v.dot(M_ * at_.v);
+  }
+
+ private:
   using Vector = Eigen::VectorXd;
 
   struct State {
     Vector q, v;
   };
 
-  Impl(const ArmModel& model, const ReferenceOptions& given)
-      : dynamics(model),
-        links(model.links),
-        options(given),
-        drive(given.watchdog),
-        M(dynamics.links(), dynamics.links()) {
-    const double largest = std::numeric_limits<double>::max();
-    checked("ReferenceOptions::substeps", options.substeps, 1, 100000, "");
-    checked("ReferenceOptions::friction_speed", options.friction_speed,
-            std::numeric_limits<double>::min(), largest, "rad/s or m/s");
-    const Vector zero = Vector::Zero(dynamics.links());
-    at = {zero, zero};
-    torque = bias = viscous = most_held = zero;
-    dynamics.inertia(span_of(at.q), M);
-    for (Eigen::Index i = 0; i < zero.size(); ++i) {
-      const ArmLink& link = links[static_cast<std::size_t>(i)];
-      checked("joint '" + link.joint_name + "': inertia it moves", M(i, i), 1e-12, largest,
-              "kg m^2 or kg");
-      viscous[i] = link.viscous_friction;
-      most_held[i] = link.coulomb_friction + brake_torque(model, static_cast<int>(i));
-    }
-  }
-
   /// Time derivative of the state: velocity and acceleration.
-  State rate(const State& x) {
-    dynamics.inertia(span_of(x.q), M);
-    dynamics.bias(span_of(x.q), span_of(x.v), span_of(bias));
-    Vector tau = torque - bias;
+  State rate(const Eigen::Map<const Vector>& torque, const State& x) {
+    dynamics_.inertia(span_of(x.q), M_);
+    dynamics_.bias(span_of(x.q), span_of(x.v), span_of(bias_));
+    Vector tau = torque - bias_;
     for (Eigen::Index i = 0; i < tau.size(); ++i) {
-      const ArmLink& link = links[static_cast<std::size_t>(i)];
+      const ArmLink& link = model().links[static_cast<std::size_t>(i)];
       tau[i] -= link.viscous_friction * x.v[i] +
-                link.coulomb_friction * std::tanh(x.v[i] / options.friction_speed);
+                link.coulomb_friction * std::tanh(x.v[i] / friction_speed_);
     }
-    return {x.v, M.llt().solve(tau)};
+    return {x.v, M_.llt().solve(tau)};
   }
 
   static State moved(const State& x, const State& rate, double h) {
     return {x.q + h * rate.q, x.v + h * rate.v};
   }
 
-  void sub_step(double h) {
-    if (drive.advance(h)) torque.setZero();
-    const State next = drive.braked() ? slowed(h) : driven(h);
-    if (next.q.allFinite() && next.v.allFinite()) {
-      at = next;
-    } else {
-      at.v.setZero();
-    }
-  }
-
-  State driven(double h) {
-    const State k1 = rate(at);
-    const State k2 = rate(moved(at, k1, 0.5 * h));
-    const State k3 = rate(moved(at, k2, 0.5 * h));
-    const State k4 = rate(moved(at, k3, h));
-    return {at.q + h / 6.0 * (k1.q + 2.0 * k2.q + 2.0 * k3.q + k4.q),
-            at.v + h / 6.0 * (k1.v + 2.0 * k2.v + 2.0 * k3.v + k4.v)};
+  State driven(const Eigen::Map<const Vector>& torque, double h) {
+    const State k1 = rate(torque, at_);
+    const State k2 = rate(torque, moved(at_, k1, 0.5 * h));
+    const State k3 = rate(torque, moved(at_, k2, 0.5 * h));
+    const State k4 = rate(torque, moved(at_, k3, h));
+    return {at_.q + h / 6.0 * (k1.q + 2.0 * k2.q + 2.0 * k3.q + k4.q),
+            at_.v + h / 6.0 * (k1.v + 2.0 * k2.v + 2.0 * k3.v + k4.v)};
   }
 
   // Semi-implicit Euler with dry friction f, that of the brakes included, and no motor torque:
@@ -144,16 +172,16 @@ struct ReferenceArm::Impl {
   // The search starts from the friction that stops every joint; if that is within the bounds, the
   // arm is held without any error.
   State slowed(double h) {
-    dynamics.inertia(span_of(at.q), M);
-    dynamics.bias(span_of(at.q), span_of(at.v), span_of(bias));
-    const Vector holding = bias - M * at.v / h;
-    const Vector f = holding.cwiseMin(most_held).cwiseMax(-most_held);
-    if (f == holding) return {at.q, Vector::Zero(f.size())};
-    M.diagonal() += h * viscous;
-    const Eigen::MatrixXd W = M.inverse();
+    dynamics_.inertia(span_of(at_.q), M_);
+    dynamics_.bias(span_of(at_.q), span_of(at_.v), span_of(bias_));
+    const Vector holding = bias_ - M_ * at_.v / h;
+    const Vector f = holding.cwiseMin(most_held_).cwiseMax(-most_held_);
+    if (f == holding) return {at_.q, Vector::Zero(f.size())};
+    M_.diagonal() += h * viscous_;
+    const Eigen::MatrixXd W = M_.inverse();
     Vector v = h * W * (f - holding);
     oppose(W, f, h, v);
-    return {at.q + h * v, v};
+    return {at_.q + h * v, v};
   }
 
   /// Finds the friction by projected Gauss-Seidel, starting from `f`, and updates the velocity `v`.
@@ -162,7 +190,7 @@ struct ReferenceArm::Impl {
       double change = 0.0;  // [rad/s] largest in this sweep
       for (Eigen::Index i = 0; i < f.size(); ++i) {
         const double stopping = f[i] - v[i] / (h * W(i, i));
-        const double added = std::clamp(stopping, -most_held[i], most_held[i]) - f[i];
+        const double added = std::clamp(stopping, -most_held_[i], most_held_[i]) - f[i];
         f[i] += added;
         v += added * h * W.col(i);
         change = std::max(change, h * std::abs(added) * W(i, i));
@@ -174,83 +202,22 @@ struct ReferenceArm::Impl {
   static constexpr int most_sweeps = 1000;
   static constexpr double settled = 1e-14;  // [rad/s] or [m/s]
 
-  Dynamics dynamics;
-  std::vector<ArmLink> links;
-  ReferenceOptions options;
-  ArmDrive drive;
-  Eigen::MatrixXd M;
-  State at;
-  Vector torque, bias;
-  Vector viscous, most_held;  // [N m s/rad]; [N m] dry friction of a joint and its brake
+  Dynamics dynamics_;
+  double friction_speed_;  // [rad/s] or [m/s]
+  Eigen::MatrixXd M_;
+  State at_;
+  Vector bias_;
+  Vector viscous_, most_held_;  // [N m s/rad]; [N m] dry friction of a joint and its brake
 };
 
+}  // namespace
+
 ReferenceArm::ReferenceArm(const ArmModel& model, const ReferenceOptions& options)
-    : impl_(std::make_unique<Impl>(model, options)) {}
-ReferenceArm::ReferenceArm(ReferenceArm&&) noexcept = default;
-ReferenceArm& ReferenceArm::operator=(ReferenceArm&&) noexcept = default;
-ReferenceArm::~ReferenceArm() = default;
-
-int ReferenceArm::links() const noexcept {
-  return impl_->dynamics.links();
-}
-
-void ReferenceArm::reset(std::span<const double> q, std::span<const double> v) {
-  const auto count = impl_->links.size();
-  const auto finite = [](double x) { return std::isfinite(x); };
-  if (q.size() != count || (!v.empty() && v.size() != count) ||
-      !std::all_of(q.begin(), q.end(), finite) || !std::all_of(v.begin(), v.end(), finite)) {
-    throw SetupError("reset needs " + std::to_string(count) +
-                     " finite positions, and as many velocities or none");
-  }
-  std::copy(q.begin(), q.end(), impl_->at.q.begin());
-  impl_->at.v.setZero();
-  std::copy(v.begin(), v.end(), impl_->at.v.begin());
-  impl_->torque.setZero();
-  impl_->drive.reset();
-}
-
-void ReferenceArm::set_torques(std::span<const double> torques) noexcept {
-  impl_->drive.heard();
-  for (std::size_t i = 0; i < impl_->links.size(); ++i) {
-    const bool usable = i < torques.size() && std::isfinite(torques[i]);
-    impl_->torque[static_cast<Eigen::Index>(i)] = usable ? torques[i] : 0.0;
-  }
-}
-
-void ReferenceArm::step(double period) noexcept {
-  if (!(period > 0.0 && std::isfinite(period))) return;
-  const double h = period / impl_->options.substeps;
-  for (int part = 0; part < impl_->options.substeps; ++part) impl_->sub_step(h);
-}
-
-void ReferenceArm::enable() noexcept {
-  impl_->drive.enable();
-}
-
-void ReferenceArm::stop() noexcept {
-  impl_->drive.stop();
-  impl_->torque.setZero();
-}
-
-void ReferenceArm::engage_brakes(bool on) noexcept {
-  impl_->drive.engage_brakes(on);
-}
-
-ArmState ReferenceArm::state() const noexcept {
-  return impl_->drive.state();
-}
-
-void ReferenceArm::read_positions(std::span<double> out) const noexcept {
-  std::copy_n(impl_->at.q.begin(), std::min(out.size(), impl_->links.size()), out.begin());
-}
-
-void ReferenceArm::read_velocities(std::span<double> out) const noexcept {
-  std::copy_n(impl_->at.v.begin(), std::min(out.size(), impl_->links.size()), out.begin());
-}
+    : SimulatedArm(std::make_unique<ReferenceEngine>(model, options), options.substeps,
+                   options.watchdog) {}
 
 double ReferenceArm::kinetic_energy() noexcept {
-  impl_->dynamics.inertia(span_of(impl_->at.q), impl_->M);
-  return 0.5 * impl_->at.v.dot(impl_->M * impl_->at.v);
+  return static_cast<ReferenceEngine&>(engine()).kinetic_energy();
 }
 
 }  // namespace repel

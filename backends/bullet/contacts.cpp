@@ -10,7 +10,7 @@ namespace repel::bullet::detail {
 constexpr int rows_per_point = 3;  // one outward, two tangential
 
 Contacts::Contacts(const ArmModel& model, const SimulationOptions& options,
-                   std::span<const ContactPart> parts)
+                   std::span<const ContactPart> parts, ContactTally& tally)
     : model_(model),
       options_(options),
       search_(model, parts),
@@ -18,7 +18,8 @@ Contacts::Contacts(const ArmModel& model, const SimulationOptions& options,
       axis_W_(model.links.size(), Vec3::Zero()),
       rows_(rows_per_point * ContactSearch::most_touches),
       J_(model.links.size(), rows_.size()),
-      response_(J_.rows(), J_.cols()) {}
+      response_(J_.rows(), J_.cols()),
+      tally_(tally) {}
 
 void Contacts::place_links(const Eigen::VectorXd& q) noexcept {
   Pose X_WP = model_.X_WB;
@@ -40,8 +41,7 @@ void Contacts::place_links(const Eigen::VectorXd& q) noexcept {
 void Contacts::find(const Eigen::VectorXd& q) noexcept {
   place_links(q);
   touches_ = search_.find(X_WL_);
-  for (const Touch& touch : touches_) report_.deepest = std::max(report_.deepest, touch.depth);
-  touching_ = touching_ || !touches_.empty();
+  for (const Touch& touch : touches_) tally_.touch(touch.depth);
 }
 
 /// Sets a column of J: the joint torques of a unit force along `direction_W` at `p_W` on `link`.
@@ -114,21 +114,11 @@ void Contacts::note_forces() noexcept {
       F_W += wrench_of_force(force_W, touch.p_W - X_WT.translation());
     }
   }
-  sum_ += rotated(X_WT.linear().transpose(), F_W);
-}
-
-void Contacts::end_step() noexcept {
-  report_.steps += touching_ ? 1 : 0;
-  touching_ = false;
-  on_tool_ = (1.0 / options_.substeps) * sum_;
-  sum_ = {};
+  tally_.push(rotated(X_WT.linear().transpose(), F_W));
 }
 
 void Contacts::forget() noexcept {
   touches_ = {};
-  report_ = {};
-  touching_ = false;
-  sum_ = on_tool_ = {};
 }
 
 }  // namespace repel::bullet::detail

@@ -22,12 +22,12 @@ namespace repel::bullet::detail {
 ///
 /// and a damper C along two tangential directions, with a force bounded by friction coefficient
 /// times f. Both terms are linear in a, so no stiffness makes a sub-step unstable.
-/// terms are linear in a, so no stiffness makes a sub-step unstable.
 class Contacts {
  public:
+  /// @param tally gets depths and forces; it must outlive this object
   /// @throws SetupError as ContactSearch
   Contacts(const ArmModel& model, const SimulationOptions& options,
-           std::span<const ContactPart> parts);
+           std::span<const ContactPart> parts, ContactTally& tally);
 
   /// Finds the contact points at `q` [rad] or [m].
   void find(const Eigen::VectorXd& q) noexcept;
@@ -43,17 +43,8 @@ class Contacts {
   /// Adds up the forces on the last link, once they are solved in a sub-step.
   void note_forces() noexcept;
 
-  /// Ends a step: counts it if any of its sub-steps had a contact.
-  void end_step() noexcept;
-
-  /// Sum of the contact forces on the last link about the origin of the tool, in axes of the tool,
-  /// mean of the last step [N, N m].
-  [[nodiscard]] const Wrench& on_tool() const noexcept { return on_tool_; }
-
-  /// Clears contacts and report.
+  /// Ends all contacts.
   void forget() noexcept;
-
-  [[nodiscard]] ContactReport report() const noexcept { return report_; }
 
  private:
   /// One direction of one contact point.
@@ -79,10 +70,7 @@ class Contacts {
   std::vector<Row> rows_;         // three for each contact point: normal, and two tangential
   Eigen::MatrixXd J_, response_;  // a column for each row: J^T and W J^T
   double h_ = 0.0;
-  ContactReport report_;
-  bool touching_ = false;  // in this step
-  Wrench sum_;             // of the last link in this step, over its sub-steps
-  Wrench on_tool_;
+  ContactTally& tally_;
 };
 
 }  // namespace repel::bullet::detail

@@ -43,12 +43,13 @@ ImplicitJoints::ImplicitJoints(const ArmModel& model, const SimulationOptions& o
       factor_(coulomb_.size()) {}
 
 const Eigen::VectorXd& ImplicitJoints::linearize(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                                                 const Eigen::VectorXd& torque, double h) noexcept {
+                                                 std::span<const double> torque,
+                                                 double h) noexcept {
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const ArmLink& link = links_[static_cast<std::size_t>(i)];
     const auto [damping, stiffness, beyond] = resistance_of(link, options_, q[i], v[i], h);
     diagonal_[i] = link.rotor_inertia + h * damping + h * h * stiffness;
-    torque_[i] = torque[i] - damping * v[i] - stiffness * beyond;
+    torque_[i] = torque[static_cast<std::size_t>(i)] - damping * v[i] - stiffness * beyond;
   }
   return torque_;
 }

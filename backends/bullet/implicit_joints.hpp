@@ -36,7 +36,7 @@ class ImplicitJoints {
   /// Computes D and u for one sub-step of `h` [s]. Returns u, the torque to apply when the engine
   /// computes its free acceleration M^-1 (u - c).
   const Eigen::VectorXd& linearize(const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                                   const Eigen::VectorXd& torque, double h) noexcept;
+                                   std::span<const double> torque, double h) noexcept;
 
   /// Replaces the free acceleration `a` by the acceleration, and `M_inverse` by (M + D)^-1.
   /// @param braked true if the brakes are on

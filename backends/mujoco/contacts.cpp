@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contacts.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -12,16 +11,18 @@ using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 }  // namespace
 
-Contacts::Contacts(const ArmModel& model, const SimulationOptions& options)
-    : options_(options), X_LT_(model.X_LT), last_(static_cast<int>(model.links.size())) {}
+Contacts::Contacts(const ArmModel& model, const SimulationOptions& options, ContactTally& tally)
+    : options_(options),
+      X_LT_(model.X_LT),
+      last_(static_cast<int>(model.links.size())),
+      tally_(tally) {}
 
 void Contacts::set_law(mjData& data, double h) noexcept {
   const double outward = 1.0 / (h * (options_.contact_damping + h * options_.contact_stiffness));
   const double along = 1.0 / (h * options_.contact_damping);
   for (mjContact& point : std::span(data.contact, static_cast<std::size_t>(data.ncon))) {
     if (point.efc_address < 0) continue;  // faces that meet without a depth have no force
-    report_.deepest = std::max(report_.deepest, -point.dist);
-    touching_ = true;
+    tally_.touch(-point.dist);
     point.mu = point.friction[0] * std::sqrt(along / outward);
     for (int i = 0; i < point.dim; ++i) {
       const int row = point.efc_address + i;
@@ -49,20 +50,7 @@ void Contacts::note_forces(const mjModel& model, const mjData& data) noexcept {
     const Vec3 force_W = (first ? -1.0 : 1.0) * (R_CW.transpose() * force_C);
     F_W += wrench_of_force(force_W, Eigen::Map<const Vec3>(point.pos) - p_WT);
   }
-  sum_ += rotated(Mat3((R_WL * X_LT_.linear()).transpose()), F_W);
-}
-
-void Contacts::end_step() noexcept {
-  report_.steps += touching_ ? 1 : 0;
-  touching_ = false;
-  on_tool_ = (1.0 / options_.substeps) * sum_;
-  sum_ = {};
-}
-
-void Contacts::forget() noexcept {
-  report_ = {};
-  touching_ = false;
-  sum_ = on_tool_ = {};
+  tally_.push(rotated(Mat3((R_WL * X_LT_.linear()).transpose()), F_W));
 }
 
 }  // namespace repel::mujoco::detail

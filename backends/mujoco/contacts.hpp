@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Contacts of an arm in MuJoCo: their law, and what is told of them.
+/// Contacts of an arm in MuJoCo: their law, and their forces.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -20,7 +20,8 @@ namespace repel::mujoco::detail {
 /// it depend on the masses.
 class Contacts {
  public:
-  Contacts(const ArmModel& model, const SimulationOptions& options);
+  /// @param tally gets depths and forces; it must outlive this object
+  Contacts(const ArmModel& model, const SimulationOptions& options, ContactTally& tally);
 
   /// Sets the law of all contact points, for a sub-step of `h` [s]: between the velocity stage of
   /// MuJoCo and its solver.
@@ -29,26 +30,11 @@ class Contacts {
   /// Adds up the forces on the last link, once they are solved in a sub-step.
   void note_forces(const mjModel& model, const mjData& data) noexcept;
 
-  /// Ends a step: counts it if any of its sub-steps had a contact.
-  void end_step() noexcept;
-
-  /// Sum of the contact forces on the last link about the origin of the tool, in axes of the tool,
-  /// mean of the last step [N, N m].
-  [[nodiscard]] const Wrench& on_tool() const noexcept { return on_tool_; }
-
-  /// Clears the report.
-  void forget() noexcept;
-
-  [[nodiscard]] ContactReport report() const noexcept { return report_; }
-
  private:
   SimulationOptions options_;
   Pose X_LT_;  // [m]
   int last_;   // body of the link that carries the tool
-  ContactReport report_;
-  bool touching_ = false;  // in this step
-  Wrench sum_;             // of the last link in this step, over its sub-steps
-  Wrench on_tool_;
+  ContactTally& tally_;
 };
 
 }  // namespace repel::mujoco::detail

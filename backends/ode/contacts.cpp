@@ -51,12 +51,14 @@ void place_on(dxBody* body, dxGeom* geometry, const Pose& X_CP) {
 }  // namespace
 
 Contacts::Contacts(dWorldID world, const ArmModel& model, const SimulationOptions& options,
-                   std::span<const dBodyID> body, std::span<const ContactPart> parts)
+                   std::span<const dBodyID> body, std::span<const ContactPart> parts,
+                   ContactTally& tally)
     : world_(world),
       options_(options),
       links_(dSimpleSpaceCreate(nullptr)),
       obstacles_(dSimpleSpaceCreate(nullptr)),
       joints_(dJointGroupCreate(0)),
+      tally_(tally),
       last_(body.back()),
       X_CT_(Eigen::Translation3d(-model.links.back().p_LC) * model.X_LT),
       R_WC_(Mat3::Identity()),
@@ -111,8 +113,7 @@ void Contacts::touch(dGeomID first, dGeomID second) noexcept {
     dxBody* const other = dGeomGetBody(points[i].g2);
     dJointAttach(joint, one, other);
     listen(joint, one != nullptr ? one : other);
-    report_.deepest = std::max(report_.deepest, points[i].depth);
-    touching_ = true;
+    tally_.touch(points[i].depth);
   }
 }
 
@@ -128,22 +129,12 @@ void Contacts::note_forces() noexcept {
         Wrench{{point.f1[0], point.f1[1], point.f1[2]}, {point.t1[0], point.t1[1], point.t1[2]}};
   }
   const Mat3 R_TW = (R_WC_ * X_CT_.linear()).transpose();
-  sum_ += rotated(R_TW, moved_to(F_C_W, R_WC_ * X_CT_.translation()));
-}
-
-void Contacts::end_step() noexcept {
-  report_.steps += touching_ ? 1 : 0;
-  touching_ = false;
-  on_tool_ = (1.0 / options_.substeps) * sum_;
-  sum_ = {};
+  tally_.push(rotated(R_TW, moved_to(F_C_W, R_WC_ * X_CT_.translation())));
 }
 
 void Contacts::forget() noexcept {
   dJointGroupEmpty(joints_.get());
-  report_ = {};
-  touching_ = false;
   points_ = 0;
-  sum_ = on_tool_ = {};
 }
 
 }  // namespace repel::ode::detail

@@ -22,10 +22,11 @@ namespace repel::ode::detail {
 /// surface, limited by dry friction.
 class Contacts {
  public:
-  /// @param body one for each link of `model`, at its centre of mass; they must outlive this object
+  /// @param body one for each link of `model`, at its centre of mass
+  /// @param tally gets depths and forces; it and the bodies must outlive this object
   /// @throws SetupError naming a part unsupported by ODE or out of range
   Contacts(dWorldID world, const ArmModel& model, const SimulationOptions& options,
-           std::span<const dBodyID> body, std::span<const ContactPart> parts);
+           std::span<const dBodyID> body, std::span<const ContactPart> parts, ContactTally& tally);
 
   /// Creates a contact joint at every contact point, for one sub-step of `h` [s], and removes those
   /// of the last one.
@@ -34,17 +35,8 @@ class Contacts {
   /// Adds up the forces on the last link, once the world has made its sub-step.
   void note_forces() noexcept;
 
-  /// Ends a step: counts it if any of its sub-steps had a contact.
-  void end_step() noexcept;
-
-  /// Sum of the contact forces on the last link about the origin of the tool, in axes of the tool,
-  /// mean of the last step [N, N m].
-  [[nodiscard]] const Wrench& on_tool() const noexcept { return on_tool_; }
-
-  /// Clears contacts and report.
+  /// Ends all contacts.
   void forget() noexcept;
-
-  [[nodiscard]] ContactReport report() const noexcept { return report_; }
 
  private:
   struct EndSpace {
@@ -62,15 +54,12 @@ class Contacts {
   std::unique_ptr<dxSpace, EndSpace> links_, obstacles_;
   std::unique_ptr<dxJointGroup, EndGroup> joints_;
   dSurfaceParameters surface_{};
-  ContactReport report_;
-  bool touching_ = false;                 // in this step
+  ContactTally& tally_;
   dBodyID last_ = nullptr;                // the link that carries the tool
   Pose X_CT_;                             // [m] tool in that body
   Mat3 R_WC_;                             // of that body, at the start of the sub-step
   std::vector<dJointFeedback> feedback_;  // of its contact points
   std::size_t points_ = 0;                // how many of these, in this sub-step
-  Wrench sum_;                            // on that body in this step, over its sub-steps
-  Wrench on_tool_;
 };
 
 }  // namespace repel::ode::detail

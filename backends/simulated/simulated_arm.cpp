@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/simulated/simulated_arm.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -82,6 +84,70 @@ void require_state(const ArmModel& model, std::span<const double> q, std::span<c
       throw SetupError("joint '" + link.joint_name + "': position or velocity is not finite");
     }
   }
+}
+
+std::vector<double> start_of(const ArmModel& model) {
+  std::vector<double> start;
+  for (const ArmLink& link : model.links) start.push_back(std::clamp(0.0, link.lower, link.upper));
+  return start;
+}
+
+ArmEngine::ArmEngine(ArmModel model, double most_torque) noexcept
+    : model_(std::move(model)), most_torque_(most_torque) {}
+
+SimulatedArm::SimulatedArm(std::unique_ptr<ArmEngine> engine, int substeps, double watchdog)
+    : engine_(std::move(engine)),
+      substeps_(substeps),
+      drive_(watchdog),
+      torque_(engine_->model().links.size()),
+      no_torque_(torque_) {
+  reset(start_of(engine_->model()));
+}
+
+void SimulatedArm::reset(std::span<const double> q, std::span<const double> v) {
+  require_state(engine_->model(), q, v);
+  drive_.reset();
+  std::fill(torque_.begin(), torque_.end(), 0.0);
+  engine_->put(q, v);
+  engine_->contacts().forget();
+}
+
+void SimulatedArm::set_torques(std::span<const double> torques) noexcept {
+  drive_.heard();
+  for (std::size_t i = 0; i < torque_.size(); ++i) {
+    const bool usable = i < torques.size() && std::abs(torques[i]) <= engine_->most_torque();
+    torque_[i] = usable ? torques[i] : 0.0;
+    if (!usable) faults_.torque = true;
+  }
+}
+
+void SimulatedArm::step(double period) noexcept {
+  if (!(period > 0.0 && std::isfinite(period))) {
+    faults_.period = true;
+    return;
+  }
+  const double h = period / substeps_;
+  for (int part = 0; part < substeps_; ++part) {
+    if (drive_.advance(h)) std::fill(torque_.begin(), torque_.end(), 0.0);
+    const bool braked = drive_.braked();
+    if (!engine_->sub_step(braked ? no_torque_ : torque_, braked, h)) faults_.state = true;
+  }
+  engine_->contacts().end_step(substeps_);
+}
+
+void SimulatedArm::stop() noexcept {
+  drive_.stop();
+  std::fill(torque_.begin(), torque_.end(), 0.0);
+}
+
+void SimulatedArm::read_positions(std::span<double> out) const noexcept {
+  const std::span<const double> q = engine_->q();
+  std::copy_n(q.begin(), std::min(out.size(), q.size()), out.begin());
+}
+
+void SimulatedArm::read_velocities(std::span<double> out) const noexcept {
+  const std::span<const double> v = engine_->v();
+  std::copy_n(v.begin(), std::min(out.size(), v.size()), out.begin());
 }
 
 }  // namespace repel

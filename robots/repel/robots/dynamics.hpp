@@ -5,13 +5,13 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
 #include <Eigen/Core>
 
 #include <repel/base/types.hpp>
 #include <repel/robots/built_alike.hpp>
+#include <repel/simulated/simulated_arm.hpp>
 #include <repel/world/arm.hpp>
 
 namespace repel {
@@ -54,66 +54,18 @@ struct ReferenceOptions {
 };
 
 /// An arm that integrates its equations of motion, gravity and friction included, by the
-/// fourth-order Runge-Kutta method. It has no stops: joints move beyond their limits. Made for
-/// accuracy, not speed, and unstable for strong friction on little inertia with long sub-steps.
-/// With the brakes engaged it uses a first-order method with dry friction that stops a joint and
-/// holds it still. It has brakes. One thread at a time.
-class ReferenceArm final : public TorqueDrivenArm {
+/// fourth-order Runge-Kutta method. It has no stops: joints move beyond their limits, and a reset
+/// may put them there. It starts at zero and touches nothing. Made for accuracy, not speed, and
+/// unstable for strong friction on little inertia with long sub-steps. With the brakes engaged it
+/// uses a first-order method with dry friction that stops a joint and holds it still.
+class ReferenceArm final : public SimulatedArm {
  public:
-  /// Starts at rest at zero.
   /// @throws SetupError if a number of `model` or `options` is out of range, or a joint moves no
   ///   mass
   explicit ReferenceArm(const ArmModel& model, const ReferenceOptions& options = {});
-  /// Moves; the other may then only be assigned to or destroyed.
-  ReferenceArm(ReferenceArm&&) noexcept;
-  /// Moves; the other may then only be assigned to or destroyed.
-  ReferenceArm& operator=(ReferenceArm&&) noexcept;
-  ~ReferenceArm() override;
-
-  /// The number of moving links.
-  [[nodiscard]] int links() const noexcept;
-
-  /// Puts the arm at `q` [rad] or [m], moving at `v` [rad/s] or [m/s] (at rest if empty), enabled,
-  /// with zero torque.
-  /// @throws SetupError if a size is wrong or an entry is not finite
-  void reset(std::span<const double> q, std::span<const double> v = {});
-
-  /// Joint torques [N m] or forces [N], held until the next call. An entry that is not finite or
-  /// missing counts as zero.
-  void set_torques(std::span<const double> torques) noexcept override;
-
-  /// Advances the arm by `period` [s]; does nothing if that is not finite and positive. If the
-  /// state would become not finite, the arm stops at its last position.
-  void step(double period) noexcept override;
-
-  /// Enables the arm: torques act and the brakes are off. This is the initial state.
-  void enable() noexcept override;
-
-  /// Stops the arm: no torque acts and the brakes are on, until `enable`. The watchdog of the
-  /// options does the same if no torques are set for its timeout, in simulated time.
-  void stop() noexcept override;
-
-  /// Brakes on or off while the arm is enabled; no torque acts while they are on.
-  void engage_brakes(bool on) noexcept override;
-
-  /// Whether torques act, or it has been stopped.
-  [[nodiscard]] ArmState state() const noexcept override;
-
-  /// Zero: the arm touches nothing.
-  [[nodiscard]] std::optional<Wrench> read_wrench() const noexcept override { return Wrench{}; }
-
-  /// Joint positions [rad] or [m]; fills as many as `out` holds.
-  void read_positions(std::span<double> out) const noexcept override;
-
-  /// Joint velocities [rad/s] or [m/s]; fills as many as `out` holds.
-  void read_velocities(std::span<double> out) const noexcept override;
 
   /// Kinetic energy [J], rotors included.
   [[nodiscard]] double kinetic_energy() noexcept;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace repel
