@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include <repel/loop/hard_contacts.hpp>
+#include <repel/loop/barrier/hard_contacts.hpp>
 
 #include "setting.hpp"
 

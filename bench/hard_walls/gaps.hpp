@@ -7,7 +7,7 @@
 #include <span>
 
 #include <repel/cell/cell.hpp>
-#include <repel/loop/hard_contacts.hpp>
+#include <repel/loop/barrier/hard_contacts.hpp>
 
 namespace repel::hard_walls {
 

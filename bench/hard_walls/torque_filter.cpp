@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include <repel/cell/layout.hpp>
-#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
 
 namespace repel::hard_walls {
 namespace {

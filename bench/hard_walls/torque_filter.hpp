@@ -9,10 +9,10 @@
 #include <Eigen/Core>
 
 #include <repel/cell/cell.hpp>
-#include <repel/loop/arm_bodies.hpp>
-#include <repel/loop/barrier_rows.hpp>
-#include <repel/loop/hard_contacts.hpp>
-#include <repel/loop/least_constraint.hpp>
+#include <repel/loop/arms/arm_bodies.hpp>
+#include <repel/loop/barrier/barrier_rows.hpp>
+#include <repel/loop/barrier/hard_contacts.hpp>
+#include <repel/loop/barrier/least_constraint.hpp>
 #include <repel/robots/dynamics.hpp>
 #include <repel/world/kinematics.hpp>
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <repel/base/setup_error.hpp>
-#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
 
 namespace repel::detail {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <repel/cell/workspace.hpp>
-#include <repel/loop/arm_bodies.hpp>
+#include <repel/loop/arms/arm_bodies.hpp>
 
 namespace repel {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <repel/cell/description.hpp>
-#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
 #include <repel/network/elements/robot_end.hpp>
 #include <repel/network/network.hpp>
 

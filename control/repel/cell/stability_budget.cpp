@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include <repel/cell/layout.hpp>
-#include <repel/loop/arm_bodies.hpp>
-#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/arms/arm_bodies.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/network/elements/dense.hpp>
 #include <repel/network/modules/guide.hpp>

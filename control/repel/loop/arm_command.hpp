@@ -7,15 +7,15 @@
 #include <span>
 #include <vector>
 
-#include <repel/loop/arm_inertia.hpp>
-#include <repel/loop/energy_watch.hpp>
-#include <repel/loop/entry_barrier.hpp>
-#include <repel/loop/failsafe.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
+#include <repel/loop/barrier/entry_barrier.hpp>
 #include <repel/loop/joint_torques.hpp>
-#include <repel/loop/joint_watch.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
-#include <repel/loop/stop_control.hpp>
+#include <repel/loop/watch/energy_watch.hpp>
+#include <repel/loop/watch/failsafe.hpp>
+#include <repel/loop/watch/joint_watch.hpp>
+#include <repel/loop/watch/stop_control.hpp>
 #include <repel/network/network.hpp>
 #include <repel/world/arm.hpp>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <repel/loop/arm_bodies.hpp>
+#include <repel/loop/arms/arm_bodies.hpp>
 
 namespace repel::detail {
 

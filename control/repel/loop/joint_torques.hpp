@@ -8,11 +8,11 @@
 #include <vector>
 
 #include <repel/base/status.hpp>
-#include <repel/loop/arm_inertia.hpp>
-#include <repel/loop/entry_barrier.hpp>
-#include <repel/loop/least_constraint.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
+#include <repel/loop/barrier/entry_barrier.hpp>
+#include <repel/loop/barrier/least_constraint.hpp>
+#include <repel/loop/barrier/speed_bounds.hpp>
 #include <repel/loop/options.hpp>
-#include <repel/loop/speed_bounds.hpp>
 #include <repel/network/elements/friction.hpp>
 #include <repel/world/arm.hpp>
 

@@ -5,7 +5,7 @@
 
 namespace repel {
 
-/// Bounds of the energy that an arm gains by sampling (loop/energy_watch.hpp).
+/// Bounds of the energy that an arm gains by sampling (loop/watch/energy_watch.hpp).
 struct EnergyWatchOptions {
   double taken_back = 1.0;  ///< [J] gained in `memory` above which the arm is braked in proportion
   double most = 5.0;        ///< [J] gained in `memory` above which it is a fault; both are for 400
@@ -15,14 +15,14 @@ struct EnergyWatchOptions {
   double latch = 0.0;       ///< [s] for which a fault stays, twice as long each time it comes back
 };
 
-/// Ramps of the operator's force (loop/failsafe.hpp).
+/// Ramps of the operator's force (loop/watch/failsafe.hpp).
 struct FailsafeOptions {
   double fall = 0.05;  ///< [s] in which the force ramps to zero after a fault
   double hold = 0.25;  ///< [s] without a fault before the force comes back
   double rise = 0.5;   ///< [s] in which the force comes back
 };
 
-/// Handling of a motion that is not observed (loop/stop_control.hpp).
+/// Handling of a motion that is not observed (loop/watch/stop_control.hpp).
 struct StopOptions {
   double predicted = 0.02;  ///< [s], at least three ticks, for which an unobserved motion is braked
                             ///< by prediction before the brakes are requested
@@ -36,7 +36,7 @@ struct JointTorqueOptions {
   double slew_time = 0.005;  ///< [s] in which a torque may go from zero to its limit
 };
 
-/// Options of the barrier before hard walls (loop/entry_barrier.hpp).
+/// Options of the barrier before hard walls (loop/barrier/entry_barrier.hpp).
 struct EntryBarrierOptions {
   double margin = 0.25e-3;  ///< [m] before the surface where an arm is held, at 400 Hz and more; in
                             ///< proportion to the period at lower rates

@@ -60,7 +60,7 @@ struct TickRecord {
   Wrench grip;                ///< [N, N m] of SIX AXES on the first hand; not logged
   Wrench second_grip;         ///< [N, N m] and on a second one; likewise
   double gain = 1.0;          ///< of the fail-safe
-  double held_force = 0.0;    ///< [N] of hard walls on the arm (loop/entry_barrier.hpp)
+  double held_force = 0.0;    ///< [N] of hard walls on the arm (loop/barrier/entry_barrier.hpp)
   PairId held_pair;           ///< that of the hardest one; invalid: none did
   HoldProof hold;             ///< what is proven of hard walls
   JointNumbers torques{};     ///< [N m] or [N] sent to the joints

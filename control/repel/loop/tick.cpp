@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <repel/loop/held_weight.hpp>
+#include <repel/loop/arms/held_weight.hpp>
 #include <repel/network/modules/limits.hpp>
 #include <repel/network/modules/obstacle.hpp>
 #include <repel/network/modules/puma_kin.hpp>

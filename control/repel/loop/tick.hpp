@@ -10,16 +10,16 @@
 #include <vector>
 
 #include <repel/base/spatial.hpp>
-#include <repel/loop/arm_bodies.hpp>
 #include <repel/loop/arm_command.hpp>
-#include <repel/loop/arm_inertia.hpp>
-#include <repel/loop/hand_speed.hpp>
-#include <repel/loop/hard_contacts.hpp>
-#include <repel/loop/kinematics_watch.hpp>
+#include <repel/loop/arms/arm_bodies.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
+#include <repel/loop/barrier/hard_contacts.hpp>
 #include <repel/loop/options.hpp>
 #include <repel/loop/record.hpp>
 #include <repel/loop/teleoperator_parts.hpp>
 #include <repel/loop/tick_clock.hpp>
+#include <repel/loop/watch/hand_speed.hpp>
+#include <repel/loop/watch/kinematics_watch.hpp>
 #include <repel/network/elements/signals.hpp>
 #include <repel/network/modules/force_sensor.hpp>
 #include <repel/network/modules/puma_joints.hpp>

@@ -72,7 +72,7 @@ enum class GivenAt : std::uint8_t {
 enum class HoldKind : std::uint8_t {
   soft,  ///< the force of the law: who pushes harder goes deeper
   hard,  ///< besides it, an arm that could soon not stop any more is slowed while it still can
-         ///< (repel/loop/entry_barrier.hpp)
+         ///< (repel/loop/barrier/entry_barrier.hpp)
 };
 
 /// The nonlinear spring-damper of one pair (Anderson 1993, section 2: zero outside a threshold

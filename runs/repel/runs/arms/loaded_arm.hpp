@@ -12,7 +12,7 @@
 
 #include <repel/cell/cell.hpp>
 #include <repel/cell/layout.hpp>
-#include <repel/loop/held_weight.hpp>
+#include <repel/loop/arms/held_weight.hpp>
 #include <repel/network/elements/port.hpp>
 #include <repel/simulated/wrapped_arm.hpp>
 #include <repel/world/kinematics.hpp>

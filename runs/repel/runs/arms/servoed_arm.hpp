@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <repel/cell/admittance.hpp>
-#include <repel/loop/arm_inertia.hpp>
+#include <repel/loop/arms/arm_inertia.hpp>
 #include <repel/network/plan.hpp>
 #include <repel/simulated/wrapped_arm.hpp>
 #include <repel/world/kinematics.hpp>
