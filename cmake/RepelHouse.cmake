@@ -27,6 +27,46 @@ if(REPEL_SANITIZE)
   target_compile_definitions(repel_house INTERFACE REPEL_SANITIZED)  # compilers say it differently
 endif()
 
+# repel_headers(TARGET [FOLDER]): the headers that users of a target include, those in repel/PART of
+# this folder, or in all of repel/ where there is no PART. They are installed with the target. With
+# REPEL_HEADERS_ALONE the target headers_alone compiles each of them by itself.
+include(GNUInstallDirs)
+option(REPEL_HEADERS_ALONE "Offer the target headers_alone" OFF)
+if(REPEL_HEADERS_ALONE)
+  add_custom_target(headers_alone)
+endif()
+function(repel_headers target)
+  set(base ${CMAKE_CURRENT_SOURCE_DIR})
+  if(ARGC GREATER 1)
+    set(base ${ARGV1})
+  endif()
+  string(REGEX REPLACE "^repel_" "" part ${target})
+  set(folder repel/${part})
+  if(NOT EXISTS ${base}/${folder})
+    set(folder repel)
+  endif()
+  get_target_property(type ${target} TYPE)
+  set(scope PUBLIC)
+  if(type STREQUAL INTERFACE_LIBRARY)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${base}>
+                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  set_target_properties(${target} PROPERTIES REPEL_BASE ${base} REPEL_HEADERS ${folder})
+  if(REPEL_HEADERS_ALONE)
+    file(GLOB_RECURSE headers RELATIVE ${base} ${base}/${folder}/*.hpp)
+    foreach(header ${headers})
+      file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/alone/${header}.cpp
+           CONTENT "#include <${header}>\n")
+    endforeach()
+    list(TRANSFORM headers PREPEND ${PROJECT_BINARY_DIR}/alone/)
+    list(TRANSFORM headers APPEND .cpp)
+    add_library(${target}_alone OBJECT EXCLUDE_FROM_ALL ${headers})
+    target_link_libraries(${target}_alone PRIVATE ${target} repel_house)
+    add_dependencies(headers_alone ${target}_alone)
+  endif()
+endfunction()
+
 # repel_outside_the_tick(TARGET...): pages, reports and devices wait for people and files. More
 # than -O1 takes half as long again to compile.
 function(repel_outside_the_tick)

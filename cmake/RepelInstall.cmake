@@ -57,8 +57,11 @@ foreach(part ${REPEL_COMPONENTS})
     if(part STREQUAL core)
       set(component core)
     endif()
-    install(TARGETS repel_${part} EXPORT repel-${part} OPTIONAL
-            FILE_SET HEADERS COMPONENT ${component})
+    install(TARGETS repel_${part} EXPORT repel-${part} OPTIONAL COMPONENT ${component})
+    get_target_property(base repel_${part} REPEL_BASE)
+    get_target_property(headers repel_${part} REPEL_HEADERS)
+    install(DIRECTORY ${base}/${headers}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${headers}
+            COMPONENT ${component} FILES_MATCHING PATTERN *.hpp)
     install(EXPORT repel-${part} NAMESPACE repel:: DESTINATION ${package_dir}
             COMPONENT ${component})
     get_target_property(type repel_${part} TYPE)
