@@ -6,7 +6,8 @@ include(GNUInstallDirs)
 set(completions ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES cmake/package/completion.bash RENAME teleop DESTINATION ${completions}
         COMPONENT programs)
-foreach(program qualify robot_info cover)  # bash looks for a file with the name of the command
+# bash looks for a file with the name of the command.
+foreach(program qualify robot_info step_response cover)
   install(CODE "
     set(completion \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${completions}/${program}\")
     file(CREATE_LINK teleop \"\${completion}\" SYMBOLIC)" COMPONENT programs)

@@ -35,4 +35,4 @@ _repel() {
   fi
   mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "$words" -- "$word")
 }
-complete -F _repel teleop qualify robot_info cover
+complete -F _repel teleop qualify robot_info step_response cover

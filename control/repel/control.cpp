@@ -11,6 +11,7 @@
 #include <repel/cell/layout.cpp>
 #include <repel/cell/leverage.cpp>
 #include <repel/cell/robot_end.cpp>
+#include <repel/cell/servo_response.cpp>
 #include <repel/cell/settled_laws.cpp>
 #include <repel/cell/stability_budget.cpp>
 #include <repel/cell/workspace.cpp>

@@ -8,6 +8,7 @@
 #include <repel/cell/arm_port.hpp>
 #include <repel/cell/cell.hpp>
 #include <repel/cell/layout.hpp>
+#include <repel/cell/servo_response.hpp>
 #include <repel/cell/stability_budget.hpp>
 #include <repel/loop/gain_check.hpp>
 #include <repel/loop/reciprocating_motion.hpp>

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/options.md"
 GROUPS = {f"{name}:" for name in ("Positionals", "Options", "Commands", "Run", "Arm", "Walls",
                                   "View", "Link", "Files")}
-PROGRAMS = ["teleop", "qualify", "robot_info", "cover", "deadline"]
+PROGRAMS = ["teleop", "qualify", "robot_info", "step_response", "cover", "deadline"]
 HEAD = """<!-- SPDX-License-Identifier: BSD-3-Clause -->
 
 # Options of the programs
