@@ -25,19 +25,26 @@ apt_options() {
   done
 }
 
-# minimal_root FOLDER [PACKAGE...]: a minimal Debian of this release, and these packages.
-minimal_root() {
-  local folder=$1 suite packages options
-  shift
+# minimal_root_of RELEASE SOURCES FOLDER [PACKAGE...]: a minimal root of the release, from these
+# repositories, and these packages.
+minimal_root_of() {
+  local suite=$1 sources=$2 folder=$3 packages options
+  shift 3
   [ "$(id -u)" = 0 ] || cannot "it takes root: sudo .ci/$me"
   command -v mmdebstrap >/dev/null || cannot "apt-get install mmdebstrap"
-  suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
-  [ -n "$suite" ] || cannot "this is not Debian"
   packages=$(IFS=,; echo "$*")
   mapfile -t options < <(apt_options)
-  apt_sources | mmdebstrap --quiet --mode=root --variant=minbase --format=directory \
+  echo "$sources" | mmdebstrap --quiet --mode=root --variant=minbase --format=directory \
     ${packages:+--include="$packages"} --dpkgopt=force-unsafe-io "${options[@]}" "$suite" \
     "$folder" - ||
     cannot "mmdebstrap fails: can the mirrors of apt be reached, and may this root mount?"
   cp /etc/resolv.conf /etc/hosts "$folder/etc/"
+}
+
+# minimal_root FOLDER [PACKAGE...]: a minimal Debian of this release, and these packages.
+minimal_root() {
+  local suite
+  suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+  [ -n "$suite" ] || cannot "this is not Debian"
+  minimal_root_of "$suite" "$(apt_sources)" "$@"
 }

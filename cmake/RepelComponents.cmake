@@ -3,10 +3,12 @@
 # that installs them is printed.
 include(RepelDependencies)
 
+# The engines that move simulated arms; each has a class Arm in backends/ENGINE.
+set(REPEL_ENGINES bullet ode mujoco)
 # What find_package offers: the target repel::PART of each. A back end is a folder of this name in
 # backends/; that of dds is link, that of octrees is percepts.
 set(REPEL_COMPONENTS core control common simulated ideal devices link dds record robots cover
-    percepts octrees bullet ode mujoco scene visual)
+    percepts octrees ${REPEL_ENGINES} scene visual)
 
 # repel_debian_packages(PART OUT): the packages debian-packages.txt lists for PART, as one string.
 function(repel_debian_packages part out)

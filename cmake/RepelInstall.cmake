@@ -90,6 +90,7 @@ if(TARGET repel_visual)  # programs that link it are elsewhere, and so may be th
 endif()
 install(FILES LICENSE TYPE DOC COMPONENT programs)
 
+list(JOIN REPEL_ENGINES " " REPEL_ENGINE_NAMES)
 configure_package_config_file(cmake/repel-config.cmake.in repel-config.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(repel-config-version.cmake COMPATIBILITY SameMinorVersion)

@@ -40,6 +40,21 @@ std::vector<std::string> backend_names(const Wanted& wanted) {
   return names;
 }
 
+bool has_contact(const runs::ArmBackend& backend) {
+  return backend.has_contact;
+}
+bool has_gravity(const runs::ArmBackend& backend) {
+  return backend.has_gravity;
+}
+
+/// The names of these arms, as a sentence has them: "a, b or c".
+template <class Wanted>
+std::string backends_in_words(const Wanted& wanted) {
+  std::string words = CLI::detail::join(backend_names(wanted), ", ");
+  const std::size_t last = words.rfind(", ");
+  return last == std::string::npos ? words : words.replace(last, 2, " or ");
+}
+
 /// @throws CLI::ValidationError if an option asks the back end for what it does not simulate
 void require_able(const Arguments& a) {
   const runs::ArmBackend& chosen = runs::arm_backend(a.run.backend);
@@ -49,12 +64,10 @@ void require_able(const Arguments& a) {
                                            CLI::detail::join(backend_names(able), ", "));
   };
   if (a.run.contact) {
-    require("--contact", "knows no contact",
-            [](const auto& backend) { return backend.has_contact; });
+    require("--contact", "knows no contact", has_contact);
   }
   if (a.run.plant_inertia != 1.0) {
-    require("--plant-inertia", "has links without mass",
-            [](const auto& backend) { return backend.has_gravity; });
+    require("--plant-inertia", "has links without mass", has_gravity);
   }
 }
 
@@ -109,18 +122,20 @@ void describe_coprocessor(CLI::App& app, Arguments& a) {
 /// The simulated arm.
 void describe_arm(CLI::App& app, Arguments& a) {
   app.option_defaults()->group("Arm");
-  app.add_option(
-         "--backend", a.run.backend,
-         "Simulated arm: bullet, ode or mujoco (dynamics, gravity, friction, stops), reference "
-         "(the same without stops, by a higher order, slow) or ideal (free joints)")
+  app.add_option("--backend", a.run.backend,
+                 "Simulated arm: " + backends_in_words(has_contact) +
+                     " (dynamics, gravity, friction, stops), reference (the same without stops, by "
+                     "a higher order, slow) or ideal (free joints)")
       ->capture_default_str()
       ->check(CLI::IsMember(backend_names([](const auto&) { return true; })));
   app.add_flag("--contact", a.run.contact,
-               "With bullet, ode or mujoco: impassable obstacles are also solid in the simulation, "
-               "beside their virtual force");
+               "With " + backends_in_words(has_contact) +
+                   ": impassable obstacles are also solid in the simulation, beside their virtual "
+                   "force");
   app.add_option("--plant-inertia", a.run.plant_inertia,
-                 "With bullet, ode, mujoco or reference: inertia of the simulated arm relative to "
-                 "its model, at the same weight; tests the controller against errors of the model")
+                 "With " + backends_in_words(has_gravity) +
+                     ": inertia of the simulated arm relative to its model, at the same weight; "
+                     "tests the controller against errors of the model")
       ->capture_default_str()
       ->type_name("FACTOR")
       ->check(host::between(least_inertia_factor, most_inertia_factor));
@@ -235,10 +250,9 @@ void describe_files(CLI::App& app, Command command, Arguments& a) {
 
 /// What stands in scene files and behind options.
 std::string names_text() {
-  return "Scenes:" + scene_list() +
-         "\n\nBack ends:\n  bullet, ode, mujoco, reference, ideal\n\nDevices (chosen phase by "
-         "phase in "
-         "the scene):\n"
+  return "Scenes:" + scene_list() + "\n\nBack ends:\n  " +
+         CLI::detail::join(backend_names([](const auto&) { return true; }), ", ") +
+         "\n\nDevices (chosen phase by phase in the scene):\n"
          "  spaceball   six rates, scripted\n  torque_arm  force-reflecting lever, scripted\n"
          "  six_axes    six rates of a hand, with force feedback, scripted\n"
          "or, in place of the script, the page of --view and the master of --device\n\n";

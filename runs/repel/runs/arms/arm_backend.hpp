@@ -13,10 +13,10 @@
 
 namespace repel::runs {
 
-/// One kind of simulated arm.
 /// The least inertia of a joint of the arm without dynamics [kg m^2] or [kg].
 inline constexpr double least_ideal_inertia = 0.1;
 
+/// One kind of simulated arm.
 struct ArmBackend {
   const char* name;
   bool has_gravity;  ///< the links of its arms have masses, on which gravity acts

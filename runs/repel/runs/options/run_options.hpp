@@ -13,7 +13,7 @@ struct RunOptions {
   double seconds = 20.0;   ///< [s] of scene time
   double rate_hz = 400.0;  ///< [Hz]
   bool fast = false;       ///< as fast as possible instead of in real time; bitwise repeatable
-  std::string backend = "bullet";  ///< "bullet", "ode", "mujoco", "reference" or "ideal"
+  std::string backend = "bullet";  ///< the name of one of `arm_backends`
   int threads = 0;                 ///< of the coprocessor; 0: in the tick's own thread
   CoprocessorMode coprocessor = CoprocessorMode::together;
   std::string budget;          ///< budget name; empty: the scene's own
