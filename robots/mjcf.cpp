@@ -237,7 +237,7 @@ class MjcfGathering {
     if (m_.tendon_stiffness[i] > 0.0) has = " with a spring";
     if (m_.tendon_damping[i] > 0.0) has = " with damping";
     if (m_.tendon_frictionloss[i] > 0.0) has = " with dry friction";
-    if (m_.tendon_limited[i] != 0) has = " of limited length";
+    if (m_.tendon_limited[i] != 0) has = " with limits";
     return tie("'" + name_of(mjOBJ_TENDON, i, "tendon") + "' is a tendon" + has, !has.empty(),
                joints_of_tendon(i));
   }

@@ -382,7 +382,7 @@ TEST(Mjcf, WhatActsOnTheArmIsRefusedByName) {
        "'t' is a tendon with a spring, which acts on joint '3' of the arm"},
       {tendon_of({"3"}, "damping=\"1\""), "'t' is a tendon with damping"},
       {tendon_of({"3"}, "frictionloss=\"1\""), "'t' is a tendon with dry friction"},
-      {tendon_of({"3"}, "limited=\"true\" range=\"0 1\""), "'t' is a tendon of limited length"},
+      {tendon_of({"3"}, "limited=\"true\" range=\"0 1\""), "'t' is a tendon with limits"},
       {"<tendon><fixed name=\"t\"><joint joint=\"3\" coef=\"1\"/></fixed></tendon>"
        "<equality><tendon name=\"e\" tendon1=\"t\"/></equality>",
        "'e' is an equality constraint, which acts on joint '3' of the arm"},
