@@ -538,6 +538,17 @@ class MjcfBuilder {
     return found == options_.hold.end() ? nullptr : &*found;
   }
 
+  /// Whether it is not to move, or coupled with one that is not to.
+  [[nodiscard]] bool is_held(const MjcfJoint& joint) const {
+    if (hold_of(joint) != nullptr) return true;
+    return std::ranges::any_of(arm_.ties, [&](const MjcfTie& tie) {
+      return tie.is_coupling != 0 && std::ranges::count(tie.joints, joint.name) > 0 &&
+             std::ranges::any_of(options_.hold, [&](const Hold& hold) {
+               return std::ranges::count(tie.joints, hold.joint) > 0;
+             });
+    });
+  }
+
   void require_holds() const {
     for (const Hold& hold : options_.hold) {
       const bool known = std::ranges::any_of(arm_.bodies, [&](const MjcfBody& body) {
@@ -574,7 +585,7 @@ class MjcfBuilder {
 
   [[nodiscard]] bool moves(const MjcfBody& body) const {
     return std::ranges::any_of(body.joints,
-                               [&](const MjcfJoint& joint) { return hold_of(joint) == nullptr; });
+                               [&](const MjcfJoint& joint) { return !is_held(joint); });
   }
 
   /// The end of the line of joints, or where fingers branch off it.
@@ -610,7 +621,7 @@ class MjcfBuilder {
           bodies, [&](std::size_t other) { return other <= body && carries(other, body); });
       return static_cast<std::size_t>(length) < line &&
              std::ranges::all_of(arm_.bodies[body].joints, [&](const MjcfJoint& joint) {
-               return hold_of(joint) != nullptr || is_tied(joint);
+               return is_held(joint) || is_tied(joint);
              });
     });
   }
@@ -657,7 +668,7 @@ class MjcfBuilder {
     std::size_t left = body.joints.size();
     for (const MjcfJoint& joint : body.joints) {
       --left;
-      if (in_arm && hold_of(joint) == nullptr) {
+      if (in_arm && !is_held(joint)) {
         if (joint.stiffness > 0.0) {
           fail("joint '" + joint.name + "' has a spring, stiffness " + to_text(joint.stiffness) +
                "; allowed: 0, or a joint that is held");
@@ -720,7 +731,7 @@ class MjcfBuilder {
   [[nodiscard]] HeldJoint held_joint(const MjcfJoint& joint) const {
     const Hold* const hold = hold_of(joint);
     const bool slides = joint.is_slide != 0;
-    HeldJoint held{joint.name, slides ? "slide" : "hinge",
+    HeldJoint held{joint.name, slides ? "prismatic" : "revolute",
                    std::clamp(0.0, joint.lower, joint.upper),
                    hold != nullptr ? "as chosen" : "beside the chain"};
     if (hold == nullptr || !hold->position) return held;

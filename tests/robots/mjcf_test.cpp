@@ -193,6 +193,7 @@ TEST(Mjcf, PartsAndLimitsAreThoseOfTheFile) {
   EXPECT_EQ(robot.arm.links[1].effort_limit, 30.0);
   EXPECT_EQ(robot.arm.links[2].effort_limit, 0.0) << "unknown";
   EXPECT_EQ(robot.held[0].position, 0.01);
+  EXPECT_EQ(robot.held[0].type, "prismatic");
   std::string names;
   for (const RobotPart& part : robot.parts) {
     names += part.name + " " + to_text(part.kind) + " " + std::to_string(part.link) + "; ";
@@ -331,6 +332,15 @@ TEST(Mjcf, FingersThatAreTiedToOneAnotherAreHeldOnTheBodyThatCarriesThem) {
         robot.arm.links[5].mass + robot.links[8].mass + robot.links[9].mass + robot.links[10].mass,
         1e-9);
   }
+}
+
+TEST(Mjcf, AFingerThatIsCoupledWithAHeldOneIsHeldToo) {
+  const Folder folder;
+  const std::string path = folder.with("arm.xml", seven_joints(fingers, coupled));
+  const Robot robot = load_mjcf_arm(path, {.hold = {{"right", 0.02}}});
+  EXPECT_EQ(robot.arm.links.size(), 7U);
+  ASSERT_EQ(robot.held.size(), 2U);
+  EXPECT_EQ(robot.held[1].position, 0.02);
 }
 
 TEST(Mjcf, BranchesThatMayBeArmsAreRefusedByName) {
