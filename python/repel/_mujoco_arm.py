@@ -162,7 +162,8 @@ class ModelArm:
                     and in_arm == {self.joints[-1]}):
                 self.followers += joints - in_arm
             else:
-                ties.append((f"'{name_of(model, 'equality', i)}' is an equality constraint", joints))
+                name = name_of(model, "equality", i)
+                ties.append((f"'{name}' is an equality constraint", joints))
         for i in range(model.ntendon):
             name = f"'{name_of(model, 'tendon', i)}' is a tendon with "
             ties += [(name + what, self._of_tendon(i)) for what, fields in _OF_TENDONS.items()

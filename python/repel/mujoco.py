@@ -91,10 +91,10 @@ def attach(model: Any, data: Any, *, site: str, rate_hz: float | None = None,
     """A cell with the arm that moves a site of the model, and an obstacle for each geom around it.
 
     site: its name, or that of a body whose frame is the tool frame. data: of the model; the arm
-    starts where data.qpos has it, and joints on it, as those of fingers, count as held there. rate_hz [Hz] of the tick; none: one
-    for each timestep, else a whole number of timesteps must make a period. law: of all obstacles.
-    leave_out: names of geoms that are not to count, on the arm and around it. arm: further
-    arguments of Arm; gain_check, start_inside, limits: of Cell.
+    starts where data.qpos has it, and joints on it, as those of fingers, count as held there.
+    rate_hz [Hz] of the tick; none: one for each timestep, else a whole number of timesteps must
+    make a period. law: of all obstacles. leave_out: names of geoms that are not to count, on the
+    arm and around it. arm: further arguments of Arm; gain_check, start_inside, limits: of Cell.
 
     Geoms become obstacles if they stand still in the world and can touch anything. A plane becomes
     a large box. Not among them are the geoms of the body that carries the first joint, which the
