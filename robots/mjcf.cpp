@@ -733,7 +733,9 @@ class MjcfBuilder {
     const bool slides = joint.is_slide != 0;
     HeldJoint held{joint.name, slides ? "prismatic" : "revolute",
                    std::clamp(0.0, joint.lower, joint.upper),
-                   hold != nullptr ? "as chosen" : "beside the chain"};
+                   hold != nullptr  ? "as chosen"
+                   : is_held(joint) ? "coupled with a held joint"
+                                    : "beside the chain"};
     if (hold == nullptr || !hold->position) return held;
     held.position = *hold->position;
     const std::string at = "joint '" + joint.name + "' is to be held at " + to_text(held.position);

@@ -340,6 +340,7 @@ TEST(Mjcf, AFingerThatIsCoupledWithAHeldOneIsHeldToo) {
   const Robot robot = load_mjcf_arm(path, {.hold = {{"right", 0.02}}});
   EXPECT_EQ(robot.arm.links.size(), 7U);
   ASSERT_EQ(robot.held.size(), 2U);
+  EXPECT_EQ(robot.held[0].reason, "coupled with a held joint");
   EXPECT_EQ(robot.held[1].position, 0.02);
 }
 
