@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include <repel/geometry/facets.hpp>
@@ -39,6 +40,7 @@ struct MjcfJoint {
   double friction = 0.0;      ///< [N m] or [N]
   double armature = 0.0;      ///< [kg m^2] or [kg]
   double effort_limit = 0.0;  ///< [N m] or [N]; 0: unknown
+  double stiffness = 0.0;     ///< [N m/rad] or [N/m] of its spring
 };
 
 struct MjcfBody {
@@ -58,12 +60,21 @@ struct MjcfSite {
   Pose X_BS = Pose::Identity();  ///< [m]
 };
 
+/// An active equality constraint, or a tendon.
+struct MjcfTie {
+  std::string what;                 ///< it is
+  int acts = 0;                     ///< 0: a tendon that actuators alone pull
+  int is_coupling = 0;              ///< of the positions of two joints
+  std::vector<std::string> joints;  ///< whose motion it feels
+};
+
 /// What an arm is made of.
 struct MjcfArm {
   std::string name;
   Vec3 gravity_W{0, 0, 0};       ///< [m/s^2]
   std::vector<MjcfBody> bodies;  ///< parents first; the first is the world
   std::vector<MjcfSite> sites;
+  std::vector<MjcfTie> ties;
 };
 
 struct EndMjcf {
@@ -125,6 +136,10 @@ class MjcfGathering {
       arm.sites.push_back({name_of(mjOBJ_SITE, i, "site"), m_.site_bodyid[i],
                            pose_of(m_.site_pos + 3 * i, m_.site_quat + 4 * i)});
     }
+    for (int i = 0; i < m_.neq; ++i) {
+      if (m_.eq_active[i] != 0) arm.ties.push_back(constraint(i));
+    }
+    for (int i = 0; i < m_.ntendon; ++i) arm.ties.push_back(tendon(i));
     return arm;
   }
 
@@ -143,11 +158,6 @@ class MjcfGathering {
   /// What would move the arm beside its joints, and is not part of an ArmModel.
   void require_bodies_and_joints_alone() const {
     const std::string alone = "an arm of bodies, hinges and slides";
-    for (int i = 0; i < m_.neq; ++i) {
-      if (m_.eq_active[i] == 0) continue;
-      refuse("'" + name_of(mjOBJ_EQUALITY, i, "equality") + "' is an equality constraint", alone);
-    }
-    if (m_.ntendon > 0) refuse("'" + name_of(mjOBJ_TENDON, 0, "tendon") + "' is a tendon", alone);
     if (m_.opt.density > 0.0 || m_.opt.viscosity > 0.0) {
       refuse("the option density or viscosity gives the arm a medium", "0");
     }
@@ -159,6 +169,77 @@ class MjcfGathering {
       refuse("the file has " + std::to_string(m_.nbody) + " bodies",
              "up to " + std::to_string(detail::most_urdf_links));
     }
+  }
+
+  using Joints = std::set<int>;
+
+  /// Adds the joints that move one body against the other.
+  void add_between(int a, int b, Joints& joints) const {
+    while (a != b) {
+      int& outer = a > b ? a : b;  // a parent has the smaller index
+      for (int i = 0; i < m_.body_jntnum[outer]; ++i) joints.insert(m_.body_jntadr[outer] + i);
+      outer = m_.body_parentid[outer];
+    }
+  }
+
+  /// Those that change the length of a tendon.
+  [[nodiscard]] Joints joints_of_tendon(int tendon) const {
+    Joints joints;
+    int before = -1;  // the body that it comes from
+    for (int i = m_.tendon_adr[tendon]; i < m_.tendon_adr[tendon] + m_.tendon_num[tendon]; ++i) {
+      const int object = m_.wrap_objid[i];
+      int body = -1;
+      switch (m_.wrap_type[i]) {
+        case mjWRAP_JOINT:
+          joints.insert(object);
+          break;
+        case mjWRAP_SITE:
+          body = m_.site_bodyid[object];
+          break;
+        case mjWRAP_SPHERE:
+        case mjWRAP_CYLINDER:
+          body = m_.geom_bodyid[object];
+          break;
+        default:  // a pulley, behind which it begins anew
+          break;
+      }
+      if (before >= 0 && body >= 0) add_between(before, body, joints);
+      before = body;
+    }
+    return joints;
+  }
+
+  [[nodiscard]] MjcfTie tie(std::string what, bool acts, const Joints& joints) const {
+    MjcfTie tie{std::move(what), acts ? 1 : 0, 0, {}};
+    for (const int i : joints) tie.joints.push_back(name_of(mjOBJ_JOINT, i, "joint"));
+    return tie;
+  }
+
+  [[nodiscard]] MjcfTie constraint(int i) const {
+    Joints joints;
+    const int type = m_.eq_type[i];
+    for (const int object : {m_.eq_obj1id[i], m_.eq_obj2id[i]}) {
+      if (object < 0) continue;  // a constant
+      if (type == mjEQ_JOINT) joints.insert(object);
+      if (type == mjEQ_TENDON) joints.merge(joints_of_tendon(object));
+    }
+    if (type == mjEQ_CONNECT || type == mjEQ_WELD) {
+      add_between(m_.eq_obj1id[i], m_.eq_obj2id[i], joints);
+    }
+    MjcfTie result = tie(
+        "'" + name_of(mjOBJ_EQUALITY, i, "equality") + "' is an equality constraint", true, joints);
+    result.is_coupling = type == mjEQ_JOINT && joints.size() == 2 ? 1 : 0;
+    return result;
+  }
+
+  [[nodiscard]] MjcfTie tendon(int i) const {
+    std::string has;
+    if (m_.tendon_stiffness[i] > 0.0) has = " with a spring";
+    if (m_.tendon_damping[i] > 0.0) has = " with damping";
+    if (m_.tendon_frictionloss[i] > 0.0) has = " with dry friction";
+    if (m_.tendon_limited[i] != 0) has = " with limits";
+    return tie("'" + name_of(mjOBJ_TENDON, i, "tendon") + "' is a tendon" + has, !has.empty(),
+               joints_of_tendon(i));
   }
 
   [[nodiscard]] MjcfBody body(int i) const {
@@ -180,10 +261,6 @@ class MjcfGathering {
       refuse("joint '" + joint.name + "' is a " + (type == mjJNT_FREE ? "free" : "ball") + " joint",
              "hinge, slide");
     }
-    if (m_.jnt_stiffness[i] > 0.0) {
-      refuse("joint '" + joint.name + "' has a spring, stiffness " + to_text(m_.jnt_stiffness[i]),
-             "0");
-    }
     const int dof = m_.jnt_dofadr[i];
     joint.is_slide = type == mjJNT_SLIDE ? 1 : 0;
     joint.p_BJ = Eigen::Map<const Vec3>(m_.jnt_pos + 3 * i);
@@ -197,14 +274,19 @@ class MjcfGathering {
     joint.friction = m_.dof_frictionloss[dof];
     joint.armature = m_.dof_armature[dof];
     joint.effort_limit = effort_limit(i);
+    joint.stiffness = m_.jnt_stiffness[i];
     return joint;
   }
 
-  /// The most that the actuators of a joint give; 0 if one of them has no limit, or there is none.
+  /// The most that the actuators of a joint give; 0 if one of them has no limit or pulls it by a
+  /// tendon, or there is none.
   [[nodiscard]] double effort_limit(int joint) const {
     double sum = 0.0;
     for (int i = 0; i < m_.nu; ++i) {
       const int kind = m_.actuator_trntype[i];
+      if (kind == mjTRN_TENDON && joints_of_tendon(m_.actuator_trnid[2 * i]).contains(joint)) {
+        return 0.0;
+      }
       if ((kind != mjTRN_JOINT && kind != mjTRN_JOINTINPARENT) ||
           m_.actuator_trnid[2 * i] != joint) {
         continue;
@@ -293,7 +375,7 @@ void put(const MjcfJoint& joint, detail::Parcel& parcel) {
   parcel.put(joint.p_BJ);
   parcel.put(joint.axis_B);
   for (const double value : {joint.reference, joint.lower, joint.upper, joint.damping,
-                             joint.friction, joint.armature, joint.effort_limit}) {
+                             joint.friction, joint.armature, joint.effort_limit, joint.stiffness}) {
     parcel.put(value);
   }
 }
@@ -305,7 +387,7 @@ MjcfJoint take_joint(detail::Unpacking& parcel) {
   joint.p_BJ = parcel.take<Vec3>();
   joint.axis_B = parcel.take<Vec3>();
   for (double* value : {&joint.reference, &joint.lower, &joint.upper, &joint.damping,
-                        &joint.friction, &joint.armature, &joint.effort_limit}) {
+                        &joint.friction, &joint.armature, &joint.effort_limit, &joint.stiffness}) {
     *value = parcel.take<double>();
   }
   return joint;
@@ -371,6 +453,14 @@ std::string packed(const MjcfArm& arm) {
     parcel.put(site.body);
     parcel.put(site.X_BS);
   }
+  parcel.put(arm.ties.size());
+  for (const MjcfTie& tie : arm.ties) {
+    parcel.put_list(tie.what);
+    parcel.put(tie.acts);
+    parcel.put(tie.is_coupling);
+    parcel.put(tie.joints.size());
+    for (const std::string& joint : tie.joints) parcel.put_list(joint);
+  }
   return parcel.take();
 }
 
@@ -393,6 +483,15 @@ MjcfArm unpacked(const std::string& bytes) {
     site.X_BS = parcel.take<Pose>();
     const bool stands = site.body >= 0 && static_cast<std::size_t>(site.body) < arm.bodies.size();
     if (!stands) throw SetupError("cannot be read: its reader was disturbed");
+  }
+  for (auto count = parcel.take<std::size_t>(); count > 0; --count) {
+    MjcfTie& tie = arm.ties.emplace_back();
+    tie.what = parcel.take_list<std::string>();
+    tie.acts = parcel.take<int>();
+    tie.is_coupling = parcel.take<int>();
+    for (auto joints = parcel.take<std::size_t>(); joints > 0; --joints) {
+      tie.joints.push_back(parcel.take_list<std::string>());
+    }
   }
   return arm;
 }
@@ -424,6 +523,7 @@ class MjcfBuilder {
     X_LB_.push_back(Pose::Identity());
     for (std::size_t i = 0; i < arm.bodies.size(); ++i) add(i);
     if (robot_.arm.links.empty()) fail("no joint moves; allowed: 1 or more");
+    for (const MjcfTie& tie : arm.ties) require_beside(tie);
     robot_.arm.X_LT = X_LB_[end_] * X_BT_;
     robot_.end = arm.bodies[end_].name;
   }
@@ -436,6 +536,17 @@ class MjcfBuilder {
   [[nodiscard]] const Hold* hold_of(const MjcfJoint& joint) const {
     const auto found = std::ranges::find(options_.hold, joint.name, &Hold::joint);
     return found == options_.hold.end() ? nullptr : &*found;
+  }
+
+  /// Whether it is not to move, or coupled with one that is not to.
+  [[nodiscard]] bool is_held(const MjcfJoint& joint) const {
+    if (hold_of(joint) != nullptr) return true;
+    return std::ranges::any_of(arm_.ties, [&](const MjcfTie& tie) {
+      return tie.is_coupling != 0 && std::ranges::count(tie.joints, joint.name) > 0 &&
+             std::ranges::any_of(options_.hold, [&](const Hold& hold) {
+               return std::ranges::count(tie.joints, hold.joint) > 0;
+             });
+    });
   }
 
   void require_holds() const {
@@ -472,20 +583,80 @@ class MjcfBuilder {
     robot_.end_reason = robot_.tool_reason = "the chosen tip";
   }
 
+  [[nodiscard]] bool moves(const MjcfBody& body) const {
+    return std::ranges::any_of(body.joints,
+                               [&](const MjcfJoint& joint) { return !is_held(joint); });
+  }
+
+  /// The end of the line of joints, or where fingers branch off it.
   void choose_last() {
+    std::vector<std::size_t> moving;
     for (std::size_t i = 0; i < arm_.bodies.size(); ++i) {
-      const bool moves = std::ranges::any_of(
-          arm_.bodies[i].joints, [&](const MjcfJoint& joint) { return hold_of(joint) == nullptr; });
-      if (!moves) continue;
-      if (!carries(end_, i)) {
-        fail("bodies '" + arm_.bodies[end_].name + "' and '" + arm_.bodies[i].name +
-             "' move on branches of their own; allowed: one line of joints, or a chosen tip "
-             "(`tip_link` of a scene)");
-      }
-      end_ = i;
+      if (moves(arm_.bodies[i])) moving.push_back(i);
+    }
+    // Those of the line carry all that move and come later.
+    const auto off = std::ranges::find_if(moving, [&](std::size_t i) {
+      return std::ranges::any_of(
+          moving, [&](std::size_t other) { return other > i && !carries(i, other); });
+    });
+    const std::vector<std::size_t> line(moving.begin(), off), fingers(off, moving.end());
+    if (!line.empty()) end_ = line.back();
+    robot_.end_reason = robot_.tool_reason = "the last body that moves";
+    if (!fingers.empty()) {
+      if (!are_fingers(fingers, line.size())) refuse_branches(fingers);
+      end_ = fingers.front();
+      const auto carries_all = [&] {
+        return std::ranges::all_of(fingers, [&](std::size_t i) { return carries(end_, i); });
+      };
+      while (!carries_all()) end_ = static_cast<std::size_t>(arm_.bodies[end_].parent);
+      robot_.end_reason = robot_.tool_reason = "the body that carries the fingers";
     }
     robot_.tool = arm_.bodies[end_].name;
-    robot_.end_reason = robot_.tool_reason = "the last body that moves";
+  }
+
+  /// Whether each joint is tied to another one, and no branch has as many bodies as the line.
+  [[nodiscard]] bool are_fingers(const std::vector<std::size_t>& bodies, std::size_t line) const {
+    return std::ranges::all_of(bodies, [&](std::size_t body) {
+      const auto length = std::ranges::count_if(
+          bodies, [&](std::size_t other) { return other <= body && carries(other, body); });
+      return static_cast<std::size_t>(length) < line &&
+             std::ranges::all_of(arm_.bodies[body].joints, [&](const MjcfJoint& joint) {
+               return is_held(joint) || is_tied(joint);
+             });
+    });
+  }
+
+  [[nodiscard]] bool is_tied(const MjcfJoint& joint) const {
+    return std::ranges::any_of(arm_.ties, [&](const MjcfTie& tie) {
+      return tie.joints.size() > 1 && std::ranges::count(tie.joints, joint.name) > 0;
+    });
+  }
+
+  [[noreturn]] void refuse_branches(const std::vector<std::size_t>& bodies) const {
+    const std::size_t first = bodies.front();
+    const std::size_t second =
+        *std::ranges::find_if(bodies, [&](std::size_t i) { return !carries(first, i); });
+    fail(
+        "bodies '" + arm_.bodies[first].name + "' and '" + arm_.bodies[second].name +
+        "' move on branches of their own; allowed: one line of joints, which may end in fingers "
+        "that a constraint or tendon ties to one another, or a chosen tip (`tip_link` of a scene)");
+  }
+
+  [[nodiscard]] bool is_of_arm(const std::string& joint) const {
+    return std::ranges::count(robot_.arm.links, joint, &ArmLink::joint_name) > 0;
+  }
+
+  /// @throws SetupError if `tie` acts on a joint of the arm. A joint that is coupled with the last
+  ///   one alone follows that: it is the other finger where one is the arm.
+  void require_beside(const MjcfTie& tie) const {
+    const auto found =
+        std::ranges::find_if(tie.joints, [&](const auto& joint) { return is_of_arm(joint); });
+    if (tie.acts == 0 || found == tie.joints.end()) return;
+    const auto in_arm =
+        std::ranges::count_if(tie.joints, [&](const auto& joint) { return is_of_arm(joint); });
+    if (tie.is_coupling != 0 && in_arm == 1 && *found == robot_.arm.links.back().joint_name) return;
+    fail(tie.what + ", which acts on joint '" + *found +
+         "' of the arm; allowed: one of held joints alone");
   }
 
   void add(std::size_t index) {
@@ -497,7 +668,11 @@ class MjcfBuilder {
     std::size_t left = body.joints.size();
     for (const MjcfJoint& joint : body.joints) {
       --left;
-      if (in_arm && hold_of(joint) == nullptr) {
+      if (in_arm && !is_held(joint)) {
+        if (joint.stiffness > 0.0) {
+          fail("joint '" + joint.name + "' has a spring, stiffness " + to_text(joint.stiffness) +
+               "; allowed: 0, or a joint that is held");
+        }
         ArmLink& moved = robot_.arm.links.emplace_back(moving_link(joint, X_LB));
         moved.name = left == 0 ? body.name : body.name + "/" + joint.name;
         link = static_cast<int>(robot_.arm.links.size()) - 1;
@@ -556,9 +731,11 @@ class MjcfBuilder {
   [[nodiscard]] HeldJoint held_joint(const MjcfJoint& joint) const {
     const Hold* const hold = hold_of(joint);
     const bool slides = joint.is_slide != 0;
-    HeldJoint held{joint.name, slides ? "slide" : "hinge",
+    HeldJoint held{joint.name, slides ? "prismatic" : "revolute",
                    std::clamp(0.0, joint.lower, joint.upper),
-                   hold != nullptr ? "as chosen" : "beside the chain"};
+                   hold != nullptr  ? "as chosen"
+                   : is_held(joint) ? "coupled with a held joint"
+                                    : "beside the chain"};
     if (hold == nullptr || !hold->position) return held;
     held.position = *hold->position;
     const std::string at = "joint '" + joint.name + "' is to be held at " + to_text(held.position);

@@ -15,6 +15,7 @@
 
 #include <repel/host/command_line.hpp>
 #include <repel/host/times.hpp>
+#include <repel/robots/mjcf.hpp>
 #include <repel/robots/urdf.hpp>
 #include <repel/world/kinematics.hpp>
 
@@ -30,6 +31,7 @@ using Json = nlohmann::ordered_json;
 struct Arguments {
   std::string urdf, srdf, json;
   std::vector<std::string> hold;
+  bool is_mjcf = false;
   UrdfOptions options;
 };
 
@@ -55,6 +57,7 @@ std::optional<Hold> hold_of(const std::string& text) {
 
 void describe(CLI::App& app, Arguments& a) {
   app.add_option("urdf", a.urdf, "Robot description, plain URDF")->required()->type_name("FILE");
+  app.add_flag("--mjcf", a.is_mjcf, "The file is MJCF, the format of MuJoCo");
   app.add_option("--srdf", a.srdf, "Its semantic description: link pairs that may touch")
       ->type_name("FILE");
   app.add_option("--package-path", a.options.package_paths,
@@ -62,7 +65,7 @@ void describe(CLI::App& app, Arguments& a) {
       ->type_name("DIR")
       ->check(CLI::ExistingDirectory);
   app.add_option("--tip", a.options.tip,
-                 "Link with the tool frame; the joints leading to it are the arm")
+                 "Link with the tool frame, or site of MJCF; the joints leading to it are the arm")
       ->type_name("LINK");
   app.add_option("--hold", a.hold,
                  "Joints to hold, and where: rad, deg, m or mm; without a unit rad or m. Those "
@@ -237,7 +240,8 @@ int run(const Arguments& arguments) {
     return scene::parts_beside(mesh, scale, part_lists);
   };
 #endif
-  const Robot robot = load_arm(arguments.urdf, options);
+  const Robot robot = arguments.is_mjcf ? load_mjcf_arm(arguments.urdf, {options.tip, options.hold})
+                                        : load_arm(arguments.urdf, options);
   const std::vector<DisabledCollision> disabled =
       arguments.srdf.empty() ? std::vector<DisabledCollision>{}
                              : load_disabled_collisions(arguments.srdf, robot);
@@ -257,6 +261,6 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   return repel::host::start(argc, argv, "robot_info",
-                            "Shows the content of a URDF file, or why it is refused.", 1, describe,
-                            run);
+                            "Shows the content of a URDF or MJCF file, or why it is refused.", 1,
+                            describe, run);
 }

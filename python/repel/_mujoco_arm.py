@@ -22,6 +22,11 @@ _SIZES: dict[str, Callable[[Any], tuple[Any, ...]]] = {
     "cylinder": lambda size: (size[0], size[1]), "box": lambda size: (size,),
     "ellipsoid": lambda size: (size,)}
 
+#: What makes a tendon act by itself, and the fields of a model that say so.
+_OF_TENDONS = {"a spring": ("stiffness", "stiffnesspoly"), "damping": ("damping", "dampingpoly"),
+               "dry friction": ("frictionloss",), "an armature": ("armature",),
+               "limits": ("limited",)}
+
 
 def name_of(model: Any, kind: str, index: int) -> str:
     """Of a joint, a body and so on; what has no name is told by its index."""
@@ -47,12 +52,15 @@ def _about(axis: Any, angle: float) -> np.ndarray:
 class ModelArm:
     """The joints of a model between the world and a site, and where every body is on their links.
 
-    link: of each body, the index of the link that carries it, -1 if it stands still in the world,
-    or None if it moves by other joints. X_LB: (4, 4) [m] its pose there. base: the body that
-    carries the first joint. joints: their ids, base outward.
+    site: its name, or that of a body whose frame is the tool frame. active: which of the equality
+    constraints are; none: as the model starts. link: of each body, the index of the link that
+    carries it, -1 if it stands still in the world, or None if it moves by other joints. X_LB:
+    (4, 4) [m] its pose there. base: the body that carries the first joint. joints: their ids, base
+    outward. followers: those beside them that a constraint couples with the last one alone.
     """
 
-    def __init__(self, model: Any, site: str, qpos: Any = None, leave_out: Sequence[str] = ()):
+    def __init__(self, model: Any, site: str, qpos: Any = None, leave_out: Sequence[str] = (),
+                 active: Any = None):
         if not isinstance(model, mujoco.MjModel):
             raise TypeError(f"model: expected a mujoco.MjModel, got {type(model).__name__}")
         self.model = model
@@ -60,15 +68,16 @@ class ModelArm:
         if self.qpos.shape != (model.nq,):
             raise ValueError(f"qpos: expected {model.nq} numbers, got shape {self.qpos.shape}")
         self.leave_out = set(leave_out)
-        self.site = self._site_named(site)
+        self.tip, self.X_BT = self._tip_named(site)
         self.link: list[int | None] = [-1]
         self.X_LB = [np.eye(4)]
         self.joints: list[int] = []
+        self.followers: list[int] = []
         self.links: list[Link] = []
         self.base = 0
         self.X_WB = np.eye(4)
         self._path = {0}
-        body = int(model.site_bodyid[self.site])
+        body = self.tip
         while body:
             self._path.add(body)
             body = int(model.body_parentid[body])
@@ -77,18 +86,95 @@ class ModelArm:
         if not self.links:
             raise SetupError(f"site '{site}' stands still in the world; allowed: one that hinge or "
                              "slide joints move")
+        self._require_no_ties(model.eq_active0 if active is None else active)
         self._give_masses()
         unknown = self.leave_out.difference(name for body in range(model.nbody)
                                             for name, _ in self._named_geoms(body))
         if unknown:
             raise SetupError(f"leave_out: no geom is called '{min(unknown)}'")
 
-    def _site_named(self, site: str) -> int:
-        index = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_SITE, site)
-        if index < 0:
-            there = [repr(name_of(self.model, "site", i)) for i in range(self.model.nsite)]
-            raise SetupError(f"site is '{site}'; allowed: {', '.join(there) or 'none is there'}")
-        return index
+    def _tip_named(self, name: str) -> tuple[int, np.ndarray]:
+        """The body of a site, or that body itself, and the pose (4, 4) [m] of the tool in it."""
+        model = self.model
+        site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)
+        if site >= 0:
+            return int(model.site_bodyid[site]), _pose(model.site_pos[site], model.site_quat[site])
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+        if body >= 0:
+            return body, np.eye(4)
+        there = [repr(name_of(model, "site", i)) for i in range(model.nsite)]
+        raise SetupError(f"site is '{name}'; allowed: {', '.join(there + ['the name of a body'])}")
+
+    def _between(self, a: int, b: int) -> set[int]:
+        """The joints that move one body against the other."""
+        joints: set[int] = set()
+        while a != b:
+            b, a = sorted((a, b))  # a parent has the smaller index
+            first = int(self.model.body_jntadr[a])
+            joints.update(range(first, first + int(self.model.body_jntnum[a])))
+            a = int(self.model.body_parentid[a])
+        return joints
+
+    def _of_tendon(self, tendon: int) -> set[int]:
+        """The joints that change its length."""
+        model, wrap = self.model, mujoco.mjtWrap
+        joints: set[int] = set()
+        before = None  # the body that it comes from
+        first = int(model.tendon_adr[tendon])
+        for i in range(first, first + int(model.tendon_num[tendon])):
+            kind, index, body = wrap(model.wrap_type[i]), int(model.wrap_objid[i]), None
+            if kind == wrap.mjWRAP_JOINT:
+                joints.add(index)
+            elif kind == wrap.mjWRAP_SITE:
+                body = int(model.site_bodyid[index])
+            elif kind in (wrap.mjWRAP_SPHERE, wrap.mjWRAP_CYLINDER):
+                body = int(model.geom_bodyid[index])
+            if before is not None and body is not None:
+                joints |= self._between(before, body)
+            before = body  # none behind a pulley, where it begins anew
+        return joints
+
+    def _constrained(self, i: int) -> set[int]:
+        """The joints that an equality constraint acts on."""
+        model, types = self.model, mujoco.mjtEq
+        kind, ends = types(model.eq_type[i]), [int(model.eq_obj1id[i]), int(model.eq_obj2id[i])]
+        if kind == types.mjEQ_JOINT:
+            return {end for end in ends if end >= 0}
+        if kind == types.mjEQ_TENDON:
+            return set[int]().union(*(self._of_tendon(end) for end in ends if end >= 0))
+        if kind not in (types.mjEQ_CONNECT, types.mjEQ_WELD):
+            return set()  # of a flex, which is no body of an arm
+        if model.eq_objtype[i] == mujoco.mjtObj.mjOBJ_SITE:
+            ends = [int(model.site_bodyid[end]) for end in ends]
+        return self._between(*ends)
+
+    def _require_no_ties(self, active: Any) -> None:
+        """Raises SetupError for a constraint or tendon that acts on the joints of the arm.
+
+        A joint that is coupled with the last one alone follows that: it is the other finger where
+        one is the arm.
+        """
+        model, ties = self.model, []
+        for i in map(int, np.flatnonzero(active)):
+            joints = self._constrained(i)
+            in_arm = joints.intersection(self.joints)
+            if (model.eq_type[i] == mujoco.mjtEq.mjEQ_JOINT and len(joints) == 2
+                    and in_arm == {self.joints[-1]}):
+                self.followers += joints - in_arm
+            else:
+                name = name_of(model, "equality", i)
+                ties.append((f"'{name}' is an equality constraint", joints))
+        for i in range(model.ntendon):
+            name = f"'{name_of(model, 'tendon', i)}' is a tendon with "
+            ties += [(name + what, self._of_tendon(i)) for what, fields in _OF_TENDONS.items()
+                     if any(np.any(getattr(model, f"tendon_{field}", {i: 0})[i])
+                            for field in fields)]
+        for what, joints in ties:
+            for joint in self.joints:
+                if joint in joints:
+                    raise SetupError(f"{what}, which acts on joint "
+                                     f"'{name_of(model, 'joint', joint)}' of the arm; allowed: one "
+                                     "of held joints alone")
 
     def _place(self, body: int) -> None:
         """Continues from its parent, which has the smaller index."""
@@ -120,9 +206,6 @@ class ModelArm:
         name = name_of(model, "joint", joint)
         if kind not in ("hinge", "slide"):
             raise SetupError(f"joint '{name}' is of type {kind}; allowed: hinge, slide")
-        if model.jnt_stiffness[joint] != 0.0:
-            raise SetupError(f"joint '{name}' has a spring of stiffness "
-                             f"{model.jnt_stiffness[joint]:g}; allowed: 0")
         return "revolute" if kind == "hinge" else "prismatic"
 
     def _motion(self, joint: int, q: float) -> np.ndarray:
@@ -140,6 +223,10 @@ class ModelArm:
         if not self.links:
             self.base, self.X_WB = int(model.body_parentid[body]), X_LB
             X_LB = np.eye(4)
+        stiffness = model.jnt_stiffness[joint]
+        if stiffness or np.any(getattr(model, "jnt_stiffnesspoly", {joint: 0})[joint]):
+            raise SetupError(f"joint '{name_of(model, 'joint', joint)}' has a spring of stiffness "
+                             f"{stiffness:g}; allowed: 0, or a joint that is held")
         dof, anchor = int(model.jnt_dofadr[joint]), model.jnt_pos[joint]
         limited = bool(model.jnt_limited[joint])
         self.joints.append(joint)
@@ -162,6 +249,13 @@ class ModelArm:
         return [i for i, kind in enumerate(model.actuator_trntype)
                 if int(kind) in on_joints and model.actuator_trnid[i, 0] == joint]
 
+    def on_tendons(self, joint: int) -> list[int]:
+        """The actuators that pull a tendon of the joint."""
+        model = self.model
+        return [i for i, kind in enumerate(model.actuator_trntype)
+                if kind == mujoco.mjtTrn.mjTRN_TENDON
+                and joint in self._of_tendon(int(model.actuator_trnid[i, 0]))]
+
     def _seen(self, joint: int, name: str) -> float:
         """The armature or damping of actuators, seen at the joint; MuJoCo 3 has none there."""
         own = getattr(self.model, f"actuator_{name}", None)
@@ -172,7 +266,7 @@ class ModelArm:
         """[N m] or [N] of the joint and of its actuators together; 0: without a limit."""
         model = self.model
         strengths = [self._strength(actuator) for actuator in self.actuators(joint)]
-        limit = sum(strengths) if strengths else math.inf
+        limit = sum(strengths) if strengths and not self.on_tendons(joint) else math.inf
         if model.jnt_actfrclimited[joint]:
             limit = min(limit, float(np.abs(model.jnt_actfrcrange[joint]).min()))
         return limit if math.isfinite(limit) else 0.0
@@ -259,9 +353,7 @@ class ModelArm:
         parts = [Part(name, self.shape(name, geom), self.pose(geom), link)
                  for body, link in enumerate(self.link) if link is not None and link >= 0
                  for name, geom in self.geoms(body)]
-        body = int(self.model.site_bodyid[self.site])
-        X_LT = self.X_LB[body] @ _pose(self.model.site_pos[self.site],
-                                       self.model.site_quat[self.site])
+        X_LT = self.X_LB[self.tip] @ self.X_BT
         given = {"parts": parts, "start": self.qpos[self.model.jnt_qposadr[self.joints]],
                  "X_WB": self.X_WB, "X_LT": X_LT, "gravity_W": self.gravity()}
         return Arm(self.links, **{**given, **change})
@@ -286,8 +378,12 @@ def arm_of(model: Any, site: str, qpos: Any = None, leave_out: Sequence[str] = (
 
 def arm_of_mjcf(path: str | os.PathLike[str], site: str, **options: Any) -> Arm:
     """See Arm.from_mjcf."""
+    file = os.fspath(path)
     try:
-        model = mujoco.MjModel.from_xml_path(os.fspath(path))
+        model = mujoco.MjModel.from_xml_path(file)
     except ValueError as error:
-        raise SetupError(f"{os.fspath(path)}: {error}", os.fspath(path)) from error
-    return arm_of(model, site, **options)
+        raise SetupError(f"{file}: {error}", file) from error
+    try:
+        return arm_of(model, site, **options)
+    except SetupError as error:
+        raise SetupError(f"{file}: {error}", file) from error

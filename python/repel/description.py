@@ -152,11 +152,12 @@ class Arm:
                     leave_out: Sequence[str] = (), **change: Any) -> Arm:
         """The arm between the world and a site of a mujoco.MjModel; the site is the tool frame.
 
-        Its links have the hinge and slide joints there, the masses of all that they carry, and the
-        geoms of these as parts. Other joints on it are held where qpos (nq,) has them; none: at
-        the reference of the model. The arm starts there, too. Geoms are left out that no bit of
-        contype or conaffinity lets touch, or that leave_out names. change: other arguments of Arm.
-        Raises SetupError naming the joint or geom that an arm cannot have.
+        site: its name, or that of a body. The links have the hinge and slide joints there, the
+        masses of all that they carry, and the geoms of these as parts. Other joints on the arm are
+        held where qpos (nq,) has them; none: at the reference of the model. The arm starts there,
+        too. Geoms are left out that no bit of contype or conaffinity lets touch, or that leave_out
+        names. change: other arguments of Arm. Raises SetupError naming the joint or geom that an
+        arm cannot have, or the equality constraint or tendon that acts on its joints.
         """
         from . import _mujoco_arm
         return _mujoco_arm.arm_of(model, site, qpos, leave_out, **change)

@@ -90,10 +90,11 @@ def attach(model: Any, data: Any, *, site: str, rate_hz: float | None = None,
            **arm: Any) -> Simulation:
     """A cell with the arm that moves a site of the model, and an obstacle for each geom around it.
 
-    data: of the model; the arm starts where data.qpos has it. rate_hz [Hz] of the tick; none: one
-    for each timestep, else a whole number of timesteps must make a period. law: of all obstacles.
-    leave_out: names of geoms that are not to count, on the arm and around it. arm: further
-    arguments of Arm; gain_check, start_inside, limits: of Cell.
+    site: its name, or that of a body whose frame is the tool frame. data: of the model; the arm
+    starts where data.qpos has it, and joints on it, as those of fingers, count as held there.
+    rate_hz [Hz] of the tick; none: one for each timestep, else a whole number of timesteps must
+    make a period. law: of all obstacles. leave_out: names of geoms that are not to count, on the
+    arm and around it. arm: further arguments of Arm; gain_check, start_inside, limits: of Cell.
 
     Geoms become obstacles if they stand still in the world and can touch anything. A plane becomes
     a large box. Not among them are the geoms of the body that carries the first joint, which the
@@ -102,7 +103,7 @@ def attach(model: Any, data: Any, *, site: str, rate_hz: float | None = None,
     """
     if not isinstance(data, mujoco.MjData):
         raise TypeError(f"data: expected a mujoco.MjData, got {type(data).__name__}")
-    chain = ModelArm(model, site, data.qpos, leave_out)
+    chain = ModelArm(model, site, data.qpos, leave_out, data.eq_active)
     if data.qvel.shape != (model.nv,):
         raise ValueError(f"data: expected that of the model, with {model.nv} degrees of freedom, "
                          f"got {data.qvel.size}")
@@ -148,8 +149,8 @@ def _require_no_servos(chain: ModelArm) -> None:
     model = chain.model
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
         return
-    for joint in chain.joints:
-        for actuator in chain.actuators(joint):
+    for joint in chain.joints + chain.followers:
+        for actuator in chain.actuators(joint) + chain.on_tendons(joint):
             pulls = model.actuator_biastype[actuator] != mujoco.mjtBias.mjBIAS_NONE
             if pulls and not model.opt.disableactuator >> int(model.actuator_group[actuator]) & 1:
                 raise SetupError(

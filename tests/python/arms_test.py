@@ -170,8 +170,9 @@ def one(joint="", geom="", claw="type='slide'"):
 
 
 @pytest.mark.parametrize("model, site, words", [
-    (one(), "tol", "site is 'tol'; allowed: 'still', 'tool'"),
+    (one(), "tol", "site is 'tol'; allowed: 'still', 'tool', the name of a body"),
     ("<site name='still'/>", "still", "site 'still' stands still in the world; allowed"),
+    (one(), "world", "site 'world' stands still in the world; allowed"),
     (one("type='ball'"), "tool", "joint 'hinge' is of type ball; allowed: hinge, slide"),
     (one(claw="type='ball'"), "tool", "joint 'claw' is of type ball; allowed: hinge, slide"),
     (one("type='free'"), "tool", "joint 'hinge' is of type free; allowed"),
@@ -183,6 +184,95 @@ def one(joint="", geom="", claw="type='slide'"):
 def test_what_no_arm_can_have_is_named(model, site, words):
     with pytest.raises(repel.SetupError, match=words):
         of_mjcf(model, site)
+
+
+COUPLE = "<equality><joint name='couple' joint1='claw' joint2='thumb'/></equality>"
+
+#: Two joints, and two fingers on the last body.
+HAND = """<body name="upper"><joint name="a" axis="0 1 0"/><geom name="ball" size="0.1"/>
+  <body name="lower" pos="0 0 0.3"><joint name="b"/><geom size="0.1"/><site name="wrist"/>
+    <body name="claw"><joint name="claw" type="slide" axis="0 1 0"/><geom name="claw" size="0.1"/>
+      <site name="nail"/></body>
+    <body name="thumb"><joint name="thumb" type="slide" axis="0 -1 0" stiffness="5"/>
+      <geom name="thumb" size="0.1"/></body></body></body>"""
+
+
+def hand(rest, site="wrist", **change):
+    return of_mjcf(HAND, site, rest + "<actuator><motor joint='a' ctrlrange='-9 9'/><motor "
+                   "joint='b' ctrlrange='-9 9'/></actuator>", **change)
+
+
+def tendon(joints, more=""):
+    pulled = "".join(f"<joint joint='{joint}' coef='0.5'/>" for joint in joints.split())
+    return (f"<tendon><fixed name='t' {more}>{pulled}</fixed></tendon>"
+            "<actuator><motor tendon='t' ctrlrange='-3 3'/></actuator>")
+
+
+@pytest.mark.parametrize("rest", [
+    "", COUPLE, COUPLE + tendon("claw thumb"),
+    tendon("claw thumb", "stiffness='3' damping='1' frictionloss='1' range='0 1'"),
+    "<equality><joint joint1='a' joint2='b' active='false'/></equality>",
+    "<equality><connect body1='claw' body2='thumb' anchor='0 0 0'/>"
+    "<weld body1='claw' body2='lower'/><weld site1='nail' site2='wrist'/></equality>",
+])
+def test_what_acts_on_held_fingers_alone_does_not_matter(rest):
+    arm = hand(rest, qpos=[0, 0, 0.1, 0.2])
+    assert [link.name for link in arm.links] == ["a", "b"]
+    assert [link.effort_limit for link in arm.links] == [9.0, 9.0]
+    parts = {part.name: part for part in arm.parts}
+    for finger, y in ("claw", 0.1), ("thumb", -0.2):
+        assert parts[finger].link == 1
+        assert list(parts[finger].X_FP[:3, 3]) == pytest.approx([0, y, 0])
+
+
+@pytest.mark.parametrize("rest, words", [
+    ("<equality><joint name='e' joint1='a' joint2='b'/></equality>",
+     "'e' is an equality constraint, which acts on joint 'a' of the arm; allowed: one of held"),
+    ("<equality><joint name='e' joint1='b'/></equality>", "acts on joint 'b' of the arm"),
+    ("<equality><joint joint1='a' joint2='claw'/></equality>", "acts on joint 'a' of the arm"),
+    ("<equality><weld name='w' body1='claw'/></equality>", "'w' is an equality constraint"),
+    ("<equality><connect site1='nail' site2='still'/></equality>", "acts on joint 'a'"),
+    (tendon("b claw", "stiffness='1'"), "'t' is a tendon with a spring, which acts on joint 'b'"),
+    (tendon("b", "damping='1'"), "'t' is a tendon with damping"),
+    (tendon("b", "frictionloss='1'"), "'t' is a tendon with dry friction"),
+    (tendon("b", "range='0 1'"), "'t' is a tendon with limits"),
+    ("<equality><tendon name='e' tendon1='t'/></equality>" + tendon("b"), "'e' is an equality"),
+])
+def test_what_acts_on_the_arm_is_named(rest, words, tmp_path):
+    with pytest.raises(repel.SetupError, match=words):
+        hand("<worldbody><site name='still'/></worldbody>" + rest)
+    (tmp_path / "arm.xml").write_text(f"<mujoco>{rest}<worldbody><site name='still'/>{HAND}"
+                                      "</worldbody></mujoco>")
+    with pytest.raises(repel.SetupError, match=f"arm.xml: .*{words}") as told:
+        repel.Arm.from_mjcf(tmp_path / "arm.xml", "wrist")
+    assert told.value.file == str(tmp_path / "arm.xml")
+
+
+def test_a_motor_on_a_tendon_makes_the_effort_of_its_joints_unknown():
+    assert [link.effort_limit for link in hand(tendon("b claw")).links] == [9.0, 0.0]
+    across = ("<worldbody><site name='still' pos='0 1 0'/></worldbody><tendon><spatial name='s'>"
+              "<site site='still'/><site site='wrist'/></spatial></tendon>"
+              "<actuator><motor tendon='s'/></actuator>")
+    assert [link.effort_limit for link in hand(across).links] == [0.0, 0.0]
+    within = across.replace("still", "nail").replace("<worldbody><site name='nail' pos='0 1 0'/>",
+                                                     "<worldbody>")
+    assert [link.effort_limit for link in hand(within).links] == [9.0, 9.0]
+    around = within.replace("<site site='wrist'/>", "<geom geom='ball'/><site site='wrist'/>")
+    assert [link.effort_limit for link in hand(around).links] == [9.0, 0.0]
+
+
+def test_one_finger_is_an_arm_and_the_other_follows():
+    arm = hand(COUPLE + tendon("claw thumb"), "nail")
+    assert [link.name for link in arm.links] == ["a", "b", "claw"]
+    assert {part.name: part.link for part in arm.parts}["thumb"] == 1
+    with pytest.raises(repel.SetupError, match="joint 'thumb' has a spring of stiffness 5"):
+        hand("", "thumb")
+
+
+def test_the_tool_frame_may_be_that_of_a_body():
+    arm = hand("", "claw")
+    assert [link.name for link in arm.links] == ["a", "b", "claw"]
+    np.testing.assert_array_equal(kinematics_at(arm, [0, 0, 0.1]).X_WT()[:3, 3], [0, 0.1, 0.3])
 
 
 def test_a_geom_without_a_shape_is_named(monkeypatch):

@@ -149,6 +149,70 @@ def test_another_timestep_is_named():
         sim.step()
 
 
+FINGERS = """<body name="left" pos="0 0 0.12"><joint name="left" type="slide" axis="0 1 0"
+    range="0 0.04"/><geom name="left" type="box" size="0.005 0.005 0.02"/></body>
+  <body name="right" pos="0 0 0.12"><joint name="right" type="slide" axis="0 -1 0" range="0 0.04"/>
+    <geom name="right" type="box" size="0.005 0.005 0.02"/></body>"""
+GRIP = """<equality><joint name="couple" joint1="left" joint2="right"/></equality>
+  <tendon><fixed name="grip"><joint joint="left" coef="0.5"/><joint joint="right" coef="0.5"/></fixed>
+  </tendon><actuator><position name="grip" tendon="grip" kp="100"/></actuator>"""
+#: The arm with a gripper of two fingers, 0.01 m from shut.
+GRIPPER = with_geom(FINGERS, after='<site name="tool" pos="0 0 0.12"/>').replace(
+    "0.9 0\"", "0.9 0 0.01 0.01\"").replace("<keyframe>", GRIP + "<keyframe>")
+
+
+def test_an_arm_with_a_gripper_is_driven_against_a_wall_and_does_not_touch_it():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sim = attached(GRIPPER)
+    assert sim.cell.joints() == [f"joint {i}" for i in range(1, 8)] and sim.left_out == ["foot"]
+    parts = {part.name: part for part in sim.arm.parts}
+    assert parts["left"].link == parts["right"].link == 6
+    np.testing.assert_allclose(parts["left"].X_FP[:3, 3], [0, 0.01, 0.12], atol=1e-12)
+    np.testing.assert_allclose(parts["right"].X_FP[:3, 3], [0, -0.01, 0.12], atol=1e-12)
+    sim.data.ctrl[:] = 0.01
+    ticks = []
+    for _ in range(2000):
+        ticks.append(sim.step(FORTH))
+        touched = {sim.model.geom(i).name for i in sim.data.contact.geom.ravel()}
+        assert touched <= {"left", "right", "part 7"}
+    assert {tick.stop for tick in ticks} == {"running"} and ticks[-1].peak_force > 10.0
+
+
+def test_what_acts_on_the_arm_in_the_simulation_is_refused_by_name():
+    couple = "<equality><joint name='e' joint1='joint 2' joint2='joint 4' active='{}'/></equality>"
+    text = ARM.replace("<keyframe>", couple.format("false") + "<keyframe>")
+    model, data = made(text)
+    assert repel.mujoco.attach(model, data, site="tool")
+    data.eq_active[0] = 1
+    with pytest.raises(repel.SetupError, match="'e' is an equality constraint, which acts on joint "
+                                               "'joint 2' of the arm"):
+        repel.mujoco.attach(model, data, site="tool")
+    servo = GRIPPER.replace("joint=\"left\" coef", "joint=\"joint 7\" coef")
+    with pytest.raises(repel.SetupError, match="actuator 'grip' pulls on joint 'joint 7' by "
+                                               "itself.*allowed: motors"):
+        attached(servo)
+
+
+def test_one_of_two_fingers_is_driven():
+    rest = GRIP.replace("<position", "<motor").replace(" kp=\"100\"", "")
+    finger = FINGERS.replace("<joint ", "<joint damping='5' ").replace("0.02\"/>",
+                                                                     "0.02\" density='1e5'/>")
+    text = (f"<mujoco><option timestep='0.001' gravity='0 0 0'/><worldbody>"
+            f"<body name='palm'>{finger}</body></worldbody>{{}}</mujoco>")
+    model = mujoco.MjModel.from_xml_string(text.format(rest))
+    with pytest.warns(UserWarning, match="move without the arm, and are no obstacles: right"):
+        sim = repel.mujoco.attach(model, mujoco.MjData(model), site="left")
+    assert sim.cell.joints() == ["left"]
+    for _ in range(300):
+        tick = sim.step(repel.Command(linear=[0, 0.02, 0]))
+    assert tick.stop == "running"
+    assert sim.data.qpos[0] > 0.002 and sim.data.qpos[1] == pytest.approx(sim.data.qpos[0], abs=1e-4)
+    model = mujoco.MjModel.from_xml_string(text.format(GRIP))
+    with pytest.raises(repel.SetupError, match="actuator 'grip' pulls on joint 'left' by itself"):
+        repel.mujoco.attach(model, mujoco.MjData(model), site="left")
+
+
 SERVO = "<actuator><position name='servo' joint='joint 3' kp='10' group='2'/></actuator>"
 
 
@@ -166,7 +230,7 @@ def test_servos_that_would_pull_against_the_cell_are_refused():
 
 def test_what_cannot_be_attached_is_named():
     model, data = made()
-    with pytest.raises(repel.SetupError, match="site is 'tol'; allowed: 'tool'"):
+    with pytest.raises(repel.SetupError, match="site is 'tol'; allowed: 'tool', the name of a body"):
         repel.mujoco.attach(model, data, site="tol")
     with pytest.raises(TypeError, match="data: expected a mujoco.MjData, got MjModel"):
         repel.mujoco.attach(model, model, site="tool")

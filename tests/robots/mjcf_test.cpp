@@ -7,6 +7,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <repel/base/setup_error.hpp>
 #include <repel/robots/describe_arm.hpp>
@@ -192,6 +193,7 @@ TEST(Mjcf, PartsAndLimitsAreThoseOfTheFile) {
   EXPECT_EQ(robot.arm.links[1].effort_limit, 30.0);
   EXPECT_EQ(robot.arm.links[2].effort_limit, 0.0) << "unknown";
   EXPECT_EQ(robot.held[0].position, 0.01);
+  EXPECT_EQ(robot.held[0].type, "prismatic");
   std::string names;
   for (const RobotPart& part : robot.parts) {
     names += part.name + " " + to_text(part.kind) + " " + std::to_string(part.link) + "; ";
@@ -230,14 +232,13 @@ TEST(Mjcf, WhatIsNoSerialArmIsRefusedByName) {
       {mjcf_of(link("<freejoint name=\"j\"/>")),
        "joint 'j' is a free joint; allowed: hinge, slide"},
       {mjcf_of(link("<joint name=\"j\" type=\"ball\"/>")), "joint 'j' is a ball joint"},
-      {mjcf_of(link("<joint name=\"j\" stiffness=\"3\"/>")), "joint 'j' has a spring, stiffness 3"},
+      {mjcf_of(link("<joint name=\"j\" stiffness=\"3\"/>")),
+       "joint 'j' has a spring, stiffness 3; allowed: 0, or a joint that is held"},
       {mjcf_of(link("")), "no joint moves"},
       {mjcf_of(link(hinge), "<equality><joint name=\"e\" joint1=\"j\"/></equality>"),
-       "'e' is an equality constraint"},
-      {mjcf_of(link(hinge),
-               "<tendon><fixed name=\"t\"><joint joint=\"j\" coef=\"1\"/></fixed>"
-               "</tendon>"),
-       "'t' is a tendon"},
+       "'e' is an equality constraint, which acts on joint 'j' of the arm; allowed: one of held"},
+      {mjcf_of(link(hinge), "<equality><weld name=\"w\" body1=\"b\"/></equality>"),
+       "'w' is an equality constraint, which acts on joint 'j'"},
       {mjcf_of(link(hinge), "<option density=\"1.2\"/>"), "density"},
       {mjcf_of(link(hinge) + "<body name=\"m\" mocap=\"true\"/>"), "body 'm' is a mocap body"},
       {mjcf_of("<body name=\"base\"><geom name=\"p\" type=\"plane\" size=\"1 1 1\"/>" +
@@ -265,6 +266,163 @@ TEST(Mjcf, WhatIsNoSerialArmIsRefusedByName) {
   } catch (const SetupError& error) {
     EXPECT_TRUE(says(error.what(), "this is MJCF")) << error.what();
   }
+}
+
+/// Two fingers on a palm, coupled as `rest` says.
+const std::string fingers = R"(
+<body name="palm" pos="0 0 0.1"><geom name="palm" size="0.03"/>
+  <body name="left" pos="0 0 0.05">
+    <joint name="left" type="slide" axis="0 1 0" range="0 0.04" limited="true" stiffness="2"/>
+    <geom name="left" type="box" size="0.01 0.01 0.03"/>
+  </body>
+  <body name="right" pos="0 0 0.05">
+    <joint name="right" type="slide" axis="0 -1 0" range="0 0.04" limited="true"/>
+    <geom name="right" type="box" size="0.01 0.01 0.03"/>
+  </body>
+</body>
+)";
+const std::string coupled =
+    "<equality><joint name=\"couple\" joint1=\"left\" joint2=\"right\"/></equality>\n";
+
+/// A tendon of those joints, with further attributes, and a motor of 3 N on it.
+std::string tendon_of(const std::vector<std::string>& joints, const std::string& more = "") {
+  std::string text = "<tendon><fixed name=\"t\" " + more + ">";
+  for (const std::string& joint : joints) text += "<joint joint=\"" + joint + "\" coef=\"0.5\"/>";
+  return text +
+         "</fixed></tendon>\n<actuator><motor tendon=\"t\" ctrlrange=\"-3 3\" "
+         "ctrllimited=\"true\"/></actuator>\n";
+}
+
+/// Seven joints in one line, 1 to 7, each with a motor of 9 N m, and `inside` on the last body.
+std::string seven_joints(const std::string& inside, const std::string& rest = "") {
+  std::string bodies;
+  std::string motors;
+  for (int i = 1; i <= 7; ++i) {
+    const std::string number = std::to_string(i);
+    bodies += "<body name=\"link " + number + "\" pos=\"0 0 0.2\"><joint name=\"" + number +
+              "\" axis=\"" + (i % 2 == 0 ? "0 1 0" : "0 0 1") +
+              "\"/><geom type=\"capsule\" size=\"0.03 0.05\"/>";
+    motors +=
+        "<motor joint=\"" + number + "\" gear=\"9\" ctrlrange=\"-1 1\" ctrllimited=\"true\"/>";
+  }
+  bodies += inside;
+  for (int i = 1; i <= 7; ++i) bodies += "</body>";
+  return mjcf_of(bodies + "\n", "<actuator>" + motors + "</actuator>\n" + rest);
+}
+
+TEST(Mjcf, FingersThatAreTiedToOneAnotherAreHeldOnTheBodyThatCarriesThem) {
+  const Folder folder;
+  for (const std::string& ties :
+       {coupled, coupled + tendon_of({"left", "right"}),
+        tendon_of({"left", "right"},
+                  "stiffness=\"3\" damping=\"1\" frictionloss=\"1\" "
+                  "limited=\"true\" range=\"0 0.1\""),
+        std::string("<equality><connect body1=\"left\" body2=\"right\" anchor=\"0 0 0\"/>"
+                    "</equality>")}) {
+    const Robot robot = load_mjcf_arm(folder.with("arm.xml", seven_joints(fingers, ties)));
+    ASSERT_EQ(robot.arm.links.size(), 7U);
+    for (const ArmLink& link : robot.arm.links) EXPECT_EQ(link.effort_limit, 9.0);
+    EXPECT_EQ(robot.tool, "palm");
+    EXPECT_EQ(robot.tool_reason, "the body that carries the fingers");
+    ASSERT_EQ(robot.held.size(), 2U);
+    EXPECT_EQ(robot.parts.back().name, "right");
+    EXPECT_EQ(robot.parts.back().link, 6);
+    EXPECT_NEAR(
+        robot.arm.links[6].mass,
+        robot.arm.links[5].mass + robot.links[8].mass + robot.links[9].mass + robot.links[10].mass,
+        1e-9);
+  }
+}
+
+TEST(Mjcf, AFingerThatIsCoupledWithAHeldOneIsHeldToo) {
+  const Folder folder;
+  const std::string path = folder.with("arm.xml", seven_joints(fingers, coupled));
+  const Robot robot = load_mjcf_arm(path, {.hold = {{"right", 0.02}}});
+  EXPECT_EQ(robot.arm.links.size(), 7U);
+  ASSERT_EQ(robot.held.size(), 2U);
+  EXPECT_EQ(robot.held[0].reason, "coupled with a held joint");
+  EXPECT_EQ(robot.held[1].position, 0.02);
+}
+
+TEST(Mjcf, BranchesThatMayBeArmsAreRefusedByName) {
+  const Folder folder;
+  const auto of = [&](const std::string& text) { return complaint(folder.with("m.xml", text)); };
+  const std::string words =
+      "bodies 'left' and 'right' move on branches of their own; allowed: one "
+      "line of joints, which may end in fingers that a constraint or tendon "
+      "ties to one another, or a chosen tip";
+  EXPECT_TRUE(says(of(seven_joints(fingers)), words)) << "not tied";
+  EXPECT_TRUE(says(of(mjcf_of(fingers, coupled)), words)) << "on no arm";
+  const std::string turret = "<body name=\"turret\"><joint name=\"yaw\"/><geom size=\"0.1\"/>";
+  EXPECT_TRUE(says(of(mjcf_of(turret + fingers + "</body>", coupled)), words)) << "as long as it";
+}
+
+TEST(Mjcf, OneOfTwoFingersIsAnArmOfOneJoint) {
+  const Folder folder;
+  std::string loose = fingers;
+  loose.erase(loose.find(" stiffness"), 14);
+  for (const std::string& ties : {coupled, tendon_of({"left", "right"})}) {
+    const std::string path = folder.with("hand.xml", mjcf_of(loose, ties));
+    const Robot robot = load_mjcf_arm(path, {.tip = "left"});
+    ASSERT_EQ(robot.arm.links.size(), 1U);
+    EXPECT_EQ(robot.arm.links[0].joint_name, "left");
+    EXPECT_EQ(robot.arm.links[0].effort_limit, 0.0) << "unknown";
+    EXPECT_EQ(robot.held[0].name, "right");
+  }
+  EXPECT_TRUE(says(complaint(folder.with("hand.xml", mjcf_of(fingers, coupled)), {.tip = "left"}),
+                   "joint 'left' has a spring, stiffness 2"));
+}
+
+TEST(Mjcf, WhatActsOnTheArmIsRefusedByName) {
+  const Folder folder;
+  const auto of = [&](const std::string& rest) {
+    return complaint(folder.with("m.xml", seven_joints(fingers, coupled + rest)));
+  };
+  const struct {
+    std::string rest, words;
+  } cases[] = {
+      {"<equality><joint name=\"e\" joint1=\"2\" joint2=\"3\"/></equality>",
+       "'e' is an equality constraint, which acts on joint '2' of the arm"},
+      {"<equality><joint name=\"e\" joint1=\"3\" joint2=\"left\"/></equality>",
+       "'e' is an equality constraint, which acts on joint '3' of the arm"},
+      {"<equality><joint name=\"e\" joint1=\"7\"/></equality>", "acts on joint '7'"},
+      {"<equality><connect name=\"e\" body1=\"left\" body2=\"link 3\" anchor=\"0 0 "
+       "0\"/></equality>",
+       "'e' is an equality constraint, which acts on joint '4' of the arm"},
+      {tendon_of({"left", "3"}, "stiffness=\"1\""),
+       "'t' is a tendon with a spring, which acts on joint '3' of the arm"},
+      {tendon_of({"3"}, "damping=\"1\""), "'t' is a tendon with damping"},
+      {tendon_of({"3"}, "frictionloss=\"1\""), "'t' is a tendon with dry friction"},
+      {tendon_of({"3"}, "limited=\"true\" range=\"0 1\""), "'t' is a tendon with limits"},
+      {"<tendon><fixed name=\"t\"><joint joint=\"3\" coef=\"1\"/></fixed></tendon>"
+       "<equality><tendon name=\"e\" tendon1=\"t\"/></equality>",
+       "'e' is an equality constraint, which acts on joint '3' of the arm"},
+  };
+  for (const auto& each : cases) {
+    const std::string text = of(each.rest);
+    EXPECT_TRUE(says(text, each.words)) << each.words << "\n" << text;
+    EXPECT_TRUE(says(text, "m.xml")) << text;
+  }
+  EXPECT_EQ(of("<equality><joint joint1=\"2\" joint2=\"3\" active=\"false\"/></equality>"),
+            "accepted");
+  EXPECT_EQ(of("<equality><weld body1=\"left\" body2=\"link 7\"/></equality>"), "accepted");
+}
+
+TEST(Mjcf, AMotorOnATendonMakesTheEffortOfItsJointsUnknown) {
+  const Folder folder;
+  std::string text = seven_joints(fingers, coupled + tendon_of({"3"}) +
+                                               "<tendon><spatial name=\"s\"><site site=\"from\"/>"
+                                               "<site site=\"to\"/></spatial></tendon><actuator>"
+                                               "<motor tendon=\"s\"/></actuator>");
+  const auto after = [&](const std::string& words, const std::string& more) {
+    text.insert(text.find(words) + words.size(), more);
+  };
+  after("<joint name=\"5\" axis=\"0 0 1\"/>", "<site name=\"from\"/>");
+  after("<joint name=\"7\" axis=\"0 0 1\"/>", "<site name=\"to\" pos=\"0.1 0 0\"/>");
+  const Robot robot = load_mjcf_arm(folder.with("arm.xml", text));
+  std::vector<double> limits;
+  for (const ArmLink& link : robot.arm.links) limits.push_back(link.effort_limit);
+  EXPECT_EQ(limits, (std::vector<double>{9, 9, 0, 9, 9, 0, 0}));
 }
 #endif
 

@@ -14,7 +14,8 @@ namespace repel {
 /// Choices not in the file.
 struct MjcfOptions {
   /// Body or site whose frame is the tool frame; the joints between the world and it are those of
-  /// the arm. Empty: all joints must be in one line, and the last body that moves is the tool.
+  /// the arm. Empty: all joints must be in one line, and the last body that moves is the tool; or
+  /// the line ends in fingers that are tied to one another, and the body that carries them is it.
   std::string tip{};
   /// Joints that are not to move. Those beside the arm are held without being named here.
   std::vector<Hold> hold{};
@@ -23,7 +24,8 @@ struct MjcfOptions {
 /// Reads the MJCF file at `path` by MuJoCo, in a child process. Joints beside the arm are held;
 /// what fixed bodies carry is merged into their parents. A body with several joints becomes as many
 /// links, of which the last has its mass. Collision geoms become parts, a mesh its convex hull;
-/// geoms of the world itself are left out.
+/// geoms of the world itself are left out. Equality constraints, tendons and springs count where
+/// they act on a joint of the arm.
 /// @throws SetupError naming file, line where MuJoCo gives it, and element, if MuJoCo refuses the
 ///   file, it is no serial arm of hinges and slides, or something in it would be lost; always if
 ///   built without MuJoCo

@@ -41,6 +41,21 @@ TEST(RobotInfo, OfThePumaSaysWhatTheFileHolds) {
   EXPECT_EQ(tip.at("rotation").size(), 9U);
 }
 
+TEST(RobotInfo, OfAnMjcfFileSaysWhereItsFingersAreHeld) {
+  const Folder folder;
+  const std::string hand = folder.with("hand.xml", R"(<mujoco model="hand"><worldbody>
+    <body name="arm"><joint name="turn"/><geom size="0.1"/><body name="wrist"><joint name="bend"/>
+    <geom size="0.1"/><body name="a"><joint name="open" type="slide"/><geom size="0.1"/></body>
+    <body name="b"><joint name="follow" type="slide"/><geom size="0.1"/></body></body></body>
+    </worldbody><equality><joint joint1="open" joint2="follow"/></equality></mujoco>)");
+  const Ending ending = robot_info("--mjcf " + quoted(hand) + " --hold open=20mm");
+  if (ending.says("built without MuJoCo")) GTEST_SKIP() << "built without MuJoCo";
+  ASSERT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("hand: 2 degrees of freedom, 5 links, 4 collision parts")) << ending;
+  EXPECT_TRUE(ending.says("20 mm   as chosen")) << ending;
+  EXPECT_TRUE(ending.says("tool wrist")) << ending;
+}
+
 TEST(RobotInfo, AFileThatCannotBeTakenWholeEndsWithOneAndTheReason) {
   const Folder folder;
   const std::string urdf = folder.with(
