@@ -29,20 +29,6 @@ Vec3 direction_of(const Map& map) {
 /// In the order of PartStep::What.
 constexpr std::array<std::string_view, 4> step_words{"spawn", "grip", "release", "remove"};
 
-/// Those of what a phase changes in the modules `guide` and `relief`.
-constexpr std::array<std::string_view, 4> guiding_keys{"guides", "guide_strength", "compliant",
-                                                       "compliant_frame"};
-
-/// Keys of a phase of any device.
-std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
-  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent",
-                                     "over", "blind",  "scale", "second"};
-  keys.insert(keys.end(), step_words.begin(), step_words.end());
-  keys.insert(keys.end(), guiding_keys.begin(), guiding_keys.end());
-  keys.insert(keys.end(), more);
-  return keys;
-}
-
 /// What a second hand does in a phase: with six axes, or with a lever.
 void read_second(const Map& map, network::Phase& phase) {
   map.read("linear", phase.second.linear);
@@ -64,11 +50,11 @@ network::Phase phase_of(const Map& map) {
   (void)map.at("device");
   map.read("device", phase.master);
   if (phase.master != network::Master::torque_arm) {
-    map.allow(phase_keys({"linear", "angular"}));
+    map.refuse({"direction", "lever", "pitch", "axis"});
     map.read("linear", phase.rates.linear);
     map.read("angular", phase.rates.angular);
   } else {
-    map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
+    map.refuse({"linear", "angular"});
     phase.direction = direction_of(map);
     phase.lever_rate = map.number("lever");
     if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
@@ -111,7 +97,8 @@ void read_guides(const Value& names, const Network& network, network::Phase& out
   }
 }
 
-/// Reads guiding_keys into a phase. @param network of the arm of the script
+/// Reads what a phase changes in the modules `guide` and `relief`. @param network of the arm of the
+/// script
 void read_guiding(const Map& phase, const Network& network, network::Phase& out) {
   if (const Value* names = phase.find("guides")) read_guides(*names, network, out);
   phase.read("guide_strength", out.guide_strength);

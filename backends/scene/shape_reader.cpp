@@ -100,15 +100,13 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const Value& value, const Map& map,
-                           std::span<const std::string_view> keys, const ShapeFile& shapes) {
-  std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
-  common.insert(common.end(), keys.begin(), keys.end());
+std::vector<Part> parts_of(const Value& value, const Map& map, const ShapeFile& shapes) {
   const std::string name = map.at("name").text();
   const std::string kind(map.word("shape"));
-  const auto sizes = size_keys(kind);
-  common.insert(common.end(), sizes.begin(), sizes.end());
-  map.allow(common);
+  std::vector<std::string_view> of_others{"size", "radius", "length",   "points",
+                                          "file", "parts",  "packages", "covers"};
+  for (const std::string_view own : size_keys(kind)) std::erase(of_others, own);
+  map.refuse(of_others);
   if (kind == "mesh") return parts_of_mesh(map, shapes);
   try {
     return {{name, shape_of(map, kind, shapes), kind, pose_of(map), {}}};
@@ -123,7 +121,7 @@ std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry, grammar::tool_part());
-    for (Part& part : parts_of(entry, map, {}, shapes)) parts.push_back(std::move(part));
+    for (Part& part : parts_of(entry, map, shapes)) parts.push_back(std::move(part));
     require_new(names, map);
   }
   if (parts.empty()) value.fail("'tool' has no part; allowed: 1 or more");

@@ -93,10 +93,9 @@ class Map {
   [[nodiscard]] Map with(const Keys& keys) const;
 
   /// @throws SetupError for a key that is not in `keys`, suggesting the nearest
-  void allow(std::span<const std::string_view> keys) const;
-  void allow(std::initializer_list<std::string_view> keys) const {
-    allow(std::span<const std::string_view>(keys.begin(), keys.size()));
-  }
+  void allow(const std::vector<std::string_view>& keys) const;
+  /// Of a map with keys: allows all but these. @throws SetupError likewise
+  void refuse(const std::vector<std::string_view>& keys) const;
 
   /// The value of `key`.
   ///
