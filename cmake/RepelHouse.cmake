@@ -27,6 +27,16 @@ if(REPEL_SANITIZE)
   target_compile_definitions(repel_house INTERFACE REPEL_SANITIZED)  # compilers say it differently
 endif()
 
+# repel_part(PART SOURCES...): the library of a part of the folder; the headers in repel/PART are
+# public.
+function(repel_part part)
+  add_library(repel_${part} ${ARGN})
+  add_library(repel::${part} ALIAS repel_${part})
+  file(GLOB headers CONFIGURE_DEPENDS repel/${part}/*.hpp)
+  target_sources(repel_${part} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}
+                                                       FILES ${headers})
+endfunction()
+
 # repel_outside_the_tick(TARGET...): pages, reports and devices wait for people and files. More
 # than -O1 takes half as long again to compile.
 function(repel_outside_the_tick)
