@@ -203,12 +203,7 @@ void read_simulated(const Map& map, CameraChoice& camera) {
 /// The same of recorded images.
 void read_recorded(const Map& map, CameraChoice& camera) {
   const Value& value = map.at("recording");
-  try {
-    camera.recording = recording_of(value.folder(), camera);
-  } catch (const SetupError& error) {
-    if (!error.file().empty()) throw;
-    value.fail(error.what());
-  }
+  camera.recording = value.located([&] { return recording_of(value.folder(), camera); });
   map.read("repeat", camera.recording->repeats);
 }
 

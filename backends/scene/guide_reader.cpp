@@ -59,11 +59,7 @@ FixtureOptions fixture_of(const Value& value) {
   read_shape(map, fixture);
   map.read_fields(fixture);
   map.read("on", fixture.is_on);
-  try {
-    (void)network::checked_fixture(fixture);
-  } catch (const SetupError& error) {
-    value.fail(error.what());
-  }
+  (void)value.located([&] { return network::checked_fixture(fixture); });
   return fixture;
 }
 

@@ -3,7 +3,6 @@
 
 #include <set>
 
-#include <repel/base/setup_error.hpp>
 
 #include "grammar.hpp"
 #include "pose_reader.hpp"
@@ -33,11 +32,7 @@ ForceLaw law_of(const Value& value) {
   map.read("depth", law.depth);
   map.read("tilt", law.tilt);
   map.read("plateau", law.plateau);
-  try {
-    return checked(law);
-  } catch (const SetupError& error) {
-    value.fail(error.what());
-  }
+  return value.located([&] { return checked(law); });
 }
 
 std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {

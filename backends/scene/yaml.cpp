@@ -8,7 +8,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <repel/base/setup_error.hpp>
 #include <repel/network/elements/robot_end.hpp>
 
 namespace repel::scene {
