@@ -84,16 +84,22 @@ std::int32_t bits_of(const std::array<bool, 6>& directions) {
   return bits;
 }
 
+/// Where the entry of that name is in the list. @param allowed for the error that there is none
+template <class Entry>
+std::size_t index_of(const Value& name, const std::vector<Entry>& list, const char* allowed) {
+  const std::string wanted = name.text();
+  const auto found = std::find_if(list.begin(), list.end(),
+                                  [&](const Entry& each) { return each.name == wanted; });
+  if (found == list.end()) name.fail_with_value(allowed);
+  return static_cast<std::size_t>(found - list.begin());
+}
+
 void read_guides(const Value& names, const Network& network, network::Phase& out) {
   const auto* guide = options_of<network::GuideOptions>(network, "guide");
   if (guide == nullptr) names.fail("'guides' without a module 'guide' in the network");
   out.guides = 0;
   for (const Value& name : names.list(network::Guide::most_fixtures)) {
-    const std::string wanted = name.text();
-    const auto found = std::find_if(guide->fixtures.begin(), guide->fixtures.end(),
-                                    [&](const auto& each) { return each.name == wanted; });
-    if (found == guide->fixtures.end()) name.fail_with_value("the name of a fixture");
-    out.guides |= 1 << (found - guide->fixtures.begin());
+    out.guides |= 1 << index_of(name, guide->fixtures, "the name of a fixture");
   }
 }
 
@@ -117,15 +123,6 @@ void read_guiding(const Map& phase, const Network& network, network::Phase& out)
   if (is_world) out.compliant |= network::Relief::world_bit;
 }
 
-/// The place of a part in the list of those that can come and go.
-std::size_t part_called(const Value& name, const std::vector<LoosePart>& loose) {
-  const std::string wanted = name.text();
-  const auto found = std::find_if(loose.begin(), loose.end(),
-                                  [&](const LoosePart& part) { return part.name == wanted; });
-  if (found == loose.end()) name.fail_with_value("the name of a part under 'loose'");
-  return static_cast<std::size_t>(found - loose.begin());
-}
-
 /// What happens to parts at the beginning of a phase.
 void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart>& loose,
                 std::vector<PartStep>& steps) {
@@ -135,7 +132,8 @@ void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart
     const Value* names = phase.find(step_words[i]);
     if (!names) continue;
     for (const Value& name : names->one_or_list()) {
-      steps.push_back({static_cast<PartStep::What>(i), index, part_called(name, loose), over});
+      const std::size_t part = index_of(name, loose, "the name of a part under 'loose'");
+      steps.push_back({static_cast<PartStep::What>(i), index, part, over});
     }
   }
 }
@@ -152,11 +150,7 @@ std::vector<bool> blind_in(const Map& phase, const std::vector<CameraChoice>& ca
   }
   blind.resize(cameras.size());
   for (const Value& name : value->one_or_list()) {
-    const std::string wanted = name.text();
-    const auto found = std::find_if(cameras.begin(), cameras.end(),
-                                    [&](const CameraChoice& each) { return each.name == wanted; });
-    if (found == cameras.end()) name.fail_with_value("yes, no, or the name of a camera");
-    blind[static_cast<std::size_t>(found - cameras.begin())] = true;
+    blind[index_of(name, cameras, "yes, no, or the name of a camera")] = true;
   }
   return blind;
 }
