@@ -91,10 +91,7 @@ int run(const PartArguments& arguments, const Program& program) {
     std::fprintf(stderr, "%s: %s, %s\n", program.name, part.name, result.failure.c_str());
     status = 1;
   }
-  if (json.wanted()) {
-    host::write(report, json.stream());
-    json.close();
-  }
+  host::write(report, json);
   return status;
 }
 

@@ -67,6 +67,14 @@ function(repel_headers target)
   endif()
 endfunction()
 
+# repel_part(PART SOURCES...): the library of a part of this folder, or with INTERFACE its headers.
+function(repel_part part)
+  add_library(repel_${part} ${ARGN})
+  add_library(repel::${part} ALIAS repel_${part})
+  set_target_properties(repel_${part} PROPERTIES EXPORT_NAME ${part})
+  repel_headers(repel_${part})
+endfunction()
+
 # repel_outside_the_tick(TARGET...): pages, reports and devices wait for people and files. More
 # than -O1 takes half as long again to compile.
 function(repel_outside_the_tick)

@@ -89,10 +89,7 @@ int run(const Arguments& arguments) {
     std::printf("  %s\n    %s\n", a.finding.c_str(), a.command.c_str());
   }
   std::printf("\n%s\n", verdict(trial).c_str());
-  if (json.wanted()) {
-    host::write(report_of(trial, advice), json.stream());
-    json.close();
-  }
+  host::write(report_of(trial, advice), json);
   return static_cast<int>(judge(trial));
 }
 

@@ -250,10 +250,7 @@ int run(const Arguments& arguments) {
   for (const std::string& list : part_lists) std::printf("\nconvex parts from %s", list.c_str());
   if (!part_lists.empty()) std::puts("");
   if (!arguments.srdf.empty()) std::printf("\n%zu link pairs may touch\n", disabled.size());
-  if (json.wanted()) {
-    host::write(report_of(robot, tips, disabled), json.stream());
-    json.close();
-  }
+  host::write(report_of(robot, tips, disabled), json);
   return 0;
 }
 

@@ -42,18 +42,10 @@ void divide_corners(const Polygon& polygon, const HalfSpace& plane, double flat,
     side.insert(side.end(), polygon.begin(), polygon.end());
     return;
   }
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3& a = polygon[i];
-    const Vec3& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double ha = plane.height(a);
-    const double hb = plane.height(b);
-    if (ha <= 0.0) below.push_back(a);
-    if (ha >= 0.0) above.push_back(a);
-    if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
-      below.push_back(crossing(a, ha, b, hb));
-      above.push_back(below.back());
-    }
-  }
+  for_each_corner(polygon, plane, [&](const Vec3& p, double height) {
+    if (height <= 0.0) below.push_back(p);
+    if (height >= 0.0) above.push_back(p);
+  });
 }
 
 class Cutting {

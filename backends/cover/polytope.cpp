@@ -88,16 +88,9 @@ HeightRange heights(std::span<const Vec3> points, const HalfSpace& plane) {
 Polygon clipped(const Polygon& polygon, const HalfSpace& plane) {
   Polygon kept;
   kept.reserve(polygon.size() + 1);
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3& a = polygon[i];
-    const Vec3& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double ha = plane.height(a);
-    const double hb = plane.height(b);
-    if (ha <= 0.0) kept.push_back(a);
-    if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
-      kept.push_back(crossing(a, ha, b, hb));
-    }
-  }
+  for_each_corner(polygon, plane, [&](const Vec3& p, double height) {
+    if (height <= 0.0) kept.push_back(p);
+  });
   return kept;
 }
 
@@ -153,16 +146,9 @@ Polytope Polytope::clipped(const HalfSpace& plane) const {
   for (const Polygon& face : faces_) {
     Polygon kept = cover::clipped(face, plane);
     if (kept.size() < 2) continue;
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const Vec3& a = face[i];
-      const Vec3& b = face[i + 1 < face.size() ? i + 1 : 0];
-      const double ha = plane.height(a);
-      const double hb = plane.height(b);
-      if (ha == 0.0) cut.push_back(a);
-      if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) {
-        cut.push_back(crossing(a, ha, b, hb));
-      }
-    }
+    for_each_corner(face, plane, [&](const Vec3& p, double height) {
+      if (height == 0.0) cut.push_back(p);
+    });
     if (kept.size() >= 3) result.faces_.push_back(std::move(kept));
   }
   Polygon cap = in_order(cut, plane.n);

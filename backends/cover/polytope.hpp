@@ -33,6 +33,20 @@ struct HeightRange {
 /// negative: the same to the bit if both are exchanged, so neighbours share corners.
 [[nodiscard]] Vec3 crossing(const Vec3& a, double ha, const Vec3& b, double hb);
 
+/// Calls visit(p, height) for each corner of the polygon, and between two on different sides of the
+/// plane for their crossing, at height zero.
+template <class Visit>
+void for_each_corner(const Polygon& polygon, const HalfSpace& plane, const Visit& visit) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& a = polygon[i];
+    const Vec3& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double ha = plane.height(a);
+    const double hb = plane.height(b);
+    visit(a, ha);
+    if ((ha < 0.0 && hb > 0.0) || (ha > 0.0 && hb < 0.0)) visit(crossing(a, ha, b, hb), 0.0);
+  }
+}
+
 /// The part of `polygon` in the half space; fewer than three corners if there is none.
 [[nodiscard]] Polygon clipped(const Polygon& polygon, const HalfSpace& plane);
 

@@ -50,30 +50,24 @@ void demand(EvdevPort& port, unsigned long request, void* argument, const std::s
   fail(name, {what, " is refused: ", std::generic_category().message(-result)});
 }
 
-/// The force effects that the device supports; empty if it has no force feedback.
-Bits<FF_CNT> forces_of(EvdevPort& port, const std::string& name) {
+/// Which events of a type the device has; none if it has not the type.
+template <int count>
+Bits<count> events_of(EvdevPort& port, int type, const std::string& name, std::string_view what) {
   Bits<EV_CNT> types;
-  Bits<FF_CNT> forces;
+  Bits<count> events;
   demand(port, EVIOCGBIT(0, Bits<EV_CNT>::size), types.data(), name, "the list of its events");
-  if (types.has(EV_FF)) {
-    demand(port, EVIOCGBIT(EV_FF, Bits<FF_CNT>::size), forces.data(), name,
-           "the list of its forces");
-  }
-  return forces;
+  if (types.has(type)) demand(port, EVIOCGBIT(type, Bits<count>::size), events.data(), name, what);
+  return events;
+}
+
+/// The force effects that the device supports.
+Bits<FF_CNT> forces_of(EvdevPort& port, const std::string& name) {
+  return events_of<FF_CNT>(port, EV_FF, name, "the list of its forces");
 }
 
 void check_abilities(EvdevPort& port, const EvdevLeverOptions& options, const std::string& name) {
-  Bits<EV_CNT> types;
-  Bits<ABS_CNT> axes;
-  Bits<KEY_CNT> keys;
-  demand(port, EVIOCGBIT(0, Bits<EV_CNT>::size), types.data(), name, "the list of its events");
-  if (types.has(EV_ABS)) {
-    demand(port, EVIOCGBIT(EV_ABS, Bits<ABS_CNT>::size), axes.data(), name, "the list of its axes");
-  }
-  if (types.has(EV_KEY)) {
-    demand(port, EVIOCGBIT(EV_KEY, Bits<KEY_CNT>::size), keys.data(), name,
-           "the list of its buttons");
-  }
+  const auto axes = events_of<ABS_CNT>(port, EV_ABS, name, "the list of its axes");
+  const auto keys = events_of<KEY_CNT>(port, EV_KEY, name, "the list of its buttons");
   if (!axes.has(options.axis)) {
     fail(name, {"it has no absolute axis ", std::to_string(options.axis)});
   }
@@ -172,17 +166,9 @@ Measured EvdevLever::read(std::chrono::milliseconds wait) noexcept {
     port_->wait(wait);
     take_bytes();
   }
-  Measured result;
+  Measured result = lost_ ? Measured::of_lost(why_lost_) : Measured::of_sound(clutch_.engaged());
   result.lever_direction_W = options_.direction_W;
-  if (lost_) {
-    result.operating_state = OperatingState::fault;
-    result.silent = true;
-    result.why = why_lost_;
-    return result;
-  }
-  result.clutch = clutch_.engaged();
-  result.operating_state = result.clutch ? OperatingState::enabled : OperatingState::paused;
-  result.why = result.clutch ? "" : "the clutch is released";
+  if (lost_) return result;
   if (result.clutch) {
     result.lever_rate = motion_.rate(options_.now());
   } else {

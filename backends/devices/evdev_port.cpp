@@ -2,11 +2,9 @@
 #include <repel/devices/evdev_port.hpp>
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -39,11 +37,7 @@ class OpenEvdev final : public EvdevPort {
   long write(std::span<const std::byte> bytes) noexcept override {
     return told(::write(fd_.get(), bytes.data(), bytes.size()));
   }
-  void wait(std::chrono::milliseconds wait) noexcept override {
-    pollfd watched{fd_.get(), POLLIN, 0};
-    const auto milliseconds = std::clamp<long>(wait.count(), 0, 1000);
-    (void)::poll(&watched, 1, static_cast<int>(milliseconds));
-  }
+  void wait(std::chrono::milliseconds wait) noexcept override { fd_.wait(wait); }
 
  private:
   detail::Descriptor fd_;

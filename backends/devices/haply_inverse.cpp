@@ -296,22 +296,14 @@ void HaplyInverse::lose(const char* why) noexcept {
 }
 
 Measured HaplyInverse::measured() const noexcept {
-  Measured result;
-  if (!has_state_) {
-    result.operating_state = OperatingState::fault;
-    result.silent = true;
-    result.why = why_lost_;
-    return result;
-  }
+  if (!has_state_) return Measured::of_lost(why_lost_);
+  Measured result = Measured::of_sound(clutch_.engaged());
   result.position_W = options_.R_WD * state_.position;
   result.has_position = true;
   if (state_.has_grip) {
     result.R_WH = Eigen::Quaterniond(options_.R_WD) * state_.R_DG;
     result.has_orientation = true;
   }
-  result.clutch = clutch_.engaged();
-  result.operating_state = result.clutch ? OperatingState::enabled : OperatingState::paused;
-  result.why = result.clutch ? "" : "the clutch is released";
   if (result.clutch) result.measured_cv.linear = options_.R_WD * state_.velocity;
   return result;
 }

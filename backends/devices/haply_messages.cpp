@@ -10,6 +10,8 @@
 
 #ifdef REPEL_HAS_HAPLY
 #include <nlohmann/json.hpp>
+
+#include <repel/common/json_fields.hpp>
 #endif
 
 namespace repel::devices {
@@ -21,7 +23,9 @@ bool is_alphanumeric(char c) noexcept {
 
 #ifdef REPEL_HAS_HAPLY
 
-using HaplyJson = nlohmann::json;
+using Json = nlohmann::json;
+using fields::member;
+using fields::number;
 
 /// The identifier is sent back in every command, so nothing in it may need an escape.
 bool is_device_id(std::string_view text) noexcept {
@@ -31,11 +35,11 @@ bool is_device_id(std::string_view text) noexcept {
 }
 
 /// JSON without the same key twice in one object; discarded if it is not that.
-HaplyJson parsed_haply(std::string_view text) {
+Json parsed_haply(std::string_view text) {
   std::vector<std::vector<std::string>> open;  // the keys of each object that is being read
   bool twice = false;
-  const auto watch = [&](int /*depth*/, HaplyJson::parse_event_t event, HaplyJson& value) {
-    using Event = HaplyJson::parse_event_t;
+  const auto watch = [&](int /*depth*/, Json::parse_event_t event, Json& value) {
+    using Event = Json::parse_event_t;
     if (event == Event::object_start) open.emplace_back();
     if (event == Event::object_end && !open.empty()) open.pop_back();
     if (event == Event::key && !open.empty()) {
@@ -48,96 +52,77 @@ HaplyJson parsed_haply(std::string_view text) {
     }
     return true;
   };
-  HaplyJson root = HaplyJson::parse(text.begin(), text.end(), watch, false);
-  return twice ? HaplyJson(HaplyJson::value_t::discarded) : root;
+  Json root = Json::parse(text.begin(), text.end(), watch, false);
+  return twice ? Json(Json::value_t::discarded) : root;
 }
 
-/// The member of an object; nullptr if it is none, or has no such member.
-const HaplyJson* member(const HaplyJson* object, const char* name) {
-  if (object == nullptr || !object->is_object()) return nullptr;
-  const auto found = object->find(name);
-  return found == object->end() ? nullptr : &*found;
-}
-
-bool read_number(const HaplyJson* object, const char* name, double most, double& number) {
-  const HaplyJson* value = member(object, name);
-  if (value == nullptr || !value->is_number()) return false;
-  number = value->get<double>();
-  return std::abs(number) <= most;
-}
-
-bool read_vector(const HaplyJson* object, double most, Vec3& vector) {
-  return read_number(object, "x", most, vector.x()) && read_number(object, "y", most, vector.y()) &&
-         read_number(object, "z", most, vector.z());
+bool read_vector(const Json& object, double most, Vec3& vector) {
+  const auto x = number(object, "x", most), y = number(object, "y", most);
+  const auto z = number(object, "z", most);
+  if (x && y && z) vector = {*x, *y, *z};
+  return x && y && z;
 }
 
 /// Leaves `flag` as it is where there is no such member.
-bool read_flag(const HaplyJson* object, const char* name, bool& flag) {
-  const HaplyJson* value = member(object, name);
-  if (value == nullptr) return true;
-  if (!value->is_boolean()) return false;
-  flag = value->get<bool>();
-  return true;
+bool read_flag(const Json& object, const char* name, bool& flag) {
+  const Json& value = member(object, name);
+  flag = fields::value_of<bool>(value).value_or(flag);
+  return value.is_boolean() || value.is_discarded();
 }
 
 /// The list of the devices of a kind: `devices` is nullptr where there are none.
-bool read_list(const HaplyJson& root, const char* kind, const HaplyJson*& devices) {
-  devices = member(&root, kind);
-  if (devices == nullptr) return true;
-  if (!devices->is_array() || devices->size() > HaplyBounds::devices) return false;
-  if (devices->empty()) devices = nullptr;
-  return true;
+bool read_list(const Json& root, const char* kind, const Json*& devices) {
+  const Json& list = member(root, kind);
+  devices = list.is_array() && !list.empty() ? &list : nullptr;
+  return list.is_discarded() || (list.is_array() && list.size() <= HaplyBounds::devices);
 }
 
-const char* read_handle(const HaplyJson& root, HaplyState& state) {
-  const HaplyJson* devices = nullptr;
+const char* read_handle(const Json& root, HaplyState& state) {
+  const Json* devices = nullptr;
   if (!read_list(root, "inverse3", devices)) return "the list of devices is none";
   if (devices == nullptr) return nullptr;
   std::vector<std::string> ids;
-  for (const HaplyJson& device : *devices) {
-    const HaplyJson* id = member(&device, "device_id");
-    if (id == nullptr || !id->is_string() || !is_device_id(id->get_ref<const std::string&>())) {
-      return "a device has no identifier";
-    }
-    ids.push_back(id->get<std::string>());
+  for (const Json& device : *devices) {
+    ids.push_back(fields::text(device, "device_id"));
+    if (!is_device_id(ids.back())) return "a device has no identifier";
     if (std::find(ids.begin(), ids.end() - 1, ids.back()) != ids.end() - 1) {
       return "two devices have the same identifier";
     }
   }
-  const HaplyJson& handle = devices->front();
-  const HaplyJson* of_handle = member(&handle, "state");
+  const Json& handle = devices->front();
+  const Json& of_handle = member(handle, "state");
   if (!read_vector(member(of_handle, "cursor_position"), HaplyBounds::position, state.position)) {
     return "the position of the handle is missing or impossible";
   }
   if (!read_vector(member(of_handle, "cursor_velocity"), HaplyBounds::velocity, state.velocity)) {
     return "the velocity of the handle is missing or impossible";
   }
-  if (!read_flag(member(&handle, "status"), "calibrated", state.calibrated)) {
+  if (!read_flag(member(handle, "status"), "calibrated", state.calibrated)) {
     return "the status of the handle is none";
   }
   state.device_id = std::move(ids.front());
   return nullptr;
 }
 
-const char* read_grip(const HaplyJson& root, HaplyState& state) {
-  const HaplyJson* grips = nullptr;
+const char* read_grip(const Json& root, HaplyState& state) {
+  const Json* grips = nullptr;
   if (!read_list(root, "wireless_verse_grip", grips)) return "the list of grips is none";
   const bool is_wired = grips == nullptr;
   if (is_wired && !read_list(root, "verse_grip", grips)) return "the list of grips is none";
   if (grips == nullptr) return nullptr;
-  const HaplyJson* of_grip = member(&grips->front(), "state");
-  const HaplyJson* orientation = member(of_grip, "orientation");
+  const Json& of_grip = member(grips->front(), "state");
+  const Json& orientation = member(of_grip, "orientation");
   Vec3 xyz{0, 0, 0};
-  double w = 0.0;
-  if (!read_vector(orientation, 1.1, xyz) || !read_number(orientation, "w", 1.1, w)) {
+  const auto w = number(orientation, "w", 1.1);
+  if (!read_vector(orientation, 1.1, xyz) || !w) {
     return "the orientation of the grip is missing or impossible";
   }
-  state.R_DG = Eigen::Quaterniond(w, xyz.x(), xyz.y(), xyz.z());
+  state.R_DG = Eigen::Quaterniond(*w, xyz.x(), xyz.y(), xyz.z());
   if (std::abs(state.R_DG.norm() - 1.0) > HaplyBounds::quaternion_error) {
     return "the orientation of the grip is not of length one";
   }
   state.R_DG.normalize();
-  const HaplyJson* buttons = is_wired ? of_grip : member(of_grip, "buttons");
+  const Json& buttons = is_wired ? of_grip : member(of_grip, "buttons");
   const std::array<const char*, 3> names = is_wired ? std::array<const char*, 3>{"button", "", ""}
                                                     : std::array<const char*, 3>{"a", "b", "c"};
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -164,7 +149,7 @@ const char* read_haply(std::string_view text, HaplyState& state) noexcept {
   if (text.size() > HaplyBounds::text) return "a message is too long";
   try {
     state = {};
-    const HaplyJson root = parsed_haply(text);
+    const Json root = parsed_haply(text);
     if (!root.is_object()) return "a message is not JSON, or says something twice";
     const char* wrong = read_handle(root, state);
     return wrong != nullptr ? wrong : read_grip(root, state);

@@ -2,7 +2,6 @@
 // By hand: libspnav keeps one connection for all of a process; here each device has its own.
 #include <repel/devices/spacenav.hpp>
 
-#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 
@@ -16,15 +15,6 @@
 
 namespace repel::devices {
 namespace {
-
-constexpr std::chrono::milliseconds longest_wait{1000};
-
-/// Waits for at most `wait` for input on `fd`; with -1 for exactly that time.
-void wait_for(int fd, std::chrono::milliseconds wait) noexcept {
-  pollfd watched{fd, POLLIN, 0};
-  const auto bounded = std::clamp(wait, std::chrono::milliseconds(0), longest_wait);
-  (void)::poll(&watched, 1, static_cast<int>(bounded.count()));
-}
 
 /// A socket connected to `path`; on failure none, and `error` is set. Never blocks: a local socket
 /// connects at once or not at all.
@@ -101,7 +91,7 @@ Spacenav::Spacenav(const SpacenavOptions& options)
 
 Measured Spacenav::read(std::chrono::milliseconds wait) noexcept {
   if (!socket_.open()) connect_anew();
-  wait_for(socket_.get(), wait);
+  socket_.wait(wait);
   if (socket_.open()) take_bytes();
   return measured();
 }
@@ -155,16 +145,8 @@ void Spacenav::lose(const char* why) noexcept {
 }
 
 Measured Spacenav::measured() const noexcept {
-  Measured result;
-  if (!socket_.open()) {
-    result.operating_state = OperatingState::fault;
-    result.silent = true;
-    result.why = why_lost_;
-    return result;
-  }
-  result.clutch = clutch_.engaged();
-  result.operating_state = result.clutch ? OperatingState::enabled : OperatingState::paused;
-  result.why = result.clutch ? "" : "the clutch is released";
+  if (!socket_.open()) return Measured::of_lost(why_lost_);
+  Measured result = Measured::of_sound(clutch_.engaged());
   const bool moves = result.clutch && !(held_.linear.isZero(0.0) && held_.angular.isZero(0.0));
   if (!moves) return result;
   // A hand that holds still is not silent if spacenavd repeats events, as docs/devices.md requires.

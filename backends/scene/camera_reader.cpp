@@ -203,39 +203,19 @@ void read_simulated(const Map& map, CameraChoice& camera) {
 /// The same of recorded images.
 void read_recorded(const Map& map, CameraChoice& camera) {
   const Value& value = map.at("recording");
-  try {
-    camera.recording = recording_of(value.folder(), camera);
-  } catch (const SetupError& error) {
-    if (!error.file().empty()) throw;
-    value.fail(error.what());
-  }
+  camera.recording = value.located([&] { return recording_of(value.folder(), camera); });
   map.read("repeat", camera.recording->repeats);
-}
-
-/// With a recording, refuses the keys of a simulated camera; without one, `repeat`.
-void allow_of_images(const Map& map, const Keys& keys, bool is_recorded) {
-  constexpr std::string_view of_simulated[] = {"position", "look_at", "orientation", "width",
-                                               "height",   "view",    "rate",        "noise",
-                                               "lost",     "seed"};
-  std::vector<std::string_view> allowed;
-  for (const Key& key : keys) {
-    const bool is_refused = is_recorded
-                                ? std::find(std::begin(of_simulated), std::end(of_simulated),
-                                            key.name) != std::end(of_simulated)
-                                : key.name == "repeat";
-    if (!is_refused) allowed.push_back(key.name);
-  }
-  map.allow(allowed);
 }
 
 CameraChoice camera_of(const Value& value, const Laws& laws, const Keys& keys) {
   const Map map(value, keys);
-  const bool is_recorded = map.find("recording") != nullptr;
-  allow_of_images(map, keys, is_recorded);
   CameraChoice camera;
-  if (is_recorded) {
+  if (map.find("recording") != nullptr) {
+    map.refuse({"position", "look_at", "orientation", "width", "height", "view", "rate", "noise",
+                "lost", "seed"});
     read_recorded(map, camera);
   } else {
+    map.refuse({"repeat"});
     read_simulated(map, camera);
   }
   map.read("nearest", camera.nearest);

@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
-#include <map>
 #include <string>
-#include <utility>
 
 #include <repel/base/capacities.hpp>
 #include <repel/distance/query.hpp>
 #include <repel/network/elements/changing_scale.hpp>
-#include <repel/network/modules.hpp>
+#include <repel/network/elements/fixture.hpp>
 #include <repel/scene/camera.hpp>
 #include <repel/schedule/coprocessor_options.hpp>
 #include <repel/simulated/changed_arm.hpp>
@@ -23,8 +21,6 @@ namespace {
 
 using namespace key;
 using Words = std::vector<std::string_view>;
-
-constexpr double most_seed = 1e9;
 
 /// Lists that follow each other.
 Keys joined(std::initializer_list<Keys> lists) {
@@ -85,58 +81,6 @@ Keys camera_keys() {
           number("noise", unit::length, 0.0, 0.1),
           number("lost", unit::none, 0.0, 1.0),
           integer("seed", 0, most_seed)};
-}
-
-/// The keys of one kind of module: first `before`, then the fields of its options, then `after`.
-template <class Options>
-Keys fields(const Keys& before = {}, const Keys& after = {}) {
-  Keys keys = before;
-  append_fields<Options>(keys);
-  keys.insert(keys.end(), after.begin(), after.end());
-  return keys;
-}
-
-Keys element(std::string_view linear, Units linear_units, std::string_view angular,
-             Units angular_units) {
-  return {word("space", {"tool", "lever"}), number(linear, linear_units, 1e-9, 1e7),
-          number(angular, angular_units, 1e-9, 1e7).required()};
-}
-
-using ModuleTable = std::vector<std::pair<std::string_view, Keys>>;
-
-const ModuleTable& modules() {
-  static const ModuleTable all = [] {
-    ModuleTable table{
-        {"torque_arm", fields<network::TorqueArmOptions>()},
-        {"multiplex", fields<network::MultiplexOptions>()},
-        {"spaceball", fields<network::SpaceballOptions>()},
-        {"relief", fields<network::ReliefOptions>({texts("compliant")})},
-        {"kbb2", fields<network::Kbb2Options>()},
-        {"guide", fields<network::GuideOptions>({maps("fixtures", grammar::fixture()).required()})},
-        {"obstacle", fields<network::ObstacleOptions>({word("gain_check", {"error", "warning"})})},
-        {"puma_kin", {}},
-        {"arm_obstacle", fields<network::ArmObstacleOptions>()},
-        {"limits", fields<network::JointLimits>({any("range")})},
-        {"posture", fields<network::PostureOptions>({}, {any("joints")})},
-        {"force_sensor",
-         fields<network::ForceSensorOptions>({}, {vector("position", {unit::length, -5.0, 5.0})})},
-        {"visual", {}},
-        {"puma_joints", {}},
-        {"ground", {}},
-        {"line", fields<network::LineOptions>(
-                     {}, {number("buffer", unit::time, 0.0, 10.0), integer("seed", 0, most_seed)})},
-        {"six_axes", fields<network::SixAxesOptions>()},
-        {"junction", {word("common", {"flow", "effort"})}},
-        {"spring",
-         element("stiffness", unit::stiffness, "angular_stiffness", unit::angular_stiffness)},
-        {"damper", element("damping", unit::damping, "angular_damping", unit::angular_damping)},
-        {"mass", element("mass", unit::mass, "inertia", unit::inertia)}};
-    for (auto& [kind, own] : table) {
-      own.insert(own.begin(), any_module().begin(), any_module().end());
-    }
-    return table;
-  }();
-  return all;
 }
 
 }  // namespace
@@ -200,7 +144,7 @@ const Keys& law() {
       number("ceiling", unit::force, 0.0, 1e6),
       word("given_at", {"part", "tool"}),
       number("tilt", unit::angle, 0.0, ForceLaw::most_tilt),
-      word("hold", {"hard", "soft"}),
+      word("hold", {"soft", "hard"}),
       flag("passable"),
       number("depth", unit::length, 0.0, 1e6),
       number("plateau", unit::none, 0.0, 1.0)};
@@ -294,28 +238,13 @@ const Keys& fixture() {
        {flag("on")},
        pose(),
        {number("radius", unit::length, 0.0, 1e3), number("half_angle", unit::angle, 0.01, 1.56),
-        any("points"), any("frames"), word("course", {"spline", "straight"})}});
+        any("points"), any("frames"), word("course", {"straight", "spline"})}});
   return keys;
 }
 
 const Keys& any_module() {
   static const Keys keys{text("module").required(), text("name"), texts("to")};
   return keys;
-}
-
-const Keys& module(std::string_view kind) {
-  const auto found = std::find_if(modules().begin(), modules().end(),
-                                  [&](const auto& each) { return each.first == kind; });
-  return found->second;
-}
-
-const std::vector<std::string_view>& module_kinds() {
-  static const std::vector<std::string_view> kinds = [] {
-    std::vector<std::string_view> names;
-    for (const auto& [kind, keys] : modules()) names.push_back(kind);
-    return names;
-  }();
-  return kinds;
 }
 
 const Keys& partner() {

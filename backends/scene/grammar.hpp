@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Every map of a scene file: its keys, their types, units and ranges. A new key is entered here
-/// and in the reader of its map.
+/// and in the reader of its map; one of a module in module_kinds.cpp alone.
 #pragma once
 
+#include <functional>
+#include <string_view>
+#include <vector>
+
 #include "key.hpp"
+
+namespace repel::scene {
+class Map;
+struct ReadModule;
+}  // namespace repel::scene
 
 namespace repel::scene::grammar {
 
@@ -29,11 +38,16 @@ namespace repel::scene::grammar {
 [[nodiscard]] const Keys& phase();
 [[nodiscard]] const Keys& second_hand();
 [[nodiscard]] const Keys& fixture();
-/// Of an entry of `network`: those of every module. @param kind a word after `module:` that is one
-/// of the library
+/// Of an entry of `network`: those of every module.
 [[nodiscard]] const Keys& any_module();
-[[nodiscard]] const Keys& module(std::string_view kind);
-/// The words after `module:` of the library, in the order of scenes/README.md.
-[[nodiscard]] const std::vector<std::string_view>& module_kinds();
+
+/// A kind of module of the library.
+struct ModuleKind {
+  std::string_view word;  ///< after `module:`
+  Keys keys;              ///< of its entry of `network`
+  std::function<ReadModule(const Map&)> read;
+};
+/// In the order of scenes/README.md; in module_kinds.cpp.
+[[nodiscard]] const std::vector<ModuleKind>& module_kinds();
 
 }  // namespace repel::scene::grammar

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "guide_reader.hpp"
 
-#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
+
+#include <repel/network/modules/relief.hpp>
 
 #include "grammar.hpp"
 #include "pose_reader.hpp"
@@ -16,21 +17,9 @@ using network::Alignment;
 using network::FixtureKind;
 using network::FixtureOptions;
 
-constexpr std::string_view fixture_keys[] = {
-    "name",        "shape",         "stiffness", "damping",           "most_force",
-    "range",       "most_energy",   "alignment", "angular_stiffness", "angular_damping",
-    "most_torque", "angular_range", "on"};
-
-/// With the keys of its shape.
-void allow_fixture(const Map& map, std::initializer_list<std::string_view> own) {
-  std::vector<std::string_view> keys(std::begin(fixture_keys), std::end(fixture_keys));
-  keys.insert(keys.end(), own.begin(), own.end());
-  map.allow(keys);
-}
-
 void read_path(const Map& map, FixtureOptions& fixture) {
   fixture.kind = FixtureKind::path;
-  allow_fixture(map, {"points", "frames", "course", "radius"});
+  map.refuse({"position", "rpy", "half_angle"});
   for (const Value& point : map.at("points").list(network::FixturePath::most_points)) {
     fixture.points.push_back(point.vector(detail::position));
   }
@@ -40,9 +29,7 @@ void read_path(const Map& map, FixtureOptions& fixture) {
     }
     fixture.alignment = Alignment::all;
   }
-  if (map.find("course") != nullptr && map.word("course") == "straight") {
-    fixture.course = network::Course::straight;
-  }
+  map.read("course", fixture.course);
 }
 
 void read_shape(const Map& map, FixtureOptions& fixture) {
@@ -51,10 +38,10 @@ void read_shape(const Map& map, FixtureOptions& fixture) {
     read_path(map, fixture);
   } else if (shape == "cone") {
     fixture.kind = FixtureKind::cone;
-    allow_fixture(map, {"position", "rpy", "half_angle"});
+    map.refuse({"radius", "points", "frames", "course"});
     fixture.half_angle = map.number("half_angle");
   } else {
-    allow_fixture(map, {"position", "rpy", "radius"});
+    map.refuse({"half_angle", "points", "frames", "course"});
     fixture.kind = shape == "point"   ? FixtureKind::point
                    : shape == "plane" ? FixtureKind::plane
                                       : FixtureKind::line;
@@ -72,11 +59,7 @@ FixtureOptions fixture_of(const Value& value) {
   read_shape(map, fixture);
   map.read_fields(fixture);
   map.read("on", fixture.is_on);
-  try {
-    (void)network::checked_fixture(fixture);
-  } catch (const SetupError& error) {
-    value.fail(error.what());
-  }
+  (void)value.located([&] { return network::checked_fixture(fixture); });
   return fixture;
 }
 
@@ -95,12 +78,9 @@ network::GuideOptions detail::guide_of(const Map& map) {
 }
 
 std::array<bool, 6> detail::directions_of(const Value& list) {
-  constexpr std::array<std::string_view, 6> words{"x", "y", "z", "rx", "ry", "rz"};
   std::array<bool, 6> directions{};
   for (const Value& entry : list.list()) {
-    const std::string word = entry.word_of(words);
-    directions[static_cast<std::size_t>(std::find(words.begin(), words.end(), word) -
-                                        words.begin())] = true;
+    directions[entry.index_in(network::Relief::directions)] = true;
   }
   return directions;
 }

@@ -49,6 +49,8 @@ struct Key {
 };
 
 namespace key {
+inline constexpr double most_seed = 1e9;
+
 [[nodiscard]] inline Key number(std::string_view name, Units units, double low, double high) {
   return {name, Key::Kind::number, {units, low, high}};
 }
@@ -80,9 +82,9 @@ namespace key {
   return {name, Key::Kind::maps, {}, {}, &keys};
 }
 
-/// The numbers and words of an options struct.
+/// The numbers and words of an options struct, behind `keys` and before `after`.
 template <class Options>
-void append_fields(Keys& keys) {
+[[nodiscard]] Keys fields(Keys keys = {}, const Keys& after = {}) {
   Options options{};
   const auto append = [&]<class Entry>(const Entry& entry, const auto& /*value*/) {
     if constexpr (std::is_same_v<Entry, Field>) {
@@ -101,6 +103,8 @@ void append_fields(Keys& keys) {
     }
   };
   Options::for_each_field(append, options);
+  keys.insert(keys.end(), after.begin(), after.end());
+  return keys;
 }
 }  // namespace key
 

@@ -16,6 +16,8 @@
 namespace repel::scene {
 namespace {
 
+using grammar::ModuleKind;
+
 template <class M, class Options>
 network::Module make(const Options& options) {
   return M(options);
@@ -28,12 +30,16 @@ ReadModule made_of(const Options& options, network::Module (*from)(const Options
   return {options, [=](const ArmModel& /*arm*/) { return from(options); }, walls};
 }
 
-/// A module all of whose keys are the fields of its options.
+/// A module of which only the fields of its options are read.
+/// @param more keys, which others read
 template <class M, class Options>
-ReadModule fields_of(const Map& map) {
-  Options options;
-  map.read_fields(options);
-  return made_of(options, make<M, Options>, M::traits.walls);
+ModuleKind kind_of_fields(std::string_view word, const Keys& more = {}) {
+  const auto read = [](const Map& map) {
+    Options options;
+    map.read_fields(options);
+    return made_of(options, make<M, Options>, M::traits.walls);
+  };
+  return {word, key::fields<Options>(more), read};
 }
 
 ReadModule multiplex_of(const Map& map) {
@@ -178,30 +184,12 @@ ReadModule posture_of(const Map& map) {
           }};
 }
 
-ReadModule line_of(const Map& map) {
+ReadModule line_module_of(const Map& map) {
   network::LineOptions options;
   map.read_fields(options);
   map.read("buffer", options.buffer);
   map.read("seed", options.channel.seed);
   return made_of(options, make<network::Line>);
-}
-
-Element element_of(const Map& map, Element::Kind kind) {
-  const bool mass = kind == Element::Kind::mass;
-  const bool spring = kind == Element::Kind::spring;
-  const std::string_view linear = mass ? "mass" : spring ? "stiffness" : "damping";
-  const std::string_view angular = mass     ? "inertia"
-                                   : spring ? "angular_stiffness"
-                                            : "angular_damping";
-  Element element{.kind = kind};
-  if (map.find("space") != nullptr && map.word("space") == "lever") {
-    element.space = network::Space::lever;
-    map.allow({"module", "name", "to", "space", angular});
-  } else {
-    element.linear = map.number(linear);
-  }
-  element.angular = map.number(angular);
-  return element;
 }
 
 network::Module element_from(const Element& e) {
@@ -213,9 +201,25 @@ network::Module element_from(const Element& e) {
   if (e.kind == Element::Kind::mass) return network::Mass<any_size>(gain);
   return network::Damper<any_size>(gain);
 }
-template <Element::Kind kind>
-ReadModule read_element(const Map& map) {
-  return made_of(element_of(map, kind), element_from);
+
+/// A spring, damper or mass, by the names of its two numbers.
+ModuleKind element(std::string_view word, Element::Kind kind, std::string_view linear,
+                   Units linear_units, std::string_view angular, Units angular_units) {
+  const auto read = [=](const Map& map) {
+    Element element{.kind = kind};
+    if (map.find("space") != nullptr && map.word("space") == "lever") {
+      element.space = network::Space::lever;
+      map.refuse({linear});
+    } else {
+      element.linear = map.number(linear);
+    }
+    element.angular = map.number(angular);
+    return made_of(element, element_from);
+  };
+  return {word,
+          {key::word("space", {"tool", "lever"}), key::number(linear, linear_units, 1e-9, 1e7),
+           key::number(angular, angular_units, 1e-9, 1e7).required()},
+          read};
 }
 
 ReadModule junction_of(const Map& map) {
@@ -230,17 +234,56 @@ ReadModule plain_of(const Map& /*map*/) {
   return {{}, [](const ArmModel& /*arm*/) { return M(); }};
 }
 
-ReadModule ground_of(const Map& /*map*/) {
-  return {{}, [](const ArmModel& /*arm*/) { return network::Ground(); }};
-}
-
 ReadModule joints_of(const Map& /*map*/) {
   return {{}, [](const ArmModel& arm) {
             return network::PumaJoints(static_cast<int>(arm.links.size()));
           }};
 }
 
+std::vector<ModuleKind> kinds_of_library() {
+  using namespace key;
+  using namespace network;
+  std::vector<ModuleKind> all{
+      kind_of_fields<TorqueArm, TorqueArmOptions>("torque_arm"),
+      {"multiplex", fields<MultiplexOptions>(), multiplex_of},
+      kind_of_fields<Spaceball, SpaceballOptions>("spaceball"),
+      {"relief", fields<ReliefOptions>({texts("compliant")}), relief_of},
+      kind_of_fields<Kbb2, Kbb2Options>("kbb2"),
+      {"guide", fields<GuideOptions>({maps("fixtures", grammar::fixture()).required()}), guide_of},
+      kind_of_fields<network::Obstacle, ObstacleOptions>(
+          "obstacle", {word("gain_check", {"error", "warning"})}),
+      {"puma_kin", {}, plain_of<PumaKin>},
+      kind_of_fields<ArmObstacle, ArmObstacleOptions>("arm_obstacle"),
+      {"limits", fields<JointLimits>({any("range")}), limits_of},
+      {"posture", fields<PostureOptions>({}, {any("joints")}), posture_of},
+      {"force_sensor",
+       fields<ForceSensorOptions>({}, {vector("position", {unit::length, -5.0, 5.0})}),
+       force_sensor_of},
+      {"visual", {}, plain_of<Visual>},
+      {"puma_joints", {}, joints_of},
+      {"ground", {}, plain_of<Ground>},
+      {"line",
+       fields<LineOptions>(
+           {}, {number("buffer", unit::time, 0.0, 10.0), integer("seed", 0, most_seed)}),
+       line_module_of},
+      kind_of_fields<SixAxes, SixAxesOptions>("six_axes"),
+      {"junction", {word("common", {"flow", "effort"})}, junction_of},
+      element("spring", Element::Kind::spring, "stiffness", unit::stiffness, "angular_stiffness",
+              unit::angular_stiffness),
+      element("damper", Element::Kind::damper, "damping", unit::damping, "angular_damping",
+              unit::angular_damping),
+      element("mass", Element::Kind::mass, "mass", unit::mass, "inertia", unit::inertia)};
+  const Keys& first = grammar::any_module();
+  for (ModuleKind& each : all) each.keys.insert(each.keys.begin(), first.begin(), first.end());
+  return all;
+}
+
 }  // namespace
+
+const std::vector<ModuleKind>& grammar::module_kinds() {
+  static const std::vector<ModuleKind> all = kinds_of_library();
+  return all;
+}
 
 double ModuleEntry::number(std::string_view key, std::string_view unit, double low, double high,
                            double otherwise) const {
@@ -265,32 +308,9 @@ void ModuleEntry::finish() const {
 }
 
 ModuleKinds::ModuleKinds() {
-  const std::pair<const char*, ReadModule (*)(const Map&)> own[] = {
-      {"torque_arm", fields_of<network::TorqueArm, network::TorqueArmOptions>},
-      {"multiplex", multiplex_of},
-      {"spaceball", fields_of<network::Spaceball, network::SpaceballOptions>},
-      {"relief", relief_of},
-      {"kbb2", fields_of<network::Kbb2, network::Kbb2Options>},
-      {"guide", guide_of},
-      {"obstacle", fields_of<network::Obstacle, network::ObstacleOptions>},
-      {"puma_kin", plain_of<network::PumaKin>},
-      {"arm_obstacle", fields_of<network::ArmObstacle, network::ArmObstacleOptions>},
-      {"limits", limits_of},
-      {"posture", posture_of},
-      {"force_sensor", force_sensor_of},
-      {"visual", plain_of<network::Visual>},
-      {"puma_joints", joints_of},
-      {"ground", ground_of},
-      {"line", line_of},
-      {"six_axes", fields_of<network::SixAxes, network::SixAxesOptions>},
-      {"junction", junction_of},
-      {"spring", read_element<Element::Kind::spring>},
-      {"damper", read_element<Element::Kind::damper>},
-      {"mass", read_element<Element::Kind::mass>}};
-  for (const auto& [word, read] : own) {
-    insert(word, [read = read, &keys = grammar::module(word)](const ModuleEntry& entry) {
-      return read(entry.map().with(keys));
-    });
+  for (const grammar::ModuleKind& kind : grammar::module_kinds()) {
+    insert(std::string(kind.word),
+           [&kind](const ModuleEntry& entry) { return kind.read(entry.map().with(kind.keys)); });
   }
 }
 

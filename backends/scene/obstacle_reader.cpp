@@ -3,7 +3,6 @@
 
 #include <set>
 
-#include <repel/base/setup_error.hpp>
 
 #include "grammar.hpp"
 #include "pose_reader.hpp"
@@ -20,14 +19,9 @@ ForceLaw law_of(const Value& value) {
   const Map map(value, grammar::law());
   ForceLaw law;
   map.read("passable", law.passable);
-  if (!law.passable) {
-    map.allow(
-        {"range", "surface_force", "damping", "ceiling", "given_at", "tilt", "hold", "passable"});
-  }
+  if (!law.passable) map.refuse({"depth", "plateau"});
   map.read("given_at", law.given_at);
-  if (map.find("hold") != nullptr) {
-    law.hold = map.word("hold") == "hard" ? HoldKind::hard : HoldKind::soft;
-  }
+  map.read("hold", law.hold);
   map.read("range", law.range);
   map.read("surface_force", law.surface_force);
   const Value* damping = map.find("damping");
@@ -38,11 +32,7 @@ ForceLaw law_of(const Value& value) {
   map.read("depth", law.depth);
   map.read("tilt", law.tilt);
   map.read("plateau", law.plateau);
-  try {
-    return checked(law);
-  } catch (const SetupError& error) {
-    value.fail(error.what());
-  }
+  return value.located([&] { return checked(law); });
 }
 
 std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
@@ -53,7 +43,7 @@ std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
 }
 
 StaticModel model_of(const Map& map, const Laws& laws) {
-  map.allow({"name", "shape", "position", "rpy", "law", "file", "packages", "covers"});
+  map.refuse({"motion", "size", "radius", "length", "points", "parts"});
   StaticModel model;
   model.name = map.at("name").text();
   model.is_sdf = map.at("shape").text() == "sdf";
@@ -93,7 +83,6 @@ const ForceLaw& law_called(const Laws& laws, const Map& map, std::string_view ke
 
 std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const ShapeFile& shapes,
                                    std::vector<StaticModel>& models) {
-  constexpr std::string_view keys[] = {"law", "motion"};
   std::vector<Obstacle> obstacles;
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
@@ -107,7 +96,7 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
       require_new(names, map);
       continue;
     }
-    for (Part& part : parts_of(entry, map, keys, shapes)) {
+    for (Part& part : parts_of(entry, map, shapes)) {
       obstacles.push_back({std::move(part.name), std::move(part.shape), std::move(part.kind),
                            part.X_BP, law_called(laws, map), motion_of(map), std::move(part.gaps)});
     }
@@ -120,11 +109,10 @@ std::vector<LoosePart> loose_of(const Map& scene, const Laws& laws, const ShapeF
   std::vector<LoosePart> loose;
   const Value* value = scene.find("loose");
   if (!value) return loose;
-  constexpr std::string_view keys[] = {"law", "at_start", "mass", "known"};
   std::set<std::string> names;
   for (const Value& entry : value->list(most_loose)) {
     const Map map(entry, grammar::loose());
-    std::vector<Part> parts = parts_of(entry, map, keys, shapes);
+    std::vector<Part> parts = parts_of(entry, map, shapes);
     require_new(names, map);
     if (parts.size() > 1) {
       map.at("file").fail("a mesh of " + std::to_string(parts.size()) +
@@ -162,11 +150,10 @@ std::vector<HiddenPart> hidden_of(const Map& scene, const ShapeFile& shapes, boo
   if (!has_camera) {
     value->fail("'hidden' without 'camera'; allowed: a scene with a camera, which sees it");
   }
-  constexpr std::string_view keys[] = {"motion"};
   std::set<std::string> names;
   for (const Value& entry : value->list()) {
     const Map map(entry, grammar::hidden());
-    for (Part& part : parts_of(entry, map, keys, shapes)) {
+    for (Part& part : parts_of(entry, map, shapes)) {
       hidden.push_back({std::move(part.name), std::move(part.shape), part.X_BP, motion_of(map)});
     }
     require_new(names, map);

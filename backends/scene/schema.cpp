@@ -73,13 +73,15 @@ std::string object(const Keys& keys);
 
 /// An entry of `network`: its `module` says which keys it may have.
 std::string any_module() {
+  std::vector<std::string_view> words;
   std::vector<std::string> cases;
-  for (const std::string_view kind : grammar::module_kinds()) {
-    cases.push_back(R"({"if":{"properties":{"module":{"const":)" + json(kind) + R"(}}},"then":)" +
-                    object(grammar::module(kind)) + "}");
+  for (const grammar::ModuleKind& kind : grammar::module_kinds()) {
+    words.push_back(kind.word);
+    cases.push_back(R"({"if":{"properties":{"module":{"const":)" + json(kind.word) +
+                    R"(}}},"then":)" + object(kind.keys) + "}");
   }
   return R"({"type":"object","required":["module"],"properties":{"module":{"enum":)" +
-         strings(grammar::module_kinds()) + R"(}},"allOf":)" + enclosed('[', cases, ']') + "}";
+         strings(words) + R"(}},"allOf":)" + enclosed('[', cases, ']') + "}";
 }
 
 std::string of(const Key& key) {

@@ -29,20 +29,6 @@ Vec3 direction_of(const Map& map) {
 /// In the order of PartStep::What.
 constexpr std::array<std::string_view, 4> step_words{"spawn", "grip", "release", "remove"};
 
-/// Those of what a phase changes in the modules `guide` and `relief`.
-constexpr std::array<std::string_view, 4> guiding_keys{"guides", "guide_strength", "compliant",
-                                                       "compliant_frame"};
-
-/// Keys of a phase of any device.
-std::vector<std::string_view> phase_keys(std::initializer_list<std::string_view> more) {
-  std::vector<std::string_view> keys{"name", "device", "frame", "duration", "silent",
-                                     "over", "blind",  "scale", "second"};
-  keys.insert(keys.end(), step_words.begin(), step_words.end());
-  keys.insert(keys.end(), guiding_keys.begin(), guiding_keys.end());
-  keys.insert(keys.end(), more);
-  return keys;
-}
-
 /// What a second hand does in a phase: with six axes, or with a lever.
 void read_second(const Map& map, network::Phase& phase) {
   map.read("linear", phase.second.linear);
@@ -64,11 +50,11 @@ network::Phase phase_of(const Map& map) {
   (void)map.at("device");
   map.read("device", phase.master);
   if (phase.master != network::Master::torque_arm) {
-    map.allow(phase_keys({"linear", "angular"}));
+    map.refuse({"direction", "lever", "pitch", "axis"});
     map.read("linear", phase.rates.linear);
     map.read("angular", phase.rates.angular);
   } else {
-    map.allow(phase_keys({"direction", "lever", "pitch", "axis"}));
+    map.refuse({"linear", "angular"});
     phase.direction = direction_of(map);
     phase.lever_rate = map.number("lever");
     if (map.find("pitch") != nullptr || map.find("axis") != nullptr) {
@@ -98,20 +84,27 @@ std::int32_t bits_of(const std::array<bool, 6>& directions) {
   return bits;
 }
 
+/// Where the entry of that name is in the list. @param allowed for the error that there is none
+template <class Entry>
+std::size_t index_of(const Value& name, const std::vector<Entry>& list, const char* allowed) {
+  const std::string wanted = name.text();
+  const auto found = std::find_if(list.begin(), list.end(),
+                                  [&](const Entry& each) { return each.name == wanted; });
+  if (found == list.end()) name.fail_with_value(allowed);
+  return static_cast<std::size_t>(found - list.begin());
+}
+
 void read_guides(const Value& names, const Network& network, network::Phase& out) {
   const auto* guide = options_of<network::GuideOptions>(network, "guide");
   if (guide == nullptr) names.fail("'guides' without a module 'guide' in the network");
   out.guides = 0;
   for (const Value& name : names.list(network::Guide::most_fixtures)) {
-    const std::string wanted = name.text();
-    const auto found = std::find_if(guide->fixtures.begin(), guide->fixtures.end(),
-                                    [&](const auto& each) { return each.name == wanted; });
-    if (found == guide->fixtures.end()) name.fail_with_value("the name of a fixture");
-    out.guides |= 1 << (found - guide->fixtures.begin());
+    out.guides |= 1 << index_of(name, guide->fixtures, "the name of a fixture");
   }
 }
 
-/// Reads guiding_keys into a phase. @param network of the arm of the script
+/// Reads what a phase changes in the modules `guide` and `relief`. @param network of the arm of the
+/// script
 void read_guiding(const Map& phase, const Network& network, network::Phase& out) {
   if (const Value* names = phase.find("guides")) read_guides(*names, network, out);
   phase.read("guide_strength", out.guide_strength);
@@ -130,15 +123,6 @@ void read_guiding(const Map& phase, const Network& network, network::Phase& out)
   if (is_world) out.compliant |= network::Relief::world_bit;
 }
 
-/// The place of a part in the list of those that can come and go.
-std::size_t part_called(const Value& name, const std::vector<LoosePart>& loose) {
-  const std::string wanted = name.text();
-  const auto found = std::find_if(loose.begin(), loose.end(),
-                                  [&](const LoosePart& part) { return part.name == wanted; });
-  if (found == loose.end()) name.fail_with_value("the name of a part under 'loose'");
-  return static_cast<std::size_t>(found - loose.begin());
-}
-
 /// What happens to parts at the beginning of a phase.
 void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart>& loose,
                 std::vector<PartStep>& steps) {
@@ -148,7 +132,8 @@ void read_steps(const Map& phase, std::size_t index, const std::vector<LoosePart
     const Value* names = phase.find(step_words[i]);
     if (!names) continue;
     for (const Value& name : names->one_or_list()) {
-      steps.push_back({static_cast<PartStep::What>(i), index, part_called(name, loose), over});
+      const std::size_t part = index_of(name, loose, "the name of a part under 'loose'");
+      steps.push_back({static_cast<PartStep::What>(i), index, part, over});
     }
   }
 }
@@ -165,11 +150,7 @@ std::vector<bool> blind_in(const Map& phase, const std::vector<CameraChoice>& ca
   }
   blind.resize(cameras.size());
   for (const Value& name : value->one_or_list()) {
-    const std::string wanted = name.text();
-    const auto found = std::find_if(cameras.begin(), cameras.end(),
-                                    [&](const CameraChoice& each) { return each.name == wanted; });
-    if (found == cameras.end()) name.fail_with_value("yes, no, or the name of a camera");
-    blind[static_cast<std::size_t>(found - cameras.begin())] = true;
+    blind[index_of(name, cameras, "yes, no, or the name of a camera")] = true;
   }
   return blind;
 }

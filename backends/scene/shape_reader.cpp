@@ -5,7 +5,6 @@
 #include <set>
 #include <system_error>
 
-#include <repel/base/setup_error.hpp>
 #include <repel/reduction/shape.hpp>
 #include <repel/scene/part_list.hpp>
 
@@ -58,16 +57,6 @@ Shape shape_of(const Map& map, std::string_view kind, const ShapeFile& shapes) {
   map.at("shape").fail_with_value("a shape that is made of sizes");
 }
 
-/// part_list_of(), with the line of `mesh` for what is wrong of the list as a whole.
-PartList checked_list(const Value& mesh, const std::string& mesh_path, const std::string& path) {
-  try {
-    return part_list_of(mesh_path, path);
-  } catch (const SetupError& error) {
-    if (error.line() > 0) throw;
-    mesh.fail(error.what());
-  }
-}
-
 /// The convex parts of a mesh, from the list that `parts` names or that lies beside the mesh.
 std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
   const Value& mesh = map.at("file");
@@ -80,19 +69,16 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
     mesh.fail("the mesh '" + mesh_path + "' has no convex parts yet: there is no file '" + path +
               "'; to have it: cover '" + mesh_path + "'");
   }
-  const PartList list = checked_list(mesh, mesh_path, path);
+  const PartList list = mesh.located([&] { return part_list_of(mesh_path, path); });
   shapes.part_lists.push_back(path);
   std::vector<Part> parts;
   for (const std::vector<Vec3>& points : list.parts) {
     count_hull(mesh, points.size(), shapes);
     std::string name = map.at("name").text();
     name.append(1, '/').append(std::to_string(parts.size() + 1));
-    try {
-      parts.push_back({name, Shape::hull(points, {.levels = 1}), "hull", pose_of(map), {}});
-    } catch (const SetupError& error) {
-      std::string text = name;
-      mesh.fail(text.append(" in '").append(path).append("': ").append(error.what()));
-    }
+    const Shape hull = mesh.located([&] { return Shape::hull(points, {.levels = 1}); },
+                                    name + " in '" + path + "': ");
+    parts.push_back({name, hull, "hull", pose_of(map), {}});
   }
   parts.front().gaps = list.gaps;
   return parts;
@@ -100,22 +86,17 @@ std::vector<Part> parts_of_mesh(const Map& map, const ShapeFile& shapes) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const Value& value, const Map& map,
-                           std::span<const std::string_view> keys, const ShapeFile& shapes) {
-  std::vector<std::string_view> common{"name", "shape", "position", "rpy"};
-  common.insert(common.end(), keys.begin(), keys.end());
+std::vector<Part> parts_of(const Value& value, const Map& map, const ShapeFile& shapes) {
   const std::string name = map.at("name").text();
   const std::string kind(map.word("shape"));
-  const auto sizes = size_keys(kind);
-  common.insert(common.end(), sizes.begin(), sizes.end());
-  map.allow(common);
+  std::vector<std::string_view> of_others{"size", "radius", "length",   "points",
+                                          "file", "parts",  "packages", "covers"};
+  for (const std::string_view own : size_keys(kind)) std::erase(of_others, own);
+  map.refuse(of_others);
   if (kind == "mesh") return parts_of_mesh(map, shapes);
-  try {
-    return {{name, shape_of(map, kind, shapes), kind, pose_of(map), {}}};
-  } catch (const SetupError& error) {
-    if (error.line() > 0) throw;
-    value.fail(kind + " '" + name + "': " + error.what());
-  }
+  const Shape shape =
+      value.located([&] { return shape_of(map, kind, shapes); }, kind + " '" + name + "': ");
+  return {{name, shape, kind, pose_of(map), {}}};
 }
 
 std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {
@@ -123,7 +104,7 @@ std::vector<Part> tool_of(const Value& value, const ShapeFile& shapes) {
   std::set<std::string> names;
   for (const Value& entry : value.list()) {
     const Map map(entry, grammar::tool_part());
-    for (Part& part : parts_of(entry, map, {}, shapes)) parts.push_back(std::move(part));
+    for (Part& part : parts_of(entry, map, shapes)) parts.push_back(std::move(part));
     require_new(names, map);
   }
   if (parts.empty()) value.fail("'tool' has no part; allowed: 1 or more");

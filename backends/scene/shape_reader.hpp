@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +21,7 @@ struct ShapeFile {
 };
 
 /// Reads the keys common to tool parts and obstacles: one part, or those of a mesh.
-/// @param keys further keys that are allowed
 [[nodiscard]] std::vector<Part> parts_of(const Value& value, const Map& map,
-                                         std::span<const std::string_view> keys,
                                          const ShapeFile& shapes);
 
 /// The parts of a `tool`.

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <repel/base/setup_error.hpp>
 #include <repel/network/elements/robot_end.hpp>
 
 namespace repel::scene {
@@ -185,16 +184,22 @@ Map::Map(const Value& value) : self_(value) {
 
 Map::Map(const Value& value, const Keys& keys) : Map(value) {
   keys_ = &keys;
-  std::vector<std::string_view> names;
-  for (const Key& key : keys) names.push_back(key.name);
-  allow(names);
+  refuse({});
 }
 
 Map Map::with(const Keys& keys) const {
   return {self_, keys};
 }
 
-void Map::allow(std::span<const std::string_view> keys) const {
+void Map::refuse(const std::vector<std::string_view>& keys) const {
+  std::vector<std::string_view> others;
+  for (const Key& key : *keys_) {
+    if (std::find(keys.begin(), keys.end(), key.name) == keys.end()) others.push_back(key.name);
+  }
+  allow(others);
+}
+
+void Map::allow(const std::vector<std::string_view>& keys) const {
   const auto& nodes = self_.node_->children;
   for (std::size_t i = 0; i < nodes.size(); i += 2) {
     const std::string& found = nodes[i]->text;

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <repel/base/setup_error.hpp>
 #include <repel/base/types.hpp>
 #include <repel/common/input_limits.hpp>
 
@@ -40,6 +41,16 @@ class Value {
   [[nodiscard]] int line() const noexcept { return line_; }
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail_with_value(const std::string& allowed) const;
+  /// What `make` returns. An error without a line that it throws fails here, behind `what`.
+  template <class Make>
+  auto located(const Make& make, const std::string& what = {}) const {
+    try {
+      return make();
+    } catch (const SetupError& error) {
+      if (error.line() > 0) throw;
+      fail(what + error.what());
+    }
+  }
 
   /// A non-empty scalar.
   [[nodiscard]] std::string text() const;
@@ -93,10 +104,9 @@ class Map {
   [[nodiscard]] Map with(const Keys& keys) const;
 
   /// @throws SetupError for a key that is not in `keys`, suggesting the nearest
-  void allow(std::span<const std::string_view> keys) const;
-  void allow(std::initializer_list<std::string_view> keys) const {
-    allow(std::span<const std::string_view>(keys.begin(), keys.size()));
-  }
+  void allow(const std::vector<std::string_view>& keys) const;
+  /// Of a map with keys: allows all but these. @throws SetupError likewise
+  void refuse(const std::vector<std::string_view>& keys) const;
 
   /// The value of `key`.
   ///

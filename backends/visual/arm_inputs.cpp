@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arm_inputs.hpp"
 
-#include <array>
 #include <string>
 
 #include <repel/network/elements/changing_scale.hpp>
@@ -12,9 +11,7 @@ namespace {
 using Json = nlohmann::json;
 using network::FixtureKind;
 using network::FixtureOptions;
-
-/// The words of a scene, as in `arm.compliant`.
-constexpr std::array<const char*, 6> directions{"x", "y", "z", "rx", "ry", "rz"};
+using network::Relief;
 
 /// The word of a scene for its shape.
 const char* shape_of(const FixtureOptions& fixture) {
@@ -72,13 +69,13 @@ bool is_on(const ArmInfo& arm, const network::HandInput& hand, std::size_t fixtu
 void write_compliant(const network::ReliefOptions& relief, std::int32_t compliant, JsonText& out) {
   const bool as_set_up = compliant < 0;
   out.name("compliant").open('[');
-  for (std::size_t i = 0; i < directions.size(); ++i) {
+  for (std::size_t i = 0; i < Relief::directions.size(); ++i) {
     const bool gives =
         as_set_up ? relief.compliant[i] : (compliant >> static_cast<int>(i) & 1) != 0;
-    if (gives) out.json(Json(directions[i]).dump());
+    if (gives) out.json(Json(Relief::directions[i]).dump());
   }
   const bool is_world = as_set_up ? relief.frame == network::ReliefFrame::world
-                                  : (compliant & network::Relief::world_bit) != 0;
+                                  : (compliant & Relief::world_bit) != 0;
   out.close(']').name("compliant_frame").json(is_world ? "\"world\"" : "\"tool\"");
 }
 
@@ -99,8 +96,8 @@ void add_inputs(const ArmInfo& arm, Json& json) {
   for (const FixtureOptions& fixture : arm.fixtures) {
     json["fixtures"].push_back(to_json(fixture));
   }
-  for (std::size_t i = 0; arm.relief && i < directions.size(); ++i) {
-    if (network::Relief::may_give(*arm.relief, i)) json["compliant"].push_back(directions[i]);
+  for (std::size_t i = 0; arm.relief && i < Relief::directions.size(); ++i) {
+    if (Relief::may_give(*arm.relief, i)) json["compliant"].push_back(Relief::directions[i]);
   }
   if (arm.has_scale) {
     json["scale"] = {network::ChangingScale::least, network::ChangingScale::most};

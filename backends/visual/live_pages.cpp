@@ -7,16 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/common/json_fields.hpp>
 #include <repel/visual/page_command.hpp>
-
-#include "message_fields.hpp"
 
 namespace repel::visual {
 namespace {
 
 using Json = nlohmann::json;
 using fields::number;
-using fields::out_of_range;
 using fields::text;
 using fields::vector;
 

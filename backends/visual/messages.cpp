@@ -19,45 +19,41 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json levels_of(const Shape& shape) {
-  Json levels = Json::array();
-  for (int i = 0; i < shape.levels(); ++i) {
-    const TriangleMesh mesh = mesh_of(shape, i);
-    Json vertices = Json::array();
-    Json triangles = Json::array();
-    for (const Vec3& p : mesh.vertices) {
-      for (const double x : p) vertices.push_back(rounded(x));
-    }
-    for (const auto& triangle : mesh.triangles) {
-      for (const int vertex : triangle) triangles.push_back(vertex);
-    }
-    // The depth of the first level is its rounding radius, which its mesh includes.
-    levels.push_back({{"depth_m", i == 0 ? 0.0 : rounded(shape.level(i).depth)},
-                      {"vertices", std::move(vertices)},
-                      {"triangles", std::move(triangles)}});
-  }
-  return levels;
-}
-
-/// In steps of 1e-5 m: many vertices, and nobody sees more.
-Json vertices_of(const TriangleMesh& mesh) {
+/// @param places decimal places of one: 1e6 for six
+Json vertices_of(const TriangleMesh& mesh, double places) {
   Json vertices = Json::array();
   for (const Vec3& p : mesh.vertices) {
-    for (const double x : p) vertices.push_back(std::round(1e5 * x) / 1e5);
+    for (const double x : p) vertices.push_back(std::round(places * x) / places);
   }
   return vertices;
 }
 
-Json to_json(const VisualInfo& info) {
+Json triangles_of(const TriangleMesh& mesh) {
   Json triangles = Json::array();
-  for (const auto& triangle : info.mesh.triangles) {
+  for (const auto& triangle : mesh.triangles) {
     for (const int vertex : triangle) triangles.push_back(vertex);
   }
+  return triangles;
+}
+
+Json levels_of(const Shape& shape) {
+  Json levels = Json::array();
+  for (int i = 0; i < shape.levels(); ++i) {
+    const TriangleMesh mesh = mesh_of(shape, i);
+    // The depth of the first level is its rounding radius, which its mesh includes.
+    levels.push_back({{"depth_m", i == 0 ? 0.0 : rounded(shape.level(i).depth)},
+                      {"vertices", vertices_of(mesh, 1e6)},
+                      {"triangles", triangles_of(mesh)}});
+  }
+  return levels;
+}
+
+Json to_json(const VisualInfo& info) {
   Json json{{"name", info.name},
             {"arm", info.arm},
             {"pose", visual::to_json(info.X_BV)},
-            {"vertices", vertices_of(info.mesh)},
-            {"triangles", std::move(triangles)}};
+            {"vertices", vertices_of(info.mesh, 1e5)},  // many, and nobody sees more
+            {"triangles", triangles_of(info.mesh)}};
   if (info.link < 0) {
     json["body"] = info.body.index;
   } else {

@@ -2,27 +2,22 @@
 #include "page_input.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include <repel/common/json_fields.hpp>
 #include <repel/network/elements/changing_scale.hpp>
 #include <repel/visual/page_command.hpp>
-
-#include "message_fields.hpp"
 
 namespace repel::visual {
 namespace {
 
 using Json = nlohmann::json;
-using fields::out_of_range;
-
-constexpr std::array<std::string_view, 6> directions{"x", "y", "z", "rx", "ry", "rz"};
+using network::Relief;
 
 /// Limits the length: no page can command more than the master of the scene can.
 Vec3 within(const Vec3& v, double most) {
@@ -41,10 +36,10 @@ std::optional<network::Hand> hand_of(const Json& message) {
 
 /// The texts of the list of that name; none: it is no list of texts.
 std::optional<std::vector<std::string>> texts(const Json& message, const char* name) {
-  const auto found = message.find(name);
-  if (found == message.end() || !found->is_array()) return std::nullopt;
+  const Json& entries = fields::member(message, name);
+  if (!entries.is_array()) return std::nullopt;
   std::vector<std::string> list;
-  for (const Json& entry : *found) {
+  for (const Json& entry : entries) {
     if (!entry.is_string()) return std::nullopt;
     list.push_back(entry.get<std::string>());
   }
@@ -113,8 +108,7 @@ std::string PageInput::move(const Json& message, Time now) {
   if (!hand) return no_hand;
   if (*hand == network::Hand::second && !arm_.has_second_handle)
     return "the network has no master in a second hand";
-  const auto clutch = message.find("clutch");
-  const bool held = clutch != message.end() && clutch->is_boolean() && clutch->get<bool>();
+  const bool held = fields::value_of<bool>(fields::member(message, "clutch")).value_or(false);
   Twist rates;
   if (held) rates = {within(*linear, arm_.max_speed), within(*angular, arm_.max_turn)};
   if (*hand == network::Hand::second) {
@@ -181,10 +175,10 @@ std::string PageInput::set_compliant(const Json& message) {
   if (!words) return "'directions' is no list of them";
   std::int32_t bits = 0;
   for (const std::string& word : *words) {
-    const auto found = std::find(directions.begin(), directions.end(), word);
-    if (found == directions.end()) return "a direction is x, y, z, rx, ry or rz";
-    const auto i = static_cast<std::size_t>(found - directions.begin());
-    if (!network::Relief::may_give(*arm_.relief, i))
+    const auto found = std::find(Relief::directions.begin(), Relief::directions.end(), word);
+    if (found == Relief::directions.end()) return "a direction is x, y, z, rx, ry or rz";
+    const auto i = static_cast<std::size_t>(found - Relief::directions.begin());
+    if (!Relief::may_give(*arm_.relief, i))
       return "this direction has neither stiffness nor damping";
     bits |= 1 << i;
   }
@@ -194,7 +188,7 @@ std::string PageInput::set_compliant(const Json& message) {
     if (frame != "world" && frame != "tool") return "a frame is world or tool";
     is_world = frame == "world";
   }
-  if (is_world) bits |= network::Relief::world_bit;
+  if (is_world) bits |= Relief::world_bit;
   input_.compliant = bits;
   return {};
 }

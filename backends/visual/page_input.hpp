@@ -13,6 +13,9 @@
 
 namespace repel::visual {
 
+/// The reason for refusing a message with such a number.
+inline constexpr const char* out_of_range = "a number is missing or out of range";
+
 /// Each message has a part of it: the rates of one hand, or switches. The control loop reads the
 /// newest input only, so each one repeats all before: switches stay, also from page to page, and
 /// the rates of a hand last as long as PageCommand::rest_after.

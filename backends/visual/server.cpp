@@ -17,6 +17,7 @@
 
 #include <repel/base/setup_error.hpp>
 #include <repel/common/complaint.hpp>
+#include <repel/common/json_fields.hpp>
 #include <repel/visual/server.hpp>
 
 #include "gate.hpp"
@@ -54,12 +55,8 @@ std::string_view view(beast::string_view text) {
 /// The secret in a message {"type": "secret", "secret": TEXT}.
 std::optional<std::string> secret_in(std::string_view text) {
   const auto message = nlohmann::json::parse(text, nullptr, false);
-  if (!message.is_object()) return std::nullopt;
-  const auto type = message.find("type");
-  const auto secret = message.find("secret");
-  if (type == message.end() || *type != "secret") return std::nullopt;
-  if (secret == message.end() || !secret->is_string()) return std::nullopt;
-  return secret->get<std::string>();
+  if (fields::text(message, "type") != "secret") return std::nullopt;
+  return fields::value_of<std::string>(fields::member(message, "secret"));
 }
 
 /// The URL by which a browser on this machine reaches the endpoint.

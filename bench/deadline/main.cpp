@@ -85,10 +85,7 @@ int run(const Arguments& arguments) {
   print_table(trials);
   std::putchar('\n');
   host::print_machine(host::describe_machine(host::granted(trials.front())), stdout);
-  if (json.wanted()) {
-    host::write(arguments.rates_hz.size() == 1 ? list.front() : list, json.stream());
-    json.close();
-  }
+  host::write(arguments.rates_hz.size() == 1 ? list.front() : list, json);
   if (html.wanted()) {
     write_page(trials, html.stream());
     html.close();

@@ -143,24 +143,19 @@ int run(const Arguments& arguments) {
       "sent to the page   %.0f kB/s\n",
       1e-3 * static_cast<double>(bytes) / (static_cast<double>(open.us.size()) / options.rate_hz));
   host::print_machine(result.machine, stdout);
-  if (json.wanted()) {
-    nlohmann::ordered_json report = {{"scene", scene.name},
-                                     {"rate_hz", options.rate_hz},
-                                     {"not_open",
-                                      {{"ticks", closed.us.size()},
-                                       {"p50_us", closed.percentile(0.5)},
-                                       {"p99_us", closed.percentile(0.99)},
-                                       {"max_us", closed.percentile(1.0)}}},
-                                     {"open",
-                                      {{"ticks", open.us.size()},
-                                       {"p50_us", open.percentile(0.5)},
-                                       {"p99_us", open.percentile(0.99)},
-                                       {"max_us", open.percentile(1.0)}}},
-                                     {"p99_ratio", ratio}};
-    report["machine"] = host::to_json(result.machine);
-    host::write(report, json.stream());
-    json.close();
-  }
+  const auto figures = [](Summary& times) -> nlohmann::ordered_json {
+    return {{"ticks", times.us.size()},
+            {"p50_us", times.percentile(0.5)},
+            {"p99_us", times.percentile(0.99)},
+            {"max_us", times.percentile(1.0)}};
+  };
+  host::write({{"scene", scene.name},
+               {"rate_hz", options.rate_hz},
+               {"not_open", figures(closed)},
+               {"open", figures(open)},
+               {"p99_ratio", ratio},
+               {"machine", host::to_json(result.machine)}},
+              json);
   return 0;
 }
 

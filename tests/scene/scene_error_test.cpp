@@ -155,7 +155,7 @@ TEST(SceneError, APassableLawNeedsALowCeilingAndOnlyItHasADepth) {
 
 TEST(SceneError, AWallIsHardOrSoftAndWhatMayBeEnteredIsSoft) {
   const std::string law = base_scene + "laws: {a: {hold: ";
-  expect_refused(law + "firm}}\n", 8, {"'hold' is 'firm'", "allowed: hard", "soft"});
+  expect_refused(law + "firm}}\n", 8, {"'hold' is 'firm'", "allowed: soft", "hard"});
   expect_refused(law + "hard, passable: yes, ceiling: 5 N}}\n", 8,
                  {"hold is hard for a passable body", "allowed: soft"});
 }

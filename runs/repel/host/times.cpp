@@ -5,6 +5,8 @@
 #include <cmath>
 #include <ostream>
 
+#include <repel/host/command_line.hpp>
+
 namespace repel::host {
 
 using nlohmann::ordered_json;
@@ -68,6 +70,12 @@ ordered_json known(std::int64_t count) {
 
 void write(const ordered_json& report, std::ostream& file) {
   file << report.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+}
+
+void write(const ordered_json& report, Output& file) {
+  if (!file.wanted()) return;
+  write(report, file.stream());
+  file.close();
 }
 
 void print_pairs(const RunTotals& t, int pairs, std::FILE* out) {

@@ -11,6 +11,8 @@
 
 namespace repel::host {
 
+class Output;
+
 /// p50, p99, p99_9 and max [us].
 [[nodiscard]] nlohmann::ordered_json percentiles(const DurationHistogram& times);
 
@@ -36,6 +38,8 @@ namespace repel::host {
 
 /// Writes a report. Bytes other than UTF-8 are replaced; numbers not finite become null.
 void write(const nlohmann::ordered_json& report, std::ostream& file);
+/// The same to a file of its own, if it is wanted, which is closed. @throws SetupError as it does
+void write(const nlohmann::ordered_json& report, Output& file);
 
 /// Prints how many pairs were near and evaluated, in one line.
 void print_pairs(const RunTotals& totals, int pairs, std::FILE* out);

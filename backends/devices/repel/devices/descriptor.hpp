@@ -3,8 +3,11 @@
 /// An owning file descriptor.
 #pragma once
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace repel::devices::detail {
@@ -25,6 +28,12 @@ class Descriptor {
   void close() noexcept {
     if (fd_ >= 0) ::close(fd_);
     fd_ = -1;
+  }
+  /// Waits for input, for at most `wait`, limited to 1 s; of no descriptor for exactly that time.
+  void wait(std::chrono::milliseconds wait) const noexcept {
+    pollfd watched{fd_, POLLIN, 0};
+    const auto milliseconds = std::clamp<std::chrono::milliseconds::rep>(wait.count(), 0, 1000);
+    (void)::poll(&watched, 1, static_cast<int>(milliseconds));
   }
   [[nodiscard]] int get() const noexcept { return fd_; }
   [[nodiscard]] bool open() const noexcept { return fd_ >= 0; }

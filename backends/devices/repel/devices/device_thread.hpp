@@ -41,10 +41,7 @@ class DeviceLink {
     if (period > 0.0) silent_for_ += period;
     if (silent_for_ > alive_for) {
       const std::uint64_t count = now_.count;
-      now_ = Measured{};
-      now_.operating_state = OperatingState::fault;
-      now_.silent = true;
-      now_.why = "the thread of the device does not answer";
+      now_ = Measured::of_lost("the thread of the device does not answer");
       now_.count = count;
     }
     return now_;

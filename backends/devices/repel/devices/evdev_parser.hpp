@@ -26,16 +26,13 @@ struct EvdevEvent {
 
 /// Splits the bytes into `input_event`s. An impossible time stamp invalidates the stream until
 /// `reset`.
-class EvdevParser {
+class EvdevParser : public detail::Records<sizeof(input_event)> {
  public:
-  static constexpr std::size_t event_size = sizeof(input_event);  ///< [bytes] of one event
-
   /// Passes every complete event to `use(const EvdevEvent&)`; keeps an incomplete one.
   /// @return false if the stream is invalid
   template <class Use>
   bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
-    if (broken_) return false;
-    broken_ = !records_.feed(bytes, [&](const auto& record) {
+    return split(bytes, [&](const Record& record) {
       input_event raw{};
       std::memcpy(&raw, record.data(), record.size());
       const auto seconds = static_cast<std::int64_t>(raw.input_event_sec);
@@ -46,24 +43,10 @@ class EvdevParser {
       use(EvdevEvent{time, raw.type, raw.code, raw.value});
       return true;
     });
-    return !broken_;
-  }
-
-  /// The stream is invalid, until `reset`.
-  [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// Bytes received of an incomplete event.
-  [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
-  /// For a new stream.
-  void reset() noexcept {
-    records_.clear();
-    broken_ = false;
   }
 
  private:
   static constexpr std::int64_t most_seconds = 1LL << 32;  // nanoseconds still fit
-
-  detail::Records<event_size> records_;
-  bool broken_ = false;
 };
 
 }  // namespace repel::devices

@@ -53,6 +53,23 @@ struct Measured {
   bool silent = false;                                       ///< sends nothing although it should
   const char* why = "no reading yet";  ///< static text, for the user; "" if all is well
   std::uint64_t count = 0;             ///< number of the reading; set by `DeviceThread`
+
+  /// Of a device that is gone or sends nothing. @param why static text
+  [[nodiscard]] static Measured of_lost(const char* why) noexcept {
+    Measured m;
+    m.operating_state = OperatingState::fault;
+    m.silent = true;
+    m.why = why;
+    return m;
+  }
+  /// At rest, of a device that sends.
+  [[nodiscard]] static Measured of_sound(bool clutch) noexcept {
+    Measured m;
+    m.operating_state = clutch ? OperatingState::enabled : OperatingState::paused;
+    m.clutch = clutch;
+    m.why = clutch ? "" : "the clutch is released";
+    return m;
+  }
 };
 
 /// Force feedback to the operator.

@@ -11,33 +11,46 @@
 
 namespace repel::devices::detail {
 
-/// Buffers an incomplete record until the rest arrives. Memory: one record.
+/// Buffers an incomplete event until the rest arrives. Memory: one event. An impossible event
+/// invalidates the stream until `reset`.
 template <std::size_t size>
 class Records {
  public:
-  /// Passes every complete record to `use`, which returns false to stop.
-  /// @return false if it did; the remaining bytes are lost
+  static constexpr std::size_t event_size = size;  ///< [bytes] of one event
+
+  /// The stream is invalid, until `reset`.
+  [[nodiscard]] bool broken() const noexcept { return broken_; }
+  /// Bytes received of an incomplete event.
+  [[nodiscard]] std::size_t held() const noexcept { return held_; }
+  /// For a new stream.
+  void reset() noexcept {
+    held_ = 0;
+    broken_ = false;
+  }
+
+ protected:
+  using Record = std::array<std::byte, size>;  ///< the bytes of one event
+
+  /// Passes every complete record to `use`, which returns whether it is possible.
+  /// @return false if the stream is invalid; the remaining bytes are lost
   template <class Use>
-  bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
-    while (!bytes.empty()) {
+  bool split(std::span<const std::byte> bytes, Use&& use) noexcept {
+    while (!broken_ && !bytes.empty()) {
       const std::size_t count = std::min(size - held_, bytes.size());
       std::memcpy(record_.data() + held_, bytes.data(), count);
       bytes = bytes.subspan(count);
       held_ += count;
       if (held_ < size) return true;
       held_ = 0;
-      if (!use(record_)) return false;
+      broken_ = !use(record_);
     }
-    return true;
+    return !broken_;
   }
 
-  /// Bytes received of an incomplete record.
-  [[nodiscard]] std::size_t held() const noexcept { return held_; }
-  void clear() noexcept { held_ = 0; }
-
  private:
-  std::array<std::byte, size> record_{};
+  Record record_{};
   std::size_t held_ = 0;
+  bool broken_ = false;
 };
 
 }  // namespace repel::devices::detail

@@ -43,9 +43,8 @@ struct SpacenavEvent {
 ///
 /// An impossible value invalidates the stream: the parser returns nothing until `reset`, as later
 /// bytes may be misaligned and look like motion.
-class SpacenavParser {
+class SpacenavParser : public detail::Records<8 * sizeof(std::int32_t)> {
  public:
-  static constexpr std::size_t event_size = 8 * sizeof(std::int32_t);  ///< [bytes] of one event
   static constexpr std::int32_t most_counts = 100000;  ///< largest plausible magnitude of an axis
   static constexpr std::int32_t most_buttons = 256;    ///< of one device
 
@@ -53,29 +52,15 @@ class SpacenavParser {
   /// @return false if the stream is invalid
   template <class Use>
   bool feed(std::span<const std::byte> bytes, Use&& use) noexcept {
-    if (broken_) return false;
-    broken_ = !records_.feed(bytes, [&](const Record& record) {
+    return split(bytes, [&](const Record& record) {
       SpacenavEvent event;
       if (!parse(record, event)) return false;
       use(static_cast<const SpacenavEvent&>(event));
       return true;
     });
-    return !broken_;
-  }
-
-  /// The stream is invalid, until `reset`.
-  [[nodiscard]] bool broken() const noexcept { return broken_; }
-  /// Bytes received of an incomplete event.
-  [[nodiscard]] std::size_t held() const noexcept { return records_.held(); }
-  /// For a new connection.
-  void reset() noexcept {
-    records_.clear();
-    broken_ = false;
   }
 
  private:
-  using Record = std::array<std::byte, event_size>;
-
   static bool parse(const Record& record, SpacenavEvent& event) noexcept {
     std::array<std::int32_t, 8> words{};
     std::memcpy(words.data(), record.data(), record.size());
@@ -96,9 +81,6 @@ class SpacenavParser {
         return words[0] >= 3 && words[0] <= 6;
     }
   }
-
-  detail::Records<event_size> records_;
-  bool broken_ = false;
 };
 
 }  // namespace repel::devices

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include <repel/base/field.hpp>
 #include <repel/network/elements/equivalent.hpp>
@@ -56,6 +57,8 @@ class Relief {
  public:
   /// A tool on both sides.
   static constexpr Traits traits{.left = Space::tool, .right = Space::tool};
+  /// The words of a scene for the directions, in their order.
+  static constexpr std::array<std::string_view, 6> directions{"x", "y", "z", "rx", "ry", "rz"};
   static constexpr double switching_time = 0.2;  ///< [s] of a direction; of a frame twice as long
   /// Of HandInput::compliant: in the axes of the world.
   static constexpr std::int32_t world_bit = 1 << 6;

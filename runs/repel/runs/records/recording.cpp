@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <repel/common/json_fields.hpp>
 #include <repel/common/text_file.hpp>
 #include <repel/record/mcap_reader.hpp>
 #include <repel/runs/records/mcap_names.hpp>
@@ -27,9 +28,9 @@ class Fields {
   Fields(const Json& json, const std::string& file) : json_(json), file_(file) {}
 
   [[nodiscard]] Fields at(const std::string& name) const {
-    const auto found = json_.find(name);
-    if (!json_.is_object() || found == json_.end()) bad(name.c_str());
-    return {*found, file_};
+    const Json& found = fields::member(json_, name.c_str());
+    if (found.is_discarded()) bad(name.c_str());
+    return {found, file_};
   }
   [[nodiscard]] bool has(const std::string& name) const { return json_.contains(name); }
   [[nodiscard]] Fields entry(std::size_t i) const {
@@ -39,23 +40,13 @@ class Fields {
   /// NaN for null: older recordings wrote it for numbers that are not finite.
   [[nodiscard]] double number() const {
     if (json_.is_null()) return std::numeric_limits<double>::quiet_NaN();
-    if (!json_.is_number()) bad("a number");
-    return json_.get<double>();
+    return as<double>("a number");
   }
-  [[nodiscard]] std::int64_t integer() const {
-    if (!json_.is_number_integer()) bad("a whole number");
-    return json_.get<std::int64_t>();
-  }
-  [[nodiscard]] bool yes() const {
-    if (!json_.is_boolean()) bad("true or false");
-    return json_.get<bool>();
-  }
+  [[nodiscard]] std::int64_t integer() const { return as<std::int64_t>("a whole number"); }
+  [[nodiscard]] bool yes() const { return as<bool>("true or false"); }
+  [[nodiscard]] std::string text() const { return as<std::string>("a text"); }
   [[nodiscard]] Vec3 vector() const {
     return {entry(0).number(), entry(1).number(), entry(2).number()};
-  }
-  [[nodiscard]] std::string text() const {
-    if (!json_.is_string()) bad("a text");
-    return json_.get<std::string>();
   }
   template <std::size_t N>
   void read(std::array<double, N>& values) const {
@@ -85,6 +76,12 @@ class Fields {
   }
 
  private:
+  template <class T>
+  [[nodiscard]] T as(const char* what) const {
+    const auto value = fields::value_of<T>(json_);
+    if (!value) bad(what);
+    return *value;
+  }
   [[noreturn]] void bad(const char* what) const {
     std::string text = "not a recording of this program: a message lacks ";
     text += what;
