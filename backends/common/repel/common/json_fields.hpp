@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The fields of JSON that others wrote. Only for parts with nlohmann-json; not installed.
+/// The fields of JSON that others wrote. For parts that link nlohmann-json.
 #pragma once
 
 #include <cmath>
