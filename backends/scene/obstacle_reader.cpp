@@ -3,7 +3,6 @@
 
 #include <set>
 
-
 #include "grammar.hpp"
 #include "pose_reader.hpp"
 
