@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <repel/network/elements/line.hpp>
@@ -14,6 +15,9 @@
 #include <repel/network/modules/multiplex.hpp>
 #include <repel/network/modules/six_axes.hpp>
 #include <repel/network/modules/torque_arm.hpp>
+
+#include "network_reader.hpp"
+#include "yaml.hpp"
 
 namespace repel::scene {
 namespace {
@@ -121,6 +125,12 @@ network::LineBounds bounds_of(const Scene& scene, const ArmSetup& setup) {
   return bounds;
 }
 
+network::Plan planned(const std::vector<Module>& modules, const ArmModel& arm) {
+  network::Plan plan;
+  for (const Module& module : modules) plan.add(module.name, module.make(arm), module.to);
+  return plan;
+}
+
 void require_modules(const Scene& scene, const ArmSetup& setup) {
   if (!(scene.obstacles.empty() && scene.partners.empty()) &&
       !brings(setup, network::Walls::tool)) {
@@ -144,16 +154,17 @@ bool feels_links(const ArmSetup& setup) {
 
 network::Plan plan_network(const Scene& scene, const ArmSetup& setup, const ArmModel& arm) {
   require_modules(scene, setup);
-  network::Plan plan;
   try {
-    for (const Module& module : setup.network.modules) {
-      plan.add(module.name, module.make(arm), module.to);
-    }
+    return planned(setup.network.modules, arm);
   } catch (const SetupError& error) {
     if (!error.file().empty()) throw;  // a value of the file that does not suit this arm
     throw located(scene, SetupError(std::string("network: ") + error.what()));
   }
-  return plan;
+}
+
+network::Plan plan_network(std::string_view list, const ArmModel& arm) {
+  const Value value = Value::document(list, "");
+  return planned(detail::network_of(&value, ModuleKinds()).modules, arm);
 }
 
 network::Plan plan_half(const Scene& scene, const ArmSetup& setup, const ArmModel& arm,

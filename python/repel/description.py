@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -81,13 +81,12 @@ class Capacities:
 
 def _check_all(name: str, values: Any, kind: type, instead: str = "") -> None:
     """Refuses what is no sequence of that kind, before it is taken for one."""
+    expected = "dict" if kind is Mapping else f"repel.{kind.__name__}"
     if isinstance(values, (str, bytes, os.PathLike)) or not isinstance(values, Sequence):
-        raise TypeError(f"{name}: expected a sequence of repel.{kind.__name__}, got "
-                        f"{values!r}{instead}")
+        raise TypeError(f"{name}: expected a sequence of {expected}, got {values!r}{instead}")
     for i, value in enumerate(values):
         if not isinstance(value, kind):
-            raise TypeError(f"{name}[{i}]: expected a repel.{kind.__name__}, got "
-                            f"{type(value).__name__}")
+            raise TypeError(f"{name}[{i}]: expected a {expected}, got {type(value).__name__}")
 
 
 @dataclass
@@ -104,7 +103,7 @@ class Admittance:
 
 @dataclass
 class Arm:
-    """An arm, with the default network between operator and joints."""
+    """An arm, and the network between operator and joints."""
 
     links: Sequence[Link]
     kinematics: Kinematics | None = None  #: none: computed from the links
@@ -119,12 +118,17 @@ class Arm:
     tool_speed: float = 0.25  #: [m/s] up to which the operator may drive the tool
     drive_delay: float = 0.0  #: [ticks] from a torque to its effect
     has_brakes: bool = False
+    #: The modules from the operator to the joints, each as under `network:` of a scene:
+    #: {"module": "kbb2", "stiffness": "3 N/mm"}. None: the default network.
+    network: Sequence[Mapping[str, Any]] | None = None
     admittance: Admittance | None = None  #: it takes the positions or rates of a Tick, not torques
 
     def __post_init__(self) -> None:
         _check_all("links", self.links, Link,
                    "; the arm of a URDF file is repel.Arm.from_urdf(path)")
         _check_all("parts", self.parts, Part)
+        if self.network is not None:
+            _check_all("network", self.network, Mapping)
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], *, tip: str = "",

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <repel/cell/cell.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include <nanobind/nanobind.h>
@@ -37,10 +40,25 @@ std::unique_ptr<Cell> built(CellDescription description, Trouble& trouble) {
 OwnReadings::OwnReadings(nb::handle positions, nb::handle rates, std::size_t joints)
     : q(numbers_of(positions, "q", joints)), v(numbers_of(rates, "v", joints)) {}
 
-ArmReadings OwnReadings::readings(bool homed) const {
-  ArmReadings all{q, v};
-  all.homed = homed;
-  return all;
+void OwnReadings::add(nb::handle sensor, const std::string& drive) {
+  if (!sensor.is_none()) {
+    const std::vector<double> six = numbers_of(sensor, "wrench", 6);
+    wrench = Wrench{{six[0], six[1], six[2]}, {six[3], six[4], six[5]}};
+  }
+  static constexpr std::pair<std::string_view, ArmState> states[] = {
+      {"enabled", ArmState::enabled},
+      {"disabled", ArmState::disabled},
+      {"stopped", ArmState::stopped}};
+  const auto* const found = std::find_if(std::begin(states), std::end(states),
+                                         [&](const auto& each) { return each.first == drive; });
+  if (found == std::end(states)) {
+    throw SetupError("state is '" + drive + "'; allowed: enabled, disabled, stopped");
+  }
+  state = found->second;
+}
+
+ArmReadings OwnReadings::readings() const {
+  return {.q = q, .v = v, .state = state, .wrench = wrench, .homed = homed};
 }
 
 OwnCell::OwnCell(OwnDescription description, Trouble trouble)
@@ -57,7 +75,7 @@ OwnCell::OwnCell(OwnDescription description, Trouble trouble)
 Tick OwnCell::tick_of(std::size_t arm, const TickRecord& record, const OwnReadings& own) {
   Tick tick{record, names_[arm]};
   if (auto& end = ends_[arm]) {
-    end->step(own.readings(false), record.torques, record.brakes);
+    end->step(own.readings(), record.torques, record.brakes);
     tick.positions.assign(end->positions().begin(), end->positions().end());
     tick.rates.assign(end->rates().begin(), end->rates().end());
   }
@@ -75,17 +93,20 @@ std::size_t OwnCell::checked_arm(int arm) const {
 }
 
 Tick OwnCell::step(nb::handle q, nb::handle v, const network::Command& hands,
-                   std::optional<std::int64_t> now, bool homed) {
+                   std::optional<std::int64_t> now, bool homed, nb::handle wrench,
+                   const std::string& state) {
   if (cell_->arms() != 1) {
     throw SetupError("step is for a cell with one arm; allowed: sense, then act");
   }
   const InUse in_use(is_in_use_);
-  const OwnReadings own(q, v, names_.front()->joints);
+  OwnReadings own(q, v, names_.front()->joints);
+  own.add(wrench, state);
+  own.homed = homed;
   const TickRecord* record = nullptr;
   {
     const auto time = time_of(now);
     const Released others_go_on;
-    record = &cell_->step(own.readings(homed), hands, time);
+    record = &cell_->step(own.readings(), hands, time);
   }
   raise(trouble_);
   return tick_of(0, *record, own);
@@ -95,20 +116,25 @@ void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> no
   const InUse in_use(is_in_use_);
   if (nb::len(readings) != cell_->arms()) {
     throw nb::value_error(("readings: expected " + std::to_string(cell_->arms()) +
-                           " pairs (q, v), got " + std::to_string(nb::len(readings)))
+                           " of (q, v), got " + std::to_string(nb::len(readings)))
                               .c_str());
   }
   std::vector<OwnReadings> own;
   for (std::size_t arm = 0; arm < cell_->arms(); ++arm) {
     const nb::object each = readings[arm];
-    if (!nb::isinstance<nb::sequence>(each) || nb::len(each) != 2) {
-      throw nb::type_error("readings: expected a pair (q, v) for each arm");
+    const std::size_t count = nb::isinstance<nb::sequence>(each) ? nb::len(each) : 0;
+    if (count < 2 || count > 4) {
+      throw nb::type_error(
+          "readings: expected (q, v), (q, v, wrench) or (q, v, wrench, state) for each arm");
     }
-    own.emplace_back(each[0], each[1], names_[arm]->joints);
+    OwnReadings& reading = own.emplace_back(each[0], each[1], names_[arm]->joints);
+    reading.add(count > 2 ? nb::object(each[2]) : nb::none(),
+                count > 3 ? nb::cast<std::string>(each[3]) : "enabled");
+    reading.homed = homed;
   }
   std::vector<ArmReadings> all;
   all.reserve(own.size());
-  for (const OwnReadings& each : own) all.push_back(each.readings(homed));
+  for (const OwnReadings& each : own) all.push_back(each.readings());
   {
     const auto time = time_of(now);
     const Released others_go_on;
@@ -155,6 +181,11 @@ StartInside start_inside_of(const std::string& name) {
   if (name == "push_out") return StartInside::push_out;
   if (name == "allow") return StartInside::allow;
   throw SetupError("start_inside is '" + name + "'; allowed: refuse, push_out, allow");
+}
+
+CoprocessorMode mode_of(const std::string& name) {
+  if (const auto mode = coprocessor_mode_named(name)) return *mode;
+  throw SetupError("mode is '" + name + "'; allowed: together, beside");
 }
 
 int traverse(PyObject* self, visitproc visit, void* arg) {
@@ -226,42 +257,54 @@ void bind_cell(nb::module_& m) {
   cell.def(
           "__init__",
           [](OwnCell* self, double rate_hz, nb::handle arms, nb::handle obstacles,
-             const std::string& gain_check, const std::string& start_inside, nb::handle limits) {
+             const std::string& gain_check, const std::string& start_inside, nb::handle limits,
+             const std::string& measure, int threads, const std::string& mode) {
             const Trouble trouble = std::make_shared<std::optional<nb::python_error>>();
             OwnDescription description = described(rate_hz, arms, obstacles, trouble);
             description.cell.gain_check = gain_check_of(gain_check);
             description.cell.start_inside = start_inside_of(start_inside);
             description.cell.limits = capacities_of(limits);
+            description.cell.measure = measure_of(measure);
+            description.cell.coprocessor.threads =
+                static_cast<int>(checked("threads", threads, 0.0, 64.0, ""));
+            description.cell.coprocessor.mode = mode_of(mode);
             new (self) OwnCell(std::move(description), trouble);
           },
           nb::kw_only(), nb::arg("rate_hz"), nb::arg("arms"),
           nb::arg("obstacles") = nb::make_tuple(), nb::arg("gain_check") = "error",
           nb::arg("start_inside") = "refuse", nb::arg("limits") = nb::none(),
+          nb::arg("measure") = "deepest_point", nb::arg("threads") = 0,
+          nb::arg("mode") = "together",
           nb::sig(
               "def __init__(self, *, rate_hz: float, arms: collections.abc.Sequence[repel."
               "Arm], obstacles: collections.abc.Sequence[repel.Obstacle] = (), gain_check: str "
-              "= 'error', start_inside: str = 'refuse', limits: repel.Capacities | None = None) "
-              "-> None"),
+              "= 'error', start_inside: str = 'refuse', limits: repel.Capacities | None = None, "
+              "measure: str = 'deepest_point', threads: int = 0, mode: str = 'together') -> None"),
           "rate_hz [Hz] of the tick, 1 to 1e5. gain_check of a wall too stiff for it: error, or "
           "warning (see `warnings`). start_inside: what becomes of an arm that starts in an "
           "obstacle, refuse, push_out (slowly) or allow. limits: how much the cell can hold; none: "
-          "Capacities(). Runs every check; raises SetupError.")
+          "Capacities(). measure of an overlap: see QueryOptions. threads of the coprocessor, "
+          "besides the caller, and their mode: together, which share the pairs of a tick, or "
+          "beside, whose answers are of a tick before. Runs every check; raises SetupError.")
       .def("step", &OwnCell::step, nb::arg("q"), nb::arg("v"), nb::arg("command"),
-           nb::arg("now") = nb::none(), nb::arg("homed") = false,
+           nb::arg("now") = nb::none(), nb::arg("homed") = false, nb::kw_only(),
+           nb::arg("wrench") = nb::none(), nb::arg("state") = "enabled",
            nb::sig("def step(self, q: numpy.typing.ArrayLike, v: numpy.typing.ArrayLike, command: "
-                   "Command, now: int | None = None, homed: bool = False) -> Tick"),
+                   "Command, now: int | None = None, homed: bool = False, *, wrench: "
+                   "numpy.typing.ArrayLike | None = None, state: str = 'enabled') -> Tick"),
            "One tick of a cell with one arm: joint positions q [rad] or [m] and rates v (joints,), "
            "the command of the operator, and the due time `now` [ns], above 0 and growing from "
            "tick to tick; without it, one period after the last. What is not finite is a fault of "
            "the tick, not an error. homed: the positions are those of the arm, by a reference "
-           "beside its encoders; a joint that was lost is believed then.")
+           "beside its encoders; a joint that was lost is believed then. wrench [N, N m] (6,): of "
+           "a force sensor that carries the tool, on the tool, about its origin and in its axes, "
+           "for the module force_sensor. state of the drive: enabled, disabled or stopped.")
       .def("sense", &OwnCell::sense, nb::arg("readings"), nb::arg("now") = nb::none(),
            nb::arg("homed") = false,
-           nb::sig("def sense(self, readings: collections.abc.Sequence[tuple[numpy.typing."
-                   "ArrayLike, numpy.typing.ArrayLike]], now: int | None = None, homed: bool = "
-                   "False) -> "
-                   "None"),
-           "The first half of a tick: a pair (q, v) for each arm. homed: see `step`, of all arms.")
+           nb::sig("def sense(self, readings: collections.abc.Sequence[tuple[typing.Any, ...]], "
+                   "now: int | None = None, homed: bool = False) -> None"),
+           "The first half of a tick: for each arm (q, v), (q, v, wrench) or (q, v, wrench, "
+           "state), with the wrench or None. See `step`; homed is of all arms.")
       .def("act", &OwnCell::act, nb::arg("commands"),
            "The second half of a tick: a command for each arm. Returns a Tick for each.");
   bind_questions(cell);

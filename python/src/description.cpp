@@ -9,6 +9,9 @@
 #include <repel/base/setup_error.hpp>
 #include <repel/cell/admittance.hpp>
 #include <repel/world/kinematics.hpp>
+#ifdef REPEL_PYTHON_SCENES
+#include <repel/scene/build_network.hpp>
+#endif
 
 #include "arrays.hpp"
 
@@ -83,6 +86,17 @@ AdmittanceOptions admittance_of(nb::handle from) {
   return options;
 }
 
+/// The network of an arm from the list of its modules, as Python has it.
+network::Plan network_of(nb::handle list, const ArmModel& model) {
+#ifdef REPEL_PYTHON_SCENES
+  const nb::object text = nb::module_::import_("json").attr("dumps")(list, nb::arg("indent") = 1);
+  return scene::plan_network(nb::cast<std::string>(text), model);
+#else
+  (void)list, (void)model;
+  throw SetupError("networks of chosen modules need the part of scenes, which this build lacks");
+#endif
+}
+
 ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKinematics*>& own) {
   ArmDescription arm;
   arm.model = arm_model_of(from);
@@ -99,6 +113,9 @@ ArmDescription arm_of(nb::handle from, const Trouble& trouble, std::vector<OwnKi
   arm.options.has_brakes = nb::cast<bool>(from.attr("has_brakes"));
   for (nb::handle pair : from.attr("may_touch")) {
     arm.may_touch.push_back(nb::cast<std::pair<int, int>>(pair));
+  }
+  if (const nb::object network = from.attr("network"); !network.is_none()) {
+    arm.network = network_of(network, arm.model);
   }
   arm.kinematics = kinematics_of(from, arm.model, trouble, own);
   return arm;

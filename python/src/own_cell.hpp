@@ -24,13 +24,19 @@ namespace repel::python {
 
 /// What an arm reports; the numbers live here.
 struct OwnReadings {
-  std::vector<double> q;  ///< [rad] or [m]
-  std::vector<double> v;  ///< [rad/s] or [m/s]
+  std::vector<double> q;               ///< [rad] or [m]
+  std::vector<double> v;               ///< [rad/s] or [m/s]
+  std::optional<Wrench> wrench;        ///< [N, N m] see ArmReadings
+  ArmState state = ArmState::enabled;  ///< of its drive
+  bool homed = false;                  ///< see ArmReadings
 
   /// @throws the error of Python for numbers of another shape
   OwnReadings(nb::handle positions, nb::handle rates, std::size_t joints);
-  /// Refers to this one. @param homed see ArmReadings
-  [[nodiscard]] ArmReadings readings(bool homed) const;
+  /// @param sensor six numbers, or none @param drive enabled, disabled or stopped
+  /// @throws the error of Python for another shape, SetupError for another word
+  void add(nb::handle sensor, const std::string& drive);
+  /// Refers to this one.
+  [[nodiscard]] ArmReadings readings() const;
 };
 
 /// A cell, with the kinematics that are written in Python and the names of its records.
@@ -41,8 +47,10 @@ class OwnCell {
 
   /// One tick of a cell with one arm. @param now [ns] above 0; none: one period after the last
   [[nodiscard]] Tick step(nb::handle q, nb::handle v, const network::Command& hands,
-                          std::optional<std::int64_t> now, bool homed);
-  /// The two halves of a tick. @param readings a pair (q, v) for each arm
+                          std::optional<std::int64_t> now, bool homed, nb::handle wrench,
+                          const std::string& state);
+  /// The two halves of a tick. @param readings (q, v), (q, v, wrench) or (q, v, wrench, state) for
+  /// each arm
   void sense(const nb::sequence& readings, std::optional<std::int64_t> now, bool homed);
   [[nodiscard]] std::vector<Tick> act(const std::vector<network::Command>& hands);
 

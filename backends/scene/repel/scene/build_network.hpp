@@ -3,6 +3,8 @@
 /// From the network that a scene file lists to one that runs.
 #pragma once
 
+#include <string_view>
+
 #include <repel/base/setup_error.hpp>
 #include <repel/network/network.hpp>
 #include <repel/network/plan.hpp>
@@ -19,6 +21,10 @@ namespace repel::scene {
 /// @throws SetupError naming the file, if the plan lacks a module that the scene requires
 [[nodiscard]] network::Plan plan_network(const Scene& scene, const ArmSetup& setup,
                                          const ArmModel& arm);
+
+/// The plan of a network that a text in YAML lists, as scene files do under `network:`, for an arm.
+/// @throws SetupError naming the line of the text and what is wrong in it
+[[nodiscard]] network::Plan plan_network(std::string_view list, const ArmModel& arm);
 
 /// A network that is cut at its line, for two programs: the half of one side, whose end of the line
 /// is a remote one.

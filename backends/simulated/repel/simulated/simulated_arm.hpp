@@ -50,9 +50,8 @@ void require_state(const ArmModel& model, std::span<const double> q, std::span<c
 /// The positions in which an arm starts: zero, or the joint limit nearest to it [rad] or [m].
 [[nodiscard]] std::vector<double> start_of(const ArmModel& model);
 
-/// The equations of motion of one arm, as an engine solves them. A new engine is a class derived
-/// from this, and one from SimulatedArm that constructs it. Spans have one entry per link, base
-/// outward.
+/// The equations of motion of one arm, as an engine solves them. A new engine derives from this
+/// class, and its arm from SimulatedArm. Spans have one entry per link, base outward.
 class ArmEngine {
  public:
   /// @param model of the arm; its limits are those of a reset
@@ -86,7 +85,7 @@ class ArmEngine {
   ContactTally contacts_;
 };
 
-/// An arm that an engine moves, with a drive and brakes. Deterministic: the same calls give bitwise
+/// An arm with a drive and brakes, moved by an engine. Deterministic: the same calls give bitwise
 /// the same motion. One thread at a time. A moved-from arm may only be assigned to or destroyed.
 class SimulatedArm : public TorqueDrivenArm {
  public:
@@ -102,8 +101,8 @@ class SimulatedArm : public TorqueDrivenArm {
   /// finite or more than the engine can be given counts as zero and sets a fault.
   void set_torques(std::span<const double> torques) noexcept override;
 
-  /// Advances the arm by `period` [s], which does nothing but set a fault unless it is finite and
-  /// positive. Cost grows with substeps x links^3.
+  /// Advances the arm by `period` [s]. A period that is not finite and positive does nothing and
+  /// sets a fault. Cost grows with substeps x links^3.
   void step(double period) noexcept override;
 
   /// Enables the arm: torques act and the brakes are off. This is the initial state.
