@@ -116,7 +116,7 @@ void OwnCell::sense(const nb::sequence& readings, std::optional<std::int64_t> no
   const InUse in_use(is_in_use_);
   if (nb::len(readings) != cell_->arms()) {
     throw nb::value_error(("readings: expected " + std::to_string(cell_->arms()) +
-                           " of (q, v), got " + std::to_string(nb::len(readings)))
+                           ", one for each arm, got " + std::to_string(nb::len(readings)))
                               .c_str());
   }
   std::vector<OwnReadings> own;

@@ -129,7 +129,7 @@ def test_two_halves_make_a_tick():
     with pytest.raises(ValueError, match="commands: expected 1"):
         halves.sense([(q, v)])
         halves.act([])
-    with pytest.raises(ValueError, match=r"readings: expected 1 pairs \(q, v\), got 2"):
+    with pytest.raises(ValueError, match=r"readings: expected 1, one for each arm, got 2"):
         halves.sense([(q, v), (q, v)])
 
 
