@@ -14,7 +14,7 @@
 
 namespace repel::fields {
 
-using Json = nlohmann::json;
+using Json = nlohmann::json;  ///< of what others wrote
 
 /// What stands under that name; discarded if `object` is no object, or has no such name.
 inline const Json& member(const Json& object, const char* name) {
