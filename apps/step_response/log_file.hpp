@@ -29,7 +29,7 @@ struct PositionLog {
 };
 
 /// Reads a log. Columns are divided by commas, semicolons, tabs or blanks; others are ignored.
-/// @param rate [Hz] of the lines; 0: by the column of times, which must be even
+/// @param rate [Hz] of the lines; 0: by the column of times. The times must be even
 /// @throws SetupError naming file and line for what is missing or is no number
 [[nodiscard]] PositionLog read_position_log(const std::string& path, const LogColumns& columns,
                                             double rate);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The fields of JSON that others wrote. For parts that link nlohmann-json.
+/// Checked fields of untrusted JSON. For parts that link nlohmann-json.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace repel::fields {
 
-using Json = nlohmann::json;  ///< of what others wrote
+using Json = nlohmann::json;  ///< untrusted
 
 /// What stands under that name; discarded if `object` is no object, or has no such name.
 inline const Json& member(const Json& object, const char* name) {

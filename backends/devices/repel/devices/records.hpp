@@ -31,7 +31,7 @@ class Records {
  protected:
   using Record = std::array<std::byte, size>;  ///< the bytes of one event
 
-  /// Passes every complete record to `use`, which returns whether it is possible.
+  /// Passes every complete record to `use`. It returns whether the record is valid.
   /// @return false if the stream is invalid; the remaining bytes are lost
   template <class Use>
   bool split(std::span<const std::byte> bytes, Use&& use) noexcept {
