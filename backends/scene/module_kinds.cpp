@@ -31,7 +31,7 @@ ReadModule made_of(const Options& options, network::Module (*from)(const Options
 }
 
 /// A module of which only the fields of its options are read.
-/// @param more keys, which others read
+/// @param more keys read elsewhere
 template <class M, class Options>
 ModuleKind kind_of_fields(std::string_view word, const Keys& more = {}) {
   const auto read = [](const Map& map) {

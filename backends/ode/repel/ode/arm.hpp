@@ -14,9 +14,8 @@ namespace repel::ode {
 using ArmOptions = SimulationOptions;  ///< as of every simulated arm
 using ArmFaults = SimulationFaults;    ///< as of every simulated arm
 
-/// Each link is a free body held by its joint, so the links drift apart by the constraint error of
-/// a sub-step, which decreases with its length. A step allocates. A torque above 1e9 counts as
-/// none.
+/// Each link is a free body held by its joint. The links drift apart by the constraint error of a
+/// sub-step; shorter sub-steps drift less. A step allocates. A torque above 1e9 counts as zero.
 class Arm final : public SimulatedArm {
  public:
   /// @param parts collision parts on links, and obstacles; each of the former is tested against
