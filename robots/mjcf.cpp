@@ -119,18 +119,15 @@ class MjcfGathering {
 
   [[nodiscard]] MjcfArm arm() const {
     require_bodies_and_joints_alone();
+    constexpr int first_with_parts = 1;  // what stands in the world is around the arm
     MjcfArm arm;
+    arm.bodies = bodies(first_with_parts);
     arm.name = m_.names;  // the name of the model is the first
     if ((m_.opt.disableflags & mjDSBL_GRAVITY) == 0) {
       arm.gravity_W = Eigen::Map<const Vec3>(m_.opt.gravity);
     }
-    for (int i = 0; i < m_.nbody; ++i) arm.bodies.push_back(body(i));
-    for (int i = 0; i < m_.njnt; ++i) at(arm, m_.jnt_bodyid[i]).joints.push_back(joint(i));
-    // What stands in the world is around the arm.
-    for (int i = 0; i < m_.ngeom; ++i) {
-      if (m_.geom_bodyid[i] == 0 || !touches(i)) continue;
-      MjcfBody& body = at(arm, m_.geom_bodyid[i]);
-      body.parts.push_back(part(i, body));
+    for (int i = 0; i < m_.njnt; ++i) {
+      at(arm.bodies, m_.jnt_bodyid[i]).joints.push_back(joint(i));
     }
     for (int i = 0; i < m_.nsite; ++i) {
       arm.sites.push_back({name_of(mjOBJ_SITE, i, "site"), m_.site_bodyid[i],
@@ -143,8 +140,26 @@ class MjcfGathering {
     return arm;
   }
 
+  /// Bodies without their joints, and the parts of those from `first_with_parts` on.
+  [[nodiscard]] std::vector<MjcfBody> bodies(int first_with_parts) const {
+    if (static_cast<std::size_t>(m_.nbody) > detail::most_urdf_links) {
+      refuse("the file has " + std::to_string(m_.nbody) + " bodies",
+             "up to " + std::to_string(detail::most_urdf_links));
+    }
+    std::vector<MjcfBody> all;
+    for (int i = 0; i < m_.nbody; ++i) all.push_back(body(i));
+    for (int i = 0; i < m_.ngeom; ++i) {
+      if (m_.geom_bodyid[i] < first_with_parts || !touches(i)) continue;
+      MjcfBody& body = at(all, m_.geom_bodyid[i]);
+      body.parts.push_back(part(i, body));
+    }
+    return all;
+  }
+
  private:
-  static MjcfBody& at(MjcfArm& arm, int body) { return arm.bodies[static_cast<std::size_t>(body)]; }
+  static MjcfBody& at(std::vector<MjcfBody>& bodies, int body) {
+    return bodies[static_cast<std::size_t>(body)];
+  }
 
   [[nodiscard]] std::string name_of(mjtObj type, int id, const std::string& kind) const {
     const char* const name = mj_id2name(&m_, type, id);
@@ -164,10 +179,6 @@ class MjcfGathering {
     for (int i = 1; i < m_.nbody; ++i) {
       if (m_.body_mocapid[i] < 0) continue;
       refuse("body '" + name_of(mjOBJ_BODY, i, "body") + "' is a mocap body", alone);
-    }
-    if (static_cast<std::size_t>(m_.nbody) > detail::most_urdf_links) {
-      refuse("the file has " + std::to_string(m_.nbody) + " bodies",
-             "up to " + std::to_string(detail::most_urdf_links));
     }
   }
 
@@ -496,8 +507,8 @@ MjcfArm unpacked(const std::string& bytes) {
   return arm;
 }
 
-/// What the child process does.
-std::string mjcf_in(const std::string& path) {
+/// What the child process does: `gather` chooses.
+std::string mjcf_in(const std::string& path, MjcfArm (*gather)(const MjcfGathering&)) {
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
   mju_user_warning = [](const char*) {};
   if (mj_version() != mjVERSION_HEADER) {  // as where a program has loaded another one before
@@ -508,7 +519,21 @@ std::string mjcf_in(const std::string& path) {
   char message[1000] = "";
   const MjcfModel model(mj_loadXML(path.c_str(), nullptr, message, sizeof message));
   if (!model) fail_as(message, path);
-  return packed(MjcfGathering(*model, path).arm());
+  return packed(gather(MjcfGathering(*model, path)));
+}
+
+/// What `gather` finds in the file at `path`, by a child process.
+MjcfArm gathered(const std::string& path, MjcfArm (*gather)(const MjcfGathering&)) {
+  detail::require_root(path, "mujoco");  // MuJoCo would take a URDF file too, and change it
+  constexpr detail::ChildLimits limits{.seconds = 10, .memory = std::size_t{1} << 30};
+  std::string bytes;
+  try {
+    bytes = detail::result_of_child([&] { return mjcf_in(path, gather); }, limits);
+  } catch (const SetupError& error) {
+    if (!error.file().empty()) throw;
+    throw SetupError("the file, with all that it includes, " + std::string(error.what()), path);
+  }
+  return unpacked(bytes);
 }
 
 /// Makes a robot of what was read.
@@ -763,27 +788,51 @@ class MjcfBuilder {
 }  // namespace
 
 Robot load_mjcf_arm(const std::string& path, const MjcfOptions& options) {
-  detail::require_root(path, "mujoco");  // MuJoCo would take a URDF file too, and change it
-  constexpr detail::ChildLimits limits{.seconds = 10, .memory = std::size_t{1} << 30};
-  std::string bytes;
-  try {
-    bytes = detail::result_of_child([&] { return mjcf_in(path); }, limits);
-  } catch (const SetupError& error) {
-    if (!error.file().empty()) throw;
-    throw SetupError("the file, with all that it includes, " + std::string(error.what()), path);
+  const MjcfArm arm = gathered(path, [](const MjcfGathering& from) { return from.arm(); });
+  return MjcfBuilder(arm, options, path).take();
+}
+
+std::vector<RobotPart> load_mjcf_parts(const std::string& path) {
+  const MjcfArm found = gathered(path, [](const MjcfGathering& from) {
+    MjcfArm all;
+    all.bodies = from.bodies(0);
+    return all;
+  });
+  std::vector<RobotPart> parts;
+  std::vector<Pose> X_WB;
+  for (const MjcfBody& body : found.bodies) {
+    X_WB.push_back(X_WB.empty() ? Pose::Identity()
+                                : X_WB[static_cast<std::size_t>(body.parent)] * body.X_PB);
+    for (RobotPart part : body.parts) {
+      part.in_link = body.name;
+      part.X_LP = X_WB.back() * part.X_LP;
+      parts.push_back(std::move(part));
+    }
   }
-  return MjcfBuilder(unpacked(bytes), options, path).take();
+  return parts;
 }
 
 bool reads_mjcf() noexcept {
   return true;
 }
 #else
-Robot load_mjcf_arm(const std::string& path, const MjcfOptions&) {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path) {
   throw SetupError(
       "MJCF files cannot be read, repel is built without MuJoCo; to have it: apt-get install "
       "libmujoco-dev, and build again",
       path);
+}
+
+}  // namespace
+
+Robot load_mjcf_arm(const std::string& path, const MjcfOptions&) {
+  refuse(path);
+}
+
+std::vector<RobotPart> load_mjcf_parts(const std::string& path) {
+  refuse(path);
 }
 
 bool reads_mjcf() noexcept {

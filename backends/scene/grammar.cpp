@@ -160,7 +160,7 @@ const Keys& motion() {
 const Keys& obstacle() {
   static const Keys keys = [] {
     Words shapes = tool_shapes;
-    shapes.insert(shapes.end(), {"urdf", "sdf"});
+    shapes.insert(shapes.end(), {"urdf", "sdf", "mjcf"});
     return joined({part(shapes, {text("law"), map("motion", motion())}),
                    {texts("packages"), flag("covers")}});
   }();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "obstacle_reader.hpp"
 
+#include <map>
 #include <set>
 
 #include "grammar.hpp"
@@ -13,6 +14,8 @@ namespace {
 constexpr std::size_t most_loose = 200;
 /// Each may have as many parts and meshes as a robot.
 constexpr std::size_t most_models = 64;
+const std::map<std::string_view, ModelFormat> model_formats{
+    {"urdf", ModelFormat::urdf}, {"sdf", ModelFormat::sdf}, {"mjcf", ModelFormat::mjcf}};
 
 ForceLaw law_of(const Value& value) {
   const Map map(value, grammar::law());
@@ -41,11 +44,12 @@ std::optional<ReciprocatingMotion> motion_of(const Map& obstacle) {
   return ReciprocatingMotion{map.vector("along"), map.number("duration")};
 }
 
-StaticModel model_of(const Map& map, const Laws& laws) {
+StaticModel model_of(const Map& map, ModelFormat format, const Laws& laws) {
   map.refuse({"motion", "size", "radius", "length", "points", "parts"});
   StaticModel model;
   model.name = map.at("name").text();
-  model.is_sdf = map.at("shape").text() == "sdf";
+  model.format = format;
+  if (format == ModelFormat::mjcf) map.refuse({"packages", "covers"});
   model.file = map.at("file").path();
   if (const Value* packages = map.find("packages")) model.packages = packages->folders();
   map.read("covers", model.covers);
@@ -87,11 +91,12 @@ std::vector<Obstacle> obstacles_of(const Value& value, const Laws& laws, const S
   for (const Value& entry : value.list()) {
     const Map map(entry, grammar::obstacle());
     const std::string_view kind = map.find("shape") == nullptr ? "" : map.word("shape");
-    if (kind == "urdf" || kind == "sdf") {
+    if (const auto format = model_formats.find(kind); format != model_formats.end()) {
       if (models.size() == most_models) {
-        entry.fail("more than " + std::to_string(most_models) + " obstacles of shape urdf or sdf");
+        entry.fail("more than " + std::to_string(most_models) +
+                   " obstacles of shape urdf, sdf or mjcf");
       }
-      models.push_back(model_of(map, laws));
+      models.push_back(model_of(map, format->second, laws));
       require_new(names, map);
       continue;
     }

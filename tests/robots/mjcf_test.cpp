@@ -207,6 +207,45 @@ TEST(Mjcf, PartsAndLimitsAreThoseOfTheFile) {
   EXPECT_EQ(arm.parts.size(), 5U) << "without what stands with the base";
 }
 
+TEST(Mjcf, PartsStandWhereMujocoPutsThemWithTheWorldsToo) {
+  const Folder folder;
+  const std::string shelf =
+      "<geom name=\"shelf\" type=\"box\" size=\"0.1 0.2 0.3\" pos=\"1 2 3\"/>"
+      "<geom name=\"picture\" type=\"sphere\" size=\"1\" contype=\"0\" conaffinity=\"0\"/>"
+      "<body name=\"ball\" pos=\"0 0 5\"><freejoint/><geom size=\"0.1\"/></body>";
+  std::string bodies = arm_bodies;
+  bodies.replace(0, bodies.find("<body"), shelf);
+  const std::string path = folder.with("arm.xml", mjcf_of(bodies, arm_rest));
+  const std::vector<RobotPart> parts = load_mjcf_parts(path);
+  char message[1000] = "";
+  const std::unique_ptr<mjModel, EndModel> model(
+      mj_loadXML(path.c_str(), nullptr, message, sizeof message));
+  ASSERT_TRUE(model) << message;
+  const std::unique_ptr<mjData, EndData> data(mj_makeData(model.get()));
+  mj_kinematics(model.get(), data.get());
+  int touching = 0;
+  for (int i = 0; i < model->ngeom; ++i) touching += model->geom_contype[i] != 0 ? 1 : 0;
+  EXPECT_LT(touching, model->ngeom);
+  ASSERT_EQ(parts.size(), static_cast<std::size_t>(touching));
+  EXPECT_EQ(parts[0].in_link, "world");
+  for (const RobotPart& part : parts) {
+    const int geom = mj_name2id(model.get(), mjOBJ_GEOM, part.name.c_str());
+    const int shown =
+        geom >= 0 ? geom
+                  : model->body_geomadr[mj_name2id(model.get(), mjOBJ_BODY, part.in_link.c_str())];
+    EXPECT_LT(apart(part.X_LP, pose_of(data->geom_xpos + 3 * shown, data->geom_xmat + 9 * shown)),
+              1e-9)
+        << part.name;
+  }
+  const std::string floor = folder.with("floor.xml", mjcf_of(arm_bodies, arm_rest));
+  try {
+    (void)load_mjcf_parts(floor);
+    ADD_FAILURE() << "accepted";
+  } catch (const SetupError& error) {
+    EXPECT_TRUE(says(error.what(), "a plane, which has no end")) << error.what();
+  }
+}
+
 TEST(Mjcf, AHeldJointStandsWhereItIsHeld) {
   const Folder folder;
   const std::string path = folder.with("arm.xml", mjcf_of(arm_bodies, arm_rest));

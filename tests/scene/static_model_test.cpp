@@ -51,13 +51,13 @@ TEST(StaticModel, HasFilePoseLawAndPackages) {
   EXPECT_EQ(model.law.range, 0.03);
   EXPECT_EQ(model.packages.size(), 1U);
   EXPECT_FALSE(model.covers);
-  EXPECT_FALSE(model.is_sdf);
+  EXPECT_EQ(model.format, scene::ModelFormat::urdf);
   const test::Folder other;
   EXPECT_TRUE(parsed(other, "name: cell, shape: urdf, file: cell.urdf").models[0].covers);
   (void)other.with("cell.sdf", "not read here");
   const Scene sdf = parsed(other, "name: cell, shape: sdf, file: cell.sdf, law: soft");
   ASSERT_EQ(sdf.models.size(), 1U);
-  EXPECT_TRUE(sdf.models[0].is_sdf);
+  EXPECT_EQ(sdf.models[0].format, scene::ModelFormat::sdf);
   EXPECT_EQ(sdf.models[0].file, other / "cell.sdf");
   EXPECT_EQ(sdf.models[0].law.range, 0.03);
 }
@@ -69,6 +69,8 @@ TEST(StaticModel, WithWhatItCannotHaveIsRefusedWithItsLine) {
             std::string::npos);
   EXPECT_NE(complaint("name: cell, shape: urdf, file: no.urdf").find("no.urdf"), std::string::npos);
   EXPECT_NE(complaint("name: ball, shape: urdf, file: cell.urdf").find("ball"), std::string::npos);
+  EXPECT_NE(complaint("name: cell, shape: mjcf, file: cell.urdf, covers: no").find("covers"),
+            std::string::npos);
   EXPECT_NE(complaint("name: cell, shape: cloud").find("urdf"), std::string::npos);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reads an arm from an MJCF file, the format of MuJoCo.
+/// Reads arms, and what stands around them, from MJCF files, the format of MuJoCo.
 #pragma once
 
 #include <string>
@@ -30,6 +30,12 @@ struct MjcfOptions {
 ///   file, it is no serial arm of hinges and slides, or something in it would be lost; always if
 ///   built without MuJoCo
 [[nodiscard]] Robot load_mjcf_arm(const std::string& path, const MjcfOptions& options = {});
+
+/// The collision geoms of all bodies in the MJCF file at `path`, those of the world included, as
+/// parts of one body that stands still: their poses are in the world, with every joint at its
+/// reference. It need not be an arm.
+/// @throws SetupError as load_mjcf_arm(), but for what only an arm must have
+[[nodiscard]] std::vector<RobotPart> load_mjcf_parts(const std::string& path);
 
 /// Whether this build can read MJCF files.
 [[nodiscard]] bool reads_mjcf() noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include <repel/robots/mjcf.hpp>
 #include <repel/robots/sdf.hpp>
 #include <repel/runs/arms/contact.hpp>
 #include <repel/runs/setup/describe.hpp>
@@ -112,6 +113,32 @@ TEST(StaticModel, OfAnSdfFilePushesAsTheSceneWouldAndIsRecorded) {
   const Ending changed = teleop("replay " + quoted(recording));
   EXPECT_EQ(changed.status, 1) << changed;
   EXPECT_TRUE(changed.says("cell.sdf")) << changed;
+}
+
+TEST(StaticModel, OfAnMjcfFilePushesAsTheSceneWould) {
+  if (!reads_mjcf()) GTEST_SKIP() << "built without MuJoCo";
+  const Folder folder;
+  (void)scene_of(folder);
+  (void)folder.with("cell.xml",
+                    "<mujoco><worldbody><body name='table'>"
+                    "<geom name='plate' type='box' size='0.3 0.4 0.025'/></body>"
+                    "<geom name='post' type='sphere' size='0.1' pos='0 0 5'/>"
+                    "</worldbody></mujoco>");
+  const auto peak_in = [&](const std::string& with) {
+    std::string text = text_of(folder / "scene.yaml");
+    text.replace(text.find("shape: urdf, file: cell.urdf"), 28, with);
+    const Ending ending = teleop(quoted(folder.with("mjcf.yaml", text)) +
+                                 " --fast --seconds 2 --report " + quoted(folder / "r.json"));
+    EXPECT_EQ(ending.status, 0) << ending;
+    for (const auto& obstacle : report_of(folder / "r.json").at("obstacles")) {
+      if (obstacle.at("name") == "cell/table/plate")
+        return obstacle.at("peak_force_n").get<double>();
+    }
+    return 0.0;
+  };
+  const double peak = peak_in("shape: mjcf, file: cell.xml");
+  EXPECT_GT(peak, 10.0);
+  EXPECT_EQ(peak, peak_in("shape: urdf, file: cell.urdf"));
 }
 
 TEST(StaticModel, WithoutACollisionPartIsRefused) {

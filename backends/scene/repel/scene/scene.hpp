@@ -56,16 +56,19 @@ struct Obstacle {
   Gaps gaps{};                                ///< of the mesh, as those of a Part
 };
 
-/// A robot description M, or what an SDF file has, of which every collision part is an obstacle,
-/// with all joints at zero.
+/// How a file describes a model.
+enum class ModelFormat : std::uint8_t { urdf, sdf, mjcf };
+
+/// A robot description M, or what an SDF or MJCF file has, of which every collision part is an
+/// obstacle, with all joints at zero (MJCF: at their references).
 struct StaticModel {
-  std::string name;                   ///< its parts are called NAME/LINK/PART
-  std::string file;                   ///< path
-  bool is_sdf = false;                ///< otherwise it is a URDF file
-  std::vector<std::string> packages;  ///< folders where package:// leads
-  bool covers = true;                 ///< meshes become the parts in the lists beside them
-  Pose X_WM = Pose::Identity();       ///< [m] pose of its root link, or of the SDF world
-  ForceLaw law;                       ///< of every part
+  std::string name;                        ///< its parts are called NAME/LINK/PART
+  std::string file;                        ///< path
+  ModelFormat format = ModelFormat::urdf;  ///< of the file
+  std::vector<std::string> packages;       ///< folders where package:// leads
+  bool covers = true;                      ///< meshes become the parts in the lists beside them
+  Pose X_WM = Pose::Identity();  ///< [m] pose of its root link, or of its SDF or MJCF world
+  ForceLaw law;                  ///< of every part
 };
 
 /// One convex part P of the world that can come, be held by a tool, and go while the scene runs.

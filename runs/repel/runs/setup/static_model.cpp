@@ -3,18 +3,28 @@
 
 #include <utility>
 
+#include <repel/robots/mjcf.hpp>
 #include <repel/robots/parts.hpp>
 #include <repel/robots/sdf.hpp>
 
 namespace repel::runs {
 
-std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, CoversBeside& covers) {
+namespace {
+
+std::vector<RobotPart> parts_of(const scene::StaticModel& model, CoversBeside& covers) {
+  if (model.format == scene::ModelFormat::mjcf) return load_mjcf_parts(model.file);
   UrdfOptions options;
   options.package_paths = model.packages;
   if (model.covers) options.convex_parts = covers.reader();
-  const auto read = model.is_sdf ? &load_sdf_parts : &load_parts;
+  const auto read = model.format == scene::ModelFormat::sdf ? &load_sdf_parts : &load_parts;
+  return read(model.file, options);
+}
+
+}  // namespace
+
+std::vector<scene::Obstacle> obstacles_of(const scene::StaticModel& model, CoversBeside& covers) {
   std::vector<scene::Obstacle> obstacles;
-  for (const RobotPart& part : read(model.file, options)) {
+  for (const RobotPart& part : parts_of(model, covers)) {
     std::string name = model.name;
     name.append(1, '/').append(part.in_link).append(1, '/').append(part.name);
     obstacles.push_back({std::move(name),
