@@ -152,7 +152,8 @@ endmacro()
 macro(repel_find_visual)
   find_package(Boost 1.74 QUIET)
   find_package(nlohmann_json QUIET)
-  repel_all_found(VISUAL Boost_FOUND nlohmann_json_FOUND)
+  find_package(OpenSSL 3 QUIET)
+  repel_all_found(VISUAL Boost_FOUND nlohmann_json_FOUND OPENSSL_FOUND)
 endmacro()
 
 # Sets PREFIX_FOUND and the target PkgConfig::PREFIX.

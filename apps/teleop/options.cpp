@@ -184,6 +184,17 @@ void describe_view(CLI::App& app, Command command, Arguments& a) {
       ->needs(view)
       ->excludes(file)
       ->type_name("NAME");
+  CLI::Option* tls =
+      app.add_option("--tls", a.session.tls,
+                     "Serve the view over TLS: self (a certificate made at the first start) or "
+                     "CERTIFICATE,KEY (PEM files). Required if other machines reach the view")
+          ->needs(view)
+          ->check(CLI::Validator(runs::tls_complaint, "self or CERTIFICATE,KEY"));
+  app.add_flag(
+         "--plain", a.session.plain,
+         "Without TLS, though others reach the view: whoever is on the way can read and drive")
+      ->needs(view)
+      ->excludes(tls);
   CLI::Option* only = app.add_flag("--view-only", a.session.view_only,
                                    "Pages look on: they do not drive, pause, step or restart")
                           ->needs(view);

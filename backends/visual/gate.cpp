@@ -6,15 +6,8 @@ namespace {
 
 namespace ip = boost::asio::ip;
 
-constexpr std::string_view web_port = ":80";
-
 bool is_made_of(std::string_view text, std::string_view characters) {
   return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos;
-}
-
-std::string_view without_web_port(std::string_view host) {
-  if (host.ends_with(web_port)) host.remove_suffix(web_port.size());
-  return host;
 }
 
 }  // namespace
@@ -24,11 +17,11 @@ ip::address plain(const ip::address& address) {
   return ip::make_address_v4(ip::v4_mapped, address.to_v6());
 }
 
-Gate::Gate(const std::string& address, std::uint16_t port)
-    : address_(plain(ip::make_address(address))), port_(port) {}
+Gate::Gate(const std::string& address, std::uint16_t port, bool tls)
+    : address_(plain(ip::make_address(address))), port_(port), tls_(tls) {}
 
 bool Gate::is_host(std::string_view host) const {
-  if (port_ == 80 && is_name(host)) return true;
+  if (port_ == (tls_ ? 443 : 80) && is_name(host)) return true;
   std::string port(":");
   port += std::to_string(port_);
   return host.ends_with(port) && is_name(host.substr(0, host.size() - port.size()));
@@ -50,10 +43,15 @@ bool Gate::is_name(std::string_view name) const {
   return name == "localhost" && address_.is_loopback();
 }
 
-bool Gate::is_origin(std::string_view origin, std::string_view host) {
-  constexpr std::string_view scheme = "http://";
+bool Gate::is_origin(std::string_view origin, std::string_view host, bool tls) {
+  const std::string_view scheme = tls ? "https://" : "http://";
+  const auto without_port = [tls](std::string_view name) {
+    const std::string_view port = tls ? ":443" : ":80";
+    if (name.ends_with(port)) name.remove_suffix(port.size());
+    return name;
+  };
   return origin.starts_with(scheme) &&
-         without_web_port(origin.substr(scheme.size())) == without_web_port(host);
+         without_port(origin.substr(scheme.size())) == without_port(host);
 }
 
 }  // namespace repel::visual

@@ -7,12 +7,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string_view>
 #include <utility>
 
 #include <boost/asio/compose.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
+
+#include "connection.hpp"
 
 namespace repel::visual {
 
@@ -35,39 +38,43 @@ class FrameCounter {
 /// A stream layer between a WebSocket and its connection.
 class MeteredStream {
  public:
-  using executor_type = boost::beast::tcp_stream::executor_type;
+  using executor_type = Connection::executor_type;
   using Error = boost::beast::error_code;
 
-  explicit MeteredStream(boost::beast::tcp_stream&& stream) : stream_(std::move(stream)) {}
+  explicit MeteredStream(std::unique_ptr<Connection> connection)
+      : connection_(std::move(connection)) {}
 
   /// Sets a callback for the number of incoming frames, called before they are read.
   void on_frames(std::function<void(int)> heard) { heard_ = std::move(heard); }
 
-  [[nodiscard]] executor_type get_executor() noexcept { return stream_.get_executor(); }
-  [[nodiscard]] boost::beast::tcp_stream& next_layer() noexcept { return stream_; }
-  [[nodiscard]] const boost::beast::tcp_stream& next_layer() const noexcept { return stream_; }
+  [[nodiscard]] executor_type get_executor() noexcept { return connection_->get_executor(); }
+  [[nodiscard]] boost::beast::tcp_stream& next_layer() noexcept { return connection_->tcp(); }
+  [[nodiscard]] const boost::beast::tcp_stream& next_layer() const noexcept {
+    return connection_->tcp();
+  }
 
   template <class Buffers, class Handler>
   auto async_read_some(const Buffers& buffers, Handler&& handler) {
     auto read = [this, buffers, begun = false](auto& self, Error error = {},
                                                std::size_t bytes = 0) mutable {
-      if (!std::exchange(begun, true)) return stream_.async_read_some(buffers, std::move(self));
+      if (!std::exchange(begun, true)) {
+        return connection_->async_read_some(buffers, std::move(self));
+      }
       if (bytes > 0) meter(buffers, bytes);
       self.complete(error, bytes);
     };
     return boost::asio::async_compose<Handler, void(Error, std::size_t)>(std::move(read), handler,
-                                                                         stream_);
+                                                                         *connection_);
   }
   template <class Buffers, class Handler>
   auto async_write_some(const Buffers& buffers, Handler&& handler) {
-    return stream_.async_write_some(buffers, std::forward<Handler>(handler));
+    return connection_->async_write_some(buffers, std::forward<Handler>(handler));
   }
 
   template <class Handler>
   friend void async_teardown(boost::beast::role_type role, MeteredStream& stream,
                              Handler&& handler) {
-    using boost::beast::websocket::async_teardown;
-    async_teardown(role, stream.stream_.socket(), std::forward<Handler>(handler));
+    stream.connection_->async_end(role, std::forward<Handler>(handler));
   }
 
  private:
@@ -81,7 +88,7 @@ class MeteredStream {
     if (frames > 0 && heard_) heard_(frames);
   }
 
-  boost::beast::tcp_stream stream_;
+  std::unique_ptr<Connection> connection_;
   FrameCounter counter_;
   std::function<void(int)> heard_;
 };

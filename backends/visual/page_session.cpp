@@ -14,8 +14,9 @@ namespace websocket = beast::websocket;
 
 }  // namespace
 
-PageSession::PageSession(beast::tcp_stream&& stream, const PageLimits& limits, Events events)
-    : socket_(MeteredStream(std::move(stream))),
+PageSession::PageSession(std::unique_ptr<Connection> connection, const PageLimits& limits,
+                         Events events)
+    : socket_(MeteredStream(std::move(connection))),
       messages_per_second_(limits.messages_per_second),
       events_(std::move(events)) {
   beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts

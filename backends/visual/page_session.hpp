@@ -38,7 +38,7 @@ class PageSession : public std::enable_shared_from_this<PageSession> {
     std::function<void()> failed;  ///< it could not be opened
   };
 
-  PageSession(boost::beast::tcp_stream&& stream, const PageLimits& limits, Events events);
+  PageSession(std::unique_ptr<Connection> connection, const PageLimits& limits, Events events);
 
   /// Accepts the WebSocket upgrade request.
   void open(const Request& request);

@@ -42,7 +42,7 @@ class SecretKeeper {
   std::map<std::string, Tries> tries_;  ///< of networks with wrong attempts
 };
 
-/// Whether both are equal; the time depends only on the length of `given`.
+/// Whether both are equal; the time depends on their lengths alone.
 [[nodiscard]] bool is_same(std::string_view given, std::string_view secret);
 
 }  // namespace repel::visual

@@ -25,6 +25,7 @@
 #include "lobby.hpp"
 #include "page_session.hpp"
 #include "secret.hpp"
+#include "tls_context.hpp"
 
 namespace repel::visual {
 namespace {
@@ -40,7 +41,7 @@ using beast::websocket::close_code;
 
 /// Only resources of this server, and no embedding in other pages.
 constexpr const char* policy =
-    "default-src 'self'; connect-src 'self' ws:; img-src 'self' data: blob:; frame-ancestors "
+    "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; frame-ancestors "
     "'none'; base-uri 'none'; form-action 'none'";
 
 /// Close codes for a missing or wrong secret, and for too many attempts.
@@ -60,11 +61,11 @@ std::optional<std::string> secret_in(std::string_view text) {
 }
 
 /// The URL by which a browser on this machine reaches the endpoint.
-std::string url_of(const tcp::endpoint& place) {
+std::string url_of(const tcp::endpoint& place, bool tls) {
   const asio::ip::address address = place.address();
   std::string name = address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
   if (address.is_unspecified()) name = "localhost";
-  return "http://" + name + ":" + std::to_string(place.port()) + "/";
+  return (tls ? "https://" : "http://") + name + ":" + std::to_string(place.port()) + "/";
 }
 
 }  // namespace
@@ -76,8 +77,9 @@ class Server::Impl final : public Pages {
         lobby_(static_cast<std::size_t>(options.visitors),
                static_cast<std::size_t>(options.visitors_of_one)),
         secret_(options.secret),
+        tls_(options.tls ? std::optional(tls_context(*options.tls)) : std::nullopt),
         acceptor_(listening(context_, options)),
-        url_(url_of(acceptor_.local_endpoint())),
+        url_(url_of(acceptor_.local_endpoint(), tls_.has_value())),
         show_(show),
         refreshes_(context_) {
     for (Asset& asset : assets) {
@@ -114,16 +116,17 @@ class Server::Impl final : public Pages {
  private:
   /// A connection until it has been answered or upgraded to a page.
   struct Visitor {
-    explicit Visitor(tcp::socket&& socket) : stream(std::move(socket)) {
+    Visitor(tcp::socket&& socket, asio::ssl::context* tls)
+        : connection(std::make_unique<Connection>(std::move(socket), tls)) {
       parser.emplace();
       parser->header_limit(8192);
       parser->body_limit(0);
     }
     void leave() {
       Error ignored;
-      stream.socket().close(ignored);
+      if (connection) connection->tcp().socket().close(ignored);
     }
-    beast::tcp_stream stream;
+    std::unique_ptr<Connection> connection;  ///< null: a page has it
     beast::flat_buffer buffer{16384};
     std::optional<http::request_parser<http::empty_body>> parser;
     Response response;
@@ -172,9 +175,11 @@ class Server::Impl final : public Pages {
     }
   }
 
+  [[nodiscard]] asio::ssl::context* tls() { return tls_ ? &*tls_ : nullptr; }
+
   void accept() {
     acceptor_.async_accept([this](Error error, tcp::socket socket) {
-      if (!error) attempt([&] { receive(std::make_shared<Visitor>(std::move(socket))); });
+      if (!error) attempt([&] { receive(std::make_shared<Visitor>(std::move(socket), tls())); });
       if (error == asio::error::operation_aborted) return;
       if (!error) return accept();
       // Out of file descriptors: retry after a pause.
@@ -187,17 +192,24 @@ class Server::Impl final : public Pages {
 
   void receive(const Guest& guest) {
     Error error;
-    const tcp::endpoint there = guest->stream.socket().remote_endpoint(error);
+    beast::tcp_stream& tcp = guest->connection->tcp();
+    const tcp::endpoint there = tcp.socket().remote_endpoint(error);
     if (error) return;  // already closed
-    const tcp::endpoint here = guest->stream.socket().local_endpoint(error);
+    const tcp::endpoint here = tcp.socket().local_endpoint(error);
     if (error) return;
-    guest->gate.emplace(here.address().to_string(), here.port());
+    guest->gate.emplace(here.address().to_string(), here.port(), tls_.has_value());
     guest->seat = lobby_.enter(network_of(there.address()));
     guest->seat->leave = [who = std::weak_ptr(guest)] {
       if (const Guest still = who.lock()) still->leave();
     };
-    guest->stream.expires_after(options_.patience);
-    http::async_read_header(guest->stream, guest->buffer, *guest->parser,
+    tcp.expires_after(options_.patience);
+    guest->connection->begin([this, guest](Error unsealed) {
+      if (!unsealed) attempt([&] { listen_to(guest); });
+    });
+  }
+
+  void listen_to(const Guest& guest) {
+    http::async_read_header(*guest->connection, guest->buffer, *guest->parser,
                             [this, guest](Error failed, std::size_t) {
                               if (!failed) answer(guest);
                             });
@@ -209,13 +221,13 @@ class Server::Impl final : public Pages {
     guest->response = response_to(request, *guest->gate, is_page);
     if (is_page && guest->response.result() == http::status::ok) return open(guest, request);
     guest->seat->idle = false;
-    guest->stream.expires_after(std::chrono::seconds(10));
+    guest->connection->tcp().expires_after(std::chrono::seconds(10));
     guest->response.keep_alive(false);
     guest->response.prepare_payload();
     if (request.method() == http::verb::head) guest->response.body().clear();
-    http::async_write(guest->stream, guest->response, [guest](Error, std::size_t) {
+    http::async_write(*guest->connection, guest->response, [guest](Error, std::size_t) {
       Error ignored;
-      guest->stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+      guest->connection->tcp().socket().shutdown(tcp::socket::shutdown_send, ignored);
     });
   }
 
@@ -231,7 +243,8 @@ class Server::Impl final : public Pages {
     if (request.count(http::field::host) != 1 || !gate.is_host(host))
       return refuse(http::status::forbidden, "This host is not served here.\n");
     const std::size_t origins = request.count(http::field::origin);
-    if (origins > 1 || (origins == 1 && !Gate::is_origin(view(request[http::field::origin]), host)))
+    if (origins > 1 || (origins == 1 && !Gate::is_origin(view(request[http::field::origin]), host,
+                                                         tls_.has_value())))
       return refuse(http::status::forbidden, "Pages of other origins may not ask here.\n");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return refuse(http::status::method_not_allowed, "Only GET and HEAD are answered.\n");
@@ -293,7 +306,7 @@ class Server::Impl final : public Pages {
     const PageLimits limits{options_.messages_per_second, options_.message_bytes,
                             options_.patience};
     const auto page =
-        std::make_shared<PageSession>(std::move(guest->stream), limits, std::move(events));
+        std::make_shared<PageSession>(std::move(guest->connection), limits, std::move(events));
     if (secret_.is_wanted()) {
       guest->seat->leave = [who = std::weak_ptr(page)] {
         if (const auto still = who.lock()) still->cut();
@@ -355,6 +368,7 @@ class Server::Impl final : public Pages {
   asio::io_context context_{1};
   Lobby lobby_;
   SecretKeeper secret_;
+  std::optional<asio::ssl::context> tls_;
   tcp::acceptor acceptor_;
   std::string url_;
   PageHandler& show_;

@@ -3,6 +3,7 @@
 
 import os
 import tempfile
+from unittest import mock
 
 import live
 from cases import OwnProgram, by_the_clock
@@ -24,11 +25,11 @@ class Secret(OwnProgram):
               }
             };""")
 
-    def start_with_secret(self):
+    def start_with_secret(self, *where):
         with tempfile.NamedTemporaryFile("w", suffix=".secret") as file:
             file.write(self.SECRET + "\n")
             file.flush()
-            return self.start(live.SCENE, "--secret", file.name, address="0.0.0.0")
+            return self.start(live.SCENE, "--secret", file.name, *where, address="0.0.0.0")
 
     def asks(self, page):
         page.until(lambda s: page.shown("secret-form"), "it asks for the secret")
@@ -50,7 +51,10 @@ class Secret(OwnProgram):
         self.element("secret").send_keys(text + "\n")
 
     def test_behind_the_address_it_opens_the_page_and_is_taken_out_of_it(self):
-        url = self.start_with_secret()
+        state = self.enterContext(tempfile.TemporaryDirectory())
+        self.enterContext(mock.patch.dict(os.environ, XDG_STATE_HOME=state))
+        url = self.start_with_secret("--tls", "self")
+        self.assertTrue(url.startswith("https://"))
         page = self.open(f"{url}#secret={self.SECRET}", connects=False)
         self.gets_in(page)
         self.assertEqual(self.browser.current_url, url)
@@ -60,7 +64,7 @@ class Secret(OwnProgram):
         self.gets_in(page)  # this tab still knows it
 
     def test_without_it_the_page_shows_nothing_and_asks(self):
-        page = self.open(self.start_with_secret(), connects=False)
+        page = self.open(self.start_with_secret("--plain"), connects=False)
         self.asks(page)
         self.present(page, "this is the wrong one")
         page.until_text("secret-why", "another")
@@ -70,7 +74,7 @@ class Secret(OwnProgram):
         self.gets_in(page)
 
     def test_a_wrong_one_behind_the_address_can_be_put_right_there(self):
-        url = self.start_with_secret()
+        url = self.start_with_secret("--plain")
         page = self.open(f"{url}#secret=this-is-the-wrong-one", connects=False)
         self.asks(page)
         self.browser.execute_script(f"location.hash = '#secret={self.SECRET}'")

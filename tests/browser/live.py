@@ -55,6 +55,7 @@ def start_browser():
     for flag in ("--headless=new", "--no-sandbox", "--disable-gpu",
                  "--enable-unsafe-swiftshader", "--window-size=1280,800"):
         options.add_argument(flag)
+    options.accept_insecure_certs = True  # that of `--tls self`
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     service = Service("/usr/bin/chromedriver")
     browser = webdriver.Chrome(service=service, options=options)
@@ -75,7 +76,7 @@ def listening(*arguments, port=0, address="127.0.0.1"):
         [TELEOP, *arguments, "--view", "--listen", f"{address}:{port}"],
         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     for line in program.stderr:
-        found = re.search(r"Live view: (http://\S+)", line)
+        found = re.search(r"Live view: (https?://\S+)", line)
         if found:
             return program, found.group(1)
     raise RuntimeError(f"{TELEOP} ended with {program.wait()} before it listened")

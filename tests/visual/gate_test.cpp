@@ -139,5 +139,16 @@ TEST(Gate, AnOriginIsThatOfThePageItselfToTheLetter) {
   }
 }
 
+TEST(Gate, OverTlsThePageIsHttpsAndItsPortMayBeLeftOut) {
+  const Gate gate("192.168.0.1", 443, true);
+  EXPECT_TRUE(gate.is_host("192.168.0.1"));
+  EXPECT_TRUE(gate.is_host("192.168.0.1:443"));
+  EXPECT_FALSE(Gate("192.168.0.1", 80, true).is_host("192.168.0.1"));
+  EXPECT_TRUE(Gate::is_origin("https://192.168.0.1", "192.168.0.1:443", true));
+  EXPECT_FALSE(Gate::is_origin("http://192.168.0.1", "192.168.0.1", true));
+  EXPECT_FALSE(Gate::is_origin("https://192.168.0.1:80", "192.168.0.1", true));
+  EXPECT_FALSE(Gate::is_origin("https://192.168.0.1", "192.168.0.1"));
+}
+
 }  // namespace gate_test
 }  // namespace repel::visual

@@ -124,7 +124,7 @@ void present(LivePage& page, const std::string& text) {
 TEST(Live, WhereOtherMachinesReachItASecretIsNeeded) {
   const Folder folder;
   const std::string path = folder.with("secret", secret + "\nnot this\n");
-  LiveTeleop program({"plates", "--secret", path}, "0.0.0.0:0");
+  LiveTeleop program({"plates", "--secret", path, "--plain"}, "0.0.0.0:0");
   LivePage stranger(program);
   present(stranger, "not this");
   EXPECT_EQ(stranger.page().await_close(), 4401);
@@ -152,15 +152,46 @@ TEST(Live, ListeningForOthersWithoutASecretEndsWithTwoAndSaysWhatToAdd) {
   for (const char* place : {"0.0.0.0:0", "[::]:0", "192.0.2.1:8448", "[2001:db8::1]:8448"}) {
     const Ending ending = teleop(std::string("plates --view --listen ") + place);
     EXPECT_EQ(ending.status, 2) << ending;
-    for (const char* words : {place, "--secret FILE", "--secret-env", "ssh -L"}) {
+    for (const char* words :
+         {place, "--secret FILE", "--secret-env", "--tls self", "--plain", "ssh -L"}) {
       EXPECT_TRUE(ending.says(words)) << words << '\n' << ending;
     }
   }
 }
 
+TEST(Live, ListeningForOthersWithoutTlsHasToBeSaidOutLoud) {
+  const Folder folder;
+  const std::string listen =
+      "plates --view --listen 0.0.0.0:0 --secret " + quoted(folder.with("secret", secret));
+  const Ending silent = teleop(listen);
+  EXPECT_EQ(silent.status, 2) << silent;
+  for (const char* words : {"--tls self", "CERTIFICATE,KEY", "--plain"}) {
+    EXPECT_TRUE(silent.says(words)) << words << '\n' << silent;
+  }
+  EXPECT_FALSE(silent.says("--secret FILE")) << silent;
+  for (const char* wrong : {" --tls", " --tls both", " --tls a,", " --tls self --plain"}) {
+    EXPECT_EQ(teleop(listen + wrong).status, 2) << wrong;
+  }
+  const Ending missing = teleop(listen + " --tls none.pem,none.pem");
+  EXPECT_EQ(missing.status, 1) << missing;
+  EXPECT_TRUE(missing.says("none.pem")) << missing;
+}
+
+TEST(Live, ACertificateOfItsOwnComesWithItsFingerprint) {
+  const Folder folder;
+  ASSERT_EQ(::setenv("XDG_STATE_HOME", (folder / "state").c_str(), 1), 0);
+  LiveTeleop program({"plates", "--tls", "self"});
+  (void)::unsetenv("XDG_STATE_HOME");
+  const Ending ending = program.interrupt();
+  EXPECT_EQ(ending.status, 0) << ending;
+  EXPECT_TRUE(ending.says("https://127.0.0.1:")) << ending;
+  EXPECT_TRUE(ending.says("SHA-256")) << ending;
+  EXPECT_FALSE(text_of(folder / "state/repel/page.pem").empty());
+}
+
 TEST(Live, ASecretThatIsNoneEndsWithTwoAndIsNotShown) {
   const Folder folder;
-  const std::string listen = "plates --view --listen 0.0.0.0:0 ";
+  const std::string listen = "plates --view --listen 0.0.0.0:0 --plain ";
   for (const std::string& text :
        {std::string(), std::string("\nsecond line is long enough"), std::string("123456789012345"),
         std::string("with spaces within it"), std::string(300, 'x'),
@@ -187,7 +218,8 @@ TEST(Live, WhoMayDriveIsSaidOnTheCommandLine) {
     EXPECT_EQ(ending.status, 2) << ending;
   }
   const Ending help = teleop("run --help");
-  for (const char* option : {"--secret", "--secret-env", "--view-only", "--page-drives"}) {
+  for (const char* option :
+       {"--secret", "--secret-env", "--tls", "--plain", "--view-only", "--page-drives"}) {
     EXPECT_TRUE(help.says(option)) << option;
   }
 }

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include <repel/visual/tls.hpp>
+
 namespace repel::visual {
 
 /// A file of the page.
@@ -33,8 +35,9 @@ struct ServerOptions {
   std::size_t message_bytes = 4096;  ///< limit per message; beyond it the page is cut off
   double refresh_rate = 60.0;  ///< [Hz] of PageHandler::refresh, unless next_refresh gives a time
   std::string secret;          ///< that a page must present; empty: none
-  int visitors = 64;           ///< limit of unanswered connections; the oldest is closed
-  int visitors_of_one = 32;    ///< limit per IPv4 address or IPv6 /64 network
+  std::optional<TlsFiles> tls{};  ///< pages are https; none: http, which anyone on the way can read
+  int visitors = 64;              ///< limit of unanswered connections; the oldest is closed
+  int visitors_of_one = 32;       ///< limit per IPv4 address or IPv6 /64 network
   std::chrono::milliseconds patience{2000};  ///< timeout for a connection without a request
 };
 
@@ -91,7 +94,9 @@ class PageHandler {
 class Server {
  public:
   /// @param show must outlive the server
-  /// @throws SetupError naming address and port if it cannot listen there
+  /// @throws SetupError naming address and port if it cannot listen there, or what is wrong with
+  /// the
+  ///   certificate
   Server(const ServerOptions& options, std::vector<Asset> assets, PageHandler& show);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -129,21 +129,40 @@ std::string listen_complaint(const std::string& listen) {
 }
 
 std::string settle_secret(SessionOptions& session) {
-  if (!session.secret_file.empty() || !session.secret_env.empty()) return read_secret(session);
+  const bool has_secret = !session.secret_file.empty() || !session.secret_env.empty();
   const std::optional<Place> place = place_of(session.listen);
-  if (!session.view || !place || is_loopback(*place)) return {};
-  return "--listen: other machines reach " + session.listen +
-         "; add --secret FILE (the secret of the pages is its first line) or --secret-env NAME, "
-         "or listen on 127.0.0.1 and come through ssh -L";
+  std::string missing;
+  if (session.view && place && !is_loopback(*place)) {
+    if (!has_secret) {
+      missing = "--secret FILE (the secret of the pages is its first line) or --secret-env NAME, ";
+    }
+    if (session.tls.empty() && !session.plain) {
+      missing += "--tls self, --tls CERTIFICATE,KEY or, where all may read and drive, --plain, ";
+    }
+  }
+  if (!missing.empty()) {
+    return "--listen: other machines reach " + session.listen + "; add " + missing +
+           "or listen on 127.0.0.1 and come through ssh -L";
+  }
+  return has_secret ? read_secret(session) : "";
 }
 
-void announce(const SessionOptions& session, const std::string& url) {
+std::string tls_complaint(const std::string& tls) {
+  const std::size_t comma = tls.find(',');
+  const bool two = comma != std::string::npos && comma > 0 && comma + 1 < tls.size();
+  return two || tls == "self" ? ""
+                              : "'" + tls + "'; allowed: self, or CERTIFICATE,KEY as PEM files";
+}
+
+void announce(const SessionOptions& session, const std::string& url,
+              const std::string& fingerprint) {
   std::fprintf(stderr, "Live view: %s\n", url.c_str());
   const Place place = place_of(session.listen).value_or(Place{});
   if (place.address == "0.0.0.0" || place.address == "::") {
     const std::string port = url.substr(url.rfind(':'));
     for (const std::string& name : names_of(place.address == "::")) {
-      std::fprintf(stderr, "From other machines: http://%s%s\n", name.c_str(), port.c_str());
+      std::fprintf(stderr, "From other machines: %s://%s%s\n",
+                   session.tls.empty() ? "http" : "https", name.c_str(), port.c_str());
     }
   }
   if (!session.secret.empty()) {
@@ -152,7 +171,13 @@ void announce(const SessionOptions& session, const std::string& url) {
                                   : "the first line of " + session.secret_file;
     std::fprintf(stderr, "Behind the address: #secret=SECRET, which is %s.\n", where.c_str());
   }
-  if (!is_loopback(place)) {
+  if (!fingerprint.empty()) {
+    std::fprintf(stderr,
+                 "The browser does not know the certificate: accept it if its SHA-256 fingerprint "
+                 "is\n  %s\n",
+                 fingerprint.c_str());
+  }
+  if (!is_loopback(place) && session.tls.empty()) {
     std::fputs(
         "Nothing is encrypted: through networks you do not trust use ssh -L, see "
         "docs/live_view.md.\n",

@@ -25,12 +25,17 @@ struct Place {
 /// What is wrong with ADDRESS:PORT; empty: nothing.
 [[nodiscard]] std::string listen_complaint(const std::string& listen);
 
-/// Reads the secret from the file or variable of the options. Returns a complaint about it, or its
-/// absence on an address reachable from other machines; empty: none.
+/// Reads the secret from the file or variable of the options. Returns a complaint about it, or the
+/// absence of secret or TLS on an address reachable from other machines; empty: none.
 [[nodiscard]] std::string settle_secret(SessionOptions& session);
+
+/// What is wrong with the choice of a certificate; empty: nothing.
+[[nodiscard]] std::string tls_complaint(const std::string& tls);
 
 /// Prints on stderr the URL of the view, and what else is needed to open it.
 /// @param url as seen from this machine
-void announce(const SessionOptions& session, const std::string& url);
+/// @param fingerprint of a certificate that no browser knows; empty: none
+void announce(const SessionOptions& session, const std::string& url,
+              const std::string& fingerprint);
 
 }  // namespace repel::runs

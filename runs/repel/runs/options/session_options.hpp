@@ -13,7 +13,6 @@
 namespace repel::runs {
 
 /// How a run is watched and driven.
-
 struct SessionOptions {
   bool view = false;
   std::string listen = "127.0.0.1:8448";  ///< ADDRESS:PORT of the live view
@@ -22,6 +21,8 @@ struct SessionOptions {
   std::string secret_file;                ///< its first line is the secret of pages; empty: none
   std::string secret_env;                 ///< environment variable with the secret, instead
   std::string secret;                     ///< the secret, once settle_secret has read it
+  std::string tls;                        ///< "self" or CERTIFICATE,KEY; empty: pages are plain
+  bool plain = false;                     ///< pages may be plain beyond this machine
   bool view_only = false;                 ///< pages may only watch
   bool page_drives = false;               ///< pages may override the device
   LinkChoice link;                        ///< to the other side of the scene

@@ -10,6 +10,7 @@
 
 #include <any>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include <repel/network/modules/spaceball.hpp>
@@ -17,6 +18,8 @@
 
 namespace repel::runs {
 namespace {
+
+using namespace std::string_literals;
 
 /// What is not covered of the meshes, for display.
 std::vector<visual::GapsInfo> gaps_info_of(const std::vector<scene::Gaps>& gaps) {
@@ -62,12 +65,30 @@ visual::SceneInfo scene_info_of(const PreparedRun& prepared, const Heading& head
   return info;
 }
 
+/// @throws SetupError if `self` has no folder
+visual::TlsFiles tls_of(const SessionOptions& session) {
+  if (session.tls != "self") {
+    const std::size_t comma = session.tls.find(',');
+    return {session.tls.substr(0, comma), session.tls.substr(comma + 1)};
+  }
+  // NOLINTBEGIN(concurrency-mt-unsafe): nothing sets the environment
+  const char* const state = std::getenv("XDG_STATE_HOME");
+  const char* const home = std::getenv("HOME");
+  // NOLINTEND(concurrency-mt-unsafe)
+  if (state != nullptr && *state == '/') return visual::own_certificate(state + "/repel"s);
+  if (home != nullptr && *home == '/')
+    return visual::own_certificate(home + "/.local/state/repel"s);
+  throw SetupError(
+      "--tls self keeps its certificate below $XDG_STATE_HOME or $HOME; set one of them");
+}
+
 class ServedView final : public View {
  public:
   ServedView(const visual::SceneInfo& info, const World& world, Tap& tap, Controls& controls,
              const SessionOptions& session, const std::string& device)
       : served_(info, world, tap, controls, options_of(session, device, controls)) {
-    announce(session, served_.url());
+    const bool is_own = session.tls == "self";
+    announce(session, served_.url(), is_own ? visual::fingerprint_of(tls_of(session)) : "");
   }
 
  private:
@@ -82,6 +103,7 @@ class ServedView final : public View {
     options.server.address = place.address;
     options.server.port = place.port;
     options.server.secret = session.secret;
+    if (!session.tls.empty()) options.server.tls = tls_of(session);
     return options;
   }
 
@@ -108,7 +130,8 @@ namespace repel::runs {
 std::unique_ptr<View> open_view(const PreparedRun& /*prepared*/, const Heading& /*heading*/,
                                 bool /*is_replay*/, Tap& /*tap*/, Controls& /*controls*/,
                                 const SessionOptions& /*session*/, const std::string& /*device*/) {
-  throw SetupError("the live view is not built in; to have it: apt-get install libboost-dev");
+  throw SetupError(
+      "the live view is not built in; to have it: apt-get install libboost-dev libssl-dev");
 }
 
 }  // namespace repel::runs
