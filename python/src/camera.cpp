@@ -165,8 +165,9 @@ void bind_cameras(nb::module_& m) {
           "cell knows anyway, keeps [s] of what is hidden (docs/percepts.md). share: (first, "
           "count) of the loose parts, for this camera alone; none: all.")
       .def("see", &OwnCamera::see, nb::arg("depth"), nb::arg("X_WC"), nb::arg("time"),
-           nb::sig("def see(self, depth: numpy.typing.ArrayLike, X_WC: numpy.typing.ArrayLike, "
-                   "time: float) -> dict[str, int]"),
+           nb::sig(("def see(self, depth: numpy.typing.ArrayLike, X_WC: " + pose_type +
+                    ", time: float) -> dict[str, int]")
+                       .c_str()),
            "Takes over an image, between two ticks: depths [m] (height, width) along the optical "
            "axis, 0 or NaN where nothing was measured; X_WC [m] the camera when it was taken, x to "
            "the right, y down, z forward; time [s], growing. The arms count as they are at the "

@@ -104,16 +104,18 @@ void bind_loose(nb::module_& /*m*/) {
   constexpr double usual_time = WorldChanges::usual_time;
   nb::borrow<nb::class_<OwnCell>>(nb::type<OwnCell>())
       .def("add", &add, nb::arg("part"), nb::arg("X_WP") = nb::none(), nb::arg("over") = usual_time,
-           nb::sig("def add(self, part: str, X_WP: numpy.typing.ArrayLike | None = None, over: "
-                   "float = 0.2) -> None"),
+           nb::sig(("def add(self, part: str, X_WP: " + pose_type +
+                    " | None = None, over: float = 0.2) -> None")
+                       .c_str()),
            "Lets a loose part that is absent come at the pose X_WP [m]; none: that of its Loose. "
            "Its forces grow over the time `over` [s]. This and the four changes below are made at "
            "the beginning of the next ticks, in their order: see `changes`.")
-      .def("add", &add_shape, nb::arg("shape"), nb::arg("X_WP"), nb::arg("over") = usual_time,
-           nb::sig("def add(self, shape: Shape, X_WP: numpy.typing.ArrayLike, over: float = 0.2) "
-                   "-> str"),
-           "The same with a shape, in a loose part that is free and has `room` for it. Returns the "
-           "name of the part.")
+      .def(
+          "add", &add_shape, nb::arg("shape"), nb::arg("X_WP"), nb::arg("over") = usual_time,
+          nb::sig(("def add(self, shape: Shape, X_WP: " + pose_type + ", over: float = 0.2) -> str")
+                      .c_str()),
+          "The same with a shape, in a loose part that is free and has `room` for it. Returns the "
+          "name of the part.")
       .def(
           "move",
           [](OwnCell& own, const std::string& name, nb::handle X_WP, double speed) {
@@ -124,8 +126,9 @@ void bind_loose(nb::module_& /*m*/) {
                 own.cell().changes().move(own.loose(name), pose_of(X_WP, "X_WP"), speed));
           },
           nb::arg("part"), nb::arg("X_WP"), nb::arg("speed") = WorldChanges::usual_speed,
-          nb::sig("def move(self, part: str, X_WP: numpy.typing.ArrayLike, speed: float = 0.25) -> "
-                  "None"),
+          nb::sig(
+              ("def move(self, part: str, X_WP: " + pose_type + ", speed: float = 0.25) -> None")
+                  .c_str()),
           "Moves a part that lies free to a pose [m], on a straight line at a speed [m/s].")
       .def(
           "attach",
@@ -154,8 +157,9 @@ void bind_loose(nb::module_& /*m*/) {
           nb::arg("part"), nb::arg("over") = usual_time,
           "Lets a part go, held or not; its place can be used again.")
       .def("place", &place, nb::arg("part"), nb::arg("X_WP"), nb::arg("V_WP") = nb::none(),
-           nb::sig("def place(self, part: str, X_WP: numpy.typing.ArrayLike, V_WP: "
-                   "numpy.typing.ArrayLike | None = None) -> None"),
+           nb::sig(("def place(self, part: str, X_WP: " + pose_type +
+                    ", V_WP: numpy.typing.ArrayLike | None = None) -> None")
+                       .c_str()),
            "Puts a loose part at a pose [m] at once, as one that a camera or a simulation follows, "
            "before each tick. V_WP (6,): velocity [m/s] of its origin, then angular velocity "
            "[rad/s], world axes, until it is placed again; none: at rest.")
